@@ -1,0 +1,42 @@
+// A paint: one of the reflectance models with its parameters, and where they come from.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+namespace livery {
+
+enum class ReflectanceModel { lambert, ggx, clearcoat };
+
+/// Parameters of every model; a model reads its own (docs/materials.md has the table). Colours are
+/// linear Rec.709 under D65 and may be signed.
+struct Material {
+    std::string name;
+    std::string family;  ///< solid, metallic, matte, chrome, ...
+    ReflectanceModel model = ReflectanceModel::lambert;
+
+    glm::dvec3 diffuse{0.5};      ///< albedo of the diffuse part
+    glm::dvec3 f0{0.04};          ///< Fresnel reflectance of the base at normal incidence
+    glm::dvec2 alpha{0.3, 0.3};   ///< GGX slope parameter along and across the tangent
+    double coat_alpha = 0.02;     ///< clearcoat: slope parameter of the coat
+    double coat_f0 = 0.04;        ///< clearcoat: its Fresnel reflectance at normal incidence
+    glm::dvec3 coat_transmittance{1.0};  ///< of the coat, once through at normal incidence
+
+    std::string provenance;
+    std::filesystem::path file;
+};
+
+/// Reads and checks one material file. Throws FileError (unknown model or parameter, out of range).
+Material read_material_file(const std::filesystem::path& file);
+void write_material_file(const std::filesystem::path& file, const Material& material);
+
+/// A file if there is one of that name, else a paint of the library (materials/) by its name.
+/// Throws FileError with the nearest names.
+Material find_material(const std::string& name_or_file);
+std::vector<Material> load_library(const std::filesystem::path& folder);
+
+}  // namespace livery

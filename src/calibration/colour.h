@@ -1,0 +1,64 @@
+// Colour photographs -> compensation (equations 3 to 9 of the paper, and the robust variant).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calibration/gray_code.h"
+#include "calibration/patterns.h"
+#include "core/progress.h"
+#include "scene/colour_calibration.h"
+
+namespace livery {
+
+enum class ColourMode { paper, robust };
+
+struct CameraToXyz {
+    glm::dmat3 xyz_from_camera{1.0};
+    std::string origin;  ///< "primaries", "chart", "matrix", "assumed Rec.709"
+    /// When measured off a white reference: XYZ of the primaries (columns) and of black; the matrix
+    /// is then solved from the pooled mixing matrix.
+    bool has_primaries = false;
+    glm::dmat3 primaries_xyz{0.0};
+    glm::dvec3 black_xyz{0.0};
+};
+
+struct ColourOptions {
+    ColourMode mode = ColourMode::robust;
+    int dark_drive = 0, bright_drive = 255;
+    CameraToXyz camera_to_xyz;
+    std::string made_with;
+};
+
+/// `captures` holds the six roles, more than one photograph a role is averaged, and `colors-N`
+/// mosaics where the projector is not additive (`patterns` says what each showed). Throws Refused
+/// with why and fix.
+ColourCalibration calibrate_colour(const std::vector<RoledPhotograph>& captures,
+                                   const std::vector<Pattern>& patterns,
+                                   const ProjectorToCamera& map,
+                                   const ColourOptions& options,
+                                   const Progress& progress = {});
+
+/// Projects, photographs and solves, all through the three ports.
+struct LiveOptions {
+    int width = 0, height = 0;  ///< projector pixels
+    ColourOptions colour;
+    int shots = 1;  ///< photographs a colour picture
+};
+struct LiveResult {
+    ColourCalibration calibration;
+    ProjectorToCamera map;
+    std::vector<RoledPhotograph> captures;  ///< the colour ones, for a second look with other options
+    std::vector<Pattern> patterns;
+    double capture_seconds = 0.0, solve_seconds = 0.0;
+};
+LiveResult calibrate_live(const BenchPorts& ports,
+                          const LiveOptions& options,
+                          const Progress& progress = {});
+
+/// Camera matrix from a colour chart lit by the projector's white (its colours' XYZ under that
+/// light must be known) or, as most do, under daylight: for comparison.
+glm::dmat3 fit_camera_matrix(const std::vector<glm::dvec3>& camera_rgb,
+                             const std::vector<glm::dvec3>& xyz);
+
+}  // namespace livery

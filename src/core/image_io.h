@@ -1,0 +1,34 @@
+// Pictures from and to files. The library behind it is loaded when first needed.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/image.h"
+
+namespace livery {
+
+/// A picture in the units of its file.
+struct ImageFile {
+    ImageF image;
+    std::vector<std::string> channel_names;
+    double full_scale = 1.0;  ///< 255 for 8 bit, 65535 for 16 bit, 1 for floating point
+    bool floating_point = false;
+};
+
+/// EXR, HDR, PNG, TIFF, JPEG, RAW. Values as stored: integers 0 to full_scale, floats untouched
+/// (NaN and Inf included: the caller decides). Throws FileError; a declared size over
+/// `max_pixels` is refused before anything is allocated.
+ImageFile read_image(const std::filesystem::path& file, std::size_t max_pixels = 100'000'000);
+
+/// Linear float EXR (32 bit). channel_names defaults to R,G,B(,A) or Y.
+void write_exr(const std::filesystem::path& file,
+               const ImageF& image,
+               const std::vector<std::string>& channel_names = {});
+
+/// Device values as they are; no colour space tag, no alpha.
+void write_png(const std::filesystem::path& file, const Image8& image);
+void write_png(const std::filesystem::path& file, const Image16& image);
+
+}  // namespace livery

@@ -1,0 +1,73 @@
+// Reading JSON with errors that name the file and the field. Include only in *_io.cpp and cli/:
+// the library behind it costs seconds a file to compile.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <nlohmann/json.hpp>
+
+namespace livery {
+
+using Json = nlohmann::ordered_json;
+
+/// Parses a file. Throws FileError (missing, empty, malformed with line and column, over
+/// `max_bytes`, not an object).
+Json read_json_file(const std::filesystem::path& file, std::size_t max_bytes = 64u << 20u);
+
+/// Writes atomically: to a temporary file beside it, then renames. Throws FileError.
+void write_json_file(const std::filesystem::path& file, const Json& json);
+
+/// A place in a parsed file. Every accessor throws FileError that names the full field path
+/// ("lights[2].radiance"), what was found and what was expected. Non-owning.
+class JsonReader {
+  public:
+    JsonReader(std::filesystem::path file, const Json& value, std::string field = "");
+
+    bool has(std::string_view key) const;
+    JsonReader operator[](std::string_view key) const;  ///< an object's member; must exist
+    JsonReader at(std::size_t index) const;             ///< an array's element; must exist
+    std::size_t size() const;                           ///< of an array; throws for anything else
+    std::vector<std::string> keys() const;              ///< of an object
+
+    bool is_object() const { return value_->is_object(); }
+    bool is_array() const { return value_->is_array(); }
+    bool is_text() const { return value_->is_string(); }
+    bool is_number() const { return value_->is_number(); }
+
+    double number() const;  ///< finite
+    double number_between(double low, double high) const;
+    int integer(int low, int high) const;
+    bool boolean() const;
+    std::string text() const;
+    std::vector<double> numbers(std::size_t count) const;  ///< exactly `count`, all finite
+    glm::dvec3 vec3() const;
+    glm::dmat3 matrix3() const;  ///< nine numbers, row by row
+
+    /// Refuses members not in the list, so that a misspelt option is never ignored.
+    void allow_only(std::initializer_list<std::string_view> allowed) const;
+    /// Refuses a missing, wrong or newer "format_version", by name.
+    void require_format_version(int newest_known) const;
+
+    [[noreturn]] void fail(std::string found, std::string expected) const;
+    std::string found() const;  ///< this value in a few words, for messages
+    const std::filesystem::path& file() const { return file_; }
+    const std::string& field() const { return field_; }
+
+  private:
+    std::filesystem::path file_;
+    const Json* value_;
+    std::string field_;
+};
+
+/// Nine numbers, row by row, and three numbers.
+Json json_from(const glm::dmat3& matrix);
+Json json_from(const glm::dvec3& vector);
+
+}  // namespace livery

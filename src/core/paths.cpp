@@ -1,0 +1,122 @@
+#include "core/paths.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <memory>
+#include <vector>
+
+#include <unistd.h>
+
+#include "core/error.h"
+
+namespace livery {
+
+namespace {
+
+// Set once by the command line before any work starts.
+std::filesystem::path chosen_data_folder;
+
+}  // namespace
+
+void set_data_folder(const std::filesystem::path& folder) { chosen_data_folder = folder; }
+
+std::filesystem::path executable_folder() {
+    std::error_code error;
+    const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+    return error ? std::filesystem::current_path() : program.parent_path();
+}
+
+std::filesystem::path shipped_path(const std::filesystem::path& relative) {
+    std::vector<std::filesystem::path> roots;
+    const char* from_environment = std::getenv("LIVERY_DATA");
+    if (!chosen_data_folder.empty()) {
+        roots = {chosen_data_folder};
+    } else if (from_environment && *from_environment) {
+        roots = {from_environment};
+    } else {
+        roots = {executable_folder() / "../share/livery", LIVERY_GENERATED_DATA, LIVERY_SOURCE_DATA};
+    }
+    std::string looked;
+    for (const auto& root : roots) {
+        const auto candidate = root / relative;
+        std::error_code error;
+        if (std::filesystem::exists(candidate, error)) return candidate.lexically_normal();
+        looked += (looked.empty() ? "" : ", ") + root.lexically_normal().string();
+    }
+    throw FileError(relative, "", "nothing in " + looked, "a file shipped with Livery (see --data)");
+}
+
+std::filesystem::path user_folder() {
+    const auto value = [](const char* name) -> std::filesystem::path {
+        const char* text = std::getenv(name);
+        return text ? text : "";
+    };
+    if (const auto home = value("LIVERY_HOME"); !home.empty()) return home;
+    if (const auto data = value("XDG_DATA_HOME"); !data.empty()) return data / "livery";
+    const auto home = value("HOME");
+    if (home.empty()) throw FileError("HOME", "", "no home folder", "LIVERY_HOME or HOME to be set");
+    return home / ".local/share/livery";
+}
+
+std::string read_text_file(const std::filesystem::path& file, std::size_t max_bytes) {
+    std::error_code error;
+    const auto status = std::filesystem::status(file, error);
+    if (!std::filesystem::exists(status)) throw FileError(file, "", "no such file", "a file");
+    if (std::filesystem::is_directory(status)) throw FileError(file, "", "a folder", "a file");
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw FileError(file, "", std::strerror(errno), "a readable file");
+    std::string text;
+    std::vector<char> block(1u << 16u);
+    while (stream.read(block.data(), static_cast<std::streamsize>(block.size())) ||
+           stream.gcount() > 0) {
+        text.append(block.data(), static_cast<std::size_t>(stream.gcount()));
+        if (text.size() > max_bytes) {
+            throw FileError(file,
+                            "",
+                            "more than " + std::to_string(max_bytes) + " bytes",
+                            "a smaller file of this kind");
+        }
+    }
+    if (stream.bad()) throw FileError(file, "", "a read error", "a readable file");
+    return text;
+}
+
+void write_text_file(const std::filesystem::path& file, std::string_view text) {
+    const auto fail = [&](const char* what) {
+        throw FileError(file, "", std::string(what) + ": " + std::strerror(errno), "a writable place");
+    };
+    auto temporary = file;
+    temporary += ".tmp" + std::to_string(::getpid());
+    std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(temporary.c_str(), "wb"),
+                                                           &std::fclose);
+    if (!stream) fail("cannot create");
+    const bool written = std::fwrite(text.data(), 1, text.size(), stream.get()) == text.size() &&
+                         std::fflush(stream.get()) == 0 && ::fsync(::fileno(stream.get())) == 0;
+    const int closed = std::fclose(stream.release());
+    std::error_code error;
+    if (!written || closed != 0) {
+        const int reason = errno;
+        std::filesystem::remove(temporary, error);
+        errno = reason;
+        fail("cannot write");
+    }
+    std::filesystem::rename(temporary, file, error);
+    if (error) {
+        std::error_code ignored;
+        std::filesystem::remove(temporary, ignored);
+        throw FileError(file, "", "cannot replace: " + error.message(), "a writable place");
+    }
+}
+
+void make_output_folder(const std::filesystem::path& folder) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error || !std::filesystem::is_directory(folder)) {
+        throw FileError(folder, "", error ? error.message() : "a file", "a folder that can be made");
+    }
+}
+
+}  // namespace livery

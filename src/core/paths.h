@@ -1,0 +1,34 @@
+// Where shipped data and the user's data lie, and whole-file reading and writing.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace livery {
+
+/// Sets the folder given by `--data`; empty clears it.
+void set_data_folder(const std::filesystem::path& folder);
+
+/// A file or folder of the shipped data ("materials", "shaders/bsdf/ggx.glsl", "assets/car.glb"):
+/// `--data`, then LIVERY_DATA, then ../share/livery beside the program, then the build's source and
+/// generated folders. Throws FileError that lists the places looked at.
+std::filesystem::path shipped_path(const std::filesystem::path& relative);
+
+/// The user's folder: LIVERY_HOME, else XDG_DATA_HOME/livery, else ~/.local/share/livery.
+std::filesystem::path user_folder();
+
+/// The folder of the running program.
+std::filesystem::path executable_folder();
+
+/// Whole file as bytes. Throws FileError (missing, a folder, unreadable, over `max_bytes`).
+std::string read_text_file(const std::filesystem::path& file, std::size_t max_bytes = 64u << 20u);
+
+/// Atomic: a temporary file beside it, flushed, then renamed. Throws FileError (also on a full disk).
+void write_text_file(const std::filesystem::path& file, std::string_view text);
+
+/// Creates a folder for output. Throws FileError when it cannot or when a file stands there.
+void make_output_folder(const std::filesystem::path& folder);
+
+}  // namespace livery

@@ -1,0 +1,51 @@
+// (1) scene x projector view -> linear radiance, in OpenGL. Shaded for the eye point.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/image.h"
+#include "core/progress.h"
+#include "radiance/surface_map.h"
+#include "scene/frame_plan.h"
+#include "scene/scene.h"
+#include "scene/view.h"
+
+namespace livery {
+
+/// Draws one product from one view; needs a current OpenGL context, the same for its whole life.
+/// What does not change between frames (surface map, visibility, filtered environment, programs)
+/// is kept and made only when the plan asks for it.
+class RadianceRenderer {
+  public:
+    RadianceRenderer(std::shared_ptr<const Product> product,
+                     const View& view,
+                     const Progress& progress = {});
+    ~RadianceRenderer();
+    RadianceRenderer(const RadianceRenderer&) = delete;
+    RadianceRenderer& operator=(const RadianceRenderer&) = delete;
+
+    /// Shades whatever changed since the last call and fills in `plan`'s measured milliseconds.
+    void render(const Scene& scene, FramePlan& plan, const Progress& progress = {});
+
+    /// The last frame in the working space: R, G, B, coverage. Colour is the mean over the covered
+    /// part of a pixel, 0 where nothing is covered.
+    ImageF read_back() const;
+
+    /// OpenGL name of the RGBA16F texture that holds the last frame, for the compensation pass.
+    unsigned texture() const;
+    const SurfaceMap& surface_map() const;
+
+    /// Programs compiled, textures allocated and passes run so far: a test counts that what is not
+    /// in the plan costs nothing.
+    struct Counters {
+        int programs = 0, textures = 0, passes_run = 0, fragments_shaded = 0;
+    };
+    Counters counters() const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace livery

@@ -1,0 +1,32 @@
+// (1') the same scene in and image out as radiance/, ground truth: an Embree path tracer.
+#pragma once
+
+#include "core/image.h"
+#include "core/progress.h"
+#include "scene/scene.h"
+#include "scene/view.h"
+
+namespace livery {
+
+struct ReferenceOptions {
+    int samples_per_pixel = 64;   ///< stops here,
+    double seconds = 0.0;         ///< or after this long when > 0, at a whole sample
+    int bounces = 0;              ///< scatterings after the first: 0 is direct light only
+    std::uint64_t seed = 1;
+    bool shade_for_eye = true;    ///< as radiance/ does; false: for the view's own centre
+};
+
+struct ReferenceResult {
+    ImageF radiance_working;  ///< R, G, B, coverage as RadianceRenderer::read_back
+    ImageF standard_error;    ///< of the mean luminance, one channel
+    int samples_per_pixel = 0;
+    double seconds = 0.0;
+};
+
+/// Progressive, multiple importance sampling of lights, environment and reflectance.
+ReferenceResult trace_reference(const Scene& scene,
+                                const View& view,
+                                const ReferenceOptions& options,
+                                const Progress& progress = {});
+
+}  // namespace livery

@@ -1,0 +1,58 @@
+// A look as its file says it: paints by name, lights, environment, exposure.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "core/image.h"
+
+namespace livery {
+
+/// A distant light. `radiance_rec709` is what a perfect white diffuser facing it reflects, that is
+/// its irradiance / pi; the key light of the default looks has 1.
+struct DirectionalLight {
+    glm::dvec3 direction{0.0, 1.0, 0.0};  ///< toward the light, normalised on reading
+    glm::dvec3 radiance_rec709{1.0};
+    double angle_rad = 0.0;  ///< angular diameter of its disc; 0: a point at infinity
+};
+
+struct EnvironmentReference {
+    std::string file;  ///< empty: no environment; relative names are looked up by load_scene
+    double rotation_rad = 0.0;  ///< about +y
+    double scale = 1.0;
+};
+
+struct Look {
+    std::string name;
+    std::map<std::string, std::string> parts;  ///< part name -> material name or file; "*": the rest
+    std::vector<DirectionalLight> lights;
+    EnvironmentReference environment;
+    double exposure_ev = 0.0;
+    std::filesystem::path file;
+};
+
+Look read_look_file(const std::filesystem::path& file);
+void write_look_file(const std::filesystem::path& file, const Look& look);
+
+/// Light from all directions: latitude-longitude, linear, in the working space. Row 0 looks up
+/// (+y); column u in [0,1) looks toward azimuth 2 pi (u - 1/2) measured from -z toward +x.
+struct Environment {
+    ImageF radiance_working;  ///< 3 channels; empty: none
+    double rotation_rad = 0.0;
+    double scale = 1.0;
+};
+
+/// Reads an .hdr or .exr map (linear Rec.709), checks that it is 2:1, finite, not negative by more
+/// than rounding. Throws FileError.
+Environment load_environment(const EnvironmentReference& reference,
+                             const std::filesystem::path& beside);
+
+/// Direction -> map coordinates in [0,1)^2 and back, rotation included.
+glm::dvec2 uv_from_direction(const Environment& environment, const glm::dvec3& direction);
+glm::dvec3 direction_from_uv(const Environment& environment, const glm::dvec2& uv);
+
+}  // namespace livery

@@ -1,0 +1,27 @@
+// A product: its mesh with parts, its scale and where it stands.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scene/mesh.h"
+#include "scene/view.h"
+
+namespace livery {
+
+struct Product {
+    std::string name;
+    Mesh mesh;                  ///< in the world's frame (the product's frame)
+    double product_scale = 1.0; ///< product millimetres per mock-up millimetre (25 for the car)
+    std::filesystem::path file; ///< where it came from
+    std::vector<std::string> notes;  ///< what was dropped or repaired while loading
+};
+
+/// A mesh file, or a product JSON that names one (docs/files.md). Throws FileError.
+Product load_product(const std::filesystem::path& file);
+
+/// Index of a part; throws std::invalid_argument that lists the names there are.
+int part_index(const Product& product, const std::string& name);
+
+}  // namespace livery

@@ -1,0 +1,35 @@
+// One immutable description of what to draw: everything that the renderers are handed.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "appearance/material.h"
+#include "scene/look.h"
+#include "scene/product.h"
+
+namespace livery {
+
+struct Scene {
+    /// Shared: previews, the projector's thread and the tracer read the same big immutable values
+    /// while a paint swap makes a new Scene.
+    std::shared_ptr<const Product> product;
+    std::shared_ptr<const Environment> environment;  ///< null: none
+
+    std::vector<Material> part_materials;  ///< one a part of the product
+    std::vector<DirectionalLight> lights;
+    glm::dvec3 eye_in_world_mm{0.0};  ///< the audience's eye: shading is for this point
+    double exposure_ev = 0.0;         ///< radiance is scaled by 2^EV
+};
+
+/// Resolves a look's names against a product and the paint library. A part that the look does not
+/// name keeps the file's own colour as a plain diffuse. Throws FileError (unknown part or paint,
+/// with the names there are).
+Scene make_scene(std::shared_ptr<const Product> product, const Look& look, glm::dvec3 eye_mm);
+
+/// A plain diffuse studio: the default eye and key light when nothing else was given.
+glm::dvec3 default_eye_mm(const Product& product);
+
+}  // namespace livery

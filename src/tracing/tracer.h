@@ -1,0 +1,76 @@
+// The scene's triangles in Embree: nearest hits and shadow rays.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include "scene/mesh.h"
+
+namespace livery {
+
+struct TraceRay {
+    glm::vec3 origin{0.0f};
+    float t_min = 0.0f;
+    glm::vec3 direction{0.0f, 0.0f, 1.0f};
+    float t_max = 1e30f;
+};
+
+struct Hit {
+    std::uint32_t triangle = kNone;
+    float t = 0.0f;
+    glm::vec2 barycentric{0.0f};  ///< weights of the triangle's second and third vertex
+    static constexpr std::uint32_t kNone = 0xffffffffu;
+    bool valid() const { return triangle != kNone; }
+};
+
+/// A point of the surface with interpolated attributes. Normals are unit and on the outside.
+struct SurfacePoint {
+    glm::vec3 position_mm{0.0f};
+    glm::vec3 geometric_normal{0.0f};
+    glm::vec3 normal{0.0f};
+    glm::vec4 tangent{0.0f};
+    glm::vec2 uv{0.0f};
+    std::uint16_t part = 0;
+};
+
+/// Owns Embree's device and scene; keeps a copy of nothing else. Safe to use from many threads.
+class Tracer {
+  public:
+    explicit Tracer(const Mesh& mesh);
+    ~Tracer();
+    Tracer(Tracer&&) noexcept;
+    Tracer& operator=(Tracer&&) noexcept;
+
+    Hit closest(const TraceRay& ray) const;
+    bool occluded(const TraceRay& ray) const;
+    /// Eight at a time inside; rays should be coherent to pay. Sizes must agree.
+    void closest(std::span<const TraceRay> rays, std::span<Hit> hits) const;
+    void occluded(std::span<const TraceRay> rays, std::span<std::uint8_t> blocked) const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+SurfacePoint surface_point(const Mesh& mesh, const Hit& hit);
+
+/// An origin for a ray that leaves the surface without hitting it again (offset along the geometric
+/// normal, scaled with the coordinates; Waechter and Binder 2019).
+glm::vec3 offset_origin(const glm::vec3& position, const glm::vec3& geometric_normal);
+
+/// For each point the fraction of cosine-weighted sky that is open, `ray_count` rays a point,
+/// rotated by a hash of the point's index.
+std::vector<float> ambient_openness(const Tracer& tracer,
+                                    std::span<const glm::vec3> positions_mm,
+                                    std::span<const glm::vec3> normals,
+                                    int ray_count,
+                                    float max_distance_mm);
+
+}  // namespace livery
