@@ -1,8 +1,13 @@
 // Colour photographs -> compensation (equations 3 to 9 of the paper, and the robust variant).
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 
 #include "calibration/gray_code.h"
 #include "calibration/patterns.h"
@@ -16,11 +21,14 @@ enum class ColourMode { paper, robust };
 struct CameraToXyz {
     glm::dmat3 xyz_from_camera{1.0};
     std::string origin;  ///< "primaries", "chart", "matrix", "assumed Rec.709"
-    /// When measured off a white reference: XYZ of the primaries (columns) and of black; the matrix
-    /// is then solved from the pooled mixing matrix.
+    /// XYZ of the full primaries (columns, black not subtracted) and of black, measured with a
+    /// colorimeter; the matrix is then solved from the mixing that the camera saw. With
+    /// `measured_at_px` (projector pixel on the mock-up) the scale is absolute, XYZ at the eye;
+    /// without it they were taken off a white reference elsewhere and the scale is relative.
     bool has_primaries = false;
     glm::dmat3 primaries_xyz{0.0};
     glm::dvec3 black_xyz{0.0};
+    std::optional<glm::dvec2> measured_at_px;
 };
 
 struct ColourOptions {

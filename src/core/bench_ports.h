@@ -33,7 +33,7 @@ using ShowPicture = std::function<void(const Image8& drive)>;
 using TakePhotograph = std::function<Photograph(double exposure_s)>;
 
 /// A colorimeter at the eye point, aimed at the point of the mock-up that projector pixel
-/// `pixel_in_projector` lights: absolute XYZ of the light reflected there by a white reference.
+/// `pixel_in_projector` lights: absolute XYZ of the light that the mock-up sends to the eye there.
 using MeasureXyz = std::function<glm::dvec3(glm::dvec2 pixel_in_projector)>;
 
 struct BenchPorts {
