@@ -16,7 +16,7 @@ namespace livery {
 struct Photograph {
     ImageF image;  ///< RGB, file units, before black subtraction
     double exposure_s = 1.0;
-    double black_level = 0.0;  ///< file units
+    double black_level = 0.0;                                       ///< file units
     double saturates_at = std::numeric_limits<double>::infinity();  ///< file units
     std::string name;  ///< file name or pattern role, for messages
 };

@@ -25,9 +25,8 @@ glm::dmat3 xyz_from_rgb_matrix(glm::dvec2 red,
                                glm::dvec2 green,
                                glm::dvec2 blue,
                                glm::dvec2 white) {
-    const glm::dmat3 primaries(xyz_from_chromaticity(red),
-                               xyz_from_chromaticity(green),
-                               xyz_from_chromaticity(blue));
+    const glm::dmat3 primaries(
+        xyz_from_chromaticity(red), xyz_from_chromaticity(green), xyz_from_chromaticity(blue));
     const glm::dvec3 scale = glm::inverse(primaries) * xyz_from_chromaticity(white);
     return {primaries[0] * scale.x, primaries[1] * scale.y, primaries[2] * scale.z};
 }
@@ -95,8 +94,7 @@ double ciede2000(glm::dvec3 lab_a, glm::dvec3 lab_b) {
     };
 
     // a' stretched towards the neutral axis.
-    const double mean_chroma =
-        0.5 * (std::hypot(lab_a.y, lab_a.z) + std::hypot(lab_b.y, lab_b.z));
+    const double mean_chroma = 0.5 * (std::hypot(lab_a.y, lab_a.z) + std::hypot(lab_b.y, lab_b.z));
     const double stretch =
         1.5 - 0.5 * std::sqrt(pow7(mean_chroma) / (pow7(mean_chroma) + pow7(25.0)));
     const double a1 = lab_a.y * stretch, a2 = lab_b.y * stretch;
@@ -127,8 +125,8 @@ double ciede2000(glm::dvec3 lab_a, glm::dvec3 lab_b) {
     }
 
     // Weights and the rotation term.
-    const double t = 1.0 - 0.17 * std::cos((h - 30.0) * degree) + 0.24 * std::cos(2.0 * h * degree) +
-                     0.32 * std::cos((3.0 * h + 6.0) * degree) -
+    const double t = 1.0 - 0.17 * std::cos((h - 30.0) * degree) +
+                     0.24 * std::cos(2.0 * h * degree) + 0.32 * std::cos((3.0 * h + 6.0) * degree) -
                      0.20 * std::cos((4.0 * h - 63.0) * degree);
     const double l50 = (l - 50.0) * (l - 50.0);
     const double sl = 1.0 + 0.015 * l50 / std::sqrt(20.0 + l50);

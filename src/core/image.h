@@ -7,7 +7,8 @@
 
 namespace livery {
 
-/// Interleaved pixels, rows go down, pixel centres at half integers (pixel (0,0) covers [0,1)x[0,1)).
+/// Interleaved pixels, rows go down, pixel centres at half integers (pixel (0,0) covers
+/// [0,1)x[0,1)).
 template <typename T>
 struct Image {
     int width = 0;

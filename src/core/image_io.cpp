@@ -46,8 +46,8 @@ ImageFile read_image(const std::filesystem::path& file, std::size_t max_pixels) 
     result.channel_names = spec.channelnames;
     result.floating_point = spec.format.is_floating_point();
     if (!result.floating_point) result.full_scale = spec.format.size() == 1 ? 255.0 : 65535.0;
-    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT,
-                           result.image.values.data())) {
+    if (!input->read_image(
+            0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, result.image.values.data())) {
         throw FileError(file, "", input->geterror(), "a complete picture");
     }
     if (!result.floating_point) {

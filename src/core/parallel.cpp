@@ -25,8 +25,8 @@ void set_thread_count(int threads) {
     const auto count = threads == 0 ? static_cast<std::size_t>(tbb::info::default_concurrency())
                                     : static_cast<std::size_t>(threads);
     const std::scoped_lock lock(control_mutex);
-    control = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
-                                                    count);
+    control =
+        std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, count);
 }
 
 int thread_count() {

@@ -37,7 +37,8 @@ std::filesystem::path shipped_path(const std::filesystem::path& relative) {
     } else if (from_environment && *from_environment) {
         roots = {from_environment};
     } else {
-        roots = {executable_folder() / "../share/livery", LIVERY_GENERATED_DATA, LIVERY_SOURCE_DATA};
+        roots = {
+            executable_folder() / "../share/livery", LIVERY_GENERATED_DATA, LIVERY_SOURCE_DATA};
     }
     std::string looked;
     for (const auto& root : roots) {
@@ -46,7 +47,8 @@ std::filesystem::path shipped_path(const std::filesystem::path& relative) {
         if (std::filesystem::exists(candidate, error)) return candidate.lexically_normal();
         looked += (looked.empty() ? "" : ", ") + root.lexically_normal().string();
     }
-    throw FileError(relative, "", "nothing in " + looked, "a file shipped with Livery (see --data)");
+    throw FileError(
+        relative, "", "nothing in " + looked, "a file shipped with Livery (see --data)");
 }
 
 std::filesystem::path user_folder() {
@@ -57,7 +59,8 @@ std::filesystem::path user_folder() {
     if (const auto home = value("LIVERY_HOME"); !home.empty()) return home;
     if (const auto data = value("XDG_DATA_HOME"); !data.empty()) return data / "livery";
     const auto home = value("HOME");
-    if (home.empty()) throw FileError("HOME", "", "no home folder", "LIVERY_HOME or HOME to be set");
+    if (home.empty())
+        throw FileError("HOME", "", "no home folder", "LIVERY_HOME or HOME to be set");
     return home / ".local/share/livery";
 }
 
@@ -86,7 +89,8 @@ std::string read_text_file(const std::filesystem::path& file, std::size_t max_by
 
 void write_text_file(const std::filesystem::path& file, std::string_view text) {
     const auto fail = [&](const char* what) {
-        throw FileError(file, "", std::string(what) + ": " + std::strerror(errno), "a writable place");
+        throw FileError(
+            file, "", std::string(what) + ": " + std::strerror(errno), "a writable place");
     };
     auto temporary = file;
     temporary += ".tmp" + std::to_string(::getpid());
@@ -115,7 +119,8 @@ void make_output_folder(const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error || !std::filesystem::is_directory(folder)) {
-        throw FileError(folder, "", error ? error.message() : "a file", "a folder that can be made");
+        throw FileError(
+            folder, "", error ? error.message() : "a file", "a folder that can be made");
     }
 }
 

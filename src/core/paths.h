@@ -25,7 +25,8 @@ std::filesystem::path executable_folder();
 /// Whole file as bytes. Throws FileError (missing, a folder, unreadable, over `max_bytes`).
 std::string read_text_file(const std::filesystem::path& file, std::size_t max_bytes = 64u << 20u);
 
-/// Atomic: a temporary file beside it, flushed, then renamed. Throws FileError (also on a full disk).
+/// Atomic: a temporary file beside it, flushed, then renamed. Throws FileError (also on a full
+/// disk).
 void write_text_file(const std::filesystem::path& file, std::string_view text);
 
 /// Creates a folder for output. Throws FileError when it cannot or when a file stands there.

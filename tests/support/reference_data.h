@@ -17,7 +17,7 @@ inline std::optional<std::filesystem::path> reference_data() {
 }  // namespace livery
 
 /// First line of a test that needs reference data.
-#define LIVERY_NEEDS_REFERENCE_DATA(folder)                                        \
-    const auto folder##_or_none = ::livery::reference_data();                      \
-    if (!folder##_or_none) GTEST_SKIP() << "LIVERY_REFERENCE_DATA is not set";     \
+#define LIVERY_NEEDS_REFERENCE_DATA(folder)                                    \
+    const auto folder##_or_none = ::livery::reference_data();                  \
+    if (!folder##_or_none) GTEST_SKIP() << "LIVERY_REFERENCE_DATA is not set"; \
     const std::filesystem::path folder = *folder##_or_none
