@@ -1,0 +1,274 @@
+#include "tracing/tracer.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <glm/geometric.hpp>
+#include <stdexcept>
+#include <string>
+
+#include "core/error.h"
+
+#if defined(__SSE2__)
+#include <xmmintrin.h>
+#endif
+
+namespace livery {
+
+namespace {
+
+/// Embree is slow and less robust with denormals. They are flushed only while it runs, so that
+/// nobody else's arithmetic depends on whether a ray was traced on the same thread.
+class FlushDenormals {
+  public:
+#if defined(__SSE2__)
+    FlushDenormals() : saved_(_mm_getcsr()) {
+        _mm_setcsr(saved_ | 0x8040u);
+    }
+    ~FlushDenormals() {
+        _mm_setcsr(saved_);
+    }
+
+  private:
+    unsigned saved_;
+#else
+    FlushDenormals() {}
+    ~FlushDenormals() {}
+#endif
+  public:
+    FlushDenormals(const FlushDenormals&) = delete;
+    FlushDenormals& operator=(const FlushDenormals&) = delete;
+};
+
+constexpr std::size_t kPacket = 8;
+
+RTCRay embree_ray(const TraceRay& ray) {
+    RTCRay out{};
+    out.org_x = ray.origin.x;
+    out.org_y = ray.origin.y;
+    out.org_z = ray.origin.z;
+    out.tnear = ray.t_min;
+    out.dir_x = ray.direction.x;
+    out.dir_y = ray.direction.y;
+    out.dir_z = ray.direction.z;
+    out.tfar = ray.t_max;
+    out.mask = static_cast<unsigned>(-1);
+    return out;
+}
+
+void set_lane(RTCRay8& packet, std::size_t lane, const TraceRay& ray) {
+    packet.org_x[lane] = ray.origin.x;
+    packet.org_y[lane] = ray.origin.y;
+    packet.org_z[lane] = ray.origin.z;
+    packet.tnear[lane] = ray.t_min;
+    packet.dir_x[lane] = ray.direction.x;
+    packet.dir_y[lane] = ray.direction.y;
+    packet.dir_z[lane] = ray.direction.z;
+    packet.tfar[lane] = ray.t_max;
+    packet.time[lane] = 0.0f;
+    packet.mask[lane] = static_cast<unsigned>(-1);
+    packet.id[lane] = static_cast<unsigned>(lane);
+    packet.flags[lane] = 0;
+}
+
+/// Runs work(first, count, valid) over packets of up to eight.
+template <typename Work>
+void for_each_packet(std::size_t count, const Work& work) {
+    const FlushDenormals flush;
+    for (std::size_t first = 0; first < count; first += kPacket) {
+        const std::size_t in_packet = std::min(kPacket, count - first);
+        alignas(32) std::array<int, kPacket> valid{};
+        std::fill_n(valid.begin(), in_packet, -1);
+        work(first, in_packet, valid.data());
+    }
+}
+
+void fill_geometry(RTCGeometry geometry, const Mesh& mesh) {
+    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry,
+                                                                 RTC_BUFFER_TYPE_VERTEX,
+                                                                 0,
+                                                                 RTC_FORMAT_FLOAT3,
+                                                                 3 * sizeof(float),
+                                                                 mesh.positions_mm.size()));
+    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry,
+                                                                   RTC_BUFFER_TYPE_INDEX,
+                                                                   0,
+                                                                   RTC_FORMAT_UINT3,
+                                                                   3 * sizeof(unsigned),
+                                                                   mesh.triangles.size()));
+    if (!vertices || !indices) throw std::bad_alloc();
+    for (const auto& position : mesh.positions_mm) {
+        vertices = std::copy_n(&position.x, 3, vertices);
+    }
+    for (const auto& triangle : mesh.triangles) indices = std::copy_n(&triangle.x, 3, indices);
+}
+
+}  // namespace
+
+struct Tracer::State {
+    RTCDevice device = nullptr;
+    RTCScene scene = nullptr;
+
+    State() = default;
+    State(const State&) = delete;
+    State& operator=(const State&) = delete;
+    ~State() {
+        if (scene) rtcReleaseScene(scene);
+        if (device) rtcReleaseDevice(device);
+    }
+    void check(const char* step) const {
+        const RTCError error = rtcGetDeviceError(device);
+        if (error == RTC_ERROR_NONE) return;
+        throw std::runtime_error("Embree cannot " + std::string(step) + ": error " +
+                                 std::to_string(static_cast<int>(error)));
+    }
+};
+
+Tracer::Tracer(const Mesh& mesh) : state_(std::make_unique<State>()) {
+    for (const auto& triangle : mesh.triangles) {
+        check_argument(std::max({triangle.x, triangle.y, triangle.z}) < mesh.positions_mm.size(),
+                       "Tracer: a triangle names a vertex that the mesh does not have");
+    }
+    state_->device = rtcNewDevice(nullptr);
+    if (!state_->device) state_->check("start");
+    state_->scene = rtcNewScene(state_->device);
+    // Robust: no ray slips through the edge that two triangles share.
+    rtcSetSceneFlags(state_->scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(state_->scene, RTC_BUILD_QUALITY_MEDIUM);
+    if (!mesh.triangles.empty()) {
+        RTCGeometry geometry = rtcNewGeometry(state_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        fill_geometry(geometry, mesh);
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometry(state_->scene, geometry);
+        rtcReleaseGeometry(geometry);
+    }
+    rtcCommitScene(state_->scene);
+    state_->check("build the scene");
+}
+
+Tracer::~Tracer() = default;
+Tracer::Tracer(Tracer&&) noexcept = default;
+Tracer& Tracer::operator=(Tracer&&) noexcept = default;
+
+Hit Tracer::closest(const TraceRay& ray) const {
+    const FlushDenormals flush;
+    RTCRayHit query{};
+    query.ray = embree_ray(ray);
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query.hit.primID = RTC_INVALID_GEOMETRY_ID;
+    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(state_->scene, &context, &query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+    return {query.hit.primID, query.ray.tfar, {query.hit.u, query.hit.v}};
+}
+
+bool Tracer::occluded(const TraceRay& ray) const {
+    const FlushDenormals flush;
+    RTCRay query = embree_ray(ray);
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(state_->scene, &context, &query);
+    return query.tfar < 0.0f;  // Embree writes minus infinity
+}
+
+void Tracer::closest(std::span<const TraceRay> rays, std::span<Hit> hits) const {
+    check_argument(rays.size() == hits.size(), "closest: as many hits as rays are needed");
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    for_each_packet(rays.size(), [&](std::size_t first, std::size_t count, const int* valid) {
+        RTCRayHit8 packet;
+        for (std::size_t lane = 0; lane < kPacket; ++lane) {
+            set_lane(packet.ray, lane, rays[first + std::min(lane, count - 1)]);
+            packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+            packet.hit.primID[lane] = RTC_INVALID_GEOMETRY_ID;
+            packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+        }
+        rtcIntersect8(valid, state_->scene, &context, &packet);
+        for (std::size_t lane = 0; lane < count; ++lane) {
+            Hit& hit = hits[first + lane];
+            hit = {};
+            if (packet.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) continue;
+            hit = {packet.hit.primID[lane],
+                   packet.ray.tfar[lane],
+                   {packet.hit.u[lane], packet.hit.v[lane]}};
+        }
+    });
+}
+
+void Tracer::occluded(std::span<const TraceRay> rays, std::span<std::uint8_t> blocked) const {
+    check_argument(rays.size() == blocked.size(), "occluded: as many answers as rays are needed");
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    for_each_packet(rays.size(), [&](std::size_t first, std::size_t count, const int* valid) {
+        RTCRay8 packet;
+        for (std::size_t lane = 0; lane < kPacket; ++lane) {
+            set_lane(packet, lane, rays[first + std::min(lane, count - 1)]);
+        }
+        rtcOccluded8(valid, state_->scene, &context, &packet);
+        for (std::size_t lane = 0; lane < count; ++lane) {
+            blocked[first + lane] = packet.tfar[lane] < 0.0f ? 1 : 0;
+        }
+    });
+}
+
+SurfacePoint surface_point(const Mesh& mesh, const Hit& hit) {
+    check_argument(hit.valid() && hit.triangle < mesh.triangles.size(),
+                   "surface_point: the hit is not on this mesh");
+    const glm::uvec3 corner = mesh.triangles[hit.triangle];
+    const float v = hit.barycentric.x, w = hit.barycentric.y, u = 1.0f - v - w;
+    const auto blend = [&](const auto& values) {
+        return u * values[corner.x] + v * values[corner.y] + w * values[corner.z];
+    };
+    const glm::vec3 a = mesh.positions_mm[corner.x];
+    const glm::vec3 ab = mesh.positions_mm[corner.y] - a, ac = mesh.positions_mm[corner.z] - a;
+
+    SurfacePoint point;
+    // From a corner and two edges: exact on the plane of a far-away triangle to its own size.
+    point.position_mm = a + v * ab + w * ac;
+    const glm::dvec3 across = glm::cross(glm::dvec3(ab), glm::dvec3(ac));
+    const double twice_area = glm::length(across);
+    if (twice_area > 0.0) point.geometric_normal = glm::vec3(across / twice_area);
+
+    // Opposite vertex normals cancel halfway: the triangle's own normal is the answer there.
+    const glm::vec3 normal = blend(mesh.normals);
+    const float length = glm::length(normal);
+    point.normal = length > 1e-6f ? normal / length : point.geometric_normal;
+
+    // The tangent is made orthogonal to the interpolated normal again.
+    const glm::vec4 tangent = blend(mesh.tangents);
+    const glm::vec3 along(tangent);
+    glm::vec3 flat = along - point.normal * glm::dot(point.normal, along);
+    if (glm::length(flat) < 1e-6f) flat = ab - point.normal * glm::dot(point.normal, ab);
+    point.tangent = glm::vec4(glm::normalize(flat), tangent.w < 0.0f ? -1.0f : 1.0f);
+
+    if (!mesh.uvs.empty()) point.uv = blend(mesh.uvs);
+    point.part = mesh.triangle_part[hit.triangle];
+    return point;
+}
+
+glm::vec3 offset_origin(const glm::vec3& position, const glm::vec3& geometric_normal) {
+    // Waechter and Binder, "A fast and robust method for avoiding self-intersection" (2019):
+    // a fixed number of representable steps, and a fixed length near zero where steps are tiny.
+    constexpr float near_zero = 1.0f / 32.0f, length_near_zero = 1.0f / 65536.0f, steps = 256.0f;
+    glm::vec3 origin;
+    for (int axis = 0; axis < 3; ++axis) {
+        const float p = position[axis], n = geometric_normal[axis];
+        if (std::abs(p) < near_zero) {
+            origin[axis] = p + length_near_zero * n;
+            continue;
+        }
+        const auto step = static_cast<std::int32_t>(steps * n);
+        origin[axis] =
+            std::bit_cast<float>(std::bit_cast<std::int32_t>(p) + (p < 0.0f ? -step : step));
+    }
+    return origin;
+}
+
+}  // namespace livery
