@@ -1,0 +1,213 @@
+#include "gl/program.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+#include "gl/check.h"
+
+namespace livery {
+namespace gl_detail {
+void delete_program(unsigned name) {
+    glDeleteProgram(name);
+}
+void delete_shader(unsigned name) {
+    glDeleteShader(name);
+}
+}  // namespace gl_detail
+
+namespace {
+
+using Shader = GlName<gl_detail::delete_shader>;
+
+/// Line numbers in a compiler's log: Mesa and Intel "0:12(5):", NVIDIA "0(12) :", Apple "0:12:".
+std::set<int> lines_in_log(const std::string& log) {
+    std::set<int> lines;
+    std::istringstream stream(log);
+    std::string line;
+    while (std::getline(stream, line)) {
+        const std::size_t zero =
+            line.find("0:") != std::string::npos ? line.find("0:") : line.find("0(");
+        if (zero != std::string::npos) {
+            const int number = std::atoi(line.c_str() + zero + 2);
+            if (number > 0) lines.insert(number);
+        }
+    }
+    return lines;
+}
+
+std::string numbered_lines(const std::string& text, const std::set<int>& named) {
+    std::string out;
+    std::istringstream stream(text);
+    std::string line;
+    for (int number = 1; std::getline(stream, line); ++number) {
+        const auto next = named.lower_bound(number - 1);
+        if (next != named.end() && *next <= number + 1) {
+            out += (named.contains(number) ? "> " : "  ") + std::to_string(number) + " | " + line +
+                   "\n";
+        }
+    }
+    return out;
+}
+
+Shader compile(GLenum stage, const ShaderSource& source) {
+    Shader shader(glCreateShader(stage));
+    const char* text = source.text.c_str();
+    glShaderSource(shader.get(), 1, &text, nullptr);
+    glCompileShader(shader.get());
+    GLint ok = GL_FALSE;
+    glGetShaderiv(shader.get(), GL_COMPILE_STATUS, &ok);
+    if (ok != GL_TRUE) {
+        GLint length = 0;
+        glGetShaderiv(shader.get(), GL_INFO_LOG_LENGTH, &length);
+        std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
+        glGetShaderInfoLog(shader.get(), length, nullptr, log.data());
+        log = log.c_str();
+        throw std::runtime_error("shader " + source.name + " does not compile:\n" + log + "\n" +
+                                 numbered_lines(source.text, lines_in_log(log)));
+    }
+    return shader;
+}
+
+}  // namespace
+
+Program::Program(const ShaderSource& vertex, const ShaderSource& fragment) {
+    const Shader a = compile(GL_VERTEX_SHADER, vertex);
+    const Shader b = compile(GL_FRAGMENT_SHADER, fragment);
+    link({a.get(), b.get()}, vertex.name + " + " + fragment.name);
+}
+
+Program::Program(const ShaderSource& compute) {
+    const Shader shader = compile(GL_COMPUTE_SHADER, compute);
+    link({shader.get()}, compute.name);
+}
+
+Program Program::screen_pass(const ShaderSource& fragment) {
+    return Program(screen_triangle_shader(), fragment);
+}
+
+void Program::link(const std::vector<unsigned>& shaders, const std::string& what) {
+    name_ = GlName<gl_detail::delete_program>(glCreateProgram());
+    for (const unsigned shader : shaders) glAttachShader(name_.get(), shader);
+    glLinkProgram(name_.get());
+    for (const unsigned shader : shaders) glDetachShader(name_.get(), shader);
+    GLint ok = GL_FALSE;
+    glGetProgramiv(name_.get(), GL_LINK_STATUS, &ok);
+    if (ok != GL_TRUE) {
+        GLint length = 0;
+        glGetProgramiv(name_.get(), GL_INFO_LOG_LENGTH, &length);
+        std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
+        glGetProgramInfoLog(name_.get(), length, nullptr, log.data());
+        throw std::runtime_error("program " + what + " does not link:\n" + log.c_str());
+    }
+    throw_on_gl_error("linking " + what);
+}
+
+void Program::use() const {
+    glUseProgram(name_.get());
+}
+
+int Program::location(std::string_view uniform) {
+    const auto found = locations_.find(std::string(uniform));
+    if (found != locations_.end()) return found->second;
+    const int where = glGetUniformLocation(name_.get(), std::string(uniform).c_str());
+    locations_.emplace(uniform, where);
+    return where;
+}
+
+bool Program::set(std::string_view uniform, int value) {
+    const int where = location(uniform);
+    if (where >= 0) glProgramUniform1i(name_.get(), where, value);
+    return where >= 0;
+}
+
+bool Program::set(std::string_view uniform, unsigned value) {
+    const int where = location(uniform);
+    if (where >= 0) glProgramUniform1ui(name_.get(), where, value);
+    return where >= 0;
+}
+
+bool Program::set(std::string_view uniform, float value) {
+    const int where = location(uniform);
+    if (where >= 0) glProgramUniform1f(name_.get(), where, value);
+    return where >= 0;
+}
+
+bool Program::set(std::string_view uniform, const glm::vec2& value) {
+    const int where = location(uniform);
+    if (where >= 0) glProgramUniform2fv(name_.get(), where, 1, &value.x);
+    return where >= 0;
+}
+
+bool Program::set(std::string_view uniform, const glm::vec3& value) {
+    const int where = location(uniform);
+    if (where >= 0) glProgramUniform3fv(name_.get(), where, 1, &value.x);
+    return where >= 0;
+}
+
+bool Program::set(std::string_view uniform, const glm::vec4& value) {
+    const int where = location(uniform);
+    if (where >= 0) glProgramUniform4fv(name_.get(), where, 1, &value.x);
+    return where >= 0;
+}
+
+bool Program::set(std::string_view uniform, const glm::ivec2& value) {
+    const int where = location(uniform);
+    if (where >= 0) glProgramUniform2iv(name_.get(), where, 1, &value.x);
+    return where >= 0;
+}
+
+bool Program::set(std::string_view uniform, const glm::uvec2& value) {
+    const int where = location(uniform);
+    if (where >= 0) glProgramUniform2uiv(name_.get(), where, 1, &value.x);
+    return where >= 0;
+}
+
+bool Program::set(std::string_view uniform, const glm::mat3& value) {
+    const int where = location(uniform);
+    if (where >= 0) glProgramUniformMatrix3fv(name_.get(), where, 1, GL_FALSE, &value[0].x);
+    return where >= 0;
+}
+
+bool Program::set(std::string_view uniform, const glm::mat4& value) {
+    const int where = location(uniform);
+    if (where >= 0) glProgramUniformMatrix4fv(name_.get(), where, 1, GL_FALSE, &value[0].x);
+    return where >= 0;
+}
+
+bool Program::set(std::string_view uniform, std::span<const float> array) {
+    const int where = location(uniform);
+    if (where >= 0) {
+        glProgramUniform1fv(name_.get(), where, static_cast<GLsizei>(array.size()), array.data());
+    }
+    return where >= 0;
+}
+
+bool Program::set(std::string_view uniform, std::span<const glm::vec3> array) {
+    const int where = location(uniform);
+    if (where >= 0 && !array.empty()) {
+        glProgramUniform3fv(name_.get(), where, static_cast<GLsizei>(array.size()), &array[0].x);
+    }
+    return where >= 0;
+}
+
+bool Program::set(std::string_view uniform, std::span<const glm::vec4> array) {
+    const int where = location(uniform);
+    if (where >= 0 && !array.empty()) {
+        glProgramUniform4fv(name_.get(), where, static_cast<GLsizei>(array.size()), &array[0].x);
+    }
+    return where >= 0;
+}
+
+void dispatch(const Program& compute, unsigned groups_x, unsigned groups_y, unsigned groups_z) {
+    compute.use();
+    glDispatchCompute(groups_x, groups_y, groups_z);
+    glMemoryBarrier(GL_ALL_BARRIER_BITS);
+    check_gl("running a compute program");
+}
+
+}  // namespace livery

@@ -1,0 +1,65 @@
+// Linked GLSL programs and their uniforms.
+#pragma once
+
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "gl/handles.h"
+#include "gl/shader_source.h"
+
+namespace livery {
+
+namespace gl_detail {
+void delete_program(unsigned name);
+}
+
+/// Uniforms are the program's state: use one from one thread only.
+class Program {
+  public:
+    Program() = default;
+    /// Throws std::runtime_error with the compiler's log and the numbered source lines it names.
+    Program(const ShaderSource& vertex, const ShaderSource& fragment);
+    explicit Program(const ShaderSource& compute);
+    /// A pass over every pixel: the vertex stage is screen_triangle_shader().
+    static Program screen_pass(const ShaderSource& fragment);
+
+    void use() const;
+
+    /// False where the program has no such uniform (the compiler removes what is not read).
+    bool set(std::string_view uniform, int value);
+    bool set(std::string_view uniform, unsigned value);
+    bool set(std::string_view uniform, float value);
+    bool set(std::string_view uniform, const glm::vec2& value);
+    bool set(std::string_view uniform, const glm::vec3& value);
+    bool set(std::string_view uniform, const glm::vec4& value);
+    bool set(std::string_view uniform, const glm::ivec2& value);
+    bool set(std::string_view uniform, const glm::uvec2& value);
+    bool set(std::string_view uniform, const glm::mat3& value);
+    bool set(std::string_view uniform, const glm::mat4& value);
+    bool set(std::string_view uniform, std::span<const float> array);
+    bool set(std::string_view uniform, std::span<const glm::vec3> array);
+    bool set(std::string_view uniform, std::span<const glm::vec4> array);
+
+    unsigned name() const { return name_.get(); }
+    explicit operator bool() const { return name_.get() != 0u; }
+
+  private:
+    void link(const std::vector<unsigned>& shaders, const std::string& what);
+    int location(std::string_view uniform);
+
+    GlName<gl_detail::delete_program> name_;
+    std::unordered_map<std::string, int> locations_;
+};
+
+/// Runs a compute program over groups and waits for what it wrote to be visible to later passes.
+void dispatch(const Program& compute, unsigned groups_x, unsigned groups_y, unsigned groups_z = 1);
+
+}  // namespace livery

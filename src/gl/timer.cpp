@@ -1,0 +1,41 @@
+#include "gl/timer.h"
+
+#include <epoxy/gl.h>
+
+namespace livery {
+namespace gl_detail {
+void delete_query(unsigned name) {
+    glDeleteQueries(1, &name);
+}
+}  // namespace gl_detail
+
+Query::Query() {
+    GLuint name = 0;
+    glCreateQueries(GL_TIMESTAMP, 1, &name);
+    name_ = GlName<gl_detail::delete_query>(name);
+}
+
+void Query::stamp() {
+    glQueryCounter(name_.get(), GL_TIMESTAMP);
+    stamped_ = true;
+}
+
+bool Query::is_ready() const {
+    if (!stamped_) return false;
+    GLint ready = GL_FALSE;
+    glGetQueryObjectiv(name_.get(), GL_QUERY_RESULT_AVAILABLE, &ready);
+    return ready == GL_TRUE;
+}
+
+std::uint64_t Query::time_ns() const {
+    if (!stamped_) return 0;
+    GLuint64 time = 0;
+    glGetQueryObjectui64v(name_.get(), GL_QUERY_RESULT, &time);
+    return time;
+}
+
+double GlTimer::milliseconds() const {
+    return static_cast<double>(end_.time_ns() - begin_.time_ns()) * 1e-6;
+}
+
+}  // namespace livery
