@@ -1,58 +1,184 @@
 #include "core/image_io.h"
 
-#include <OpenImageIO/imageio.h>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <memory>
+#include <string_view>
+
+#include <dlfcn.h>
 
 #include "core/error.h"
+#include "core/image_io_module.h"
+#include "core/paths.h"
 
 namespace livery {
 
 namespace {
 
+constexpr const char* kModuleName = "livery_image_io.so";
+constexpr const char* kReadable = "a complete EXR, HDR, PNG, TIFF, JPEG or RAW picture";
+
+/// Found in an installation, beside a build, or in the build folder. Stays open until the end.
+const ImageIoTable& module_table() {
+    static const ImageIoTable& table = []() -> const ImageIoTable& {
+        const std::filesystem::path places[] = {executable_folder() / "../lib/livery",
+                                                executable_folder() / "../lib",
+                                                LIVERY_MODULE_FOLDER};
+        std::string tried;
+        for (const auto& place : places) {
+            const auto file = (place / kModuleName).lexically_normal();
+            if (std::error_code error; !std::filesystem::exists(file, error)) {
+                tried += (tried.empty() ? "" : ", ") + file.parent_path().string();
+                continue;
+            }
+            void* library = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+            void* symbol = library ? ::dlsym(library, kImageIoTableSymbol) : nullptr;
+            if (!symbol) throw FileError(file, "", ::dlerror(), "Livery's picture reader");
+            return *reinterpret_cast<const ImageIoTable* (*)()>(symbol)();
+        }
+        throw FileError(kModuleName, "", "nothing in " + tried, "Livery's picture reader");
+    }();
+    return table;
+}
+
+/// OpenImageIO's name of the format by content, or by extension for the many kinds of RAW; only
+/// these readers are ever tried on a file.
+const char* format_of(const std::filesystem::path& file, std::string_view start) {
+    static constexpr std::string_view raw_extensions[] = {
+        ".arw", ".cr2", ".cr3", ".dng", ".nef", ".orf", ".pef", ".raf", ".rw2", ".srw"};
+    std::string extension = file.extension().string();
+    for (char& letter : extension) {
+        if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
+    }
+    for (const auto raw : raw_extensions) {
+        if (extension == raw) return "raw";
+    }
+    using namespace std::string_view_literals;
+    static constexpr std::pair<std::string_view, const char*> signatures[] = {
+        {"\x76\x2f\x31\x01"sv, "openexr"},
+        {"\x89PNG\r\n\x1a\n"sv, "png"},
+        {"#?RADIANCE"sv, "hdr"},
+        {"#?RGBE"sv, "hdr"},
+        {"II*\0"sv, "tiff"},
+        {"MM\0*"sv, "tiff"},
+        {"\xff\xd8\xff"sv, "jpeg"},
+    };
+    for (const auto& [signature, format] : signatures) {
+        if (start.starts_with(signature)) return format;
+    }
+    return nullptr;
+}
+
+std::string start_of(const std::filesystem::path& file) {
+    std::error_code error;
+    const auto status = std::filesystem::status(file, error);
+    if (!std::filesystem::exists(status)) throw FileError(file, "", "no such file", kReadable);
+    if (std::filesystem::is_directory(status)) throw FileError(file, "", "a folder", kReadable);
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw FileError(file, "", std::strerror(errno), "a readable file");
+    std::string start(16, '\0');
+    stream.read(start.data(), static_cast<std::streamsize>(start.size()));
+    start.resize(static_cast<std::size_t>(stream.gcount()));
+    if (start.empty()) throw FileError(file, "", "an empty file", kReadable);
+    return start;
+}
+
+/// Refuses sizes that no honest file of this length declares, before anything is allocated. The
+/// densest coding among the formats read packs less than 100,000 bytes into one.
+void check_size(const std::filesystem::path& file,
+                const PictureHeader& header,
+                std::size_t max_pixels) {
+    const auto size_text = std::to_string(header.width) + "x" + std::to_string(header.height) +
+                           " pixels of " + std::to_string(header.channels) + " channels";
+    if (header.width <= 0 || header.height <= 0 || header.channels <= 0) {
+        throw FileError(file, "size", size_text, "at least 1x1 pixels of 1 channel");
+    }
+    const auto pixels =
+        static_cast<std::size_t>(header.width) * static_cast<std::size_t>(header.height);
+    constexpr std::size_t max_channels = 1024;
+    if (pixels > max_pixels || static_cast<std::size_t>(header.channels) > max_channels) {
+        throw FileError(file,
+                        "size",
+                        size_text,
+                        "at most " + std::to_string(max_pixels) + " pixels of " +
+                            std::to_string(max_channels) + " channels");
+    }
+    constexpr std::uintmax_t max_bytes_per_byte = 100'000;
+    std::error_code error;
+    const auto file_bytes = std::filesystem::file_size(file, error);
+    if (!error &&
+        pixels * static_cast<std::size_t>(header.channels) / max_bytes_per_byte > file_bytes) {
+        throw FileError(file,
+                        "size",
+                        size_text + " in " + std::to_string(file_bytes) + " bytes",
+                        "a size that fits the file's length");
+    }
+}
+
+struct ClosePicture {
+    void operator()(void* picture) const { module_table().close(picture); }
+};
+
 template <typename T>
 void write_image(const std::filesystem::path& file,
+                 const char* format,
                  const Image<T>& image,
-                 OIIO::TypeDesc type,
+                 int integer_bits,
                  const std::vector<std::string>& channel_names) {
-    auto output = OIIO::ImageOutput::create(file.string());
-    if (!output) throw FileError(file, "", OIIO::geterror(), "a known picture format");
-    OIIO::ImageSpec spec(image.width, image.height, image.channels, type);
-    if (!channel_names.empty()) spec.channelnames = channel_names;
-    const auto base = OIIO::TypeDesc(OIIO::BaseTypeFromC<T>::value);
-    if (!output->open(file.string(), spec) || !output->write_image(base, image.values.data()) ||
-        !output->close()) {
-        throw FileError(file, "", output->geterror(), "a writable place");
-    }
+    check_argument(
+        image.width > 0 && image.height > 0 && image.channels > 0 &&
+            image.values.size() == image.pixel_count() * static_cast<std::size_t>(image.channels),
+        "write_image: an image of " + std::to_string(image.width) + "x" +
+            std::to_string(image.height) + "x" + std::to_string(image.channels) + " with " +
+            std::to_string(image.values.size()) + " values");
+    std::vector<const char*> names;
+    for (const auto& name : channel_names) names.push_back(name.c_str());
+    std::string bytes;
+    PictureError error;
+    const bool encoded = module_table().encode(
+        format,
+        {image.width, image.height, image.channels, integer_bits},
+        image.values.data(),
+        names.empty() ? nullptr : names.data(),
+        [](void* context, const void* data, std::size_t size) {
+            static_cast<std::string*>(context)->assign(static_cast<const char*>(data), size);
+        },
+        &bytes,
+        &error);
+    if (!encoded) throw FileError(file, "", error.text, "a picture that can be encoded");
+    write_text_file(file, bytes);
+}
+
+void check_png_channels(int channels) {
+    check_argument(channels == 1 || channels == 3,
+                   "write_png: " + std::to_string(channels) + " channels; 1 or 3 can be written");
 }
 
 }  // namespace
 
 ImageFile read_image(const std::filesystem::path& file, std::size_t max_pixels) {
-    std::error_code error;
-    if (!std::filesystem::exists(file, error)) {
-        throw FileError(file, "", "no such file", "a picture");
-    }
-    auto input = OIIO::ImageInput::open(file.string());
-    if (!input) throw FileError(file, "", OIIO::geterror(), "a readable picture");
-    const OIIO::ImageSpec& spec = input->spec();
-    const auto pixels = static_cast<std::size_t>(spec.image_pixels());
-    if (pixels > max_pixels) {
-        throw FileError(file,
-                        "size",
-                        std::to_string(spec.width) + "x" + std::to_string(spec.height),
-                        "at most " + std::to_string(max_pixels) + " pixels");
-    }
+    const std::string start = start_of(file);
+    const char* format = format_of(file, start);
+    if (!format) throw FileError(file, "", "content of another kind", kReadable);
+
+    PictureHeader header;
+    PictureError error;
+    const std::unique_ptr<void, ClosePicture> picture(
+        module_table().open(file.c_str(), format, &header, &error));
+    if (!picture) throw FileError(file, "", error.text, kReadable);
+    check_size(file, header, max_pixels);
+
     ImageFile result;
-    result.image = ImageF(spec.width, spec.height, spec.nchannels);
-    result.channel_names = spec.channelnames;
-    result.floating_point = spec.format.is_floating_point();
-    if (!result.floating_point) result.full_scale = spec.format.size() == 1 ? 255.0 : 65535.0;
-    if (!input->read_image(
-            0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, result.image.values.data())) {
-        throw FileError(file, "", input->geterror(), "a complete picture");
+    result.image = ImageF(header.width, header.height, header.channels);
+    for (int c = 0; c < header.channels; ++c) {
+        result.channel_names.emplace_back(module_table().channel_name(picture.get(), c));
     }
-    if (!result.floating_point) {
-        const auto scale = static_cast<float>(result.full_scale);
-        for (float& value : result.image.values) value *= scale;
+    result.floating_point = header.integer_bits == 0;
+    result.full_scale = result.floating_point ? 1.0 : header.integer_bits == 8 ? 255.0 : 65535.0;
+    if (!module_table().read(picture.get(), result.image.values.data(), &error)) {
+        throw FileError(file, "", error.text, kReadable);
     }
     return result;
 }
@@ -60,15 +186,24 @@ ImageFile read_image(const std::filesystem::path& file, std::size_t max_pixels) 
 void write_exr(const std::filesystem::path& file,
                const ImageF& image,
                const std::vector<std::string>& channel_names) {
-    write_image(file, image, OIIO::TypeDesc::FLOAT, channel_names);
+    check_argument(
+        channel_names.empty() || channel_names.size() == static_cast<std::size_t>(image.channels),
+        "write_exr: " + std::to_string(channel_names.size()) + " channel names for " +
+            std::to_string(image.channels) + " channels");
+    const auto names = !channel_names.empty() || image.channels != 1
+                           ? channel_names
+                           : std::vector<std::string>{"Y"};
+    write_image(file, "openexr", image, 0, names);
 }
 
 void write_png(const std::filesystem::path& file, const Image8& image) {
-    write_image(file, image, OIIO::TypeDesc::UINT8, {});
+    check_png_channels(image.channels);
+    write_image(file, "png", image, 8, {});
 }
 
 void write_png(const std::filesystem::path& file, const Image16& image) {
-    write_image(file, image, OIIO::TypeDesc::UINT16, {});
+    check_png_channels(image.channels);
+    write_image(file, "png", image, 16, {});
 }
 
 }  // namespace livery

@@ -1,0 +1,245 @@
+#include "core/image_io_module.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <exception>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <zlib.h>
+
+namespace {
+
+using livery::ImageIoTable;
+using livery::PictureError;
+using livery::PictureHeader;
+
+struct Picture {
+    std::unique_ptr<OIIO::ImageInput> input;
+    PictureHeader header;
+};
+
+void say(PictureError* error, std::string text) {
+    while (!text.empty() && text.back() == '\n') text.pop_back();
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    if (text.empty()) text = "a picture that cannot be read";
+    text.copy(error->text, sizeof error->text - 1);
+    error->text[std::min(text.size(), sizeof error->text - 1)] = '\0';
+}
+
+/// Values as stored: no colour conversion, no premultiplied alpha. RAW: the camera's own linear
+/// RGB without white balance, brightening or recovered highlights.
+OIIO::ImageSpec reading_options() {
+    OIIO::ImageSpec options;
+    options.attribute("oiio:UnassociatedAlpha", 1);
+    options.attribute("raw:ColorSpace", "raw");
+    options.attribute("raw:use_camera_wb", 0);
+    options.attribute("raw:auto_bright", 0);
+    const float no_balance[4] = {1.0f, 1.0f, 1.0f, 1.0f};
+    options.attribute("raw:user_mul", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 4), no_balance);
+    return options;
+}
+
+std::uint32_t big_endian(const char* bytes) {
+    std::uint32_t value = 0;
+    for (int k = 0; k < 4; ++k) value = value << 8u | static_cast<unsigned char>(bytes[k]);
+    return value;
+}
+
+/// What is wrong with a PNG's chunks, or nothing. Asked first because libpng, behind OpenImageIO,
+/// prints its complaints on stderr by itself.
+std::string png_damage(const char* file) {
+    std::ifstream stream(file, std::ios::binary | std::ios::ate);
+    const auto file_bytes = static_cast<std::uint64_t>(stream.tellg());
+    std::uint64_t at = 8;
+    std::vector<char> chunk;
+    std::string name;
+    while (name != "IEND") {
+        char length_bytes[4];
+        stream.seekg(static_cast<std::streamoff>(at));
+        if (at + 12 > file_bytes || !stream.read(length_bytes, 4)) return "a cut-off PNG";
+        const std::uint64_t length = big_endian(length_bytes);
+        if (at + 12 + length > file_bytes) return "a cut-off PNG";
+        chunk.resize(length + 8);
+        if (!stream.read(chunk.data(), static_cast<std::streamsize>(chunk.size()))) {
+            return "a PNG that cannot be read";
+        }
+        name.assign(chunk.data(), 4);
+        const auto sum =
+            ::crc32(0, reinterpret_cast<const Bytef*>(chunk.data()), static_cast<uInt>(length + 4));
+        if (sum != big_endian(chunk.data() + length + 4)) {
+            return "a PNG damaged at byte " + std::to_string(at) + " (" + name + ")";
+        }
+        if (at == 8 && (name != "IHDR" || length != 13)) return "a PNG without a header";
+        if (at == 8) {
+            const auto width = big_endian(chunk.data() + 4), height = big_endian(chunk.data() + 8);
+            constexpr std::uint32_t max_side = 1'000'000;  // libpng's own limit
+            if (width == 0 || height == 0 || width > max_side || height > max_side) {
+                return "a PNG of " + std::to_string(width) + "x" + std::to_string(height) +
+                       " pixels";
+            }
+        }
+        at += 12 + length;
+    }
+    return "";
+}
+
+void* open_picture(const char* file,
+                   const char* format,
+                   PictureHeader* header,
+                   PictureError* error) try {
+    if (std::string_view(format) == "png") {
+        if (const auto damage = png_damage(file); !damage.empty()) {
+            say(error, damage);
+            return nullptr;
+        }
+    }
+    auto picture = std::make_unique<Picture>();
+    picture->input = OIIO::ImageInput::create(format);
+    if (!picture->input) {
+        say(error, OIIO::geterror());
+        return nullptr;
+    }
+    OIIO::ImageSpec spec;
+    if (!picture->input->open(file, spec, reading_options())) {
+        say(error, picture->input->geterror());
+        return nullptr;
+    }
+    const auto size_text = [](int width, int height, int x, int y) {
+        return std::to_string(width) + "x" + std::to_string(height) + " at " + std::to_string(x) +
+               "," + std::to_string(y);
+    };
+    if (spec.deep || spec.depth > 1) {
+        say(error, "a deep or volume picture");
+        return nullptr;
+    }
+    if (std::string_view(format) == "openexr" &&
+        (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
+         spec.height != spec.full_height)) {
+        say(error,
+            "a data window (" + size_text(spec.width, spec.height, spec.x, spec.y) +
+                ") other than the display window (" +
+                size_text(spec.full_width, spec.full_height, spec.full_x, spec.full_y) + ")");
+        return nullptr;
+    }
+    int integer_bits = 0;
+    switch (spec.format.basetype) {
+        case OIIO::TypeDesc::UINT8:
+            integer_bits = 8;
+            break;
+        case OIIO::TypeDesc::UINT16:
+            integer_bits = 16;
+            break;
+        case OIIO::TypeDesc::HALF:
+        case OIIO::TypeDesc::FLOAT:
+            break;
+        default:
+            say(error, std::string("pixels of type ") + spec.format.c_str());
+            return nullptr;
+    }
+    picture->header = {spec.width, spec.height, spec.nchannels, integer_bits};
+    *header = picture->header;
+    return picture.release();
+} catch (const std::exception& exception) {
+    say(error, exception.what());
+    return nullptr;
+}
+
+const char* channel_name(void* picture, int channel) {
+    const auto& names = static_cast<Picture*>(picture)->input->spec().channelnames;
+    const auto index = static_cast<std::size_t>(channel);
+    return index < names.size() ? names[index].c_str() : "";
+}
+
+/// Through the stored type, because a detour over [0, 1] would not give whole numbers back.
+template <typename T>
+bool read_integers(Picture& picture, float* values) {
+    const auto& header = picture.header;
+    std::vector<T> stored(static_cast<std::size_t>(header.width) *
+                          static_cast<std::size_t>(header.height) *
+                          static_cast<std::size_t>(header.channels));
+    if (!picture.input->read_image(
+            0, 0, 0, header.channels, OIIO::BaseTypeFromC<T>::value, stored.data())) {
+        return false;
+    }
+    std::transform(
+        stored.begin(), stored.end(), values, [](T value) { return static_cast<float>(value); });
+    return true;
+}
+
+bool read_picture(void* handle, float* values, PictureError* error) try {
+    auto& picture = *static_cast<Picture*>(handle);
+    bool ok = false;
+    switch (picture.header.integer_bits) {
+        case 8:
+            ok = read_integers<std::uint8_t>(picture, values);
+            break;
+        case 16:
+            ok = read_integers<std::uint16_t>(picture, values);
+            break;
+        default:
+            ok = picture.input->read_image(
+                0, 0, 0, picture.header.channels, OIIO::TypeDesc::FLOAT, values);
+    }
+    // Some readers finish a cut file with grey and only leave a message.
+    const std::string message = picture.input->geterror();
+    if (ok && message.empty()) return true;
+    say(error, message);
+    return false;
+} catch (const std::exception& exception) {
+    say(error, exception.what());
+    return false;
+}
+
+void close_picture(void* picture) { delete static_cast<Picture*>(picture); }
+
+bool encode_picture(const char* format,
+                    const PictureHeader& header,
+                    const void* values,
+                    const char* const* channel_names,
+                    void (*sink)(void* context, const void* bytes, std::size_t size),
+                    void* context,
+                    PictureError* error) try {
+    const auto type = header.integer_bits == 8    ? OIIO::TypeDesc::UINT8
+                      : header.integer_bits == 16 ? OIIO::TypeDesc::UINT16
+                                                  : OIIO::TypeDesc::FLOAT;
+    auto output = OIIO::ImageOutput::create(format);
+    if (!output) {
+        say(error, OIIO::geterror());
+        return false;
+    }
+    OIIO::ImageSpec spec(header.width, header.height, header.channels, type);
+    if (channel_names) {
+        for (int c = 0; c < header.channels; ++c) {
+            spec.channelnames[static_cast<std::size_t>(c)] = channel_names[c];
+        }
+        spec.alpha_channel = -1;
+    }
+    std::vector<unsigned char> bytes;
+    OIIO::Filesystem::IOVecOutput memory(bytes);
+    output->set_ioproxy(&memory);
+    const std::string name = std::string("memory.") + format;
+    if (!output->open(name, spec) || !output->write_image(type, values) || !output->close()) {
+        say(error, output->geterror());
+        return false;
+    }
+    sink(context, bytes.data(), bytes.size());
+    return true;
+} catch (const std::exception& exception) {
+    say(error, exception.what());
+    return false;
+}
+
+constexpr ImageIoTable kTable = {
+    open_picture, channel_name, read_picture, close_picture, encode_picture};
+
+}  // namespace
+
+extern "C" __attribute__((visibility("default"))) const ImageIoTable* livery_image_io_table() {
+    return &kTable;
+}

@@ -1,0 +1,42 @@
+// What livery_image_io.so offers: the only code that links OpenImageIO, which pulls in hundreds of
+// shared objects. core/image_io.cpp opens it when the first picture is read or written. Only plain
+// data crosses this line; an exception never does.
+#pragma once
+
+#include <cstddef>
+
+namespace livery {
+
+struct PictureHeader {
+    int width = 0, height = 0, channels = 0;
+    int integer_bits = 0;  ///< 8 or 16; 0: 32-bit floating point
+};
+
+/// One line, cut when longer.
+struct PictureError {
+    char text[512] = "";
+};
+
+struct ImageIoTable {
+    /// Reads a header of the format named; null and the reason when it cannot.
+    void* (*open)(const char* file, const char* format, PictureHeader*, PictureError*);
+    /// Valid until `close`.
+    const char* (*channel_name)(void* picture, int channel);
+    /// All pixels, in file units; false and the reason when it cannot.
+    bool (*read)(void* picture, float* values, PictureError*);
+    void (*close)(void* picture);
+
+    /// Encodes to memory and hands the bytes to `sink` in one piece. `values` holds bytes, 16-bit
+    /// integers or floats as the header says; `channel_names` may be null.
+    bool (*encode)(const char* format,
+                   const PictureHeader& header,
+                   const void* values,
+                   const char* const* channel_names,
+                   void (*sink)(void* context, const void* bytes, std::size_t size),
+                   void* context,
+                   PictureError*);
+};
+
+inline constexpr const char* kImageIoTableSymbol = "livery_image_io_table";
+
+}  // namespace livery
