@@ -21,8 +21,8 @@ struct Fragment {
     glm::vec3 normal{0.0f};        ///< unit mean normal
     float normal_variance = 0.0f;  ///< widens alpha: mean squared slope around the mean normal
     glm::vec4 tangent{0.0f};
-    float coverage = 0.0f;         ///< of the pixel's area
-    std::uint32_t pixel = 0;       ///< y * width + x
+    float coverage = 0.0f;    ///< of the pixel's area
+    std::uint32_t pixel = 0;  ///< y * width + x
     std::uint16_t part = 0;
 };
 

@@ -1,0 +1,238 @@
+#include "scene/frame_plan.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace livery {
+namespace {
+
+constexpr std::array kQualities{Quality::draft, Quality::normal, Quality::high, Quality::reference};
+
+const char* model_name(ReflectanceModel model) {
+    switch (model) {
+        case ReflectanceModel::lambert:
+            return "lambert";
+        case ReflectanceModel::ggx:
+            return "ggx";
+        case ReflectanceModel::clearcoat:
+            return "clearcoat";
+    }
+    throw std::invalid_argument("unknown reflectance model");
+}
+
+const char* model_in_words(ReflectanceModel model) {
+    switch (model) {
+        case ReflectanceModel::lambert:
+            return "a plain diffuse paint";
+        case ReflectanceModel::ggx:
+            return "a paint with one glossy lobe";
+        case ReflectanceModel::clearcoat:
+            return "a paint under a clear coat";
+    }
+    throw std::invalid_argument("unknown reflectance model");
+}
+
+void plan_pass(FramePlan& plan, std::string name, std::string why) {
+    PlannedPass& pass = plan.passes.emplace_back();
+    pass.name = std::move(name);
+    pass.why = std::move(why);
+}
+
+bool is_black(const glm::dvec3& colour) { return colour == glm::dvec3(0.0); }
+
+std::string degrees(double angle_rad) {
+    return fmt::format("{:.3g}°", angle_rad * 180.0 / std::numbers::pi);
+}
+
+/// What the passes depend on, read off the scene once.
+struct Needs {
+    bool environment = false;
+    std::set<ReflectanceModel> models;
+    std::set<std::string> glossy_parts;
+};
+
+Needs needs_of(const Scene& scene) {
+    Needs needs;
+    needs.environment = scene.environment && !scene.environment->radiance_working.empty() &&
+                        scene.environment->scale != 0.0;
+    for (std::size_t i = 0; i < scene.part_materials.size(); ++i) {
+        needs.models.insert(scene.part_materials[i].model);
+        if (scene.part_materials[i].model != ReflectanceModel::lambert) {
+            needs.glossy_parts.insert(scene.product->mesh.parts[i].name);
+        }
+    }
+    return needs;
+}
+
+void plan_lights(const Scene& scene, FramePlan& plan) {
+    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+        const DirectionalLight& light = scene.lights[i];
+        const std::string name = light_name(i);
+        const std::string pass = visibility_pass(i);
+        if (is_black(light.radiance_rec709)) {
+            plan.skipped.push_back({pass, fmt::format("the {} light is black", name)});
+        } else if (light.angle_rad <= 0.0) {
+            plan_pass(
+                plan, pass, fmt::format("the look has a {} light, a point: sharp shadows", name));
+        } else if (plan.quality == Quality::draft) {
+            plan_pass(plan,
+                      pass,
+                      fmt::format("the look has a {} light {} wide; draft shows its "
+                                  "shadows sharp",
+                                  name,
+                                  degrees(light.angle_rad)));
+        } else {
+            plan_pass(plan,
+                      pass,
+                      fmt::format("the look has a {} light {} wide: soft shadows",
+                                  name,
+                                  degrees(light.angle_rad)));
+        }
+    }
+    if (scene.lights.empty()) plan.skipped.push_back({visibility_pass(0), "the look has no light"});
+}
+
+void plan_environment(const Needs& needs, FramePlan& plan) {
+    const std::string glossy = needs.glossy_parts.empty() ? "" : *needs.glossy_parts.begin();
+    if (!needs.environment) {
+        for (const char* pass : {kIrradiancePass, kOcclusionPass, kFilterPass, kReflectionPass}) {
+            plan.skipped.push_back({pass, "no environment in the look"});
+        }
+        return;
+    }
+    plan_pass(plan, kIrradiancePass, "the look has an environment that lights every part");
+    if (plan.quality == Quality::draft) {
+        plan.skipped.push_back(
+            {kOcclusionPass, "draft lets the whole environment reach every point"});
+    } else {
+        plan_pass(plan, kOcclusionPass, "parts hide the environment from one another");
+    }
+    if (glossy.empty()) {
+        plan.skipped.push_back({kFilterPass, "no part mirrors the environment: all are diffuse"});
+        plan.skipped.push_back(
+            {kReflectionPass, "no part mirrors the environment: all are diffuse"});
+        return;
+    }
+    plan_pass(plan, kFilterPass, fmt::format("part {} mirrors the environment", glossy));
+    if (plan.quality == Quality::draft) {
+        plan.skipped.push_back(
+            {kReflectionPass, "draft mirrors the environment through other parts"});
+    } else {
+        plan_pass(plan, kReflectionPass, fmt::format("part {} may mirror other parts", glossy));
+    }
+}
+
+void plan_shading(const Scene& scene, const Needs& needs, FramePlan& plan) {
+    if (needs.glossy_parts.empty()) {
+        plan.skipped.push_back({kDirectionsPass, "every paint looks the same from every side"});
+    } else {
+        plan_pass(plan,
+                  kDirectionsPass,
+                  fmt::format("the gloss of part {} depends on where the eye is",
+                              *needs.glossy_parts.begin()));
+    }
+    for (std::size_t i = 0; i < scene.part_materials.size(); ++i) {
+        const Material& material = scene.part_materials[i];
+        plan_pass(plan,
+                  shade_pass(scene, i),
+                  material.name.empty()
+                      ? std::string(model_in_words(material.model))
+                      : fmt::format("{} is {}", material.name, model_in_words(material.model)));
+    }
+    const std::array unused{std::pair(ReflectanceModel::lambert, "no part is plain diffuse"),
+                            std::pair(ReflectanceModel::ggx, "no part uses GGX"),
+                            std::pair(ReflectanceModel::clearcoat, "no paint has a clear coat")};
+    for (const auto& [model, why] : unused) {
+        if (!needs.models.contains(model)) {
+            plan.skipped.push_back({fmt::format("shade:*:{}", model_name(model)), why});
+        }
+    }
+}
+
+}  // namespace
+
+Quality parse_quality(const std::string& text) {
+    for (const Quality quality : kQualities) {
+        if (to_string(quality) == text) return quality;
+    }
+    throw std::invalid_argument(
+        fmt::format("quality \"{}\" is not one of draft, normal, high, reference", text));
+}
+
+std::string to_string(Quality quality) {
+    switch (quality) {
+        case Quality::draft:
+            return "draft";
+        case Quality::normal:
+            return "normal";
+        case Quality::high:
+            return "high";
+        case Quality::reference:
+            return "reference";
+    }
+    throw std::invalid_argument(
+        fmt::format("quality {} does not exist", static_cast<int>(quality)));
+}
+
+std::string light_name(std::size_t light) {
+    if (light == 0) return "key";
+    if (light == 1) return "fill";
+    return fmt::format("light-{}", light + 1);
+}
+
+std::string visibility_pass(std::size_t light) { return light_name(light) + "-visibility"; }
+
+std::string shade_pass(const Scene& scene, std::size_t part) {
+    return fmt::format("shade:{}:{}",
+                       scene.product->mesh.parts.at(part).name,
+                       model_name(scene.part_materials.at(part).model));
+}
+
+const PlannedPass* find_pass(const FramePlan& plan, const std::string& name) {
+    const auto found = std::find_if(plan.passes.begin(),
+                                    plan.passes.end(),
+                                    [&](const PlannedPass& pass) { return pass.name == name; });
+    return found == plan.passes.end() ? nullptr : &*found;
+}
+
+PlannedPass* find_pass(FramePlan& plan, const std::string& name) {
+    return const_cast<PlannedPass*>(find_pass(std::as_const(plan), name));
+}
+
+FramePlan plan_frame(const Scene& scene, Quality quality, FrameStage stage) {
+    check_argument(scene.product != nullptr, "plan_frame: the scene has no product");
+    check_argument(scene.part_materials.size() == scene.product->mesh.parts.size(),
+                   fmt::format("plan_frame: {} materials for {} parts",
+                               scene.part_materials.size(),
+                               scene.product->mesh.parts.size()));
+    const Needs needs = needs_of(scene);
+    FramePlan plan;
+    plan.quality = quality;
+    if (quality == Quality::reference) {
+        plan_pass(plan, kPathTracerPass, "the ground truth was asked for");
+        plan.skipped.push_back({kSurfaceMapPass, "the path tracer finds what it sees by itself"});
+    } else {
+        plan_pass(plan, kSurfaceMapPass, "what each projector pixel lights, once for a pose");
+        plan_lights(scene, plan);
+        plan_environment(needs, plan);
+        plan_shading(scene, needs, plan);
+        plan_pass(plan, kResolvePass, "fragments of a pixel are mixed by their coverage");
+    }
+    if (stage == FrameStage::projector) {
+        plan_pass(plan, kCompensationPass, "the frame goes to the projector");
+    } else {
+        plan.skipped.push_back({kCompensationPass, "the frame stops at radiance"});
+    }
+    return plan;
+}
+
+}  // namespace livery
