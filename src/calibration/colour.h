@@ -1,13 +1,12 @@
 // Colour photographs -> compensation (equations 3 to 9 of the paper, and the robust variant).
 #pragma once
 
-#include <optional>
-#include <string>
-#include <vector>
-
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "calibration/gray_code.h"
 #include "calibration/patterns.h"
@@ -56,7 +55,8 @@ struct LiveOptions {
 struct LiveResult {
     ColourCalibration calibration;
     ProjectorToCamera map;
-    std::vector<RoledPhotograph> captures;  ///< the colour ones, for a second look with other options
+    std::vector<RoledPhotograph>
+        captures;  ///< the colour ones, for a second look with other options
     std::vector<Pattern> patterns;
     double capture_seconds = 0.0, solve_seconds = 0.0;
 };

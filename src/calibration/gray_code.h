@@ -1,7 +1,7 @@
 // Gray code photographs -> where each projector pixel is seen by the camera.
 #pragma once
 
-#include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,23 +22,45 @@ struct GrayCodeResult {
     Image8 decoded;       ///< 255 where decoded
     double lit_fraction = 0.0;      ///< of the camera picture
     double decoded_fraction = 0.0;  ///< of the lit pixels
+    double lit_threshold = 0.0;     ///< white - black over which a pixel counts as lit, file units
 };
 
-/// Decodes by the sign of each bit pair. `lit_threshold` is white - black in file units; negative
-/// picks it from the noise. Throws Refused when too little decodes, std::invalid_argument or
-/// FileError for missing roles and unequal sizes.
+/// Decodes by the sign of each bit pair. `lit_threshold` is white - black in file units (mean of
+/// the channels); negative picks it from the noise of the black picture. Lit pixels that answer
+/// to the stripes with less than a third of white - black (lit by other parts only) are left out.
+/// Throws Refused when too little decodes, FileError for missing roles and unequal sizes. Roles
+/// of other kinds are ignored.
 GrayCodeResult decode_gray_code(const std::vector<RoledPhotograph>& photographs,
+                                int projector_width,
+                                int projector_height,
+                                double lit_threshold = -1.0);
+
+/// The same from pictures of one channel in the order of geometry_patterns(); nothing is converted
+/// or copied.
+GrayCodeResult decode_gray_code(std::span<const Image8> in_pattern_order,
+                                int projector_width,
+                                int projector_height,
+                                double lit_threshold = -1.0);
+GrayCodeResult decode_gray_code(std::span<const Image16> in_pattern_order,
+                                int projector_width,
+                                int projector_height,
+                                double lit_threshold = -1.0);
+GrayCodeResult decode_gray_code(std::span<const ImageF> in_pattern_order,
                                 int projector_width,
                                 int projector_height,
                                 double lit_threshold = -1.0);
 
 /// Projector pixels -> sub-pixel camera pixel (2 channels, centres at halves), NaN where unknown;
 /// local fits that do not reach across depth or part edges. `edge` is 255 where the pixel's
-/// neighbourhood breaks.
+/// neighbourhood breaks: the camera pixels around it see something else or were not decoded.
 struct ProjectorToCamera {
     ImageF camera_px;
     Image8 edge;
 };
-ProjectorToCamera invert_map(const GrayCodeResult& decoded, int projector_width, int projector_height);
+
+/// Robust affine fits over 5 x 5 to 9 x 9 projector pixels, wider where the camera is coarser.
+ProjectorToCamera invert_map(const GrayCodeResult& decoded,
+                             int projector_width,
+                             int projector_height);
 
 }  // namespace livery

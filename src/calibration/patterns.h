@@ -14,14 +14,20 @@ struct Pattern {
     std::vector<int> drive_values;  ///< of a uniform picture: R, G, B; else empty
 };
 
-/// Gray code both ways, each bit (0 the most significant) followed by its inverse, then white, black.
+/// Bits of the Gray code that numbers `count` columns or rows.
+int gray_code_bits(int count);
+
+/// Gray code both ways, each bit (0 the most significant) followed by its inverse, then white,
+/// black. Throws std::invalid_argument for sizes outside 2..16384.
 std::vector<Pattern> geometry_patterns(int width, int height);
 
 /// The six pictures of the method for drives s and t: dark-gray, bright-gray, red, green, blue,
-/// gray-levels (blocks of at least 8 px).
+/// gray-levels. The blocks of gray-levels are squares of 8 to 16 px; every 16 x 16 of them hold
+/// all 256 levels once, every 4 x 4 of them hold 16 evenly spread levels.
 std::vector<Pattern> colour_patterns(int width, int height, int dark_drive, int bright_drive);
 
-/// Mosaics of colours for projectors that are not additive, `count` pictures.
+/// Mosaics of colours for projectors that are not additive, `count` pictures: ramps of one
+/// channel, of two and three equal channels, and colours spread evenly over the cube.
 std::vector<Pattern> mosaic_patterns(int width, int height, int count);
 
 }  // namespace livery
