@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include "core/image.h"
@@ -22,7 +23,7 @@ struct DirectionalLight {
 
 struct EnvironmentReference {
     std::string file;  ///< empty: no environment; relative names are looked up by load_scene
-    double rotation_rad = 0.0;  ///< about +y
+    double rotation_rad = 0.0;  ///< turns the map about +y, counter-clockwise seen from above
     double scale = 1.0;
 };
 
@@ -35,11 +36,13 @@ struct Look {
     std::filesystem::path file;
 };
 
+/// Look file (docs/files.md). Throws FileError; an unknown field is refused, by name.
 Look read_look_file(const std::filesystem::path& file);
 void write_look_file(const std::filesystem::path& file, const Look& look);
 
 /// Light from all directions: latitude-longitude, linear, in the working space. Row 0 looks up
-/// (+y); column u in [0,1) looks toward azimuth 2 pi (u - 1/2) measured from -z toward +x.
+/// (+y); column u in [0,1) looks toward azimuth 2 pi (u - 1/2) measured from -z toward +x, before
+/// the rotation.
 struct Environment {
     ImageF radiance_working;  ///< 3 channels; empty: none
     double rotation_rad = 0.0;
@@ -47,7 +50,8 @@ struct Environment {
 };
 
 /// Reads an .hdr or .exr map (linear Rec.709), checks that it is 2:1, finite, not negative by more
-/// than rounding. Throws FileError.
+/// than rounding. A relative name is looked for in the folder `beside`, then among shipped data. No
+/// name, no environment. Throws FileError.
 Environment load_environment(const EnvironmentReference& reference,
                              const std::filesystem::path& beside);
 

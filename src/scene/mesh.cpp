@@ -1,10 +1,11 @@
 #include "scene/mesh.h"
 
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
 #include <utility>
+
+#include <glm/geometric.hpp>
 
 #include "core/error.h"
 

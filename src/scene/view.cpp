@@ -1,12 +1,12 @@
 #include "scene/view.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <string>
+
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-#include <string>
 
 #include "core/error.h"
 

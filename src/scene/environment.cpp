@@ -1,0 +1,119 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "core/colour.h"
+#include "core/error.h"
+#include "core/image_io.h"
+#include "core/paths.h"
+#include "scene/look.h"
+
+namespace livery {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+/// 16384 x 8192: larger maps bring nothing to a mock-up and take gigabytes.
+constexpr std::size_t kMaxPixels = std::size_t{1} << 27u;
+
+std::filesystem::path find_map(const std::string& name, const std::filesystem::path& beside) {
+    const std::filesystem::path file = name;
+    if (file.is_absolute()) return file;
+    std::error_code error;
+    if (std::filesystem::exists(beside / file, error)) return beside / file;
+    try {
+        return shipped_path(file);
+    } catch (const FileError& missing) {
+        const auto folder = beside.empty() ? std::filesystem::path(".") : beside;
+        throw FileError(file,
+                        "environment",
+                        missing.found() + ", nor in " + folder.string(),
+                        "an .hdr or .exr map");
+    }
+}
+
+/// Which channels are red, green and blue; a grey map serves all three.
+std::array<int, 3> colour_channels(const std::filesystem::path& file, const ImageFile& map) {
+    const auto named = [&](const char* name) {
+        const auto& names = map.channel_names;
+        const auto found = std::find(names.begin(), names.end(), name);
+        return found == names.end() ? -1 : static_cast<int>(found - names.begin());
+    };
+    const std::array<int, 3> rgb{named("R"), named("G"), named("B")};
+    if (std::min({rgb[0], rgb[1], rgb[2]}) >= 0) return rgb;
+    if (map.image.channels == 1) return {0, 0, 0};
+    std::string names;
+    for (const auto& name : map.channel_names) names += (names.empty() ? "" : ", ") + name;
+    throw FileError(file, "channels", names, "R, G, B or a single one");
+}
+
+}  // namespace
+
+Environment load_environment(const EnvironmentReference& reference,
+                             const std::filesystem::path& beside) {
+    Environment environment;
+    environment.rotation_rad = reference.rotation_rad;
+    environment.scale = reference.scale;
+    if (reference.file.empty()) return environment;
+
+    const auto file = find_map(reference.file, beside);
+    const ImageFile map = read_image(file, kMaxPixels);
+    const ImageF& image = map.image;
+    if (!map.floating_point) throw FileError(file, "", "integer pixels", "an .hdr or .exr map");
+    if (image.width != 2 * image.height) {
+        throw FileError(file,
+                        "size",
+                        fmt::format("{}x{}", image.width, image.height),
+                        "twice as wide as high (latitude-longitude)");
+    }
+    const auto channels = colour_channels(file, map);
+    environment.radiance_working = ImageF(image.width, image.height, 3);
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            glm::dvec3 rec709;
+            for (int c = 0; c < 3; ++c) {
+                rec709[c] = image.at(x, y, channels[static_cast<std::size_t>(c)]);
+            }
+            const double largest = std::max({rec709.x, rec709.y, rec709.z});
+            const double least = std::min({rec709.x, rec709.y, rec709.z});
+            const bool finite =
+                std::isfinite(rec709.x) && std::isfinite(rec709.y) && std::isfinite(rec709.z);
+            // A filter or a colour matrix leaves such traces; anything more is not light.
+            if (!finite || least < -1e-4 * std::max(largest, 1e-2)) {
+                throw FileError(file,
+                                fmt::format("pixel ({}, {})", x, y),
+                                fmt::format("{:g}, {:g}, {:g}", rec709.x, rec709.y, rec709.z),
+                                "finite radiance that is not negative");
+            }
+            const glm::dvec3 working = working_from_rec709() * glm::max(rec709, glm::dvec3(0.0));
+            for (int c = 0; c < 3; ++c) {
+                environment.radiance_working.at(x, y, c) = static_cast<float>(working[c]);
+            }
+        }
+    }
+    return environment;
+}
+
+glm::dvec2 uv_from_direction(const Environment& environment, const glm::dvec3& direction) {
+    const glm::dvec3 d = glm::normalize(direction);
+    const double azimuth = std::atan2(d.x, -d.z) + environment.rotation_rad;
+    double u = azimuth / (2.0 * kPi) + 0.5;
+    u -= std::floor(u);
+    // atan2 stays exact near the poles, where acos(y) loses half of the digits.
+    const double v = std::atan2(std::hypot(d.x, d.z), d.y) / kPi;
+    constexpr double below_one = 0x1.fffffffffffffp-1;
+    return {std::min(u, below_one), std::min(v, below_one)};
+}
+
+glm::dvec3 direction_from_uv(const Environment& environment, const glm::dvec2& uv) {
+    const double azimuth = 2.0 * kPi * (uv.x - 0.5) - environment.rotation_rad;
+    const double polar = kPi * uv.y;
+    return {
+        std::sin(polar) * std::sin(azimuth), std::cos(polar), -std::sin(polar) * std::cos(azimuth)};
+}
+
+}  // namespace livery

@@ -1,0 +1,69 @@
+#include <algorithm>
+
+#include "core/json.h"
+#include "scene/pose_io.h"
+#include "scene/view.h"
+
+namespace livery {
+
+namespace {
+
+constexpr int kFormatVersion = 1;
+constexpr int kLargestSide = 65536;
+
+}  // namespace
+
+View read_camera_file(const std::filesystem::path& file) {
+    const Json json = read_json_file(file);
+    const JsonReader root(file, json);
+    // The bare OpenCV form of other programs has no version; ours always writes one.
+    if (root.has("format_version")) root.require_format_version(kFormatVersion);
+    root.allow_only({"format_version",
+                     "name",
+                     "width",
+                     "height",
+                     "matrix",
+                     "distortion",
+                     "rotation",
+                     "translation_mm"});
+    View view;
+    view.width = root["width"].integer(1, kLargestSide);
+    view.height = root["height"].integer(1, kLargestSide);
+
+    const auto matrix_field = root["matrix"];
+    const glm::dmat3 matrix = matrix_field.matrix3();
+    if (!(matrix[0][0] > 0.0) || !(matrix[1][1] > 0.0)) {
+        matrix_field.fail("a focal length that is not positive",
+                          "positive focal lengths in pixels");
+    }
+    if (matrix[1][0] != 0.0 || matrix[0][1] != 0.0 || matrix[0][2] != 0.0 || matrix[1][2] != 0.0 ||
+        matrix[2][2] != 1.0) {
+        matrix_field.fail(matrix_field.found(), "fx, 0, cx, 0, fy, cy, 0, 0, 1");
+    }
+    view.focal_px = {matrix[0][0], matrix[1][1]};
+    // OpenCV's pixel centres are at integers, ours at half integers.
+    view.principal_px = glm::dvec2(matrix[2]) + 0.5;
+
+    if (root.has("distortion")) {
+        const auto lens = root["distortion"].numbers(5);
+        std::copy(lens.begin(), lens.end(), view.distortion.begin());
+    }
+    view.view_from_world = read_pose(root);
+    return view;
+}
+
+void write_camera_file(const std::filesystem::path& file, const View& view) {
+    const glm::dvec2 principal = view.principal_px - 0.5;
+    Json json;
+    json["format_version"] = kFormatVersion;
+    json["width"] = view.width;
+    json["height"] = view.height;
+    json["matrix"] = {
+        view.focal_px.x, 0.0, principal.x, 0.0, view.focal_px.y, principal.y, 0.0, 0.0, 1.0};
+    json["distortion"] = view.distortion;
+    json["rotation"] = json_from(view.view_from_world.rotation);
+    json["translation_mm"] = json_from(view.view_from_world.translation);
+    write_json_file(file, json);
+}
+
+}  // namespace livery
