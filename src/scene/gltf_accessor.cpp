@@ -88,10 +88,7 @@ std::string join(const std::vector<std::string>& names) {
 }
 
 JsonReader member_at(const JsonReader& root, std::string_view array, const JsonReader& index) {
-    const auto members = root[array];
-    const int last = static_cast<int>(members.size()) - 1;
-    if (last < 0) index.fail(index.found(), "no index: there are no " + std::string(array));
-    return members.at(static_cast<std::size_t>(index.integer(0, last)));
+    return root[array].at(index_into(root, array, index));
 }
 
 }  // namespace

@@ -161,6 +161,18 @@ int integer_or(const JsonReader& object, std::string_view key, int low, int high
     return object.has(key) ? object[key].integer(low, high) : otherwise;
 }
 
+std::string name_or(const JsonReader& object, const std::string& otherwise) {
+    if (!object.has("name")) return otherwise;
+    const std::string name = object["name"].text();
+    return name.empty() ? otherwise : name;
+}
+
+std::size_t index_into(const JsonReader& root, std::string_view array, const JsonReader& index) {
+    const std::size_t count = root.has(array) ? root[array].size() : 0;
+    if (count == 0) index.fail(index.found(), "no index: there are no " + std::string(array));
+    return static_cast<std::size_t>(index.integer(0, static_cast<int>(count) - 1));
+}
+
 GltfFile open_gltf(const std::filesystem::path& file) {
     const std::string bytes = read_text_file(file, kMaxFileBytes);
     if (bytes.empty()) throw FileError(file, "", "an empty file", "a glTF mesh");

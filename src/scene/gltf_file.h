@@ -64,7 +64,11 @@ class GltfAccessors {
     std::size_t elements_read_ = 0;
 };
 
-/// A member that may be absent.
+/// Members that may be absent.
 int integer_or(const JsonReader& object, std::string_view key, int low, int high, int otherwise);
+std::string name_or(const JsonReader& object, const std::string& otherwise);
+
+/// An index into one of the file's arrays ("nodes"), in range.
+std::size_t index_into(const JsonReader& root, std::string_view array, const JsonReader& index);
 
 }  // namespace livery
