@@ -15,9 +15,9 @@ struct Capture {
     std::filesystem::path pattern;  ///< picture that was shown; empty when not known
     std::vector<int> drive;         ///< device values of a uniform picture; empty otherwise
     double exposure_s = 0.0;
-    std::string transfer = "linear";
-    double black_level = 0.0;
-    double saturates_at = 0.0;
+    std::string transfer = "linear";  ///< "linear", "srgb" or the path of a response file
+    double black_level = 0.0;         ///< file units, before the transfer is undone
+    double saturates_at = 0.0;        ///< file units, before the transfer; 0: the file's full scale
 };
 
 struct CapturesFolder {
@@ -27,11 +27,15 @@ struct CapturesFolder {
 };
 
 /// Reads manifest.json; without one, files in name order are matched with `patterns_manifest` or,
-/// if that is empty, with the 42-picture order (20 column, 20 row, white, black). Throws FileError.
+/// if that is empty, with the 42-picture order (20 column, 20 row, white, black); their exposures
+/// count as one second each. Without either, the projector's size is 0x0: not known. Throws
+/// FileError.
 CapturesFolder read_captures_folder(const std::filesystem::path& folder,
                                     const std::filesystem::path& patterns_manifest = {});
 
-/// Loads one photograph, transfer curve undone (values stay in file units). Throws FileError.
+/// Loads one photograph as RGB, transfer curve undone: values, black level and saturation stay on
+/// the scale of the file. Floating-point files saturate nowhere unless the manifest says so. Throws
+/// FileError, also for NaN and infinity.
 Photograph load_photograph(const Capture& capture);
 
 }  // namespace livery

@@ -1,0 +1,214 @@
+#include "capture/captures_folder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "capture/manifest_io.h"
+#include "core/colour.h"
+#include "core/error.h"
+#include "core/image_io.h"
+
+namespace livery {
+
+namespace {
+
+/// Names of the pictures in a folder, in name order.
+std::vector<std::filesystem::path> pictures_in(const std::filesystem::path& folder) {
+    static constexpr std::string_view extensions[] = {".png",
+                                                      ".tif",
+                                                      ".tiff",
+                                                      ".jpg",
+                                                      ".jpeg",
+                                                      ".exr",
+                                                      ".hdr",
+                                                      ".arw",
+                                                      ".cr2",
+                                                      ".cr3",
+                                                      ".dng",
+                                                      ".nef",
+                                                      ".orf",
+                                                      ".pef",
+                                                      ".raf",
+                                                      ".rw2",
+                                                      ".srw"};
+    std::vector<std::filesystem::path> files;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+        std::string extension = entry.path().extension().string();
+        std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) {
+            return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+        });
+        if (std::find(std::begin(extensions), std::end(extensions), extension) !=
+            std::end(extensions)) {
+            files.push_back(entry.path());
+        }
+    }
+    if (error) throw FileError(folder, "", error.message(), "a readable folder");
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+/// The order of the common Gray code tools for projectors of up to 1024x1024: ten column bits and
+/// ten row bits, each followed by its inverse, then white and black.
+std::vector<PatternEntry> usual_42_patterns() {
+    std::vector<PatternEntry> patterns;
+    for (const std::string axis : {"gray-column-", "gray-row-"}) {
+        for (int bit = 0; bit < 10; ++bit) {
+            const std::string role = axis + std::to_string(bit);
+            patterns.push_back({"", role, {}});
+            patterns.push_back({"", role + "-inverse", {}});
+        }
+    }
+    patterns.push_back({"", "white", {255, 255, 255}});
+    patterns.push_back({"", "black", {0, 0, 0}});
+    return patterns;
+}
+
+CapturesFolder match_by_name(const std::filesystem::path& folder,
+                             const std::filesystem::path& patterns_manifest) {
+    CapturesFolder result;
+    result.folder = folder;
+    PatternsManifest known;
+    if (patterns_manifest.empty()) {
+        known.patterns = usual_42_patterns();
+    } else {
+        known = read_patterns_manifest(patterns_manifest);
+    }
+    const auto files = pictures_in(folder);
+    if (files.size() != known.patterns.size()) {
+        throw FileError(folder,
+                        "",
+                        std::to_string(files.size()) + " pictures and no manifest.json",
+                        std::to_string(known.patterns.size()) + " pictures in the order of " +
+                            (patterns_manifest.empty() ? "10 column bits, 10 row bits, white, black"
+                                                       : patterns_manifest.string()));
+    }
+    result.projector_width = known.projector_width;
+    result.projector_height = known.projector_height;
+    for (std::size_t k = 0; k < files.size(); ++k) {
+        Capture capture;
+        capture.file = files[k];
+        capture.role = known.patterns[k].role;
+        capture.drive = known.patterns[k].drive;
+        if (!known.patterns[k].file.empty()) {
+            capture.pattern = patterns_manifest.parent_path() / known.patterns[k].file;
+        }
+        capture.exposure_s = 1.0;  // the same for all; colour needs a manifest that says more
+        result.captures.push_back(std::move(capture));
+    }
+    return result;
+}
+
+/// R, G and B by name, else the only three; one channel stands for all three.
+ImageF rgb_of(const std::filesystem::path& file, ImageFile picture) {
+    const auto& names = picture.channel_names;
+    const auto channel = [&](const char* name) {
+        return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
+    };
+    int from[3] = {channel("R"), channel("G"), channel("B")};
+    const int channels = picture.image.channels;
+    if (std::max({from[0], from[1], from[2]}) >= channels) {
+        if (channels != 1 && channels != 3) {
+            throw FileError(file,
+                            "channels",
+                            std::to_string(channels) + " channels without R, G, B",
+                            "R, G, B or one channel");
+        }
+        for (int c = 0; c < 3; ++c) from[c] = channels == 1 ? 0 : c;
+    } else if (channels == 3 && from[0] == 0 && from[1] == 1 && from[2] == 2) {
+        return std::move(picture.image);
+    }
+    ImageF rgb(picture.image.width, picture.image.height, 3);
+    for (std::size_t k = 0; k < rgb.pixel_count(); ++k) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            rgb.values[3 * k + c] = picture.image.values[static_cast<std::size_t>(channels) * k +
+                                                         static_cast<std::size_t>(from[c])];
+        }
+    }
+    return rgb;
+}
+
+/// Linear light from a file value, both in file units.
+std::function<double(double)> linearisation(const std::string& transfer, double full_scale) {
+    if (transfer == "linear") return {};
+    if (transfer == "srgb") {
+        return [=](double value) { return full_scale * srgb_decode(value / full_scale); };
+    }
+    return [=, table = read_response(transfer)](double value) {
+        const double last = static_cast<double>(table.size() - 1);
+        const double place = std::clamp(value / full_scale, 0.0, 1.0) * last;
+        const auto below = static_cast<std::size_t>(std::min(place, last - 1.0));
+        const double t = place - static_cast<double>(below);
+        return full_scale * ((1.0 - t) * table[below] + t * table[below + 1]);
+    };
+}
+
+void check_finite(const std::filesystem::path& file, const ImageF& image) {
+    const auto bad = std::find_if(image.values.begin(), image.values.end(), [](float value) {
+        return !std::isfinite(value);
+    });
+    if (bad == image.values.end()) return;
+    const auto pixel = static_cast<std::size_t>(bad - image.values.begin()) / 3;
+    const auto width = static_cast<std::size_t>(image.width);
+    throw FileError(file,
+                    "pixel " + std::to_string(pixel % width) + "," + std::to_string(pixel / width),
+                    std::isnan(*bad) ? "NaN" : "infinity",
+                    "finite values");
+}
+
+}  // namespace
+
+CapturesFolder read_captures_folder(const std::filesystem::path& folder,
+                                    const std::filesystem::path& patterns_manifest) {
+    std::error_code error;
+    const auto status = std::filesystem::status(folder, error);
+    if (!std::filesystem::exists(status)) {
+        throw FileError(folder, "", "no such folder", "a folder of photographs");
+    }
+    if (!std::filesystem::is_directory(status)) {
+        throw FileError(folder, "", "a file", "a folder of photographs");
+    }
+    const auto manifest = folder / "manifest.json";
+    if (std::filesystem::exists(manifest, error)) return read_captures_manifest(manifest);
+    return match_by_name(folder, patterns_manifest);
+}
+
+Photograph load_photograph(const Capture& capture) {
+    auto picture = read_image(capture.file);
+    const double full_scale = picture.full_scale;
+    const bool floating_point = picture.floating_point;
+    Photograph photograph;
+    photograph.name = capture.file.filename().string();
+    photograph.exposure_s = capture.exposure_s;
+    photograph.black_level = capture.black_level;
+    photograph.saturates_at = capture.saturates_at > 0.0 ? capture.saturates_at
+                              : picture.floating_point   ? std::numeric_limits<double>::infinity()
+                                                         : full_scale;
+    photograph.image = rgb_of(capture.file, std::move(picture));
+    check_finite(capture.file, photograph.image);
+
+    const auto linear = linearisation(capture.transfer, full_scale);
+    if (!linear) return photograph;
+    if (floating_point) {
+        for (float& value : photograph.image.values) {
+            value = static_cast<float>(linear(static_cast<double>(value)));
+        }
+    } else {
+        std::vector<float> table(static_cast<std::size_t>(full_scale) + 1);
+        for (std::size_t k = 0; k < table.size(); ++k) {
+            table[k] = static_cast<float>(linear(static_cast<double>(k)));
+        }
+        for (float& value : photograph.image.values) {
+            value = table[static_cast<std::size_t>(value)];
+        }
+    }
+    photograph.black_level = linear(photograph.black_level);
+    if (std::isfinite(photograph.saturates_at)) {
+        photograph.saturates_at = linear(photograph.saturates_at);
+    }
+    return photograph;
+}
+
+}  // namespace livery

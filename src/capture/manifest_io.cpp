@@ -1,0 +1,195 @@
+#include "capture/manifest_io.h"
+
+#include <set>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "core/error.h"
+#include "core/json.h"
+
+namespace livery {
+
+namespace {
+
+constexpr int kNewestVersion = 1;
+constexpr int kLargestSide_px = 16384;
+constexpr std::size_t kMostCaptures = 10'000;
+
+/// Our own manifests carry a version; a photographer's or a renderer's need not.
+void check_manifest(const JsonReader& root) {
+    root.allow_only({"format_version",
+                     "projector",
+                     "captures",
+                     "exposure_s",
+                     "transfer",
+                     "black_level",
+                     "saturates_at",
+                     "camera",
+                     "sphere",
+                     "white_reference"});
+    if (root.has("format_version")) root.require_format_version(kNewestVersion);
+    const auto captures = root["captures"];
+    if (captures.size() == 0) captures.fail("an empty list", "at least one capture");
+    if (captures.size() > kMostCaptures) {
+        captures.fail(std::to_string(captures.size()) + " captures",
+                      "at most " + std::to_string(kMostCaptures));
+    }
+}
+
+std::pair<int, int> read_projector(const JsonReader& projector) {
+    if (projector.size() != 2) {
+        projector.fail(std::to_string(projector.size()) + " elements", "[width, height]");
+    }
+    return {projector.at(0).integer(1, kLargestSide_px),
+            projector.at(1).integer(1, kLargestSide_px)};
+}
+
+std::string read_role(const JsonReader& role) {
+    const std::string text = role.text();
+    if (!is_known_role(text)) {
+        role.fail("\"" + text + "\"",
+                  "a known role (gray-column-0, white, dark-gray, ...; see docs/files.md)");
+    }
+    return text;
+}
+
+/// [R, G, B], one number for all three, or an empty list for a picture that is not uniform.
+std::vector<int> read_drive(const JsonReader& drive) {
+    if (drive.is_number()) return std::vector<int>(3, drive.integer(0, 255));
+    if (drive.is_array() && drive.size() == 0) return {};
+    if (!drive.is_array() || drive.size() != 3) drive.fail(drive.found(), "[R, G, B]");
+    return {drive.at(0).integer(0, 255), drive.at(1).integer(0, 255), drive.at(2).integer(0, 255)};
+}
+
+/// The capture's own value, else the manifest's for all captures.
+JsonReader setting(const JsonReader& root, const JsonReader& capture, const char* name) {
+    return !capture.has(name) && root.has(name) ? root[name] : capture[name];
+}
+
+bool is_set(const JsonReader& root, const JsonReader& capture, const char* name) {
+    return capture.has(name) || root.has(name);
+}
+
+double read_exposure(const JsonReader& exposure) {
+    if (!exposure.is_number()) {
+        exposure.fail(exposure.found(), "seconds: fill in exposure_s of every photograph");
+    }
+    return exposure.number_between(1e-9, 1e6);
+}
+
+}  // namespace
+
+CapturesFolder read_captures_manifest(const std::filesystem::path& manifest) {
+    const Json json = read_json_file(manifest);
+    const JsonReader root(manifest, json);
+    check_manifest(root);
+
+    CapturesFolder result;
+    result.folder = manifest.parent_path();
+    std::tie(result.projector_width, result.projector_height) = read_projector(root["projector"]);
+
+    std::set<std::pair<std::string, double>> seen;
+    const auto captures = root["captures"];
+    for (std::size_t k = 0; k < captures.size(); ++k) {
+        const auto entry = captures.at(k);
+        entry.allow_only({"file",
+                          "pattern",
+                          "role",
+                          "drive",
+                          "exposure_s",
+                          "transfer",
+                          "black_level",
+                          "saturates_at",
+                          "light_position_mm"});
+        Capture capture;
+        capture.role = read_role(entry["role"]);
+        capture.exposure_s = read_exposure(setting(root, entry, "exposure_s"));
+        if (!seen.insert({capture.role, capture.exposure_s}).second) {
+            entry["role"].fail("\"" + capture.role + "\" a second time with the same exposure",
+                               "each role once an exposure");
+        }
+        capture.file = result.folder / entry["file"].text();
+        if (std::error_code error; !std::filesystem::is_regular_file(capture.file, error)) {
+            entry["file"].fail("no such file: " + capture.file.string(), "a photograph");
+        }
+        if (entry.has("pattern")) capture.pattern = result.folder / entry["pattern"].text();
+        if (entry.has("drive")) capture.drive = read_drive(entry["drive"]);
+        if (is_set(root, entry, "transfer")) {
+            const auto transfer = setting(root, entry, "transfer");
+            capture.transfer = transfer.text();
+            if (capture.transfer != "linear" && capture.transfer != "srgb") {
+                const auto response = result.folder / capture.transfer;
+                if (std::error_code error; !std::filesystem::is_regular_file(response, error)) {
+                    transfer.fail("\"" + capture.transfer + "\"",
+                                  "\"linear\", \"srgb\" or a response file");
+                }
+                capture.transfer = response.string();
+            }
+        }
+        if (is_set(root, entry, "black_level")) {
+            capture.black_level = setting(root, entry, "black_level").number_between(0.0, 1e9);
+        }
+        if (is_set(root, entry, "saturates_at")) {
+            const auto saturates_at = setting(root, entry, "saturates_at");
+            capture.saturates_at = saturates_at.number_between(0.0, 1e9);
+            if (capture.saturates_at <= capture.black_level) {
+                saturates_at.fail(saturates_at.found(), "more than black_level");
+            }
+        }
+        result.captures.push_back(std::move(capture));
+    }
+    return result;
+}
+
+PatternsManifest read_patterns_manifest(const std::filesystem::path& manifest) {
+    const Json json = read_json_file(manifest);
+    const JsonReader root(manifest, json);
+    check_manifest(root);
+    PatternsManifest result;
+    std::tie(result.projector_width, result.projector_height) = read_projector(root["projector"]);
+    const auto captures = root["captures"];
+    for (std::size_t k = 0; k < captures.size(); ++k) {
+        const auto entry = captures.at(k);
+        result.patterns.push_back(
+            {entry["pattern"].text(),
+             read_role(entry["role"]),
+             entry.has("drive") ? read_drive(entry["drive"]) : std::vector<int>{}});
+    }
+    return result;
+}
+
+void write_patterns_manifest(const std::filesystem::path& manifest,
+                             const PatternsManifest& patterns) {
+    Json json;
+    json["format_version"] = kNewestVersion;
+    json["projector"] = {patterns.projector_width, patterns.projector_height};
+    json["captures"] = Json::array();
+    for (const auto& pattern : patterns.patterns) {
+        json["captures"].push_back({{"file", pattern.file},
+                                    {"pattern", pattern.file},
+                                    {"role", pattern.role},
+                                    {"drive", pattern.drive},
+                                    {"exposure_s", nullptr},
+                                    {"transfer", "linear"}});
+    }
+    write_json_file(manifest, json);
+}
+
+std::vector<double> read_response(const std::filesystem::path& file) {
+    const Json json = read_json_file(file);
+    const JsonReader root(file, json);
+    root.allow_only({"format_version", "linear_from_file"});
+    root.require_format_version(kNewestVersion);
+    const auto table = root["linear_from_file"];
+    if (table.size() < 2 || table.size() > 65536) {
+        table.fail(std::to_string(table.size()) + " elements", "2 to 65536 numbers");
+    }
+    auto values = table.numbers(table.size());
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        table.at(k).number_between(k == 0 ? 0.0 : values[k - 1], 1.0);
+    }
+    return values;
+}
+
+}  // namespace livery

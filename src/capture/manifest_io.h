@@ -1,0 +1,23 @@
+// The JSON files of a captures folder. For the sources of this folder alone.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "capture/captures_folder.h"
+#include "capture/patterns_folder.h"
+
+namespace livery {
+
+/// Reads a captures folder's manifest.json; every photograph named must exist. Throws FileError.
+CapturesFolder read_captures_manifest(const std::filesystem::path& manifest);
+
+/// Writes a manifest whose exposures are still to be filled in. Throws FileError.
+void write_patterns_manifest(const std::filesystem::path& manifest,
+                             const PatternsManifest& patterns);
+
+/// A camera's response: linear light for equally spaced file values from 0 to full scale, both as
+/// fractions of full scale; never falls. Throws FileError.
+std::vector<double> read_response(const std::filesystem::path& file);
+
+}  // namespace livery

@@ -1,0 +1,49 @@
+// Patterns as files: what `livery patterns` writes for a photographer or a renderer to show.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/image.h"
+
+namespace livery {
+
+/// One picture to project.
+struct PatternFile {
+    std::string role;               ///< one of the known roles (is_known_role)
+    Image8 drive;                   ///< RGB device values at the projector's resolution
+    std::vector<int> drive_values;  ///< of a uniform picture: R, G, B; else empty
+};
+
+/// A pattern as a manifest names it.
+struct PatternEntry {
+    std::string file;  ///< relative to the manifest
+    std::string role;
+    std::vector<int> drive;  ///< of a uniform picture: R, G, B; else empty
+};
+
+/// A patterns' or captures' manifest, read for its patterns alone.
+struct PatternsManifest {
+    int projector_width = 0, projector_height = 0;
+    std::vector<PatternEntry> patterns;
+};
+
+/// Whether `role` is one that calibration knows: gray-column-N[-inverse], gray-row-N[-inverse],
+/// phase-column-N, phase-row-N, colors-N, verify-N, white, black, dark-gray, bright-gray, red,
+/// green, blue, gray-levels.
+bool is_known_role(std::string_view role);
+
+/// Writes 000.png, 001.png, ... and a manifest.json that becomes a captures folder's manifest once
+/// the photographs lie beside it and every exposure_s is filled in. Throws FileError, and
+/// std::invalid_argument for an unknown role or a picture that is not width x height RGB.
+void write_patterns_folder(const std::filesystem::path& folder,
+                           int width,
+                           int height,
+                           const std::vector<PatternFile>& patterns);
+
+/// Reads what write_patterns_folder wrote. Throws FileError.
+PatternsManifest read_patterns_manifest(const std::filesystem::path& manifest);
+
+}  // namespace livery
