@@ -1,8 +1,12 @@
 // (2) radiance + calibration -> projector input: equation 9 of the paper at every pixel.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
+
+#include <glm/vec3.hpp>
 
 #include "core/image.h"
 #include "scene/colour_calibration.h"
@@ -10,10 +14,21 @@
 namespace livery {
 
 /// The brightest D65 neutral (as Y in the calibration's XYZ) that at least (100 - percentile)% of
-/// the valid pixels of `parts_mask` (one channel, non-zero: counts; empty: all) can show.
+/// the valid pixels of `parts_mask` (one channel, non-zero: counts; empty: all) can show. Throws
+/// std::invalid_argument on a wrong size or percentile, Refused when no pixel counts.
 double design_white_luminance(const ColourCalibration& calibration,
                               double percentile,
                               const Image8& parts_mask = {});
+
+/// N(drive) of a non-additive projector and a start for its inverse. A position s in [0, grid - 1]
+/// is a node's number; between nodes it is linear in rho^-1(drive), where N bends least.
+struct NonAdditive {
+    int grid = 0;                         ///< 0: the projector is additive, the rest is empty
+    std::vector<glm::vec3> n_from_nodes;  ///< grid^3, red fastest, tetrahedral in between
+    std::array<std::vector<float>, 3> linear_of_node;  ///< rho^-1 of each node's drive, rising
+    int start_grid = 0;
+    std::vector<glm::vec3> start;  ///< nearest position for start_grid^3 shaped N, red fastest
+};
 
 /// The calibration baked for one design white: N = A * rgb + b per valid pixel, packed densely.
 struct CompensationTable {
@@ -22,32 +37,45 @@ struct CompensationTable {
     std::vector<std::uint32_t> pixels;  ///< index of each valid pixel, rising
     std::vector<float> coefficients;    ///< 12 planes of pixels.size(): A row by row, then b
     std::array<std::vector<float>, 3> drive_from_n;  ///< equally spaced in N, see ResponseCurve
-    DriveTable table;                                ///< non-additive projectors
+    NonAdditive non_additive;
     std::string calibration_id;
 };
 
-/// Wanted colours are in the working space, 1 = design white.
+/// Wanted colours are in the working space, 1 = design white. Throws std::invalid_argument on
+/// planes of different sizes, an empty or falling response, a singular xyz_from_camera, and a
+/// pixel marked valid whose numbers are not finite or whose span is not positive.
 CompensationTable bake(const ColourCalibration& calibration, double design_white_y);
 
 struct CompensationStats {
     double out_of_gamut_fraction = 0.0;  ///< of the valid pixels with a wanted colour
-    double invalid_fraction = 0.0;       ///< of the pixels with a wanted colour
-    double clipped_high_fraction = 0.0;
-    double clipped_low_fraction = 0.0;
+    double invalid_fraction = 0.0;       ///< of the pixels with a wanted colour; NaN, Inf too
+    double clipped_high_fraction = 0.0;  ///< of the valid ones: too bright in some channel
+    double clipped_low_fraction = 0.0;   ///< of the valid ones: under the black level in some
 };
 
 /// CPU oracle, one thread. `wanted` holds R, G, B (working space) and, if there is a fourth
 /// channel, coverage: pixels covered by less than half are black, as are invalid ones. NaN, Inf
-/// never propagate. Dither is fixed by pixel position.
+/// never propagate. Dither is fixed by pixel position. Throws std::invalid_argument on a wrong
+/// size or channel count.
 Image8 compensate(const CompensationTable& table,
                   const ImageF& wanted_working,
                   CompensationStats* stats = nullptr);
 
+/// The same into a picture that is kept from frame to frame: no page of it is new.
+void compensate_into(const CompensationTable& table,
+                     const ImageF& wanted_working,
+                     Image8* drive,
+                     CompensationStats* stats = nullptr);
+
 enum class GamutMapping { strict, preserve };
 
 /// Moves wanted colours into what each pixel can show (constant hue in Oklab, soft knee, chroma
-/// before lightness); strict returns them as they are (compensate clips).
-ImageF map_gamut(const CompensationTable& table, const ImageF& wanted_working, GamutMapping mapping);
+/// before lightness); strict returns them as they are (compensate clips). What is not valid, not
+/// covered or not finite passes through. The map depends on the calibration alone, so looks that
+/// are compared share it.
+ImageF map_gamut(const CompensationTable& table,
+                 const ImageF& wanted_working,
+                 GamutMapping mapping);
 
 /// The fixed dither of pixel (x, y), channel c, in [-0.5, 0.5) drive levels; shaders/ has the same.
 float dither_of(std::uint32_t x, std::uint32_t y, std::uint32_t channel);

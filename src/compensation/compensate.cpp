@@ -1,0 +1,209 @@
+#include "compensation/compensate.h"
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#include <xmmintrin.h>
+#endif
+
+#include "compensation/dither.h"
+#include "compensation/drive_table.h"
+#include "core/error.h"
+
+namespace livery {
+namespace {
+
+/// Interleaved colours of scattered pixels into planes.
+void gather(const ImageF& wanted,
+            const std::uint32_t* pixels,
+            std::size_t count,
+            kernel::Wanted* out) {
+    const float* values = wanted.values.data();
+    std::size_t i = 0;
+    if (wanted.channels == 4) {
+#if defined(__SSE2__)
+        for (; i + 4 <= count; i += 4) {
+            __m128 a = _mm_loadu_ps(values + 4 * static_cast<std::size_t>(pixels[i]));
+            __m128 b = _mm_loadu_ps(values + 4 * static_cast<std::size_t>(pixels[i + 1]));
+            __m128 c = _mm_loadu_ps(values + 4 * static_cast<std::size_t>(pixels[i + 2]));
+            __m128 d = _mm_loadu_ps(values + 4 * static_cast<std::size_t>(pixels[i + 3]));
+            _MM_TRANSPOSE4_PS(a, b, c, d);
+            _mm_store_ps(&out->r[i], a);
+            _mm_store_ps(&out->g[i], b);
+            _mm_store_ps(&out->b[i], c);
+            _mm_store_ps(&out->coverage[i], d);
+        }
+#endif
+        for (; i < count; ++i) {
+            const float* p = values + 4 * static_cast<std::size_t>(pixels[i]);
+            out->r[i] = p[0];
+            out->g[i] = p[1];
+            out->b[i] = p[2];
+            out->coverage[i] = p[3];
+        }
+        return;
+    }
+    for (; i < count; ++i) {
+        const float* p = values + 3 * static_cast<std::size_t>(pixels[i]);
+        out->r[i] = p[0];
+        out->g[i] = p[1];
+        out->b[i] = p[2];
+        out->coverage[i] = 1.0f;
+    }
+}
+
+/// Three bytes a pixel, written as four: the fourth is black and lies on a later pixel, which is
+/// either written later or black anyway. Only the picture's last pixel must not.
+void scatter(const std::uint32_t* packed,
+             const std::uint32_t* pixels,
+             std::size_t count,
+             Image8* drive) {
+    std::uint8_t* values = drive->values.data();
+    const std::size_t end = drive->values.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t at = 3 * static_cast<std::size_t>(pixels[i]);
+        std::memcpy(values + at, &packed[i], at + 4 <= end ? 4 : 3);
+    }
+}
+
+/// A non-additive projector's block: N by the fast loop, drives pixel by pixel from the table.
+void block_from_table(const kernel::Functions& functions,
+                      const CompensationTable& table,
+                      const kernel::Job& job,
+                      const kernel::Wanted& wanted,
+                      std::uint32_t* packed,
+                      kernel::Counts* counts) {
+    kernel::Separated n;
+    functions.separate(job, wanted, &n);
+    for (std::size_t i = 0; i < job.count; ++i) {
+        packed[i] = 0;
+        if (n.usable[i] == 0) continue;
+        const glm::vec3 at(n.r[i], n.g[i], n.b[i]);
+        glm::vec3 shaped, residual;
+        for (int k = 0; k < 3; ++k) {
+            shaped[k] = look_up(table.drive_from_n[static_cast<std::size_t>(k)], at[k]) / 255.0f;
+        }
+        const glm::vec3 position = position_of_n(table.non_additive, at, shaped, &residual);
+        for (int k = 0; k < 3; ++k) {
+            const auto channel = static_cast<std::size_t>(k);
+            const float drive =
+                drive_of_position(table.non_additive, table.drive_from_n[channel], k, position[k]);
+            const std::uint32_t phase =
+                job.pixels[i] * dither::kPerColumn + job.dither_of_row[channel];
+            const auto level = static_cast<int>(drive + dither::threshold(phase));
+            packed[i] |= static_cast<std::uint32_t>(std::min(level, 255)) << (8 * channel);
+        }
+        if (counts) {
+            const bool high = std::min({residual.x, residual.y, residual.z}) < -kReachableN;
+            const bool low = std::max({residual.x, residual.y, residual.z}) > kReachableN;
+            ++counts->finite;
+            counts->high += high ? 1 : 0;
+            counts->low += low ? 1 : 0;
+            counts->out += (high || low) ? 1 : 0;
+        }
+    }
+}
+
+std::size_t count_covered(const ImageF& wanted) {
+    if (wanted.channels == 3) return wanted.pixel_count();
+    std::size_t covered = 0;
+    for (std::size_t i = 3; i < wanted.values.size(); i += 4) {
+        covered += wanted.values[i] >= 0.5f ? 1u : 0u;
+    }
+    return covered;
+}
+
+double fraction(std::int64_t part, std::int64_t whole) {
+    return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
+}
+
+}  // namespace
+
+float dither_of(std::uint32_t x, std::uint32_t y, std::uint32_t channel) {
+    return dither::threshold(x * dither::kPerColumn + y * dither::kPerRow +
+                             dither::kOfChannel[channel % 3]) -
+           0.5f;
+}
+
+void compensate_with(const kernel::Functions& functions,
+                     const CompensationTable& table,
+                     const ImageF& wanted,
+                     Image8* drive,
+                     CompensationStats* stats) {
+    check_argument(wanted.width == table.width && wanted.height == table.height &&
+                       (wanted.channels == 3 || wanted.channels == 4) &&
+                       wanted.values.size() ==
+                           wanted.pixel_count() * static_cast<std::size_t>(wanted.channels),
+                   "wanted picture of " + std::to_string(wanted.width) + "x" +
+                       std::to_string(wanted.height) + " with " + std::to_string(wanted.channels) +
+                       " channels, the calibration has " + std::to_string(table.width) + "x" +
+                       std::to_string(table.height) + " and wants 3 or 4");
+    if (drive->width != table.width || drive->height != table.height || drive->channels != 3) {
+        *drive = Image8(table.width, table.height, 3);
+    } else {
+        std::fill(drive->values.begin(), drive->values.end(), std::uint8_t{0});
+    }
+    const std::size_t total = table.pixels.size();
+    const auto width = static_cast<std::uint32_t>(table.width);
+    kernel::Wanted colours;
+    alignas(64) std::array<std::uint32_t, kernel::kBlock> packed;
+    kernel::Counts counts;
+    kernel::Job job;
+    for (std::size_t k = 0; k < 3; ++k) {
+        job.curves[k] = {table.drive_from_n[k].data(),
+                         static_cast<std::int32_t>(table.drive_from_n[k].size())};
+    }
+    for (std::size_t begin = 0; begin < total;) {
+        // A block stays in one row, where the dither is linear in the pixel's index.
+        const std::uint32_t row = table.pixels[begin] / width;
+        const std::uint32_t* first = table.pixels.data() + begin;
+        const std::size_t most = std::min(kernel::kBlock, total - begin);
+        job.count = static_cast<std::size_t>(
+            std::lower_bound(first, first + most, (row + 1) * width) - first);
+        job.pixels = first;
+        for (std::size_t plane = 0; plane < 12; ++plane) {
+            job.coefficients[plane] = table.coefficients.data() + plane * total + begin;
+        }
+        for (std::size_t k = 0; k < 3; ++k) {
+            job.dither_of_row[k] =
+                dither::kOfChannel[k] + row * dither::kPerRow - row * width * dither::kPerColumn;
+        }
+        gather(wanted, first, job.count, &colours);
+        if (table.non_additive.grid > 0) {
+            block_from_table(
+                functions, table, job, colours, packed.data(), stats ? &counts : nullptr);
+        } else {
+            functions.block(job, colours, packed.data());
+            if (stats) functions.count(job, colours, &counts);
+        }
+        scatter(packed.data(), first, job.count, drive);
+        begin += job.count;
+    }
+    if (stats) {
+        const auto covered = static_cast<std::int64_t>(count_covered(wanted));
+        stats->out_of_gamut_fraction = fraction(counts.out, counts.finite);
+        stats->clipped_high_fraction = fraction(counts.high, counts.finite);
+        stats->clipped_low_fraction = fraction(counts.low, counts.finite);
+        stats->invalid_fraction = fraction(covered - counts.finite, covered);
+    }
+}
+
+void compensate_into(const CompensationTable& table,
+                     const ImageF& wanted_working,
+                     Image8* drive,
+                     CompensationStats* stats) {
+    compensate_with(kernel::best(), table, wanted_working, drive, stats);
+}
+
+Image8 compensate(const CompensationTable& table,
+                  const ImageF& wanted_working,
+                  CompensationStats* stats) {
+    Image8 drive;
+    compensate_into(table, wanted_working, &drive, stats);
+    return drive;
+}
+
+}  // namespace livery

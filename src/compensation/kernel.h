@@ -1,0 +1,61 @@
+// The inner loops of compensate(), compiled for several instruction sets and chosen at run time.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace livery::kernel {
+
+inline constexpr std::size_t kBlock = 512;
+
+/// Wanted colours of up to kBlock pixels, one plane a channel.
+struct Wanted {
+    alignas(64) std::array<float, kBlock> r, g, b, coverage;
+};
+
+struct Curve {
+    const float* drive_from_n = nullptr;
+    std::int32_t count = 0;
+};
+
+/// What a block of pixels of one row needs.
+struct Job {
+    std::array<const float*, 12> coefficients;  ///< at the block's first pixel
+    const std::uint32_t* pixels = nullptr;
+    std::size_t count = 0;
+    std::array<Curve, 3> curves;
+    std::array<std::uint32_t, 3> dither_of_row;  ///< phase of column 0 less the row's pixel index
+};
+
+struct Counts {
+    std::int64_t finite = 0, high = 0, low = 0, out = 0;
+};
+
+/// N this far outside [0, 1] counts as out of gamut; nearer is rounding.
+inline constexpr float kGamutTolerance = 1e-5f;
+
+using BlockFunction = void (*)(const Job& job, const Wanted& wanted, std::uint32_t* packed_rgb);
+using CountFunction = void (*)(const Job& job, const Wanted& wanted, Counts* counts);
+
+/// N of equation 9, not clipped, for the non-additive path and tests; pixels without a usable
+/// colour get usable[i] = 0 and N = 0.
+struct Separated {
+    alignas(64) std::array<float, kBlock> r, g, b;
+    alignas(64) std::array<std::int32_t, kBlock> usable;
+};
+using SeparateFunction = void (*)(const Job& job, const Wanted& wanted, Separated* n);
+
+struct Functions {
+    const char* instruction_set;
+    BlockFunction block;
+    CountFunction count;
+    SeparateFunction separate;
+};
+
+/// The best that this processor has, first; "baseline" is always the last. All give the same bits.
+const Functions& best();
+std::size_t available_count();
+const Functions& available(std::size_t index);
+
+}  // namespace livery::kernel

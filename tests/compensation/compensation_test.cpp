@@ -1,0 +1,472 @@
+// Equation 9 against a world that is known exactly, against a plain double implementation, and
+// against everything that goes wrong in a real picture.
+#include "compensation/compensation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "compensation/compensate.h"
+#include "compensation/synthetic.h"
+#include "core/error.h"
+
+namespace livery {
+namespace {
+
+using synthetic::calibrate;
+using synthetic::make_world;
+using synthetic::picture;
+using synthetic::World;
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInf = std::numeric_limits<float>::infinity();
+
+template <typename F>
+std::string message_of(F&& call) {
+    try {
+        call();
+    } catch (const std::exception& error) {
+        return error.what();
+    }
+    return "nothing thrown";
+}
+
+/// Equation 9 and the dither, written down once more in doubles and without any baking.
+Image8 oracle(const ColourCalibration& c, double white_y, const ImageF& wanted) {
+    Image8 out(c.width, c.height, 3);
+    const glm::dmat3 camera_from_xyz = glm::inverse(c.xyz_from_camera);
+    for (int y = 0; y < c.height; ++y) {
+        for (int x = 0; x < c.width; ++x) {
+            const float* p = wanted.pixel(x, y);
+            if (!is_valid(static_cast<PixelStatus>(c.status.at(x, y)))) continue;
+            if (wanted.channels == 4 && !(p[3] >= 0.5f)) continue;
+            const glm::dvec3 colour(p[0], p[1], p[2]);
+            if (!std::isfinite(colour.x + colour.y + colour.z)) continue;
+            const glm::dvec3 camera = camera_from_xyz * (xyz_from_working() * colour * white_y);
+            for (int k = 0; k < 3; ++k) {
+                double separated = 0.0;
+                for (int j = 0; j < 3; ++j) {
+                    separated += static_cast<double>(c.unmixing.at(x, y, 3 * k + j)) * camera[j];
+                }
+                double n = (separated - static_cast<double>(c.dark.at(x, y, k))) /
+                           static_cast<double>(c.span.at(x, y, k));
+                n = std::clamp(n, 0.0, 1.0);
+                const std::vector<float>& curve =
+                    c.response[static_cast<std::size_t>(k)].drive_from_n;
+                const double at = n * static_cast<double>(curve.size() - 1);
+                const auto i = std::min(static_cast<std::size_t>(at), curve.size() - 2);
+                const double f = at - static_cast<double>(i);
+                const double drive = static_cast<double>(curve[i]) * (1.0 - f) +
+                                     static_cast<double>(curve[i + 1]) * f;
+                const double dithered =
+                    drive + 0.5 +
+                    static_cast<double>(dither_of(static_cast<std::uint32_t>(x),
+                                                  static_cast<std::uint32_t>(y),
+                                                  static_cast<std::uint32_t>(k)));
+                out.at(x, y, k) = static_cast<std::uint8_t>(std::min(std::floor(dithered), 255.0));
+            }
+        }
+    }
+    return out;
+}
+
+struct Difference {
+    int largest = 0;
+    double changed_fraction = 0.0;
+};
+
+Difference difference(const Image8& a, const Image8& b) {
+    EXPECT_EQ(a.values.size(), b.values.size());
+    Difference d;
+    std::size_t changed = 0;
+    for (std::size_t i = 0; i < a.values.size(); ++i) {
+        const int step = std::abs(static_cast<int>(a.values[i]) - static_cast<int>(b.values[i]));
+        d.largest = std::max(d.largest, step);
+        changed += step != 0 ? 1u : 0u;
+    }
+    d.changed_fraction = static_cast<double>(changed) / static_cast<double>(a.values.size());
+    return d;
+}
+
+// The drives that made a colour come back when that colour is asked for. Rounding with dither
+// moves by less than one level, the piecewise linear response by under 0.3 above drive 24.
+TEST(Compensate, RecoversTheDrivesThatMadeAColour) {
+    for (const std::uint64_t seed : {11u, 12u, 13u}) {
+        SCOPED_TRACE(seed);
+        const World world = make_world(97, 61, seed);
+        Random random(seed + 100);
+        std::vector<glm::dvec3> drives;
+        const double white_y = 0.4;
+        const ImageF wanted = picture(world, [&](std::size_t i) {
+            drives.push_back(synthetic::random_drive(random, 24.0, 254.0));
+            return world.wanted(i, drives.back(), white_y);
+        });
+        CompensationStats stats;
+        const Image8 out = compensate(bake(calibrate(world), white_y), wanted, &stats);
+        double worst = 0.0, sum = 0.0;
+        for (std::size_t i = 0; i < drives.size(); ++i) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                const double error =
+                    static_cast<double>(out.values[3 * i + k]) - drives[i][static_cast<int>(k)];
+                worst = std::max(worst, std::abs(error));
+                sum += error;
+            }
+        }
+        EXPECT_LT(worst, 1.3);
+        // The dither is uniform: the mean of 17,751 errors has a deviation of 0.003 at most.
+        EXPECT_NEAR(sum / static_cast<double>(3 * drives.size()), 0.0, 0.02);
+        EXPECT_EQ(stats.out_of_gamut_fraction, 0.0);
+        EXPECT_EQ(stats.invalid_fraction, 0.0);
+    }
+}
+
+// What a viewer gets: the light of the compensated picture is the light that was asked for. With
+// 8 bits and gamma 2.4 one level is under 1.2% of the light above drive 128: mean error far less.
+TEST(Compensate, GivesTheLightThatWasAskedFor) {
+    const World world = make_world(120, 80, 21);
+    const double white_y = 0.5;
+    Random random(5);
+    const ImageF wanted = picture(world, [&](std::size_t i) {
+        return world.wanted(i, synthetic::random_drive(random, 128.0, 250.0), white_y);
+    });
+    const Image8 out = compensate(bake(calibrate(world), white_y), wanted);
+    double sum_ratio = 0.0, worst = 0.0;
+    for (std::size_t i = 0; i < world.mixing.size(); ++i) {
+        const glm::dvec3 drive(out.values[3 * i], out.values[3 * i + 1], out.values[3 * i + 2]);
+        const glm::dvec3 shown = world.xyz_from_camera * world.camera(i, drive);
+        const glm::dvec3 asked =
+            xyz_from_working() *
+            glm::dvec3(wanted.values[4 * i], wanted.values[4 * i + 1], wanted.values[4 * i + 2]) *
+            white_y;
+        sum_ratio += shown.y / asked.y;
+        worst = std::max(worst, glm::length(shown - asked) / glm::length(asked));
+    }
+    EXPECT_NEAR(sum_ratio / static_cast<double>(world.mixing.size()), 1.0, 0.002);
+    EXPECT_LT(worst, 0.025);
+}
+
+TEST(Compensate, StaysWithinOneLevelOfDoubles) {
+    for (const double ambient : {0.0, 0.004, 0.05}) {
+        const World world = make_world(131, 77, 31, ambient);
+        for (const bool paper : {false, true}) {
+            SCOPED_TRACE(testing::Message() << "ambient " << ambient << " paper " << paper);
+            const ColourCalibration calibration =
+                paper ? calibrate(world, 64.0, 200.0, 257) : calibrate(world);
+            Random random(77);
+            // Far out of gamut on both sides, too.
+            const ImageF wanted = picture(world, [&](std::size_t) {
+                return glm::dvec3(3.0 * random.uniform() - 0.7,
+                                  3.0 * random.uniform() - 0.7,
+                                  3.0 * random.uniform() - 0.7);
+            });
+            const Image8 fast = compensate(bake(calibration, 0.3), wanted);
+            const Difference d = difference(fast, oracle(calibration, 0.3, wanted));
+            EXPECT_LE(d.largest, 1);
+            // Only where float rounding crosses a threshold of the dither.
+            EXPECT_LT(d.changed_fraction, 0.002);
+        }
+    }
+}
+
+TEST(Compensate, EveryInstructionSetGivesTheSameBits) {
+    const World world = make_world(203, 50, 41);
+    ColourCalibration calibration = calibrate(world);
+    for (std::size_t i = 0; i < calibration.status.values.size(); i += 3) {
+        calibration.status.values[i] = 0;
+    }
+    const CompensationTable table = bake(calibration, 0.3);
+    Random random(3);
+    ImageF wanted =
+        picture(world, [&](std::size_t) { return glm::dvec3(random.uniform() * 2.0 - 0.5); });
+    for (std::size_t i = 0; i < wanted.values.size(); i += 37) wanted.values[i] = kNan;
+    for (std::size_t i = 5; i < wanted.values.size(); i += 41) wanted.values[i] = -kInf;
+    const std::size_t count = kernel::available_count();
+    ASSERT_GE(count, 1u);
+    EXPECT_STREQ(kernel::available(count - 1).instruction_set, "baseline");
+    Image8 baseline;
+    CompensationStats baseline_stats;
+    compensate_with(kernel::available(count - 1), table, wanted, &baseline, &baseline_stats);
+    for (std::size_t i = 0; i + 1 < count; ++i) {
+        SCOPED_TRACE(kernel::available(i).instruction_set);
+        Image8 out;
+        CompensationStats stats;
+        compensate_with(kernel::available(i), table, wanted, &out, &stats);
+        EXPECT_EQ(out.values, baseline.values);
+        EXPECT_EQ(stats.out_of_gamut_fraction, baseline_stats.out_of_gamut_fraction);
+        EXPECT_EQ(stats.invalid_fraction, baseline_stats.invalid_fraction);
+    }
+}
+
+TEST(Compensate, BlackWhereNothingValidIsAskedFor) {
+    World world = make_world(8, 4, 51);
+    world.lit[5] = false;
+    const CompensationTable table = bake(calibrate(world), 0.3);
+    const glm::dvec3 grey(0.3);
+    ImageF wanted = picture(world, [&](std::size_t) { return grey; });
+    wanted.at(0, 0, 0) = kNan;
+    wanted.at(1, 0, 1) = kInf;
+    wanted.at(2, 0, 2) = -kInf;
+    wanted.at(3, 0, 3) = 0.49f;
+    wanted.at(4, 0, 3) = kNan;
+    wanted.at(6, 0, 3) = 0.5f;
+    CompensationStats stats;
+    const Image8 out = compensate(table, wanted, &stats);
+    for (int x = 0; x < 6; ++x) {
+        for (int k = 0; k < 3; ++k) EXPECT_EQ(out.at(x, 0, k), 0) << x;
+    }
+    for (int k = 0; k < 3; ++k) {
+        EXPECT_GT(out.at(6, 0, k), 60);
+        EXPECT_GT(out.at(7, 3, k), 60);
+    }
+    // 32 pixels less two without coverage; NaN, two Inf and the unlit one are invalid.
+    EXPECT_DOUBLE_EQ(stats.invalid_fraction, 4.0 / 30.0);
+    EXPECT_EQ(stats.out_of_gamut_fraction, 0.0);
+}
+
+TEST(Compensate, HugeAndDenormalColoursStayFiniteAndClip) {
+    const World world = make_world(4, 2, 52);
+    const CompensationTable table = bake(calibrate(world), 0.3);
+    for (const float value : {1e30f, 3e38f, -3e38f, 1e-40f, -1e-40f, 65504.0f}) {
+        ImageF wanted(4, 2, 3, value);
+        CompensationStats stats;
+        const Image8 out = compensate(table, wanted, &stats);
+        EXPECT_LE(stats.out_of_gamut_fraction, 1.0) << value;
+        if (value == 65504.0f) {
+            for (const std::uint8_t level : out.values) EXPECT_EQ(level, 255);
+            EXPECT_EQ(stats.clipped_high_fraction, 1.0);
+        }
+    }
+}
+
+TEST(Compensate, CountsTooBrightAndTooDarkApart) {
+    const World world = make_world(40, 30, 53, 0.02);
+    const CompensationTable table = bake(calibrate(world), 0.3);
+    ImageF wanted = picture(world, [&](std::size_t i) {
+        if (i % 4 == 0) return glm::dvec3(0.0);   // under ambient and leak
+        if (i % 4 == 1) return glm::dvec3(50.0);  // over white
+        return world.wanted(i, glm::dvec3(128.0), 0.3);
+    });
+    CompensationStats stats;
+    const Image8 out = compensate(table, wanted, &stats);
+    EXPECT_DOUBLE_EQ(stats.clipped_low_fraction, 0.25);
+    EXPECT_DOUBLE_EQ(stats.clipped_high_fraction, 0.25);
+    EXPECT_DOUBLE_EQ(stats.out_of_gamut_fraction, 0.5);
+    for (int k = 0; k < 3; ++k) {
+        EXPECT_EQ(out.at(0, 0, k), 0);
+        EXPECT_EQ(out.at(1, 0, k), 255);
+    }
+}
+
+TEST(Compensate, PaperModeEndsAtItsGreyLevels) {
+    const World world = make_world(16, 8, 54);
+    const CompensationTable table = bake(calibrate(world, 64.0, 200.0, 257), 0.3);
+    const Image8 dark = compensate(table, ImageF(16, 8, 3, -1.0f));
+    const Image8 bright = compensate(table, ImageF(16, 8, 3, 50.0f));
+    for (const std::uint8_t level : dark.values) EXPECT_EQ(level, 64);
+    for (const std::uint8_t level : bright.values) EXPECT_EQ(level, 200);
+}
+
+TEST(Compensate, ThreeChannelsMeanFullyCovered) {
+    const World world = make_world(33, 9, 55);
+    const CompensationTable table = bake(calibrate(world), 0.3);
+    const ImageF four = picture(world, [](std::size_t i) {
+        return glm::dvec3(0.1 + 0.001 * static_cast<double>(i % 100));
+    });
+    ImageF three(33, 9, 3);
+    for (std::size_t i = 0; i < three.pixel_count(); ++i) {
+        for (std::size_t k = 0; k < 3; ++k) three.values[3 * i + k] = four.values[4 * i + k];
+    }
+    EXPECT_EQ(compensate(table, three).values, compensate(table, four).values);
+}
+
+TEST(Compensate, ReusedPictureForgetsTheLastFrame) {
+    const World world = make_world(33, 9, 56);
+    const CompensationTable table = bake(calibrate(world), 0.3);
+    Image8 out;
+    compensate_into(table, ImageF(33, 9, 4, 1.0f), &out);
+    const std::uint8_t* memory = out.values.data();
+    compensate_into(table, ImageF(33, 9, 4, 0.0f), &out);  // coverage 0
+    EXPECT_EQ(out.values.data(), memory);
+    EXPECT_EQ(*std::max_element(out.values.begin(), out.values.end()), 0);
+}
+
+TEST(Compensate, EmptyCalibrationShowsBlack) {
+    World world = make_world(10, 6, 57);
+    world.lit.assign(world.lit.size(), false);
+    const ColourCalibration calibration = calibrate(world);
+    CompensationStats stats;
+    const Image8 out = compensate(bake(calibration, 1.0), ImageF(10, 6, 4, 1.0f), &stats);
+    EXPECT_EQ(*std::max_element(out.values.begin(), out.values.end()), 0);
+    EXPECT_EQ(stats.invalid_fraction, 1.0);
+    EXPECT_EQ(stats.out_of_gamut_fraction, 0.0);
+    try {
+        design_white_luminance(calibration, 20.0);
+        FAIL() << "an answer from nothing";
+    } catch (const Refused& refused) {
+        EXPECT_NE(refused.why().find("no pixel of the evaluated parts"), std::string::npos);
+        EXPECT_NE(refused.fix().find("status picture"), std::string::npos);
+    }
+}
+
+TEST(Compensate, NamesWrongSizes) {
+    const World world = make_world(10, 6, 58);
+    const CompensationTable table = bake(calibrate(world), 0.3);
+    EXPECT_EQ(message_of([&] { compensate(table, ImageF(9, 6, 4)); }),
+              "wanted picture of 9x6 with 4 channels, the calibration has 10x6 and wants 3 or 4");
+    EXPECT_NE(message_of([&] { compensate(table, ImageF(10, 6, 1)); }).find("with 1 channels"),
+              std::string::npos);
+    EXPECT_NE(message_of([&] { compensate(table, ImageF()); }).find("0x0"), std::string::npos);
+}
+
+TEST(Compensate, DitherIsUniformAndDiffersBetweenNeighboursAndChannels) {
+    double sum = 0.0, square = 0.0;
+    std::array<int, 16> histogram{};
+    for (std::uint32_t y = 0; y < 128; ++y) {
+        for (std::uint32_t x = 0; x < 128; ++x) {
+            const float d = dither_of(x, y, 1);
+            ASSERT_GE(d, -0.5f);
+            ASSERT_LT(d, 0.5f);
+            EXPECT_GT(std::abs(d - dither_of(x + 1, y, 1)), 0.1f);
+            EXPECT_NE(d, dither_of(x, y, 0));
+            sum += static_cast<double>(d);
+            square += static_cast<double>(d) * static_cast<double>(d);
+            ++histogram[static_cast<std::size_t>((d + 0.5f) * 16.0f)];
+        }
+    }
+    EXPECT_NEAR(sum / 16384.0, 0.0, 1e-3);
+    EXPECT_NEAR(square / 16384.0, 1.0 / 12.0, 1e-3);
+    // A low-discrepancy lattice fills 1024 expected a bin far more evenly than chance (+-32).
+    for (const int bin : histogram) EXPECT_NEAR(bin, 1024, 16);
+}
+
+TEST(Bake, NamesWhatIsWrongWithACalibration) {
+    const World world = make_world(6, 4, 61);
+    const ColourCalibration good = calibrate(world);
+    const auto broken = [&](auto&& change) {
+        ColourCalibration c = good;
+        change(c);
+        return message_of([&] { bake(c, 0.3); });
+    };
+    EXPECT_EQ(message_of([&] { bake(good, 0.3); }), "nothing thrown");
+    EXPECT_EQ(broken([](auto& c) { c.unmixing = ImageF(6, 4, 3); }),
+              "calibration plane unmixing is 6x4 with 3 channels, expected 6x4 with 9 channels");
+    EXPECT_NE(broken([](auto& c) { c.dark = ImageF(5, 4, 3); }).find("plane dark is 5x4"),
+              std::string::npos);
+    EXPECT_NE(broken([](auto& c) { c.span = ImageF(); }).find("plane span is 0x0"),
+              std::string::npos);
+    EXPECT_NE(broken([](auto& c) { c.status = Image8(6, 5, 1); }).find("plane status is 6x5"),
+              std::string::npos);
+    EXPECT_NE(broken([](auto& c) { c.span.at(2, 1, 1) = 0.0f; }).find("pixel (2, 1) is marked"),
+              std::string::npos);
+    EXPECT_NE(broken([](auto& c) { c.dark.at(3, 2, 0) = kNan; }).find("pixel (3, 2) is marked"),
+              std::string::npos);
+    EXPECT_NE(broken([](auto& c) { c.unmixing.at(1, 3, 4) = kInf; }).find("pixel (1, 3)"),
+              std::string::npos);
+    EXPECT_NE(broken([](auto& c) { c.xyz_from_camera = glm::dmat3(0.0); }).find("determinant"),
+              std::string::npos);
+    EXPECT_EQ(broken([](auto& c) { c.response[1].drive_from_n.clear(); }),
+              "response of channel 1 has 0 samples, expected 2 or more");
+    EXPECT_NE(broken([](auto& c) {
+                  c.response[2].drive_from_n[7] = 200.0f;
+              }).find("response of channel 2"),
+              std::string::npos);
+    EXPECT_NE(broken([](auto& c) {
+                  c.response[0].drive_from_n[3] = kNan;
+              }).find("response of channel 0 is nan"),
+              std::string::npos);
+    EXPECT_NE(broken([](auto& c) { c.table.grid = 9; }).find("drive table of 9 nodes"),
+              std::string::npos);
+    EXPECT_NE(broken([](auto& c) { c.width = 0; }).find("0x4 pixels"), std::string::npos);
+    for (const double white : {0.0, -1.0, static_cast<double>(kNan), static_cast<double>(kInf)}) {
+        EXPECT_NE(message_of([&] { bake(good, white); }).find("design white of"),
+                  std::string::npos);
+    }
+    // The same numbers in an invalid pixel harm nobody.
+    EXPECT_EQ(broken([](auto& c) {
+                  c.span.at(2, 1, 1) = kNan;
+                  c.status.at(2, 1) = static_cast<std::uint8_t>(PixelStatus::too_dark);
+              }),
+              "nothing thrown");
+}
+
+// White made by equal primaries whose XYZ adds up to D65: the brightest neutral of a pixel with
+// brightness s is s (1 + leak) + ambient in every channel, in closed form.
+World neutral_world(int width, int height) {
+    World world;
+    world.width = width;
+    world.height = height;
+    const glm::dvec3 unit = glm::inverse(xyz_from_working()) * d65_xyz();
+    world.xyz_from_camera = xyz_from_working();
+    glm::dmat3 mixing(0.9, 0.08, 0.02, 0.07, 0.85, 0.08, 0.03, 0.07, 0.9);
+    for (int i = 0; i < width * height; ++i) {
+        world.mixing.push_back(mixing * (static_cast<double>(i + 1) / (width * height)));
+        world.ambient.push_back(glm::dvec3(0.0));
+        world.lit.push_back(true);
+    }
+    EXPECT_NEAR(unit.x, 1.0, 1e-9);
+    return world;
+}
+
+TEST(DesignWhite, IsThePercentileOfWhatEachPixelCanShow) {
+    const World world = neutral_world(20, 10);  // brightest neutrals 1/200 ... 200/200
+    const ColourCalibration calibration = calibrate(world);
+    for (const double percentile : {0.0, 5.0, 20.0, 50.0, 99.0, 100.0}) {
+        const double white = design_white_luminance(calibration, percentile);
+        int can = 0;
+        for (int i = 1; i <= 200; ++i) can += i / 200.0 >= white * (1.0 - 1e-5) ? 1 : 0;
+        const int must = static_cast<int>(std::ceil((100.0 - percentile) / 100.0 * 200.0));
+        EXPECT_GE(can, must) << percentile;
+        EXPECT_LE(can, std::max(must, 1)) << percentile;  // and no dimmer than need be
+        const int rank = std::min(static_cast<int>(percentile * 2.0), 199);
+        EXPECT_NEAR(white, (rank + 1) / 200.0, 1e-5);
+    }
+}
+
+TEST(DesignWhite, IsReachedByFullDriveAtThePixelThatSetsIt) {
+    const World world = neutral_world(20, 10);
+    const ColourCalibration calibration = calibrate(world);
+    const double white = design_white_luminance(calibration, 20.0);
+    CompensationStats stats;
+    const Image8 out = compensate(bake(calibration, white), ImageF(20, 10, 3, 1.0f), &stats);
+    for (int k = 0; k < 3; ++k) {
+        EXPECT_EQ(out.values[3 * 40 + static_cast<std::size_t>(k)], 255);
+        EXPECT_LT(out.values[3 * 41 + static_cast<std::size_t>(k)], 255);
+    }
+    EXPECT_NEAR(stats.clipped_high_fraction, 0.2, 1e-9);
+}
+
+TEST(DesignWhite, CountsOnlyThePartsThatMatter) {
+    const ColourCalibration calibration = calibrate(neutral_world(20, 10));
+    Image8 mask(20, 10, 1);
+    for (std::size_t i = 100; i < 200; ++i) mask.values[i] = 1;
+    EXPECT_NEAR(design_white_luminance(calibration, 0.0, mask), 101.0 / 200.0, 1e-5);
+    EXPECT_NE(message_of([&] {
+                  design_white_luminance(calibration, 20.0, Image8(10, 10, 1));
+              }).find("plane parts mask is 10x10"),
+              std::string::npos);
+    EXPECT_THROW(design_white_luminance(calibration, 20.0, Image8(20, 10, 1)), Refused);
+    for (const double percentile : {-1.0, 100.5, static_cast<double>(kNan)}) {
+        EXPECT_THROW(design_white_luminance(calibration, percentile), std::invalid_argument);
+    }
+}
+
+// A surface that swallows blue: the weakest channel alone decides how bright white can be.
+TEST(DesignWhite, IsLimitedByTheWeakestChannel) {
+    World world = neutral_world(4, 4);
+    for (std::size_t i = 0; i < 16; ++i) {
+        world.mixing[i] = glm::dmat3(1.0);
+        world.mixing[i][2][2] = 0.25;
+    }
+    const ColourCalibration calibration = calibrate(world);
+    EXPECT_NEAR(design_white_luminance(calibration, 20.0), 0.25, 1e-6);
+    // Ambient light adds to what can be shown.
+    for (glm::dvec3& ambient : world.ambient) ambient = glm::dvec3(0.01);
+    EXPECT_NEAR(design_white_luminance(calibrate(world), 20.0), 0.26, 1e-6);
+}
+
+}  // namespace
+}  // namespace livery
