@@ -1,17 +1,82 @@
-// What a bench file says: every nuisance a switch (docs/bench.md).
+// What a bench file says: every nuisance a switch, off unless the file turns it on (docs/bench.md).
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 
 #include "scene/view.h"
+#include "twin/spectra.h"
 
 namespace livery {
 
+/// Response of one channel: p(x) = (1 - s) x^gamma + s x^2 (3 - 2 x), x = drive / 255.
+struct ProjectorDescription {
+    View view;
+    ProjectorSpectra spectra = uhp_projector();
+    glm::dvec3 gamma{2.2};      ///< one a channel
+    double s_curve = 0.0;       ///< s above
+    double gamma_spread = 0.0;  ///< relative change of gamma from the picture's middle to a corner
+    double leak = 0.0;          ///< light of each channel at drive 0, over full drive
+    double white_segment =
+        0.0;  ///< luminance that the clear segment adds, over the white of r + g + b
+    double vignetting = 0.0;  ///< light lost at the corner, quadratic in the radius
+    double defocus_sigma_px = 0.0;
+    double flicker = 0.0;               ///< standard deviation of the lamp between photographs
+    double drift_per_photograph = 0.0;  ///< relative change of the lamp a photograph
+    int latency_photographs = 0;        ///< that many still see the picture before
+};
+
+enum class CameraEncoding { raw14, srgb8 };
+
+struct CameraDescription {
+    View view;
+    std::array<Spectrum, 3> sensitivities{};
+    CameraEncoding encoding = CameraEncoding::raw14;
+    double exposure_s = 0.0;     ///< 0: metered so that full white peaks at `metered_peak`
+    double metered_peak = 0.82;  ///< of full scale
+    /// What green reads each second off a white diffuser that faces the projector's full white.
+    double sensitivity_units_per_s = 150'000.0;
+    double black_level_units = 1024.0;  ///< raw14 only
+    double electrons_per_unit = 0.0;    ///< shot noise; 0: none
+    double read_noise_units = 0.0;
+    double vignetting = 0.0;     ///< light lost at the corner, quadratic in the radius
+    double flare = 0.0;          ///< share of the light that scatters in the lens
+    double flare_radius = 0.2;   ///< sigma of that scatter over the picture's width
+    double shift_px = 0.0;       ///< the camera sags: largest displacement of the picture
+    int shift_photographs = 50;  ///< reached, linearly, after so many photographs
+};
+
+/// What one part of the mock-up is sprayed with.
+struct SurfaceDescription {
+    Spectrum reflectance{};
+    Spectrum second{};          ///< mixed in by a smooth pattern in space
+    double second_share = 0.0;  ///< largest share of `second`; 0: no pattern
+    double pattern_mm = 20.0;   ///< size of the pattern's features
+};
+
+struct MockupDescription {
+    std::map<std::string, SurfaceDescription> surfaces;  ///< by part name; "*": the rest
+    double diffuse_sigma_rad = 0.0;  ///< roughness of the diffuse part (Oren-Nayar); 0: Lambert
+    double sheen_f0 = 0.0;           ///< Fresnel reflectance of a GGX lobe over it
+    double sheen_alpha = 0.4;
+    bool interreflection = false;  ///< one bounce between parts
+};
+
 struct BenchDescription {
     std::string name;
-    View projector, camera;
-    glm::dvec3 eye_mm{0.0};
+    std::filesystem::path file;     ///< where it came from; empty: made in memory
+    std::filesystem::path product;  ///< mesh or product file of the mock-up
+    ProjectorDescription projector;
+    CameraDescription camera;
+    MockupDescription mockup;
+    glm::dvec3 eye_mm{0.0};  ///< the observer
+    double ambient =
+        0.0;  ///< luminance of a white diffuser in the room's light, over projector white
+    Spectrum ambient_spectrum = illuminant_d65();
+    int samples_a_side = 4;  ///< sub-samples a pixel, squared
+    std::uint64_t seed = 1;
 };
 
 /// A bench file, or the name of a shipped one ("default", "paper-2.75m"). Throws FileError.

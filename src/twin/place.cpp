@@ -1,0 +1,79 @@
+#include "twin/place.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "twin/light_paths.h"
+
+namespace livery {
+
+MeshPlace mesh_place(const Mesh& mesh, const Hit& hit) {
+    const glm::uvec3 corner = mesh.triangles[hit.triangle];
+    const double b = hit.barycentric.x, c = hit.barycentric.y, a = 1.0 - b - c;
+    const glm::dvec3 p0(mesh.positions_mm[corner.x]), p1(mesh.positions_mm[corner.y]),
+        p2(mesh.positions_mm[corner.z]);
+    MeshPlace place;
+    place.position_mm = a * p0 + b * p1 + c * p2;
+    place.geometric_normal = glm::cross(p1 - p0, p2 - p0);
+    place.geometric_normal /= std::max(glm::length(place.geometric_normal), 1e-300);
+    const glm::dvec3 n = a * glm::dvec3(mesh.normals[corner.x]) +
+                         b * glm::dvec3(mesh.normals[corner.y]) +
+                         c * glm::dvec3(mesh.normals[corner.z]);
+    const double length = glm::length(n);
+    place.normal = length > 1e-9 ? n / length : place.geometric_normal;
+    place.part = mesh.triangle_part[hit.triangle];
+    return place;
+}
+
+TraceRay shadow_ray(const glm::dvec3& position_mm,
+                    const glm::dvec3& geometric_normal,
+                    const glm::dvec3& toward_mm) {
+    const glm::dvec3 side = glm::dot(geometric_normal, toward_mm - position_mm) < 0.0
+                                ? -geometric_normal
+                                : geometric_normal;
+    TraceRay ray;
+    ray.origin = offset_origin(glm::vec3(position_mm), glm::vec3(side));
+    const glm::dvec3 path = toward_mm - glm::dvec3(ray.origin);
+    const double length = glm::length(path);
+    ray.direction = glm::vec3(path / length);
+    ray.t_max = static_cast<float>(length * 0.9999);
+    return ray;
+}
+
+bool sees(const Tracer& tracer,
+          const glm::dvec3& position_mm,
+          const glm::dvec3& geometric_normal,
+          const glm::dvec3& place_mm) {
+    return glm::dot(geometric_normal, place_mm - position_mm) > 0.0 &&
+           !tracer.occluded(shadow_ray(position_mm, geometric_normal, place_mm));
+}
+
+std::optional<Illumination> illumination_of(const ProjectorDescription& projector,
+                                            double reference_mm,
+                                            const glm::dvec3& position_mm,
+                                            const glm::dvec3& normal) {
+    const View& view = projector.view;
+    const glm::dvec3 to_light = centre_in_world(view) - position_mm;
+    const double distance = glm::length(to_light);
+    const double cosine = glm::dot(normal, to_light) / distance;
+    if (!(cosine > 0.0)) return std::nullopt;
+    const auto pixel = project(view, position_mm);
+    if (!pixel || pixel->x < 0.0 || pixel->y < 0.0 || pixel->x >= view.width ||
+        pixel->y >= view.height) {
+        return std::nullopt;
+    }
+    Illumination light;
+    light.pixel = static_cast<std::uint32_t>(pixel->y) * static_cast<std::uint32_t>(view.width) +
+                  static_cast<std::uint32_t>(pixel->x);
+    light.irradiance = cosine * reference_mm * reference_mm / (distance * distance);
+    if (projector.vignetting > 0.0) {
+        const glm::dvec2 half(0.5 * view.width, 0.5 * view.height);
+        const glm::dvec2 off = *pixel - half;
+        light.irradiance *= 1.0 - projector.vignetting * glm::dot(off, off) / glm::dot(half, half);
+    }
+    return light;
+}
+
+}  // namespace livery

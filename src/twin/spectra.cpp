@@ -1,0 +1,197 @@
+#include "twin/spectra.h"
+
+#include <charconv>
+#include <cmath>
+#include <initializer_list>
+#include <string_view>
+
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include "core/error.h"
+#include "core/paths.h"
+
+namespace livery {
+
+namespace {
+
+constexpr std::size_t kMaxColumns = 64;
+constexpr std::size_t kMaxRows = 10'000;
+
+std::string_view trimmed(std::string_view text) {
+    const auto first = text.find_first_not_of(" \t\r\"");
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(" \t\r\"") - first + 1);
+}
+
+std::vector<std::string_view> cells_of(std::string_view line) {
+    std::vector<std::string_view> cells;
+    while (true) {
+        const auto comma = line.find(',');
+        cells.push_back(trimmed(line.substr(0, comma)));
+        if (comma == std::string_view::npos) return cells;
+        line.remove_prefix(comma + 1);
+    }
+}
+
+double wavelength_nm(std::size_t band) {
+    return kSpectrumFirst_nm + kSpectrumStep_nm * static_cast<double>(band);
+}
+
+double gaussian(double nm, double centre_nm, double sigma_nm) {
+    const double z = (nm - centre_nm) / sigma_nm;
+    return std::exp(-0.5 * z * z);
+}
+
+/// A dichroic's pass band: 1 between the edges, `slope_nm` wide shoulders.
+double pass_band(double nm, double low_nm, double high_nm, double slope_nm) {
+    return 1.0 / ((1.0 + std::exp((low_nm - nm) / slope_nm)) *
+                  (1.0 + std::exp((nm - high_nm) / slope_nm)));
+}
+
+/// Scales the primaries so that together they have a white point: the share of time or light that a
+/// maker gives to each channel.
+void balance(std::array<Spectrum, 3>& primaries, double white_x, double white_y) {
+    glm::dmat3 xyz_from_primary;
+    for (int k = 0; k < 3; ++k) {
+        xyz_from_primary[k] = xyz_from_power(primaries[static_cast<std::size_t>(k)]);
+    }
+    const glm::dvec3 white(white_x / white_y, 1.0, (1.0 - white_x - white_y) / white_y);
+    const glm::dvec3 share = glm::inverse(xyz_from_primary) * white;
+    for (int k = 0; k < 3; ++k) {
+        for (double& value : primaries[static_cast<std::size_t>(k)]) value *= share[k];
+    }
+}
+
+}  // namespace
+
+SpectrumTable read_spectra_csv(const std::filesystem::path& file) {
+    const std::string text = read_text_file(file, 4u << 20u);
+    std::string_view rest = text;
+    SpectrumTable table;
+    std::vector<double> wavelengths;
+    std::vector<std::vector<double>> columns;
+    for (std::size_t line_number = 1; !rest.empty(); ++line_number) {
+        const auto end = rest.find('\n');
+        const std::string_view line = trimmed(rest.substr(0, end));
+        rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+        if (line.empty() || line.front() == '#') continue;
+        const auto cells = cells_of(line);
+        const std::string place = "line " + std::to_string(line_number);
+        if (columns.empty()) {
+            if (cells.front() != "wavelength" && cells.front() != "nm") {
+                throw FileError(file,
+                                place,
+                                "a first column '" + std::string(cells.front().substr(0, 40)) + "'",
+                                "'wavelength' or 'nm'");
+            }
+            if (cells.size() < 2 || cells.size() > kMaxColumns + 1) {
+                throw FileError(file,
+                                place,
+                                std::to_string(cells.size() - 1) + " spectra",
+                                "1 to " + std::to_string(kMaxColumns));
+            }
+            for (std::size_t c = 1; c < cells.size(); ++c) table.names.emplace_back(cells[c]);
+            columns.resize(cells.size() - 1);
+            continue;
+        }
+        if (cells.size() != columns.size() + 1) {
+            throw FileError(file,
+                            place,
+                            std::to_string(cells.size()) + " columns",
+                            std::to_string(columns.size() + 1) + ", as in the header");
+        }
+        for (std::size_t c = 0; c < cells.size(); ++c) {
+            double value = 0.0;
+            const auto* last = cells[c].data() + cells[c].size();
+            const auto [stop, error] = std::from_chars(cells[c].data(), last, value);
+            if (error != std::errc{} || stop != last || !std::isfinite(value) || value < 0.0) {
+                throw FileError(file,
+                                place + ", column " + std::to_string(c + 1),
+                                "'" + std::string(cells[c].substr(0, 40)) + "'",
+                                "a finite number, 0 or more");
+            }
+            (c == 0 ? wavelengths : columns[c - 1]).push_back(value);
+        }
+        if (wavelengths.size() > 1 && !(wavelengths.back() > wavelengths[wavelengths.size() - 2])) {
+            throw FileError(file,
+                            place,
+                            "a wavelength of " + std::string(cells.front()) + " nm",
+                            "more than in the row before");
+        }
+        if (wavelengths.size() > kMaxRows) {
+            throw FileError(file, place, "more rows", "at most " + std::to_string(kMaxRows));
+        }
+    }
+    if (columns.empty()) throw FileError(file, "", "no header", "a table of spectra");
+    if (wavelengths.size() < 2) {
+        throw FileError(file, "", std::to_string(wavelengths.size()) + " rows", "2 or more");
+    }
+    if (wavelengths.front() > 400.0 || wavelengths.back() < 700.0) {
+        throw FileError(file,
+                        "wavelength",
+                        std::to_string(wavelengths.front()) + " to " +
+                            std::to_string(wavelengths.back()) + " nm",
+                        "400 to 700 nm at least");
+    }
+    for (const auto& column : columns) {
+        table.columns.push_back(spectrum_from_samples(wavelengths, column));
+    }
+    return table;
+}
+
+ProjectorSpectra uhp_projector() {
+    ProjectorSpectra spectra;
+    for (std::size_t k = 0; k < spectra.clear.size(); ++k) {
+        const double nm = wavelength_nm(k);
+        // Mercury at some 200 bar: the lines broaden by nanometres, and a continuum that grows to
+        // the red joins them.
+        const double lamp = 0.22 + 0.06 * (nm - 380.0) / 400.0 + 0.70 * gaussian(nm, 404.7, 3.5) +
+                            1.00 * gaussian(nm, 435.8, 4.5) + 0.90 * gaussian(nm, 546.1, 5.0) +
+                            0.75 * gaussian(nm, 578.0, 5.5);
+        spectra.primaries[0][k] = lamp * pass_band(nm, 592.0, 705.0, 3.5);
+        spectra.primaries[1][k] = lamp * pass_band(nm, 505.0, 573.0, 4.0);
+        spectra.primaries[2][k] = lamp * pass_band(nm, 420.0, 492.0, 4.0);
+        spectra.clear[k] = lamp * pass_band(nm, 418.0, 705.0, 4.0);
+    }
+    balance(spectra.primaries, 0.3050, 0.3250);
+    return spectra;
+}
+
+ProjectorSpectra led_projector() {
+    ProjectorSpectra spectra;
+    for (std::size_t k = 0; k < spectra.clear.size(); ++k) {
+        const double nm = wavelength_nm(k);
+        spectra.primaries[0][k] = gaussian(nm, 628.0, 8.5);
+        spectra.primaries[1][k] = gaussian(nm, 523.0, 15.0);
+        spectra.primaries[2][k] = gaussian(nm, 458.0, 9.5);
+    }
+    balance(spectra.primaries, 0.3127, 0.3290);
+    for (std::size_t k = 0; k < spectra.clear.size(); ++k) {
+        spectra.clear[k] =
+            spectra.primaries[0][k] + spectra.primaries[1][k] + spectra.primaries[2][k];
+    }
+    return spectra;
+}
+
+Spectrum grey_spray_paint() {
+    Spectrum reflectance{};
+    for (std::size_t k = 0; k < reflectance.size(); ++k) {
+        const double nm = wavelength_nm(k);
+        reflectance[k] =
+            (0.55 + 0.02 * (nm - 550.0) / 150.0) / (1.0 + 0.5 * std::exp((395.0 - nm) / 12.0));
+    }
+    return reflectance;
+}
+
+Spectrum white_led() {
+    Spectrum power{};
+    for (std::size_t k = 0; k < power.size(); ++k) {
+        const double nm = wavelength_nm(k);
+        power[k] = 0.85 * gaussian(nm, 452.0, 9.5) + gaussian(nm, 560.0, 55.0) +
+                   0.35 * gaussian(nm, 625.0, 40.0);
+    }
+    return power;
+}
+
+}  // namespace livery
