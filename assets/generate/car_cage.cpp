@@ -1,0 +1,366 @@
+#include "car_cage.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <map>
+#include <vector>
+
+namespace livery::assets {
+
+namespace {
+
+struct Key {
+    double station;
+    glm::dvec3 point;
+};
+using Line = std::vector<Key>;
+
+// Feature lines, key points in millimetres (x toward the front, y up, z to one side). Between keys
+// a cubic runs; the nose (20) and the tail (0) of the upper rows follow from the end profiles
+// below.
+const Line kCentre{{1, {-83.0, 44.4, 0}},
+                   {2, {-76.0, 46.4, 0}},
+                   {3, {-66.0, 50.0, 0}},
+                   {4, {-56.0, 53.4, 0}},
+                   {5, {-45.5, 56.3, 0}},
+                   {6, {-35.0, 58.4, 0}},
+                   {7, {-24.0, 59.6, 0}},
+                   {8, {-13.0, 60.0, 0}},
+                   {9, {-3.0, 59.4, 0}},
+                   {10, {5.5, 57.6, 0}},
+                   {11, {14.5, 53.7, 0}},
+                   {12, {24.0, 48.8, 0}},
+                   {13, {33.0, 43.9, 0}},
+                   {14, {38.5, 41.3, 0}},
+                   {15, {46.0, 39.8, 0}},
+                   {16, {55.0, 38.6, 0}},
+                   {17, {65.0, 37.0, 0}},
+                   {18, {75.0, 34.8, 0}},
+                   {19, {83.0, 31.9, 0}}};
+const Line kCantInner{{1, {-80.5, 43.6, 18.6}},
+                      {2, {-75.0, 45.2, 19.0}},
+                      {4, {-55.0, 51.2, 18.4}},
+                      {5, {-45.0, 53.9, 18.8}},
+                      {6, {-35.0, 55.9, 20.0}},
+                      {8, {-14.0, 57.5, 21.6}},
+                      {9, {-5.0, 56.9, 22.0}},
+                      {10, {2.5, 55.0, 22.7}},
+                      {11, {11.0, 51.2, 24.2}},
+                      {12, {20.0, 46.6, 26.0}},
+                      {13, {28.5, 42.3, 27.4}},
+                      {14, {34.5, 40.2, 27.4}},
+                      {16, {54.5, 37.4, 25.0}},
+                      {18, {72.8, 34.1, 22.3}},
+                      {19, {79.8, 31.9, 20.4}}};
+const Line kCantOuter{{1, {-79.8, 43.1, 22.3}},
+                      {2, {-74.3, 44.6, 23.0}},
+                      {4, {-54.5, 49.2, 22.0}},
+                      {5, {-44.5, 51.7, 22.3}},
+                      {6, {-34.5, 53.6, 23.2}},
+                      {8, {-13.5, 55.1, 24.6}},
+                      {9, {-5.0, 54.5, 25.0}},
+                      {10, {2.0, 52.6, 25.7}},
+                      {11, {10.0, 49.0, 27.1}},
+                      {12, {18.8, 44.8, 28.9}},
+                      {13, {27.3, 41.0, 30.5}},
+                      {14, {33.8, 39.3, 30.6}},
+                      {16, {54.0, 37.3, 28.5}},
+                      {18, {71.8, 34.2, 25.6}},
+                      {19, {78.8, 32.1, 23.4}}};
+const Line kWindow{{1, {-78.8, 42.4, 27.0}},
+                   {2, {-73.2, 43.4, 28.0}},
+                   {4, {-54.0, 45.4, 27.4}},
+                   {5, {-44.0, 46.6, 27.9}},
+                   {8, {-13.5, 48.0, 29.4}},
+                   {10, {2.0, 46.9, 30.0}},
+                   {11, {10.0, 45.0, 30.7}},
+                   {12, {18.3, 42.4, 31.8}},
+                   {13, {26.8, 39.9, 32.7}},
+                   {14, {33.6, 38.7, 32.7}},
+                   {16, {53.8, 37.2, 31.0}},
+                   {18, {71.0, 34.2, 28.4}},
+                   {19, {78.0, 32.2, 26.1}}};
+const Line kBelt{{1, {-78.2, 41.9, 30.4}},
+                 {2, {-72.2, 42.4, 31.8}},
+                 {4, {-53.6, 42.0, 32.6}},
+                 {5, {-44.0, 41.4, 33.0}},
+                 {8, {-13.5, 40.3, 33.4}},
+                 {10, {2.5, 39.8, 33.4}},
+                 {12, {18.3, 39.2, 33.7}},
+                 {13, {26.8, 38.7, 34.0}},
+                 {14, {33.8, 38.0, 34.0}},
+                 {16, {53.8, 36.9, 33.2}},
+                 {18, {70.3, 34.1, 30.9}},
+                 {19, {77.2, 32.1, 28.6}}};
+const Line kShoulderTop{{1, {-77.8, 41.6, 32.2}},
+                        {2, {-71.2, 41.4, 33.9}},
+                        {4, {-53.3, 40.6, 35.2}},
+                        {5, {-44.0, 39.9, 35.4}},
+                        {8, {-13.5, 38.8, 35.6}},
+                        {12, {18.5, 37.9, 35.6}},
+                        {14, {34.0, 37.2, 35.5}},
+                        {16, {53.9, 36.2, 34.9}},
+                        {18, {69.6, 33.6, 32.9}},
+                        {19, {76.6, 31.8, 30.5}}};
+const Line kShoulder{{0, {-82.0, 41.6, 30.5}},
+                     {1, {-77.5, 41.0, 33.4}},
+                     {2, {-70.5, 40.1, 35.2}},
+                     {4, {-53.0, 38.9, 36.6}},
+                     {7, {-24.0, 37.6, 36.9}},
+                     {10, {5.0, 36.9, 36.8}},
+                     {13, {30.0, 36.3, 36.5}},
+                     {16, {54.0, 35.0, 36.2}},
+                     {18, {69.0, 32.8, 34.5}},
+                     {19, {76.0, 31.2, 32.1}},
+                     {20, {81.5, 29.4, 28.2}}};
+const Line kWidest{{0, {-84.5, 37.0, 31.2}},
+                   {1, {-79.5, 36.3, 34.0}},
+                   {2, {-71.5, 34.8, 36.0}},
+                   {4, {-53.0, 32.4, 37.2}},
+                   {7, {-24.0, 30.5, 37.4}},
+                   {10, {5.0, 29.8, 37.4}},
+                   {13, {30.0, 29.3, 37.2}},
+                   {16, {54.0, 28.6, 36.9}},
+                   {18, {70.0, 27.2, 35.2}},
+                   {19, {77.0, 26.0, 32.8}},
+                   {20, {82.8, 24.6, 29.0}}};
+const Line kDoor{{0, {-86.0, 28.2, 31.6}},
+                 {1, {-80.5, 27.6, 34.3}},
+                 {2, {-72.0, 26.2, 36.2}},
+                 {4, {-53.0, 24.0, 37.3}},
+                 {7, {-24.0, 22.6, 37.0}},
+                 {10, {5.0, 22.2, 36.9}},
+                 {13, {30.0, 22.0, 37.0}},
+                 {16, {54.0, 21.6, 36.9}},
+                 {18, {70.5, 20.6, 35.4}},
+                 {19, {77.5, 20.0, 33.1}},
+                 {20, {83.4, 19.0, 29.4}}};
+const Line kLowerDoor{{0, {-85.5, 20.3, 31.4}},
+                      {1, {-80.3, 19.5, 34.0}},
+                      {2, {-72.0, 18.0, 35.9}},
+                      {4, {-53.0, 16.0, 36.9}},
+                      {7, {-24.0, 14.8, 36.0}},
+                      {10, {5.0, 14.6, 35.9}},
+                      {13, {30.0, 14.6, 36.3}},
+                      {16, {54.0, 14.4, 36.6}},
+                      {18, {70.3, 14.0, 35.2}},
+                      {19, {77.2, 13.7, 32.9}},
+                      {20, {83.0, 13.4, 29.2}}};
+const Line kSill{{0, {-84.0, 12.6, 30.8}},
+                 {1, {-79.0, 11.8, 33.3}},
+                 {2, {-71.0, 10.8, 35.2}},
+                 {4, {-53.0, 10.0, 36.2}},
+                 {7, {-24.0, 9.6, 36.2}},
+                 {10, {5.0, 9.6, 36.1}},
+                 {13, {30.0, 9.6, 36.1}},
+                 {16, {54.0, 9.4, 35.9}},
+                 {18, {70.0, 9.4, 34.5}},
+                 {19, {76.5, 9.4, 32.3}},
+                 {20, {81.8, 9.4, 28.6}}};
+const Line kSillEdge{{0, {-80.5, 7.8, 28.5}},
+                     {1, {-76.0, 7.3, 31.2}},
+                     {2, {-69.0, 6.8, 32.6}},
+                     {4, {-53.0, 6.4, 33.4}},
+                     {7, {-24.0, 6.2, 33.6}},
+                     {10, {5.0, 6.2, 33.6}},
+                     {13, {30.0, 6.2, 33.6}},
+                     {16, {54.0, 6.2, 33.4}},
+                     {18, {69.0, 6.3, 32.0}},
+                     {19, {75.0, 6.4, 29.8}},
+                     {20, {79.5, 6.6, 26.6}}};
+
+// The ends on the centre line, rows 8 to 13, and how far out each column of them stands.
+const std::array<glm::dvec2, 6> kNoseProfile{
+    {{87.6, 28.8}, {89.4, 24.4}, {90.0, 19.0}, {89.4, 13.4}, {88.0, 9.4}, {85.0, 6.6}}};
+const std::array<glm::dvec2, 6> kTailProfile{
+    {{-88.0, 43.6}, {-87.2, 38.6}, {-89.6, 28.4}, {-89.6, 20.4}, {-87.6, 12.6}, {-83.5, 7.8}}};
+const std::array<double, 9> kEndColumns{0.0, 0.17, 0.34, 0.50, 0.63, 0.74, 0.84, 0.925, 1.0};
+
+glm::dvec3 on_line(const Line& line, double station) {
+    // Clamped ends; within, a cubic Hermite with the slopes of the parabola through three keys.
+    const auto last = line.size() - 1;
+    std::size_t k = 0;
+    while (k + 2 <= last && station > line[k + 1].station) ++k;
+    const auto chord = [&](std::size_t a) {
+        return (line[a + 1].point - line[a].point) / (line[a + 1].station - line[a].station);
+    };
+    const auto slope = [&](std::size_t a) {
+        if (a == 0) return chord(0);
+        if (a == last) return chord(last - 1);
+        const double before = line[a].station - line[a - 1].station;
+        const double after = line[a + 1].station - line[a].station;
+        return (chord(a - 1) * after + chord(a) * before) / (before + after);
+    };
+    const double h = line[k + 1].station - line[k].station;
+    const double t = (station - line[k].station) / h;
+    const double t2 = t * t, t3 = t2 * t;
+    return line[k].point * (2 * t3 - 3 * t2 + 1) + line[k + 1].point * (3 * t2 - 2 * t3) +
+           slope(k) * (h * (t3 - 2 * t2 + t)) + slope(k + 1) * (h * (t3 - t2));
+}
+
+/// A column of the nose or tail: `level` 0 to 5 counts rows down from the shoulder's.
+glm::dvec3 end_point(bool nose, int column, int level) {
+    const auto& profile = nose ? kNoseProfile : kTailProfile;
+    static const std::array<const Line*, 6> rows{
+        &kShoulder, &kWidest, &kDoor, &kLowerDoor, &kSill, &kSillEdge};
+    const auto l = static_cast<std::size_t>(level);
+    const auto corner = on_line(*rows[l], nose ? kStations : 0);
+    const double f = kEndColumns[static_cast<std::size_t>(column)];
+    return {profile[l].x + (corner.x - profile[l].x) * std::pow(f, 2.6),
+            profile[l].y + (corner.y - profile[l].y) * f * f,
+            corner.z * f};
+}
+
+glm::dvec3 grid_point(int station, int row) {
+    if (station == 0 || station == kStations) {
+        if (row <= kShoulderRow) return end_point(station != 0, row, 0);
+    }
+    const auto between = [&](double z_fraction, double crown) {
+        const auto a = on_line(kCentre, station), b = on_line(kCantInner, station);
+        const double f = z_fraction;
+        return glm::dvec3(
+            a.x + (b.x - a.x) * f * f, a.y + (b.y - a.y) * std::pow(f, crown), b.z * f);
+    };
+    switch (row) {
+        case 0:
+            return on_line(kCentre, station);
+        case 1:
+            return between(0.37, 2.3);
+        case 2:
+            return between(0.72, 2.3);
+        case 3:
+            return on_line(kCantInner, station);
+        case 4:
+            return on_line(kCantOuter, station);
+        case 5:
+            return on_line(kWindow, station);
+        case 6:
+            return on_line(kBelt, station);
+        case 7:
+            return on_line(kShoulderTop, station);
+        case 8:
+            return on_line(kShoulder, station);
+        case 9:
+            return on_line(kWidest, station);
+        case 10:
+            return on_line(kDoor, station);
+        case 11:
+            return on_line(kLowerDoor, station);
+        case 12:
+            return on_line(kSill, station);
+        default:
+            return on_line(kSillEdge, station);
+    }
+}
+
+/// Row by row of the lattice box: i along the car, j across (negative: right), k down.
+struct Lattice {
+    Cage cage;
+    std::map<std::array<int, 3>, int> index;
+
+    int vertex(int i, int j, int k) {
+        const auto [place, is_new] = index.try_emplace({i, j, k}, 0);
+        if (!is_new) return place->second;
+        place->second = static_cast<int>(cage.surface_points.size());
+        const int column = std::abs(j);
+        glm::dvec3 point;
+        glm::dvec2 parameters(i, column + k);
+        if (column == kShoulderRow || k == 0) {
+            point = grid_point(i, column + k);
+        } else if (i == 0 || i == kStations) {
+            point = end_point(i != 0, column, k);
+        } else {
+            const auto edge = grid_point(i, kSillRow);
+            point = {edge.x, edge.y, edge.z * kEndColumns[static_cast<std::size_t>(column)]};
+            parameters.y = kSillRow + kShoulderRow - column;
+        }
+        if (j < 0) {
+            point.z = -point.z;
+            parameters.y = -parameters.y;
+        }
+        cage.surface_points.push_back(point);
+        cage.parameters.push_back(parameters);
+        return place->second;
+    }
+    void face(glm::ivec4 corners, CageRegion region) { cage.faces.push_back({corners, region}); }
+    void crease(std::array<int, 3> a, std::array<int, 3> b, double sharpness) {
+        cage.creases.push_back({{vertex(a[0], a[1], a[2]), vertex(b[0], b[1], b[2])}, sharpness});
+    }
+};
+
+}  // namespace
+
+glm::dvec3 feature_point(double station, double row) {
+    const double s = std::clamp(station, 0.0, static_cast<double>(kStations));
+    const double r = std::clamp(row, 0.0, static_cast<double>(kSillRow));
+    const int i = std::min(static_cast<int>(s), kStations - 1);
+    const int j = std::min(static_cast<int>(r), kSillRow - 1);
+    return glm::mix(glm::mix(grid_point(i, j), grid_point(i + 1, j), s - i),
+                    glm::mix(grid_point(i, j + 1), grid_point(i + 1, j + 1), s - i),
+                    r - j);
+}
+
+Cage make_car_cage() {
+    Lattice box;
+    constexpr int n = kStations, m = kShoulderRow, depth = kSillRow - kShoulderRow;
+    for (int i = 0; i < n; ++i) {
+        for (int j = -m; j < m; ++j) {
+            box.face({box.vertex(i, j, 0),
+                      box.vertex(i, j + 1, 0),
+                      box.vertex(i + 1, j + 1, 0),
+                      box.vertex(i + 1, j, 0)},
+                     kTop);
+            box.face({box.vertex(i, j, depth),
+                      box.vertex(i + 1, j, depth),
+                      box.vertex(i + 1, j + 1, depth),
+                      box.vertex(i, j + 1, depth)},
+                     kFloor);
+        }
+        for (int k = 0; k < depth; ++k) {
+            box.face({box.vertex(i, m, k),
+                      box.vertex(i, m, k + 1),
+                      box.vertex(i + 1, m, k + 1),
+                      box.vertex(i + 1, m, k)},
+                     kSide);
+            box.face({box.vertex(i, -m, k),
+                      box.vertex(i + 1, -m, k),
+                      box.vertex(i + 1, -m, k + 1),
+                      box.vertex(i, -m, k + 1)},
+                     kSide);
+        }
+    }
+    for (int j = -m; j < m; ++j) {
+        for (int k = 0; k < depth; ++k) {
+            box.face({box.vertex(n, j, k),
+                      box.vertex(n, j + 1, k),
+                      box.vertex(n, j + 1, k + 1),
+                      box.vertex(n, j, k + 1)},
+                     kNose);
+            box.face({box.vertex(0, j, k),
+                      box.vertex(0, j, k + 1),
+                      box.vertex(0, j + 1, k + 1),
+                      box.vertex(0, j + 1, k)},
+                     kTail);
+        }
+    }
+
+    // The shoulder, softening toward the ends; the belt's valley; the tail's spoiler edge.
+    for (int side : {-1, 1}) {
+        for (int i = 0; i < n; ++i) {
+            const double fade = std::clamp((19.0 - i) / 5.0, 0.0, 1.0);
+            if (fade > 0.0) {
+                box.crease({i, side * m, 0}, {i + 1, side * m, 0}, 1.2 * fade);
+            }
+            if (i >= 4 && i < 14) box.crease({i, side * 6, 0}, {i + 1, side * 6, 0}, 1.3);
+            box.crease({i, side * m, depth}, {i + 1, side * m, depth}, 1.0);
+        }
+        for (int j = 0; j < m; ++j) {
+            box.crease({0, side * j, 0}, {0, side * (j + 1), 0}, 2.0);
+        }
+    }
+    return box.cage;
+}
+
+}  // namespace livery::assets

@@ -1,0 +1,68 @@
+// One half of a smooth skin (z >= 0), cut into panels along curves, then given gaps and depth.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "part_mesh.h"
+#include "subdivision.h"
+
+namespace livery::assets {
+
+struct SheetTriangle {
+    glm::uvec3 corners{0};
+    int panel = 0;
+    int region = 0;
+};
+
+struct Sheet {
+    std::vector<LimitVertex> vertices;
+    std::vector<SheetTriangle> triangles;
+};
+
+inline constexpr int kNoPanel = -1;  ///< cut away
+
+/// The z >= 0 half of a symmetric limit mesh, all in panel 0; `keep` chooses quads by their region
+/// and corners' centre.
+Sheet half_sheet(const LimitMesh& mesh,
+                 const std::function<bool(int region, const glm::dvec3& centre)>& keep);
+
+/// The vertex, its place and what it carries -> signed value, negative inside.
+using CutFunction = std::function<double(const LimitVertex&)>;
+using TriangleMask = std::function<bool(const SheetTriangle&)>;
+using Relabel = std::function<int(int panel)>;
+
+/// Splits masked triangles along f = 0 and gives those inside a new panel. Vertices that lie close
+/// to the curve are moved onto it along their edges, so that no slivers arise; vertices on earlier
+/// cuts move only along these.
+void cut(Sheet& sheet, const CutFunction& f, const TriangleMask& mask, const Relabel& relabel);
+
+/// How a panel is built from the skin.
+struct PanelStyle {
+    int part = 0;           ///< index into the parts
+    double inset_mm = 0.0;  ///< below the skin
+    double gap_mm = 0.0;    ///< width of the joint around it, shared with the neighbour
+    double wall_mm = 0.7;   ///< how far its turned-in edge reaches below the skin
+};
+
+/// A border edge of a panel toward kNoPanel or the sheet's open end, for what joins there.
+struct OpenEdge {
+    glm::dvec3 from{0.0}, to{0.0};  ///< the panel on the left, seen from outside
+    int panel = 0;
+};
+
+/// Chart coordinates (before scaling) of a vertex in a region.
+using ChartFunction = std::function<glm::dvec2(const LimitVertex&, int region)>;
+
+/// Appends each panel with its turned-in edges to its part, and a dark strip below each joint to
+/// part `joint_part`. Returns the open edges.
+std::vector<OpenEdge> build_panels(const Sheet& sheet,
+                                   const std::vector<PanelStyle>& styles,
+                                   const ChartFunction& chart,
+                                   int joint_part,
+                                   std::vector<PartMesh>& parts);
+
+}  // namespace livery::assets
