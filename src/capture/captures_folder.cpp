@@ -184,7 +184,7 @@ Photograph load_photograph(const Capture& capture) {
     photograph.exposure_s = capture.exposure_s;
     photograph.black_level = capture.black_level;
     photograph.saturates_at = capture.saturates_at > 0.0 ? capture.saturates_at
-                              : picture.floating_point   ? std::numeric_limits<double>::infinity()
+                              : floating_point           ? std::numeric_limits<double>::infinity()
                                                          : full_scale;
     photograph.image = rgb_of(capture.file, std::move(picture));
     check_finite(capture.file, photograph.image);

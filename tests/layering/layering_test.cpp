@@ -1,0 +1,160 @@
+// Reads the lists in docs/architecture.md and holds every #include of src/ against them.
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "support/temporary_folder.h"
+
+namespace livery {
+namespace {
+
+using Names = std::set<std::string>;
+using Table = std::map<std::string, Names>;
+
+struct Rules {
+    Table may_include;   ///< folder -> folders
+    Table foreign_home;  ///< start of another library's header -> folders or files that may name it
+};
+
+std::string text_of(const std::filesystem::path& file) {
+    std::ifstream stream(file);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    return text.str();
+}
+
+/// The items "- `name`: `a`, `b`. Words." under a heading, up to the first full stop.
+Table read_list(const std::string& markdown, const std::string& heading) {
+    Table table;
+    std::istringstream lines(markdown);
+    bool inside = false;
+    static const std::regex item("^- `([^`]+)`: (.*)$"), name("`([^`]+)`");
+    for (std::string line; std::getline(lines, line);) {
+        if (line.starts_with("## ")) inside = line == "## " + heading;
+        std::smatch match;
+        if (!inside || !std::regex_match(line, match, item)) continue;
+        const std::string rest = match[2];
+        const std::string list = rest.substr(0, rest.find(". "));
+        auto& names = table[match[1]];
+        for (std::sregex_iterator it(list.begin(), list.end(), name), end; it != end; ++it) {
+            names.insert((*it)[1]);
+        }
+    }
+    return table;
+}
+
+Rules read_rules(const std::filesystem::path& source) {
+    const auto text = text_of(source / "docs/architecture.md");
+    return {read_list(text, "Who may include whom"),
+            read_list(text, "Where other people's headers stay")};
+}
+
+/// Every include of src/ that the rules forbid, as "folder/file.cpp:7: why".
+std::vector<std::string> violations(const std::filesystem::path& source, const Rules& rules) {
+    static const std::regex include(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"].*$)");
+    std::vector<std::string> found;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(source / "src")) {
+        const auto extension = entry.path().extension();
+        if (extension != ".h" && extension != ".cpp" && extension != ".inc") continue;
+        const auto file = std::filesystem::relative(entry.path(), source / "src").generic_string();
+        const auto folder = file.substr(0, file.find('/'));
+        const auto allowed = rules.may_include.find(folder);
+        std::istringstream lines(text_of(entry.path()));
+        int number = 0;
+        for (std::string line; std::getline(lines, line);) {
+            ++number;
+            std::smatch match;
+            if (!std::regex_match(line, match, include)) continue;
+            const std::string target = match[2];
+            const auto place = file + ":" + std::to_string(number) + ": ";
+            if (match[1] == "\"") {
+                const auto to = target.substr(0, target.find('/'));
+                if (target.find('/') == std::string::npos) {
+                    found.push_back(place + target + " is not named from its folder");
+                } else if (to != folder &&
+                           (allowed == rules.may_include.end() || !allowed->second.contains(to))) {
+                    found.push_back(place + folder + " may not include " + target);
+                }
+            } else {
+                for (const auto& [start, homes] : rules.foreign_home) {
+                    if (target.starts_with(start) && !homes.contains(folder) &&
+                        !homes.contains(file)) {
+                        found.push_back(place + "<" + target + "> stays in " + *homes.begin());
+                    }
+                }
+            }
+        }
+    }
+    return found;
+}
+
+std::string joined(const std::vector<std::string>& lines) {
+    std::string text;
+    for (const auto& line : lines) text += line + "\n";
+    return text;
+}
+
+const std::filesystem::path kSource = LIVERY_SOURCE;
+
+TEST(Layering, TheListNamesEveryFolder) {
+    const auto rules = read_rules(kSource);
+    Names listed, present;
+    for (const auto& [folder, allowed] : rules.may_include) listed.insert(folder);
+    for (const auto& entry : std::filesystem::directory_iterator(kSource / "src")) {
+        if (entry.is_directory()) present.insert(entry.path().filename().string());
+    }
+    EXPECT_EQ(listed, present);
+    EXPECT_FALSE(rules.foreign_home.empty());
+}
+
+TEST(Layering, TheListHasNoCircle) {
+    auto rest = read_rules(kSource).may_include;
+    for (bool shrunk = true; shrunk;) {
+        shrunk = false;
+        for (auto it = rest.begin(); it != rest.end();) {
+            bool free = true;
+            for (const auto& name : it->second) free = free && !rest.contains(name);
+            shrunk = shrunk || free;
+            it = free ? rest.erase(it) : std::next(it);
+        }
+    }
+    for (const auto& [folder, allowed] : rest) ADD_FAILURE() << folder << " is in a circle";
+}
+
+TEST(Layering, NoIncludeIsForbidden) {
+    const auto found = violations(kSource, read_rules(kSource));
+    EXPECT_TRUE(found.empty()) << joined(found);
+}
+
+TEST(Layering, PlantedIncludesAreFound) {
+    const auto rules = read_rules(kSource);
+    const TemporaryFolder folder;
+    std::filesystem::create_directories(folder / "src/twin");
+    std::filesystem::create_directories(folder / "src/core");
+    folder.write("src/twin/a.cpp",
+                 "#include <vector>\n#include \"core/image.h\"\n#include \"twin/bench.h\"\n"
+                 "#include \"calibration/gray_code.h\"\n#  include \"compensation/gpu_pass.h\"\n");
+    folder.write("src/core/b.h", "#include \"scene/mesh.h\"\n#include <embree3/rtcore.h>\n");
+    folder.write("src/core/c.cpp", "#include \"c.h\"\n#include <OpenImageIO/imageio.h>\n");
+    const auto found = violations(folder.path(), rules);
+    const auto text = joined(found);
+    EXPECT_EQ(found.size(), 6u) << text;
+    for (const char* part : {"twin/a.cpp:4: twin may not include calibration/gray_code.h",
+                             "twin/a.cpp:5: twin may not include compensation/gpu_pass.h",
+                             "core/b.h:1: core may not include scene/mesh.h",
+                             "core/b.h:2: <embree3/rtcore.h> stays in tracing",
+                             "core/c.cpp:1: c.h is not named from its folder",
+                             "core/c.cpp:2: <OpenImageIO/imageio.h> stays in core/image_io"}) {
+        EXPECT_NE(text.find(part), std::string::npos) << part << " not in\n" << text;
+    }
+}
+
+}  // namespace
+}  // namespace livery
