@@ -19,11 +19,11 @@ struct Material {
     std::string family;  ///< solid, metallic, matte, chrome, ...
     ReflectanceModel model = ReflectanceModel::lambert;
 
-    glm::dvec3 diffuse{0.5};      ///< albedo of the diffuse part
-    glm::dvec3 f0{0.04};          ///< Fresnel reflectance of the base at normal incidence
-    glm::dvec2 alpha{0.3, 0.3};   ///< GGX slope parameter along and across the tangent
-    double coat_alpha = 0.02;     ///< clearcoat: slope parameter of the coat
-    double coat_f0 = 0.04;        ///< clearcoat: its Fresnel reflectance at normal incidence
+    glm::dvec3 diffuse{0.5};             ///< albedo of the diffuse part
+    glm::dvec3 f0{0.04};                 ///< Fresnel reflectance of the base at normal incidence
+    glm::dvec2 alpha{0.3, 0.3};          ///< GGX slope parameter along and across the tangent
+    double coat_alpha = 0.02;            ///< clearcoat: slope parameter of the coat
+    double coat_f0 = 0.04;               ///< clearcoat: its Fresnel reflectance at normal incidence
     glm::dvec3 coat_transmittance{1.0};  ///< of the coat, once through at normal incidence
 
     std::string provenance;

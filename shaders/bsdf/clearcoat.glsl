@@ -1,0 +1,120 @@
+// A clear coat over GGX over a diffuse layer. Needs ggx.glsl. Local coordinates: z normal, x tangent.
+//
+//   f = f_coat + T(mu_i) T(mu_o) A(mu_i, mu_o) (f_base + f_diffuse),   T = 1 - E_coat
+//
+// A is the coat's absorption along the refracted path in and out. The base's alpha is the one seen
+// through the coat: directions are not refracted. Light that the diffuse layer scatters is partly
+// turned back by the coat from inside (R_in), which darkens and saturates it (Saunderson 1942); for
+// a white layer the sum of all bounces returns everything, so f_diffuse is
+//   (1 - E_b(mu_i)) (1 - E_b(mu_o)) d (1 - R_in) / (pi (1 - d R_in) (1 - max(E_b,avg, E_coat,avg))).
+// The base's mirror-like part is seen after one bounce; what the coat returns to it again is lost
+// (at most coat_f0 of it).
+
+FN REAL coat_albedo(BsdfParameters p, REAL mu) {
+    REAL white;
+    REAL grazing;
+    ggx_albedo(mu, p.coat_alpha, white, grazing);
+    REAL f90 = grazing_reflectance(p.coat_f0);
+    return p.coat_f0 * (white - grazing) + f90 * grazing;
+}
+
+FN REAL coat_transmission(BsdfParameters p, REAL mu) {
+    REAL margin = R(0.001) * grazing_reflectance(p.coat_f0);
+    return max(R(1.0) - coat_albedo(p, mu) - margin, R(0.0));
+}
+
+FN REAL coat_average_transmission(BsdfParameters p) {
+    REAL white;
+    REAL grazing;
+    ggx_average_albedo(p.coat_alpha, white, grazing);
+    REAL f90 = grazing_reflectance(p.coat_f0);
+    return max(R(1.0) - p.coat_f0 * (white - grazing) - f90 * (grazing + R(0.001)), R(0.001));
+}
+
+// 1 / n^2 of the coat.
+FN REAL coat_inverse_index_squared(BsdfParameters p) {
+    REAL r = sqrt(p.coat_f0);
+    REAL n = (R(1.0) - r) / (R(1.0) + r);
+    return n * n;
+}
+
+// Length of the refracted path through a coat of thickness 1.
+FN REAL coat_path(REAL mu, REAL inverse_index_squared) {
+    REAL cos2 = R(1.0) - (R(1.0) - mu * mu) * inverse_index_squared;
+    return R(1.0) / sqrt(max(cos2, R(1e-4)));
+}
+
+FN VEC3 coat_absorption(BsdfParameters p, REAL path) {
+    return pow(max(p.coat_transmittance, VEC3(R(1e-6))), VEC3(path));
+}
+
+// The diffuse layer's albedo with the coat's inner reflections, over the share of light that passes
+// the interfaces.
+FN VEC3 coated_diffuse(BsdfParameters p, REAL inverse_index_squared) {
+    VEC3 one = VEC3(R(1.0));
+    REAL passed = coat_average_transmission(p);
+    REAL inside = R(1.0) - passed * inverse_index_squared;
+    VEC3 share = min(one - ggx_interface_average(p), VEC3(passed));
+    return p.diffuse * (R(1.0) - inside) / ((one - p.diffuse * inside) * share);
+}
+
+FN VEC3 clearcoat_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
+    if (wi.z <= R(0.0) || wo.z <= R(0.0)) return VEC3(R(0.0));
+    VEC3 h = wi + wo;
+    REAL hh = dot(h, h);
+    if (hh < R(1e-8)) return VEC3(R(0.0));
+    VEC3 one = VEC3(R(1.0));
+    REAL schlick = schlick_weight(hh);
+    REAL coat_fresnel =
+        p.coat_f0 * (R(1.0) - schlick) + grazing_reflectance(p.coat_f0) * schlick;
+    REAL coat =
+        coat_fresnel * ggx_distribution_visibility(wi, wo, hh, p.coat_alpha, p.coat_alpha);
+    REAL eta = coat_inverse_index_squared(p);
+    VEC3 passed = coat_absorption(p, coat_path(wi.z, eta) + coat_path(wo.z, eta)) *
+                  (coat_transmission(p, wi.z) * coat_transmission(p, wo.z));
+    VEC3 diffuse = coated_diffuse(p, eta) * (one - ggx_interface_albedo(p, wi.z)) *
+                   (one - ggx_interface_albedo(p, wo.z)) * R(0.3183098861837907);
+    return VEC3(coat) + passed * (ggx_specular(p, wi, wo, hh, schlick) + diffuse);
+}
+
+FN BsdfEnvironment clearcoat_environment(BsdfParameters p, REAL mu) {
+    REAL eta = coat_inverse_index_squared(p);
+    REAL path = coat_path(mu, eta);
+    REAL passed = coat_transmission(p, mu);
+    BsdfEnvironment e;
+    e.coat = VEC3(coat_albedo(p, mu));
+    e.specular = ggx_environment_albedo(p, mu) * coat_absorption(p, R(2.0) * path) *
+                 (passed * passed);
+    // The diffuse layer is lit from everywhere: absorbed along the path of the mean cosine, 2/3.
+    VEC3 one = VEC3(R(1.0));
+    VEC3 share =
+        min(one - ggx_interface_average(p), VEC3(coat_average_transmission(p)));
+    e.diffuse = coated_diffuse(p, eta) * share * (one - ggx_interface_albedo(p, mu)) *
+                coat_absorption(p, path + coat_path(R(0.6666666666666667), eta)) * passed;
+    return e;
+}
+
+// Chances of the coat, the base and the diffuse layer when a direction is sampled.
+FN VEC3 clearcoat_probabilities(BsdfParameters p, REAL mu) {
+    BsdfEnvironment e = clearcoat_environment(p, mu);
+    VEC3 chance =
+        VEC3(mean_component(e.coat), mean_component(e.specular), mean_component(e.diffuse));
+    REAL sum = chance.x + chance.y + chance.z;
+    return sum > R(0.0) ? chance / sum : VEC3(R(0.0), R(0.0), R(1.0));
+}
+
+FN VEC3 clearcoat_sample(BsdfParameters p, VEC3 wo, VEC3 u) {
+    VEC3 chance = clearcoat_probabilities(p, wo.z);
+    VEC2 v = VEC2(u.x, u.y);
+    if (u.z < chance.x) return ggx_sample_lobe(wo, v, p.coat_alpha, p.coat_alpha);
+    if (u.z < chance.x + chance.y) return ggx_sample_lobe(wo, v, p.alpha_x, p.alpha_y);
+    return cosine_sample(v);
+}
+
+FN REAL clearcoat_pdf(BsdfParameters p, VEC3 wi, VEC3 wo) {
+    if (wi.z <= R(0.0) || wo.z <= R(0.0)) return R(0.0);
+    VEC3 chance = clearcoat_probabilities(p, wo.z);
+    return chance.x * ggx_pdf_lobe(wi, wo, p.coat_alpha, p.coat_alpha) +
+           chance.y * ggx_pdf_lobe(wi, wo, p.alpha_x, p.alpha_y) +
+           (R(1.0) - chance.x - chance.y) * wi.z * R(0.3183098861837907);
+}

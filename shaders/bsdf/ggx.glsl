@@ -1,0 +1,87 @@
+// GGX interface over a diffuse layer. Local coordinates: z the normal, x the tangent.
+//
+//   f = D F V + diffuse / pi (1 - E(mu_i)) (1 - E(mu_o)) / (1 - E_avg)
+//
+// E is the albedo of the interface, so what the interface reflects the diffuse layer does not
+// (Kelemen and Szirmay-Kalos 2001): reciprocal, and a white layer returns everything. The interface
+// itself scatters once: at f0 = 1 it loses 1 - E_white, 2% at normal incidence for alpha 0.13, 13%
+// for 0.31, 69% for 1.
+
+FN REAL ggx_layer_alpha(BsdfParameters p) {
+    return min(p.alpha_x, p.alpha_y);
+}
+
+// Upper bound of the interface's albedo.
+FN VEC3 ggx_interface_albedo(BsdfParameters p, REAL mu) {
+    REAL white;
+    REAL grazing;
+    ggx_albedo(mu, ggx_layer_alpha(p), white, grazing);
+    REAL f90 = grazing_reflectance(max_component(p.f0));
+    return min(p.f0 * (white - grazing) + VEC3(f90 * (grazing + R(0.001))), VEC3(R(1.0)));
+}
+
+FN VEC3 ggx_interface_average(BsdfParameters p) {
+    REAL white;
+    REAL grazing;
+    ggx_average_albedo(ggx_layer_alpha(p), white, grazing);
+    REAL f90 = grazing_reflectance(max_component(p.f0));
+    return min(p.f0 * (white - grazing) + VEC3(f90 * (grazing + R(0.001))), VEC3(R(0.999)));
+}
+
+FN VEC3 ggx_specular(BsdfParameters p, VEC3 wi, VEC3 wo, REAL hh, REAL schlick) {
+    REAL f90 = grazing_reflectance(max_component(p.f0));
+    VEC3 fresnel = p.f0 * (R(1.0) - schlick) + VEC3(f90 * schlick);
+    return fresnel * ggx_distribution_visibility(wi, wo, hh, p.alpha_x, p.alpha_y);
+}
+
+FN VEC3 ggx_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
+    if (wi.z <= R(0.0) || wo.z <= R(0.0)) return VEC3(R(0.0));
+    VEC3 h = wi + wo;
+    REAL hh = dot(h, h);
+    if (hh < R(1e-8)) return VEC3(R(0.0));
+    VEC3 one = VEC3(R(1.0));
+    VEC3 through = (one - ggx_interface_albedo(p, wi.z)) * (one - ggx_interface_albedo(p, wo.z)) /
+                   (one - ggx_interface_average(p));
+    return ggx_specular(p, wi, wo, hh, schlick_weight(hh)) +
+           p.diffuse * through * R(0.3183098861837907);
+}
+
+// Probability of sampling the microfacets rather than the diffuse layer.
+FN REAL ggx_specular_probability(BsdfParameters p, REAL mu) {
+    VEC3 reflected = ggx_interface_albedo(p, mu);
+    REAL s = mean_component(reflected);
+    REAL d = mean_component(p.diffuse * (VEC3(R(1.0)) - reflected));
+    return s + d > R(0.0) ? s / (s + d) : R(0.0);
+}
+
+// u: three numbers in [0, 1). The direction may lie below the horizon, where ggx_eval is 0.
+FN VEC3 ggx_sample(BsdfParameters p, VEC3 wo, VEC3 u) {
+    VEC2 v = VEC2(u.x, u.y);
+    if (u.z < ggx_specular_probability(p, wo.z)) {
+        return ggx_sample_lobe(wo, v, p.alpha_x, p.alpha_y);
+    }
+    return cosine_sample(v);
+}
+
+FN REAL ggx_pdf(BsdfParameters p, VEC3 wi, VEC3 wo) {
+    if (wi.z <= R(0.0) || wo.z <= R(0.0)) return R(0.0);
+    REAL s = ggx_specular_probability(p, wo.z);
+    return s * ggx_pdf_lobe(wi, wo, p.alpha_x, p.alpha_y) +
+           (R(1.0) - s) * wi.z * R(0.3183098861837907);
+}
+
+FN VEC3 ggx_environment_albedo(BsdfParameters p, REAL mu) {
+    REAL white;
+    REAL grazing;
+    ggx_albedo(mu, sqrt(p.alpha_x * p.alpha_y), white, grazing);
+    REAL f90 = grazing_reflectance(max_component(p.f0));
+    return p.f0 * (white - grazing) + VEC3(f90 * grazing);
+}
+
+FN BsdfEnvironment ggx_environment(BsdfParameters p, REAL mu) {
+    BsdfEnvironment e;
+    e.diffuse = p.diffuse * (VEC3(R(1.0)) - ggx_interface_albedo(p, mu));
+    e.specular = ggx_environment_albedo(p, mu);
+    e.coat = VEC3(R(0.0));
+    return e;
+}

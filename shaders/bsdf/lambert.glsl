@@ -1,0 +1,23 @@
+// Lambert: the same radiance in all directions. Local coordinates: z the normal, x the tangent.
+
+FN VEC3 lambert_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
+    if (wi.z <= R(0.0) || wo.z <= R(0.0)) return VEC3(R(0.0));
+    return p.diffuse * R(0.3183098861837907);
+}
+
+FN VEC3 lambert_sample(BsdfParameters p, VEC3 wo, VEC3 u) {
+    return cosine_sample(VEC2(u.x, u.y));
+}
+
+FN REAL lambert_pdf(BsdfParameters p, VEC3 wi, VEC3 wo) {
+    if (wi.z <= R(0.0) || wo.z <= R(0.0)) return R(0.0);
+    return wi.z * R(0.3183098861837907);
+}
+
+FN BsdfEnvironment lambert_environment(BsdfParameters p, REAL mu) {
+    BsdfEnvironment e;
+    e.diffuse = p.diffuse;
+    e.specular = VEC3(R(0.0));
+    e.coat = VEC3(R(0.0));
+    return e;
+}

@@ -1,0 +1,42 @@
+// Parameters of every model, colours in the working space. Ranges: docs/materials.md.
+
+struct BsdfParameters {
+    VEC3 diffuse;             // albedo of the diffuse layer
+    VEC3 f0;                  // Fresnel reflectance of the base at normal incidence
+    REAL alpha_x;             // slope parameter along the tangent
+    REAL alpha_y;             // slope parameter across it
+    REAL coat_alpha;          // slope parameter of the coat
+    REAL coat_f0;             // Fresnel reflectance of the coat at normal incidence
+    VEC3 coat_transmittance;  // of the coat, once through at normal incidence
+};
+
+// What a model does to light from all around, seen under the cosine mu:
+// radiance = diffuse * irradiance / pi + specular * mean radiance around the mirror direction
+// within the base's lobe + coat * the same within the coat's lobe.
+struct BsdfEnvironment {
+    VEC3 diffuse;
+    VEC3 specular;
+    VEC3 coat;
+};
+
+// Widened lobes for a patch whose normals vary by `mean_squared_slope` (both axes together) around
+// its mean normal. A GGX or Beckmann slope parameter is alpha^2 = 2 sigma^2 with sigma^2 the slope
+// variance of one axis, so alpha'^2 = alpha^2 + 2 (mean_squared_slope / 2). Olano and Baker, LEAN
+// mapping (2010); Kaplanyan et al., Filtering distributions of normals (2016).
+FN BsdfParameters bsdf_widen(BsdfParameters p, REAL mean_squared_slope) {
+    BsdfParameters q = p;
+    q.alpha_x = min(sqrt(p.alpha_x * p.alpha_x + mean_squared_slope), R(1.0));
+    q.alpha_y = min(sqrt(p.alpha_y * p.alpha_y + mean_squared_slope), R(1.0));
+    q.coat_alpha = min(sqrt(p.coat_alpha * p.coat_alpha + mean_squared_slope), R(1.0));
+    return q;
+}
+
+FN VEC3 cosine_sample(VEC2 u) {
+    REAL r = sqrt(u.x);
+    REAL phi = R(6.283185307179586) * u.y;
+    return VEC3(r * cos(phi), r * sin(phi), sqrt(max(R(1.0) - u.x, R(0.0))));
+}
+
+FN REAL mean_component(VEC3 v) {
+    return (v.x + v.y + v.z) * R(0.3333333333333333);
+}

@@ -1,0 +1,11 @@
+// GLSL's side of the shared reflectance source. The C++ side is src/appearance/bsdf_source.h.
+//
+// The subset that both languages read: literals R(1.0); FN before every function; OUT(T) for
+// results by reference; no swizzle longer than one component, no implicit conversion, no bare
+// literal beside a vector.
+#define REAL float
+#define VEC2 vec2
+#define VEC3 vec3
+#define R(x) x
+#define FN
+#define OUT(T) out T

@@ -1,0 +1,62 @@
+// The reflectance source of shaders/bsdf, as C++ twice: livery::f32 and livery::f64. The same lines
+// run in the shaders.
+#pragma once
+
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#define REAL Real
+#define VEC2 Vec2
+#define VEC3 Vec3
+#define R(x) Real(x)
+#define FN inline
+#define OUT(T) T&
+
+// An unused parameter is normal here: all models share one signature.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+
+namespace livery::f32 {
+using Real = float;
+using Vec2 = glm::vec2;
+using Vec3 = glm::vec3;
+using glm::clamp, glm::cos, glm::dot, glm::max, glm::min, glm::normalize, glm::pow, glm::sin,
+    glm::sqrt;
+// Each needs the ones before it.
+// clang-format off
+#include "shaders/bsdf/parameters.glsl"
+#include "shaders/bsdf/lambert.glsl"
+#include "shaders/bsdf/microfacet.glsl"
+#include "shaders/bsdf/ggx.glsl"
+#include "shaders/bsdf/clearcoat.glsl"
+// clang-format on
+}  // namespace livery::f32
+
+namespace livery::f64 {
+using Real = double;
+using Vec2 = glm::dvec2;
+using Vec3 = glm::dvec3;
+using glm::clamp, glm::cos, glm::dot, glm::max, glm::min, glm::normalize, glm::pow, glm::sin,
+    glm::sqrt;
+// Each needs the ones before it.
+// clang-format off
+#include "shaders/bsdf/parameters.glsl"
+#include "shaders/bsdf/lambert.glsl"
+#include "shaders/bsdf/microfacet.glsl"
+#include "shaders/bsdf/ggx.glsl"
+#include "shaders/bsdf/clearcoat.glsl"
+// clang-format on
+}  // namespace livery::f64
+
+#pragma GCC diagnostic pop
+
+#undef REAL
+#undef VEC2
+#undef VEC3
+#undef R
+#undef FN
+#undef OUT

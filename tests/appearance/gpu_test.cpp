@@ -1,0 +1,120 @@
+// The shaders against the CPU's float version of the same lines.
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "appearance/bsdf.h"
+#include "appearance/models.h"
+#include "core/random.h"
+#include "gl/context.h"
+#include "gl/draw.h"
+#include "gl/program.h"
+#include "gl/read_back.h"
+
+namespace livery {
+namespace {
+
+constexpr int kCases = 4096;
+
+struct Cases {
+    std::vector<glm::vec3> wi, wo;
+};
+
+class OnTheGpu : public testing::TestWithParam<ReflectanceModel> {
+  protected:
+    static Texture2D texture_of(const std::vector<glm::vec3>& vectors) {
+        std::vector<float> texels;
+        for (const glm::vec3& v : vectors) texels.insert(texels.end(), {v.x, v.y, v.z, 0.0f});
+        Texture2D texture(kCases, 1, TexelFormat::rgba32f);
+        texture.upload(texels);
+        return texture;
+    }
+
+    HeadlessContext context_{GlDevice::software};
+};
+
+constexpr const char* kBody = R"(
+uniform sampler2D directions_in;
+uniform sampler2D directions_out;
+uniform vec3 diffuse;
+uniform vec3 f0;
+uniform vec4 slopes;  // alpha_x, alpha_y, coat_alpha, coat_f0
+uniform vec3 coat_transmittance;
+layout(location = 0) out vec4 value;
+void main() {
+    ivec2 at = ivec2(gl_FragCoord.xy);
+    vec3 wi = texelFetch(directions_in, at, 0).xyz;
+    vec3 wo = texelFetch(directions_out, at, 0).xyz;
+    BsdfParameters p = BsdfParameters(
+        diffuse, f0, slopes.x, slopes.y, slopes.z, slopes.w, coat_transmittance);
+    value = vec4(bsdf_eval(p, wi, wo), bsdf_pdf(p, wi, wo));
+    if (wi.z < -2.0) {  // never: the rest of the interface must compile
+        BsdfEnvironment e = bsdf_environment(bsdf_widen(p, 0.1), wo.z);
+        value.xyz = e.diffuse + e.specular + e.coat + bsdf_sample(p, wo, wi);
+    }
+}
+)";
+
+TEST_P(OnTheGpu, GivesTheValuesOfTheCpuInFloat) {
+    const ReflectanceModel model = GetParam();
+    Program program =
+        Program::screen_pass({"bsdf_test.frag", "#version 450 core\n" + bsdf_glsl(model) + kBody});
+    Texture2D target(kCases, 1, TexelFormat::rgba32f);
+    const Framebuffer framebuffer({&target});
+    const ScreenPass pass;
+    Random random(7);
+    for (const float alpha : {1e-4f, 1e-3f, 0.01f, 0.1f, 0.3f, 1.0f}) {
+        f32::BsdfParameters p = rounded(plain_parameters());
+        p.diffuse = {0.7f, 0.4f, 0.1f};
+        p.f0 = {0.6f, 0.3f, 0.05f};
+        p.alpha_x = alpha;
+        p.alpha_y = std::min(2.0f * alpha, 1.0f);
+        p.coat_alpha = alpha;
+        p.coat_transmittance = {0.9f, 0.8f, 0.5f};
+        Cases cases;
+        for (int k = 0; k < kCases; ++k) {
+            const glm::dvec3 wo = random_direction(random);
+            cases.wo.push_back(glm::vec3(wo));
+            cases.wi.push_back(glm::vec3(random_partner(random, wo, alpha)));
+        }
+        const Texture2D in = texture_of(cases.wi);
+        const Texture2D out = texture_of(cases.wo);
+        in.bind(0);
+        out.bind(1);
+        program.use();
+        program.set("directions_in", 0);
+        program.set("directions_out", 1);
+        program.set("diffuse", p.diffuse);
+        program.set("f0", p.f0);
+        program.set("slopes", glm::vec4(p.alpha_x, p.alpha_y, p.coat_alpha, p.coat_f0));
+        program.set("coat_transmittance", p.coat_transmittance);
+        pass.run(program, framebuffer);
+        const ImageF values = read_floats(target);
+        // A few ulp per operation, amplified by the slope of a narrow lobe as 1e-7 / alpha.
+        const double tolerance = std::max(1e-4, 4e-7 / static_cast<double>(alpha));
+        for (int k = 0; k < kCases; ++k) {
+            const auto at = static_cast<std::size_t>(k);
+            const glm::vec3 cpu = evaluate(model, p, cases.wi[at], cases.wo[at]);
+            for (int c = 0; c < 3; ++c) {
+                const double expected = static_cast<double>(cpu[c]);
+                ASSERT_NEAR(
+                    static_cast<double>(values.at(k, 0, c)), expected, tolerance * expected + 1e-6)
+                    << "alpha " << alpha << " case " << k << " channel " << c;
+            }
+            const double density = static_cast<double>(pdf(model, p, cases.wi[at], cases.wo[at]));
+            ASSERT_NEAR(
+                static_cast<double>(values.at(k, 0, 3)), density, tolerance * density + 1e-6)
+                << "pdf, alpha " << alpha << " case " << k;
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Models,
+                         OnTheGpu,
+                         testing::Values(ReflectanceModel::lambert,
+                                         ReflectanceModel::ggx,
+                                         ReflectanceModel::clearcoat));
+
+}  // namespace
+}  // namespace livery
