@@ -21,12 +21,42 @@ std::string place_in(const std::string& text, std::size_t byte) {
     return "line " + std::to_string(line) + ", column " + std::to_string(column);
 }
 
+/// Brackets that stand open at the deepest place; printing a value recurses this far.
+std::size_t depth_of(const std::string& text) {
+    std::size_t depth = 0, deepest = 0;
+    bool in_text = false;
+    for (std::size_t k = 0; k < text.size(); ++k) {
+        const char c = text[k];
+        if (in_text) {
+            if (c == '\\') {
+                ++k;
+            } else if (c == '"') {
+                in_text = false;
+            }
+        } else if (c == '"') {
+            in_text = true;
+        } else if (c == '[' || c == '{') {
+            deepest = std::max(deepest, ++depth);
+        } else if ((c == ']' || c == '}') && depth > 0) {
+            --depth;
+        }
+    }
+    return deepest;
+}
+
 }  // namespace
 
 Json read_json_file(const std::filesystem::path& file, std::size_t max_bytes) {
     const std::string text = read_text_file(file, max_bytes);
     if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
         throw FileError(file, "", "an empty file", "a JSON object");
+    }
+    constexpr std::size_t max_depth = 200;
+    if (const auto depth = depth_of(text); depth > max_depth) {
+        throw FileError(file,
+                        "",
+                        std::to_string(depth) + " brackets inside one another",
+                        "at most " + std::to_string(max_depth));
     }
     try {
         Json json = Json::parse(text);
