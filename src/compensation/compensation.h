@@ -20,15 +20,14 @@ double design_white_luminance(const ColourCalibration& calibration,
                               double percentile,
                               const Image8& parts_mask = {});
 
-/// N(drive) of a non-additive projector and a start for its inverse. "Linear" is rho^-1(drive) per
-/// channel, in which N bends least: between nodes N is linear in it, by tetrahedra.
+/// N(drive) of a non-additive projector and a start for its inverse. A position s in [0, grid - 1]
+/// is a node's number; between nodes it is linear in rho^-1(drive), where N bends least.
 struct NonAdditive {
-    int grid = 0;                           ///< 0: the projector is additive, the rest is empty
-    std::vector<glm::vec3> n_from_nodes;    ///< grid^3, red fastest
-    std::array<std::vector<float>, 3> rho;  ///< drive, equally spaced linear
-    std::array<std::vector<float>, 3> linear_of_node;  ///< rising from 0 to 1
+    int grid = 0;                         ///< 0: the projector is additive, the rest is empty
+    std::vector<glm::vec3> n_from_nodes;  ///< grid^3, red fastest, tetrahedral in between
+    std::array<std::vector<float>, 3> linear_of_node;  ///< rho^-1 of each node's drive, rising
     int start_grid = 0;
-    std::vector<glm::vec3> start;  ///< nearest node number, fractional, for rho(N); red fastest
+    std::vector<glm::vec3> start;  ///< nearest position for start_grid^3 shaped N, red fastest
 };
 
 /// The calibration baked for one design white: N = A * rgb + b per valid pixel, packed densely.
@@ -37,7 +36,7 @@ struct CompensationTable {
     double design_white_y = 0.0;
     std::vector<std::uint32_t> pixels;  ///< index of each valid pixel, rising
     std::vector<float> coefficients;    ///< 12 planes of pixels.size(): A row by row, then b
-    std::array<std::vector<float>, 3> drive_from_n;  ///< equally spaced in N; empty if non-additive
+    std::array<std::vector<float>, 3> drive_from_n;  ///< equally spaced in N, see ResponseCurve
     NonAdditive non_additive;
     std::string calibration_id;
 };
