@@ -19,7 +19,7 @@ FN REAL coat_albedo(BsdfParameters p, REAL mu) {
 }
 
 FN REAL coat_transmission(BsdfParameters p, REAL mu) {
-    REAL margin = R(0.001) * grazing_reflectance(p.coat_f0);
+    REAL margin = R(0.0002) * grazing_reflectance(p.coat_f0);
     return max(R(1.0) - coat_albedo(p, mu) - margin, R(0.0));
 }
 
@@ -28,7 +28,7 @@ FN REAL coat_average_transmission(BsdfParameters p) {
     REAL grazing;
     ggx_average_albedo(p.coat_alpha, white, grazing);
     REAL f90 = grazing_reflectance(p.coat_f0);
-    return max(R(1.0) - p.coat_f0 * (white - grazing) - f90 * (grazing + R(0.001)), R(0.001));
+    return max(R(1.0) - p.coat_f0 * (white - grazing) - f90 * (grazing + R(0.0002)), R(0.001));
 }
 
 // 1 / n^2 of the coat.

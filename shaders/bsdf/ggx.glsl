@@ -17,7 +17,7 @@ FN VEC3 ggx_interface_albedo(BsdfParameters p, REAL mu) {
     REAL grazing;
     ggx_albedo(mu, ggx_layer_alpha(p), white, grazing);
     REAL f90 = grazing_reflectance(max_component(p.f0));
-    return min(p.f0 * (white - grazing) + VEC3(f90 * (grazing + R(0.001))), VEC3(R(1.0)));
+    return min(p.f0 * (white - grazing) + VEC3(f90 * (grazing + R(0.0002))), VEC3(R(1.0)));
 }
 
 FN VEC3 ggx_interface_average(BsdfParameters p) {
@@ -25,7 +25,7 @@ FN VEC3 ggx_interface_average(BsdfParameters p) {
     REAL grazing;
     ggx_average_albedo(ggx_layer_alpha(p), white, grazing);
     REAL f90 = grazing_reflectance(max_component(p.f0));
-    return min(p.f0 * (white - grazing) + VEC3(f90 * (grazing + R(0.001))), VEC3(R(0.999)));
+    return min(p.f0 * (white - grazing) + VEC3(f90 * (grazing + R(0.0002))), VEC3(R(0.999)));
 }
 
 FN VEC3 ggx_specular(BsdfParameters p, VEC3 wi, VEC3 wo, REAL hh, REAL schlick) {

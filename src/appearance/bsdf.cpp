@@ -216,9 +216,13 @@ glm::dvec3 directional_albedo(ReflectanceModel model,
     for (int i = 0; i < points; ++i) {
         for (int j = 0; j < points; ++j) {
             const glm::dvec2 u((i + 0.5) / points, (j + 0.5) / points);
-            const glm::dvec3 wi = f64::cosine_sample(u);
+            // Even steps of the cosine: near grazing the equal-area map is not smooth.
+            const double mu = u.x;
+            const double sine = std::sqrt((1.0 - mu) * (1.0 + mu));
+            const double phi = 2.0 * std::numbers::pi * u.y;
+            const glm::dvec3 wi(sine * std::cos(phi), sine * std::sin(phi), mu);
             total += (evaluate(model, p, wi, wo) - evaluate(model, no_diffuse, wi, wo)) *
-                     std::numbers::pi;
+                     (2.0 * std::numbers::pi * mu);
             if (has_coat) add_lobe(u, p.coat_alpha, p.coat_alpha, only_coat, nullptr);
             if (has_base) {
                 add_lobe(u, p.alpha_x, p.alpha_y, no_diffuse, has_coat ? &only_coat : nullptr);

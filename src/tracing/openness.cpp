@@ -1,7 +1,6 @@
 #include <cmath>
-#include <numbers>
-
 #include <glm/geometric.hpp>
+#include <numbers>
 
 #include "core/error.h"
 #include "core/parallel.h"

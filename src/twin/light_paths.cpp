@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/random.h"
+#include "twin/pixel_rays.h"
 #include "twin/place.h"
 
 namespace livery {
@@ -16,81 +17,6 @@ namespace livery {
 namespace {
 
 constexpr int kBlockPixels = 64;  ///< traced together, so that rays are coherent
-
-struct Rect {
-    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  ///< half open
-};
-
-/// The pixels that can see the mesh: the box around its projected vertices.
-Rect pixels_of(const View& view, const Mesh& mesh) {
-    glm::dvec2 low(1e30), high(-1e30);
-    for (const glm::vec3& vertex : mesh.positions_mm) {
-        const auto pixel = project(view, glm::dvec3(vertex));
-        if (!pixel) return {0, 0, view.width, view.height};
-        low = glm::min(low, *pixel);
-        high = glm::max(high, *pixel);
-    }
-    const auto clamped = [](double value, int limit) {
-        return static_cast<int>(std::clamp(value, 0.0, static_cast<double>(limit)));
-    };
-    return {clamped(std::floor(low.x) - 2.0, view.width),
-            clamped(std::floor(low.y) - 2.0, view.height),
-            clamped(std::ceil(high.x) + 2.0, view.width),
-            clamped(std::ceil(high.y) + 2.0, view.height)};
-}
-
-/// Rays through sub-samples of pixels: the lens is undone at the pixels' corners and interpolated
-/// inside a pixel, where distortion is linear to 1e-6 px.
-class PixelRays {
-  public:
-    PixelRays(const View& view, const Rect& rect, int samples_a_side)
-        : origin_(centre_in_world(view)),
-          rect_(rect),
-          stride_(static_cast<std::size_t>(rect.x1 - rect.x0 + 1)),
-          samples_(samples_a_side) {
-        const auto rows = static_cast<std::size_t>(rect.y1 - rect.y0 + 1);
-        corners_.resize(stride_ * rows);
-        parallel_for(rows, 8, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t row = begin; row < end; ++row) {
-                for (std::size_t column = 0; column < stride_; ++column) {
-                    const glm::dvec2 pixel(rect.x0 + static_cast<int>(column),
-                                           rect.y0 + static_cast<int>(row));
-                    corners_[row * stride_ + column] =
-                        glm::vec3(ray_through(view, pixel).direction);
-                }
-            }
-        });
-    }
-
-    /// Jittered inside each cell of a grid, so that no edge of a projector pixel aligns with it.
-    void add(int x, int y, std::vector<TraceRay>& rays) const {
-        const auto* corner = corners_.data() + static_cast<std::size_t>(y - rect_.y0) * stride_ +
-                             static_cast<std::size_t>(x - rect_.x0);
-        const glm::vec3 dx = corner[1] - corner[0], dy = corner[stride_] - corner[0],
-                        dxy = corner[stride_ + 1] - corner[stride_] - dx;
-        const float step = 1.0f / static_cast<float>(samples_);
-        for (int s = 0; s < samples_ * samples_; ++s) {
-            const auto bits = hash_3d(static_cast<std::uint32_t>(x),
-                                      static_cast<std::uint32_t>(y),
-                                      static_cast<std::uint32_t>(s));
-            const float jx = static_cast<float>(bits & 0xffffu) * 0x1p-16f;
-            const float jy = static_cast<float>(bits >> 16u) * 0x1p-16f;
-            const float u = (static_cast<float>(s % samples_) + jx) * step;
-            const float v = (static_cast<float>(s / samples_) + jy) * step;
-            TraceRay ray;
-            ray.origin = origin_;
-            ray.direction = glm::normalize(corner[0] + u * dx + v * dy + u * v * dxy);
-            rays.push_back(ray);
-        }
-    }
-
-  private:
-    glm::vec3 origin_;
-    Rect rect_;
-    std::size_t stride_;
-    int samples_;
-    std::vector<glm::vec3> corners_;
-};
 
 /// Sums small unordered lists of terms into sorted, merged ones.
 template <typename Term, typename Key, typename Value>
@@ -201,7 +127,7 @@ void add_covers(const SurfaceFactors& shares, double share, std::vector<CoverTer
 template <typename Body>
 std::vector<RowPaths> for_blocks(const TracedWorld& world,
                                  const PixelRays& pixel_rays,
-                                 const Rect& rect,
+                                 const PixelRect& rect,
                                  const Progress& progress,
                                  const Body& body) {
     std::vector<RowPaths> rows(static_cast<std::size_t>(rect.y1 - rect.y0));
@@ -231,7 +157,7 @@ LightPaths trace_camera(const TracedWorld& world, const Progress& progress) {
     const glm::dvec3 camera_mm = centre_in_world(view);
     const glm::dvec3 projector_mm = centre_in_world(world.bench.projector.view);
     const int samples = world.bench.samples_a_side * world.bench.samples_a_side;
-    const Rect rect = pixels_of(view, world.mesh);
+    const PixelRect rect = pixels_that_see(view, world.mesh);
     const PixelRays pixel_rays(view, rect, world.bench.samples_a_side);
 
     auto rows = for_blocks(
@@ -314,7 +240,7 @@ ProjectorPaths trace_projector(const TracedWorld& world, const Progress& progres
     const glm::dvec3 projector_mm = centre_in_world(view);
     const glm::dvec3 eye_mm = world.bench.eye_mm;
     const int samples = world.bench.samples_a_side * world.bench.samples_a_side;
-    const Rect rect = pixels_of(view, world.mesh);
+    const PixelRect rect = pixels_that_see(view, world.mesh);
     const PixelRays pixel_rays(view, rect, world.bench.samples_a_side);
 
     ProjectorPaths result;

@@ -49,12 +49,11 @@ std::string why(const FramePlan& plan, const std::string& name) {
     return "not listed";
 }
 
-TEST(FramePlan, DiffuseSceneWithoutLightNeedsFewKindsOfPass) {
+TEST(FramePlan, DiffuseSceneWithoutLightNeedsThreeKindsOfPass) {
     const FramePlan plan = plan_frame(bare_scene(), Quality::high, FrameStage::radiance);
     EXPECT_EQ(passes(plan),
               (std::set<std::string>{
-                  "surface-map", "diffuse-light", "shade:body:lambert", "shade:wheels:lambert",
-                  "resolve"}));
+                  "surface-map", "shade:body:lambert", "shade:wheels:lambert", "resolve"}));
     EXPECT_EQ(why(plan, "key-visibility"), "the look has no light");
     EXPECT_EQ(why(plan, "ambient-occlusion"), "no environment in the look");
     EXPECT_EQ(why(plan, "environment-filter"), "no environment in the look");

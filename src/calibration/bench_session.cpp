@@ -1,0 +1,265 @@
+#include "calibration/bench_session.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calibration/colour_report.h"
+#include "calibration/statistics.h"
+#include "core/error.h"
+
+namespace livery {
+namespace {
+
+constexpr double kTargetPeak = 0.80, kHighestPeak = 0.85, kLowestPeak = 0.70;
+constexpr int kMostLatency = 6;
+constexpr double kProjectorFrame_s = 1.0 / 60.0;
+
+Image8 uniform(int width, int height, std::uint8_t value) {
+    return Image8(width, height, 3, value);
+}
+
+/// A photograph thinned to about 50000 pixels for comparisons: mean of the channels over black
+/// level.
+std::vector<float> thin(const Photograph& photo) {
+    const std::size_t count = photo.image.pixel_count();
+    const std::size_t step = std::max<std::size_t>(1, count / 50000);
+    const auto channels = static_cast<std::size_t>(photo.image.channels);
+    std::vector<float> values;
+    for (std::size_t i = 0; i < count; i += step) {
+        float sum = 0.0f;
+        for (std::size_t c = 0; c < channels; ++c) sum += photo.image.values[i * channels + c];
+        values.push_back(sum / static_cast<float>(channels) -
+                         static_cast<float>(photo.black_level));
+    }
+    return values;
+}
+
+/// Noise of the thinned values of two photographs of the same scene.
+double noise_between(const std::vector<float>& a, const std::vector<float>& b) {
+    std::vector<float> distance;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        if (std::isfinite(a[i] - b[i])) distance.push_back(std::abs(a[i] - b[i]));
+    return 1.4826 * static_cast<double>(median(distance));
+}
+
+/// Whole projector frames where the exposure holds a few: a wheel's colours then weigh equally.
+double whole_frames(double exposure_s) {
+    const double frames = std::floor(exposure_s / kProjectorFrame_s + 1e-6);
+    return frames >= 3.0 ? frames * kProjectorFrame_s : exposure_s;
+}
+
+}  // namespace
+
+BenchSession::BenchSession(const BenchPorts& ports,
+                           const Progress& progress,
+                           int expected_photographs)
+    : ports_(ports), progress_(progress), expected_(std::max(expected_photographs, 1)) {
+    check_argument(static_cast<bool>(ports.show) && static_cast<bool>(ports.photograph),
+                   "a live calibration needs a projector and a camera");
+}
+
+Photograph BenchSession::photograph(const std::string& name) {
+    progress_.update(std::min(1.0, static_cast<double>(photographs_) / expected_),
+                     "photographing " + name);
+    Photograph photo = ports_.photograph(exposure_s_);
+    ++photographs_;
+    if (photo.image.empty() || photo.image.channels != 3)
+        throw FileError("camera",
+                        "photograph",
+                        std::to_string(photo.image.width) + "x" +
+                            std::to_string(photo.image.height) + "x" +
+                            std::to_string(photo.image.channels),
+                        "a picture of 3 channels");
+    photo.name = name;
+    return photo;
+}
+
+double BenchSession::white_peak(const Photograph& white) const {
+    // Channel by channel over the lit pixels; a thousandth may glint.
+    double peak = 0.0;
+    const double full = white.saturates_at - white.black_level;
+    for (std::size_t c = 0; c < 3; ++c) {
+        std::vector<float> values;
+        for (const std::uint32_t i : lit_) {
+            const float value = white.image.values[3 * static_cast<std::size_t>(i) + c];
+            if (std::isfinite(value)) values.push_back(value);
+        }
+        peak = std::max(
+            peak,
+            (static_cast<double>(quantile(std::move(values), 0.999)) - white.black_level) / full);
+    }
+    return peak;
+}
+
+void BenchSession::meet(int width, int height) {
+    // Black until two photographs agree
+    ports_.show(uniform(width, height, 0));
+    exposure_s_ = 0.0;
+    black_ = photograph("black");
+    exposure_s_ = black_.exposure_s;
+    if (!(exposure_s_ > 0.0))
+        throw FileError("camera", "exposure_s", std::to_string(exposure_s_), "a positive time");
+    for (int i = 0; i <= kMostLatency; ++i) black_ = photograph("black");
+    Photograph again = photograph("black");
+    const double noise = std::max(noise_between(thin(black_), thin(again)), 1e-6);
+
+    // White: how many photographs until it is seen
+    const Image8 white_picture = uniform(width, height, 255);
+    const std::vector<float> black_values = thin(black_);
+    Photograph white;
+    const auto brighter = [&](const std::vector<float>& values) {
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < values.size(); ++i)
+            count += static_cast<double>(values[i] - black_values[i]) > 10.0 * noise;
+        return static_cast<double>(count) > 5e-4 * static_cast<double>(values.size());
+    };
+    ports_.show(white_picture);
+    latency_ = -1;
+    for (int i = 0; i <= kMostLatency && latency_ < 0; ++i) {
+        white = photograph("white");
+        if (brighter(thin(white))) latency_ = i;
+    }
+    for (int longer = 0; latency_ < 0 && longer < 3; ++longer) {
+        exposure_s_ *= 8.0;
+        white = photograph("white");
+        // The same exposure's black would be brighter too: scale it.
+        auto values = thin(white);
+        for (float& v : values) v /= static_cast<float>(exposure_s_ / black_.exposure_s);
+        if (brighter(values)) latency_ = kMostLatency;
+    }
+    if (latency_ < 0)
+        throw Refused(
+            "the camera sees no light of the projector",
+            "switch the projector on, open the lens, aim the camera at the mock-up, and check that "
+            "pictures go to the projector's screen");
+
+    // Lit pixels: a tenth of the brightest ones
+    const auto find_lit = [&] {
+        const float gain = static_cast<float>(white.exposure_s / black_.exposure_s);
+        std::vector<float> light(white.image.pixel_count());
+        for (std::size_t i = 0; i < light.size(); ++i) {
+            float sum = 0.0f;
+            for (std::size_t c = 0; c < 3; ++c)
+                sum += white.image.values[3 * i + c] - static_cast<float>(white.black_level) -
+                       gain * (black_.image.values[3 * i + c] -
+                               static_cast<float>(black_.black_level));
+            light[i] = std::isfinite(sum) ? sum : 0.0f;
+        }
+        const float limit =
+            std::max(0.1f * quantile(light, 0.9999), 3.0f * static_cast<float>(noise));
+        std::vector<std::uint32_t> lit;
+        for (std::size_t i = 0; i < light.size(); ++i)
+            if (light[i] > limit) lit.push_back(static_cast<std::uint32_t>(i));
+        const std::size_t step = lit.size() / 40000 + 1;
+        lit_.clear();
+        for (std::size_t i = 0; i < lit.size(); i += step) lit_.push_back(lit[i]);
+    };
+    find_lit();
+
+    // Exposure
+    const bool knows_full_scale = std::isfinite(white.saturates_at);
+    double peak = white_peak(white);
+    for (int round = 0; knows_full_scale && round < 12; ++round) {
+        const bool fits = peak <= kHighestPeak && peak >= kLowestPeak;
+        if (fits && std::abs(whole_frames(exposure_s_) - exposure_s_) < 1e-9) break;
+        if (!fits)
+            exposure_s_ *=
+                peak >= 0.97 ? 0.25 : std::clamp(kTargetPeak / std::max(peak, 1e-3), 0.1, 16.0);
+        exposure_s_ = whole_frames(exposure_s_);
+        white = photograph("white");
+        find_lit();
+        peak = white_peak(white);
+    }
+    if (knows_full_scale && (peak > kHighestPeak || peak < 0.2))
+        throw Refused(
+            "no exposure brings white on the mock-up near 80% of full scale; the last, " +
+                std::to_string(exposure_s_) + " s, gave " + percent(peak),
+            "open or close the lens, change ISO, or move the camera so that nothing shines at it");
+    last_ = white.image;
+}
+
+bool BenchSession::differs(const Photograph& a, const Photograph& b) const {
+    // A tenth of the lit pixels by a tenth of what white gives
+    std::size_t changed = 0;
+    for (const std::uint32_t i : lit_) {
+        float difference = 0.0f, sum = 0.0f;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const std::size_t k = 3 * static_cast<std::size_t>(i) + c;
+            difference += std::abs(a.image.values[k] - b.image.values[k]);
+            sum += std::abs(a.image.values[k] - static_cast<float>(a.black_level)) +
+                   std::abs(b.image.values[k] - static_cast<float>(b.black_level));
+        }
+        changed += difference > 0.1f * sum;
+    }
+    return static_cast<double>(changed) > 0.1 * static_cast<double>(lit_.size());
+}
+
+Photograph BenchSession::take(const Image8& drive, const std::string& name, bool compared_to_last) {
+    ports_.show(drive);
+    for (int i = 0; i < latency_; ++i) photograph(name);
+    Photograph photo = photograph(name);
+    Photograph before;
+    before.image = std::move(last_);
+    before.black_level = photo.black_level;
+    for (int retry = 0; compared_to_last && !differs(photo, before); ++retry) {
+        if (retry == kMostLatency)
+            throw Refused("the photograph of " + name + " shows no change from the picture before",
+                          "the projector's picture did not arrive: check that its screen is not "
+                          "frozen, asleep or "
+                          "mirrored from another");
+        photo = photograph(name);
+    }
+    last_ = photo.image;
+    return photo;
+}
+
+Photograph BenchSession::take_mean(const Image8& drive,
+                                   const std::string& name,
+                                   int shots,
+                                   bool compared_to_last) {
+    Photograph mean = take(drive, name, compared_to_last);
+    if (shots <= 1) return mean;
+    const auto limit =
+        static_cast<float>(mean.black_level + 0.98 * (mean.saturates_at - mean.black_level));
+    const auto brightness = [&](const Photograph& photo) {
+        double sum = 0.0;
+        for (const std::uint32_t i : lit_)
+            for (std::size_t c = 0; c < 3; ++c) {
+                const auto value =
+                    static_cast<double>(photo.image.values[3 * static_cast<std::size_t>(i) + c]);
+                if (std::isfinite(value)) sum += value - photo.black_level;
+            }
+        return sum;
+    };
+    double low = brightness(mean), high = low;
+    std::vector<double> sum(mean.image.values.begin(), mean.image.values.end());
+    std::vector<std::uint8_t> over(sum.size(), 0);
+    const auto note = [&](const Photograph& photo) {
+        for (std::size_t i = 0; i < sum.size(); ++i) over[i] |= photo.image.values[i] >= limit;
+    };
+    note(mean);
+    for (int shot = 1; shot < shots; ++shot) {
+        const Photograph next = photograph(name);
+        const double b = brightness(next);
+        low = std::min(low, b);
+        high = std::max(high, b);
+        for (std::size_t i = 0; i < sum.size(); ++i)
+            sum[i] += static_cast<double>(next.image.values[i]);
+        note(next);
+    }
+    // Black holds too little light to tell the lamp's brightness.
+    const bool dark =
+        std::all_of(drive.values.begin(), drive.values.end(), [](auto v) { return v < 32; });
+    if (!dark && high - low > 0.01 * high)
+        throw Refused("the photographs of " + name + " differ by " + percent((high - low) / high) +
+                          " in brightness",
+                      "let the lamp warm up for 20 minutes, switch off automatic exposure, eco and "
+                      "dynamic-contrast modes, expose for whole projector frames, and repeat");
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+        const auto value = static_cast<float>(sum[i] / shots);
+        mean.image.values[i] = over[i] ? std::max(value, limit) : value;
+    }
+    return mean;
+}
+
+}  // namespace livery

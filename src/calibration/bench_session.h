@@ -1,0 +1,54 @@
+// Showing pictures and photographing them so that each photograph is known to show its picture.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/bench_ports.h"
+#include "core/image.h"
+#include "core/progress.h"
+
+namespace livery {
+
+/// A run of pictures and photographs through the ports: waits for latency, checks that each picture
+/// arrived, keeps one exposure.
+class BenchSession {
+  public:
+    BenchSession(const BenchPorts& ports, const Progress& progress, int expected_photographs);
+
+    /// Finds how many photographs still see the picture before, and the exposure at which white
+    /// peaks at about 80% of full scale (at most 85%) in every channel. Throws Refused when no
+    /// light of the projector reaches the camera or no exposure fits.
+    void meet(int width, int height);
+
+    /// Shows and photographs. Where `compared_to_last`, the photograph must differ from the one
+    /// before on the lit pixels; it is repeated some times, then refused.
+    Photograph take(const Image8& drive, const std::string& name, bool compared_to_last = true);
+
+    /// Mean of several photographs of one picture. A value at 98% of full scale in any of them
+    /// stays there. Throws Refused when their brightness differs by more than 1%.
+    Photograph take_mean(const Image8& drive,
+                         const std::string& name,
+                         int shots,
+                         bool compared_to_last = true);
+
+    int latency() const { return latency_; }
+    int photographs() const { return photographs_; }  ///< taken so far
+    double exposure_s() const { return exposure_s_; }
+
+  private:
+    Photograph photograph(const std::string& name);
+    double white_peak(const Photograph& white) const;
+    bool differs(const Photograph& a, const Photograph& b) const;
+
+    const BenchPorts& ports_;
+    const Progress& progress_;
+    int expected_ = 0, photographs_ = 0, latency_ = 0;
+    double exposure_s_ = 0.0;
+    std::vector<std::uint32_t> lit_;  ///< some of the lit camera pixels
+    ImageF last_;                     ///< what they were in the photograph before
+    Photograph black_;
+};
+
+}  // namespace livery

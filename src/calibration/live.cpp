@@ -1,0 +1,251 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+#include "calibration/bench_session.h"
+#include "calibration/colour.h"
+#include "calibration/colour_report.h"
+#include "calibration/colour_samples.h"
+#include "calibration/mixing.h"
+#include "calibration/statistics.h"
+#include "core/error.h"
+
+namespace livery {
+namespace {
+
+constexpr int kMosaics = 6;  // with the six pictures of the method: twelve
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+ImageF mean_of_channels(const ImageF& image) {
+    ImageF mean(image.width, image.height, 1);
+    for (std::size_t i = 0; i < mean.values.size(); ++i)
+        mean.values[i] =
+            (image.values[3 * i] + image.values[3 * i + 1] + image.values[3 * i + 2]) / 3.0f;
+    return mean;
+}
+
+struct Geometry {
+    ProjectorToCamera map;
+    ImageF light;                      ///< white - black, camera pixels
+    double lamp_per_photograph = 0.0;  ///< relative change of the lamp
+};
+
+/// Each pair of stripes adds up to white and black. That tells whether every picture had arrived,
+/// and how the lamp's brightness moved.
+double check_pairs(const std::vector<ImageF>& pictures, const GrayCodeResult& decoded) {
+    const std::size_t pairs = (pictures.size() - 2) / 2;
+    const ImageF& white = pictures[pictures.size() - 2];
+    const ImageF& black = pictures[pictures.size() - 1];
+    std::vector<std::size_t> lit;
+    for (std::size_t i = 0; i < decoded.decoded.values.size(); i += 7)
+        if (decoded.decoded.values[i]) lit.push_back(i);
+
+    double sx = 0, sy = 0, sxx = 0, sxy = 0;
+    for (std::size_t pair = 0; pair < pairs; ++pair) {
+        std::size_t broken = 0;
+        double sum = 0.0, expected = 0.0;
+        for (const std::size_t i : lit) {
+            const double both = static_cast<double>(pictures[2 * pair].values[i]) +
+                                static_cast<double>(pictures[2 * pair + 1].values[i]);
+            const double whole =
+                static_cast<double>(white.values[i]) + static_cast<double>(black.values[i]);
+            const double light =
+                static_cast<double>(white.values[i]) - static_cast<double>(black.values[i]);
+            broken += std::abs(both - whole) > 0.25 * light;
+            sum += both - 2.0 * static_cast<double>(black.values[i]);
+            expected += light;
+        }
+        if (static_cast<double>(broken) > 0.2 * static_cast<double>(lit.size()))
+            throw Refused("stripe pictures and their inverses do not add up to white",
+                          "the projector's picture arrives late or changes on its own: wait longer "
+                          "after each "
+                          "picture, and switch off motion interpolation and dynamic contrast");
+        const double x = static_cast<double>(2 * pair), y = sum / expected;
+        sx += x;
+        sy += y;
+        sxx += x * x;
+        sxy += x * y;
+    }
+    const auto n = static_cast<double>(pairs);
+    return (n * sxy - sx * sy) / (n * sxx - sx * sx) / (sy / n);
+}
+
+Geometry photograph_geometry(BenchSession& session, const LiveOptions& options) {
+    std::vector<ImageF> pictures;
+    for (const Pattern& pattern : geometry_patterns(options.width, options.height))
+        pictures.push_back(mean_of_channels(session.take(pattern.drive, pattern.role).image));
+    const GrayCodeResult decoded =
+        decode_gray_code(std::span<const ImageF>(pictures), options.width, options.height);
+    Geometry geometry;
+    geometry.lamp_per_photograph = check_pairs(pictures, decoded);
+    geometry.map = invert_map(decoded, options.width, options.height);
+    geometry.light = std::move(pictures[pictures.size() - 2]);
+    for (std::size_t i = 0; i < geometry.light.values.size(); ++i)
+        geometry.light.values[i] -= pictures.back().values[i];
+    return geometry;
+}
+
+/// A well-lit place in the middle of an even neighbourhood, for the colorimeter.
+glm::dvec2 place_to_measure(const Geometry& geometry) {
+    const ImageF& place = geometry.map.camera_px;
+    ImageF light(place.width, place.height, 1);
+    std::vector<float> all;
+    for (int y = 0; y < place.height; ++y)
+        for (int x = 0; x < place.width; ++x) {
+            if (!std::isfinite(place.at(x, y)) || geometry.map.edge.at(x, y)) continue;
+            const int cx =
+                std::clamp(static_cast<int>(place.at(x, y, 0)), 0, geometry.light.width - 1);
+            const int cy =
+                std::clamp(static_cast<int>(place.at(x, y, 1)), 0, geometry.light.height - 1);
+            light.at(x, y) = std::max(geometry.light.at(cx, cy), 0.0f);
+            all.push_back(light.at(x, y));
+        }
+    const float low = quantile(all, 0.6), high = quantile(all, 0.97);
+    constexpr int kReach = 6;
+    glm::dvec2 best(0.0);
+    double best_spread = 1e9;
+    for (int y = kReach; y + kReach < place.height; y += 2)
+        for (int x = kReach; x + kReach < place.width; x += 2) {
+            if (light.at(x, y) < low || light.at(x, y) > high) continue;
+            double sum = 0.0, square = 0.0;
+            bool whole = true;
+            for (int dy = -kReach; dy <= kReach && whole; dy += 2)
+                for (int dx = -kReach; dx <= kReach; dx += 2) {
+                    const auto v = static_cast<double>(light.at(x + dx, y + dy));
+                    whole &= v > 0.0;
+                    sum += v;
+                    square += v * v;
+                }
+            if (!whole) continue;
+            const double count = (kReach + 1) * (kReach + 1);
+            const double spread = square * count / (sum * sum);
+            if (spread < best_spread) {
+                best_spread = spread;
+                best = {x + 0.5, y + 0.5};
+            }
+        }
+    if (best_spread > 1e8)
+        throw Refused("no even, well-lit place of 13 px on the mock-up for the colorimeter",
+                      "bring the projector nearer, so that the mock-up fills more of its picture");
+    return best;
+}
+
+/// Undoes a slow change of the lamp, `change` relative to the bright picture.
+void scale_light(Photograph& photo, double change) {
+    const auto gain = static_cast<float>(1.0 / (1.0 + change)),
+               black = static_cast<float>(photo.black_level);
+    for (float& value : photo.image.values) value = black + (value - black) * gain;
+}
+
+}  // namespace
+
+LiveResult calibrate_live(const BenchPorts& ports,
+                          const LiveOptions& options,
+                          const Progress& progress) {
+    check_argument(options.shots >= 1 && options.shots <= 1000,
+                   "shots " + std::to_string(options.shots) + " is outside 1..1000");
+    const ColourOptions& colour = options.colour;
+    LiveResult result;
+    result.patterns =
+        colour_patterns(options.width, options.height, colour.dark_drive, colour.bright_drive);
+
+    const auto start = std::chrono::steady_clock::now();
+    const int geometry_count =
+        2 * (gray_code_bits(options.width) + gray_code_bits(options.height)) + 2;
+    Progress capturing = progress;
+    if (progress.report)
+        capturing.report = [&](double fraction, std::string_view stage) {
+            progress.report(0.9 * fraction, stage);
+        };
+    BenchSession session(ports, capturing, geometry_count + 6 * options.shots + 15);
+    session.meet(options.width, options.height);
+    const Geometry geometry = photograph_geometry(session, options);
+    result.map = geometry.map;
+    result.latency_photographs = session.latency();
+
+    // The six pictures; the colorimeter reads each while it is known to be shown
+    ColourOptions with_xyz = colour;
+    const bool measures = static_cast<bool>(ports.measure_xyz) &&
+                          !colour.camera_to_xyz.has_primaries &&
+                          colour.camera_to_xyz.origin.empty();
+    const bool full_range = colour.dark_drive == 0 && colour.bright_drive == 255;
+    CameraToXyz& xyz = with_xyz.camera_to_xyz;
+    if (measures) {
+        xyz.has_primaries = true;
+        xyz.measured_at_px = place_to_measure(geometry);
+    }
+    const auto measure = [&](const std::string& role) {
+        if (!measures) return;
+        const auto value_into = [&]() -> glm::dvec3 {
+            return ports.measure_xyz(*xyz.measured_at_px);
+        };
+        if (role == "dark-gray") xyz.black_xyz = value_into();
+        if (role == "bright-gray") xyz.white_xyz = value_into();
+        if (role == "red") xyz.primaries_xyz[0] = value_into();
+        if (role == "green") xyz.primaries_xyz[1] = value_into();
+        if (role == "blue") xyz.primaries_xyz[2] = value_into();
+    };
+    int bright_at = 0;
+    const auto photograph = [&](const Pattern& pattern) {
+        const bool as_before = pattern.role == "dark-gray" && colour.dark_drive < 64;
+        RoledPhotograph capture{
+            pattern.role,
+            session.take_mean(pattern.drive, pattern.role, options.shots, !as_before)};
+        result.colour_photographs += options.shots;
+        if (pattern.role == "bright-gray") bright_at = session.photographs();
+        const double change = geometry.lamp_per_photograph * (session.photographs() - bright_at);
+        if (pattern.role != "dark-gray") {
+            if (std::abs(change) > 0.01)
+                throw Refused("the lamp changes by " + percent(std::abs(change)) +
+                                  " while the colours are photographed",
+                              "let the lamp warm up for 20 minutes and repeat");
+            scale_light(capture.photograph, change);
+        }
+        result.captures.push_back(std::move(capture));
+        if (full_range) measure(pattern.role);
+    };
+    for (const Pattern& pattern : result.patterns) photograph(pattern);
+
+    // Is white the sum of the channels? If not, mosaics of colours
+    const double additivity =
+        pool_mixing(sample_colours(result.captures, result.map)).additivity_error;
+    if (additivity > kAdditivityWarning && colour.mode == ColourMode::robust) {
+        for (Pattern& pattern : mosaic_patterns(options.width, options.height, kMosaics)) {
+            photograph(pattern);
+            result.patterns.push_back(std::move(pattern));
+        }
+    }
+    if (measures && !full_range)
+        for (const Pattern& pattern : colour_patterns(options.width, options.height, 0, 255)) {
+            if (pattern.role == "gray-levels") break;
+            session.take(
+                pattern.drive, pattern.role + " for the colorimeter", pattern.role != "dark-gray");
+            measure(pattern.role);
+        }
+    if (additivity <= kAdditivityWarning) xyz.white_xyz.reset();  // it would only add its noise
+    ports.show(Image8(options.width, options.height, 3));
+    result.capture_seconds = seconds_since(start);
+
+    const auto solve_start = std::chrono::steady_clock::now();
+    Progress solving = progress;
+    if (progress.report)
+        solving.report = [&](double fraction, std::string_view stage) {
+            progress.report(0.9 + 0.1 * fraction, stage);
+        };
+    result.calibration =
+        calibrate_colour(result.captures, result.patterns, result.map, with_xyz, solving);
+    if (session.latency() > 0) {
+        result.calibration.warnings.push_back(
+            "the projector's picture reaches the camera " + std::to_string(session.latency()) +
+            " photographs late; each was awaited; a game mode shortens it");
+        seal(result.calibration);
+    }
+    result.solve_seconds = seconds_since(solve_start);
+    return result;
+}
+
+}  // namespace livery

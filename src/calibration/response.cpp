@@ -1,0 +1,276 @@
+#include "calibration/response.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "calibration/statistics.h"
+#include "core/error.h"
+
+namespace livery {
+namespace {
+
+constexpr int kLevels = 256;
+
+/// Solves (W + strength D'D) x = W y for third differences D: a band of seven, by Cholesky.
+std::array<double, 256> solve_smooth(const LevelCurve& measured, double strength) {
+    constexpr int kBand = 3;
+    // Lower band by rows: band[i][j] is the entry (i, i - j).
+    std::array<std::array<double, kBand + 1>, kLevels> band{};
+    for (int i = 0; i < kLevels; ++i)
+        band[static_cast<std::size_t>(i)][0] = measured.weight[static_cast<std::size_t>(i)];
+    constexpr std::array<double, 4> kThird{-1.0, 3.0, -3.0, 1.0};
+    for (int row = 0; row + kBand < kLevels; ++row)
+        for (int a = 0; a <= kBand; ++a)
+            for (int b = 0; b <= a; ++b)
+                band[static_cast<std::size_t>(row + a)][static_cast<std::size_t>(a - b)] +=
+                    strength * kThird[static_cast<std::size_t>(a)] *
+                    kThird[static_cast<std::size_t>(b)];
+    for (int i = 0; i < kLevels; ++i) {
+        auto& row = band[static_cast<std::size_t>(i)];
+        for (int j = std::min(kBand, i); j >= 0; --j) {
+            double sum = row[static_cast<std::size_t>(j)];
+            const auto& other = band[static_cast<std::size_t>(i - j)];
+            for (int k = j + 1; k <= std::min(kBand, i); ++k)
+                sum -= row[static_cast<std::size_t>(k)] * other[static_cast<std::size_t>(k - j)];
+            row[static_cast<std::size_t>(j)] =
+                j == 0 ? std::sqrt(std::max(sum, 1e-300)) : sum / other[0];
+        }
+    }
+    std::array<double, 256> x{};
+    for (int i = 0; i < kLevels; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        double sum = measured.weight[at] * measured.n[at];
+        for (int k = 1; k <= std::min(kBand, i); ++k)
+            sum -= band[at][static_cast<std::size_t>(k)] * x[at - static_cast<std::size_t>(k)];
+        x[at] = sum / band[at][0];
+    }
+    for (int i = kLevels - 1; i >= 0; --i) {
+        const auto at = static_cast<std::size_t>(i);
+        double sum = x[at];
+        for (int k = 1; k <= kBand && i + k < kLevels; ++k)
+            sum -= band[at + static_cast<std::size_t>(k)][static_cast<std::size_t>(k)] *
+                   x[at + static_cast<std::size_t>(k)];
+        x[at] = sum / band[at][0];
+    }
+    return x;
+}
+
+double largest_fall(std::span<const double> values) {
+    double highest = -std::numeric_limits<double>::infinity(), fall = 0.0;
+    for (const double value : values) {
+        fall = std::max(fall, highest - value);
+        highest = std::max(highest, value);
+    }
+    return fall;
+}
+
+}  // namespace
+
+std::vector<double> isotonic_regression(std::span<const double> values,
+                                        std::span<const double> weights) {
+    check_argument(values.size() == weights.size(), "values and weights differ in count");
+    struct Pool {
+        double mean, weight;
+        std::size_t count;
+    };
+    std::vector<Pool> pools;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        check_argument(weights[i] > 0.0 && std::isfinite(values[i]),
+                       "isotonic regression needs finite values and positive weights");
+        Pool pool{values[i], weights[i], 1};
+        while (!pools.empty() && pools.back().mean >= pool.mean) {
+            const Pool& last = pools.back();
+            const double weight = last.weight + pool.weight;
+            pool = {(last.mean * last.weight + pool.mean * pool.weight) / weight,
+                    weight,
+                    last.count + pool.count};
+            pools.pop_back();
+        }
+        pools.push_back(pool);
+    }
+    std::vector<double> fit;
+    fit.reserve(values.size());
+    for (const Pool& pool : pools) fit.insert(fit.end(), pool.count, pool.mean);
+    return fit;
+}
+
+LevelCurve level_means(std::span<const ResponseSample> samples) {
+    std::array<std::vector<ResponseSample>, 256> of_level;
+    for (const ResponseSample& sample : samples)
+        if (std::isfinite(sample.n) && sample.weight > 0.0f)
+            of_level[sample.drive].push_back(sample);
+
+    LevelCurve curve;
+    for (std::size_t level = 0; level < 256; ++level) {
+        const auto& here = of_level[level];
+        if (here.empty()) continue;
+        std::vector<float> values;
+        for (const ResponseSample& s : here) values.push_back(s.n);
+        const float centre = median(values);
+        for (float& value : values) value = std::abs(value - centre);
+        const double reach = 5.0 * 1.4826 * static_cast<double>(median(values)) + 1e-7;
+        double sum = 0.0, weight = 0.0, weight2 = 0.0;
+        for (const ResponseSample& s : here)
+            if (std::abs(s.n - centre) <= reach) {
+                sum += static_cast<double>(s.weight) * s.n;
+                weight += s.weight;
+                weight2 += static_cast<double>(s.weight) * s.weight;
+            }
+        const double mean = sum / weight;
+        double spread = 0.0;
+        for (const ResponseSample& s : here)
+            if (std::abs(s.n - centre) <= reach)
+                spread += static_cast<double>(s.weight) * (s.n - mean) * (s.n - mean);
+        // Variance of the weighted mean from the samples' own scatter; the floor (one part in
+        // 100000) keeps a level of a few equal samples from outweighing all others.
+        const double variance = spread / weight * (weight2 / (weight * weight));
+        const double few = here.size() < 4 ? 4.0 : 1.0;
+        curve.n[level] = mean;
+        curve.weight[level] = 1.0 / (few * variance + 1e-10);
+    }
+    return curve;
+}
+
+LevelCurve smooth_levels(const LevelCurve& measured) {
+    double sampled = 0.0, total_weight = 0.0;
+    for (const double weight : measured.weight) {
+        sampled += weight > 0.0;
+        total_weight += weight;
+    }
+    check_argument(sampled >= 2.0, "a response needs samples of at least two drives");
+
+    // Largest strength whose weighted misfit is what the noise explains
+    LevelCurve smooth = measured;
+    const auto misfit = [&](const std::array<double, 256>& x) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < 256; ++i)
+            sum += measured.weight[i] * (x[i] - measured.n[i]) * (x[i] - measured.n[i]);
+        return sum / sampled;
+    };
+    const double mean_weight = total_weight / sampled;
+    double low = -6.0, high = 8.0;  // powers of ten over the mean weight
+    for (int step = 0; step < 30; ++step) {
+        const double middle = 0.5 * (low + high);
+        if (misfit(solve_smooth(measured, mean_weight * std::pow(10.0, middle))) <= 1.0)
+            low = middle;
+        else
+            high = middle;
+    }
+    smooth.n = solve_smooth(measured, mean_weight * std::pow(10.0, low));
+    // Bridged drives count too from here on.
+    for (double& weight : smooth.weight) weight = std::max(weight, 1e-3 * mean_weight);
+    return smooth;
+}
+
+ResponseCurve invert_levels(const LevelCurve& levels, int dark_drive, int bright_drive) {
+    check_argument(dark_drive >= 0 && dark_drive < bright_drive && bright_drive < kLevels,
+                   "drives " + std::to_string(dark_drive) + ", " + std::to_string(bright_drive) +
+                       " are not 0 <= s < t <= 255");
+    ResponseCurve curve;
+    curve.largest_violation = largest_fall(levels.n);
+    std::vector<double> n = isotonic_regression(levels.n, levels.weight);
+
+    const double first = n[static_cast<std::size_t>(dark_drive)];
+    const double span = n[static_cast<std::size_t>(bright_drive)] - first;
+    if (!(span > 0.0))
+        throw Refused(
+            "the photographed grey levels do not get brighter with the projector's drive",
+            "check that the gray-levels photograph shows the gray-levels picture, and that "
+            "the projector is not in a mode that inverts or flattens grey");
+    for (double& value : n) value = (value - first) / span;
+
+    curve.drive_from_n.resize(kResponseSize);
+    int above = dark_drive + 1;
+    for (std::size_t i = 0; i < kResponseSize; ++i) {
+        const double at = static_cast<double>(i) / static_cast<double>(kResponseSize - 1);
+        while (above < bright_drive && n[static_cast<std::size_t>(above)] < at) ++above;
+        const double low = n[static_cast<std::size_t>(above - 1)],
+                     up = n[static_cast<std::size_t>(above)];
+        const double fraction = up > low ? std::clamp((at - low) / (up - low), 0.0, 1.0) : 0.5;
+        curve.drive_from_n[i] = static_cast<float>(above - 1 + fraction);
+    }
+    // A plateau's middle may lie over the next sample by rounding only.
+    for (std::size_t i = 1; i < kResponseSize; ++i)
+        curve.drive_from_n[i] = std::max(curve.drive_from_n[i], curve.drive_from_n[i - 1]);
+    return curve;
+}
+
+double nadaraya_watson(std::span<const double> n,
+                       std::span<const double> drive,
+                       std::span<const double> weight,
+                       double bandwidth,
+                       double at) {
+    double sum = 0.0, total = 0.0;
+    for (std::size_t i = 0; i < n.size(); ++i) {
+        const double z = (at - n[i]) / bandwidth;
+        const double kernel = weight[i] * std::exp(-0.5 * z * z);
+        sum += kernel * drive[i];
+        total += kernel;
+    }
+    return total > 0.0 ? sum / total : std::numeric_limits<double>::quiet_NaN();
+}
+
+ResponseCurve kernel_response(std::span<const ResponseSample> samples,
+                              double bandwidth,
+                              double n_first,
+                              double n_last) {
+    check_argument(bandwidth > 0.0 && n_last > n_first,
+                   "kernel response: empty range or bandwidth");
+    // Samples gathered in cells far narrower than the kernel, each at its mean
+    const double cell = bandwidth / 64.0;
+    const double from = n_first - 8.0 * bandwidth, to = n_last + 8.0 * bandwidth;
+    struct Cell {
+        double n = 0.0, drive = 0.0, count = 0.0;
+    };
+    std::vector<Cell> cells(static_cast<std::size_t>((to - from) / cell) + 1);
+    for (const ResponseSample& sample : samples) {
+        if (!std::isfinite(sample.n) || sample.n < from || sample.n >= to) continue;
+        Cell& c = cells[static_cast<std::size_t>((sample.n - from) / cell)];
+        c.n += sample.n;
+        c.drive += sample.drive;
+        c.count += 1.0;
+    }
+    std::vector<double> n, drive, count;
+    for (const Cell& c : cells)
+        if (c.count > 0.0) {
+            n.push_back(c.n / c.count);
+            drive.push_back(c.drive / c.count);
+            count.push_back(c.count);
+        }
+    if (n.size() < 2)
+        throw Refused("no valid pixel of the gray-levels photograph gives a usable grey level",
+                      "check the exposure and that the picture had arrived before its photograph");
+
+    std::vector<double> rho(kResponseSize);
+    for (std::size_t i = 0; i < kResponseSize; ++i) {
+        const double at = n_first + (n_last - n_first) * static_cast<double>(i) /
+                                        static_cast<double>(kResponseSize - 1);
+        // Beyond eight bandwidths a sample adds less than 1e-14 of its weight.
+        auto low = std::lower_bound(n.begin(), n.end(), at - 8.0 * bandwidth) - n.begin();
+        auto high = std::upper_bound(n.begin(), n.end(), at + 8.0 * bandwidth) - n.begin();
+        if (low == high) {  // a gap wider than the kernel: its nearer end
+            if (high == static_cast<std::ptrdiff_t>(n.size()) ||
+                (low > 0 &&
+                 at - n[static_cast<std::size_t>(low - 1)] < n[static_cast<std::size_t>(low)] - at))
+                --low;
+            else
+                ++high;
+        }
+        const auto part = [&](const std::vector<double>& all) {
+            return std::span<const double>(all).subspan(static_cast<std::size_t>(low),
+                                                        static_cast<std::size_t>(high - low));
+        };
+        double value = nadaraya_watson(part(n), part(drive), part(count), bandwidth, at);
+        if (std::isnan(value)) value = drive[static_cast<std::size_t>(low)];
+        rho[i] = value;
+    }
+    ResponseCurve curve;
+    curve.largest_violation = largest_fall(rho) / 255.0;
+    const std::vector<double> ones(kResponseSize, 1.0);
+    for (const double value : isotonic_regression(rho, ones))
+        curve.drive_from_n.push_back(static_cast<float>(std::clamp(value, 0.0, 255.0)));
+    return curve;
+}
+
+}  // namespace livery

@@ -1,0 +1,147 @@
+#include "twin/painted_sphere.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+#include "core/colour.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "core/random.h"
+#include "twin/pixel_rays.h"
+#include "twin/place.h"
+#include "twin/spectral_paint.h"
+
+namespace livery {
+
+namespace {
+
+struct Light {
+    glm::dvec3 direction, side, up;  ///< unit, orthogonal
+    double radiance = 0.0;           ///< of a white diffuser that faces it
+    double tan_radius = 0.0;
+};
+
+std::vector<Light> neutral_lights(std::span<const DirectionalLight> lights) {
+    std::vector<Light> result;
+    for (const DirectionalLight& from : lights) {
+        const glm::dvec3& c = from.radiance_rec709;
+        const double spread = std::max({c.x, c.y, c.z}) - std::min({c.x, c.y, c.z});
+        check_argument(c.x >= 0.0 && spread <= 1e-6 * std::max(1.0, c.x),
+                       "paint_radiance_xyz: a coloured light; the spectral truth has only D65");
+        Light light;
+        light.direction = glm::normalize(from.direction);
+        const glm::dvec3 helper =
+            std::abs(light.direction.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+        light.side = glm::normalize(glm::cross(light.direction, helper));
+        light.up = glm::cross(light.direction, light.side);
+        light.radiance = c.x;
+        light.tan_radius = std::tan(0.5 * from.angle_rad);
+        result.push_back(light);
+    }
+    return result;
+}
+
+/// A direction into the light's disc, from two numbers in [0, 1).
+glm::dvec3 toward(const Light& light, double u, double v) {
+    if (light.tan_radius == 0.0) return light.direction;
+    const double radius = light.tan_radius * std::sqrt(u), angle = 2.0 * std::numbers::pi * v;
+    return glm::normalize(light.direction +
+                          radius * (std::cos(angle) * light.side + std::sin(angle) * light.up));
+}
+
+/// D65 seen off a white diffuser of Y = 1, times the observer's curves: XYZ a unit of radiance.
+std::array<Spectrum, 3> d65_observer() {
+    std::array<Spectrum, 3> curves{cie1931_x(), cie1931_y(), cie1931_z()};
+    const double white_y = xyz_from_power(illuminant_d65()).y;
+    for (Spectrum& curve : curves) {
+        for (std::size_t k = 0; k < curve.size(); ++k) {
+            curve[k] *= illuminant_d65()[k] * kSpectrumStep_nm / white_y;
+        }
+    }
+    return curves;
+}
+
+}  // namespace
+
+ImageF paint_radiance_xyz(const Mesh& mesh,
+                          const Tracer& tracer,
+                          const View& view,
+                          glm::dvec3 eye_mm,
+                          const SpectralPaint& paint,
+                          std::span<const DirectionalLight> from_lights,
+                          int samples_a_side,
+                          const Progress& progress) {
+    check_argument(samples_a_side >= 1 && samples_a_side <= 16,
+                   "paint_radiance_xyz: 1 to 16 samples a side");
+    const auto lights = neutral_lights(from_lights);
+    const auto observer = d65_observer();
+    const PaintBands bands(paint);
+    const PixelRect rect = pixels_that_see(view, mesh);
+    const PixelRays pixel_rays(view, rect, samples_a_side);
+    ImageF xyz(view.width, view.height, 3);
+    const auto rows = static_cast<std::size_t>(rect.y1 - rect.y0);
+    parallel_for(rows, 2, [&](std::size_t begin, std::size_t end) {
+        std::vector<TraceRay> rays;
+        std::vector<Hit> hits;
+        Spectrum reflectance{}, radiance{};
+        for (std::size_t row = begin; row < end; ++row) {
+            progress.check_stop();
+            const int y = rect.y0 + static_cast<int>(row);
+            for (int x = rect.x0; x < rect.x1; ++x) {
+                rays.clear();
+                pixel_rays.add(x, y, rays);
+                hits.assign(rays.size(), Hit{});
+                tracer.closest(rays, hits);
+                int met = 0;
+                radiance.fill(0.0);
+                for (std::size_t s = 0; s < hits.size(); ++s) {
+                    if (!hits[s].valid()) continue;
+                    ++met;
+                    const MeshPlace place = mesh_place(mesh, hits[s]);
+                    const glm::dvec3 n = place.normal;
+                    const glm::dvec3 helper =
+                        std::abs(n.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+                    const glm::dvec3 t = glm::normalize(glm::cross(helper, n)),
+                                     b = glm::cross(n, t);
+                    const auto local = [&](const glm::dvec3& d) {
+                        return glm::dvec3(glm::dot(d, t), glm::dot(d, b), glm::dot(d, n));
+                    };
+                    const glm::dvec3 wo = local(glm::normalize(eye_mm - place.position_mm));
+                    for (const Light& light : lights) {
+                        const auto bits = hash_3d(static_cast<std::uint32_t>(x),
+                                                  static_cast<std::uint32_t>(y),
+                                                  static_cast<std::uint32_t>(s) + 1000u);
+                        const double u = (static_cast<double>(s) + (bits & 0xffffu) * 0x1p-16) /
+                                         static_cast<double>(hits.size());
+                        const glm::dvec3 to_light = toward(light, u, (bits >> 16u) * 0x1p-16);
+                        const glm::dvec3 wi = local(to_light);
+                        const glm::dvec3 far_off = place.position_mm + 1e5 * to_light;
+                        if (wi.z <= 0.0 || wo.z <= 0.0 ||
+                            !sees(tracer, place.position_mm, place.geometric_normal, far_off)) {
+                            continue;
+                        }
+                        bands.evaluate(wi, wo, reflectance);
+                        const double scale = std::numbers::pi * light.radiance * wi.z;
+                        for (std::size_t k = 0; k < radiance.size(); ++k) {
+                            radiance[k] += scale * reflectance[k];
+                        }
+                    }
+                }
+                if (met == 0) continue;
+                for (std::size_t c = 0; c < 3; ++c) {
+                    double sum = 0.0;
+                    for (std::size_t k = 0; k < radiance.size(); ++k) {
+                        sum += radiance[k] * observer[c][k];
+                    }
+                    xyz.at(x, y, static_cast<int>(c)) = static_cast<float>(sum / met);
+                }
+            }
+        }
+    });
+    return xyz;
+}
+
+}  // namespace livery

@@ -1,0 +1,60 @@
+// What a really painted object would look like: spectral truth for pictures that a projector shows
+// on a grey one. Designed paints in calibration/paints.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "appearance/material.h"
+#include "core/image.h"
+#include "core/progress.h"
+#include "scene/look.h"
+#include "scene/mesh.h"
+#include "scene/view.h"
+#include "tracing/tracer.h"
+#include "twin/spectra.h"
+
+namespace livery {
+
+/// A clear-coated paint, its colours as spectra. The parameters are those of the clearcoat model
+/// (docs/materials.md); the coat itself is colourless.
+struct SpectralPaint {
+    std::string name;
+    std::string family;  ///< solid, metallic
+    Spectrum diffuse{};  ///< albedo of the diffuse layer
+    Spectrum f0{};       ///< Fresnel reflectance of the base at normal incidence
+    double alpha = 0.3;  ///< GGX slope parameter of the base
+    double coat_alpha = 0.1;
+    double coat_f0 = 0.04;
+    std::string provenance;
+};
+
+/// A paint file (docs/bench.md), or the name of a shipped one ("silver-metallic"). Throws
+/// FileError.
+SpectralPaint read_spectral_paint(const std::filesystem::path& file_or_name);
+
+/// The names of the shipped paints, sorted.
+std::vector<std::string> spectral_paint_names();
+
+/// The same paint for a renderer of three channels: each spectrum integrated under D65.
+Material material_of(const SpectralPaint& paint);
+
+/// Reflectance of every band for one pair of directions in local coordinates (z the normal), per
+/// steradian, without the cosine: the clearcoat model band by band.
+Spectrum evaluate_paint(const SpectralPaint& paint, const glm::dvec3& wi, const glm::dvec3& wo);
+
+/// XYZ that the painted mesh sends to the eye, for what each pixel of `view` covers (3 channels;
+/// the mean over `samples_a_side` squared samples that meet the mesh, 0 where none does). The
+/// lights shine with D65; their colours must be neutral (std::invalid_argument). A white diffuser
+/// that faces a light of radiance 1 has Y = 1. Evaluated over all bands, light by light.
+ImageF paint_radiance_xyz(const Mesh& mesh,
+                          const Tracer& tracer,
+                          const View& view,
+                          glm::dvec3 eye_mm,
+                          const SpectralPaint& paint,
+                          std::span<const DirectionalLight> lights,
+                          int samples_a_side = 4,
+                          const Progress& progress = {});
+
+}  // namespace livery

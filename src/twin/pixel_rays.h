@@ -1,0 +1,39 @@
+// Rays through sub-samples of a view's pixels.
+#pragma once
+
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "scene/mesh.h"
+#include "scene/view.h"
+#include "tracing/tracer.h"
+
+namespace livery {
+
+struct PixelRect {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  ///< half open
+};
+
+/// The pixels that can see the mesh: the box around its projected vertices.
+PixelRect pixels_that_see(const View& view, const Mesh& mesh);
+
+/// The lens is undone at the pixels' corners and interpolated inside a pixel, where distortion is
+/// linear to 1e-6 px.
+class PixelRays {
+  public:
+    PixelRays(const View& view, const PixelRect& rect, int samples_a_side);
+
+    /// Appends the rays of one pixel, row by row of a grid, jittered inside each cell so that no
+    /// edge of another device's pixels aligns with it.
+    void add(int x, int y, std::vector<TraceRay>& rays) const;
+
+  private:
+    glm::vec3 origin_;
+    PixelRect rect_;
+    std::size_t stride_;
+    int samples_;
+    std::vector<glm::vec3> corners_;
+};
+
+}  // namespace livery
