@@ -1,0 +1,135 @@
+#include "reference/light_sampling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "core/colour.h"
+
+namespace livery {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// Right-handed, third column `n` (Duff et al. 2017).
+glm::dmat3 frame_around(const glm::dvec3& n) {
+    const double sign = std::copysign(1.0, n.z);
+    const double a = -1.0 / (sign + n.z);
+    const double b = n.x * n.y * a;
+    return {glm::dvec3(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x),
+            glm::dvec3(b, sign + n.y * n.y * a, -n.y),
+            n};
+}
+
+/// Index of the running sum's step that holds u x total, and where in the step.
+int find_step(const double* begin, const double* end, double u, double& within) {
+    const double wanted = u * *(end - 1);
+    const double* found = std::upper_bound(begin, end - 1, wanted);
+    const double low = found == begin ? 0.0 : *(found - 1);
+    const double width = *found - low;
+    within = width > 0.0 ? std::clamp((wanted - low) / width, 0.0, 1.0) : 0.5;
+    return static_cast<int>(found - begin);
+}
+
+}  // namespace
+
+DiscLight::DiscLight(const DirectionalLight& light)
+    : world_from_light_(frame_around(glm::normalize(light.direction))) {
+    const glm::dvec3 radiance = working_from_rec709() * light.radiance_rec709;
+    irradiance_ = glm::vec3(kPi * radiance);
+    const double radius = std::min(0.5 * light.angle_rad, 0.5 * kPi);
+    if (radius <= 0.0) return;
+    const double half_sine = std::sin(0.5 * radius);
+    one_minus_cos_ = 2.0 * half_sine * half_sine;
+    solid_angle_ = 2.0 * kPi * one_minus_cos_;
+    // A disc of radiance L lights a plane that faces it with pi L sin^2 of its radius.
+    radiance_ = glm::vec3(radiance / (std::sin(radius) * std::sin(radius)));
+}
+
+LightSample DiscLight::sample(glm::vec2 u) const {
+    const double height = static_cast<double>(u.x) * one_minus_cos_;
+    const double sine = std::sqrt(height * (2.0 - height));
+    const double phi = 2.0 * kPi * static_cast<double>(u.y);
+    const glm::dvec3 local(sine * std::cos(phi), sine * std::sin(phi), 1.0 - height);
+    return {
+        glm::vec3(world_from_light_ * local), radiance_, static_cast<float>(1.0 / solid_angle_)};
+}
+
+LightSample DiscLight::along(const glm::vec3& direction) const {
+    LightSample light;
+    light.direction = direction;
+    // |d - n|^2 = 2 (1 - cos), without the cancellation of 1 - cos
+    const glm::dvec3 apart = glm::normalize(glm::dvec3(direction)) - world_from_light_[2];
+    if (is_point() || glm::dot(apart, apart) > 2.0 * one_minus_cos_) return light;
+    light.radiance = radiance_;
+    light.pdf = static_cast<float>(1.0 / solid_angle_);
+    return light;
+}
+
+EnvironmentSampler::EnvironmentSampler(const Environment* environment) : environment_(environment) {
+    if (!environment || environment->radiance_working.empty()) return;
+    const ImageF& map = environment->radiance_working;
+    row_sum_.reserve(static_cast<std::size_t>(map.height));
+    column_sum_.reserve(map.pixel_count());
+    for (int y = 0; y < map.height; ++y) {
+        const double solid_angle =
+            2.0 * kPi / map.width *
+            (std::cos(kPi * y / map.height) - std::cos(kPi * (y + 1) / map.height));
+        double row = 0.0;
+        for (int x = 0; x < map.width; ++x) {
+            row += importance(x, y) * solid_angle;
+            column_sum_.push_back(row);
+        }
+        total_ += row;
+        row_sum_.push_back(total_);
+    }
+}
+
+double EnvironmentSampler::importance(int x, int y) const {
+    const float* value = environment_->radiance_working.pixel(x, y);
+    return std::max(
+        0.0,
+        environment_->scale * (static_cast<double>(value[0]) + static_cast<double>(value[1]) +
+                               static_cast<double>(value[2])));
+}
+
+LightSample EnvironmentSampler::of_pixel(int x, int y) const {
+    const float* value = environment_->radiance_working.pixel(x, y);
+    LightSample light;
+    light.radiance =
+        glm::vec3(value[0], value[1], value[2]) * static_cast<float>(environment_->scale);
+    light.pdf = static_cast<float>(importance(x, y) / total_);
+    return light;
+}
+
+LightSample EnvironmentSampler::sample(glm::vec2 u) const {
+    const ImageF& map = environment_->radiance_working;
+    double within_row = 0.5, within_column = 0.5;
+    const int y = find_step(
+        row_sum_.data(), row_sum_.data() + row_sum_.size(), static_cast<double>(u.y), within_row);
+    const double* columns = column_sum_.data() + static_cast<std::ptrdiff_t>(y) * map.width;
+    const int x = find_step(columns, columns + map.width, static_cast<double>(u.x), within_column);
+    LightSample light = of_pixel(x, y);
+    // Uniform over the pixel's solid angle: even steps of the polar cosine
+    const double top = std::cos(kPi * y / map.height);
+    const double bottom = std::cos(kPi * (y + 1) / map.height);
+    const double polar = std::acos(std::clamp(top + within_row * (bottom - top), -1.0, 1.0));
+    light.direction =
+        glm::vec3(direction_from_uv(*environment_, {(x + within_column) / map.width, polar / kPi}));
+    return light;
+}
+
+LightSample EnvironmentSampler::along(const glm::vec3& direction) const {
+    const ImageF& map = environment_->radiance_working;
+    const glm::dvec2 uv = uv_from_direction(*environment_, glm::dvec3(direction));
+    LightSample light = of_pixel(std::min(static_cast<int>(uv.x * map.width), map.width - 1),
+                                 std::min(static_cast<int>(uv.y * map.height), map.height - 1));
+    light.direction = direction;
+    return light;
+}
+
+}  // namespace livery

@@ -1,0 +1,172 @@
+#include "reference/paths.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include "core/error.h"
+
+namespace livery {
+
+namespace {
+
+/// The balance heuristic's weight of the first of two ways to find the same light.
+float balance(float used, float other) { return used / (used + other); }
+
+glm::vec2 uniform_2d(Random& random) {
+    const float x = random.uniform_float();
+    return {x, random.uniform_float()};
+}
+
+}  // namespace
+
+/// A point of a path: its shading frame and its paint.
+struct PathScene::Vertex {
+    glm::vec3 position;
+    glm::vec3 geometric_normal;
+    glm::mat3 world_from_local;
+    glm::vec3 wo;  ///< local
+    ReflectanceModel model;
+    const BsdfParameters& parameters;
+
+    Vertex(const PathScene& scene, const SurfacePoint& point, const glm::vec3& toward_eye)
+        : position(point.position_mm),
+          geometric_normal(point.geometric_normal),
+          model(scene.models_[point.part]),
+          parameters(scene.parameters_[point.part]) {
+        const glm::vec3 n = point.normal;
+        glm::vec3 t = glm::vec3(point.tangent) - glm::dot(glm::vec3(point.tangent), n) * n;
+        if (glm::dot(t, t) < 1e-12f) {
+            t = glm::cross(std::abs(n.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0), n);
+        }
+        t = glm::normalize(t);
+        world_from_local = glm::mat3(t, point.tangent.w * glm::cross(n, t), n);
+
+        // Seen from below its horizon: the closest direction above
+        constexpr float kLowest = 1e-4f;
+        glm::vec3 outgoing = toward_eye;
+        const float cosine = glm::dot(n, outgoing);
+        if (cosine < kLowest) outgoing = glm::normalize(outgoing + (kLowest - cosine) * n);
+        wo = glm::transpose(world_from_local) * outgoing;
+        wo.z = std::max(wo.z, 0.5f * kLowest);
+    }
+
+    glm::vec3 to_local(const glm::vec3& v) const { return glm::transpose(world_from_local) * v; }
+    bool above(const glm::vec3& direction) const {
+        return glm::dot(direction, geometric_normal) > 0.0f;
+    }
+};
+
+PathScene::PathScene(const Scene& scene, const ReferenceOptions& options)
+    : mesh_(scene.product->mesh),
+      options_(options),
+      tracer_(scene.product->mesh),
+      environment_(scene.environment.get()) {
+    check_argument(scene.part_materials.size() == mesh_.parts.size(),
+                   fmt::format("the scene has {} materials for {} parts",
+                               scene.part_materials.size(),
+                               mesh_.parts.size()));
+    for (const Material& material : scene.part_materials) {
+        models_.push_back(material.model);
+        parameters_.push_back(parameters_of(material));
+    }
+    for (const DirectionalLight& light : scene.lights) lights_.emplace_back(light);
+}
+
+bool PathScene::open(const Vertex& vertex, const glm::vec3& direction) const {
+    TraceRay ray;
+    ray.origin = offset_origin(vertex.position, vertex.geometric_normal);
+    ray.direction = direction;
+    return !tracer_.occluded(ray);
+}
+
+glm::vec3 PathScene::light_on(const Vertex& vertex, Random& random) const {
+    glm::vec3 sum(0.0f);
+    // Reflected light before its distance: value x cosine, 0 where nothing can come from there
+    const auto reflected = [&](const glm::vec3& direction, glm::vec3& wi) {
+        wi = vertex.to_local(direction);
+        if (wi.z <= 0.0f || !vertex.above(direction)) return glm::vec3(0.0f);
+        return evaluate(vertex.model, vertex.parameters, wi, vertex.wo) * wi.z;
+    };
+    const auto add = [&](const LightSample& light) {
+        if (light.pdf <= 0.0f) return;
+        glm::vec3 wi;
+        const glm::vec3 value = reflected(light.direction, wi);
+        if (value == glm::vec3(0.0f) || !open(vertex, light.direction)) return;
+        float weight = 1.0f;
+        if (options_.sampling == ReferenceSampling::combined) {
+            weight = balance(light.pdf, pdf(vertex.model, vertex.parameters, wi, vertex.wo));
+        }
+        sum += value * light.radiance * (weight / light.pdf);
+    };
+    for (const DiscLight& light : lights_) {
+        const glm::vec2 u = uniform_2d(random);
+        if (light.is_point()) {
+            glm::vec3 wi;
+            const glm::vec3 value = reflected(light.direction(), wi);
+            if (value != glm::vec3(0.0f) && open(vertex, light.direction())) {
+                sum += value * light.irradiance();
+            }
+        } else if (options_.sampling != ReferenceSampling::reflectance) {
+            add(light.sample(u));
+        }
+    }
+    if (!environment_.empty() && options_.sampling != ReferenceSampling::reflectance) {
+        add(environment_.sample(uniform_2d(random)));
+    }
+    return sum;
+}
+
+glm::vec3 PathScene::light_along(const glm::vec3& direction, float reflectance_pdf) const {
+    if (options_.sampling == ReferenceSampling::lights) return glm::vec3(0.0f);
+    glm::vec3 sum(0.0f);
+    const auto add = [&](const LightSample& light) {
+        const bool alone = options_.sampling == ReferenceSampling::reflectance;
+        sum += light.radiance * (alone ? 1.0f : balance(reflectance_pdf, light.pdf));
+    };
+    for (const DiscLight& light : lights_) add(light.along(direction));
+    if (!environment_.empty()) add(environment_.along(direction));
+    return sum;
+}
+
+glm::vec3 PathScene::radiance(SurfacePoint point,
+                              const glm::vec3& ray_direction,
+                              glm::vec3 wo,
+                              Random& random) const {
+    // An open surface shows its inside: the side that is seen is the side that is shaded.
+    if (glm::dot(point.geometric_normal, ray_direction) > 0.0f) {
+        point.geometric_normal = -point.geometric_normal;
+        point.normal = -point.normal;
+    }
+    glm::vec3 sum(0.0f), throughput(1.0f);
+    for (int bounce = 0;; ++bounce) {
+        const Vertex vertex(*this, point, wo);
+        sum += throughput * light_on(vertex, random);
+
+        const glm::vec2 uv = uniform_2d(random);
+        const glm::vec3 wi = sample(
+            vertex.model, vertex.parameters, vertex.wo, glm::vec3(uv, random.uniform_float()));
+        if (!(wi.z > 0.0f)) return sum;
+        const glm::vec3 direction = glm::normalize(vertex.world_from_local * wi);
+        const float density = pdf(vertex.model, vertex.parameters, wi, vertex.wo);
+        if (!(density > 0.0f) || !vertex.above(direction)) return sum;
+        throughput *= evaluate(vertex.model, vertex.parameters, wi, vertex.wo) * (wi.z / density);
+
+        TraceRay ray;
+        ray.origin = offset_origin(vertex.position, vertex.geometric_normal);
+        ray.direction = direction;
+        const Hit hit = tracer_.closest(ray);
+        if (!hit.valid()) return sum + throughput * light_along(direction, density);
+        if (bounce == options_.bounces) return sum;
+        point = surface_point(mesh_, hit);
+        // The inside of a closed product is dark.
+        if (glm::dot(point.geometric_normal, direction) >= 0.0f) return sum;
+        wo = -direction;
+    }
+}
+
+}  // namespace livery

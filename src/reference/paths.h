@@ -1,0 +1,47 @@
+// The light that one path carries from the scene to the eye.
+#pragma once
+
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "appearance/bsdf.h"
+#include "core/random.h"
+#include "reference/light_sampling.h"
+#include "reference/path_tracer.h"
+#include "tracing/tracer.h"
+
+namespace livery {
+
+/// Everything that paths read; immutable while they are traced.
+class PathScene {
+  public:
+    PathScene(const Scene& scene, const ReferenceOptions& options);
+
+    /// Radiance that leaves `point`, seen along `ray_direction`, toward `wo`.
+    glm::vec3 radiance(SurfacePoint point,
+                       const glm::vec3& ray_direction,
+                       glm::vec3 wo,
+                       Random& random) const;
+
+    const Tracer& tracer() const { return tracer_; }
+    const Mesh& mesh() const { return mesh_; }
+
+  private:
+    struct Vertex;
+
+    glm::vec3 light_on(const Vertex& vertex, Random& random) const;
+    /// What an escaping direction sampled from the reflectance meets.
+    glm::vec3 light_along(const glm::vec3& direction, float reflectance_pdf) const;
+    bool open(const Vertex& vertex, const glm::vec3& direction) const;
+
+    const Mesh& mesh_;
+    ReferenceOptions options_;
+    Tracer tracer_;
+    std::vector<ReflectanceModel> models_;
+    std::vector<BsdfParameters> parameters_;
+    std::vector<DiscLight> lights_;
+    EnvironmentSampler environment_;
+};
+
+}  // namespace livery
