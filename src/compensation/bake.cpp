@@ -146,9 +146,6 @@ double design_white_luminance(const ColourCalibration& calibration,
     if (!parts_mask.empty()) check_plane(calibration, parts_mask, 1, "parts mask");
     const PixelMaps maps(calibration);
     const NonAdditive non_additive = non_additive_of(calibration);
-    const std::array<std::vector<float>, 3> shapers = {shaper_of(calibration.response[0]),
-                                                       shaper_of(calibration.response[1]),
-                                                       shaper_of(calibration.response[2])};
     std::vector<std::uint32_t> counted;
     for (std::size_t i = 0; i < calibration.status.values.size(); ++i) {
         if (maps.valid(i) && (parts_mask.empty() || parts_mask.values[i] != 0)) {
@@ -168,7 +165,7 @@ double design_white_luminance(const ColourCalibration& calibration,
             brightest[i] = brightest_in_cube(direction, map.offset);
             if (non_additive.grid > 0) {
                 brightest[i] =
-                    brightest_reachable(non_additive, shapers, direction, map.offset, brightest[i]);
+                    brightest_reachable(non_additive, direction, map.offset, brightest[i]);
             }
         }
     });
@@ -191,10 +188,11 @@ CompensationTable bake(const ColourCalibration& calibration, double design_white
     table.design_white_y = design_white_y;
     table.calibration_id = calibration.id;
     table.non_additive = non_additive_of(calibration);
-    if (table.non_additive.grid == 0) check_response(calibration);
-    for (std::size_t k = 0; k < 3; ++k) {
-        table.drive_from_n[k] = table.non_additive.grid > 0 ? shaper_of(calibration.response[k])
-                                                            : calibration.response[k].drive_from_n;
+    if (table.non_additive.grid == 0) {
+        check_response(calibration);
+        for (std::size_t k = 0; k < 3; ++k) {
+            table.drive_from_n[k] = calibration.response[k].drive_from_n;
+        }
     }
     for (std::size_t i = 0; i < calibration.status.values.size(); ++i) {
         if (maps.valid(i)) table.pixels.push_back(static_cast<std::uint32_t>(i));

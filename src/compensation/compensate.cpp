@@ -81,20 +81,14 @@ void block_from_table(const kernel::Functions& functions,
     for (std::size_t i = 0; i < job.count; ++i) {
         packed[i] = 0;
         if (n.usable[i] == 0) continue;
-        const glm::vec3 at(n.r[i], n.g[i], n.b[i]);
-        glm::vec3 shaped, residual;
-        for (int k = 0; k < 3; ++k) {
-            shaped[k] = look_up(table.drive_from_n[static_cast<std::size_t>(k)], at[k]) / 255.0f;
-        }
-        const glm::vec3 position = position_of_n(table.non_additive, at, shaped, &residual);
-        for (int k = 0; k < 3; ++k) {
-            const auto channel = static_cast<std::size_t>(k);
-            const float drive =
-                drive_of_position(table.non_additive, table.drive_from_n[channel], k, position[k]);
-            const std::uint32_t phase =
-                job.pixels[i] * dither::kPerColumn + job.dither_of_row[channel];
-            const auto level = static_cast<int>(drive + dither::threshold(phase));
-            packed[i] |= static_cast<std::uint32_t>(std::min(level, 255)) << (8 * channel);
+        glm::vec3 residual;
+        const glm::vec3 drive =
+            drive_of_n(table.non_additive, glm::vec3(n.r[i], n.g[i], n.b[i]), &residual);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t phase = job.pixels[i] * dither::kPerColumn + job.dither_of_row[k];
+            const auto level =
+                static_cast<int>(drive[static_cast<int>(k)] + dither::threshold(phase));
+            packed[i] |= static_cast<std::uint32_t>(std::min(level, 255)) << (8 * k);
         }
         if (counts) {
             const bool high = std::min({residual.x, residual.y, residual.z}) < -kReachableN;
@@ -176,8 +170,7 @@ void compensate_with(const kernel::Functions& functions,
             block_from_table(
                 functions, table, job, colours, packed.data(), stats ? &counts : nullptr);
         } else {
-            functions.block(job, colours, packed.data());
-            if (stats) functions.count(job, colours, &counts);
+            functions.block(job, colours, packed.data(), stats ? &counts : nullptr);
         }
         scatter(packed.data(), first, job.count, drive);
         begin += job.count;

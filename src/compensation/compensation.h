@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
 #include "core/image.h"
@@ -20,14 +21,15 @@ double design_white_luminance(const ColourCalibration& calibration,
                               double percentile,
                               const Image8& parts_mask = {});
 
-/// N(drive) of a non-additive projector and a start for its inverse. A position s in [0, grid - 1]
-/// is a node's number; between nodes it is linear in rho^-1(drive), where N bends least.
+/// N(drive) of a non-additive projector and a start for its inverse. "Linear" is rho^-1(drive) per
+/// channel, in which N bends least: between nodes N is linear in it, by tetrahedra.
 struct NonAdditive {
-    int grid = 0;                         ///< 0: the projector is additive, the rest is empty
-    std::vector<glm::vec3> n_from_nodes;  ///< grid^3, red fastest, tetrahedral in between
-    std::array<std::vector<float>, 3> linear_of_node;  ///< rho^-1 of each node's drive, rising
+    int grid = 0;                           ///< 0: the projector is additive, the rest is empty
+    std::vector<glm::vec3> n_from_nodes;    ///< grid^3, red fastest
+    std::array<std::vector<float>, 3> rho;  ///< drive, equally spaced linear
+    std::array<std::vector<float>, 3> linear_of_node;  ///< rising from 0 to 1
     int start_grid = 0;
-    std::vector<glm::vec3> start;  ///< nearest position for start_grid^3 shaped N, red fastest
+    std::vector<glm::vec3> start;  ///< nearest node number, fractional, for rho(N); red fastest
 };
 
 /// The calibration baked for one design white: N = A * rgb + b per valid pixel, packed densely.
@@ -36,7 +38,7 @@ struct CompensationTable {
     double design_white_y = 0.0;
     std::vector<std::uint32_t> pixels;  ///< index of each valid pixel, rising
     std::vector<float> coefficients;    ///< 12 planes of pixels.size(): A row by row, then b
-    std::array<std::vector<float>, 3> drive_from_n;  ///< equally spaced in N, see ResponseCurve
+    std::array<std::vector<float>, 3> drive_from_n;  ///< equally spaced in N; empty if non-additive
     NonAdditive non_additive;
     std::string calibration_id;
 };
@@ -76,6 +78,24 @@ enum class GamutMapping { strict, preserve };
 ImageF map_gamut(const CompensationTable& table,
                  const ImageF& wanted_working,
                  GamutMapping mapping);
+
+/// map_gamut(..., preserve) for a show: what depends on the table alone is worked out once.
+class GamutMap {
+  public:
+    explicit GamutMap(const CompensationTable& table);  ///< keeps a reference
+
+    ImageF preserve(const ImageF& wanted_working) const;
+    /// Oklab lightness of the one black that all pixels share: 95% of them can show it.
+    double floor_lightness() const { return floor_lightness_; }
+
+  private:
+    void store(std::size_t pixel, const glm::dmat3& matrix, const glm::dvec3& vector);
+    glm::dvec3 map_pixel(std::size_t i, const glm::dvec3& rgb) const;
+
+    const CompensationTable& table_;
+    std::vector<float> boundary_;  ///< 12 planes as in the table, of the neighbourhood
+    double floor_lightness_ = 0.0;
+};
 
 /// The fixed dither of pixel (x, y), channel c, in [-0.5, 0.5) drive levels; shaders/ has the same.
 float dither_of(std::uint32_t x, std::uint32_t y, std::uint32_t channel);

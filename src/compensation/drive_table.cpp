@@ -15,7 +15,6 @@ namespace livery {
 namespace {
 
 constexpr int kStartGrid = 33;
-constexpr int kNewtonSteps = 2;
 
 /// The tetrahedron of a grid cell that holds a point: its corner and the order of its axes.
 struct Tetrahedron {
@@ -67,10 +66,9 @@ float inverse_look_up(const std::vector<float>& curve, float value) {
 
 /// Bounded least squares over the whole cube, for the start grid: Gauss-Newton with the
 /// variables that push against their bound held there.
-glm::vec3 nearest_position(const NonAdditive& table, const glm::vec3& n, glm::vec3 position) {
-    const float last = static_cast<float>(table.grid - 1);
+glm::vec3 nearest_linear(const NonAdditive& table, const glm::vec3& n, glm::vec3 linear) {
     glm::mat3 jacobian;
-    glm::vec3 residual = n_at_position(table, position, &jacobian) - n;
+    glm::vec3 residual = n_at_linear(table, linear, &jacobian) - n;
     float error = glm::dot(residual, residual);
     for (int iteration = 0; iteration < 40 && error > 1e-14f; ++iteration) {
         const glm::vec3 gradient = glm::transpose(jacobian) * residual;
@@ -79,8 +77,8 @@ glm::vec3 nearest_position(const NonAdditive& table, const glm::vec3& n, glm::ve
         const float ridge = 1e-7f * (normal[0][0] + normal[1][1] + normal[2][2]) + 1e-20f;
         for (int k = 0; k < 3; ++k) {
             normal[k][k] += ridge;
-            const bool held = (position[k] <= 0.0f && gradient[k] > 0.0f) ||
-                              (position[k] >= last && gradient[k] < 0.0f);
+            const bool held = (linear[k] <= 0.0f && gradient[k] > 0.0f) ||
+                              (linear[k] >= 1.0f && gradient[k] < 0.0f);
             if (!held) continue;
             for (int j = 0; j < 3; ++j) normal[j][k] = normal[k][j] = j == k ? 1.0f : 0.0f;
             right[k] = 0.0f;
@@ -89,18 +87,18 @@ glm::vec3 nearest_position(const NonAdditive& table, const glm::vec3& n, glm::ve
         bool better = false;
         for (float scale = 1.0f; scale > 1e-3f && !better; scale *= 0.5f) {
             const glm::vec3 tried =
-                glm::clamp(position + scale * step, glm::vec3(0.0f), glm::vec3(last));
-            const glm::vec3 r = n_at_position(table, tried, nullptr) - n;
+                glm::clamp(linear + scale * step, glm::vec3(0.0f), glm::vec3(1.0f));
+            const glm::vec3 r = n_at_linear(table, tried, nullptr) - n;
             if (glm::dot(r, r) < error) {
-                position = tried;
+                linear = tried;
                 error = glm::dot(r, r);
                 better = true;
             }
         }
         if (!better) break;
-        residual = n_at_position(table, position, &jacobian) - n;
+        residual = n_at_linear(table, linear, &jacobian) - n;
     }
-    return position;
+    return linear;
 }
 
 glm::vec3 nearest_node(const NonAdditive& table, const glm::vec3& n) {
@@ -114,9 +112,31 @@ glm::vec3 nearest_node(const NonAdditive& table, const glm::vec3& n) {
         }
     }
     const auto grid = static_cast<std::size_t>(table.grid);
-    return glm::vec3(static_cast<float>(best % grid),
-                     static_cast<float>(best / grid % grid),
-                     static_cast<float>(best / (grid * grid)));
+    return glm::vec3(table.linear_of_node[0][best % grid],
+                     table.linear_of_node[1][best / grid % grid],
+                     table.linear_of_node[2][best / (grid * grid)]);
+}
+
+/// A node's number, fractional: linear in linear light between nodes.
+float node_of_linear(const NonAdditive& table, std::size_t channel, float linear, float* per_node) {
+    const std::vector<float>& nodes = table.linear_of_node[channel];
+    const float drive = look_up(table.rho[channel], linear);
+    const int cell =
+        std::clamp(static_cast<int>(drive * static_cast<float>(table.grid - 1) * (1.0f / 255.0f)),
+                   0,
+                   table.grid - 2);
+    const auto i = static_cast<std::size_t>(cell);
+    *per_node = 1.0f / (nodes[i + 1] - nodes[i]);
+    // Just beyond a node by rounding is as good as on it.
+    const float fraction = std::clamp((linear - nodes[i]) * *per_node, 0.0f, 1.0f);
+    return static_cast<float>(cell) + fraction;
+}
+
+float linear_of_node(const NonAdditive& table, std::size_t channel, float node) {
+    const std::vector<float>& nodes = table.linear_of_node[channel];
+    const int cell = std::clamp(static_cast<int>(node), 0, table.grid - 2);
+    const auto i = static_cast<std::size_t>(cell);
+    return nodes[i] + (node - static_cast<float>(cell)) * (nodes[i + 1] - nodes[i]);
 }
 
 }  // namespace
@@ -160,12 +180,11 @@ NonAdditive make_non_additive(const DriveTable& drive_table,
     NonAdditive table;
     table.grid = drive_table.grid;
     table.n_from_nodes = drive_table.n_from_drive;
-    std::array<std::vector<float>, 3> rho;
     for (std::size_t k = 0; k < 3; ++k) {
-        rho[k] = shaper_of(response[k]);
+        table.rho[k] = shaper_of(response[k]);
         for (std::size_t i = 0; i < grid; ++i) {
             const float drive = 255.0f * static_cast<float>(i) / static_cast<float>(grid - 1);
-            table.linear_of_node[k].push_back(inverse_look_up(rho[k], drive));
+            table.linear_of_node[k].push_back(inverse_look_up(table.rho[k], drive));
         }
         table.linear_of_node[k].back() = 1.0f;
     }
@@ -180,80 +199,81 @@ NonAdditive make_non_additive(const DriveTable& drive_table,
             glm::vec3 n;
             for (std::size_t k = 0; k < 3; ++k) {
                 const float v = static_cast<float>(at[k]) / static_cast<float>(kSide - 1);
-                n[static_cast<int>(k)] = inverse_look_up(rho[k], 255.0f * v);
+                n[static_cast<int>(k)] = inverse_look_up(table.rho[k], 255.0f * v);
             }
             // The neighbour before is close by; the nearest node guards against a bad corner.
-            const glm::vec3 a = nearest_position(table, n, previous);
-            const glm::vec3 b = nearest_position(table, n, nearest_node(table, n));
-            const glm::vec3 error_a = n_at_position(table, a, nullptr) - n;
-            const glm::vec3 error_b = n_at_position(table, b, nullptr) - n;
+            const glm::vec3 a = nearest_linear(table, n, previous);
+            const glm::vec3 b = nearest_linear(table, n, nearest_node(table, n));
+            const glm::vec3 error_a = n_at_linear(table, a, nullptr) - n;
+            const glm::vec3 error_b = n_at_linear(table, b, nullptr) - n;
             previous = glm::dot(error_a, error_a) < glm::dot(error_b, error_b) ? a : b;
-            table.start[i] = previous;
+            float per_node = 0.0f;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const auto axis = static_cast<int>(k);
+                table.start[i][axis] = node_of_linear(table, k, previous[axis], &per_node);
+            }
         }
     });
     return table;
 }
 
-glm::vec3 n_at_position(const NonAdditive& table, const glm::vec3& position, glm::mat3* jacobian) {
-    const Tetrahedron t = tetrahedron_at(table.grid, position);
+glm::vec3 n_at_linear(const NonAdditive& table, const glm::vec3& linear, glm::mat3* jacobian) {
+    glm::vec3 node, per_node;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto axis = static_cast<int>(k);
+        node[axis] = node_of_linear(table, k, linear[axis], &per_node[axis]);
+    }
+    const Tetrahedron t = tetrahedron_at(table.grid, node);
     if (jacobian) {
         for (std::size_t i = 0; i < 3; ++i) {
-            (*jacobian)[t.axis[i]] =
-                table.n_from_nodes[t.node[i + 1]] - table.n_from_nodes[t.node[i]];
+            const int axis = t.axis[i];
+            (*jacobian)[axis] =
+                (table.n_from_nodes[t.node[i + 1]] - table.n_from_nodes[t.node[i]]) *
+                per_node[axis];
         }
     }
     return interpolate(table.n_from_nodes, t);
 }
 
-glm::vec3 position_of_n(const NonAdditive& table,
-                        const glm::vec3& n,
-                        const glm::vec3& shaped,
-                        glm::vec3* residual) {
-    const glm::vec3 in_start = shaped * static_cast<float>(table.start_grid - 1);
-    glm::vec3 position = interpolate(table.start, tetrahedron_at(table.start_grid, in_start));
-    const glm::vec3 last(static_cast<float>(table.grid - 1));
+glm::vec3 drive_of_n(const NonAdditive& table, const glm::vec3& n, glm::vec3* residual) {
+    glm::vec3 in_start, linear;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto axis = static_cast<int>(k);
+        in_start[axis] = look_up(table.rho[k], n[axis]) * (1.0f / 255.0f) *
+                         static_cast<float>(table.start_grid - 1);
+    }
+    const glm::vec3 node = interpolate(table.start, tetrahedron_at(table.start_grid, in_start));
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto axis = static_cast<int>(k);
+        linear[axis] = linear_of_node(table, k, node[axis]);
+    }
     glm::mat3 jacobian;
-    glm::vec3 error = n_at_position(table, position, &jacobian) - n;
+    glm::vec3 error = n_at_linear(table, linear, &jacobian) - n;
     for (int step = 0; step < kNewtonSteps; ++step) {
-        const float determinant = glm::determinant(jacobian);
-        if (std::abs(determinant) < 1e-18f) break;
+        if (std::abs(glm::determinant(jacobian)) < 1e-18f) break;
         const glm::vec3 tried =
-            glm::clamp(position - glm::inverse(jacobian) * error, glm::vec3(0.0f), last);
+            glm::clamp(linear - glm::inverse(jacobian) * error, glm::vec3(0.0f), glm::vec3(1.0f));
         glm::mat3 jacobian_there;
-        const glm::vec3 error_there = n_at_position(table, tried, &jacobian_there) - n;
+        const glm::vec3 error_there = n_at_linear(table, tried, &jacobian_there) - n;
         // Outside the reachable set a full step may overshoot: never move away from the wanted N.
         if (glm::dot(error_there, error_there) >= glm::dot(error, error)) break;
-        position = tried;
+        linear = tried;
         error = error_there;
         jacobian = jacobian_there;
     }
     *residual = error;
-    return position;
-}
-
-float drive_of_position(const NonAdditive& table,
-                        const std::vector<float>& rho,
-                        int channel,
-                        float position) {
-    const std::vector<float>& linear = table.linear_of_node[static_cast<std::size_t>(channel)];
-    const int node = std::clamp(static_cast<int>(position), 0, table.grid - 2);
-    const auto i = static_cast<std::size_t>(node);
-    const float f = position - static_cast<float>(node);
-    return look_up(rho, linear[i] + f * (linear[i + 1] - linear[i]));
+    return {look_up(table.rho[0], linear.x),
+            look_up(table.rho[1], linear.y),
+            look_up(table.rho[2], linear.z)};
 }
 
 double brightest_reachable(const NonAdditive& table,
-                           const std::array<std::vector<float>, 3>& rho,
                            const glm::dvec3& direction,
                            const glm::dvec3& offset,
                            double upper) {
     const auto reachable = [&](double g) {
-        const glm::vec3 n(direction * g + offset);
-        glm::vec3 shaped, residual;
-        for (int k = 0; k < 3; ++k) {
-            shaped[k] = look_up(rho[static_cast<std::size_t>(k)], n[k]) / 255.0f;
-        }
-        position_of_n(table, n, shaped, &residual);
+        glm::vec3 residual;
+        drive_of_n(table, glm::vec3(direction * g + offset), &residual);
         return glm::dot(residual, residual) <= kReachableN * kReachableN;
     };
     if (upper <= 0.0 || reachable(upper)) return std::max(upper, 0.0);

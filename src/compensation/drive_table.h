@@ -20,31 +20,24 @@ std::vector<float> shaper_of(const ResponseCurve& response);
 NonAdditive make_non_additive(const DriveTable& table,
                               const std::array<ResponseCurve, 3>& response);
 
-/// N at a position, and how it changes with the position in that tetrahedron.
-glm::vec3 n_at_position(const NonAdditive& table, const glm::vec3& position, glm::mat3* jacobian);
+/// N where the channels give `linear` light each, and its derivative in that tetrahedron.
+glm::vec3 n_at_linear(const NonAdditive& table, const glm::vec3& linear, glm::mat3* jacobian);
 
-/// The position whose N is nearest to `n` (least squares); exact where N is reachable.
-/// `shaped` is rho(n) / 255 per channel, clamped to [0, 1]. `residual` gets N(position) - n.
-glm::vec3 position_of_n(const NonAdditive& table,
-                        const glm::vec3& n,
-                        const glm::vec3& shaped,
-                        glm::vec3* residual);
-
-/// Drive (0 to 255) of one channel at a position, given that channel's rho.
-float drive_of_position(const NonAdditive& table,
-                        const std::vector<float>& rho,
-                        int channel,
-                        float position);
+/// The drives (0 to 255) whose N is nearest to `n`: exact where N is reachable, else near the
+/// least-squares point. `residual` gets their N less the wanted one.
+glm::vec3 drive_of_n(const NonAdditive& table, const glm::vec3& n, glm::vec3* residual);
 
 /// Largest g at or under `upper` for which N = direction * g + offset can be shown; 0 when none.
 double brightest_reachable(const NonAdditive& table,
-                           const std::array<std::vector<float>, 3>& rho,
                            const glm::dvec3& direction,
                            const glm::dvec3& offset,
                            double upper);
 
 /// Piecewise linear curve over equally spaced [0, 1], end values outside.
 float look_up(const std::vector<float>& curve, float at);
+
+/// From the start grid: each solves the tetrahedron it is in exactly.
+inline constexpr int kNewtonSteps = 3;
 
 /// How far from reachable still counts as reachable, in N: a fifth of an 8-bit level at white.
 inline constexpr float kReachableN = 2e-3f;

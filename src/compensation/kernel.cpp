@@ -11,81 +11,93 @@
 namespace livery::kernel {
 namespace {
 
-struct Pixel {
-    float r, g, b;
-    bool usable;
-};
-
-LIVERY_ALWAYS_INLINE Pixel separated(const std::array<const float*, 12>& c,
-                                     const Wanted& wanted,
-                                     std::size_t i) {
-    const float r = wanted.r[i], g = wanted.g[i], b = wanted.b[i];
-    Pixel n;
-    n.r = c[0][i] * r + c[1][i] * g + c[2][i] * b + c[9][i];
-    n.g = c[3][i] * r + c[4][i] * g + c[5][i] * b + c[10][i];
-    n.b = c[6][i] * r + c[7][i] * g + c[8][i] * b + c[11][i];
-    // Infinity less itself is NaN: one comparison of the sums rejects NaN, Inf and overflow.
-    const float sum = n.r + n.g + n.b;
-    n.usable = (sum - sum == 0.0f) & (wanted.coverage[i] >= 0.5f);
-    return n;
-}
-
-/// The comparisons in this order turn NaN into 0 before it becomes an index.
-LIVERY_ALWAYS_INLINE float clipped(float n) {
-    n = n > 0.0f ? n : 0.0f;
-    return n < 1.0f ? n : 1.0f;
-}
-
-LIVERY_ALWAYS_INLINE std::uint32_t level(const float* curve,
-                                         std::int32_t last,
-                                         float n,
-                                         std::uint32_t phase) {
-    const float scaled = clipped(n) * static_cast<float>(last);
-    std::int32_t i = static_cast<std::int32_t>(scaled);
-    i = i < last ? i : last - 1;
-    const float f = scaled - static_cast<float>(i);
-    const float drive = curve[i] + f * (curve[i + 1] - curve[i]);
-    const auto whole = static_cast<std::int32_t>(drive + dither::threshold(phase));
-    return static_cast<std::uint32_t>(whole < 255 ? whole : 255);
-}
-
-LIVERY_ALWAYS_INLINE void block_body(const Job& job, const Wanted& wanted, std::uint32_t* packed) {
-    const std::array<const float*, 12> c = job.coefficients;
-    const float* const curve_r = job.curves[0].drive_from_n;
-    const float* const curve_g = job.curves[1].drive_from_n;
-    const float* const curve_b = job.curves[2].drive_from_n;
-    const std::int32_t last_r = job.curves[0].count - 1;
-    const std::int32_t last_g = job.curves[1].count - 1;
-    const std::int32_t last_b = job.curves[2].count - 1;
-    const std::uint32_t row_r = job.dither_of_row[0];
-    const std::uint32_t row_g = job.dither_of_row[1];
-    const std::uint32_t row_b = job.dither_of_row[2];
-    const std::uint32_t* const pixels = job.pixels;
+/// N of equation 9 for one separated channel, not clipped.
+LIVERY_ALWAYS_INLINE void separate_channel(const Job& job,
+                                           std::size_t channel,
+                                           const Wanted& wanted,
+                                           float* __restrict n) {
+    const float* __restrict a_r = job.coefficients[3 * channel];
+    const float* __restrict a_g = job.coefficients[3 * channel + 1];
+    const float* __restrict a_b = job.coefficients[3 * channel + 2];
+    const float* __restrict offset = job.coefficients[9 + channel];
+    const float* __restrict r = wanted.r.data();
+    const float* __restrict g = wanted.g.data();
+    const float* __restrict b = wanted.b.data();
     const std::size_t count = job.count;
-#pragma GCC ivdep
     for (std::size_t i = 0; i < count; ++i) {
-        const Pixel n = separated(c, wanted, i);
-        const std::uint32_t column = pixels[i] * dither::kPerColumn;
-        const std::uint32_t rgb = level(curve_r, last_r, n.r, column + row_r) |
-                                  level(curve_g, last_g, n.g, column + row_g) << 8u |
-                                  level(curve_b, last_b, n.b, column + row_b) << 16u;
-        packed[i] = n.usable ? rgb : 0u;
+        n[i] = a_r[i] * r[i] + a_g[i] * g[i] + a_b[i] * b[i] + offset[i];
     }
 }
 
-LIVERY_ALWAYS_INLINE void count_body(const Job& job, const Wanted& wanted, Counts* counts) {
-    const std::array<const float*, 12> c = job.coefficients;
-    std::int32_t finite = 0, high = 0, low = 0, out = 0;
+/// All ones where the colour is covered and N finite, else zero. Infinity less itself is NaN: one
+/// comparison of the sum rejects NaN, Inf and overflow.
+LIVERY_ALWAYS_INLINE void find_usable(const Job& job,
+                                      const Wanted& wanted,
+                                      const Separated& n,
+                                      std::uint32_t* __restrict usable) {
+    const float* __restrict coverage = wanted.coverage.data();
+    const float* __restrict r = n.r.data();
+    const float* __restrict g = n.g.data();
+    const float* __restrict b = n.b.data();
+    const std::size_t count = job.count;
+    for (std::size_t i = 0; i < count; ++i) {
+        const float sum = r[i] + g[i] + b[i];
+        const std::uint32_t finite = sum - sum == 0.0f ? ~0u : 0u;
+        const std::uint32_t covered = coverage[i] >= 0.5f ? ~0u : 0u;
+        usable[i] = finite & covered;
+    }
+}
+
+LIVERY_ALWAYS_INLINE void separate_body(const Job& job, const Wanted& wanted, Separated* n) {
+    separate_channel(job, 0, wanted, n->r.data());
+    separate_channel(job, 1, wanted, n->g.data());
+    separate_channel(job, 2, wanted, n->b.data());
+    find_usable(job, wanted, *n, n->usable.data());
+}
+
+/// rho, dither and the cut to a whole level, moved to the channel's byte of `packed`.
+LIVERY_ALWAYS_INLINE void add_levels(const Job& job,
+                                     std::size_t channel,
+                                     const float* __restrict n,
+                                     std::uint32_t* __restrict packed) {
+    const float* __restrict curve = job.curves[channel].drive_from_n;
+    const std::int32_t last = job.curves[channel].count - 1;
+    const float scale = static_cast<float>(last);
+    const std::uint32_t row = job.dither_of_row[channel];
+    const std::uint32_t* __restrict pixels = job.pixels;
+    const std::size_t count = job.count;
+    const auto shift = static_cast<unsigned>(8 * channel);
+    for (std::size_t i = 0; i < count; ++i) {
+        // The comparisons in this order turn NaN into 0 before it becomes an index.
+        float at = n[i] > 0.0f ? n[i] : 0.0f;
+        at = (at < 1.0f ? at : 1.0f) * scale;
+        std::int32_t cell = static_cast<std::int32_t>(at);
+        cell = cell < last ? cell : last - 1;
+        const float f = at - static_cast<float>(cell);
+        const float low = curve[cell], high = curve[cell + 1];
+        const float drive = low + f * (high - low);
+        const std::uint32_t phase = pixels[i] * dither::kPerColumn + row;
+        const auto level = static_cast<std::int32_t>(drive + dither::threshold(phase));
+        packed[i] |= static_cast<std::uint32_t>(level < 255 ? level : 255) << shift;
+    }
+}
+
+LIVERY_ALWAYS_INLINE void count(const Job& job, const Separated& n, Counts* counts) {
+    const float* __restrict r = n.r.data();
+    const float* __restrict g = n.g.data();
+    const float* __restrict b = n.b.data();
+    const std::uint32_t* __restrict usable = n.usable.data();
+    std::uint32_t finite = 0, high = 0, low = 0, out = 0;
+    constexpr float kHigh = 1.0f + kGamutTolerance, kLow = -kGamutTolerance;
     for (std::size_t i = 0; i < job.count; ++i) {
-        const Pixel n = separated(c, wanted, i);
-        const bool is_high = (n.r > 1.0f + kGamutTolerance) | (n.g > 1.0f + kGamutTolerance) |
-                             (n.b > 1.0f + kGamutTolerance);
-        const bool is_low =
-            (n.r < -kGamutTolerance) | (n.g < -kGamutTolerance) | (n.b < -kGamutTolerance);
-        finite += n.usable ? 1 : 0;
-        high += (n.usable & is_high) ? 1 : 0;
-        low += (n.usable & is_low) ? 1 : 0;
-        out += (n.usable & (is_high | is_low)) ? 1 : 0;
+        const std::uint32_t is_high =
+            (r[i] > kHigh ? 1u : 0u) | (g[i] > kHigh ? 1u : 0u) | (b[i] > kHigh ? 1u : 0u);
+        const std::uint32_t is_low =
+            (r[i] < kLow ? 1u : 0u) | (g[i] < kLow ? 1u : 0u) | (b[i] < kLow ? 1u : 0u);
+        finite += usable[i] & 1u;
+        high += usable[i] & is_high;
+        low += usable[i] & is_low;
+        out += usable[i] & (is_high | is_low);
     }
     counts->finite += finite;
     counts->high += high;
@@ -93,47 +105,46 @@ LIVERY_ALWAYS_INLINE void count_body(const Job& job, const Wanted& wanted, Count
     counts->out += out;
 }
 
-LIVERY_ALWAYS_INLINE void separate_body(const Job& job, const Wanted& wanted, Separated* out) {
-    const std::array<const float*, 12> c = job.coefficients;
-    for (std::size_t i = 0; i < job.count; ++i) {
-        const Pixel n = separated(c, wanted, i);
-        out->r[i] = n.usable ? n.r : 0.0f;
-        out->g[i] = n.usable ? n.g : 0.0f;
-        out->b[i] = n.usable ? n.b : 0.0f;
-        out->usable[i] = n.usable ? 1 : 0;
-    }
+LIVERY_ALWAYS_INLINE void block_body(const Job& job,
+                                     const Wanted& wanted,
+                                     std::uint32_t* packed,
+                                     Counts* counts) {
+    Separated n;
+    separate_body(job, wanted, &n);
+    for (std::size_t i = 0; i < job.count; ++i) packed[i] = 0;
+    add_levels(job, 0, n.r.data(), packed);
+    add_levels(job, 1, n.g.data(), packed);
+    add_levels(job, 2, n.b.data(), packed);
+    const std::uint32_t* __restrict usable = n.usable.data();
+    std::uint32_t* __restrict out = packed;
+    for (std::size_t i = 0; i < job.count; ++i) out[i] &= usable[i];
+    if (counts) count(job, n, counts);
 }
 
-#define LIVERY_KERNEL(suffix, attribute)                                                         \
-    attribute void block_##suffix(const Job& job, const Wanted& wanted, std::uint32_t* packed) { \
-        block_body(job, wanted, packed);                                                         \
-    }                                                                                            \
-    attribute void count_##suffix(const Job& job, const Wanted& wanted, Counts* counts) {        \
-        count_body(job, wanted, counts);                                                         \
-    }                                                                                            \
-    attribute void separate_##suffix(const Job& job, const Wanted& wanted, Separated* n) {       \
-        separate_body(job, wanted, n);                                                           \
+#define LIVERY_KERNEL(suffix, attribute)                                                   \
+    attribute void block_##suffix(                                                         \
+        const Job& job, const Wanted& wanted, std::uint32_t* packed, Counts* counts) {     \
+        block_body(job, wanted, packed, counts);                                           \
+    }                                                                                      \
+    attribute void separate_##suffix(const Job& job, const Wanted& wanted, Separated* n) { \
+        separate_body(job, wanted, n);                                                     \
     }
 
 LIVERY_KERNEL(baseline, )
 #if defined(__x86_64__)
+// 512-bit vectors gain nothing here: the loop waits for memory.
 LIVERY_KERNEL(avx2, __attribute__((target("avx2"))))
-LIVERY_KERNEL(avx512, __attribute__((target("avx512f,avx512dq,avx512bw,avx512vl"))))
 #endif
 #undef LIVERY_KERNEL
 
 std::vector<Functions> find_available() {
     std::vector<Functions> list;
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-        __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl")) {
-        list.push_back({"avx512", block_avx512, count_avx512, separate_avx512});
-    }
     if (__builtin_cpu_supports("avx2")) {
-        list.push_back({"avx2", block_avx2, count_avx2, separate_avx2});
+        list.push_back({"avx2", block_avx2, separate_avx2});
     }
 #endif
-    list.push_back({"baseline", block_baseline, count_baseline, separate_baseline});
+    list.push_back({"baseline", block_baseline, separate_baseline});
     return list;
 }
 

@@ -35,21 +35,22 @@ struct Counts {
 /// N this far outside [0, 1] counts as out of gamut; nearer is rounding.
 inline constexpr float kGamutTolerance = 1e-5f;
 
-using BlockFunction = void (*)(const Job& job, const Wanted& wanted, std::uint32_t* packed_rgb);
-using CountFunction = void (*)(const Job& job, const Wanted& wanted, Counts* counts);
+/// Levels as 0x00bbggrr; `counts` may be null.
+using BlockFunction = void (*)(const Job& job,
+                               const Wanted& wanted,
+                               std::uint32_t* packed_rgb,
+                               Counts* counts);
 
-/// N of equation 9, not clipped, for the non-additive path and tests; pixels without a usable
-/// colour get usable[i] = 0 and N = 0.
+/// N of equation 9, not clipped; `usable` is all ones where there is a covered, finite colour.
 struct Separated {
     alignas(64) std::array<float, kBlock> r, g, b;
-    alignas(64) std::array<std::int32_t, kBlock> usable;
+    alignas(64) std::array<std::uint32_t, kBlock> usable;
 };
 using SeparateFunction = void (*)(const Job& job, const Wanted& wanted, Separated* n);
 
 struct Functions {
     const char* instruction_set;
     BlockFunction block;
-    CountFunction count;
     SeparateFunction separate;
 };
 

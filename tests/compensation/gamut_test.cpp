@@ -1,0 +1,242 @@
+// What happens to colours that the mock-up cannot show.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "compensation/compensation.h"
+#include "compensation/white_segment.h"
+
+namespace livery {
+namespace {
+
+using synthetic::calibrate;
+using synthetic::World;
+
+constexpr double kWhite = 0.3;
+
+/// The same surface everywhere under the same light: the neighbourhood is the pixel.
+World even_world(int width, int height, double ambient) {
+    World world = synthetic::make_world(width, height, 91, ambient);
+    for (std::size_t i = 0; i < world.mixing.size(); ++i) world.mixing[i] = world.mixing[0];
+    return world;
+}
+
+glm::dvec3 oklab_of(const ImageF& image, std::size_t i) {
+    const auto c = static_cast<std::size_t>(image.channels);
+    return oklab_from_xyz(xyz_from_working() * glm::dvec3(image.values[c * i],
+                                                          image.values[c * i + 1],
+                                                          image.values[c * i + 2]));
+}
+
+double chroma(const glm::dvec3& oklab) { return std::hypot(oklab.y, oklab.z); }
+
+double hue_difference_deg(const glm::dvec3& a, const glm::dvec3& b) {
+    const double d = std::atan2(a.z, a.y) - std::atan2(b.z, b.y);
+    return std::abs(std::remainder(d, 2.0 * std::numbers::pi)) * 180.0 / std::numbers::pi;
+}
+
+glm::dvec3 working_of(double lightness, double c, double hue) {
+    return working_from_xyz() * xyz_from_oklab({lightness, c * std::cos(hue), c * std::sin(hue)});
+}
+
+ImageF random_colours(const World& world, std::uint64_t seed, double most_chroma) {
+    Random random(seed);
+    return synthetic::picture(world, [&](std::size_t) {
+        return working_of(0.15 + 0.95 * random.uniform(),
+                          most_chroma * random.uniform(),
+                          6.2831853 * random.uniform());
+    });
+}
+
+TEST(Gamut, StrictReturnsWhatWasWanted) {
+    const World world = even_world(20, 10, 0.004);
+    const ImageF wanted = random_colours(world, 1, 0.4);
+    const CompensationTable table = bake(calibrate(world), kWhite);
+    EXPECT_EQ(map_gamut(table, wanted, GamutMapping::strict).values, wanted.values);
+}
+
+// Under the knee nothing moves, to the bit: a colour whose chroma could grow to 1/0.85 of itself
+// and whose lightness is well inside.
+TEST(Gamut, ColoursUnderTheKneeAreUntouched) {
+    const World world = even_world(40, 30, 0.002);
+    const CompensationTable table = bake(calibrate(world), kWhite);
+    Random random(2);
+    const ImageF wanted = synthetic::picture(world, [&](std::size_t) {
+        return working_of(
+            0.4 + 0.3 * random.uniform(), 0.05 * random.uniform(), 6.28 * random.uniform());
+    });
+    EXPECT_EQ(map_gamut(table, wanted, GamutMapping::preserve).values, wanted.values);
+}
+
+TEST(Gamut, EverythingMappedCanBeShown) {
+    for (const double ambient : {0.0, 0.004, 0.03}) {
+        SCOPED_TRACE(ambient);
+        // Every pixel with its own gamut, 10% apart from its neighbours.
+        const World world = synthetic::make_world(64, 48, 92, ambient);
+        const CompensationTable table = bake(calibrate(world), kWhite);
+        const ImageF wanted = random_colours(world, 3, 0.5);
+        CompensationStats before, after;
+        compensate(table, wanted, &before);
+        compensate(table, map_gamut(table, wanted, GamutMapping::preserve), &after);
+        EXPECT_GT(before.out_of_gamut_fraction, 0.4);
+        EXPECT_EQ(after.out_of_gamut_fraction, 0.0);
+        EXPECT_EQ(after.invalid_fraction, 0.0);
+    }
+}
+
+// What the viewer sees, after 8 bits, of colours out of gamut: hue within 3 degrees in the median.
+TEST(Gamut, HueStaysWhereClippingMovesIt) {
+    const World world = synthetic::make_world(64, 48, 93, 0.002);
+    const ColourCalibration calibration = calibrate(world);
+    const CompensationTable table = bake(calibration, kWhite);
+    const ImageF wanted = random_colours(world, 4, 0.4);
+    const auto median_shift = [&](GamutMapping mapping) {
+        const Image8 drive = compensate(table, map_gamut(table, wanted, mapping));
+        std::vector<double> shifts;
+        for (std::size_t i = 0; i < world.mixing.size(); ++i) {
+            // Only colours that need moving, and whose hue means something.
+            const glm::dvec3 asked = oklab_of(wanted, i);
+            const glm::dvec3 n = working_from_xyz() * xyz_from_oklab(asked);
+            if (chroma(asked) < 0.15 || glm::length(n) < 0.05) continue;
+            const glm::dvec3 d(
+                drive.values[3 * i], drive.values[3 * i + 1], drive.values[3 * i + 2]);
+            const glm::dvec3 shown =
+                oklab_from_xyz(world.xyz_from_camera * world.camera(i, d) / kWhite);
+            if (chroma(shown) > 0.02) shifts.push_back(hue_difference_deg(asked, shown));
+        }
+        EXPECT_GT(shifts.size(), 500u);
+        std::nth_element(shifts.begin(),
+                         shifts.begin() + static_cast<std::ptrdiff_t>(shifts.size() / 2),
+                         shifts.end());
+        return shifts[shifts.size() / 2];
+    };
+    const double preserved = median_shift(GamutMapping::preserve);
+    EXPECT_LT(preserved, 3.0);
+    EXPECT_LT(preserved, 0.5 * median_shift(GamutMapping::strict));
+}
+
+// More chroma asked for is never less chroma shown, and lightness gives way last.
+TEST(Gamut, ChromaRisesAndLightnessStays) {
+    const World world = even_world(64, 36, 0.002);
+    const CompensationTable table = bake(calibrate(world), kWhite);
+    const ImageF wanted = synthetic::picture(world, [&](std::size_t i) {
+        const double hue = static_cast<double>(i / 64) * 2.0 * std::numbers::pi / 36.0;
+        return working_of(0.6, 0.5 * static_cast<double>(i % 64) / 63.0, hue);
+    });
+    const ImageF mapped = map_gamut(table, wanted, GamutMapping::preserve);
+    for (std::size_t row = 0; row < 36; ++row) {
+        double before = -1.0;
+        for (std::size_t x = 0; x < 64; ++x) {
+            const glm::dvec3 lab = oklab_of(mapped, row * 64 + x);
+            // 16 halvings and floats: 1e-5 of the chroma.
+            EXPECT_GE(chroma(lab), before - 2e-5) << row << " " << x;
+            EXPECT_NEAR(lab.x, 0.6, 1e-4);
+            EXPECT_LE(chroma(lab), chroma(oklab_of(wanted, row * 64 + x)) + 1e-5);
+            if (chroma(lab) > 0.01) {
+                EXPECT_LT(hue_difference_deg(lab, oklab_of(wanted, row * 64 + x)), 0.2);
+            }
+            before = chroma(lab);
+        }
+        EXPECT_GT(before, 0.05) << row;  // and the end is a colour, not a grey
+    }
+}
+
+TEST(Gamut, LightnessRisesFromTheSharedBlackToTheLocalWhite) {
+    const World world = even_world(256, 2, 0.02);
+    const CompensationTable table = bake(calibrate(world), kWhite);
+    const GamutMap map(table);
+    const double ambient_y = (world.xyz_from_camera * world.camera(0, glm::dvec3(0.0))).y / kWhite;
+    // The ambient is not quite neutral: the darkest neutral lies at or just above its luminance.
+    EXPECT_GE(map.floor_lightness(), std::cbrt(ambient_y) * 0.99);
+    EXPECT_LE(map.floor_lightness(), std::cbrt(ambient_y) * 1.1);
+    const ImageF wanted = synthetic::picture(world, [&](std::size_t i) {
+        return working_of(2.0 * static_cast<double>(i % 256) / 255.0, 0.0, 0.0);
+    });
+    const ImageF mapped = map.preserve(wanted);
+    double before = 0.0;
+    for (std::size_t i = 0; i < 256; ++i) {
+        const glm::dvec3 lab = oklab_of(mapped, i);
+        EXPECT_GE(lab.x, before - 1e-6);
+        EXPECT_GE(lab.x, map.floor_lightness() - 1e-5);
+        before = lab.x;
+    }
+    CompensationStats stats;
+    compensate(table, mapped, &stats);
+    EXPECT_EQ(stats.out_of_gamut_fraction, 0.0);
+}
+
+// Beside a part of half the brightness the boundary changes by degrees, not at one pixel.
+TEST(Gamut, BoundaryIsSmoothInSpace) {
+    World world = even_world(80, 24, 0.0);
+    for (std::size_t i = 0; i < world.mixing.size(); ++i) {
+        if (i % 80 >= 40) world.mixing[i] *= 0.5;
+    }
+    const CompensationTable table = bake(calibrate(world), 0.6);
+    const ImageF wanted =
+        synthetic::picture(world, [&](std::size_t) { return working_of(0.75, 0.35, 2.5); });
+    const ImageF mapped = map_gamut(table, wanted, GamutMapping::preserve);
+    const std::size_t row = 12 * 80;
+    const double far_bright = chroma(oklab_of(mapped, row + 5));
+    const double far_dark = chroma(oklab_of(mapped, row + 75));
+    const double beside = chroma(oklab_of(mapped, row + 39));
+    EXPECT_GT(far_bright, far_dark * 1.05);
+    EXPECT_LT(beside, far_bright - 0.3 * (far_bright - far_dark));
+    CompensationStats stats;
+    compensate(table, mapped, &stats);
+    EXPECT_EQ(stats.out_of_gamut_fraction, 0.0);
+}
+
+TEST(Gamut, ClearSegmentsNarrowGamutIsRespected) {
+    const World world = synthetic::make_world(32, 20, 94, 0.002);
+    const CompensationTable table = bake(synthetic::calibrate_segment(world), kWhite);
+    const ImageF wanted = random_colours(world, 5, 0.4);
+    CompensationStats before, after;
+    compensate(table, wanted, &before);
+    compensate(table, map_gamut(table, wanted, GamutMapping::preserve), &after);
+    EXPECT_GT(before.out_of_gamut_fraction, 0.4);
+    EXPECT_LT(after.out_of_gamut_fraction, 0.01);
+}
+
+TEST(Gamut, BadPixelsPassThroughAndNothingBecomesNan) {
+    World world = synthetic::make_world(32, 20, 95, 0.002);
+    world.lit[7] = false;
+    const CompensationTable table = bake(calibrate(world), kWhite);
+    ImageF wanted = random_colours(world, 6, 0.5);
+    wanted.values[0] = std::numeric_limits<float>::quiet_NaN();
+    wanted.values[4 * 3] = std::numeric_limits<float>::infinity();
+    wanted.values[4 * 5 + 3] = 0.2f;
+    const float extremes[] = {0.0f, 1e30f, -1e30f, -5.0f, 65504.0f, 1e-38f};
+    for (std::size_t i = 0; i < 6; ++i) {
+        for (std::size_t k = 0; k < 3; ++k) wanted.values[4 * (40 + i) + k] = extremes[i];
+    }
+    const ImageF mapped = map_gamut(table, wanted, GamutMapping::preserve);
+    EXPECT_TRUE(std::isnan(mapped.values[0]));
+    EXPECT_TRUE(std::isinf(mapped.values[4 * 3]));
+    for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_EQ(mapped.values[4 * 5 + k], wanted.values[4 * 5 + k]);
+        EXPECT_EQ(mapped.values[4 * 7 + k], wanted.values[4 * 7 + k]);
+    }
+    for (std::size_t i = 8; i < world.mixing.size(); ++i) {
+        for (std::size_t k = 0; k < 4; ++k) EXPECT_TRUE(std::isfinite(mapped.values[4 * i + k]));
+    }
+    EXPECT_THROW(map_gamut(table, ImageF(31, 20, 4), GamutMapping::preserve),
+                 std::invalid_argument);
+    EXPECT_THROW(map_gamut(table, ImageF(32, 20, 2), GamutMapping::preserve),
+                 std::invalid_argument);
+}
+
+TEST(Gamut, EmptyCalibrationMapsNothing) {
+    World world = synthetic::make_world(8, 8, 96);
+    world.lit.assign(world.lit.size(), false);
+    const CompensationTable table = bake(calibrate(world), kWhite);
+    const ImageF wanted(8, 8, 3, 7.0f);
+    EXPECT_EQ(map_gamut(table, wanted, GamutMapping::preserve).values, wanted.values);
+}
+
+}  // namespace
+}  // namespace livery

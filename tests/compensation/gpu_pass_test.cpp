@@ -1,0 +1,145 @@
+// The OpenGL pass against its oracle, compensate(): within one level everywhere.
+#include "compensation/gpu_pass.h"
+
+#include <algorithm>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "compensation/white_segment.h"
+#include "gl/check.h"
+#include "gl/context.h"
+#include "gl/handles.h"
+#include "gl/read_back.h"
+
+namespace livery {
+namespace {
+
+class GpuPass : public testing::Test {
+  protected:
+    GpuPass() : context_(GlDevice::automatic) { set_gl_checks(true); }
+    ~GpuPass() override { set_gl_checks(false); }
+
+    struct Result {
+        int largest = 0;
+        double changed_fraction = 0.0;
+        Image8 gpu, cpu;
+    };
+    /// Both see the same half floats, which is what the radiance texture holds.
+    static Result compare(const CompensationTable& table, const ImageF& wanted) {
+        Texture2D texture(wanted.width, wanted.height, TexelFormat::rgba16f);
+        texture.upload(wanted.values);
+        GpuCompensation pass(table);
+        pass.run(texture.name());
+        Result result;
+        result.gpu = pass.read_back();
+        result.cpu = compensate(table, read_floats(texture));
+        EXPECT_EQ(result.gpu.values.size(), result.cpu.values.size());
+        std::size_t changed = 0;
+        for (std::size_t i = 0; i < result.cpu.values.size(); ++i) {
+            const int step = std::abs(static_cast<int>(result.cpu.values[i]) -
+                                      static_cast<int>(result.gpu.values[i]));
+            result.largest = std::max(result.largest, step);
+            changed += step != 0 ? 1u : 0u;
+        }
+        result.changed_fraction =
+            static_cast<double>(changed) / static_cast<double>(result.cpu.values.size());
+        return result;
+    }
+    HeadlessContext context_;
+};
+
+ImageF random_wanted(const synthetic::World& world, std::uint64_t seed) {
+    Random random(seed);
+    return synthetic::picture(world, [&](std::size_t) {
+        return glm::dvec3(2.0 * random.uniform() - 0.4,
+                          2.0 * random.uniform() - 0.4,
+                          2.0 * random.uniform() - 0.4);
+    });
+}
+
+TEST_F(GpuPass, AgreesWithTheOracle) {
+    // Sizes that are no multiple of the tile, smaller than one, and one pixel wide.
+    for (const auto& [width, height] : {std::pair{131, 77}, {31, 33}, {1, 65}, {64, 32}}) {
+        SCOPED_TRACE(testing::Message() << width << "x" << height);
+        const synthetic::World world = synthetic::make_world(width, height, 81);
+        const ImageF wanted = random_wanted(world, 82);
+        for (const bool paper : {false, true}) {
+            const CompensationTable table = bake(
+                paper ? synthetic::calibrate(world, 64.0, 200.0, 257) : synthetic::calibrate(world),
+                0.4);
+            const Result result = compare(table, wanted);
+            EXPECT_LE(result.largest, 1);
+            // Only where the two round a threshold of the dither differently.
+            EXPECT_LT(result.changed_fraction, 0.005);
+            EXPECT_GT(*std::max_element(result.gpu.values.begin(), result.gpu.values.end()), 100);
+        }
+    }
+}
+
+TEST_F(GpuPass, AgreesOnEverythingThatIsBlack) {
+    synthetic::World world = synthetic::make_world(96, 70, 83);
+    for (std::size_t i = 0; i < world.lit.size(); ++i) {
+        const std::size_t x = i % 96, y = i / 96;
+        world.lit[i] = x > 20 && x < 80 && y > 10 && y < 66 && (x + y) % 5 != 0;
+    }
+    ImageF wanted = random_wanted(world, 84);
+    const float bad[] = {std::numeric_limits<float>::quiet_NaN(),
+                         std::numeric_limits<float>::infinity(),
+                         -std::numeric_limits<float>::infinity()};
+    for (std::size_t i = 0; i < wanted.pixel_count(); ++i) {
+        if (i % 7 == 0) wanted.values[4 * i + i % 3] = bad[i / 7 % 3];
+        if (i % 11 == 0) wanted.values[4 * i + 3] = 0.25f;
+        if (i % 13 == 0) wanted.values[4 * i + 3] = 0.5f;
+        if (i % 17 == 0) wanted.values[4 * i + 3] = bad[0];
+    }
+    const Result result = compare(bake(synthetic::calibrate(world, 64.0, 200.0, 257), 0.4), wanted);
+    EXPECT_LE(result.largest, 1);
+    // 64 is the smallest drive that is not black: black agrees exactly.
+    for (std::size_t i = 0; i < result.cpu.values.size(); ++i) {
+        EXPECT_EQ(result.cpu.values[i] == 0, result.gpu.values[i] == 0) << i;
+    }
+}
+
+TEST_F(GpuPass, AgreesOnANonAdditiveProjector) {
+    const synthetic::World world = synthetic::make_world(64, 50, 85);
+    const CompensationTable table = bake(synthetic::calibrate_segment(world), 0.5);
+    Random random(86);
+    const ImageF inside = synthetic::picture(world, [&](std::size_t i) {
+        const glm::dvec3 drive = synthetic::random_drive(random, 8.0, 250.0);
+        return working_from_xyz() *
+               (world.xyz_from_camera * synthetic::segment_camera(world, i, drive)) / 0.5;
+    });
+    EXPECT_LE(compare(table, inside).largest, 1);
+    const Result outside = compare(table, random_wanted(world, 87));
+    EXPECT_LE(outside.largest, 1);
+    EXPECT_LT(outside.changed_fraction, 0.005);
+}
+
+TEST_F(GpuPass, FramesFollowOneAnotherWithoutATrace) {
+    const synthetic::World world = synthetic::make_world(40, 40, 88);
+    const CompensationTable table = bake(synthetic::calibrate(world), 0.4);
+    GpuCompensation pass(table);
+    Texture2D bright(40, 40, TexelFormat::rgba16f), none(40, 40, TexelFormat::rgba16f);
+    bright.upload(ImageF(40, 40, 4, 1.0f).values);
+    none.upload(ImageF(40, 40, 4, 0.0f).values);
+    pass.run(bright.name());
+    const Image8 first = pass.read_back();
+    EXPECT_GT(*std::max_element(first.values.begin(), first.values.end()), 200);
+    pass.run(none.name());
+    const Image8 second = pass.read_back();
+    EXPECT_EQ(*std::max_element(second.values.begin(), second.values.end()), 0);
+    pass.run(bright.name());
+    EXPECT_EQ(pass.read_back().values, first.values);
+}
+
+TEST_F(GpuPass, EmptyCalibrationIsBlack) {
+    synthetic::World world = synthetic::make_world(20, 20, 89);
+    world.lit.assign(world.lit.size(), false);
+    const Result result = compare(bake(synthetic::calibrate(world), 0.4), ImageF(20, 20, 4, 1.0f));
+    EXPECT_EQ(result.largest, 0);
+    EXPECT_EQ(*std::max_element(result.gpu.values.begin(), result.gpu.values.end()), 0);
+}
+
+}  // namespace
+}  // namespace livery
