@@ -25,8 +25,15 @@ class RadianceRenderer {
     RadianceRenderer(const RadianceRenderer&) = delete;
     RadianceRenderer& operator=(const RadianceRenderer&) = delete;
 
-    /// Shades whatever changed since the last call and fills in `plan`'s measured milliseconds.
+    /// Shades whatever changed since the last call, and nothing else. Fills in the plan's measured
+    /// milliseconds (0 for a pass whose result still stood) and work items. `plan` must be
+    /// plan_frame() of this scene; passes of other stages (compensation) are left alone. Throws
+    /// std::invalid_argument for another product or the path tracer's level.
     void render(const Scene& scene, FramePlan& plan, const Progress& progress = {});
+
+    /// Fills in `work_items`, what each pass's cost is linear in (rays, texels, fragments, pixels),
+    /// without drawing.
+    void count_work(const Scene& scene, FramePlan& plan) const;
 
     /// The last frame in the working space: R, G, B, coverage. Colour is the mean over the covered
     /// part of a pixel, 0 where nothing is covered.

@@ -1,8 +1,9 @@
 #include "radiance/surface_map.h"
 
 #include <algorithm>
-#include <atomic>
+#include <array>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 #include <fmt/format.h>
@@ -19,19 +20,33 @@ namespace {
 /// One sub-sample that met the product.
 struct Sample {
     SurfacePoint point;
+    SurfaceSample place;
     int group = 0;
+};
+
+/// A fragment before it is sorted into the map.
+struct Solved {
+    Fragment fragment;
+    std::array<SurfaceSample, kSamplesAFragment> samples;
 };
 
 /// Places of the sub-samples in a pixel: one in each cell of a side x side grid and, at the same
 /// time, one in each of side^2 columns and rows, so that straight edges get side^2 levels. Their
 /// mean is the pixel's centre, x and y are not correlated: interior pixels have no sampling noise.
 std::vector<glm::dvec2> sample_places(int side) {
-    std::vector<glm::dvec2> places;
+    std::vector<glm::dvec2> rows;
     for (int j = 0; j < side; ++j) {
         for (int i = 0; i < side; ++i) {
-            places.emplace_back((i + (j + 0.5) / side) / side,
-                                (j + (side - i - 0.5) / side) / side);
+            rows.emplace_back((i + (j + 0.5) / side) / side, (j + (side - i - 0.5) / side) / side);
         }
+    }
+    // An order in which any few that follow one another are spread over the pixel
+    const int count = side * side;
+    int stride = std::max(1, static_cast<int>(std::lround(0.4375 * count)));
+    while (std::gcd(stride, count) != 1) ++stride;
+    std::vector<glm::dvec2> places;
+    for (int k = 0; k < count; ++k) {
+        places.push_back(rows[static_cast<std::size_t>((1 + k * stride) % count)]);
     }
     return places;
 }
@@ -47,11 +62,10 @@ bool breaks_from(const SurfacePoint& a, const SurfacePoint& b, float footprint_m
     return off_plane > 2.0f * footprint_mm;
 }
 
-Fragment mean_of(const std::vector<Sample>& samples,
-                 int group,
-                 std::uint32_t pixel,
-                 int per_pixel) {
-    Fragment fragment;
+Solved mean_of(const std::vector<Sample>& samples, int group, std::uint32_t pixel, int per_pixel) {
+    Solved solved;
+    Fragment& fragment = solved.fragment;
+    std::size_t kept = 0;
     fragment.pixel = pixel;
     int count = 0;
     float handedness = 0.0f;
@@ -64,6 +78,7 @@ Fragment mean_of(const std::vector<Sample>& samples,
         normal += s.point.normal;
         tangent += glm::vec3(s.point.tangent);
         handedness += s.point.tangent.w;
+        if (kept < kSamplesAFragment) solved.samples[kept++] = s.place;
         ++count;
     }
     fragment.position_mm = glm::vec3(position / static_cast<double>(count));
@@ -87,7 +102,10 @@ Fragment mean_of(const std::vector<Sample>& samples,
         tangent = glm::cross(axis, n);
     }
     fragment.tangent = glm::vec4(glm::normalize(tangent), handedness < 0.0f ? -1.0f : 1.0f);
-    return fragment;
+    for (std::size_t k = kept; k < kSamplesAFragment; ++k) {
+        solved.samples[k] = solved.samples[k - kept];
+    }
+    return solved;
 }
 
 /// Sorts a pixel's samples into groups that a mean can stand for and appends their fragments.
@@ -95,7 +113,7 @@ void append_fragments(std::vector<Sample>& samples,
                       std::uint32_t pixel,
                       int per_pixel,
                       float footprint_mm,
-                      std::vector<Fragment>& fragments) {
+                      std::vector<Solved>& fragments) {
     std::vector<const Sample*> first;  // of each group
     for (Sample& s : samples) {
         const auto found = std::find_if(first.begin(), first.end(), [&](const Sample* f) {
@@ -110,11 +128,11 @@ void append_fragments(std::vector<Sample>& samples,
 }
 
 /// Traces one tile; fragments come pixel by pixel.
-std::vector<Fragment> solve_tile(const Mesh& mesh,
-                                 const Tracer& tracer,
-                                 const View& view,
-                                 glm::ivec2 tile,
-                                 const std::vector<glm::dvec2>& places) {
+std::vector<Solved> solve_tile(const Mesh& mesh,
+                               const Tracer& tracer,
+                               const View& view,
+                               glm::ivec2 tile,
+                               const std::vector<glm::dvec2>& places) {
     const TileRays lens(view, tile);
     const glm::vec3 origin(centre_in_world(view));
     const int x_end = std::min((tile.x + 1) * kTile_px, view.width);
@@ -124,7 +142,7 @@ std::vector<Fragment> solve_tile(const Mesh& mesh,
     std::vector<TraceRay> rays;
     std::vector<Hit> hits;
     std::vector<Sample> samples;
-    std::vector<Fragment> fragments;
+    std::vector<Solved> fragments;
     for (int y = tile.y * kTile_px; y < y_end; ++y) {
         // Rays of one row of the tile at a time stay in the cache
         rays.clear();
@@ -151,7 +169,9 @@ std::vector<Fragment> solve_tile(const Mesh& mesh,
             float farthest = 0.0f;
             for (std::size_t i = begin; i < begin + static_cast<std::size_t>(per_pixel); ++i) {
                 if (!hits[i].valid()) continue;
-                Sample sample{surface_point(mesh, hits[i])};
+                Sample sample;
+                sample.point = surface_point(mesh, hits[i]);
+                sample.place = {hits[i].triangle, hits[i].barycentric};
                 farthest = std::max(farthest, hits[i].t);
                 // An open surface shows its inside: the side that is lit is the side that is shaded
                 if (glm::dot(sample.point.geometric_normal, rays[i].direction) > 0.0f) {
@@ -189,7 +209,7 @@ SurfaceMap build_surface_map(const Mesh& mesh,
 
     const std::vector<glm::dvec2> places = sample_places(side);
     const std::vector<glm::ivec2> tiles = tiles_that_see(mesh, view);
-    std::vector<std::vector<Fragment>> solved(tiles.size());
+    std::vector<std::vector<Solved>> solved(tiles.size());
     parallel_for(tiles.size(), 8, [&](std::size_t begin, std::size_t end) {
         progress.check_stop();
         for (std::size_t i = begin; i < end; ++i) {
@@ -201,12 +221,13 @@ SurfaceMap build_surface_map(const Mesh& mesh,
     // Order by part, then by pixel; fragments of one pixel and part keep their order
     struct Key {
         std::uint64_t part_and_pixel;
-        const Fragment* fragment;
+        const Solved* solved;
     };
     std::vector<Key> keys;
     for (const auto& tile : solved) {
-        for (const Fragment& f : tile) {
-            keys.push_back({(static_cast<std::uint64_t>(f.part) << 32u) | f.pixel, &f});
+        for (const Solved& s : tile) {
+            keys.push_back(
+                {(static_cast<std::uint64_t>(s.fragment.part) << 32u) | s.fragment.pixel, &s});
         }
     }
     std::stable_sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
@@ -216,12 +237,16 @@ SurfaceMap build_surface_map(const Mesh& mesh,
     SurfaceMap map;
     map.width = view.width;
     map.height = view.height;
+    map.samples_per_pixel = samples_per_pixel;
     map.coverage = ImageF(view.width, view.height, 1);
     map.part_begin.assign(mesh.parts.size() + 1, 0);
     map.fragments.reserve(keys.size());
+    map.samples.reserve(keys.size() * kSamplesAFragment);
     for (const Key& key : keys) {
-        const Fragment& f = *key.fragment;
+        const Fragment& f = key.solved->fragment;
         map.fragments.push_back(f);
+        map.samples.insert(
+            map.samples.end(), key.solved->samples.begin(), key.solved->samples.end());
         map.part_begin[f.part + 1u] += 1;
         float& covered = map.coverage.values[f.pixel];
         if (covered == 0.0f) ++map.covered_pixels;

@@ -26,13 +26,24 @@ struct Fragment {
     std::uint16_t part = 0;
 };
 
+/// Where a sub-sample met the mesh. Shadow rays start at such points: a mean of several may lie
+/// inside the product.
+struct SurfaceSample {
+    std::uint32_t triangle = 0;
+    glm::vec2 barycentric{0.0f};  ///< as in Hit
+};
+inline constexpr std::size_t kSamplesAFragment = 4;
+
 /// Fragments sorted by part, then by pixel, so that a paint change re-shades one contiguous range.
 struct SurfaceMap {
     int width = 0, height = 0;
     std::vector<Fragment> fragments;
+    /// kSamplesAFragment each, spread over the fragment, with repeats where it had fewer
+    std::vector<SurfaceSample> samples;
     std::vector<std::uint32_t> part_begin;  ///< parts + 1 offsets into fragments
-    ImageF coverage;                        ///< one channel, of each pixel, all parts together
-    std::size_t covered_pixels = 0;         ///< pixels with any coverage
+    int samples_per_pixel = 0;
+    ImageF coverage;                 ///< one channel, of each pixel, all parts together
+    std::size_t covered_pixels = 0;  ///< pixels with any coverage
 };
 
 /// `samples_per_pixel` rays a pixel (a square number, 16 or more) through the view's full lens

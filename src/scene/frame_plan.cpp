@@ -140,6 +140,11 @@ void plan_shading(const Scene& scene, const Needs& needs, FramePlan& plan) {
                   fmt::format("the gloss of part {} depends on where the eye is",
                               *needs.glossy_parts.begin()));
     }
+    if (needs.models.contains(ReflectanceModel::lambert)) {
+        plan_pass(plan, kDiffuseLightPass, "plain diffuse parts need only the sum of all light");
+    } else {
+        plan.skipped.push_back({kDiffuseLightPass, "no part is plain diffuse"});
+    }
     for (std::size_t i = 0; i < scene.part_materials.size(); ++i) {
         const Material& material = scene.part_materials[i];
         plan_pass(plan,

@@ -44,6 +44,7 @@ inline constexpr const char* kOcclusionPass = "ambient-occlusion";
 inline constexpr const char* kFilterPass = "environment-filter";
 inline constexpr const char* kReflectionPass = "reflection-occlusion";
 inline constexpr const char* kDirectionsPass = "directions";
+inline constexpr const char* kDiffuseLightPass = "diffuse-light";
 inline constexpr const char* kResolvePass = "resolve";
 inline constexpr const char* kCompensationPass = "compensation";
 inline constexpr const char* kPathTracerPass = "path-tracer";

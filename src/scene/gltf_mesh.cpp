@@ -14,7 +14,8 @@ namespace livery {
 
 namespace {
 
-constexpr std::size_t kMaxVertices = 1u << 25u;
+/// Of all uses of all meshes; about 1.6 GB as vertices of their own.
+constexpr std::size_t kMaxCorners = 1u << 25u;
 
 using Notes = std::vector<std::string>;
 
@@ -111,6 +112,29 @@ void note_unread(const JsonReader& root, Notes& notes) {
     }
 }
 
+/// Adds up what the nodes would make of the meshes, from declared counts, before anything is made.
+void check_total_size(const JsonReader& root, const std::vector<PlacedNode>& nodes) {
+    std::size_t corners = 0;
+    for (const auto& placed : nodes) {
+        const auto node = root["nodes"].at(placed.index);
+        if (!node.has("mesh")) continue;
+        const auto primitives =
+            root["meshes"].at(index_into(root, "meshes", node["mesh"]))["primitives"];
+        for (std::size_t k = 0; k < primitives.size(); ++k) {
+            const auto primitive = primitives.at(k);
+            const auto index = primitive.has("indices") ? primitive["indices"]
+                                                        : primitive["attributes"]["POSITION"];
+            const auto accessor = root["accessors"].at(index_into(root, "accessors", index));
+            const auto count = static_cast<std::size_t>(accessor["count"].integer(1, 0x7fffffff));
+            // Strips and fans make up to three corners of one.
+            corners += integer_or(primitive, "mode", 0, 6, 4) > 4 ? 3 * count : count;
+            if (corners <= kMaxCorners) continue;
+            node["mesh"].fail(fmt::format("{} corners of triangles up to here", corners),
+                              fmt::format("at most {} in all uses of all meshes", kMaxCorners));
+        }
+    }
+}
+
 bool uses_extension(const JsonReader& root, std::string_view name) {
     if (!root.has("extensionsUsed")) return false;
     for (std::size_t k = 0; k < root["extensionsUsed"].size(); ++k) {
@@ -133,10 +157,13 @@ Mesh load_mesh(const std::filesystem::path& file, std::vector<std::string>* note
         materials.push_back(read_material(gltf, k, notes));
     }
 
+    const auto nodes = placed_nodes(root);
+    check_total_size(root, nodes);
+
     GltfAccessors accessors(gltf);
     UniqueNames names;
     Mesh mesh;
-    for (const auto& [node_index, world_from_node] : placed_nodes(root)) {
+    for (const auto& [node_index, world_from_node] : nodes) {
         const auto node = root["nodes"].at(node_index);
         if (!node.has("mesh")) continue;
         const auto source = root["meshes"].at(index_into(root, "meshes", node["mesh"]));
@@ -151,22 +178,17 @@ Mesh load_mesh(const std::filesystem::path& file, std::vector<std::string>* note
             part.name = names.take(groups.size() > 1 ? node_name + "/" + material : node_name);
             Mesh built;
             for (const std::size_t k : group.primitives) {
-                append(
-                    built,
-                    build_primitive(
-                        accessors, primitives.at(k), world_from_node, quantized, part.name, notes),
-                    "");
-                if (mesh.positions_mm.size() + built.positions_mm.size() > kMaxVertices ||
-                    mesh.parts.size() == 0xffff) {
-                    node["mesh"].fail(
-                        "too much in all its uses",
-                        fmt::format("at most {} vertices and 65535 parts", kMaxVertices));
-                }
+                const auto primitive = primitives.at(k);
+                append(built,
+                       build_primitive(
+                           accessors, primitive, world_from_node, quantized, part.name, notes),
+                       "");
             }
             if (built.triangles.empty()) {
                 notes.push_back(fmt::format("part \"{}\": nothing to show; dropped", part.name));
                 continue;
             }
+            if (mesh.parts.size() == 0xffff) node["mesh"].fail("part 65536", "65535 parts or less");
             built.parts = {part};
             append(mesh, built, "");
         }

@@ -203,7 +203,14 @@ Mesh build_primitive(GltfAccessors& accessors,
     const glm::dmat3 linear(world_from_node);
     const auto world_mm = [&](std::uint32_t vertex) {
         const double* p = from.positions->element(vertex);
-        return kMmPerMetre * glm::dvec3(world_from_node * glm::dvec4(p[0], p[1], p[2], 1.0));
+        const glm::dvec3 position =
+            kMmPerMetre * glm::dvec3(world_from_node * glm::dvec4(p[0], p[1], p[2], 1.0));
+        if (!(glm::length(position) < kFarthestMm)) {
+            primitive["attributes"]["POSITION"].fail(
+                fmt::format("a vertex {:g} mm away", glm::length(position)),
+                fmt::format("positions within {:g} mm", kFarthestMm));
+        }
+        return position;
     };
     const std::size_t before = triangles.size();
     std::erase_if(triangles, [&](const glm::uvec3& t) {
@@ -221,13 +228,7 @@ Mesh build_primitive(GltfAccessors& accessors,
     Mesh mesh;
     mesh.triangles = std::move(triangles);
     for (const auto vertex : used) {
-        const glm::dvec3 position = world_mm(vertex);
-        if (!(glm::length(position) < kFarthestMm)) {
-            primitive["attributes"]["POSITION"].fail(
-                fmt::format("a vertex {:g} mm away", glm::length(position)),
-                fmt::format("positions within {:g} mm", kFarthestMm));
-        }
-        mesh.positions_mm.emplace_back(position);
+        mesh.positions_mm.emplace_back(world_mm(vertex));
         const double* uv = from.uvs ? from.uvs->element(vertex) : nullptr;
         mesh.uvs.push_back(uv ? glm::vec2(uv[0], uv[1]) : glm::vec2(0.0f));
     }

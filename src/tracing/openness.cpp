@@ -1,6 +1,7 @@
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <numbers>
+
+#include <glm/geometric.hpp>
 
 #include "core/error.h"
 #include "core/parallel.h"

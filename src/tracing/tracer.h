@@ -61,8 +61,8 @@ class Tracer {
 
 SurfacePoint surface_point(const Mesh& mesh, const Hit& hit);
 
-/// An origin for a ray that leaves the surface without hitting it again (offset along the geometric
-/// normal, scaled with the coordinates; Waechter and Binder 2019).
+/// An origin for a ray that leaves the surface without hitting it again: a few float steps of the
+/// largest coordinate along the geometric normal, at least 2 micrometres.
 glm::vec3 offset_origin(const glm::vec3& position, const glm::vec3& geometric_normal);
 
 /// For each point the fraction of cosine-weighted sky that is open, `ray_count` rays a point,

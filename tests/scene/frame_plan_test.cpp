@@ -49,11 +49,12 @@ std::string why(const FramePlan& plan, const std::string& name) {
     return "not listed";
 }
 
-TEST(FramePlan, DiffuseSceneWithoutLightNeedsThreeKindsOfPass) {
+TEST(FramePlan, DiffuseSceneWithoutLightNeedsFewKindsOfPass) {
     const FramePlan plan = plan_frame(bare_scene(), Quality::high, FrameStage::radiance);
     EXPECT_EQ(passes(plan),
               (std::set<std::string>{
-                  "surface-map", "shade:body:lambert", "shade:wheels:lambert", "resolve"}));
+                  "surface-map", "diffuse-light", "shade:body:lambert", "shade:wheels:lambert",
+                  "resolve"}));
     EXPECT_EQ(why(plan, "key-visibility"), "the look has no light");
     EXPECT_EQ(why(plan, "ambient-occlusion"), "no environment in the look");
     EXPECT_EQ(why(plan, "environment-filter"), "no environment in the look");

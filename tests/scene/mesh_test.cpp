@@ -1,10 +1,10 @@
 #include "scene/mesh.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <numbers>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
 
 namespace livery {
 namespace {

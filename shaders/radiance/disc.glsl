@@ -1,0 +1,42 @@
+// Mean of a GGX lobe over a disc of half vectors: a light that has a size, seen by a pixel whose
+// normals vary. Needs microfacet.glsl.
+//
+// GGX slopes are distributed as p(s) = a^2 / (pi (|s|^2 + a^2)^2), which is the stereographic
+// picture of a uniform sphere. A disc in the plane is a cap there, so the mean of p over a disc of
+// radius r around s is exact: with b = |s|^2 + a^2 - r^2 and q = sqrt(b^2 + 4 a^2 r^2),
+//   mean = (1 - b / q) / (2 pi r^2) = 2 a^2 / (pi q (q + b)),
+// in units where a is the geometric mean of both slope parameters. The light's disc of half-angle
+// rho has an elliptic picture among the half vectors' slopes; the disc of the same area stands for
+// it: r^2 = rho^2 |H|^2 / (2 H.z^3), H = wi + wo. Normals with mean squared slope m add r^2 = 2 m.
+
+// Distribution times visibility as ggx_distribution_visibility; light_radius2 = rho^2.
+FN REAL disc_distribution_visibility(VEC3 wi,
+                                     VEC3 wo,
+                                     REAL hh,
+                                     REAL alpha_x,
+                                     REAL alpha_y,
+                                     REAL light_radius2,
+                                     REAL mean_squared_slope) {
+    REAL hx = wi.x + wo.x;
+    REAL hy = wi.y + wo.y;
+    REAL hz = wi.z + wo.z;
+    REAL a2 = alpha_x * alpha_y;
+    REAL ratio = alpha_y / alpha_x;
+    REAL hz2 = hz * hz;
+    // b and q, times H.z^2
+    REAL r2 = R(0.5) * light_radius2 * hh / hz + R(2.0) * mean_squared_slope * hz2;
+    REAL b = hx * hx * ratio + hy * hy / ratio + hz2 * a2 - r2;
+    REAL cross_term = R(4.0) * r2 * a2 * hz2;
+    REAL q = sqrt(b * b + cross_term);
+    REAL sum = b > R(0.0) ? q + b : cross_term / (q - b);
+    REAL mu_i = max(wi.z, R(1e-6));
+    REAL mu_o = max(wo.z, R(1e-6));
+    REAL xi = alpha_x * wi.x;
+    REAL yi = alpha_y * wi.y;
+    REAL xo = alpha_x * wo.x;
+    REAL yo = alpha_y * wo.y;
+    REAL length_i = sqrt(xi * xi + yi * yi + mu_i * mu_i);
+    REAL length_o = sqrt(xo * xo + yo * yo + mu_o * mu_o);
+    return a2 * hh * hh * R(0.3183098861837907) /
+           (q * sum * (mu_i * length_o + mu_o * length_i));
+}

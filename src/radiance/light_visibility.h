@@ -1,0 +1,40 @@
+// How much of each light reaches each fragment: solved when the pose or the light changes.
+#pragma once
+
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "core/progress.h"
+#include "radiance/surface_map.h"
+#include "scene/look.h"
+#include "tracing/tracer.h"
+
+namespace livery {
+
+/// One light at one fragment. A diffuser of albedo 1 sends radiance x visibility x max(n.l, 0).
+struct LightAtFragment {
+    glm::vec3 direction{0.0f};  ///< unit; of the visible part's centre
+    float visibility = 0.0f;    ///< 1: the whole disc, at the irradiance of its centre
+};
+
+/// Shadow rays, at most `rays_per_fragment`, from the fragment's own sub-samples toward hashed,
+/// stratified points of the light's disc; those under the horizon of the mean normal do not count.
+/// A point at infinity takes one ray a sub-sample, so that shadow edges stay antialiased.
+std::vector<LightAtFragment> light_at_fragments(const Mesh& mesh,
+                                                const Tracer& tracer,
+                                                const SurfaceMap& map,
+                                                const DirectionalLight& light,
+                                                int rays_per_fragment,
+                                                const Progress& progress = {});
+
+/// Where rays from a fragment start: its k-th sub-sample, moved off the surface on the seen side.
+glm::vec3 ray_origin(const Mesh& mesh, const SurfaceMap& map, std::size_t fragment, std::size_t k);
+
+/// Two unit vectors that make a right-handed frame with unit `n` (Duff et al. 2017).
+struct Basis {
+    glm::vec3 s, t;
+};
+Basis basis_around(const glm::vec3& n);
+
+}  // namespace livery

@@ -1,0 +1,201 @@
+#include "radiance/renderer.h"
+
+#include <deque>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "gl/draw.h"
+#include "gl/read_back.h"
+#include "gl/timer.h"
+#include "radiance/environment_filter.h"
+#include "radiance/fragment_inputs.h"
+#include "radiance/packed_fragments.h"
+#include "radiance/resolve.h"
+#include "radiance/shading.h"
+
+namespace livery {
+namespace {
+
+constexpr int kSubSamples = 16;
+
+void check_fits(const Scene& scene, const FramePlan& plan, const Product* product) {
+    check_argument(scene.product.get() == product, "the scene shows another product");
+    for (std::size_t i = 0; i < scene.part_materials.size(); ++i) {
+        const std::string pass = shade_pass(scene, i);
+        check_argument(find_pass(plan, pass) != nullptr,
+                       fmt::format("the plan has no pass \"{}\": it is of another scene", pass));
+    }
+}
+
+}  // namespace
+
+struct RadianceRenderer::State {
+    std::shared_ptr<const Product> product;
+    double map_begin_ms = StageClock::now_ms();
+    Tracer tracer;
+    SurfaceMap map;
+    double map_ms;
+    bool map_reported = false;
+
+    PackedLayout layout;
+    FragmentInputs inputs;
+    ShadingPrograms programs;
+    std::optional<ResolvePass> resolve;
+    Texture2D shaded, target;
+    Framebuffer shaded_framebuffer, target_framebuffer;
+
+    struct Shaded {
+        Material material;
+        double exposure_ev = 0.0;
+    };
+    std::vector<std::optional<Shaded>> parts;  ///< as last shaded
+    std::deque<GlTimer> timers;
+    int own_textures = 0;
+    Counters counters;
+
+    State(std::shared_ptr<const Product> its_product, const View& view, const Progress& progress)
+        : product(std::move(its_product)),
+          tracer(product->mesh),
+          map(build_surface_map(product->mesh, tracer, view, kSubSamples, progress)),
+          map_ms(StageClock::now_ms() - map_begin_ms),
+          layout(layout_of(map)),
+          inputs(product->mesh, tracer, map, layout),
+          target(map.width, map.height, TexelFormat::rgba16f),
+          target_framebuffer({&target}),
+          parts(product->mesh.parts.size()) {
+        target.clear();
+        own_textures = 1;
+    }
+
+    /// Shades the parts that need it; their timers are read when all is drawn.
+    void shade(const Scene& scene, FramePlan& plan, bool inputs_changed);
+    void run_resolve(FramePlan& plan, bool any_shaded);
+    void read_timers();
+
+    std::vector<std::pair<PlannedPass*, GlTimer*>> running;
+    GlTimer& timer_for(PlannedPass* pass) {
+        if (timers.size() <= running.size()) timers.emplace_back();
+        GlTimer& timer = timers[running.size()];
+        running.emplace_back(pass, &timer);
+        return timer;
+    }
+};
+
+void RadianceRenderer::State::shade(const Scene& scene, FramePlan& plan, bool inputs_changed) {
+    if (!shaded) {
+        shaded = Texture2D(kPackedWidth, layout.rows, TexelFormat::rgba16f);
+        shaded_framebuffer = Framebuffer({&shaded});
+        ++own_textures;
+    }
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+        PlannedPass* pass = find_pass(plan, shade_pass(scene, p));
+        pass->ms = 0.0;
+        const Material& material = scene.part_materials[p];
+        const bool stands = !inputs_changed && parts[p] &&
+                            same_paint(parts[p]->material, material) &&
+                            parts[p]->exposure_ev == scene.exposure_ev;
+        if (stands) continue;
+        parts[p] = Shaded{material, scene.exposure_ev};
+        const PixelRect rectangle = layout.rectangle(p);
+        if (rectangle.height == 0) continue;
+        GlTimer& timer = timer_for(pass);
+        timer.start();
+        programs.shade(
+            material, inputs.shading(), scene.exposure_ev, rectangle, shaded_framebuffer);
+        timer.stop();
+        ++counters.passes_run;
+        counters.fragments_shaded += static_cast<int>(layout.fragments(p));
+    }
+}
+
+void RadianceRenderer::State::run_resolve(FramePlan& plan, bool any_shaded) {
+    PlannedPass* pass = find_pass(plan, kResolvePass);
+    check_argument(pass != nullptr, "the plan has no resolve pass");
+    pass->ms = 0.0;
+    if (!any_shaded) return;
+    if (!resolve) {
+        resolve.emplace(map, layout);
+        own_textures += ResolvePass::kTextures;
+    }
+    GlTimer& timer = timer_for(pass);
+    timer.start();
+    resolve->run(shaded, target_framebuffer);
+    timer.stop();
+    ++counters.passes_run;
+}
+
+void RadianceRenderer::State::read_timers() {
+    for (const auto& [pass, timer] : running) pass->ms = *pass->ms + timer->milliseconds();
+    running.clear();
+}
+
+RadianceRenderer::RadianceRenderer(std::shared_ptr<const Product> product,
+                                   const View& view,
+                                   const Progress& progress) {
+    check_argument(product != nullptr, "a renderer needs a product");
+    state_ = std::make_unique<State>(std::move(product), view, progress);
+}
+
+RadianceRenderer::~RadianceRenderer() = default;
+
+void RadianceRenderer::render(const Scene& scene, FramePlan& plan, const Progress& progress) {
+    State& s = *state_;
+    rays_of(plan.quality);
+    check_fits(scene, plan, s.product.get());
+    count_work(scene, plan);
+    StageClock clock(plan);
+    if (PlannedPass* pass = find_pass(plan, kSurfaceMapPass)) {
+        pass->ms = s.map_reported ? 0.0 : s.map_ms;
+        if (!s.map_reported) ++s.counters.passes_run;
+        s.map_reported = true;
+    }
+    const bool inputs_changed = s.inputs.update(scene, plan, clock, progress);
+    s.counters.passes_run += clock.passes_run();
+    progress.check_stop();
+    s.running.clear();
+    s.shade(scene, plan, inputs_changed);
+    s.run_resolve(plan, !s.running.empty());
+    s.read_timers();
+}
+
+void RadianceRenderer::count_work(const Scene& scene, FramePlan& plan) const {
+    const State& s = *state_;
+    const auto fragments = static_cast<double>(s.map.fragments.size());
+    const QualityRays rays = rays_of(plan.quality);
+    const auto set = [&](const std::string& name, double items) {
+        if (PlannedPass* pass = find_pass(plan, name)) pass->work_items = items;
+    };
+    set(kSurfaceMapPass, static_cast<double>(s.map.covered_pixels) * s.map.samples_per_pixel);
+    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+        const bool point = scene.lights[i].angle_rad <= 0.0;
+        const int most = static_cast<int>(kSamplesAFragment);
+        set(visibility_pass(i), fragments * (point ? std::min(rays.light, most) : rays.light));
+    }
+    set(kIrradiancePass, fragments);
+    set(kOcclusionPass, fragments * rays.sky);
+    set(kFilterPass, 512.0 * 256.0 * static_cast<double>(kLayerAlphas.size()));
+    set(kReflectionPass, fragments * rays.mirror * static_cast<double>(kMirrorAlphas.size()));
+    set(kDirectionsPass, fragments);
+    set(kDiffuseLightPass, fragments);
+    for (std::size_t p = 0; p < scene.part_materials.size(); ++p) {
+        set(shade_pass(scene, p), static_cast<double>(s.layout.fragments(p)));
+    }
+    set(kResolvePass, static_cast<double>(s.map.covered_pixels));
+}
+
+ImageF RadianceRenderer::read_back() const { return read_floats(state_->target); }
+
+unsigned RadianceRenderer::texture() const { return state_->target.name(); }
+
+const SurfaceMap& RadianceRenderer::surface_map() const { return state_->map; }
+
+RadianceRenderer::Counters RadianceRenderer::counters() const {
+    Counters counters = state_->counters;
+    counters.programs = state_->programs.compiled() + (state_->resolve ? 1 : 0);
+    counters.textures = state_->own_textures + state_->inputs.textures_made();
+    return counters;
+}
+
+}  // namespace livery

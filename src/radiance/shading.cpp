@@ -1,0 +1,130 @@
+#include "radiance/shading.h"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "appearance/bsdf.h"
+#include "core/paths.h"
+#include "radiance/environment_filter.h"
+
+namespace livery {
+namespace {
+
+const char* define_of(ReflectanceModel model) {
+    switch (model) {
+        case ReflectanceModel::lambert:
+            return "LAMBERT";
+        case ReflectanceModel::ggx:
+            return "GGX";
+        case ReflectanceModel::clearcoat:
+            return "CLEARCOAT";
+    }
+    throw std::invalid_argument("unknown reflectance model");
+}
+
+std::string shipped_text(const char* file) {
+    return read_text_file(shipped_path(std::filesystem::path("shaders/radiance") / file));
+}
+
+glm::vec3 average_through(const BsdfParameters& p) {
+    return glm::vec3(1.0f) - f32::ggx_interface_average(p);
+}
+
+/// What of a paint does not depend on the fragment.
+void set_paint(Program& program, const Material& material) {
+    const BsdfParameters p = parameters_of(material);
+    program.set("u_f0", p.f0);
+    program.set("u_alpha", glm::vec4(p.alpha_x, p.alpha_y, p.coat_alpha, p.coat_f0));
+    switch (material.model) {
+        case ReflectanceModel::lambert:
+            program.set("u_diffuse", p.diffuse);
+            break;
+        case ReflectanceModel::ggx:
+            program.set("u_diffuse", p.diffuse / average_through(p));
+            program.set("u_sky_diffuse", p.diffuse);
+            break;
+        case ReflectanceModel::clearcoat: {
+            const float inverse_index2 = f32::coat_inverse_index_squared(p);
+            const glm::vec3 diffuse = f32::coated_diffuse(p, inverse_index2);
+            const glm::vec3 share =
+                glm::min(average_through(p), glm::vec3(f32::coat_average_transmission(p)));
+            const float mean_path = f32::coat_path(2.0f / 3.0f, inverse_index2);
+            program.set("u_diffuse", diffuse);
+            program.set("u_sky_diffuse", diffuse * share * f32::coat_absorption(p, mean_path));
+            program.set("u_coat_log_transmittance",
+                        glm::log2(glm::max(p.coat_transmittance, glm::vec3(1e-6f))));
+            program.set("u_coat_inverse_index_squared", inverse_index2);
+            break;
+        }
+    }
+}
+
+}  // namespace
+
+Program& ShadingPrograms::program_for(const Key& key) {
+    const auto found = programs_.find(key);
+    if (found != programs_.end()) return found->second;
+    const auto [model, lights, environment] = key;
+    std::string text = "#version 450 core\n" + bsdf_glsl(model);
+    text += fmt::format("#define {} 1\n#define LIGHTS {}\n#define ENVIRONMENT {}\n",
+                        define_of(model),
+                        lights,
+                        environment ? 1 : 0);
+    text += fmt::format(
+        "#define LAYERS {}\n#define FIRST_ALPHA {:.8f}\n", kLayerAlphas.size(), kLayerAlphas[1]);
+    if (model != ReflectanceModel::lambert) text += shipped_text("disc.glsl");
+    text += shipped_text("shade.glsl");
+    Program program = Program::screen_pass({fmt::format("shade {}", define_of(model)), text});
+    return programs_.emplace(key, std::move(program)).first->second;
+}
+
+void ShadingPrograms::shade(const Material& material,
+                            const ShadingInputs& inputs,
+                            double exposure_ev,
+                            const PixelRect& rectangle,
+                            const Framebuffer& target) {
+    if (rectangle.height == 0) return;
+    const bool lambert = material.model == ReflectanceModel::lambert;
+    const int lights = lambert ? 0 : static_cast<int>(inputs.light_irradiance.size());
+    const bool environment = !lambert && inputs.layers;
+    Program& program = program_for({material.model, lights, environment});
+    set_paint(program, material);
+    program.set("u_exposure", static_cast<float>(std::exp2(exposure_ev)));
+    if (lambert) {
+        program.set("u_lit", 0);
+        inputs.lit.bind(0);
+    } else {
+        program.set("u_eye", 0);
+        inputs.eye.bind(0);
+    }
+    if (lights > 0) {
+        program.set("u_lights", 1);
+        inputs.lights.bind(1);
+        program.set("u_light_radiance", std::span<const glm::vec3>(inputs.light_irradiance));
+        program.set("u_light_radius2", std::span<const float>(inputs.light_radius2));
+    }
+    if (environment) {
+        program.set("u_sky", 2);
+        program.set("u_mirror", 3);
+        program.set("u_layers", 4);
+        program.set("u_environment_scale", inputs.layers_scale);
+        inputs.sky.bind(2);
+        inputs.mirror.bind(3);
+        inputs.layers.bind(4);
+    }
+    DrawState state;
+    state.scissor = rectangle;
+    screen_.run(program, target, state);
+}
+
+bool same_paint(const Material& a, const Material& b) {
+    return a.model == b.model && a.diffuse == b.diffuse && a.f0 == b.f0 && a.alpha == b.alpha &&
+           a.coat_alpha == b.coat_alpha && a.coat_f0 == b.coat_f0 &&
+           a.coat_transmittance == b.coat_transmittance;
+}
+
+}  // namespace livery

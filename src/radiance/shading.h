@@ -1,0 +1,54 @@
+// The shading programs, one for each combination that a scene uses, and what they read.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <tuple>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "appearance/material.h"
+#include "gl/draw.h"
+#include "gl/handles.h"
+#include "gl/program.h"
+#include "scene/look.h"
+
+namespace livery {
+
+/// Textures of the packed layout; those that no program of the scene reads stay empty.
+struct ShadingInputs {
+    Texture2D lit;     ///< light on a white diffuser, for plain diffuse parts
+    Texture2D eye;     ///< direction to the eye; mean squared slope
+    Texture2D lights;  ///< one layer a light: direction, visibility
+    Texture2D sky;     ///< environment on a white diffuser; openness of a wide mirror lobe
+    Texture2D mirror;  ///< map coordinates of the mirrored direction; openness of two lobes
+    Texture2D layers;  ///< filtered environment
+    float layers_scale = 1.0f;
+    std::vector<glm::vec3> light_irradiance;  ///< one a layer of `lights`, facing it
+    std::vector<float> light_radius2;         ///< half of the disc's angle, squared
+};
+
+/// Compiles on first use.
+class ShadingPrograms {
+  public:
+    /// Shades a rectangle of the packed fragments.
+    void shade(const Material& material,
+               const ShadingInputs& inputs,
+               double exposure_ev,
+               const PixelRect& rectangle,
+               const Framebuffer& target);
+    int compiled() const { return static_cast<int>(programs_.size()); }
+
+  private:
+    using Key = std::tuple<ReflectanceModel, int, bool>;  ///< model, lights, environment
+    Program& program_for(const Key& key);
+
+    std::map<Key, Program> programs_;
+    ScreenPass screen_;
+};
+
+/// Whether both shade alike (names and files aside).
+bool same_paint(const Material& a, const Material& b);
+
+}  // namespace livery

@@ -1,0 +1,171 @@
+#include "radiance/environment_filter.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "radiance/spherical_harmonics.h"
+
+namespace livery {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+template <typename Radiance>
+Environment environment_of(int width, int height, const Radiance& radiance) {
+    Environment environment;
+    environment.radiance_working = ImageF(width, height, 3);
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            const glm::dvec3 d =
+                direction_from_uv(environment, {(x + 0.5) / width, (y + 0.5) / height});
+            const glm::dvec3 value = radiance(d);
+            for (int c = 0; c < 3; ++c) {
+                environment.radiance_working.at(x, y, c) = static_cast<float>(value[c]);
+            }
+        }
+    }
+    return environment;
+}
+
+glm::vec3 towards(const Environment& environment, const ImageF& picture, glm::dvec3 direction) {
+    return sample_sphere(picture, uv_from_direction(environment, direction));
+}
+
+/// Mean over the lobe seen along `axis` by brute force: the definition that the kernel implements.
+double lobe_mean(double alpha, glm::dvec3 axis, const std::function<double(glm::dvec3)>& radiance) {
+    const glm::dvec3 s = glm::normalize(glm::cross(axis, glm::dvec3(0.3, 0.5, -0.8)));
+    const glm::dvec3 t = glm::cross(axis, s);
+    double sum = 0.0, total = 0.0;
+    const int rings = 800, sectors = 256;
+    for (int i = 0; i < rings; ++i) {
+        const double theta = kPi / 2.0 * std::pow((i + 0.5) / rings, 2.0);
+        const double width = kPi / 2.0 * 2.0 * ((i + 0.5) / rings) / rings;
+        const double c = std::cos(0.5 * theta), s2 = std::pow(std::sin(0.5 * theta), 2.0);
+        const double k = alpha / (s2 + c * c * alpha * alpha);
+        const double mu = std::cos(theta);
+        const double g2 =
+            2.0 * mu / (mu + std::sqrt(alpha * alpha + (1 - alpha * alpha) * mu * mu));
+        const double weight = k * k * g2 * std::sin(theta) * width;
+        for (int j = 0; j < sectors; ++j) {
+            const double phi = 2.0 * kPi * (j + 0.5) / sectors;
+            sum += weight *
+                   radiance(mu * axis + std::sin(theta) * (std::cos(phi) * s + std::sin(phi) * t));
+            total += weight;
+        }
+    }
+    return sum / total;
+}
+
+/// Smooth, with three lamps of different size, the smallest 0.03 rad wide.
+double studio(glm::dvec3 d) {
+    const auto lamp = [&](glm::dvec3 at, double width, double power) {
+        const glm::dvec3 away = d - glm::normalize(at);
+        return power * std::exp(-0.5 * glm::dot(away, away) / (width * width));
+    };
+    return 0.4 + 0.3 * d.y + lamp({1, 1, 0.4}, 0.03, 60.0) + lamp({-1, 0.5, 1}, 0.15, 5.0) +
+           lamp({0.1, 0.9, -1}, 0.4, 2.0);
+}
+
+TEST(EnvironmentFilter, ConstantStaysConstant) {
+    const Environment grey = environment_of(64, 32, [](glm::dvec3) { return glm::dvec3(0.7); });
+    const FilteredEnvironment filtered = filter_environment(grey, {});
+    ASSERT_EQ(filtered.mirrored.size(), kLayerAlphas.size());
+    for (const ImageF& layer : filtered.mirrored) {
+        // Quadrature is exact here; float storage and 512 rows' rounding leave 1e-6.
+        for (const float value : layer.values) ASSERT_NEAR(value, 0.7f, 1e-5f);
+    }
+    for (const float value : filtered.diffuse.values) ASSERT_NEAR(value, 0.7f, 1e-5f);
+    for (const float value : filtered.blurred.values) ASSERT_NEAR(value, 0.7f, 1e-5f);
+}
+
+TEST(EnvironmentFilter, DiffuserUnderALinearSkyHasTheClosedForm) {
+    // L = 1 + a.d gives irradiance / pi = 1 + 2/3 a.n; and d.y^2 gives 1/4 + n.y^2/4.
+    const glm::dvec3 a(0.3, -0.4, 0.2);
+    const Environment sky = environment_of(1024, 512, [&](glm::dvec3 d) {
+        return glm::dvec3(1.0 + glm::dot(a, d), d.y * d.y, 1.0 - d.y * d.y);
+    });
+    const FilteredEnvironment filtered = filter_environment(sky, {false, true, false});
+    EXPECT_TRUE(filtered.mirrored.empty());
+    EXPECT_TRUE(filtered.blurred.empty());
+    for (const glm::dvec3 n : {glm::dvec3(0, 1, 0.01),
+                               glm::dvec3(1, 0.2, 0.3),
+                               glm::dvec3(-1, -1, 1),
+                               glm::dvec3(0.2, -1, -0.1),
+                               glm::dvec3(-0.01, 0, 1)}) {
+        const glm::dvec3 unit = glm::normalize(n);
+        const glm::vec3 found = towards(sky, filtered.diffuse, unit);
+        // Bilinear on 256 columns: (2 pi / 256)^2 / 8 of a curvature of order 1, twice.
+        EXPECT_NEAR(found.x, 1.0 + 2.0 / 3.0 * glm::dot(a, unit), 4e-4);
+        EXPECT_NEAR(found.y, 0.25 + 0.25 * unit.y * unit.y, 2e-4);
+        EXPECT_NEAR(found.z, 0.75 - 0.25 * unit.y * unit.y, 2e-4);
+    }
+}
+
+TEST(EnvironmentFilter, DiffuserUnderAHalfSky) {
+    // Light from y > 0 only: a normal at angle t from up sees (1 + cos t) / 2. The step has energy
+    // in every degree; the cosine's series stops at 48, which leaves under 5e-4.
+    const Environment half =
+        environment_of(1024, 512, [](glm::dvec3 d) { return glm::dvec3(d.y > 0.0 ? 1.0 : 0.0); });
+    const FilteredEnvironment filtered = filter_environment(half, {false, true, false});
+    for (double t = 0.05; t < kPi; t += 0.15) {
+        const glm::dvec3 n(std::sin(t), std::cos(t), 0.0);
+        EXPECT_NEAR(towards(half, filtered.diffuse, n).x, 0.5 + 0.5 * std::cos(t), 1e-3);
+    }
+}
+
+TEST(EnvironmentFilter, LayersAreMeansOverTheirLobes) {
+    const Environment environment =
+        environment_of(1024, 512, [](glm::dvec3 d) { return glm::dvec3(studio(d)); });
+    const FilteredEnvironment filtered = filter_environment(environment, {true, false, false});
+    for (const std::size_t layer : {1u, 2u, 4u, 6u, 8u, 10u, 12u}) {
+        const double alpha = static_cast<double>(kLayerAlphas[layer]);
+        for (const glm::dvec3 axis : {glm::dvec3(1, 1, 0.4),
+                                      glm::dvec3(1, 1, 0.45),
+                                      glm::dvec3(1, 1.2, 0.4),
+                                      glm::dvec3(-1, 0.4, 1),
+                                      glm::dvec3(0.02, 1, 0.01),
+                                      glm::dvec3(0, -1, 0.2)}) {
+            const glm::dvec3 unit = glm::normalize(axis);
+            const double expected = lobe_mean(alpha, unit, studio);
+            // Bilinear interpolation of a lamp .03 rad wide on texels of .012 rad: up to h^2 / 4
+            // sigma^2 = 4% between texels.
+            EXPECT_NEAR(towards(environment, filtered.mirrored[layer], unit).x,
+                        expected,
+                        0.04 * expected + 1e-3)
+                << "alpha " << alpha;
+        }
+    }
+}
+
+TEST(EnvironmentFilter, OtherSizesAreTakenAndRotationOnlyTurns) {
+    Environment small = environment_of(90, 45, [](glm::dvec3 d) { return glm::dvec3(1.0 + d.x); });
+    const FilteredEnvironment filtered = filter_environment(small, {false, true, false});
+    EXPECT_NEAR(towards(small, filtered.diffuse, {1, 0, 0}).x, 1.0 + 2.0 / 3.0, 3e-3);
+    small.rotation_rad = kPi / 2.0;
+    const glm::dvec3 where = direction_from_uv(small, {0.75, 0.5});
+    EXPECT_NEAR(towards(small, filtered.diffuse, where).x, 1.0 + 2.0 / 3.0, 3e-3);
+}
+
+TEST(SphericalHarmonicsTransform, RoundTripKeepsABandLimitedPicture) {
+    const Environment environment = environment_of(128, 64, [](glm::dvec3 d) {
+        return glm::dvec3(d.x * d.y + 0.3 * d.z, 1.0 + d.x * d.x * d.z, std::pow(d.y, 5.0));
+    });
+    const SphericalHarmonics harmonics = analyse_sphere(environment.radiance_working, 15);
+    const std::vector<std::vector<double>> same{std::vector<double>(16, 1.0)};
+    const ImageF back = synthesise_sphere(harmonics, same, 128, 64).front();
+    for (std::size_t i = 0; i < back.values.size(); ++i) {
+        ASSERT_NEAR(back.values[i], environment.radiance_working.values[i], 1e-5);
+    }
+}
+
+TEST(SphericalHarmonicsTransform, RefusesSizesThatItCannotTransform) {
+    EXPECT_THROW(analyse_sphere(ImageF(100, 50, 3), 10), std::invalid_argument);
+    EXPECT_THROW(analyse_sphere(ImageF(64, 32, 3), 40), std::invalid_argument);
+    EXPECT_THROW(analyse_sphere(ImageF(64, 32, 1), 10), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace livery
