@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <numbers>
 
 namespace livery::assets {
 
@@ -56,8 +57,8 @@ glm::dvec3 studio_radiance(const glm::dvec3& direction) {
         // Overhead, along the car.
         softbox({0.0, 1.0, 0.0}, {1, 0, 0}, 0.74, 0.24, 0.06, glm::dvec3(4.6, 4.6, 4.6)),
         // Strips along both sides, the left one larger and a little warm: the key.
-        softbox({0.1, 0.42, 1.0}, {1, 0, 0}, 1.05, 0.095, 0.03, glm::dvec3(6.6, 6.4, 6.1)),
-        softbox({-0.1, 0.36, -1.0}, {1, 0, 0}, 1.05, 0.06, 0.022, glm::dvec3(4.5, 4.7, 5.0)),
+        softbox({0.1, 0.30, 1.0}, {1, 0, 0}, 1.15, 0.10, 0.03, glm::dvec3(6.6, 6.4, 6.1)),
+        softbox({-0.1, 0.27, -1.0}, {1, 0, 0}, 1.15, 0.065, 0.022, glm::dvec3(4.5, 4.7, 5.0)),
         // The rim light, high behind the tail.
         softbox({-1.0, 0.55, -0.15}, {0, 0, 1}, 0.30, 0.07, 0.03, glm::dvec3(7.6, 7.7, 8.0)),
     };

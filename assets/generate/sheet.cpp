@@ -1,12 +1,13 @@
 #include "sheet.h"
 
 #include <cmath>
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
 #include <limits>
 #include <map>
 #include <set>
 #include <utility>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 namespace livery::assets {
 
@@ -14,9 +15,7 @@ namespace {
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
-Edge undirected(std::uint32_t a, std::uint32_t b) {
-    return a < b ? Edge(a, b) : Edge(b, a);
-}
+Edge undirected(std::uint32_t a, std::uint32_t b) { return a < b ? Edge(a, b) : Edge(b, a); }
 
 LimitVertex between(const LimitVertex& a, const LimitVertex& b, double t) {
     return {glm::mix(a.position, b.position, t),

@@ -3,9 +3,10 @@
 
 #include <cstdint>
 #include <functional>
+#include <vector>
+
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <vector>
 
 #include "part_mesh.h"
 #include "subdivision.h"
@@ -51,7 +52,8 @@ struct PanelStyle {
 /// A border edge of a panel toward kNoPanel or the sheet's open end, for what joins there.
 struct OpenEdge {
     glm::dvec3 from{0.0}, to{0.0};  ///< the panel on the left, seen from outside
-    int panel = 0;
+    int part = 0;
+    int region = 0;
 };
 
 /// Chart coordinates (before scaling) of a vertex in a region.

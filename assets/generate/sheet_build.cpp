@@ -1,9 +1,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <map>
 #include <utility>
+
+#include <glm/geometric.hpp>
 
 #include "sheet.h"
 
@@ -18,9 +19,7 @@ struct Border {
     int panel, neighbour, region;
 };
 
-bool on_centre(const LimitVertex& v) {
-    return v.position.z == 0.0;
-}
+bool on_centre(const LimitVertex& v) { return v.position.z == 0.0; }
 
 std::vector<Border> borders_of(const Sheet& sheet) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> panel_of_edge;
@@ -129,7 +128,8 @@ std::vector<OpenEdge> build_panels(const Sheet& sheet,
         if (border.neighbour == kNoPanel) {
             open.push_back({place(border.from, border.panel, style.inset_mm),
                             place(border.to, border.panel, style.inset_mm),
-                            border.panel});
+                            style.part,
+                            border.region});
             continue;
         }
         auto& part = parts[static_cast<std::size_t>(style.part)];

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <numbers>
 #include <vector>
+
+#include <glm/geometric.hpp>
 
 #include "solids.h"
 
