@@ -151,17 +151,17 @@ void add_floor(PartMesh& trim) {
 
 /// A door mirror: a housing with a flat back, on a foot at the window's front corner.
 void add_mirror(std::vector<PartMesh>& parts) {
-    const glm::dvec3 centre(21.4, 42.9, 34.75), half(2.5, 1.9, 2.7);
+    const glm::dvec3 centre(21.0, 42.7, 34.7), half(3.1, 1.8, 2.75);
     auto housing = sphere(1.0, 20);
     for (auto& p : housing.positions_mm) {
         const auto round = [](double v, double power) {
             return std::copysign(std::pow(std::abs(v), power), v);
         };
         // A superellipsoid, blunt behind, slimmer toward its outer end.
-        glm::dvec3 q(round(p.x, p.x > 0.0 ? 0.9 : 0.5), round(p.y, 0.8), round(p.z, 0.75));
-        q.x *= p.x > 0.0 ? 1.0 : 0.35;
+        glm::dvec3 q(round(p.x, p.x > 0.0 ? 1.1 : 0.5), round(p.y, 0.75), round(p.z, 0.7));
+        q.x *= p.x > 0.0 ? 1.0 : 0.30;
         q.y *= 1.0 - 0.16 * q.z;
-        p = centre + q * half + glm::dvec3(-0.35 * (q.z + 1.0), 0.0, 0.0);
+        p = centre + q * half + glm::dvec3(-0.5 * (q.z + 1.0), 0.0, 0.0);
     }
     compute_smooth_normals(housing);
     append(parts[kBody], housing, glm::dvec3(0.0));
@@ -187,8 +187,9 @@ std::vector<PartMesh> make_car() {
     fit_to_size(skin);
     add_flares(skin);
     fit_to_size(skin);
-    auto sheet = half_sheet(skin, [](int region, const glm::dvec3& centre) {
-        return region != kFloor || centre.z > 27.0;
+    auto sheet = half_sheet(skin, [](int region, const glm::dvec2& parameters) {
+        return region != kFloor ||
+               parameters.y < kSillRow + 1;  // a flange; a plate closes the rest
     });
     const auto styles = cut_car_panels(sheet);
 

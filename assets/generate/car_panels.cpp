@@ -43,6 +43,8 @@ using Points = std::vector<glm::dvec2>;
 glm::dvec2 side_view(const LimitVertex& v) { return {v.position.x, v.position.y}; }
 glm::dvec2 top_view(const LimitVertex& v) { return {v.position.x, v.position.z}; }
 
+glm::dvec2 end_view(const LimitVertex& v) { return {v.position.z, v.position.y}; }
+
 /// Developed around an upright axis: angle from straight ahead (or back), in degrees, and height.
 glm::dvec2 nose_view(const LimitVertex& v) {
     return {std::atan2(v.position.z, v.position.x - 48.0) * 57.29577951308232, v.position.y};
@@ -278,14 +280,14 @@ void cut_lids(Cutter& cutter) {
         return t.region == kTop && cutter.row(t) < 7.4;
     });
     const Outline lower_hatch(
-        {{-33.0, 60.0}, {-33.0, 25.0}, {-29.0, 23.0}, {29.0, 23.0}, {33.0, 25.0}, {33.0, 60.0}},
+        {{-26.0, 60.0}, {-26.0, 25.4}, {-23.5, 23.0}, {23.5, 23.0}, {26.0, 25.4}, {26.0, 60.0}},
         2.0);
     cutter.along(
-        [](const LimitVertex& v) { return 62.8 + 0.55 * (32.0 - v.position.y) - v.position.x; },
+        [](const LimitVertex& v) { return 63.2 + 0.15 * (32.0 - v.position.y) - v.position.x; },
         {kFenders},
         kFrontBumper,
         [&](const SheetTriangle& t) { return cutter.centre(t).x > 56.0; });
-    cutter(lower_hatch, tail_view, 0.0, {kFenders}, kHatch, [&](const SheetTriangle& t) {
+    cutter(lower_hatch, end_view, 0.0, {kFenders}, kHatch, [&](const SheetTriangle& t) {
         return t.region == kTail;
     });
     cutter.along([](const LimitVertex& v) { return v.position.y - 25.2; },

@@ -27,9 +27,9 @@ struct Sheet {
 inline constexpr int kNoPanel = -1;  ///< cut away
 
 /// The z >= 0 half of a symmetric limit mesh, all in panel 0; `keep` chooses quads by their region
-/// and corners' centre.
+/// and the mean of their corners' parameters.
 Sheet half_sheet(const LimitMesh& mesh,
-                 const std::function<bool(int region, const glm::dvec3& centre)>& keep);
+                 const std::function<bool(int region, const glm::dvec2& parameters)>& keep);
 
 /// The vertex, its place and what it carries -> signed value, negative inside.
 using CutFunction = std::function<double(const LimitVertex&)>;
