@@ -151,7 +151,7 @@ void add_floor(PartMesh& trim) {
 
 /// A door mirror: a housing with a flat back, on a foot at the window's front corner.
 void add_mirror(std::vector<PartMesh>& parts) {
-    const glm::dvec3 centre(21.0, 42.7, 34.7), half(3.1, 1.8, 2.75);
+    const glm::dvec3 centre(21.4, 42.3, 34.6), half(3.2, 2.1, 2.85);
     auto housing = sphere(1.0, 20);
     for (auto& p : housing.positions_mm) {
         const auto round = [](double v, double power) {
@@ -169,11 +169,11 @@ void add_mirror(std::vector<PartMesh>& parts) {
     std::vector<std::vector<glm::dvec3>> foot;
     for (int k = 0; k < 3; ++k) {
         const double f = k / 2.0;
-        const glm::dvec3 middle = glm::mix(glm::dvec3(22.0, 39.0, 33.4), centre, f);
+        const glm::dvec3 middle = glm::mix(glm::dvec3(22.6, 38.9, 33.4), centre, f);
         std::vector<glm::dvec3> loop;
         for (int a = 0; a < 12; ++a) {
             const double turn = 2.0 * std::numbers::pi * a / 12;
-            loop.push_back(middle + glm::dvec3(1.2 * std::sin(turn), 0.0, 0.55 * std::cos(turn)));
+            loop.push_back(middle + glm::dvec3(1.9 * std::sin(turn), 0.0, 0.8 * std::cos(turn)));
         }
         foot.push_back(loop);
     }
