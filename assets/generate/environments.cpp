@@ -16,7 +16,7 @@ namespace {
 struct Softbox {
     glm::dvec3 axis, right, up;
     double half_width, half_height;
-    double edge;  ///< half of the soft edge's width above and below; thrice that at the ends
+    double edge;  ///< half of the soft edge's width above and below
     glm::dvec3 radiance;
 };
 
@@ -33,11 +33,13 @@ glm::dvec3 light_of(const Softbox& box, const glm::dvec3& direction) {
     const auto side = [](double at, double half, double edge) {
         return 1.0 - smooth_step(half - edge, half + edge, at);
     };
+    // At the ends, seen at a slant, the soft edge takes the same angle or more.
+    const double end_edge = 1.5 * box.edge * (1.0 + box.half_width * box.half_width);
     // The lamp behind the cloth makes the middle a little brighter than the rim.
     const double u = x / box.half_width, v = y / box.half_height;
     const double falloff = 1.0 - 0.18 * std::min(1.0, 0.5 * (u * u + v * v));
     return box.radiance *
-           (side(x, box.half_width, 3.0 * box.edge) * side(y, box.half_height, box.edge) * falloff);
+           (side(x, box.half_width, end_edge) * side(y, box.half_height, box.edge) * falloff);
 }
 
 Softbox softbox(const glm::dvec3& toward,
@@ -58,8 +60,8 @@ glm::dvec3 studio_radiance(const glm::dvec3& direction) {
         // Overhead, along the car.
         softbox({0.0, 1.0, 0.0}, {1, 0, 0}, 0.68, 0.19, 0.05, glm::dvec3(4.6, 4.6, 4.6)),
         // Strips along both sides, the left one larger and a little warm: the key.
-        softbox({0.1, 0.30, 1.0}, {1, 0, 0}, 1.10, 0.075, 0.035, glm::dvec3(6.4, 6.2, 5.9)),
-        softbox({-0.1, 0.27, -1.0}, {1, 0, 0}, 1.10, 0.05, 0.028, glm::dvec3(4.5, 4.7, 5.0)),
+        softbox({0.0, 0.25, 1.0}, {1, 0, 0}, 1.90, 0.070, 0.042, glm::dvec3(5.6, 5.45, 5.2)),
+        softbox({0.0, 0.23, -1.0}, {1, 0, 0}, 1.90, 0.050, 0.035, glm::dvec3(4.5, 4.7, 5.0)),
         // The rim light, high behind the tail.
         softbox({-1.0, 0.55, -0.15}, {0, 0, 1}, 0.26, 0.08, 0.05, glm::dvec3(7.2, 7.3, 7.6)),
     };
