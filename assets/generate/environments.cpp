@@ -58,10 +58,10 @@ Softbox softbox(const glm::dvec3& toward,
 glm::dvec3 studio_radiance(const glm::dvec3& direction) {
     static const Softbox boxes[]{
         // Overhead, along the car.
-        softbox({0.0, 1.0, 0.0}, {1, 0, 0}, 0.68, 0.19, 0.05, glm::dvec3(4.6, 4.6, 4.6)),
+        softbox({0.0, 1.0, 0.0}, {1, 0, 0}, 0.66, 0.17, 0.05, glm::dvec3(4.6, 4.6, 4.6)),
         // Strips along both sides, the left one larger and a little warm: the key.
-        softbox({0.0, 0.25, 1.0}, {1, 0, 0}, 1.90, 0.070, 0.042, glm::dvec3(5.6, 5.45, 5.2)),
-        softbox({0.0, 0.23, -1.0}, {1, 0, 0}, 1.90, 0.050, 0.035, glm::dvec3(4.5, 4.7, 5.0)),
+        softbox({0.0, 0.25, 1.0}, {1, 0, 0}, 1.90, 0.070, 0.042, glm::dvec3(5.3, 5.15, 4.95)),
+        softbox({0.0, 0.23, -1.0}, {1, 0, 0}, 1.90, 0.050, 0.035, glm::dvec3(4.1, 4.3, 4.6)),
         // The rim light, high behind the tail.
         softbox({-1.0, 0.55, -0.15}, {0, 0, 1}, 0.26, 0.08, 0.05, glm::dvec3(7.2, 7.3, 7.6)),
     };
