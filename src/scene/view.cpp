@@ -192,4 +192,16 @@ View look_at(glm::dvec3 from, glm::dvec3 at, double vertical_fov_rad, int width,
     return view;
 }
 
+View resized(const View& view, int width, int height) {
+    check_argument(width > 0 && height > 0, "resized: needs a positive size");
+    const glm::dvec2 scale(static_cast<double>(width) / view.width,
+                           static_cast<double>(height) / view.height);
+    View result = view;
+    result.focal_px *= scale;
+    result.principal_px *= scale;
+    result.width = width;
+    result.height = height;
+    return result;
+}
+
 }  // namespace livery

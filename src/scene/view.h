@@ -56,6 +56,9 @@ glm::dvec3 centre_in_world(const View& view);
 /// A view at `from` that looks at `at`, world y up, with a vertical field of view.
 View look_at(glm::dvec3 from, glm::dvec3 at, double vertical_fov_rad, int width, int height);
 
+/// The same lens and pose with other pixels.
+View resized(const View& view, int width, int height);
+
 /// Camera file (docs/files.md). Converts OpenCV's pixel centres at integers. Throws FileError.
 View read_camera_file(const std::filesystem::path& file);
 void write_camera_file(const std::filesystem::path& file, const View& view);
