@@ -1,0 +1,147 @@
+#include "session/captured_calibration.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "core/image_io.h"
+#include "session/camera_to_xyz_file.h"
+
+namespace livery {
+
+namespace {
+
+bool is_geometry(const std::string& role) {
+    return role.starts_with("gray-column-") || role.starts_with("gray-row-") || role == "white" ||
+           role == "black";
+}
+
+std::vector<RoledPhotograph> load(const CapturesFolder& folder,
+                                  bool geometry,
+                                  const Progress& progress) {
+    std::vector<RoledPhotograph> photographs;
+    double done = 0.0;
+    for (const Capture& capture : folder.captures) {
+        progress.update(done / static_cast<double>(folder.captures.size()),
+                        "reading the photographs");
+        done += 1.0;
+        if (is_geometry(capture.role) == geometry) {
+            photographs.push_back({capture.role, load_photograph(capture)});
+        }
+    }
+    return photographs;
+}
+
+/// Drive of the uniform picture with this role; the paper's mode takes s and t from here.
+std::optional<int> uniform_drive(const CapturesFolder& folder, const std::string& role) {
+    for (const Capture& capture : folder.captures) {
+        if (capture.role == role && capture.drive.size() == 3) return capture.drive[1];
+    }
+    return std::nullopt;
+}
+
+/// What was shown for each colour role: the pattern files, else the pictures of our own for s and
+/// t.
+std::vector<Pattern> patterns_shown(const CapturesFolder& folder, const ColourOptions& options) {
+    std::vector<Pattern> patterns = colour_patterns(
+        folder.projector_width, folder.projector_height, options.dark_drive, options.bright_drive);
+    for (const Capture& capture : folder.captures) {
+        if (is_geometry(capture.role) || capture.pattern.empty()) continue;
+        const ImageFile picture = read_image(capture.pattern);
+        if (picture.image.width != folder.projector_width ||
+            picture.image.height != folder.projector_height || picture.image.channels < 3) {
+            throw FileError(capture.pattern,
+                            "size",
+                            std::to_string(picture.image.width) + "x" +
+                                std::to_string(picture.image.height) + " with " +
+                                std::to_string(picture.image.channels) + " channels",
+                            "the projector's " + std::to_string(folder.projector_width) + "x" +
+                                std::to_string(folder.projector_height) + " with 3");
+        }
+        Pattern shown{capture.role,
+                      Image8(folder.projector_width, folder.projector_height, 3),
+                      capture.drive};
+        const double per_level = picture.full_scale / 255.0;
+        for (std::size_t i = 0; i < picture.image.pixel_count(); ++i) {
+            for (std::size_t c = 0; c < 3; ++c) {
+                const auto from = i * static_cast<std::size_t>(picture.image.channels) + c;
+                shown.drive.values[3 * i + c] = static_cast<std::uint8_t>(
+                    static_cast<double>(picture.image.values[from]) / per_level + 0.5);
+            }
+        }
+        const auto known =
+            std::find_if(patterns.begin(), patterns.end(), [&](const Pattern& pattern) {
+                return pattern.role == capture.role;
+            });
+        if (known != patterns.end()) {
+            *known = std::move(shown);
+        } else {
+            patterns.push_back(std::move(shown));
+        }
+    }
+    return patterns;
+}
+
+}  // namespace
+
+ColourCalibration calibrate_from_folder(const CapturedCalibrationRequest& request,
+                                        const Progress& progress) {
+    const CapturesFolder folder = read_captures_folder(request.captures, request.patterns_manifest);
+
+    ColourOptions options;
+    options.mode = request.mode;
+    options.camera_to_xyz =
+        request.camera_to_xyz ? read_camera_to_xyz(*request.camera_to_xyz) : assumed_rec709();
+    options.made_with = "photographs in " + request.captures.string();
+    options.dark_drive = uniform_drive(folder, "dark-gray").value_or(options.dark_drive);
+    options.bright_drive = uniform_drive(folder, "bright-gray").value_or(options.bright_drive);
+
+    ProjectorToCamera map;
+    if (request.map) {
+        map = read_map(*request.map, folder.projector_width, folder.projector_height);
+    } else {
+        const auto geometry = load(folder, true, progress);
+        if (geometry.empty()) {
+            throw FileError(request.captures,
+                            "captures",
+                            "no Gray code photographs",
+                            "Gray code photographs, or --map FILE.exr");
+        }
+        map =
+            invert_map(decode_gray_code(geometry, folder.projector_width, folder.projector_height),
+                       folder.projector_width,
+                       folder.projector_height);
+    }
+    return calibrate_colour(
+        load(folder, false, progress), patterns_shown(folder, options), map, options, progress);
+}
+
+ProjectorToCamera read_map(const std::filesystem::path& file,
+                           int projector_width,
+                           int projector_height) {
+    ImageFile picture = read_image(file);
+    if (picture.image.width != projector_width || picture.image.height != projector_height) {
+        throw FileError(
+            file,
+            "size",
+            std::to_string(picture.image.width) + "x" + std::to_string(picture.image.height),
+            "the projector's " + std::to_string(projector_width) + "x" +
+                std::to_string(projector_height));
+    }
+    if (picture.channel_names != std::vector<std::string>{"X", "Y"}) {
+        std::string names;
+        for (const auto& name : picture.channel_names) names += (names.empty() ? "" : ",") + name;
+        throw FileError(file, "channels", names, "X,Y");
+    }
+    ProjectorToCamera map{std::move(picture.image), Image8(projector_width, projector_height, 1)};
+    // OpenCV's pixel centres are integers, ours half integers.
+    for (float& value : map.camera_px.values) value += 0.5f;
+    return map;
+}
+
+void write_map(const std::filesystem::path& file, const ProjectorToCamera& map) {
+    ImageF picture = map.camera_px;
+    for (float& value : picture.values) value -= 0.5f;
+    write_exr(file, picture, {"X", "Y"});
+}
+
+}  // namespace livery

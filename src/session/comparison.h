@@ -1,0 +1,51 @@
+// Wanted against shown: CIEDE2000 at every projector pixel, and its statistics by kind of pixel.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "core/image.h"
+
+namespace livery {
+
+/// Which pixels count, one channel each, 255 or 0, projector pixels.
+struct ComparisonMasks {
+    Image8 lit;        ///< on the mock-up, by the world's truth
+    Image8 edge;       ///< within 2 px of a silhouette, depth or part edge
+    Image8 valid;      ///< carries a correction
+    Image8 reachable;  ///< some drive shows the wanted colour, by the world's truth
+};
+
+struct ErrorStatistics {
+    std::size_t pixels = 0;
+    double median = 0.0, p95 = 0.0, mean = 0.0, worst = 0.0;
+};
+
+struct Comparison {
+    ImageF de00;               ///< one channel; NaN outside the lit mock-up
+    ErrorStatistics interior;  ///< lit, reachable, valid, not edge: the figure to quote
+    ErrorStatistics edge;      ///< lit, reachable, valid, in the edge band
+    ErrorStatistics clipped;   ///< lit, valid, interior, not reachable
+    ErrorStatistics
+        reachable_with_masked;        ///< interior and reachable, masked ones counted as shown
+    double reachable_fraction = 0.0;  ///< of the lit pixels
+    double valid_fraction = 0.0;      ///< of the interior reachable pixels
+    double masked_fraction = 0.0;     ///< of the lit pixels
+};
+
+/// Both pictures are XYZ on one absolute scale (3 channels); `white_xyz` is design white there.
+/// Throws std::invalid_argument when sizes differ.
+Comparison compare_xyz(const ImageF& wanted_xyz,
+                       const ImageF& shown_xyz,
+                       glm::dvec3 white_xyz,
+                       const ComparisonMasks& masks);
+
+/// Median, 95th percentile (nearest rank), mean and worst.
+ErrorStatistics statistics_of(std::vector<float> errors);
+
+/// Working-space picture (3 or 4 channels, 1 = design white) -> absolute XYZ (3 channels).
+ImageF xyz_from_wanted(const ImageF& wanted_working, double design_white_y);
+
+}  // namespace livery

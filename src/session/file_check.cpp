@@ -1,0 +1,156 @@
+#include "session/file_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "appearance/material.h"
+#include "capture/captures_folder.h"
+#include "core/error.h"
+#include "core/image_io.h"
+#include "core/json.h"
+#include "scene/colour_calibration.h"
+#include "scene/look.h"
+#include "scene/product.h"
+#include "scene/view.h"
+#include "session/camera_to_xyz_file.h"
+#include "twin/description.h"
+
+namespace livery {
+
+namespace {
+
+using Path = std::filesystem::path;
+
+struct Kind {
+    std::string name;
+    std::function<void(const Path&, FileCheck&)> read;
+};
+
+void read_mesh(const Path& file, FileCheck& check) { load_mesh(file, &check.notes); }
+
+void read_captures(const Path& folder, FileCheck& check) {
+    const CapturesFolder captures = read_captures_folder(folder);
+    for (const Capture& capture : captures.captures) {
+        try {
+            load_photograph(capture);
+        } catch (const std::exception& error) {
+            check.problems.emplace_back(error.what());
+        }
+    }
+}
+
+void read_picture(const Path& file, FileCheck& check) {
+    const ImageFile picture = read_image(file);
+    const auto bad = std::count_if(picture.image.values.begin(),
+                                   picture.image.values.end(),
+                                   [](float value) { return !std::isfinite(value); });
+    if (bad > 0) {
+        check.problems.push_back(std::to_string(bad) + " values are not finite");
+    }
+}
+
+/// A map from projector to camera pixels says "unknown" with NaN: that is no problem.
+void read_map(const Path& file, FileCheck& check) {
+    const ImageFile map = read_image(file);
+    check.notes.push_back(std::to_string(map.image.width) + "x" + std::to_string(map.image.height) +
+                          " projector pixels");
+}
+
+Kind kind_of_json(const Path& file) {
+    const Json json = read_json_file(file);
+    const auto has = [&](const char* key) { return json.contains(key); };
+    if (has("captures")) {
+        return {"captures", [](const Path& path, FileCheck& check) {
+                    read_captures(path.parent_path(), check);
+                }};
+    }
+    if (has("model") || has("parameters")) {
+        return {"material", [](const Path& path, FileCheck&) { read_material_file(path); }};
+    }
+    if (has("camera") || has("mockup") || has("base")) {
+        return {"bench", [](const Path& path, FileCheck&) { read_bench_file(path); }};
+    }
+    if (has("mesh")) {
+        return {"product",
+                [](const Path& path, FileCheck& check) { check.notes = load_product(path).notes; }};
+    }
+    if (has("lights") || has("environment") || has("exposure_ev")) {
+        return {"look", [](const Path& path, FileCheck&) {
+                    const Look look = read_look_file(path);
+                    for (const auto& [part, paint] : look.parts) find_material(paint);
+                    load_environment(look.environment, path.parent_path());
+                }};
+    }
+    if (has("width") || has("distortion")) {
+        return {"camera", [](const Path& path, FileCheck&) { read_camera_file(path); }};
+    }
+    if (has("primaries_xyz") || has("matrix")) {
+        return {"camera-to-xyz", [](const Path& path, FileCheck&) { read_camera_to_xyz(path); }};
+    }
+    return {"unknown", [](const Path& path, FileCheck&) {
+                throw FileError(
+                    path,
+                    "",
+                    "a JSON object of no known kind",
+                    "a material, look, product, bench, camera, camera-to-xyz or captures file");
+            }};
+}
+
+Kind kind_of(const Path& file) {
+    std::error_code error;
+    if (!std::filesystem::exists(file, error)) {
+        throw FileError(file, "", "no such file", "a file or folder");
+    }
+    if (std::filesystem::is_directory(file, error)) {
+        if (std::filesystem::exists(file / "calibration.json", error)) {
+            return {"calibration", [](const Path& path, FileCheck&) { read_calibration(path); }};
+        }
+        return {"captures", read_captures};
+    }
+    std::string suffix = file.extension().string();
+    std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) {
+        return static_cast<char>(std::tolower(c));
+    });
+    if (suffix == ".json") {
+        if (file.filename() == "calibration.json") {
+            return {"calibration",
+                    [](const Path& path, FileCheck&) { read_calibration(path.parent_path()); }};
+        }
+        return kind_of_json(file);
+    }
+    if (suffix == ".glb" || suffix == ".gltf") return {"mesh", read_mesh};
+    if (suffix == ".exr") {
+        const auto names = read_image(file).channel_names;
+        if (names == std::vector<std::string>{"X", "Y"}) return {"map", read_map};
+        return {"picture", read_picture};
+    }
+    for (const char* picture : {".hdr", ".png", ".tif", ".tiff", ".jpg", ".jpeg"}) {
+        if (suffix == picture) return {"picture", read_picture};
+    }
+    return {"unknown", [](const Path& path, FileCheck&) {
+                throw FileError(
+                    path,
+                    "suffix",
+                    path.extension().string().empty() ? "none" : path.extension().string(),
+                    ".glb, .gltf, .json, .exr, .hdr, .png, .tif, .jpg or a folder");
+            }};
+}
+
+}  // namespace
+
+FileCheck check_file(const std::filesystem::path& file) {
+    FileCheck check;
+    check.file = file;
+    check.kind = "unknown";
+    try {
+        const Kind kind = kind_of(file);
+        check.kind = kind.name;
+        kind.read(file, check);
+    } catch (const std::exception& error) {
+        check.problems.emplace_back(error.what());
+    }
+    return check;
+}
+
+}  // namespace livery

@@ -1,0 +1,77 @@
+#include "session/library.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include "core/error.h"
+#include "core/paths.h"
+
+namespace livery {
+
+namespace {
+
+/// "Solid Red" -> "solid-red", as the shipped files are called.
+std::string file_stem_of(const std::string& name) {
+    std::string stem;
+    for (const char c : name) {
+        stem += c == ' ' ? '-' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    }
+    return stem;
+}
+
+bool is_file(const std::string& name) {
+    std::error_code error;
+    return std::filesystem::is_regular_file(name, error);
+}
+
+bool looks_like_path(const std::string& name) {
+    return name.find('/') != std::string::npos || !std::filesystem::path(name).extension().empty();
+}
+
+std::vector<std::string> json_stems(const std::filesystem::path& folder) {
+    std::vector<std::string> stems;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        if (entry.path().extension() == ".json") stems.push_back(entry.path().stem().string());
+    }
+    std::sort(stems.begin(), stems.end());
+    return stems;
+}
+
+std::string list_of(const std::vector<std::string>& names) {
+    std::string text;
+    for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
+    return text;
+}
+
+}  // namespace
+
+std::vector<std::string> shipped_looks() { return json_stems(shipped_path("assets/looks")); }
+
+std::filesystem::path shipped_look_file(const std::string& name) {
+    const auto names = shipped_looks();
+    const std::string stem = file_stem_of(name);
+    if (std::find(names.begin(), names.end(), stem) == names.end()) {
+        throw FileError(
+            name, "look", "no such file or shipped look", "a file or " + list_of(names));
+    }
+    return shipped_path("assets/looks") / (stem + ".json");
+}
+
+Look find_look(const std::string& name_or_file) {
+    if (is_file(name_or_file) || looks_like_path(name_or_file)) return read_look_file(name_or_file);
+    return read_look_file(shipped_look_file(name_or_file));
+}
+
+std::shared_ptr<const Product> find_product(const std::string& name_or_file) {
+    if (is_file(name_or_file) || looks_like_path(name_or_file)) {
+        return std::make_shared<const Product>(load_product(name_or_file));
+    }
+    const std::string stem = file_stem_of(name_or_file);
+    if (stem != "car" && stem != "sphere") {
+        throw FileError(
+            name_or_file, "product", "no such file or shipped product", "a file, car or sphere");
+    }
+    return std::make_shared<const Product>(load_product(shipped_path("assets/" + stem + ".json")));
+}
+
+}  // namespace livery

@@ -1,0 +1,104 @@
+#include "session/picture.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/colour.h"
+#include "core/error.h"
+
+namespace livery {
+
+namespace {
+
+std::uint8_t byte_of(double value) {
+    return static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(value, 0.0, 1.0)));
+}
+
+/// Any linear picture through `rec709_from_source` into sRGB bytes.
+Image8 encode_srgb(const ImageF& source, const glm::dmat3& rec709_from_source) {
+    check_argument(source.channels >= 3, "srgb pictures need three channels");
+    Image8 result(source.width, source.height, 3);
+    for (std::size_t i = 0; i < source.pixel_count(); ++i) {
+        const float* v = source.values.data() + i * static_cast<std::size_t>(source.channels);
+        const glm::dvec3 rgb = rec709_from_source * glm::dvec3(v[0], v[1], v[2]);
+        for (int c = 0; c < 3; ++c) {
+            result.values[3 * i + static_cast<std::size_t>(c)] =
+                byte_of(srgb_encode(std::clamp(rgb[c], 0.0, 1.0)));
+        }
+    }
+    return result;
+}
+
+/// Dark violet over red and orange to pale yellow, lightness rising evenly: its stops are Oklab
+/// L = .25 .40 .55 .70 .85 .97 at hues that turn from violet to yellow.
+std::array<std::uint8_t, 3> ramp(double t) {
+    static const std::array<glm::dvec3, 6> stops = {glm::dvec3(0.25, 0.03, -0.10),
+                                                    glm::dvec3(0.40, 0.12, -0.06),
+                                                    glm::dvec3(0.55, 0.18, 0.04),
+                                                    glm::dvec3(0.70, 0.12, 0.13),
+                                                    glm::dvec3(0.85, 0.02, 0.15),
+                                                    glm::dvec3(0.97, -0.02, 0.08)};
+    const double place = std::clamp(t, 0.0, 1.0) * (stops.size() - 1);
+    const auto i = std::min(static_cast<std::size_t>(place), stops.size() - 2);
+    const double f = place - static_cast<double>(i);
+    const glm::dvec3 rgb =
+        rec709_from_xyz() * xyz_from_oklab((1.0 - f) * stops[i] + f * stops[i + 1]);
+    std::array<std::uint8_t, 3> bytes{};
+    for (int c = 0; c < 3; ++c) {
+        bytes[static_cast<std::size_t>(c)] = byte_of(srgb_encode(std::clamp(rgb[c], 0.0, 1.0)));
+    }
+    return bytes;
+}
+
+}  // namespace
+
+PixelRectangle bounds_of_mask(const Image8& mask, int margin_px) {
+    PixelRectangle box{mask.width, mask.height, 0, 0};
+    for (int y = 0; y < mask.height; ++y) {
+        for (int x = 0; x < mask.width; ++x) {
+            if (!mask.at(x, y)) continue;
+            box = {std::min(box.left, x),
+                   std::min(box.top, y),
+                   std::max(box.right, x + 1),
+                   std::max(box.bottom, y + 1)};
+        }
+    }
+    if (box.right <= box.left) return {0, 0, mask.width, mask.height};
+    return {std::max(0, box.left - margin_px),
+            std::max(0, box.top - margin_px),
+            std::min(mask.width, box.right + margin_px),
+            std::min(mask.height, box.bottom + margin_px)};
+}
+
+Image8 srgb_from_xyz(const ImageF& xyz, double white_y) {
+    return encode_srgb(xyz, rec709_from_xyz() * (1.0 / white_y));
+}
+
+Image8 srgb_from_working(const ImageF& working) {
+    return encode_srgb(working, rec709_from_working());
+}
+
+Image8 difference_map(const ImageF& de00, double full_scale) {
+    Image8 result(de00.width, de00.height, 3, 96);
+    for (std::size_t i = 0; i < de00.pixel_count(); ++i) {
+        if (!std::isfinite(de00.values[i])) continue;
+        const auto colour = ramp(static_cast<double>(de00.values[i]) / full_scale);
+        std::copy(colour.begin(),
+                  colour.end(),
+                  result.values.begin() + static_cast<std::ptrdiff_t>(3 * i));
+    }
+    return result;
+}
+
+Image8 difference_legend(int width, int height) {
+    ImageF values(width, height, 1);
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            values.at(x, y) = static_cast<float>(x) / static_cast<float>(std::max(1, width - 1));
+        }
+    }
+    return difference_map(values, 1.0);
+}
+
+}  // namespace livery

@@ -1,0 +1,44 @@
+// Pictures for people: XYZ as sRGB, difference maps, crops.
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include "core/image.h"
+
+namespace livery {
+
+/// A rectangle of pixels, [left, right) x [top, bottom).
+struct PixelRectangle {
+    int left = 0, top = 0, right = 0, bottom = 0;
+};
+
+/// Around all non-zero pixels of a mask, `margin_px` wider and inside the picture.
+PixelRectangle bounds_of_mask(const Image8& mask, int margin_px);
+
+template <typename T>
+Image<T> crop(const Image<T>& image, const PixelRectangle& rectangle) {
+    Image<T> result(
+        rectangle.right - rectangle.left, rectangle.bottom - rectangle.top, image.channels);
+    for (int y = 0; y < result.height; ++y) {
+        const T* from = image.pixel(rectangle.left, rectangle.top + y);
+        std::copy(from,
+                  from + static_cast<std::ptrdiff_t>(result.width) * image.channels,
+                  result.pixel(0, y));
+    }
+    return result;
+}
+
+/// XYZ relative to `white_y` -> 8-bit sRGB, clipped.
+Image8 srgb_from_xyz(const ImageF& xyz, double white_y);
+
+/// Working-space colour (1 = white; alpha ignored) -> 8-bit sRGB, clipped: what an uncorrected
+/// program would send to the projector.
+Image8 srgb_from_working(const ImageF& working);
+
+/// CIEDE2000 from 0 (dark) to `full_scale` (bright) in a perceptually even ramp; NaN is mid grey.
+Image8 difference_map(const ImageF& de00, double full_scale);
+
+/// A legend strip for difference_map, left 0 to right full scale.
+Image8 difference_legend(int width, int height);
+
+}  // namespace livery

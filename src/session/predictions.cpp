@@ -1,0 +1,160 @@
+#include "session/predictions.h"
+
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/json.h"
+#include "core/paths.h"
+#include "radiance/surface_map.h"
+#include "tracing/tracer.h"
+
+namespace livery {
+
+namespace {
+
+/// The mock-up is counted on a picture this many times smaller a side.
+constexpr int kCoarse = 4;
+
+struct FragmentCounts {
+    std::map<std::string, double> by_part;
+    double all = 0.0;
+};
+
+FragmentCounts count_fragments(const Scene& scene, const View& view, const Progress& progress) {
+    const View coarse =
+        resized(view, std::max(1, view.width / kCoarse), std::max(1, view.height / kCoarse));
+    const glm::dvec2 scale =
+        glm::dvec2(coarse.width, coarse.height) / glm::dvec2(view.width, view.height);
+    const Mesh& mesh = scene.product->mesh;
+    const SurfaceMap map = build_surface_map(mesh, Tracer(mesh), coarse, 16, progress);
+    // Fragments of many small parts would be counted several times a coarse pixel: area counts.
+    FragmentCounts counts;
+    for (const Fragment& fragment : map.fragments) {
+        const double pixels = static_cast<double>(fragment.coverage) / (scale.x * scale.y);
+        counts.by_part[mesh.parts[fragment.part].name] += pixels;
+        counts.all += pixels;
+    }
+    return counts;
+}
+
+double items_of(const std::string& pass, const FragmentCounts& counts) {
+    if (!pass.starts_with("shade:")) return counts.all;
+    const auto first = pass.find(':') + 1;
+    const auto part = counts.by_part.find(pass.substr(first, pass.rfind(':') - first));
+    return part == counts.by_part.end() ? 0.0 : part->second;
+}
+
+}  // namespace
+
+std::filesystem::path bench_file() { return user_folder() / "bench.json"; }
+
+std::string cost_key(const std::string& pass_name) {
+    if (pass_name.starts_with("shade:")) return "shade" + pass_name.substr(pass_name.rfind(':'));
+    const auto dash = pass_name.rfind("-visibility");
+    return dash == std::string::npos ? pass_name : "light-visibility";
+}
+
+void write_pass_costs(const std::filesystem::path& file,
+                      const std::string& renderer,
+                      const std::vector<PassCost>& costs) {
+    make_output_folder(file.parent_path());
+    Json list = Json::array();
+    for (const PassCost& cost : costs) {
+        list.push_back({{"pass", cost.pass},
+                        {"quality", to_string(cost.quality)},
+                        {"ms", cost.ms},
+                        {"work_items", cost.work_items}});
+    }
+    write_json_file(file, {{"format_version", 1}, {"renderer", renderer}, {"passes", list}});
+}
+
+std::optional<std::vector<PassCost>> read_pass_costs(const std::filesystem::path& file) {
+    std::error_code error;
+    if (!std::filesystem::exists(file, error)) return std::nullopt;
+    const Json json = read_json_file(file);
+    const JsonReader reader(file, json);
+    reader.require_format_version(1);
+    std::vector<PassCost> costs;
+    const JsonReader passes = reader["passes"];
+    for (std::size_t i = 0; i < passes.size(); ++i) {
+        const JsonReader entry = passes.at(i);
+        PassCost cost;
+        cost.pass = entry["pass"].text();
+        cost.quality = parse_quality(entry["quality"].text());
+        cost.ms = entry["ms"].number_between(0.0, 1e9);
+        cost.work_items = entry["work_items"].number_between(0.0, 1e12);
+        costs.push_back(cost);
+    }
+    return costs;
+}
+
+std::string predict(FramePlan& plan,
+                    const Scene& scene,
+                    const View& view,
+                    const Progress& progress) {
+    const auto costs = read_pass_costs(bench_file());
+    const char* no_error_bench = "errors are not part of the speed bench";
+    if (!costs) {
+        for (PlannedPass& pass : plan.passes) {
+            pass.unpredicted_because = "no bench has run on this machine";
+        }
+        return "no predictions: no bench has run on this machine (livery bench --suite speed)";
+    }
+    const FragmentCounts counts = count_fragments(scene, view, progress);
+    std::string note;
+    for (PlannedPass& pass : plan.passes) {
+        const auto known = std::find_if(costs->begin(), costs->end(), [&](const PassCost& cost) {
+            return cost.pass == cost_key(pass.name) && cost.quality == plan.quality;
+        });
+        if (known == costs->end()) {
+            pass.unpredicted_because = fmt::format(
+                "the last bench did not time {} at {} quality", pass.name, to_string(plan.quality));
+            note = "some passes are not predicted: see unpredicted_because";
+            continue;
+        }
+        pass.work_items = items_of(pass.name, counts);
+        pass.predicted_ms =
+            known->work_items > 0.0 ? known->ms * pass.work_items / known->work_items : known->ms;
+        pass.unpredicted_because = no_error_bench;
+    }
+    return note;
+}
+
+BudgetChoice quality_within(const Scene& scene,
+                            const View& view,
+                            FrameStage stage,
+                            double budget_ms) {
+    if (!read_pass_costs(bench_file())) {
+        throw Refused("--budget-ms: no bench has run on this machine, so no cost is known",
+                      "run livery bench --suite speed, or choose --quality");
+    }
+    double cheapest = 0.0;
+    for (const Quality quality : {Quality::high, Quality::normal, Quality::draft}) {
+        FramePlan plan = plan_frame(scene, quality, stage);
+        predict(plan, scene, view);
+        double total = 0.0;
+        bool complete = true;
+        for (const PlannedPass& pass : plan.passes) {
+            complete = complete && pass.predicted_ms.has_value();
+            total += pass.predicted_ms.value_or(0.0);
+        }
+        cheapest = total;
+        if (complete && total <= budget_ms) {
+            return {quality,
+                    fmt::format("{} quality: {:.1f} ms predicted, {:.1f} ms allowed\n",
+                                to_string(quality),
+                                total,
+                                budget_ms)};
+        }
+    }
+    throw Refused(
+        fmt::format("--budget-ms: no quality fits {:.1f} ms; draft is predicted to take {:.1f} ms",
+                    budget_ms,
+                    cheapest),
+        "allow more time, or lower the resolution");
+}
+
+}  // namespace livery

@@ -1,0 +1,50 @@
+// What a frame will cost on this machine: from the last `livery bench` here, never from a guess.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "core/progress.h"
+#include "scene/frame_plan.h"
+#include "scene/view.h"
+
+namespace livery {
+
+/// One kind of pass as the last bench timed it: milliseconds for so many work items.
+struct PassCost {
+    std::string pass;  ///< name without the part it draws: "shade:clearcoat"
+    Quality quality = Quality::normal;
+    double ms = 0.0;
+    double work_items = 0.0;  ///< 0: cost does not depend on the picture
+};
+
+/// Where the bench leaves its costs: the user's folder.
+std::filesystem::path bench_file();
+void write_pass_costs(const std::filesystem::path& file,
+                      const std::string& renderer,
+                      const std::vector<PassCost>& costs);
+/// Nothing when no bench ran on this machine. Throws FileError for a malformed file.
+std::optional<std::vector<PassCost>> read_pass_costs(const std::filesystem::path& file);
+
+/// "shade:body:clearcoat" -> "shade:clearcoat": what the cost of a pass depends on.
+std::string cost_key(const std::string& pass_name);
+
+/// Fills predicted_ms and the reasons for those that stay empty; returns a note for people (empty
+/// when everything is predicted). Counts the mock-up's pixels with a coarse ray cast.
+std::string predict(FramePlan& plan,
+                    const Scene& scene,
+                    const View& view,
+                    const Progress& progress = {});
+
+struct BudgetChoice {
+    Quality quality = Quality::draft;
+    std::string why;
+};
+/// The best quality whose predicted frame fits. Throws Refused without a bench.
+BudgetChoice quality_within(const Scene& scene,
+                            const View& view,
+                            FrameStage stage,
+                            double budget_ms);
+
+}  // namespace livery

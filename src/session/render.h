@@ -1,0 +1,56 @@
+// The way of a frame, composed: scene -> radiance -> projector input.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "compensation/compensation.h"
+#include "core/image.h"
+#include "core/progress.h"
+#include "gl/context.h"
+#include "scene/frame_plan.h"
+#include "scene/scene.h"
+#include "scene/view.h"
+
+namespace livery {
+
+enum class RenderBackend { gl, reference };
+
+struct RenderRequest {
+    Scene scene;
+    View view;
+    Quality quality = Quality::normal;
+    FrameStage stage = FrameStage::radiance;
+    RenderBackend backend = RenderBackend::gl;
+    GlDevice gl_device = GlDevice::automatic;
+    int samples_per_pixel = 0;  ///< reference only; 0: by the quality
+    double seconds = 0.0;       ///< reference only; 0: by samples
+    int bounces = 0;            ///< reference only
+    std::uint64_t seed = 1;
+    const CompensationTable* compensation = nullptr;  ///< needed for FrameStage::projector
+};
+
+struct RenderedFrame {
+    ImageF radiance_working;  ///< R, G, B, coverage
+    Image8 drive;             ///< projector input; empty unless the stage is projector
+    FramePlan plan;           ///< with measured milliseconds
+    CompensationStats compensation;
+    double ms_total = 0.0;
+    std::string renderer;  ///< GL_RENDERER, or "reference"
+    int samples_per_pixel = 0;
+};
+
+/// Everything from scratch, for files. Throws std::invalid_argument (projector stage without a
+/// compensation, or one of another size).
+RenderedFrame render_frame(const RenderRequest& request, const Progress& progress = {});
+
+/// What a calibration folder says besides the colours: `projector.json`, if it is there.
+std::optional<View> projector_view_of(const std::filesystem::path& calibration_folder);
+
+/// EXR: linear Rec.709 with coverage in A. PNG: sRGB for looking at, or device values when the
+/// frame reached the projector stage. Throws FileError for another suffix.
+void write_frame(const std::filesystem::path& file, const RenderedFrame& frame, FrameStage stage);
+
+}  // namespace livery

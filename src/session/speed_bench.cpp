@@ -1,0 +1,192 @@
+#include "session/speed_bench.h"
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "compensation/compensation.h"
+#include "compensation/gpu_pass.h"
+#include "core/parallel.h"
+#include "radiance/renderer.h"
+#include "session/library.h"
+#include "session/synthetic_calibration.h"
+#include "twin/description.h"
+
+namespace livery {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+BenchLevel level_of(const std::string& name, std::vector<double> ms, double work_items) {
+    std::sort(ms.begin(), ms.end());
+    return {name, ms[ms.size() / 2], ms.front(), static_cast<int>(ms.size()), work_items};
+}
+
+template <typename Work>
+std::vector<double> repeat(int count, const Progress& progress, const Work& work) {
+    std::vector<double> ms;
+    for (int k = 0; k < count; ++k) {
+        progress.check_stop();
+        const auto start = Clock::now();
+        work(k);
+        ms.push_back(milliseconds_since(start));
+    }
+    return ms;
+}
+
+/// The effect of that name, added when it is new.
+BenchEffect& effect(SpeedBenchResult& result, const std::string& name) {
+    const auto known = std::find_if(result.effects.begin(),
+                                    result.effects.end(),
+                                    [&](const BenchEffect& entry) { return entry.name == name; });
+    if (known != result.effects.end()) return *known;
+    return result.effects.emplace_back(BenchEffect{name, {}});
+}
+
+/// Milliseconds of every pass over the repeats of one quality.
+struct PassTimes {
+    std::map<std::string, std::vector<double>> ms;
+    std::map<std::string, double> work_items;
+};
+
+void collect(PassTimes& times, const FramePlan& plan) {
+    std::map<std::string, double> ms, items;
+    for (const PlannedPass& pass : plan.passes) {
+        if (!pass.ms) continue;
+        ms[cost_key(pass.name)] += *pass.ms;
+        items[cost_key(pass.name)] += pass.work_items;
+    }
+    for (const auto& [key, value] : ms) {
+        if (value <= 0.0) continue;
+        times.ms[key].push_back(value);
+        times.work_items[key] = items[key];
+    }
+}
+
+struct BenchScene {
+    std::shared_ptr<const Product> product;
+    std::vector<Scene> looks;  ///< swapped in turn
+    View projector;
+};
+
+BenchScene load_scene(SpeedBenchResult& result, const Progress& progress) {
+    BenchScene scene;
+    const auto loads = repeat(3, progress, [&](int) { scene.product = find_product("car"); });
+    effect(result, "load the car").levels.push_back(level_of("car.glb", loads, 0.0));
+    const BenchDescription bench = read_bench_file("default");
+    scene.projector = bench.projector.view;
+    for (const std::string& name : shipped_looks()) {
+        scene.looks.push_back(make_scene(scene.product, find_look(name), bench.eye_mm));
+    }
+    return scene;
+}
+
+/// One resolution and quality: the first frame, then paint swaps, with the compensation after each.
+void bench_frames(SpeedBenchResult& result,
+                  const BenchScene& scene,
+                  const View& view,
+                  Quality quality,
+                  const Progress& progress) {
+    const std::string name = fmt::format("{}x{}, {}", view.width, view.height, to_string(quality));
+    const auto start = Clock::now();
+    RadianceRenderer renderer(scene.product, view, progress);
+    PassTimes passes;
+    FramePlan first = plan_frame(scene.looks.front(), quality, FrameStage::radiance);
+    renderer.render(scene.looks.front(), first, progress);
+    const auto fragments = static_cast<double>(renderer.surface_map().fragments.size());
+    effect(result, "first frame")
+        .levels.push_back(level_of(name, {milliseconds_since(start)}, fragments));
+    collect(passes, first);
+    const auto& map = renderer.surface_map();
+    if (view.width == 1280) {
+        result.covered_fraction = static_cast<double>(map.covered_pixels) /
+                                  static_cast<double>(map.coverage.pixel_count());
+    }
+
+    const ColourCalibration calibration = synthetic_calibration(map.coverage);
+    const CompensationTable table = bake(calibration, design_white_luminance(calibration, 20.0));
+    GpuCompensation gpu(table);
+    // Programs and textures of every look are made before anything is timed.
+    for (const Scene& look : scene.looks) {
+        FramePlan plan = plan_frame(look, quality, FrameStage::projector);
+        renderer.render(look, plan, progress);
+        gpu.run(renderer.texture());
+        gpu.read_back();
+    }
+
+    constexpr int kSwaps = 31;
+    std::vector<double> shade, gpu_ms, cpu_ms, gpu_frame, cpu_frame;
+    for (int k = 0; k < kSwaps; ++k) {
+        progress.update(static_cast<double>(k) / kSwaps, "timing " + name);
+        const Scene& look = scene.looks[static_cast<std::size_t>(k) % scene.looks.size()];
+        FramePlan plan = plan_frame(look, quality, FrameStage::radiance);
+
+        // Swap to projector input in OpenGL; reading back waits until it is done.
+        auto began = Clock::now();
+        renderer.render(look, plan, progress);
+        shade.push_back(milliseconds_since(began));
+        const auto before_gpu = Clock::now();
+        gpu.run(renderer.texture());
+        const Image8 from_gpu = gpu.read_back();
+        gpu_ms.push_back(milliseconds_since(before_gpu));
+        gpu_frame.push_back(milliseconds_since(began));
+        collect(passes, plan);
+
+        // The same with the compensation on one processor thread.
+        const auto before_read = Clock::now();
+        const ImageF radiance = renderer.read_back();
+        const double read_ms = milliseconds_since(before_read);
+        const auto before_cpu = Clock::now();
+        const Image8 from_cpu = compensate(table, radiance);
+        cpu_ms.push_back(milliseconds_since(before_cpu));
+        cpu_frame.push_back(shade.back() + read_ms + cpu_ms.back());
+    }
+    const auto pixels = static_cast<double>(table.pixels.size());
+    effect(result, "paint swap: shading").levels.push_back(level_of(name, shade, fragments));
+    effect(result, "paint swap to projector input, OpenGL")
+        .levels.push_back(level_of(name, gpu_frame, fragments));
+    effect(result, "paint swap to projector input, compensation on the processor")
+        .levels.push_back(level_of(name, cpu_frame, fragments));
+    if (quality == Quality::normal) {
+        const std::string size = fmt::format("{}x{}", view.width, view.height);
+        effect(result, "compensation, one processor thread")
+            .levels.push_back(level_of(size, cpu_ms, pixels));
+        effect(result, "compensation, OpenGL with read-back")
+            .levels.push_back(level_of(size, gpu_ms, pixels));
+    }
+    if (view.width != 1280) return;
+    passes.ms[kCompensationPass] = cpu_ms;
+    passes.work_items[kCompensationPass] = pixels;
+    for (const auto& [key, ms] : passes.ms) {
+        const BenchLevel level = level_of(name, ms, passes.work_items[key]);
+        effect(result, "pass " + key).levels.push_back(level);
+        result.pass_costs.push_back(
+            {key, quality, level.ms, key == kFilterPass ? 0.0 : level.work_items});
+    }
+}
+
+}  // namespace
+
+SpeedBenchResult run_speed_bench(GlDevice device, const Progress& progress) {
+    SpeedBenchResult result;
+    const HeadlessContext context(device);
+    result.renderer = context.renderer();
+    result.threads = thread_count();
+    const BenchScene scene = load_scene(result, progress);
+    for (const auto& [width, height] : {std::pair(640, 400), std::pair(1280, 800)}) {
+        const View view = resized(scene.projector, width, height);
+        for (const Quality quality : {Quality::draft, Quality::normal, Quality::high}) {
+            bench_frames(result, scene, view, quality, progress);
+        }
+    }
+    return result;
+}
+
+}  // namespace livery

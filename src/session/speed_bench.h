@@ -1,0 +1,37 @@
+// `livery bench --suite speed`: every stage of the chain timed on this machine.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/progress.h"
+#include "gl/context.h"
+#include "session/predictions.h"
+
+namespace livery {
+
+struct BenchLevel {
+    std::string name;  ///< "1280x800, normal"
+    double ms = 0.0;   ///< median
+    double fastest_ms = 0.0;
+    int repeats = 0;
+    double work_items = 0.0;
+};
+
+struct BenchEffect {
+    std::string name;
+    std::vector<BenchLevel> levels;
+};
+
+struct SpeedBenchResult {
+    std::string renderer;
+    int threads = 0;
+    double covered_fraction = 0.0;  ///< of the 1280x800 picture
+    std::vector<BenchEffect> effects;
+    std::vector<PassCost> pass_costs;  ///< for predictions
+};
+
+/// Uses the default bench's projector and the shipped car and looks. Medians over repeats.
+SpeedBenchResult run_speed_bench(GlDevice device, const Progress& progress = {});
+
+}  // namespace livery

@@ -1,0 +1,37 @@
+#include "session/target_picture.h"
+
+#include "core/colour.h"
+#include "core/error.h"
+#include "core/image_io.h"
+
+namespace livery {
+
+ImageF read_target_picture(const std::filesystem::path& file, int width, int height) {
+    const ImageFile picture = read_image(file);
+    if (!picture.floating_point) {
+        throw FileError(file, "pixels", "integers", "linear floating point (.exr)");
+    }
+    if (picture.image.width != width || picture.image.height != height) {
+        throw FileError(
+            file,
+            "size",
+            std::to_string(picture.image.width) + "x" + std::to_string(picture.image.height),
+            "the calibrated projector's " + std::to_string(width) + "x" + std::to_string(height));
+    }
+    if (picture.image.channels < 3) {
+        throw FileError(
+            file, "channels", std::to_string(picture.image.channels), "R,G,B or R,G,B,A");
+    }
+    ImageF wanted(width, height, 4, 1.0f);
+    const auto channels = static_cast<std::size_t>(picture.image.channels);
+    for (std::size_t i = 0; i < wanted.pixel_count(); ++i) {
+        const float* v = picture.image.values.data() + channels * i;
+        const glm::dvec3 rgb = working_from_rec709() * glm::dvec3(v[0], v[1], v[2]);
+        float* out = wanted.values.data() + 4 * i;
+        for (int c = 0; c < 3; ++c) out[c] = static_cast<float>(rgb[c]);
+        if (channels > 3) out[3] = v[3];
+    }
+    return wanted;
+}
+
+}  // namespace livery

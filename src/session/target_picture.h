@@ -1,0 +1,14 @@
+// `--target`: a wanted picture in projector pixels.
+#pragma once
+
+#include <filesystem>
+
+#include "core/image.h"
+
+namespace livery {
+
+/// Linear Rec.709 floats -> working space with coverage (1 where the file has no A). NaN and Inf
+/// stay: the compensation counts them as invalid. Throws FileError (size, integers, channels).
+ImageF read_target_picture(const std::filesystem::path& file, int width, int height);
+
+}  // namespace livery
