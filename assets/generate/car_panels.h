@@ -1,9 +1,8 @@
 // Where the car's skin is cut: windows, lamps, intakes, doors, lids.
 #pragma once
 
-#include <vector>
-
 #include <glm/vec2.hpp>
+#include <vector>
 
 #include "sheet.h"
 

@@ -2,9 +2,8 @@
 // map to a direction), linear Rec.709.
 #pragma once
 
-#include <string>
-
 #include <glm/vec3.hpp>
+#include <string>
 
 #include "core/image.h"
 

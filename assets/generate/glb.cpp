@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
-
 #include <nlohmann/json.hpp>
 
 namespace livery::assets {

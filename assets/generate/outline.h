@@ -1,9 +1,8 @@
 // Closed outlines in a plane and their signed distance: what windows, lamps and doors are cut by.
 #pragma once
 
-#include <vector>
-
 #include <glm/vec2.hpp>
+#include <vector>
 
 namespace livery::assets {
 

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
-
 #include <glm/geometric.hpp>
+#include <numbers>
 
 namespace livery::assets {
 
@@ -91,7 +90,7 @@ PartMesh loft(const std::vector<std::vector<glm::dvec3>>& loops) {
             mesh.add_quad(a, b, b + n, a + n);
         }
     }
-    compute_smooth_normals(mesh);
+    compute_normals(mesh);
     return mesh;
 }
 

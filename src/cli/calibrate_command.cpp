@@ -1,0 +1,117 @@
+// livery calibrate color
+
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "cli/command.h"
+#include "core/error.h"
+#include "session/captured_calibration.h"
+
+namespace livery {
+
+namespace {
+
+Json figures_of(const ColourCalibration& calibration) {
+    Json response = Json::object();
+    const char* names[] = {"red", "green", "blue"};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const ResponseCurve& curve = calibration.response[k];
+        Json samples = Json::array();
+        const std::size_t count = curve.drive_from_n.size();
+        for (std::size_t i = 0; i < 17 && count > 1; ++i) {
+            samples.push_back(curve.drive_from_n[i * (count - 1) / 16]);
+        }
+        response[names[k]] = {{"drive_at_n_0_to_1", samples},
+                              {"largest_violation", curve.largest_violation}};
+    }
+    return {{"valid_fraction", calibration.valid_fraction},
+            {"additivity_error", calibration.additivity_error},
+            {"condition_p99", calibration.condition_p99},
+            {"response", response},
+            {"refused", Json::array()},
+            {"id", calibration.id},
+            {"mode", calibration.mode},
+            {"additive", calibration.table.grid == 0},
+            {"camera_to_xyz", calibration.xyz_origin},
+            {"ambient_fraction", calibration.ambient_fraction},
+            {"mixing_spread", calibration.mixing_spread},
+            {"warnings", calibration.warnings}};
+}
+
+}  // namespace
+
+Command calibrate_color_command() {
+    struct Arguments {
+        std::string captures, patterns, map, camera_to_xyz, out, mode = "robust";
+    };
+    const auto arguments = std::make_shared<Arguments>();
+    Command command;
+    command.name = "calibrate color";
+    command.summary = "colour photographs -> compensation";
+    command.example = "livery calibrate color --captures captures --out calibration";
+    command.options = {
+        {"--captures", "DIR", "photographs with manifest.json", &arguments->captures, true, {}},
+        {"--patterns",
+         "FILE",
+         "manifest of the patterns, for photographs without one",
+         &arguments->patterns,
+         false,
+         {}},
+        {"--map",
+         "FILE",
+         "projector pixel -> camera pixel, .exr (default: decoded from the same folder)",
+         &arguments->map,
+         false,
+         {}},
+        {"--camera-to-xyz",
+         "FILE",
+         "matrix or measured primaries (default: camera RGB is linear Rec.709)",
+         &arguments->camera_to_xyz,
+         false,
+         {}},
+        {"--out", "DIR", "calibration folder", &arguments->out, true, {}},
+        {"--mode",
+         "MODE",
+         "paper or robust (default robust)",
+         &arguments->mode,
+         false,
+         {"paper", "robust"}},
+    };
+    command.run = [arguments](const CommonOptions&, const Progress& progress) {
+        CapturedCalibrationRequest request;
+        request.captures = arguments->captures;
+        request.patterns_manifest = arguments->patterns;
+        if (!arguments->map.empty()) request.map = arguments->map;
+        if (!arguments->camera_to_xyz.empty()) request.camera_to_xyz = arguments->camera_to_xyz;
+        request.mode = arguments->mode == "paper" ? ColourMode::paper : ColourMode::robust;
+        Outcome outcome;
+        try {
+            const ColourCalibration calibration = calibrate_from_folder(request, progress);
+            write_calibration(arguments->out, calibration);
+            outcome.figures = figures_of(calibration);
+            outcome.text = fmt::format(
+                "calibration {}: {:.1f}% of the lit pixels valid, additivity error {:.2f}%, "
+                "condition {:.2f}; wrote {}\n",
+                calibration.id,
+                100.0 * calibration.valid_fraction,
+                100.0 * calibration.additivity_error,
+                calibration.condition_p99,
+                arguments->out);
+            for (const auto& warning : calibration.warnings)
+                outcome.text += "warning: " + warning + "\n";
+        } catch (const Refused& refused) {
+            outcome.exit_code = 1;
+            outcome.figures = {{"valid_fraction", nullptr},
+                               {"additivity_error", nullptr},
+                               {"condition_p99", nullptr},
+                               {"response", nullptr},
+                               {"refused", {{{"why", refused.why()}, {"fix", refused.fix()}}}}};
+            outcome.text = fmt::format("refused: {}\nfix: {}\n", refused.why(), refused.fix());
+        }
+        return outcome;
+    };
+    return command;
+}
+
+}  // namespace livery

@@ -1,0 +1,44 @@
+// livery check
+
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "cli/command.h"
+#include "session/file_check.h"
+
+namespace livery {
+
+Command check_command() {
+    const auto files = std::make_shared<std::vector<std::string>>();
+    Command command;
+    command.name = "check";
+    command.summary = "open files of any kind the program reads, and say what is wrong with them";
+    command.example = "livery check car.glb paint.json captures/";
+    command.options = {{"files", "FILE...", "files or folders", files.get(), true, {}}};
+    command.run = [files](const CommonOptions&, const Progress& progress) {
+        Outcome outcome;
+        Json list = Json::array();
+        double done = 0.0;
+        for (const std::string& file : *files) {
+            progress.update(done / static_cast<double>(files->size()), "checking " + file);
+            done += 1.0;
+            const FileCheck check = check_file(file);
+            list.push_back({{"file", file},
+                            {"kind", check.kind},
+                            {"ok", check.ok()},
+                            {"problems", check.problems},
+                            {"notes", check.notes}});
+            outcome.text +=
+                fmt::format("{} {}: {}\n", check.ok() ? "ok     " : "PROBLEM", check.kind, file);
+            for (const auto& problem : check.problems) outcome.text += "        " + problem + "\n";
+            for (const auto& note : check.notes) outcome.text += "        note: " + note + "\n";
+            if (!check.ok()) outcome.exit_code = 1;
+        }
+        outcome.figures = {{"files", list}};
+        return outcome;
+    };
+    return command;
+}
+
+}  // namespace livery

@@ -1,0 +1,63 @@
+#include "cli/command.h"
+
+#include <charconv>
+#include <cmath>
+
+namespace livery {
+
+namespace {
+
+/// Reads one number at `text`, independent of the locale; advances `text`.
+double take_number(const std::string& option, const std::string& whole, std::string_view& text) {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || !std::isfinite(value)) {
+        throw std::invalid_argument(option + ": found \"" + whole + "\", expected finite numbers");
+    }
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    return value;
+}
+
+}  // namespace
+
+GlDevice CommonOptions::gl_device() const {
+    if (gl == "software") return GlDevice::software;
+    if (gl == "hardware") return GlDevice::hardware;
+    return GlDevice::automatic;
+}
+
+PixelSize parse_size(const std::string& option, const std::string& text) {
+    PixelSize size;
+    const char* end = text.data() + text.size();
+    const auto first = std::from_chars(text.data(), end, size.width);
+    const bool has_cross = first.ec == std::errc() && first.ptr != end && *first.ptr == 'x';
+    const auto second = has_cross ? std::from_chars(first.ptr + 1, end, size.height) : first;
+    if (!has_cross || second.ec != std::errc() || second.ptr != end || size.width < 16 ||
+        size.height < 16 || size.width > 16384 || size.height > 16384) {
+        throw std::invalid_argument(option + ": found \"" + text +
+                                    "\", expected WIDTHxHEIGHT in pixels, 16 to 16384 a side");
+    }
+    return size;
+}
+
+std::vector<double> parse_numbers(const std::string& option,
+                                  const std::string& text,
+                                  std::size_t count) {
+    std::vector<double> values;
+    std::string_view rest = text;
+    while (true) {
+        values.push_back(take_number(option, text, rest));
+        if (rest.empty()) break;
+        if (rest.front() != ',') {
+            throw std::invalid_argument(option + ": found \"" + text + "\", expected commas");
+        }
+        rest.remove_prefix(1);
+    }
+    if (count != 0 && values.size() != count) {
+        throw std::invalid_argument(option + ": found " + std::to_string(values.size()) +
+                                    " numbers, expected " + std::to_string(count));
+    }
+    return values;
+}
+
+}  // namespace livery

@@ -1,0 +1,74 @@
+// A subcommand as data: its options, its help and what it does. Parsing lives in parse.cpp alone.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/json.h"
+#include "core/progress.h"
+#include "gl/context.h"
+
+namespace livery {
+
+/// Options that every command takes.
+struct CommonOptions {
+    bool json = false;
+    int seed = 1;
+    int threads = 0;  ///< 0: all
+    std::string data;
+    std::string gl = "auto";
+
+    GlDevice gl_device() const;
+};
+
+/// One option, bound to the variable that it sets.
+struct Option {
+    std::string flag;   ///< "--out"; a name without dashes is positional
+    std::string value;  ///< how help calls the value, "DIR"
+    std::string help;   ///< one line, with the default
+    std::variant<std::string*, int*, double*, bool*, std::vector<std::string>*> target;
+    bool required = false;
+    std::vector<std::string> choices;  ///< when not empty, only these
+};
+
+/// What a command found: figures for scripts, a text for people.
+struct Outcome {
+    Json figures = Json::object();
+    std::string text;
+    int exit_code = 0;  ///< 0: done; 1: ran, and the answer is "no"
+};
+
+struct Command {
+    std::string name;  ///< "demo" or, in a group, "calibrate color"
+    std::string summary;
+    std::string example;
+    std::vector<Option> options;
+    std::function<Outcome(const CommonOptions& common, const Progress& progress)> run;
+};
+
+// One file each. A command's options are bound to state that lives as long as the command.
+Command bench_command();
+Command calibrate_color_command();
+Command check_command();
+Command compensate_command();
+Command demo_command();
+Command patterns_command();
+Command photograph_command();
+Command plan_command();
+Command render_command();
+
+/// Numbers as cli options write them: "1280x800" and "10,20.5,-3". Throw std::invalid_argument that
+/// names the option, what was found and what was expected.
+struct PixelSize {
+    int width = 0, height = 0;
+};
+PixelSize parse_size(const std::string& option, const std::string& text);
+std::vector<double> parse_numbers(const std::string& option,
+                                  const std::string& text,
+                                  std::size_t count);
+
+}  // namespace livery

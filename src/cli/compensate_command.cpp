@@ -1,0 +1,83 @@
+// livery compensate
+
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "cli/command.h"
+#include "compensation/compensation.h"
+#include "core/image_io.h"
+#include "session/target_picture.h"
+
+namespace livery {
+
+Command compensate_command() {
+    struct Arguments {
+        std::string calibration, target, out, gamut = "strict";
+        double design_white = 20.0;
+    };
+    const auto arguments = std::make_shared<Arguments>();
+    Command command;
+    command.name = "compensate";
+    command.summary = "wanted picture in projector pixels -> projector input";
+    command.example =
+        "livery compensate --calibration demo/calibration --target wanted.exr --out input.png";
+    command.options = {
+        {"--calibration", "DIR", "calibration folder", &arguments->calibration, true, {}},
+        {"--target",
+         "FILE",
+         "wanted picture, .exr, linear Rec.709, 1 = design white",
+         &arguments->target,
+         true,
+         {}},
+        {"--out", "FILE", "projector input, .png", &arguments->out, true, {}},
+        {"--gamut",
+         "HOW",
+         "strict: clip; preserve: keep the hue (default strict)",
+         &arguments->gamut,
+         false,
+         {"strict", "preserve"}},
+        {"--design-white",
+         "PERCENT",
+         "percentile of the brightest neutral that becomes 1 (default 20)",
+         &arguments->design_white,
+         false,
+         {}},
+    };
+    command.run = [arguments](const CommonOptions&, const Progress& progress) {
+        const ColourCalibration calibration = read_calibration(arguments->calibration);
+        const ImageF wanted =
+            read_target_picture(arguments->target, calibration.width, calibration.height);
+        const double white_y = design_white_luminance(calibration, arguments->design_white);
+        const CompensationTable table = bake(calibration, white_y);
+        progress.update(0.5, "compensating");
+        // The fractions speak of what was wanted, before any gamut mapping.
+        CompensationStats stats;
+        Image8 drive = compensate(table, wanted, &stats);
+        if (arguments->gamut == "preserve") {
+            drive = compensate(table, map_gamut(table, wanted, GamutMapping::preserve));
+        }
+        write_png(arguments->out, drive);
+        Outcome outcome;
+        outcome.figures = {{"out_of_gamut_fraction", stats.out_of_gamut_fraction},
+                           {"invalid_fraction", stats.invalid_fraction},
+                           {"clipped_high_fraction", stats.clipped_high_fraction},
+                           {"clipped_low_fraction", stats.clipped_low_fraction},
+                           {"gamut", arguments->gamut},
+                           {"design_white_y", white_y},
+                           {"calibration", {{"id", calibration.id}}},
+                           {"file", arguments->out}};
+        outcome.text = fmt::format(
+            "out of gamut {:.1f}% (too bright {:.1f}%, too dark {:.1f}%), no correction {:.1f}%; "
+            "wrote {}\n",
+            100.0 * stats.out_of_gamut_fraction,
+            100.0 * stats.clipped_high_fraction,
+            100.0 * stats.clipped_low_fraction,
+            100.0 * stats.invalid_fraction,
+            arguments->out);
+        return outcome;
+    };
+    return command;
+}
+
+}  // namespace livery

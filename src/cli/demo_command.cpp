@@ -1,0 +1,73 @@
+// livery demo
+
+#include <memory>
+
+#include "cli/command.h"
+#include "session/demo.h"
+#include "session/report.h"
+
+namespace livery {
+
+Command demo_command() {
+    struct Arguments {
+        std::string out = "livery-demo", bench = "default", product = "car", size;
+        double design_white = 20.0;
+    };
+    const auto arguments = std::make_shared<Arguments>();
+    Command command;
+    command.name = "demo";
+    command.summary =
+        "a whole session on the simulated bench: calibrate, render, compensate, project, compare, "
+        "report";
+    command.example = "livery demo --out demo";
+    command.options = {
+        {"--out",
+         "DIR",
+         "where report.html and its pictures go (default livery-demo)",
+         &arguments->out,
+         false,
+         {}},
+        {"--bench",
+         "FILE",
+         "a bench file or a shipped bench's name (default: default)",
+         &arguments->bench,
+         false,
+         {}},
+        {"--size",
+         "WxH",
+         "projector resolution (default: as the bench file says)",
+         &arguments->size,
+         false,
+         {}},
+        {"--product",
+         "NAME",
+         "car, or sphere: painted samples beside the projection (default car)",
+         &arguments->product,
+         false,
+         {"car", "sphere"}},
+        {"--design-white",
+         "PERCENT",
+         "percentile of the brightest neutral that becomes 1 (default 20)",
+         &arguments->design_white,
+         false,
+         {}},
+    };
+    command.run = [arguments](const CommonOptions& common, const Progress& progress) {
+        DemoOptions options;
+        options.out = arguments->out;
+        options.bench = arguments->bench;
+        options.product = arguments->product;
+        options.gl_device = common.gl_device();
+        options.seed = static_cast<std::uint64_t>(common.seed);
+        options.design_white_percentile = arguments->design_white;
+        if (!arguments->size.empty()) {
+            const PixelSize size = parse_size("--size", arguments->size);
+            options.size_px = {size.width, size.height};
+        }
+        const DemoResult result = run_demo(options, progress);
+        return Outcome{figures_of(result), summary_of(result), 0};
+    };
+    return command;
+}
+
+}  // namespace livery

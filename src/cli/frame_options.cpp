@@ -1,0 +1,163 @@
+#include "cli/frame_options.h"
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "session/library.h"
+#include "session/predictions.h"
+#include "twin/description.h"
+
+namespace livery {
+
+std::vector<Option> frame_options(FrameArguments& arguments) {
+    return {
+        {"--product",
+         "FILE",
+         "a mesh or product file, or car, sphere (default car)",
+         &arguments.product,
+         false,
+         {}},
+        {"--look",
+         "FILE|NAME",
+         "a look file or a shipped look's name (default solid-red)",
+         &arguments.look,
+         false,
+         {}},
+        {"--calibration",
+         "DIR",
+         "calibration folder: corrects, and says where the projector stands",
+         &arguments.calibration,
+         false,
+         {}},
+        {"--camera",
+         "FILE",
+         "camera file to draw from (default: the default bench's projector)",
+         &arguments.camera,
+         false,
+         {}},
+        {"--eye",
+         "X,Y,Z",
+         "the audience's eye, mm (default: the default bench's)",
+         &arguments.eye,
+         false,
+         {}},
+        {"--quality",
+         "LEVEL",
+         "draft, normal, high or reference (default normal)",
+         &arguments.quality,
+         false,
+         {"draft", "normal", "high", "reference"}},
+        {"--budget-ms",
+         "N",
+         "the best quality that the last bench predicts within N ms",
+         &arguments.budget_ms,
+         false,
+         {}},
+        {"--stage",
+         "STAGE",
+         "radiance, or projector: the corrected input (default radiance)",
+         &arguments.stage,
+         false,
+         {"radiance", "projector"}},
+        {"--design-white",
+         "PERCENT",
+         "percentile of the brightest neutral that becomes 1 (default 20)",
+         &arguments.design_white,
+         false,
+         {}},
+    };
+}
+
+ResolvedFrame resolve_frame(const FrameArguments& arguments, const CommonOptions& common) {
+    ResolvedFrame frame;
+    RenderRequest& request = frame.request;
+    request.gl_device = common.gl_device();
+    request.seed = static_cast<std::uint64_t>(common.seed);
+    request.stage = arguments.stage == "projector" ? FrameStage::projector : FrameStage::radiance;
+    if (!arguments.quality.empty() && arguments.budget_ms > 0.0) {
+        throw std::invalid_argument("--budget-ms: found --quality as well, expected one of them");
+    }
+
+    // The view and the eye.
+    std::optional<View> view;
+    if (!arguments.camera.empty()) view = read_camera_file(arguments.camera);
+    if (!arguments.calibration.empty()) {
+        const ColourCalibration calibration = read_calibration(arguments.calibration);
+        frame.compensation =
+            bake(calibration, design_white_luminance(calibration, arguments.design_white));
+        if (!view) view = projector_view_of(arguments.calibration);
+        if (!view) {
+            throw FileError(std::filesystem::path(arguments.calibration) / "projector.json",
+                            "",
+                            "no such file",
+                            "the projector's camera file there, or --camera FILE");
+        }
+    } else if (request.stage == FrameStage::projector) {
+        throw std::invalid_argument(
+            "--stage projector: found no --calibration, expected the folder to correct with");
+    }
+    const auto product = find_product(arguments.product);
+    const BenchDescription bench =
+        read_bench_file(arguments.product == "sphere" ? "sphere" : "default");
+    request.view = view ? *view : bench.projector.view;
+    glm::dvec3 eye_mm = bench.eye_mm;
+    if (!arguments.eye.empty()) {
+        const auto numbers = parse_numbers("--eye", arguments.eye, 3);
+        eye_mm = {numbers[0], numbers[1], numbers[2]};
+    }
+    request.scene = make_scene(product, find_look(arguments.look), eye_mm);
+
+    if (arguments.budget_ms > 0.0) {
+        const BudgetChoice choice =
+            quality_within(request.scene, request.view, request.stage, arguments.budget_ms);
+        request.quality = choice.quality;
+        frame.budget_note = choice.why;
+    } else if (!arguments.quality.empty()) {
+        request.quality = parse_quality(arguments.quality);
+    }
+    return frame;
+}
+
+Json json_of(const FramePlan& plan) {
+    const auto or_null = [](const std::optional<double>& value) {
+        return value ? Json(*value) : Json(nullptr);
+    };
+    Json passes = Json::array(), skipped = Json::array();
+    double total = 0.0;
+    for (const PlannedPass& pass : plan.passes) {
+        Json entry = {{"name", pass.name},
+                      {"ms", or_null(pass.ms)},
+                      {"why", pass.why},
+                      {"predicted_ms", or_null(pass.predicted_ms)},
+                      {"predicted_error", or_null(pass.predicted_error)}};
+        if (!pass.unpredicted_because.empty()) {
+            entry["unpredicted_because"] = pass.unpredicted_because;
+        }
+        passes.push_back(entry);
+        total += pass.ms.value_or(0.0);
+    }
+    for (const SkippedPass& pass : plan.skipped) {
+        skipped.push_back({{"name", pass.name}, {"why", pass.why}});
+    }
+    return {{"quality", to_string(plan.quality)},
+            {"passes", passes},
+            {"skipped", skipped},
+            {"ms_total", total}};
+}
+
+std::string text_of(const FramePlan& plan) {
+    std::string text;
+    for (const PlannedPass& pass : plan.passes) {
+        std::string cost = pass.ms ? fmt::format("{:8.2f} ms", *pass.ms) : "";
+        if (!pass.ms && pass.predicted_ms) {
+            cost = fmt::format("{:8.2f} ms predicted", *pass.predicted_ms);
+        }
+        text += fmt::format("runs  {:<30} {:<12} {}\n", pass.name, cost, pass.why);
+    }
+    for (const SkippedPass& pass : plan.skipped) {
+        text += fmt::format("skips {:<30} {:<12} {}\n", pass.name, "", pass.why);
+    }
+    return text;
+}
+
+}  // namespace livery

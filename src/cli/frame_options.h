@@ -1,0 +1,36 @@
+// What `livery render` and `livery plan` have in common: the scene, the view and the quality.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "scene/frame_plan.h"
+#include "session/render.h"
+
+namespace livery {
+
+struct FrameArguments {
+    std::string product = "car", look = "solid-red", calibration, camera, eye;
+    std::string quality, stage = "radiance";
+    double budget_ms = 0.0;
+    double design_white = 20.0;
+};
+
+std::vector<Option> frame_options(FrameArguments& arguments);
+
+/// Everything resolved. The view is --camera's, else the one in the calibration folder, else the
+/// default bench's projector; the eye is --eye, else the default bench's.
+struct ResolvedFrame {
+    RenderRequest request;
+    std::optional<CompensationTable> compensation;
+    std::string budget_note;  ///< how --budget-ms chose the quality
+};
+ResolvedFrame resolve_frame(const FrameArguments& arguments, const CommonOptions& common);
+
+/// passes[], skipped[] and ms_total.
+Json json_of(const FramePlan& plan);
+std::string text_of(const FramePlan& plan);
+
+}  // namespace livery

@@ -1,0 +1,175 @@
+#include "cli/parse.h"
+
+#include <algorithm>
+#include <map>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+namespace livery {
+
+namespace {
+
+const std::vector<std::string> kGlNames = {"software", "hardware", "auto"};
+
+std::vector<Option> common_options(CommonOptions& common) {
+    return {
+        {"--json",
+         "",
+         "print one JSON document on stdout, text on stderr",
+         &common.json,
+         false,
+         {}},
+        {"--seed", "N", "fixes every random choice (default 1)", &common.seed, false, {}},
+        {"--threads",
+         "N",
+         "how many threads to use (default: all cores)",
+         &common.threads,
+         false,
+         {}},
+        {"--data", "DIR", "where the shipped data lie", &common.data, false, {}},
+        {"--gl", "KIND", "software, hardware or auto (default auto)", &common.gl, false, kGlNames},
+    };
+}
+
+CLI::Option* bind(CLI::App& app, const Option& option) {
+    return std::visit(
+        [&](auto* target) -> CLI::Option* {
+            using Value = std::remove_pointer_t<decltype(target)>;
+            if constexpr (std::is_same_v<Value, bool>) {
+                return app.add_flag(option.flag, *target, option.help);
+            } else {
+                auto* bound = app.add_option(option.flag, *target, option.help);
+                if (option.required) bound->required();
+                if (!option.choices.empty()) bound->check(CLI::IsMember(option.choices));
+                return bound;
+            }
+        },
+        option.target);
+}
+
+std::string option_lines(const std::vector<Option>& options) {
+    std::string text;
+    for (const Option& option : options) {
+        const std::string left = option.flag + (option.value.empty() ? "" : " " + option.value);
+        text +=
+            fmt::format("  {:<26} {}{}\n", left, option.help, option.required ? " (required)" : "");
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string help_text(const std::vector<Command>& commands, const std::string& name) {
+    CommonOptions common;
+    if (name.empty()) {
+        std::string text =
+            "Usage: livery COMMAND [OPTIONS]\n\n"
+            "Judges product paint by projection onto a grey mock-up.\n\nCommands:\n";
+        for (const Command& command : commands) {
+            text += fmt::format("  {:<16} {}\n", command.name, command.summary);
+        }
+        text += "  help             this text, or the help of one command\n\nEverywhere:\n";
+        text += option_lines(common_options(common));
+        text += "\nExamples:\n";
+        for (const Command& command : commands) text += "  " + command.example + "\n";
+        text +=
+            "\nExit status: 0 done; 1 ran, and the answer is \"no\"; 2 could not run; 130 "
+            "stopped.\n";
+        return text;
+    }
+    std::string text;
+    for (const Command& command : commands) {
+        const bool in_group = command.name.starts_with(name + " ");
+        if (command.name != name && !in_group) continue;
+        text += fmt::format("livery {}: {}\n\nOptions:\n{}\nExample:\n  {}\n\n",
+                            command.name,
+                            command.summary,
+                            option_lines(command.options),
+                            command.example);
+    }
+    if (!text.empty()) text += "Everywhere:\n" + option_lines(common_options(common));
+    return text;
+}
+
+ParsedCommandLine parse_command_line(const std::vector<std::string>& arguments,
+                                     std::vector<Command>& commands) {
+    ParsedCommandLine parsed;
+
+    // `help` and `--help` anywhere are ours: CLI11's pages do not carry the examples.
+    const auto wants_help = std::find_if(arguments.begin(), arguments.end(), [](const auto& word) {
+        return word == "--help" || word == "-h" || word == "help";
+    });
+    if (arguments.empty() || wants_help != arguments.end()) {
+        std::string name;
+        for (const auto& word : arguments) {
+            if (word == "help" || word.starts_with("-")) continue;
+            name += (name.empty() ? "" : " ") + word;
+        }
+        parsed.text = help_text(commands, name);
+        if (parsed.text.empty()) parsed.text = help_text(commands, name.substr(0, name.find(' ')));
+        if (parsed.text.empty()) {
+            parsed.text = "livery: found the command \"" + name + "\", expected one of livery help";
+            parsed.exit_code = 2;
+        }
+        if (arguments.empty()) {
+            parsed.text =
+                "livery: this build has no desktop program; give a command\n\n" + parsed.text;
+            parsed.exit_code = 2;
+        }
+        return parsed;
+    }
+    if (arguments.size() == 1 && arguments[0] == "--version") {
+        parsed.text = "livery " LIVERY_VERSION "\n";
+        return parsed;
+    }
+
+    CLI::App app("livery");
+    app.set_help_flag();
+    app.require_subcommand(1);
+    std::map<std::string, CLI::App*> groups;
+    std::vector<std::pair<CLI::App*, Command*>> bound;
+    for (Command& command : commands) {
+        CLI::App* parent = &app;
+        std::string leaf = command.name;
+        if (const auto space = command.name.find(' '); space != std::string::npos) {
+            const std::string group = command.name.substr(0, space);
+            leaf = command.name.substr(space + 1);
+            if (!groups.contains(group)) {
+                groups[group] = app.add_subcommand(group);
+                groups[group]->require_subcommand(1);
+                groups[group]->set_help_flag();
+            }
+            parent = groups[group];
+        }
+        CLI::App* sub = parent->add_subcommand(leaf, command.summary);
+        sub->set_help_flag();
+        for (const Option& option : command.options) bind(*sub, option);
+        for (const Option& option : common_options(parsed.common)) bind(*sub, option);
+        bound.emplace_back(sub, &command);
+    }
+    try {
+        // CLI11 takes the words in reverse.
+        std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
+        app.parse(reversed);
+    } catch (const CLI::ParseError& error) {
+        parsed.exit_code = 2;
+        parsed.text =
+            "livery: " + std::string(error.what()) + " (see livery help " + arguments[0] + ")";
+        return parsed;
+    }
+    for (const auto& [sub, command] : bound) {
+        if (sub->parsed()) parsed.command = command;
+    }
+    if (parsed.common.threads < 0 || parsed.common.seed < 0) {
+        parsed.command = nullptr;
+        parsed.exit_code = 2;
+        parsed.text = parsed.common.threads < 0
+                          ? "livery: --threads: found a negative number, expected 0 (all) or more"
+                          : "livery: --seed: found a negative number, expected 0 or more";
+    }
+    return parsed;
+}
+
+}  // namespace livery

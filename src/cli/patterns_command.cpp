@@ -1,0 +1,91 @@
+// livery patterns
+
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "calibration/patterns.h"
+#include "capture/patterns_folder.h"
+#include "cli/command.h"
+
+namespace livery {
+
+namespace {
+
+/// Mosaics in all: with the six colour pictures this makes the twelve captures that a projector
+/// that is not additive needs.
+constexpr int kMosaics = 6;
+
+void append(std::vector<Pattern>& all, std::vector<Pattern> more) {
+    for (Pattern& pattern : more) all.push_back(std::move(pattern));
+}
+
+}  // namespace
+
+Command patterns_command() {
+    struct Arguments {
+        std::string projector, out, kind = "all";
+        int dark = 0, bright = 255;
+    };
+    const auto arguments = std::make_shared<Arguments>();
+    Command command;
+    command.name = "patterns";
+    command.summary = "write the pictures to project, numbered, with manifest.json";
+    command.example = "livery patterns --projector 1280x800 --out patterns";
+    command.options = {
+        {"--projector", "WxH", "the projector's resolution", &arguments->projector, true, {}},
+        {"--out", "DIR", "where they go", &arguments->out, true, {}},
+        {"--kind",
+         "KIND",
+         "geometry, color or all (default all)",
+         &arguments->kind,
+         false,
+         {"geometry", "color", "all"}},
+        {"--dark", "S", "drive of the dark grey picture (default 0)", &arguments->dark, false, {}},
+        {"--bright",
+         "T",
+         "drive of the bright grey picture (default 255)",
+         &arguments->bright,
+         false,
+         {}},
+    };
+    command.run = [arguments](const CommonOptions&, const Progress& progress) {
+        const PixelSize size = parse_size("--projector", arguments->projector);
+        if (arguments->dark < 0 || arguments->bright > 255 ||
+            arguments->dark >= arguments->bright) {
+            throw std::invalid_argument(
+                fmt::format("--dark, --bright: found {} and {}, expected 0 <= dark < bright <= 255",
+                            arguments->dark,
+                            arguments->bright));
+        }
+        std::vector<Pattern> patterns;
+        if (arguments->kind != "color")
+            append(patterns, geometry_patterns(size.width, size.height));
+        if (arguments->kind != "geometry") {
+            append(patterns,
+                   colour_patterns(size.width, size.height, arguments->dark, arguments->bright));
+            append(patterns, mosaic_patterns(size.width, size.height, kMosaics));
+        }
+        std::vector<PatternFile> files;
+        for (Pattern& pattern : patterns) {
+            progress.check_stop();
+            files.push_back({pattern.role, std::move(pattern.drive), pattern.drive_values});
+        }
+        write_patterns_folder(arguments->out, size.width, size.height, files);
+        Outcome outcome;
+        Json list = Json::array();
+        for (std::size_t k = 0; k < files.size(); ++k) {
+            list.push_back({{"file", fmt::format("{:03}.png", k)}, {"role", files[k].role}});
+        }
+        outcome.figures = {{"patterns", list}, {"folder", arguments->out}};
+        outcome.text = fmt::format(
+            "{} patterns in {}: photograph each, put the photographs beside manifest.json "
+            "and fill in exposure_s\n",
+            files.size(),
+            arguments->out);
+        return outcome;
+    };
+    return command;
+}
+
+}  // namespace livery

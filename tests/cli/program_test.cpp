@@ -1,0 +1,289 @@
+// The program as its users meet it: real commands, real files, small pictures.
+
+#include <algorithm>
+#include <csignal>
+#include <fstream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sys/types.h>
+#include <unistd.h>
+
+#include "scene/view.h"
+#include "support/run_program.h"
+
+namespace livery {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+ProgramRun livery_run(const std::vector<std::string>& arguments) {
+    return run_program(LIVERY_PROGRAM, arguments);
+}
+
+Json json_of(const ProgramRun& run) {
+    const Json json = Json::parse(run.out, nullptr, false);
+    EXPECT_FALSE(json.is_discarded()) << run.out << run.err;
+    return json;
+}
+
+std::string content(const std::filesystem::path& file) {
+    std::stringstream text;
+    text << std::ifstream(file).rdbuf();
+    return text.str();
+}
+
+/// A small picture of the car from the side.
+std::string small_camera(const TemporaryFolder& folder) {
+    const auto file = folder / "small camera.json";
+    write_camera_file(file, look_at({-120.0, 150.0, 380.0}, {0.0, 25.0, 0.0}, 0.4, 160, 100));
+    return file.string();
+}
+
+TEST(Program, HelpNamesEveryCommandAndEachHasAnExample) {
+    const ProgramRun all = livery_run({"help"});
+    EXPECT_EQ(all.exit_code, 0);
+    for (const char* name : {"demo",
+                             "render",
+                             "plan",
+                             "patterns",
+                             "photograph",
+                             "calibrate color",
+                             "compensate",
+                             "check",
+                             "bench"}) {
+        EXPECT_NE(all.out.find(name), std::string::npos) << name;
+        const ProgramRun one = livery_run({"help", name});
+        EXPECT_EQ(one.exit_code, 0) << name;
+        EXPECT_NE(one.out.find(std::string("livery ") + name), std::string::npos) << name;
+        EXPECT_NE(one.out.find("Example:"), std::string::npos) << name;
+    }
+    EXPECT_EQ(livery_run({"--version"}).out.substr(0, 7), "livery ");
+}
+
+TEST(Program, WrongArgumentsGiveOneLineAndStatusTwo) {
+    const std::vector<std::vector<std::string>> wrong = {
+        {"evaluate"},
+        {"demo", "--size", "12"},
+        {"demo", "--bench", "/nowhere/bench.json"},
+        {"demo", "--product", "boat"},
+        {"render", "--out", "a.jpg", "--backend", "vulkan"},
+        {"render"},
+        {"render", "--look", "no such look", "--out", "a.png"},
+        {"render", "--look", "/nowhere.json", "--out", "a.png"},
+        {"render", "--product", "/nowhere.glb", "--out", "a.png"},
+        {"render", "--eye", "1,2", "--out", "a.png"},
+        {"render", "--stage", "projector", "--out", "a.png"},
+        {"render", "--quality", "draft", "--budget-ms", "5", "--out", "a.png"},
+        {"render", "--spp", "4", "--out", "a.png"},
+        {"patterns", "--projector", "1280", "--out", "a"},
+        {"patterns", "--projector", "64x48", "--dark", "9", "--bright", "9", "--out", "a"},
+        {"calibrate", "color", "--captures", "/nowhere", "--out", "a"},
+        {"compensate", "--calibration", "/nowhere", "--target", "a.exr", "--out", "a.png"},
+        {"bench", "--suite", "taste"}};
+    for (const auto& words : wrong) {
+        const ProgramRun run = livery_run(words);
+        EXPECT_EQ(run.exit_code, 2) << words[0] << ": " << run.err;
+        EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+        EXPECT_TRUE(run.out.empty()) << run.out;
+    }
+}
+
+TEST(Program, ShippedFilesPassTheCheck) {
+    std::vector<std::string> arguments = {"check", "--json"};
+    for (const char* folder : {"materials", "assets/looks", "calibration"}) {
+        for (const auto& entry :
+             std::filesystem::directory_iterator(std::filesystem::path(LIVERY_SOURCE) / folder)) {
+            if (entry.path().extension() == ".json") arguments.push_back(entry.path().string());
+        }
+    }
+    ASSERT_GT(arguments.size(), 20u);
+    const ProgramRun run = livery_run(arguments);
+    EXPECT_EQ(run.exit_code, 0) << run.out;
+    for (const auto& file : json_of(run)["files"]) {
+        EXPECT_TRUE(file["ok"]) << file.dump();
+        EXPECT_NE(file["kind"], "unknown") << file.dump();
+    }
+}
+
+TEST(Program, CheckSaysWhatIsWrong) {
+    const TemporaryFolder folder;
+    const auto broken = folder.write("broken.json", "{\"model\": ");
+    const auto strange = folder.write("strange.xyz", "hello");
+    const ProgramRun run = livery_run(
+        {"check", "--json", broken.string(), strange.string(), (folder / "missing.glb").string()});
+    EXPECT_EQ(run.exit_code, 1);
+    const Json files = json_of(run)["files"];
+    ASSERT_EQ(files.size(), 3u);
+    EXPECT_NE(files[0]["problems"][0].get<std::string>().find("not JSON"), std::string::npos);
+    EXPECT_NE(files[1]["problems"][0].get<std::string>().find(".xyz"), std::string::npos);
+    EXPECT_NE(files[2]["problems"][0].get<std::string>().find("no such file"), std::string::npos);
+}
+
+TEST(Program, RendersBothBackendsAndPlans) {
+    const TemporaryFolder folder;
+    const std::string camera = small_camera(folder);
+    const auto picture = folder / "a look.png";
+    const ProgramRun gl = livery_run({"render",
+                                      "--json",
+                                      "--camera",
+                                      camera,
+                                      "--look",
+                                      "blue-metallic",
+                                      "--out",
+                                      picture.string()});
+    ASSERT_EQ(gl.exit_code, 0) << gl.err;
+    EXPECT_GT(std::filesystem::file_size(picture), 1000u);
+    const Json figures = json_of(gl);
+    EXPECT_GT(figures["ms_total"].get<double>(), 0.0);
+    for (const auto& pass : figures["passes"]) {
+        EXPECT_FALSE(pass["why"].get<std::string>().empty());
+        EXPECT_TRUE(pass["ms"].is_number()) << pass.dump();
+    }
+    for (const auto& pass : figures["skipped"])
+        EXPECT_FALSE(pass["why"].get<std::string>().empty());
+
+    const ProgramRun reference = livery_run({"render",
+                                             "--json",
+                                             "--camera",
+                                             camera,
+                                             "--look",
+                                             "blue-metallic",
+                                             "--backend",
+                                             "reference",
+                                             "--spp",
+                                             "2",
+                                             "--out",
+                                             (folder / "truth.exr").string()});
+    ASSERT_EQ(reference.exit_code, 0) << reference.err;
+    EXPECT_EQ(json_of(reference)["spp"], 2);
+
+    // Without a bench on this machine nothing is predicted, and the answer says why.
+    ::setenv("LIVERY_HOME", (folder / "home").c_str(), 1);
+    const ProgramRun plan = livery_run({"plan", "--json", "--camera", camera});
+    ASSERT_EQ(plan.exit_code, 0) << plan.err;
+    for (const auto& pass : json_of(plan)["passes"]) {
+        EXPECT_TRUE(pass["predicted_ms"].is_null());
+        EXPECT_NE(pass["unpredicted_because"].get<std::string>().find("no bench"),
+                  std::string::npos);
+    }
+    EXPECT_EQ(
+        livery_run({"render", "--camera", camera, "--budget-ms", "5", "--out", picture.string()})
+            .exit_code,
+        1);
+}
+
+TEST(Program, GoesFromPatternsToProjectorInputThroughFiles) {
+    const TemporaryFolder folder;
+    const std::string patterns = (folder / "patterns").string();
+    const std::string captures = (folder / "captures").string();
+    const std::string calibration = (folder / "calibration").string();
+    ASSERT_EQ(livery_run({"patterns", "--projector", "320x200", "--out", patterns}).exit_code, 0);
+    // Nobody has photographed these yet.
+    const ProgramRun early =
+        livery_run({"calibrate", "color", "--captures", patterns, "--out", calibration});
+    EXPECT_EQ(early.exit_code, 2);
+    EXPECT_NE(early.err.find("exposure_s"), std::string::npos) << early.err;
+
+    const ProgramRun taken =
+        livery_run({"photograph", "--size", "320x200", "--patterns", patterns, "--out", captures});
+    ASSERT_EQ(taken.exit_code, 0) << taken.err;
+    const ProgramRun solved = livery_run({"calibrate",
+                                          "color",
+                                          "--json",
+                                          "--captures",
+                                          captures,
+                                          "--camera-to-xyz",
+                                          captures + "/camera-to-xyz.json",
+                                          "--out",
+                                          calibration});
+    ASSERT_EQ(solved.exit_code, 0) << solved.err;
+    const Json figures = json_of(solved);
+    EXPECT_GT(figures["valid_fraction"].get<double>(), 0.8);
+    EXPECT_LT(figures["additivity_error"].get<double>(), 0.02);
+    EXPECT_EQ(livery_run({"check", calibration, captures}).exit_code, 0);
+
+    write_camera_file(folder / "camera.json",
+                      look_at({-120.0, 150.0, 380.0}, {0.0, 25.0, 0.0}, 0.4, 320, 200));
+    const std::string wanted = (folder / "wanted.exr").string();
+    ASSERT_EQ(livery_run({"render", "--camera", (folder / "camera.json").string(), "--out", wanted})
+                  .exit_code,
+              0);
+    for (const char* gamut : {"strict", "preserve"}) {
+        const ProgramRun corrected = livery_run({"compensate",
+                                                 "--json",
+                                                 "--calibration",
+                                                 calibration,
+                                                 "--target",
+                                                 wanted,
+                                                 "--out",
+                                                 (folder / "input.png").string(),
+                                                 "--gamut",
+                                                 gamut});
+        ASSERT_EQ(corrected.exit_code, 0) << corrected.err;
+        EXPECT_LE(json_of(corrected)["out_of_gamut_fraction"].get<double>(), 1.0);
+    }
+    // A wanted picture of another size is refused by name.
+    const ProgramRun small = livery_run({"compensate",
+                                         "--calibration",
+                                         calibration,
+                                         "--target",
+                                         captures + "/000.exr",
+                                         "--out",
+                                         (folder / "x.png").string()});
+    EXPECT_EQ(small.exit_code, 2);
+    EXPECT_NE(small.err.find("320x200"), std::string::npos) << small.err;
+}
+
+TEST(Program, StopsOnInterrupt) {
+    const TemporaryFolder folder;
+    const pid_t child = ::fork();
+    if (child == 0) {
+        const std::string out = (folder / "demo").string();
+        // gtest's parent keeps its own output: the child's goes nowhere.
+        if (!std::freopen("/dev/null", "w", stdout) || !std::freopen("/dev/null", "w", stderr))
+            _exit(3);
+        ::execl(LIVERY_PROGRAM, LIVERY_PROGRAM, "demo", "--out", out.c_str(), nullptr);
+        _exit(3);
+    }
+    ::sleep(2);
+    ASSERT_EQ(::kill(child, SIGINT), 0);
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 130);
+}
+
+TEST(Program, ASmallDemoWritesAReportThatAsksNobodyForAnything) {
+    const TemporaryFolder folder;
+    const std::string out = (folder / "demo folder").string();
+    const ProgramRun run = livery_run({"demo", "--json", "--size", "320x200", "--out", out});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const Json figures = json_of(run);
+    ASSERT_EQ(figures["designs"].size(), 4u);
+    for (const auto& design : figures["designs"]) {
+        EXPECT_LT(design["de00_median"].get<double>(),
+                  0.1 * design["de00_uncompensated_median"].get<double>())
+            << design.dump();
+    }
+    EXPECT_FALSE(figures["calibration"]["id"].get<std::string>().empty());
+    EXPECT_TRUE(figures["simulated"]);
+    const std::string report = content(std::filesystem::path(out) / "report.html");
+    EXPECT_EQ(report.find("http"), std::string::npos);
+    EXPECT_EQ(report.find("<script"), std::string::npos);
+    EXPECT_NE(report.find("registration is not part of this run"), std::string::npos);
+    // Every picture that the page names is there.
+    std::size_t pictures = 0;
+    for (auto at = report.find("src=\""); at != std::string::npos;
+         at = report.find("src=\"", at + 1)) {
+        const auto end = report.find('"', at + 5);
+        const auto file = std::filesystem::path(out) / report.substr(at + 5, end - at - 5);
+        EXPECT_TRUE(std::filesystem::exists(file)) << file;
+        ++pictures;
+    }
+    EXPECT_GE(pictures, 24u);
+}
+
+}  // namespace
+}  // namespace livery
