@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <numbers>
 
 #include "car_cage.h"
 #include "car_panels.h"
@@ -81,41 +82,31 @@ glm::dvec2 chart(const LimitVertex& v, int region) {
     }
 }
 
-/// Wheel wells: from the arches' edges inward, and a wall behind the wheel.
-void add_wells(const std::vector<OpenEdge>& open, PartMesh& body, PartMesh& trim) {
+/// Wheel wells: the arches' edges turned inward, and a liner around each wheel.
+void add_wells(const std::vector<OpenEdge>& open, std::vector<PartMesh>& parts) {
     constexpr double kLip_mm = 1.2;
-    const auto wall = [](PartMesh& part, const OpenEdge& edge, double from_z, double to_z) {
-        const auto at = [](const glm::dvec3& p, double z) { return glm::dvec3(p.x, p.y, z); };
-        const double axle =
-            std::abs(edge.from.x - kFrontAxle_mm) < std::abs(edge.from.x - kRearAxle_mm)
-                ? kFrontAxle_mm
-                : kRearAxle_mm;
-        std::array<std::uint32_t, 4> corner{};
-        const std::array<glm::dvec3, 4> places{
-            at(edge.from, from_z > 0 ? from_z : edge.from.z),
-            at(edge.from, to_z > 0 ? to_z : edge.from.z - kLip_mm),
-            at(edge.to, to_z > 0 ? to_z : edge.to.z - kLip_mm),
-            at(edge.to, from_z > 0 ? from_z : edge.to.z)};
-        for (std::size_t k = 0; k < 4; ++k) {
-            const glm::dvec3 out(axle - places[k].x, kAxleHeight_mm - places[k].y, 0.0);
-            corner[k] = part.add_vertex(places[k],
-                                        glm::normalize(out),
-                                        glm::dvec2(places[k].x, places[k].z) / kUvUnit_mm + 0.5);
-        }
-        part.add_quad(corner[0], corner[1], corner[2], corner[3]);
-    };
+    constexpr double kAxleMiddle_mm = 0.5 * (kFrontAxle_mm + kRearAxle_mm);
     for (const auto& edge : open) {
+        const double axle = edge.from.x > kAxleMiddle_mm ? kFrontAxle_mm : kRearAxle_mm;
         const auto near_arch = [&](const glm::dvec3& p) {
-            for (const double axle : {kFrontAxle_mm, kRearAxle_mm}) {
-                const double r = std::hypot(p.x - axle, p.y - kAxleHeight_mm);
-                if (std::abs(r - kArchRadius_mm) < 0.4 && p.z > 20.0) return true;
-            }
-            return false;
+            return std::abs(p.x - axle) < kArchRadius_mm + 0.5;
         };
-        if (!near_arch(edge.from) || !near_arch(edge.to)) continue;
-        if (std::abs(edge.from.z - edge.to.z) > 1.5) continue;
-        wall(body, edge, 0.0, 0.0);
+        if (edge.region != kSide || !near_arch(edge.from) || !near_arch(edge.to)) continue;
+        auto& part = parts[static_cast<std::size_t>(edge.part)];
+        const auto vertex = [&](glm::dvec3 place, double inward_mm) {
+            const glm::dvec3 out(axle - place.x, kAxleHeight_mm - place.y, 0.0);
+            place.z -= inward_mm;
+            return part.add_vertex(
+                place,
+                glm::normalize(out),
+                glm::dvec2(place.x, place.z) / kUvUnit_mm + glm::dvec2(0.5, 1.5));
+        };
+        part.add_quad(vertex(edge.from, 0.0),
+                      vertex(edge.from, kLip_mm),
+                      vertex(edge.to, kLip_mm),
+                      vertex(edge.to, 0.0));
     }
+    auto& trim = parts[kTrim];
     for (const double axle : {kFrontAxle_mm, kRearAxle_mm}) {
         // A liner a little wider than the opening, open below, with its inner wall.
         const std::vector<glm::dvec2> liner{{kArchRadius_mm + 0.3, 35.6},
@@ -131,28 +122,62 @@ void add_wells(const std::vector<OpenEdge>& open, PartMesh& body, PartMesh& trim
 void add_floor(PartMesh& trim) {
     struct Span {
         double from_mm, to_mm, half_from_mm, half_to_mm;
+        double rise_from_mm = 0.0, rise_to_mm = 0.0;
     };
     const double r = kArchRadius_mm + 0.2;
     const std::array<Span, 7> spans{{
-        {-84.0, -78.0, 24.0, 29.0},
-        {-78.0, kRearAxle_mm - r, 29.0, 32.0},
+        {-82.0, -74.0, 18.0, 28.0, 1.9, 1.0},
+        {-74.0, kRearAxle_mm - r, 28.0, 31.0, 1.0, 0.0},
         {kRearAxle_mm - r, kRearAxle_mm + r, kWellDepth_mm, kWellDepth_mm},
         {kRearAxle_mm + r, kFrontAxle_mm - r, 33.0, 33.0},
         {kFrontAxle_mm - r, kFrontAxle_mm + r, kWellDepth_mm, kWellDepth_mm},
-        {kFrontAxle_mm + r, 78.0, 31.5, 27.5},
-        {78.0, 85.0, 27.5, 14.0},
+        {kFrontAxle_mm + r, 75.0, 31.0, 27.5},
+        {75.0, 84.0, 27.5, 12.0, 0.0, 0.6},
     }};
     const glm::dvec3 down(0, -1, 0);
     for (const auto& span : spans) {
         const auto vertex = [&](double x, double z) {
-            return trim.add_vertex(
-                {x, kFloor_mm, z}, down, glm::dvec2(x, z) / kUvUnit_mm + glm::dvec2(0.5, 1.5));
+            const double rise = x == span.from_mm ? span.rise_from_mm : span.rise_to_mm;
+            return trim.add_vertex({x, kFloor_mm + rise, z},
+                                   down,
+                                   glm::dvec2(x, z) / kUvUnit_mm + glm::dvec2(0.5, 1.5));
         };
         const auto a = vertex(span.from_mm, 0.0), b = vertex(span.to_mm, 0.0);
         const auto c = vertex(span.to_mm, span.half_to_mm);
         const auto d = vertex(span.from_mm, span.half_from_mm);
         trim.add_quad(a, b, c, d);
     }
+}
+
+/// A door mirror: a housing with a flat back, on a foot at the window's front corner.
+void add_mirror(std::vector<PartMesh>& parts) {
+    const glm::dvec3 centre(21.4, 42.3, 34.6), half(3.2, 2.1, 2.85);
+    auto housing = sphere(1.0, 20);
+    for (auto& p : housing.positions_mm) {
+        const auto round = [](double v, double power) {
+            return std::copysign(std::pow(std::abs(v), power), v);
+        };
+        // A superellipsoid, blunt behind, slimmer toward its outer end.
+        glm::dvec3 q(round(p.x, p.x > 0.0 ? 1.1 : 0.5), round(p.y, 0.75), round(p.z, 0.7));
+        q.x *= p.x > 0.0 ? 1.0 : 0.30;
+        q.y *= 1.0 - 0.16 * q.z;
+        p = centre + q * half + glm::dvec3(-0.5 * (q.z + 1.0), 0.0, 0.0);
+    }
+    compute_smooth_normals(housing);
+    append(parts[kBody], housing, glm::dvec3(0.0));
+
+    std::vector<std::vector<glm::dvec3>> foot;
+    for (int k = 0; k < 3; ++k) {
+        const double f = k / 2.0;
+        const glm::dvec3 middle = glm::mix(glm::dvec3(22.6, 38.9, 33.4), centre, f);
+        std::vector<glm::dvec3> loop;
+        for (int a = 0; a < 12; ++a) {
+            const double turn = 2.0 * std::numbers::pi * a / 12;
+            loop.push_back(middle + glm::dvec3(1.9 * std::sin(turn), 0.0, 0.8 * std::cos(turn)));
+        }
+        foot.push_back(loop);
+    }
+    append(parts[kTrim], loft(foot), glm::dvec3(0.0));
 }
 
 }  // namespace
@@ -162,8 +187,9 @@ std::vector<PartMesh> make_car() {
     fit_to_size(skin);
     add_flares(skin);
     fit_to_size(skin);
-    auto sheet = half_sheet(skin, [](int region, const glm::dvec3& centre) {
-        return region != kFloor || centre.z > 27.0;
+    auto sheet = half_sheet(skin, [](int region, const glm::dvec2& parameters) {
+        return region != kFloor ||
+               parameters.y < kSillRow + 1;  // a flange; a plate closes the rest
     });
     const auto styles = cut_car_panels(sheet);
 
@@ -179,7 +205,8 @@ std::vector<PartMesh> make_car() {
     const std::array<double, kCarParts> roughness{0.5, 0.15, 0.35, 0.8, 0.2, 0.6};
 
     const auto open = build_panels(sheet, styles, chart, kTrim, half);
-    add_wells(open, half[kBody], half[kTrim]);
+    add_wells(open, half);
+    add_mirror(half);
     add_floor(half[kTrim]);
     for (const double axle : {kFrontAxle_mm, kRearAxle_mm}) {
         const glm::dvec3 place(axle, kAxleHeight_mm, 36.6 - kTyreHalfWidth_mm);

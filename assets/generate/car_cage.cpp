@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/common.hpp>
 #include <map>
 #include <vector>
+
+#include <glm/common.hpp>
 
 namespace livery::assets {
 
@@ -94,88 +95,88 @@ const Line kBelt{{1, {-78.2, 41.9, 30.4}},
                  {16, {53.8, 36.9, 33.2}},
                  {18, {70.3, 34.1, 30.9}},
                  {19, {77.2, 32.1, 28.6}}};
-const Line kShoulderTop{{1, {-77.8, 41.6, 32.2}},
-                        {2, {-71.2, 41.4, 33.9}},
+const Line kShoulderTop{{1, {-77.0, 41.6, 32.9}},
+                        {2, {-70.8, 41.4, 34.4}},
                         {4, {-53.3, 40.6, 35.2}},
                         {5, {-44.0, 39.9, 35.4}},
                         {8, {-13.5, 38.8, 35.6}},
                         {12, {18.5, 37.9, 35.6}},
                         {14, {34.0, 37.2, 35.5}},
                         {16, {53.9, 36.2, 34.9}},
-                        {18, {69.6, 33.6, 32.9}},
-                        {19, {76.6, 31.8, 30.5}}};
-const Line kShoulder{{0, {-82.0, 41.6, 30.5}},
-                     {1, {-77.5, 41.0, 33.4}},
-                     {2, {-70.5, 40.1, 35.2}},
-                     {4, {-53.0, 38.9, 36.6}},
-                     {7, {-24.0, 37.6, 36.9}},
-                     {10, {5.0, 36.9, 36.8}},
-                     {13, {30.0, 36.3, 36.5}},
-                     {16, {54.0, 35.0, 36.2}},
-                     {18, {69.0, 32.8, 34.5}},
-                     {19, {76.0, 31.2, 32.1}},
-                     {20, {81.5, 29.4, 28.2}}};
-const Line kWidest{{0, {-84.5, 37.0, 31.2}},
-                   {1, {-79.5, 36.3, 34.0}},
-                   {2, {-71.5, 34.8, 36.0}},
-                   {4, {-53.0, 32.4, 37.2}},
-                   {7, {-24.0, 30.5, 37.4}},
-                   {10, {5.0, 29.8, 37.4}},
-                   {13, {30.0, 29.3, 37.2}},
-                   {16, {54.0, 28.6, 36.9}},
-                   {18, {70.0, 27.2, 35.2}},
-                   {19, {77.0, 26.0, 32.8}},
-                   {20, {82.8, 24.6, 29.0}}};
-const Line kDoor{{0, {-86.0, 28.2, 31.6}},
-                 {1, {-80.5, 27.6, 34.3}},
-                 {2, {-72.0, 26.2, 36.2}},
+                        {18, {69.0, 33.6, 33.3}},
+                        {19, {76.1, 31.8, 31.0}}};
+const Line kShoulder{{0, {-80.6, 41.6, 30.8}},
+                     {1, {-76.3, 41.0, 34.3}},
+                     {2, {-70.0, 40.1, 35.9}},
+                     {4, {-53.0, 38.9, 36.8}},
+                     {7, {-24.0, 37.7, 36.45}},
+                     {10, {5.0, 37.0, 36.35}},
+                     {13, {30.0, 36.4, 36.3}},
+                     {16, {54.0, 35.0, 36.3}},
+                     {18, {68.3, 32.8, 35.0}},
+                     {19, {75.2, 31.2, 32.7}},
+                     {20, {80.2, 29.4, 28.4}}};
+const Line kWidest{{0, {-82.8, 37.0, 31.4}},
+                   {1, {-78.2, 36.3, 34.9}},
+                   {2, {-71.0, 34.8, 36.6}},
+                   {4, {-53.0, 32.4, 37.3}},
+                   {7, {-24.0, 29.5, 37.5}},
+                   {10, {5.0, 28.8, 37.5}},
+                   {13, {30.0, 29.3, 37.3}},
+                   {16, {54.0, 28.6, 37.0}},
+                   {18, {69.0, 27.2, 35.6}},
+                   {19, {76.2, 26.0, 33.3}},
+                   {20, {81.3, 24.6, 29.1}}};
+const Line kDoor{{0, {-84.2, 28.2, 31.6}},
+                 {1, {-79.2, 27.6, 35.0}},
+                 {2, {-71.5, 26.2, 36.7}},
                  {4, {-53.0, 24.0, 37.3}},
-                 {7, {-24.0, 22.6, 37.0}},
-                 {10, {5.0, 22.2, 36.9}},
-                 {13, {30.0, 22.0, 37.0}},
+                 {7, {-24.0, 22.4, 36.7}},
+                 {10, {5.0, 22.0, 36.6}},
+                 {13, {30.0, 21.8, 36.8}},
                  {16, {54.0, 21.6, 36.9}},
-                 {18, {70.5, 20.6, 35.4}},
-                 {19, {77.5, 20.0, 33.1}},
-                 {20, {83.4, 19.0, 29.4}}};
-const Line kLowerDoor{{0, {-85.5, 20.3, 31.4}},
-                      {1, {-80.3, 19.5, 34.0}},
-                      {2, {-72.0, 18.0, 35.9}},
+                 {18, {69.4, 20.6, 35.7}},
+                 {19, {76.8, 20.0, 33.5}},
+                 {20, {81.9, 19.0, 29.4}}};
+const Line kLowerDoor{{0, {-83.8, 20.3, 31.4}},
+                      {1, {-79.0, 19.5, 34.7}},
+                      {2, {-71.5, 18.0, 36.4}},
                       {4, {-53.0, 16.0, 36.9}},
-                      {7, {-24.0, 14.8, 36.0}},
-                      {10, {5.0, 14.6, 35.9}},
-                      {13, {30.0, 14.6, 36.3}},
+                      {7, {-24.0, 15.4, 35.5}},
+                      {10, {5.0, 15.0, 35.4}},
+                      {13, {30.0, 14.6, 35.9}},
                       {16, {54.0, 14.4, 36.6}},
-                      {18, {70.3, 14.0, 35.2}},
-                      {19, {77.2, 13.7, 32.9}},
-                      {20, {83.0, 13.4, 29.2}}};
-const Line kSill{{0, {-84.0, 12.6, 30.8}},
-                 {1, {-79.0, 11.8, 33.3}},
-                 {2, {-71.0, 10.8, 35.2}},
-                 {4, {-53.0, 10.0, 36.2}},
-                 {7, {-24.0, 9.6, 36.2}},
-                 {10, {5.0, 9.6, 36.1}},
-                 {13, {30.0, 9.6, 36.1}},
-                 {16, {54.0, 9.4, 35.9}},
-                 {18, {70.0, 9.4, 34.5}},
-                 {19, {76.5, 9.4, 32.3}},
-                 {20, {81.8, 9.4, 28.6}}};
-const Line kSillEdge{{0, {-80.5, 7.8, 28.5}},
-                     {1, {-76.0, 7.3, 31.2}},
-                     {2, {-69.0, 6.8, 32.6}},
+                      {18, {69.2, 14.0, 35.5}},
+                      {19, {76.4, 13.7, 33.3}},
+                      {20, {81.5, 13.4, 29.2}}};
+const Line kSill{{0, {-82.4, 12.6, 30.8}},
+                 {1, {-77.8, 11.8, 34.0}},
+                 {2, {-70.5, 10.8, 35.7}},
+                 {4, {-53.0, 10.0, 36.3}},
+                 {7, {-24.0, 9.6, 36.3}},
+                 {10, {5.0, 9.6, 36.2}},
+                 {13, {30.0, 9.6, 36.2}},
+                 {16, {54.0, 9.4, 36.0}},
+                 {18, {68.9, 9.4, 34.8}},
+                 {19, {75.6, 9.4, 32.6}},
+                 {20, {80.4, 9.4, 28.6}}};
+const Line kSillEdge{{0, {-79.2, 7.8, 28.5}},
+                     {1, {-75.0, 7.3, 31.5}},
+                     {2, {-68.5, 6.8, 32.9}},
                      {4, {-53.0, 6.4, 33.4}},
                      {7, {-24.0, 6.2, 33.6}},
                      {10, {5.0, 6.2, 33.6}},
                      {13, {30.0, 6.2, 33.6}},
                      {16, {54.0, 6.2, 33.4}},
-                     {18, {69.0, 6.3, 32.0}},
-                     {19, {75.0, 6.4, 29.8}},
-                     {20, {79.5, 6.6, 26.6}}};
+                     {18, {68.3, 6.3, 32.2}},
+                     {19, {74.2, 6.4, 30.1}},
+                     {20, {78.3, 6.6, 26.6}}};
 
 // The ends on the centre line, rows 8 to 13, and how far out each column of them stands.
 const std::array<glm::dvec2, 6> kNoseProfile{
     {{87.6, 28.8}, {89.4, 24.4}, {90.0, 19.0}, {89.4, 13.4}, {88.0, 9.4}, {85.0, 6.6}}};
 const std::array<glm::dvec2, 6> kTailProfile{
-    {{-88.0, 43.6}, {-87.2, 38.6}, {-89.6, 28.4}, {-89.6, 20.4}, {-87.6, 12.6}, {-83.5, 7.8}}};
+    {{-88.2, 43.8}, {-86.6, 38.4}, {-88.6, 28.4}, {-90.0, 20.8}, {-88.2, 12.8}, {-83.5, 7.8}}};
 const std::array<double, 9> kEndColumns{0.0, 0.17, 0.34, 0.50, 0.63, 0.74, 0.84, 0.925, 1.0};
 
 glm::dvec3 on_line(const Line& line, double station) {
@@ -208,7 +209,7 @@ glm::dvec3 end_point(bool nose, int column, int level) {
     const auto l = static_cast<std::size_t>(level);
     const auto corner = on_line(*rows[l], nose ? kStations : 0);
     const double f = kEndColumns[static_cast<std::size_t>(column)];
-    return {profile[l].x + (corner.x - profile[l].x) * std::pow(f, 2.6),
+    return {profile[l].x + (corner.x - profile[l].x) * std::pow(f, 3.0),
             profile[l].y + (corner.y - profile[l].y) * f * f,
             corner.z * f};
 }
@@ -255,6 +256,36 @@ glm::dvec3 grid_point(int station, int row) {
     }
 }
 
+/// The feature lines with their unevenness along the car taken out: a few steps of
+/// fourth-difference smoothing, which moves a cubic's samples not at all.
+const std::vector<std::vector<glm::dvec3>>& fair_grid() {
+    static const auto grid = [] {
+        constexpr int kSteps = 12;
+        constexpr double kWeight = 1.0 / 32.0;  // stable below 1/8
+        std::vector<std::vector<glm::dvec3>> rows;
+        for (int row = 0; row <= kSillRow; ++row) {
+            std::vector<glm::dvec3> line;
+            for (int station = 0; station <= kStations; ++station) {
+                line.push_back(grid_point(station, row));
+            }
+            for (int step = 0; step < kSteps; ++step) {
+                const auto before = line;
+                for (std::size_t i = 2; i + 2 < line.size(); ++i) {
+                    line[i] -= kWeight * (before[i - 2] - 4.0 * before[i - 1] + 6.0 * before[i] -
+                                          4.0 * before[i + 1] + before[i + 2]);
+                }
+            }
+            rows.push_back(line);
+        }
+        return rows;
+    }();
+    return grid;
+}
+
+glm::dvec3 fair_point(int station, int row) {
+    return fair_grid()[static_cast<std::size_t>(row)][static_cast<std::size_t>(station)];
+}
+
 /// Row by row of the lattice box: i along the car, j across (negative: right), k down.
 struct Lattice {
     Cage cage;
@@ -268,11 +299,11 @@ struct Lattice {
         glm::dvec3 point;
         glm::dvec2 parameters(i, column + k);
         if (column == kShoulderRow || k == 0) {
-            point = grid_point(i, column + k);
+            point = fair_point(i, column + k);
         } else if (i == 0 || i == kStations) {
             point = end_point(i != 0, column, k);
         } else {
-            const auto edge = grid_point(i, kSillRow);
+            const auto edge = fair_point(i, kSillRow);
             point = {edge.x, edge.y, edge.z * kEndColumns[static_cast<std::size_t>(column)]};
             parameters.y = kSillRow + kShoulderRow - column;
         }
@@ -297,8 +328,8 @@ glm::dvec3 feature_point(double station, double row) {
     const double r = std::clamp(row, 0.0, static_cast<double>(kSillRow));
     const int i = std::min(static_cast<int>(s), kStations - 1);
     const int j = std::min(static_cast<int>(r), kSillRow - 1);
-    return glm::mix(glm::mix(grid_point(i, j), grid_point(i + 1, j), s - i),
-                    glm::mix(grid_point(i, j + 1), grid_point(i + 1, j + 1), s - i),
+    return glm::mix(glm::mix(fair_point(i, j), fair_point(i + 1, j), s - i),
+                    glm::mix(fair_point(i, j + 1), fair_point(i + 1, j + 1), s - i),
                     r - j);
 }
 
@@ -354,10 +385,13 @@ Cage make_car_cage() {
                 box.crease({i, side * m, 0}, {i + 1, side * m, 0}, 1.2 * fade);
             }
             if (i >= 4 && i < 14) box.crease({i, side * 6, 0}, {i + 1, side * 6, 0}, 1.3);
+            if (i >= 14 && i < 19) {
+                box.crease({i, side * 3, 0}, {i + 1, side * 3, 0}, i == 14 || i == 18 ? 0.5 : 1.0);
+            }
             box.crease({i, side * m, depth}, {i + 1, side * m, depth}, 1.0);
         }
         for (int j = 0; j < m; ++j) {
-            box.crease({0, side * j, 0}, {0, side * (j + 1), 0}, 2.0);
+            box.crease({0, side * j, 0}, {0, side * (j + 1), 0}, j + 1 < m ? 2.0 : 1.0);
         }
     }
     return box.cage;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+
 #include <glm/geometric.hpp>
 
 #include "car_cage.h"
@@ -31,17 +32,18 @@ enum Panel {
     kIntake,
     kLowerTrim,
     kDoorHandle,
+    kLampFrame,
+    kGrilleBar,
+    kPlateRecess,
     kPanels,
 };
 
 using Points = std::vector<glm::dvec2>;
 
-glm::dvec2 side_view(const LimitVertex& v) {
-    return {v.position.x, v.position.y};
-}
-glm::dvec2 top_view(const LimitVertex& v) {
-    return {v.position.x, v.position.z};
-}
+glm::dvec2 side_view(const LimitVertex& v) { return {v.position.x, v.position.y}; }
+glm::dvec2 top_view(const LimitVertex& v) { return {v.position.x, v.position.z}; }
+
+glm::dvec2 end_view(const LimitVertex& v) { return {v.position.z, v.position.y}; }
 
 /// Developed around an upright axis: angle from straight ahead (or back), in degrees, and height.
 glm::dvec2 nose_view(const LimitVertex& v) {
@@ -58,6 +60,13 @@ glm::dvec2 side_of(double station, double row) {
 glm::dvec2 top_of(double station, double row) {
     const auto p = feature_point(station, row);
     return {p.x, p.z};
+}
+
+/// How far a point lies behind the line between the doors, which leans back above the belt and
+/// forward below.
+double behind_pillar_mm(const LimitVertex& v) {
+    const double above = v.position.y - 39.5;
+    return -(v.position.x + 8.6 + (above > 0.0 ? 0.10 : 0.09) * above);
 }
 
 /// Both halves of an outline that crosses the centre line, from its points with z >= 0.
@@ -130,14 +139,11 @@ void cut_windows(Cutter& cutter) {
     cutter(window, side_view, 0.75, {kFenders}, kWindowFrame, on_side);
     cutter(window, side_view, 0.0, {kWindowFrame}, kRearSideGlass, on_side);
     // The middle pillar parts the glass, leaning back.
-    const auto from_pillar = [](const LimitVertex& v) {
-        return v.position.x + 8.6 + 0.10 * (v.position.y - 40.0);
-    };
-    cutter.along([&](const LimitVertex& v) { return 0.9 - from_pillar(v); },
+    cutter.along([](const LimitVertex& v) { return behind_pillar_mm(v) + 0.9; },
                  {kRearSideGlass},
                  kFrontSideGlass,
                  on_side);
-    cutter.along([&](const LimitVertex& v) { return -0.9 - from_pillar(v); },
+    cutter.along([](const LimitVertex& v) { return behind_pillar_mm(v) - 0.9; },
                  {kRearSideGlass},
                  kWindowFrame,
                  on_side);
@@ -162,25 +168,32 @@ void cut_windows(Cutter& cutter) {
 void cut_ends(Cutter& cutter) {
     const TriangleMask in_front = [&](const SheetTriangle& t) { return cutter.centre(t).x > 58.0; };
     const TriangleMask behind = [&](const SheetTriangle& t) { return cutter.centre(t).x < -58.0; };
-    const Outline head({{17.0, 26.6},
-                        {30.0, 27.4},
-                        {44.0, 28.6},
-                        {58.0, 30.6},
-                        {66.0, 32.0},
+    const Outline head({{20.5, 26.4},
+                        {30.0, 27.2},
+                        {42.0, 28.4},
+                        {54.0, 29.9},
+                        {67.0, 32.0},
                         {60.0, 28.6},
-                        {47.0, 25.6},
-                        {36.0, 24.4},
-                        {22.0, 24.0}},
-                       1.2);
-    cutter(head, nose_view, 0.0, {kFenders}, kHeadLamp, in_front);
+                        {47.0, 25.8},
+                        {36.0, 24.6},
+                        {22.5, 24.4}},
+                       1.0);
+    cutter(head, nose_view, 0.0, {kFenders}, kLampFrame, in_front);
+    cutter(head, nose_view, -0.55, {kLampFrame}, kHeadLamp, in_front);
     const Outline grille(
-        {{-15.0, 26.0}, {15.0, 26.0}, {17.5, 22.6}, {14.0, 20.4}, {-14.0, 20.4}, {-17.5, 22.6}},
+        {{-18.6, 26.2}, {18.6, 26.2}, {20.6, 24.2}, {16.5, 17.6}, {-16.5, 17.6}, {-20.6, 24.2}},
         1.6);
     cutter(grille, nose_view, 0.0, {kFenders}, kGrille, in_front);
+    // Bars across the grille, cut out of the depth behind them.
+    cutter.along([](const LimitVertex& v) { return std::cos((v.position.y - 17.6) * 2.9) - 0.25; },
+                 {kGrille},
+                 kGrilleBar,
+                 in_front);
     const Outline intake(
-        {{-24.0, 15.8}, {24.0, 15.8}, {27.0, 13.0}, {22.0, 9.9}, {-22.0, 9.9}, {-27.0, 13.0}}, 1.6);
+        {{-22.0, 14.4}, {22.0, 14.4}, {26.0, 12.6}, {23.0, 10.4}, {-23.0, 10.4}, {-26.0, 12.6}},
+        1.4);
     cutter(intake, nose_view, 0.0, {kFenders}, kIntake, in_front);
-    const Outline vent({{33.0, 18.0}, {42.0, 18.6}, {40.0, 13.4}, {34.0, 11.4}}, 1.4);
+    const Outline vent({{31.0, 18.4}, {43.0, 20.4}, {44.5, 17.0}, {36.0, 12.2}, {32.0, 12.2}}, 1.4);
     cutter(vent, nose_view, 0.0, {kFenders}, kIntake, in_front);
 
     const Outline tail({{-70.0, 39.6},
@@ -198,7 +211,10 @@ void cut_ends(Cutter& cutter) {
                         {-50.0, 34.6},
                         {-62.0, 37.2}},
                        1.2);
-    cutter(tail, tail_view, 0.0, {kFenders}, kTailLamp, behind);
+    cutter(tail, tail_view, 0.0, {kFenders}, kLampFrame, behind);
+    cutter(tail, tail_view, -0.45, {kLampFrame}, kTailLamp, behind);
+    const Outline plate({{-13.0, 32.6}, {13.0, 32.6}, {14.5, 26.4}, {-14.5, 26.4}}, 1.4);
+    cutter(plate, tail_view, 0.0, {kFenders}, kPlateRecess, behind);
     const Outline diffuser(
         {{-38.0, 4.0}, {-38.0, 11.0}, {-28.0, 14.4}, {28.0, 14.4}, {38.0, 11.0}, {38.0, 4.0}}, 2.0);
     cutter(diffuser, tail_view, 0.0, {kFenders}, kIntake, behind);
@@ -206,40 +222,34 @@ void cut_ends(Cutter& cutter) {
 
 void cut_lids(Cutter& cutter) {
     const TriangleMask on_side = [&](const SheetTriangle& t) {
-        return (t.region == kSide) || (t.region == kTop && cutter.row(t) > 3.6);
+        return t.region == kSide || (t.region == kTop && cutter.row(t) > 3.6);
     };
     const TriangleMask on_top = [&](const SheetTriangle& t) {
         return t.region == kTop && cutter.row(t) < 7.4;
     };
     // Doors: under the window frame; the rear one cut back around the arch.
-    const Outline front_door({{29.5, 36.0},
-                              {27.0, 39.4},
-                              {22.0, 43.5},
-                              {-7.6, 70.0},
-                              {-8.6, 40.0},
-                              {-6.6, 26.0},
-                              {-5.6, 11.6},
-                              {27.0, 11.6},
-                              {30.0, 15.0},
-                              {31.0, 26.0}},
-                             2.2);
-    cutter(front_door, side_view, 0.0, {kFenders}, kFrontDoor, [&](const SheetTriangle& t) {
+    const Outline doors({{29.5, 36.0},
+                         {27.0, 39.4},
+                         {22.0, 43.5},
+                         {0.0, 70.0},
+                         {-44.0, 70.0},
+                         {-43.6, 41.0},
+                         {-42.4, 33.0},
+                         {-38.6, 27.0},
+                         {-35.6, 18.0},
+                         {-35.0, 11.6},
+                         {27.0, 11.6},
+                         {30.0, 15.0},
+                         {31.0, 26.0}},
+                        2.2);
+    const TriangleMask under_window = [&](const SheetTriangle& t) {
         return on_side(t) && cutter.row(t) > 5.6;
-    });
-    const Outline rear_door({{-8.6, 40.0},
-                             {-8.6, 70.0},
-                             {-44.0, 70.0},
-                             {-43.6, 41.0},
-                             {-42.4, 33.0},
-                             {-38.6, 27.0},
-                             {-35.6, 18.0},
-                             {-35.0, 11.6},
-                             {-5.6, 11.6},
-                             {-6.6, 26.0}},
-                            2.2);
-    cutter(rear_door, side_view, 0.0, {kFenders}, kRearDoor, [&](const SheetTriangle& t) {
-        return on_side(t) && cutter.row(t) > 5.6;
-    });
+    };
+    cutter(doors, side_view, 0.0, {kFenders}, kRearDoor, under_window);
+    cutter.along([](const LimitVertex& v) { return behind_pillar_mm(v); },
+                 {kRearDoor},
+                 kFrontDoor,
+                 under_window);
     for (const double x : {-1.2, -36.6}) {
         const double y = x > -20 ? 34.6 : 35.4;
         const Outline handle(
@@ -270,11 +280,20 @@ void cut_lids(Cutter& cutter) {
         return t.region == kTop && cutter.row(t) < 7.4;
     });
     const Outline lower_hatch(
-        {{-33.0, 60.0}, {-33.0, 27.0}, {-28.0, 24.6}, {28.0, 24.6}, {33.0, 27.0}, {33.0, 60.0}},
+        {{-26.0, 60.0}, {-26.0, 25.4}, {-23.5, 23.0}, {23.5, 23.0}, {26.0, 25.4}, {26.0, 60.0}},
         2.0);
-    cutter(lower_hatch, tail_view, 0.0, {kFenders}, kHatch, [&](const SheetTriangle& t) {
+    cutter.along(
+        [](const LimitVertex& v) { return 63.2 + 0.15 * (32.0 - v.position.y) - v.position.x; },
+        {kFenders},
+        kFrontBumper,
+        [&](const SheetTriangle& t) { return cutter.centre(t).x > 56.0; });
+    cutter(lower_hatch, end_view, 0.0, {kFenders}, kHatch, [&](const SheetTriangle& t) {
         return t.region == kTail;
     });
+    cutter.along([](const LimitVertex& v) { return v.position.y - 25.2; },
+                 {kFenders},
+                 kRearBumper,
+                 [&](const SheetTriangle& t) { return cutter.centre(t).x < -58.0; });
 }
 
 }  // namespace
@@ -310,10 +329,15 @@ std::vector<PanelStyle> cut_car_panels(Sheet& sheet) {
     style(kWindowFrame, kTrim, 0.04, 0.06);
     style(kHeadLamp, kLights, 0.08, 0.12);
     style(kTailLamp, kLights, 0.0, 0.12);
-    style(kGrille, kTrim, 0.5, 0.0);
+    style(kLampFrame, kTrim, 0.1, 0.12);
+    style(kGrille, kTrim, 0.9, 0.0);
+    style(kGrilleBar, kTrim, 0.25, 0.0);
+    styles[kGrille].wall_mm = 0.0;
     style(kIntake, kTrim, 0.9, 0.0);
     styles[kIntake].wall_mm = 0.0;
     style(kLowerTrim, kTrim, 0.15, 0.0);
+    style(kPlateRecess, kBody, 0.55, 0.0);
+    styles[kFenders].wall_mm = styles[kHatch].wall_mm = 1.0;
     style(kDoorHandle, kBody, -0.12, 0.14);
     return styles;
 }

@@ -1,8 +1,9 @@
 // Where the car's skin is cut: windows, lamps, intakes, doors, lids.
 #pragma once
 
-#include <glm/vec2.hpp>
 #include <vector>
+
+#include <glm/vec2.hpp>
 
 #include "sheet.h"
 

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <numbers>
 
 namespace livery::assets {
 
@@ -15,7 +16,7 @@ namespace {
 struct Softbox {
     glm::dvec3 axis, right, up;
     double half_width, half_height;
-    double edge;  ///< width of the soft edge
+    double edge;  ///< half of the soft edge's width above and below
     glm::dvec3 radiance;
 };
 
@@ -29,13 +30,16 @@ glm::dvec3 light_of(const Softbox& box, const glm::dvec3& direction) {
     if (along <= 1e-6) return glm::dvec3(0.0);
     const double x = std::abs(glm::dot(direction, box.right)) / along;
     const double y = std::abs(glm::dot(direction, box.up)) / along;
-    const auto side = [&](double at, double half) {
-        return 1.0 - smooth_step(half - box.edge, half + box.edge, at);
+    const auto side = [](double at, double half, double edge) {
+        return 1.0 - smooth_step(half - edge, half + edge, at);
     };
+    // At the ends, seen at a slant, the soft edge takes the same angle or more.
+    const double end_edge = 1.5 * box.edge * (1.0 + box.half_width * box.half_width);
     // The lamp behind the cloth makes the middle a little brighter than the rim.
     const double u = x / box.half_width, v = y / box.half_height;
     const double falloff = 1.0 - 0.18 * std::min(1.0, 0.5 * (u * u + v * v));
-    return box.radiance * (side(x, box.half_width) * side(y, box.half_height) * falloff);
+    return box.radiance *
+           (side(x, box.half_width, end_edge) * side(y, box.half_height, box.edge) * falloff);
 }
 
 Softbox softbox(const glm::dvec3& toward,
@@ -54,17 +58,17 @@ Softbox softbox(const glm::dvec3& toward,
 glm::dvec3 studio_radiance(const glm::dvec3& direction) {
     static const Softbox boxes[]{
         // Overhead, along the car.
-        softbox({0.0, 1.0, 0.0}, {1, 0, 0}, 0.74, 0.24, 0.06, glm::dvec3(4.6, 4.6, 4.6)),
+        softbox({0.0, 1.0, 0.0}, {1, 0, 0}, 0.66, 0.17, 0.05, glm::dvec3(4.6, 4.6, 4.6)),
         // Strips along both sides, the left one larger and a little warm: the key.
-        softbox({0.1, 0.42, 1.0}, {1, 0, 0}, 1.05, 0.095, 0.03, glm::dvec3(6.6, 6.4, 6.1)),
-        softbox({-0.1, 0.36, -1.0}, {1, 0, 0}, 1.05, 0.06, 0.022, glm::dvec3(4.5, 4.7, 5.0)),
+        softbox({0.0, 0.25, 1.0}, {1, 0, 0}, 1.90, 0.070, 0.042, glm::dvec3(5.3, 5.15, 4.95)),
+        softbox({0.0, 0.23, -1.0}, {1, 0, 0}, 1.90, 0.050, 0.035, glm::dvec3(4.1, 4.3, 4.6)),
         // The rim light, high behind the tail.
-        softbox({-1.0, 0.55, -0.15}, {0, 0, 1}, 0.30, 0.07, 0.03, glm::dvec3(7.6, 7.7, 8.0)),
+        softbox({-1.0, 0.55, -0.15}, {0, 0, 1}, 0.26, 0.08, 0.05, glm::dvec3(7.2, 7.3, 7.6)),
     };
     // The room: dark walls a little lighter toward the ceiling, a light floor that falls off with
     // distance, without a kink at the horizon.
-    const double wall = 0.085 + 0.03 * std::max(direction.y, 0.0);
-    const double floor = 0.10 + 0.26 * smooth_step(0.0, 0.9, -direction.y);
+    const double wall = 0.075 + 0.03 * std::max(direction.y, 0.0);
+    const double floor = 0.10 + 0.22 * smooth_step(0.0, 0.9, -direction.y);
     const double floor_share = smooth_step(0.03, -0.10, direction.y);
     glm::dvec3 radiance(glm::mix(wall, floor, floor_share));
     for (const auto& box : boxes) radiance += light_of(box, direction);

@@ -2,8 +2,9 @@
 // map to a direction), linear Rec.709.
 #pragma once
 
-#include <glm/vec3.hpp>
 #include <string>
+
+#include <glm/vec3.hpp>
 
 #include "core/image.h"
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+
 #include <nlohmann/json.hpp>
 
 namespace livery::assets {

@@ -1,8 +1,9 @@
 // Closed outlines in a plane and their signed distance: what windows, lamps and doors are cut by.
 #pragma once
 
-#include <glm/vec2.hpp>
 #include <vector>
+
+#include <glm/vec2.hpp>
 
 namespace livery::assets {
 

@@ -1,8 +1,11 @@
 #include "part_mesh.h"
 
+#include <array>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <limits>
+#include <map>
+
+#include <glm/geometric.hpp>
 
 namespace livery::assets {
 
@@ -62,16 +65,24 @@ void append_mirrored(PartMesh& target, const PartMesh& source) {
     }
 }
 
-void compute_normals(PartMesh& mesh) {
-    for (auto& n : mesh.normals) n = glm::dvec3(0.0);
+void compute_smooth_normals(PartMesh& mesh) {
+    constexpr double kPlacesPerMm = 1e6;
+    std::map<std::array<long long, 3>, glm::dvec3> at_place;
+    const auto place = [&](std::uint32_t vertex) {
+        const auto& p = mesh.positions_mm[vertex];
+        return std::array<long long, 3>{std::llround(p.x * kPlacesPerMm),
+                                        std::llround(p.y * kPlacesPerMm),
+                                        std::llround(p.z * kPlacesPerMm)};
+    };
     for (const auto& t : mesh.triangles) {
         const auto& a = mesh.positions_mm[t.x];
         const auto n = glm::cross(mesh.positions_mm[t.y] - a, mesh.positions_mm[t.z] - a);
-        for (int k = 0; k < 3; ++k) mesh.normals[t[k]] += n;
+        for (int k = 0; k < 3; ++k) at_place[place(t[k])] += n;
     }
-    for (auto& n : mesh.normals) {
-        const double length = glm::length(n);
-        n = length > 0.0 ? n / length : glm::dvec3(0, 1, 0);
+    for (std::uint32_t k = 0; k < mesh.normals.size(); ++k) {
+        const auto found = at_place.find(place(k));
+        const double length = found == at_place.end() ? 0.0 : glm::length(found->second);
+        mesh.normals[k] = length > 0.0 ? found->second / length : glm::dvec3(0, 1, 0);
     }
 }
 

@@ -2,11 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <vector>
+
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
-#include <string>
-#include <vector>
 
 namespace livery::assets {
 
@@ -39,9 +40,9 @@ void append(PartMesh& target, const PartMesh& source, const glm::dvec3& offset_m
 /// Appends the mirror image in the plane z = 0, with the winding reversed.
 void append_mirrored(PartMesh& target, const PartMesh& source);
 
-/// Area-weighted normals from the triangles, vertices at equal places with normals within
-/// `crease_rad` of one another staying as separate as they are.
-void compute_normals(PartMesh& mesh);
+/// Area-weighted normals from the triangles; vertices at one place (within a nanometre: the seams
+/// of charts) share theirs.
+void compute_smooth_normals(PartMesh& mesh);
 
 /// Tangents along growing u, from the triangles' uv gradients, orthogonal to the normals; any
 /// orthogonal direction where the chart is degenerate.

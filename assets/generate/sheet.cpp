@@ -1,12 +1,13 @@
 #include "sheet.h"
 
 #include <cmath>
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
 #include <limits>
 #include <map>
 #include <set>
 #include <utility>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 namespace livery::assets {
 
@@ -14,9 +15,7 @@ namespace {
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
-Edge undirected(std::uint32_t a, std::uint32_t b) {
-    return a < b ? Edge(a, b) : Edge(b, a);
-}
+Edge undirected(std::uint32_t a, std::uint32_t b) { return a < b ? Edge(a, b) : Edge(b, a); }
 
 LimitVertex between(const LimitVertex& a, const LimitVertex& b, double t) {
     return {glm::mix(a.position, b.position, t),
@@ -83,16 +82,19 @@ void snap(Sheet& sheet, std::vector<double>& value, const std::vector<bool>& mas
 }  // namespace
 
 Sheet half_sheet(const LimitMesh& mesh,
-                 const std::function<bool(int region, const glm::dvec3& centre)>& keep) {
+                 const std::function<bool(int region, const glm::dvec2& parameters)>& keep) {
     constexpr double kOnPlane_mm = 1e-6;
     Sheet sheet;
     std::map<int, std::uint32_t> place;
     for (const auto& quad : mesh.quads) {
-        glm::dvec3 centre(0.0);
+        double z = 0.0;
+        glm::dvec2 parameters(0.0);
         for (int k = 0; k < 4; ++k) {
-            centre += mesh.vertices[static_cast<std::size_t>(quad.corners[k])].position * 0.25;
+            const auto& vertex = mesh.vertices[static_cast<std::size_t>(quad.corners[k])];
+            z += vertex.position.z;
+            parameters += vertex.parameters * 0.25;
         }
-        if (centre.z < 0.0 || !keep(quad.region, centre)) continue;
+        if (z < 0.0 || !keep(quad.region, parameters)) continue;
         glm::uvec4 corner(0);
         for (int k = 0; k < 4; ++k) {
             const auto [entry, is_new] =

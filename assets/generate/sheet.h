@@ -3,9 +3,10 @@
 
 #include <cstdint>
 #include <functional>
+#include <vector>
+
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <vector>
 
 #include "part_mesh.h"
 #include "subdivision.h"
@@ -26,9 +27,9 @@ struct Sheet {
 inline constexpr int kNoPanel = -1;  ///< cut away
 
 /// The z >= 0 half of a symmetric limit mesh, all in panel 0; `keep` chooses quads by their region
-/// and corners' centre.
+/// and the mean of their corners' parameters.
 Sheet half_sheet(const LimitMesh& mesh,
-                 const std::function<bool(int region, const glm::dvec3& centre)>& keep);
+                 const std::function<bool(int region, const glm::dvec2& parameters)>& keep);
 
 /// The vertex, its place and what it carries -> signed value, negative inside.
 using CutFunction = std::function<double(const LimitVertex&)>;
@@ -51,7 +52,8 @@ struct PanelStyle {
 /// A border edge of a panel toward kNoPanel or the sheet's open end, for what joins there.
 struct OpenEdge {
     glm::dvec3 from{0.0}, to{0.0};  ///< the panel on the left, seen from outside
-    int panel = 0;
+    int part = 0;
+    int region = 0;
 };
 
 /// Chart coordinates (before scaling) of a vertex in a region.

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <glm/geometric.hpp>
 #include <numbers>
+
+#include <glm/geometric.hpp>
 
 namespace livery::assets {
 
@@ -90,7 +91,7 @@ PartMesh loft(const std::vector<std::vector<glm::dvec3>>& loops) {
             mesh.add_quad(a, b, b + n, a + n);
         }
     }
-    compute_normals(mesh);
+    compute_smooth_normals(mesh);
     return mesh;
 }
 

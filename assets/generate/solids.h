@@ -1,9 +1,10 @@
 // Turned and lofted solids: wheels, mirrors, the sphere.
 #pragma once
 
+#include <vector>
+
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <vector>
 
 #include "part_mesh.h"
 

@@ -1,12 +1,12 @@
 #include "subdivision.h"
 
+#include <memory>
+#include <stdexcept>
+
+#include <glm/geometric.hpp>
 #include <opensubdiv/far/primvarRefiner.h>
 #include <opensubdiv/far/topologyDescriptor.h>
 #include <opensubdiv/far/topologyRefinerFactory.h>
-
-#include <glm/geometric.hpp>
-#include <memory>
-#include <stdexcept>
 
 namespace livery::assets {
 

@@ -1,10 +1,11 @@
 // Catmull-Clark subdivision of a control cage to its limit surface.
 #pragma once
 
+#include <vector>
+
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
-#include <vector>
 
 namespace livery::assets {
 

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <numbers>
 #include <vector>
+
+#include <glm/geometric.hpp>
 
 #include "solids.h"
 
@@ -52,19 +53,13 @@ PartMesh make_tyre() {
                                        {10.4, 4.58},
                                        {11.2, 4.7},
                                        {12.0, 4.62},
-                                       {12.6, 4.4},
-                                       {13.05, 4.02},
-                                       {13.32, 3.5},
+                                       {12.7, 4.35},
+                                       {13.2, 3.85},
                                        {13.42, 2.9},
-                                       {13.42, 2.72},
-                                       {13.05, 2.66},
-                                       {13.05, 2.28},
-                                       {13.46, 2.22},
-                                       {13.5, 1.2},
-                                       {13.5, 0.72},
-                                       {13.08, 0.66},
-                                       {13.08, 0.28},
-                                       {13.5, 0.22}};
+                                       {13.46, 2.0},
+                                       {13.1, 1.95},
+                                       {13.1, 1.45},
+                                       {13.5, 1.4}};
     std::vector<glm::dvec2> profile;
     for (const auto& p : half) profile.emplace_back(p.x, -p.y);
     for (auto p = half.rbegin(); p != half.rend(); ++p) profile.push_back(*p);

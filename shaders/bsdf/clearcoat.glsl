@@ -19,8 +19,11 @@ FN REAL coat_albedo(BsdfParameters p, REAL mu) {
 }
 
 FN REAL coat_transmission(BsdfParameters p, REAL mu) {
-    REAL margin = R(0.0002) * grazing_reflectance(p.coat_f0);
-    return max(R(1.0) - coat_albedo(p, mu) - margin, R(0.0));
+    REAL loss;
+    REAL rest;
+    ggx_transmission_fit(mu, p.coat_alpha, loss, rest);
+    REAL f90 = grazing_reflectance(p.coat_f0);
+    return (R(1.0) - f90) + f90 * loss + (f90 - p.coat_f0) * rest;
 }
 
 FN REAL coat_average_transmission(BsdfParameters p) {
@@ -28,7 +31,7 @@ FN REAL coat_average_transmission(BsdfParameters p) {
     REAL grazing;
     ggx_average_albedo(p.coat_alpha, white, grazing);
     REAL f90 = grazing_reflectance(p.coat_f0);
-    return max(R(1.0) - p.coat_f0 * (white - grazing) - f90 * (grazing + R(0.0002)), R(0.001));
+    return R(1.0) - p.coat_f0 * (white - grazing) - f90 * grazing;
 }
 
 // 1 / n^2 of the coat.
@@ -63,7 +66,6 @@ FN VEC3 clearcoat_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
     VEC3 h = wi + wo;
     REAL hh = dot(h, h);
     if (hh < R(1e-8)) return VEC3(R(0.0));
-    VEC3 one = VEC3(R(1.0));
     REAL schlick = schlick_weight(hh);
     REAL coat_fresnel =
         p.coat_f0 * (R(1.0) - schlick) + grazing_reflectance(p.coat_f0) * schlick;
@@ -72,8 +74,8 @@ FN VEC3 clearcoat_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
     REAL eta = coat_inverse_index_squared(p);
     VEC3 passed = coat_absorption(p, coat_path(wi.z, eta) + coat_path(wo.z, eta)) *
                   (coat_transmission(p, wi.z) * coat_transmission(p, wo.z));
-    VEC3 diffuse = coated_diffuse(p, eta) * (one - ggx_interface_albedo(p, wi.z)) *
-                   (one - ggx_interface_albedo(p, wo.z)) * R(0.3183098861837907);
+    VEC3 diffuse = coated_diffuse(p, eta) * ggx_interface_transmission(p, wi.z) *
+                   ggx_interface_transmission(p, wo.z) * R(0.3183098861837907);
     return VEC3(coat) + passed * (ggx_specular(p, wi, wo, hh, schlick) + diffuse);
 }
 
@@ -89,7 +91,7 @@ FN BsdfEnvironment clearcoat_environment(BsdfParameters p, REAL mu) {
     VEC3 one = VEC3(R(1.0));
     VEC3 share =
         min(one - ggx_interface_average(p), VEC3(coat_average_transmission(p)));
-    e.diffuse = coated_diffuse(p, eta) * share * (one - ggx_interface_albedo(p, mu)) *
+    e.diffuse = coated_diffuse(p, eta) * share * ggx_interface_transmission(p, mu) *
                 coat_absorption(p, path + coat_path(R(0.6666666666666667), eta)) * passed;
     return e;
 }
@@ -116,5 +118,5 @@ FN REAL clearcoat_pdf(BsdfParameters p, VEC3 wi, VEC3 wo) {
     VEC3 chance = clearcoat_probabilities(p, wo.z);
     return chance.x * ggx_pdf_lobe(wi, wo, p.coat_alpha, p.coat_alpha) +
            chance.y * ggx_pdf_lobe(wi, wo, p.alpha_x, p.alpha_y) +
-           (R(1.0) - chance.x - chance.y) * wi.z * R(0.3183098861837907);
+           max(R(1.0) - chance.x - chance.y, R(0.0)) * wi.z * R(0.3183098861837907);
 }

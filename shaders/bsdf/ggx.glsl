@@ -11,13 +11,17 @@ FN REAL ggx_layer_alpha(BsdfParameters p) {
     return min(p.alpha_x, p.alpha_y);
 }
 
-// Upper bound of the interface's albedo.
-FN VEC3 ggx_interface_albedo(BsdfParameters p, REAL mu) {
-    REAL white;
-    REAL grazing;
-    ggx_albedo(mu, ggx_layer_alpha(p), white, grazing);
+// What the interface lets through to the layer, at most; 1 - E.
+FN VEC3 ggx_interface_transmission(BsdfParameters p, REAL mu) {
+    REAL loss;
+    REAL rest;
+    ggx_transmission_fit(mu, ggx_layer_alpha(p), loss, rest);
     REAL f90 = grazing_reflectance(max_component(p.f0));
-    return min(p.f0 * (white - grazing) + VEC3(f90 * (grazing + R(0.0002))), VEC3(R(1.0)));
+    return VEC3(R(1.0) - f90 + f90 * loss) + (VEC3(f90) - p.f0) * rest;
+}
+
+FN VEC3 ggx_interface_albedo(BsdfParameters p, REAL mu) {
+    return VEC3(R(1.0)) - ggx_interface_transmission(p, mu);
 }
 
 FN VEC3 ggx_interface_average(BsdfParameters p) {
@@ -25,7 +29,7 @@ FN VEC3 ggx_interface_average(BsdfParameters p) {
     REAL grazing;
     ggx_average_albedo(ggx_layer_alpha(p), white, grazing);
     REAL f90 = grazing_reflectance(max_component(p.f0));
-    return min(p.f0 * (white - grazing) + VEC3(f90 * (grazing + R(0.0002))), VEC3(R(0.999)));
+    return min(p.f0 * (white - grazing) + VEC3(f90 * grazing), VEC3(R(0.999)));
 }
 
 FN VEC3 ggx_specular(BsdfParameters p, VEC3 wi, VEC3 wo, REAL hh, REAL schlick) {
@@ -39,9 +43,8 @@ FN VEC3 ggx_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
     VEC3 h = wi + wo;
     REAL hh = dot(h, h);
     if (hh < R(1e-8)) return VEC3(R(0.0));
-    VEC3 one = VEC3(R(1.0));
-    VEC3 through = (one - ggx_interface_albedo(p, wi.z)) * (one - ggx_interface_albedo(p, wo.z)) /
-                   (one - ggx_interface_average(p));
+    VEC3 through = ggx_interface_transmission(p, wi.z) * ggx_interface_transmission(p, wo.z) /
+                   (VEC3(R(1.0)) - ggx_interface_average(p));
     return ggx_specular(p, wi, wo, hh, schlick_weight(hh)) +
            p.diffuse * through * R(0.3183098861837907);
 }
@@ -80,7 +83,7 @@ FN VEC3 ggx_environment_albedo(BsdfParameters p, REAL mu) {
 
 FN BsdfEnvironment ggx_environment(BsdfParameters p, REAL mu) {
     BsdfEnvironment e;
-    e.diffuse = p.diffuse * (VEC3(R(1.0)) - ggx_interface_albedo(p, mu));
+    e.diffuse = p.diffuse * ggx_interface_transmission(p, mu);
     e.specular = ggx_environment_albedo(p, mu);
     e.coat = VEC3(R(0.0));
     return e;

@@ -68,11 +68,12 @@ FN REAL max_component(VEC3 v) {
     return max(v.x, max(v.y, v.z));
 }
 
-// Directional albedo of the lobe, split over Fresnel: E = f0 (white - grazing) + f90 grazing, with
-// `white` the albedo at f0 = 1. Rational fits of our own quadrature, alpha in [1e-4, 1]: white is
-// at most 0.0066 too large and grazing at most 0.017, neither more than 1e-4 too small, so that
-// what is left for the layers below is never too much.
-FN void ggx_albedo(REAL mu, REAL alpha, OUT(REAL) white, OUT(REAL) grazing) {
+// Directional albedo of the lobe, E = (1 - loss) (f0 (1 - edge) + f90 edge): `loss` is what
+// masking takes at f0 = 1, edge = (1 - cosine)^5 Schlick's weight at an effective cosine. Rational
+// fits of our own quadrature, alpha in [1e-4, 1]: 1 - loss is at most 0.0066 too large and
+// (1 - loss) edge at most 0.017, neither more than 1e-4 too small, so that what is left for the
+// layers below is never too much.
+FN void ggx_albedo_fit(REAL mu, REAL alpha, OUT(REAL) loss, OUT(REAL) cosine) {
     REAL a = alpha;
     REAL m = max(mu, R(1e-6));
     REAL t = m / (m + a);
@@ -82,17 +83,35 @@ FN void ggx_albedo(REAL mu, REAL alpha, OUT(REAL) white, OUT(REAL) grazing) {
     REAL wd0 = R(0.57679) - a * (R(0.80506) - a * (R(0.80967) - a * R(0.28165)));
     REAL wd1 = R(2.87614) - a * (R(0.62389) - a * R(0.21578));
     REAL wd2 = a * R(0.49333) - R(6.24262);
-    REAL loss = t * (wn0 + t * (wn1 + t * (wn2 + t * R(1.78348)))) /
+    REAL lost = t * (wn0 + t * (wn1 + t * (wn2 + t * R(1.78348)))) /
                 (wd0 + t * (wd1 + t * (wd2 + t * R(3.7214))));
     REAL cn0 = R(1.23986) + a * (R(7.23334) - a * R(3.24966));
     REAL cn1 = -R(1.41008) - a * R(12.0);
     REAL cd0 = R(0.31469) + a * (R(8.29508) + a * R(3.67251));
     REAL cd1 = -R(0.15546) - a * R(8.71006);
-    REAL cosine = m + a * (cn0 + t * (cn1 + t * R(0.16083))) / (cd0 + t * (cd1 + t * R(0.29286)));
-    REAL s = R(1.0) - clamp(cosine, R(0.0), R(1.0));
+    REAL c = m + a * (cn0 + t * (cn1 + t * R(0.16083))) / (cd0 + t * (cd1 + t * R(0.29286)));
+    loss = max(lost, R(0.0));
+    cosine = clamp(c, R(0.0), R(1.0));
+}
+
+// E = f0 (white - grazing) + f90 grazing.
+FN void ggx_albedo(REAL mu, REAL alpha, OUT(REAL) white, OUT(REAL) grazing) {
+    REAL loss;
+    REAL cosine;
+    ggx_albedo_fit(mu, alpha, loss, cosine);
+    REAL s = R(1.0) - cosine;
     REAL s2 = s * s;
-    white = R(1.0) - max(loss, R(0.0));
+    white = R(1.0) - loss;
     grazing = white * (s2 * s2 * s);
+}
+
+// 1 - E = (1 - f90) + loss_part + (f90 - f0) rest, without the cancellation near grazing:
+// loss_part = f90 loss, rest = (1 - loss) (1 - edge).
+FN void ggx_transmission_fit(REAL mu, REAL alpha, OUT(REAL) loss, OUT(REAL) rest) {
+    REAL c;
+    ggx_albedo_fit(mu, alpha, loss, c);
+    REAL not_edge = c * (R(5.0) - c * (R(10.0) - c * (R(10.0) - c * (R(5.0) - c))));
+    rest = (R(1.0) - loss) * not_edge;
 }
 
 // The same, averaged over the hemisphere with the cosine; never above the average of ggx_albedo, at

@@ -15,6 +15,7 @@ namespace livery {
 namespace {
 
 constexpr int kStartGrid = 33;
+constexpr float kSliver = 1e-6f;
 
 /// The tetrahedron of a grid cell that holds a point: its corner and the order of its axes.
 struct Tetrahedron {
@@ -154,7 +155,7 @@ std::vector<float> shaper_of(const ResponseCurve& response) {
     if (usable) {
         curve.front() = 0.0f;
         curve.back() = 255.0f;
-        for (std::size_t i = 1; i < curve.size(); ++i) usable = usable && curve[i] > curve[i - 1];
+        for (std::size_t i = 1; i < curve.size(); ++i) usable = usable && curve[i] >= curve[i - 1];
     }
     if (usable) return curve;
     curve.resize(1024);
@@ -186,7 +187,14 @@ NonAdditive make_non_additive(const DriveTable& drive_table,
             const float drive = 255.0f * static_cast<float>(i) / static_cast<float>(grid - 1);
             table.linear_of_node[k].push_back(inverse_look_up(table.rho[k], drive));
         }
-        table.linear_of_node[k].back() = 1.0f;
+        // Drives that give no more light than the one before (a dead zone) keep a sliver, so that
+        // every cell can be divided by its width.
+        std::vector<float>& nodes = table.linear_of_node[k];
+        nodes.back() = 1.0f;
+        for (std::size_t i = 1; i + 1 < grid; ++i)
+            nodes[i] = std::max(nodes[i], nodes[i - 1] + kSliver);
+        for (std::size_t i = grid - 1; i > 0; --i)
+            nodes[i - 1] = std::min(nodes[i - 1], nodes[i] - kSliver);
     }
     table.start_grid = kStartGrid;
     constexpr std::size_t kSide = kStartGrid;

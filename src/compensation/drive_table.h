@@ -11,8 +11,8 @@
 
 namespace livery {
 
-/// rho for shaping the table's axes: the measured response where it runs from 0 to 255 without a
-/// flat stretch, else 255 N^(1/2.2). Any rising curve serves; a close one keeps the table straight.
+/// rho for shaping the table's axes: the measured response where it rises from 0 to 255, else
+/// 255 N^(1/2.2). Any rising curve serves; a close one keeps the table straight.
 std::vector<float> shaper_of(const ResponseCurve& response);
 
 /// Throws std::invalid_argument on a table of the wrong size, not finite, or of 1 or over 65

@@ -166,7 +166,7 @@ GamutMap::GamutMap(const CompensationTable& table) : table_(table) {
     const WindowMean mean(table.width, table.height, table.pixels);
     parallel_for(12, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t plane = begin; plane < end; ++plane) {
-            mean.apply(&boundary_[plane * count]);
+            mean.apply(boundary_.data() + plane * count);
         }
     });
     std::vector<double> floors(count, 0.0);

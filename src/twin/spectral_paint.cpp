@@ -31,6 +31,15 @@ PaintBands::PaintBands(const SpectralPaint& paint) : paint_(paint) {
     }
 }
 
+PaintBands::Straight PaintBands::kept_by_interface(double mu) const {
+    // The interface's albedo is a straight line in f0: its ends come from one call of the model.
+    f64::BsdfParameters p = bands_;
+    p.f0 = glm::dvec3(0.0, largest_f0_, largest_f0_);
+    const glm::dvec3 albedo = f64::ggx_interface_albedo(p, mu);
+    const double slope = largest_f0_ > 0.0 ? (albedo.y - albedo.x) / largest_f0_ : 0.0;
+    return {1.0 - albedo.x, -slope};
+}
+
 void PaintBands::evaluate(const glm::dvec3& wi, const glm::dvec3& wo, Spectrum& result) const {
     result.fill(0.0);
     if (wi.z <= 0.0 || wo.z <= 0.0) return;
@@ -48,19 +57,14 @@ void PaintBands::evaluate(const glm::dvec3& wi, const glm::dvec3& wo, Spectrum& 
         f64::coat_transmission(bands_, wi.z) * f64::coat_transmission(bands_, wo.z);
     const double lobe = f64::ggx_distribution_visibility(wi, wo, hh, paint_.alpha, paint_.alpha);
     const double f90 = f64::grazing_reflectance(largest_f0_);
-    double white_i = 0.0, grazing_i = 0.0, white_o = 0.0, grazing_o = 0.0;
-    f64::ggx_albedo(wi.z, paint_.alpha, white_i, grazing_i);
-    f64::ggx_albedo(wo.z, paint_.alpha, white_o, grazing_o);
+    const Straight through_i = kept_by_interface(wi.z), through_o = kept_by_interface(wo.z);
 
     for (std::size_t k = 0; k < kSpectrumCount; ++k) {
         const double f0 = paint_.f0[k];
         const double specular = (f0 * (1.0 - schlick) + f90 * schlick) * lobe;
-        const double kept_i =
-            1.0 - std::min(f0 * (white_i - grazing_i) + f90 * (grazing_i + 0.001), 1.0);
-        const double kept_o =
-            1.0 - std::min(f0 * (white_o - grazing_o) + f90 * (grazing_o + 0.001), 1.0);
-        result[k] =
-            coat + passed * (specular + diffuse_[k] * kept_i * kept_o * std::numbers::inv_pi);
+        const double kept =
+            (through_i.at_zero + f0 * through_i.slope) * (through_o.at_zero + f0 * through_o.slope);
+        result[k] = coat + passed * (specular + diffuse_[k] * kept * std::numbers::inv_pi);
     }
 }
 

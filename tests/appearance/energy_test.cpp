@@ -36,7 +36,8 @@ TEST(DirectionalAlbedo, NeverExceedsOne) {
                     << "ggx, alpha " << alpha << " f0 " << f0 << " mu " << mu;
                 for (const double coat : {0.001, 0.1, 0.6}) {
                     p.coat_alpha = coat;
-                    EXPECT_LE(directional_albedo(ReflectanceModel::clearcoat, p, wo, 48).x, 1.0 + 1e-4)
+                    EXPECT_LE(directional_albedo(ReflectanceModel::clearcoat, p, wo, 48).x,
+                              1.0 + 1e-4)
                         << "coat " << coat << " on alpha " << alpha << " f0 " << f0 << " mu " << mu;
                 }
             }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -186,6 +187,32 @@ TEST_F(DriveTableTest, WithoutAResponseTheTableStillWorks) {
     for (ResponseCurve& curve : bare.response) curve.drive_from_n.clear();
     const Image8 out = compensate(bake(bare, 0.5), ImageF(24, 16, 3, 50.0f));
     for (const std::uint8_t level : out.values) EXPECT_EQ(level, 255);
+}
+
+// No light under drive 40 on one channel, and a step in another: what projectors do near black.
+TEST_F(DriveTableTest, DeadZonesAndStepsStayFinite) {
+    ColourCalibration odd = calibration_;
+    std::vector<float>& red = odd.response[0].drive_from_n;
+    for (std::size_t i = 1; i < red.size(); ++i) red[i] = std::max(red[i], 40.0f);
+    std::vector<float>& green = odd.response[1].drive_from_n;
+    for (std::size_t i = 100; i < 400; ++i) green[i] = green[100];
+    for (std::size_t i = 0; i < odd.table.n_from_drive.size(); ++i) {
+        if (i % 9 == 1) odd.table.n_from_drive[i] = odd.table.n_from_drive[i - 1];
+    }
+    const NonAdditive table = make_non_additive(odd.table, odd.response);
+    Random random(79);
+    for (int i = 0; i < 5000; ++i) {
+        const glm::vec3 n(1.4 * random.uniform() - 0.2,
+                          1.4 * random.uniform() - 0.2,
+                          1.4 * random.uniform() - 0.2);
+        glm::vec3 residual;
+        const glm::vec3 drive = drive_of_n(table, n, &residual);
+        for (int k = 0; k < 3; ++k) {
+            ASSERT_GE(drive[k], 0.0f);
+            ASSERT_LE(drive[k], 255.0f);
+            ASSERT_TRUE(std::isfinite(residual[k]));
+        }
+    }
 }
 
 TEST_F(DriveTableTest, NamesABadTable) {

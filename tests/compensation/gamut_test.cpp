@@ -120,6 +120,33 @@ TEST(Gamut, HueStaysWhereClippingMovesIt) {
     EXPECT_LT(preserved, 0.5 * median_shift(GamutMapping::strict));
 }
 
+// Where the knee lies and what becomes of a colour on the boundary, in closed form: untouched at
+// 0.84 of the boundary, and at it 0.85 + 0.15 / 2^(1/3) = 0.96906. The boundary itself is found
+// from what compensate() counts, to a thousandth.
+TEST(Gamut, KneeIsAt85PercentOfTheBoundary) {
+    const World world = even_world(1000, 1, 0.0);
+    const CompensationTable table = bake(calibrate(world), kWhite);
+    for (const double hue : {0.3, 1.7, 3.0, 4.4}) {
+        SCOPED_TRACE(hue);
+        const auto chroma_at = [](std::size_t i) { return 0.0005 * static_cast<double>(i); };
+        const ImageF ramp = synthetic::picture(
+            world, [&](std::size_t i) { return working_of(0.6, chroma_at(i), hue); });
+        CompensationStats stats;
+        compensate(table, ramp, &stats);
+        const double boundary = chroma_at(
+            static_cast<std::size_t>(std::lround((1.0 - stats.out_of_gamut_fraction) * 1000.0)));
+        ASSERT_GT(boundary, 0.08);
+        ASSERT_LT(boundary, 0.45);
+        const ImageF wanted = synthetic::picture(world, [&](std::size_t i) {
+            return working_of(0.6, boundary * (i % 2 == 0 ? 0.84 : 1.0), hue);
+        });
+        const ImageF mapped = map_gamut(table, wanted, GamutMapping::preserve);
+        EXPECT_NEAR(chroma(oklab_of(mapped, 0)) / boundary, 0.84, 1e-6);
+        // The boundary was found to a step of 0.0005 in 0.08 or more.
+        EXPECT_NEAR(chroma(oklab_of(mapped, 1)) / boundary, 0.96906, 0.003);
+    }
+}
+
 // More chroma asked for is never less chroma shown, and lightness gives way last.
 TEST(Gamut, ChromaRisesAndLightnessStays) {
     const World world = even_world(64, 36, 0.002);

@@ -281,6 +281,38 @@ TEST(OffsetOrigin, NeverHitsItsOwnTriangleAgain) {
     EXPECT_GT(tried, 100000);
 }
 
+TEST(OffsetOrigin, LeavesALeaningPlaneThroughTheOrigin) {
+    // Coordinates near zero are exact to far less than the plane's own error there, which comes
+    // from its corners half a metre away.
+    Random random(26);
+    int tried = 0;
+    for (int m = 0; m < 1000; ++m) {
+        glm::dvec3 corner[3], middle(0.0);
+        for (auto& c : corner) {
+            c = 500.0 * glm::dvec3(random_direction(random));
+            middle += c / 3.0;
+        }
+        const Mesh mesh = one_triangle(glm::vec3(corner[0] - middle),
+                                       glm::vec3(corner[1] - middle),
+                                       glm::vec3(corner[2] - middle));
+        const Tracer tracer(mesh);
+        for (int k = 0; k < 20; ++k) {
+            Hit hit;
+            hit.triangle = 0;
+            hit.barycentric = 1.0f / 3.0f + 1e-4f * glm::vec2(random.normal(), random.normal());
+            const SurfacePoint point = surface_point(mesh, hit);
+            const glm::dvec3 n(point.geometric_normal);
+            const double up = std::pow(10.0, -6.0 * random.uniform());
+            const glm::vec3 direction(std::cos(up) * glm::dvec3(point.tangent) + std::sin(up) * n);
+            if (glm::dot(glm::dvec3(direction), n) <= 0.0) continue;
+            ++tried;
+            const glm::vec3 origin = offset_origin(point.position_mm, point.geometric_normal);
+            ASSERT_FALSE(tracer.occluded({origin, 0.0f, direction, 1e30f})) << m << " " << k;
+        }
+    }
+    EXPECT_GT(tried, 15000);
+}
+
 TEST(OffsetOrigin, StaysUnderAHundredthOfAMillimetreOnAMockUp) {
     const glm::vec3 p(400.0f, -300.0f, 900.0f), n(0.6f, 0.0f, 0.8f);
     const glm::vec3 moved = offset_origin(p, n) - p;
