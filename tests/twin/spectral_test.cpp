@@ -225,6 +225,30 @@ TEST(Spectral, ARoughDiffuserIsFlatterThanLambert) {
     EXPECT_NEAR(xyz.at(4, 4, 1) / (0.5 * std::pow(cosine, 3.0)), a + b * slant, 1e-3);
 }
 
+TEST(Spectral, RoughDiffuseFactorsFollowOrenAndNayarAtSlantedDirections) {
+    SurfaceSet surfaces;
+    surfaces.reflectances = {flat(0.5), flat(1.0)};
+    surfaces.parts = {{}};
+    surfaces.sheen = 1;
+    surfaces.diffuse_sigma_rad = 0.5;
+    const auto at = [](double slant, double azimuth) {
+        return glm::dvec3(std::sin(slant) * std::cos(azimuth),
+                          std::sin(slant) * std::sin(azimuth),
+                          std::cos(slant));
+    };
+    const auto factor = [&](const glm::dvec3& light, const glm::dvec3& viewer) {
+        return surface_factors(surfaces, 0, {}, {0, 0, 1}, light, viewer).list[0].factor;
+    };
+    const double a = 1.0 - 0.5 * 0.25 / 0.58, b = 0.45 * 0.25 / 0.34;
+    // alpha is the larger slant, beta the smaller.
+    EXPECT_NEAR(factor(at(1.1, 0.3), at(0.7, 0.3)), a + b * std::sin(1.1) * std::tan(0.7), 1e-12);
+    EXPECT_NEAR(factor(at(0.7, 0.3), at(1.1, 1.0)),
+                a + b * std::cos(0.7) * std::sin(1.1) * std::tan(0.7),
+                1e-12);
+    EXPECT_NEAR(factor(at(0.7, 0.0), at(1.1, 2.5)), a, 1e-12);  // seen against the light
+    EXPECT_EQ(factor(at(0.7, 0.0), at(1.1, 2.5)), factor(at(1.1, 2.5), at(0.7, 0.0)));
+}
+
 TEST(Spectral, ASecondReflectanceIsMixedInByAPatternOfItsSize) {
     BenchDescription bench = wall_bench();
     bench.mockup.surfaces["*"] = {flat(0.6), flat(0.2), 0.5, 20.0};
