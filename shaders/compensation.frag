@@ -105,7 +105,7 @@ vec3 drive_of(vec3 n) {
     }
     vec3 error = n_at_linear(grid, linear, jacobian) - n;
     for (int step = 0; step < NEWTON_STEPS; ++step) {
-        if (abs(determinant(jacobian)) < 1e-18) break;
+        if (dot(error, error) < SOLVED_N * SOLVED_N || abs(determinant(jacobian)) < 1e-18) break;
         vec3 tried = clamp(linear - inverse(jacobian) * error, vec3(0.0), vec3(1.0));
         vec3 error_there = n_at_linear(grid, tried, jacobian_there) - n;
         if (dot(error_there, error_there) >= dot(error, error)) break;

@@ -258,7 +258,10 @@ glm::vec3 drive_of_n(const NonAdditive& table, const glm::vec3& n, glm::vec3* re
     glm::mat3 jacobian;
     glm::vec3 error = n_at_linear(table, linear, &jacobian) - n;
     for (int step = 0; step < kNewtonSteps; ++step) {
-        if (std::abs(glm::determinant(jacobian)) < 1e-18f) break;
+        if (glm::dot(error, error) < kSolvedN * kSolvedN ||
+            std::abs(glm::determinant(jacobian)) < 1e-18f) {
+            break;
+        }
         const glm::vec3 tried =
             glm::clamp(linear - glm::inverse(jacobian) * error, glm::vec3(0.0f), glm::vec3(1.0f));
         glm::mat3 jacobian_there;

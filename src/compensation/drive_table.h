@@ -39,6 +39,9 @@ float look_up(const std::vector<float>& curve, float at);
 /// From the start grid: each solves the tetrahedron it is in exactly.
 inline constexpr int kNewtonSteps = 3;
 
+/// Near enough: a hundredth of a level where rho is steepest.
+inline constexpr float kSolvedN = 1e-6f;
+
 /// How far from reachable still counts as reachable, in N: a fifth of an 8-bit level at white.
 inline constexpr float kReachableN = 2e-3f;
 

@@ -15,7 +15,8 @@ namespace {
 ShaderSource fragment_source(bool non_additive) {
     std::vector<std::string> defines;
     if (non_additive) {
-        defines = {"NON_ADDITIVE", "NEWTON_STEPS " + std::to_string(kNewtonSteps)};
+        defines = {"NON_ADDITIVE", "NEWTON_STEPS " + std::to_string(kNewtonSteps), "SOLVED_N 1e-6"};
+        static_assert(kSolvedN == 1e-6f);
     }
     return load_shader("compensation.frag", defines);
 }
