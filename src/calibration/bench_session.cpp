@@ -10,7 +10,7 @@
 namespace livery {
 namespace {
 
-constexpr double kTargetPeak = 0.80, kHighestPeak = 0.85, kLowestPeak = 0.70;
+constexpr double kTargetPeak = 0.80, kHighestPeak = 0.85, kLowestPeak = 0.60;
 constexpr int kMostLatency = 6;
 constexpr double kProjectorFrame_s = 1.0 / 60.0;
 
@@ -44,7 +44,7 @@ double noise_between(const std::vector<float>& a, const std::vector<float>& b) {
 
 /// Whole projector frames where the exposure holds a few: a wheel's colours then weigh equally.
 double whole_frames(double exposure_s) {
-    const double frames = std::floor(exposure_s / kProjectorFrame_s + 1e-6);
+    const double frames = std::floor(1.05 * exposure_s / kProjectorFrame_s);  // 84% at most
     return frames >= 3.0 ? frames * kProjectorFrame_s : exposure_s;
 }
 
@@ -74,108 +74,95 @@ Photograph BenchSession::photograph(const std::string& name) {
     return photo;
 }
 
-double BenchSession::white_peak(const Photograph& white) const {
+double BenchSession::white_peak() const {
     // Channel by channel over the lit pixels; a thousandth may glint.
     double peak = 0.0;
-    const double full = white.saturates_at - white.black_level;
+    const double full = white_.saturates_at - white_.black_level;
     for (std::size_t c = 0; c < 3; ++c) {
         std::vector<float> values;
         for (const std::uint32_t i : lit_) {
-            const float value = white.image.values[3 * static_cast<std::size_t>(i) + c];
+            const float value = white_.image.values[3 * static_cast<std::size_t>(i) + c];
             if (std::isfinite(value)) values.push_back(value);
         }
         peak = std::max(
             peak,
-            (static_cast<double>(quantile(std::move(values), 0.999)) - white.black_level) / full);
+            (static_cast<double>(quantile(std::move(values), 0.999)) - white_.black_level) / full);
     }
     return peak;
 }
 
-void BenchSession::meet(int width, int height) {
-    // Black until two photographs agree
+/// Lit pixels: a tenth of the brightest ones and more.
+void BenchSession::find_lit() {
+    const float gain = static_cast<float>(white_.exposure_s / black_.exposure_s);
+    std::vector<float> light(white_.image.pixel_count());
+    for (std::size_t i = 0; i < light.size(); ++i) {
+        float sum = 0.0f;
+        for (std::size_t c = 0; c < 3; ++c)
+            sum += white_.image.values[3 * i + c] - static_cast<float>(white_.black_level) -
+                   gain * (black_.image.values[3 * i + c] - static_cast<float>(black_.black_level));
+        light[i] = std::isfinite(sum) ? sum : 0.0f;
+    }
+    const float limit = 0.1f * quantile(light, 0.9999);
+    std::vector<std::uint32_t> lit;
+    for (std::size_t i = 0; i < light.size(); ++i)
+        if (light[i] > limit) lit.push_back(static_cast<std::uint32_t>(i));
+    const std::size_t step = lit.size() / 40000 + 1;
+    lit_.clear();
+    for (std::size_t i = 0; i < lit.size(); i += step) lit_.push_back(lit[i]);
+}
+
+/// Black long enough for any latency, then white until it is seen; false when it is not.
+bool BenchSession::see_white(int width, int height) {
     ports_.show(uniform(width, height, 0));
-    exposure_s_ = 0.0;
+    for (int i = 0; i <= kMostLatency; ++i) photograph("black");
     black_ = photograph("black");
-    exposure_s_ = black_.exposure_s;
+    const std::vector<float> black = thin(black_);
+    noise_ = std::max(noise_between(black, thin(photograph("black"))), 1e-6);
+    ports_.show(uniform(width, height, 255));
+    for (latency_ = 0; latency_ <= kMostLatency; ++latency_) {
+        white_ = photograph("white");
+        const std::vector<float> white = thin(white_);
+        std::size_t brighter = 0;
+        for (std::size_t i = 0; i < white.size(); ++i)
+            brighter += static_cast<double>(white[i] - black[i]) > 10.0 * noise_;
+        if (static_cast<double>(brighter) > 5e-4 * static_cast<double>(white.size())) return true;
+    }
+    return false;
+}
+
+void BenchSession::meet(int width, int height) {
+    exposure_s_ = 0.0;  // the camera's own
+    exposure_s_ = photograph("black").exposure_s;
     if (!(exposure_s_ > 0.0))
         throw FileError("camera", "exposure_s", std::to_string(exposure_s_), "a positive time");
-    for (int i = 0; i <= kMostLatency; ++i) black_ = photograph("black");
-    Photograph again = photograph("black");
-    const double noise = std::max(noise_between(thin(black_), thin(again)), 1e-6);
+    for (int longer = 0; !see_white(width, height); ++longer, exposure_s_ *= 8.0)
+        if (longer == 5)
+            throw Refused(
+                "the camera sees no light of the projector",
+                "switch the projector on, open the lens, aim the camera at the mock-up, and check "
+                "that pictures go to the projector's screen");
 
-    // White: how many photographs until it is seen
-    const Image8 white_picture = uniform(width, height, 255);
-    const std::vector<float> black_values = thin(black_);
-    Photograph white;
-    const auto brighter = [&](const std::vector<float>& values) {
-        std::size_t count = 0;
-        for (std::size_t i = 0; i < values.size(); ++i)
-            count += static_cast<double>(values[i] - black_values[i]) > 10.0 * noise;
-        return static_cast<double>(count) > 5e-4 * static_cast<double>(values.size());
-    };
-    ports_.show(white_picture);
-    latency_ = -1;
-    for (int i = 0; i <= kMostLatency && latency_ < 0; ++i) {
-        white = photograph("white");
-        if (brighter(thin(white))) latency_ = i;
-    }
-    for (int longer = 0; latency_ < 0 && longer < 3; ++longer) {
-        exposure_s_ *= 8.0;
-        white = photograph("white");
-        // The same exposure's black would be brighter too: scale it.
-        auto values = thin(white);
-        for (float& v : values) v /= static_cast<float>(exposure_s_ / black_.exposure_s);
-        if (brighter(values)) latency_ = kMostLatency;
-    }
-    if (latency_ < 0)
-        throw Refused(
-            "the camera sees no light of the projector",
-            "switch the projector on, open the lens, aim the camera at the mock-up, and check that "
-            "pictures go to the projector's screen");
-
-    // Lit pixels: a tenth of the brightest ones
-    const auto find_lit = [&] {
-        const float gain = static_cast<float>(white.exposure_s / black_.exposure_s);
-        std::vector<float> light(white.image.pixel_count());
-        for (std::size_t i = 0; i < light.size(); ++i) {
-            float sum = 0.0f;
-            for (std::size_t c = 0; c < 3; ++c)
-                sum += white.image.values[3 * i + c] - static_cast<float>(white.black_level) -
-                       gain * (black_.image.values[3 * i + c] -
-                               static_cast<float>(black_.black_level));
-            light[i] = std::isfinite(sum) ? sum : 0.0f;
-        }
-        const float limit =
-            std::max(0.1f * quantile(light, 0.9999), 3.0f * static_cast<float>(noise));
-        std::vector<std::uint32_t> lit;
-        for (std::size_t i = 0; i < light.size(); ++i)
-            if (light[i] > limit) lit.push_back(static_cast<std::uint32_t>(i));
-        const std::size_t step = lit.size() / 40000 + 1;
-        lit_.clear();
-        for (std::size_t i = 0; i < lit.size(); i += step) lit_.push_back(lit[i]);
-    };
+    // Exposure: by photographs of white, until its peak fits
     find_lit();
-
-    // Exposure
-    const bool knows_full_scale = std::isfinite(white.saturates_at);
-    double peak = white_peak(white);
-    for (int round = 0; knows_full_scale && round < 12; ++round) {
-        const bool fits = peak <= kHighestPeak && peak >= kLowestPeak;
-        if (fits && std::abs(whole_frames(exposure_s_) - exposure_s_) < 1e-9) break;
-        if (!fits)
+    const bool knows_full_scale = std::isfinite(white_.saturates_at);
+    double peak = knows_full_scale ? white_peak() : kTargetPeak;
+    for (int round = 0; knows_full_scale && round < 16; ++round) {
+        const double before = exposure_s_;
+        if (peak > kHighestPeak || peak < kLowestPeak)
             exposure_s_ *=
                 peak >= 0.97 ? 0.25 : std::clamp(kTargetPeak / std::max(peak, 1e-3), 0.1, 16.0);
         exposure_s_ = whole_frames(exposure_s_);
-        white = photograph("white");
+        if (exposure_s_ == before) break;
+        white_ = photograph("white");
         find_lit();
-        peak = white_peak(white);
+        peak = white_peak();
     }
-    if (knows_full_scale && (peak > kHighestPeak || peak < 0.2))
+    if (peak > kHighestPeak || peak < 0.2)
         throw Refused(
             "no exposure brings white on the mock-up near 80% of full scale; the last, " +
                 std::to_string(exposure_s_) + " s, gave " + percent(peak),
             "open or close the lens, change ISO, or move the camera so that nothing shines at it");
-    last_ = white.image;
+    last_ = white_.image;
 }
 
 bool BenchSession::differs(const Photograph& a, const Photograph& b) const {
@@ -213,11 +200,8 @@ Photograph BenchSession::take(const Image8& drive, const std::string& name, bool
     return photo;
 }
 
-Photograph BenchSession::take_mean(const Image8& drive,
-                                   const std::string& name,
-                                   int shots,
-                                   bool compared_to_last) {
-    Photograph mean = take(drive, name, compared_to_last);
+Photograph BenchSession::take_mean(const Image8& drive, const std::string& name, int shots) {
+    Photograph mean = take(drive, name);
     if (shots <= 1) return mean;
     const auto limit =
         static_cast<float>(mean.black_level + 0.98 * (mean.saturates_at - mean.black_level));

@@ -28,10 +28,7 @@ class BenchSession {
 
     /// Mean of several photographs of one picture. A value at 98% of full scale in any of them
     /// stays there. Throws Refused when their brightness differs by more than 1%.
-    Photograph take_mean(const Image8& drive,
-                         const std::string& name,
-                         int shots,
-                         bool compared_to_last = true);
+    Photograph take_mean(const Image8& drive, const std::string& name, int shots);
 
     int latency() const { return latency_; }
     int photographs() const { return photographs_; }  ///< taken so far
@@ -39,7 +36,9 @@ class BenchSession {
 
   private:
     Photograph photograph(const std::string& name);
-    double white_peak(const Photograph& white) const;
+    bool see_white(int width, int height);
+    void find_lit();
+    double white_peak() const;
     bool differs(const Photograph& a, const Photograph& b) const;
 
     const BenchPorts& ports_;
@@ -48,7 +47,8 @@ class BenchSession {
     double exposure_s_ = 0.0;
     std::vector<std::uint32_t> lit_;  ///< some of the lit camera pixels
     ImageF last_;                     ///< what they were in the photograph before
-    Photograph black_;
+    Photograph black_, white_;
+    double noise_ = 0.0;  ///< of one photograph's thinned values
 };
 
 }  // namespace livery

@@ -316,6 +316,12 @@ ColourCalibration calibrate_colour(const std::vector<RoledPhotograph>& captures,
                 calibration.response[static_cast<std::size_t>(k)] = invert_levels(smooth, 0, 255);
                 response_error = std::max(
                     {response_error, std::abs(smooth.n[0]), std::abs(smooth.n[255] - 1.0)});
+                if (response_error > 0.2)
+                    throw Refused("black and white blocks of gray-levels lie " +
+                                      percent(response_error) +
+                                      " from the dark and the bright picture",
+                                  "check that the gray-levels photograph shows the gray-levels "
+                                  "picture at the same exposure, and that the lamp is warm");
                 continue;
             }
             // N runs from drive 0 to 255, of which S and T are only two: N' = (N - first) / range

@@ -46,11 +46,7 @@ void check_photograph(const RoledPhotograph& capture, const ImageF& first) {
                         "more than black_level " + std::to_string(photo.black_level));
 }
 
-/// Second differences along camera rows at some places, summed over a picture's shots.
-struct NoiseProbe {
-    std::vector<std::size_t> places;  ///< index of the middle value in the camera picture
-};
-
+/// Second differences along camera rows, and the level there.
 struct NoiseSamples {
     std::array<std::vector<float>, 3> level, difference;  ///< scaled to one photograph
 };
@@ -184,7 +180,7 @@ ColourSamples sample_colours(const std::vector<RoledPhotograph>& captures,
 
     // Where each projector pixel is read
     Taps taps;
-    NoiseProbe probe;
+    std::vector<std::size_t> probes;  // middle values of the second differences
     const auto has_place = [&](int x, int y) {
         return x >= 0 && x < samples.width && std::isfinite(map.camera_px.at(x, y)) &&
                !map.edge.at(x, y);
@@ -206,16 +202,16 @@ ColourSamples sample_colours(const std::vector<RoledPhotograph>& captures,
             samples.tap_share.push_back((fx * fx + (1 - fx) * (1 - fx)) *
                                         (fy * fy + (1 - fy) * (1 - fy)));
             if (has_place(x - 2, y) && has_place(x + 2, y) && left >= 1.0f)
-                probe.places.push_back(corner);
+                probes.push_back(corner);
         }
     const std::size_t count = samples.pixels.size();
     samples.saturated.assign(count, 0);
     samples.finite.assign(count, 1);
-    if (probe.places.size() > 20000) {
+    if (probes.size() > 20000) {
         std::vector<std::size_t> some;
-        const std::size_t step = probe.places.size() / 20000 + 1;
-        for (std::size_t i = 0; i < probe.places.size(); i += step) some.push_back(probe.places[i]);
-        probe.places = std::move(some);
+        const std::size_t step = probes.size() / 20000 + 1;
+        for (std::size_t i = 0; i < probes.size(); i += step) some.push_back(probes[i]);
+        probes = std::move(some);
     }
 
     // Means over the shots
@@ -244,14 +240,16 @@ ColourSamples sample_colours(const std::vector<RoledPhotograph>& captures,
         if (*high > 0.0) picture.shot_spread = (*high - *low) / *high;
         if (!probed) return picture;
         const float scale = std::sqrt(static_cast<float>(picture.shots));
-        for (const std::size_t place : probe.places)
+        for (const std::size_t place : probes)
             for (std::size_t c = 0; c < 3; ++c) {
                 float level = 0.0f, difference = 0.0f;
                 for (const RoledPhotograph* shot : shots) {
                     const Photograph& photo = shot->photograph;
                     const float* const p = photo.image.values.data() + place + c;
                     const auto gain = static_cast<float>(1.0 / photo.exposure_s);
-                    level += gain * (p[0] - static_cast<float>(photo.black_level));
+                    // The mean of the three is independent of their second difference.
+                    level += gain *
+                             ((p[-3] + p[0] + p[3]) / 3.0f - static_cast<float>(photo.black_level));
                     difference += gain * (p[-3] - 2.0f * p[0] + p[3]);
                 }
                 if (!std::isfinite(level + difference)) continue;

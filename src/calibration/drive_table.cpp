@@ -10,7 +10,7 @@ namespace livery {
 namespace {
 
 constexpr int kGrid = 17;
-constexpr int kKnots = 16;  // of each curve, besides 0 at 0
+constexpr int kKnots = 32;  // of each curve, besides 0 at 0
 // 0..2: one channel; 3..5: the smaller of two; 6: the smallest of three
 constexpr int kCurves = 7;
 constexpr int kUnknowns = kCurves * kKnots;

@@ -159,6 +159,7 @@ double condition_number(const glm::dmat3& matrix) {
     const glm::dmat3 b = a - glm::dmat3(mean);
     double p2 = 0.0;
     for (int k = 0; k < 3; ++k) p2 += glm::dot(b[k], b[k]);
+    if (!(mean > 0.0)) return std::numeric_limits<double>::infinity();
     if (p2 <= 1e-30 * mean * mean) return 1.0;
     const double p = std::sqrt(p2 / 6.0);
     const double half = std::clamp(0.5 * glm::determinant(b / p), -1.0, 1.0);
@@ -196,7 +197,7 @@ PooledMixing pool_mixing(const ColourSamples& samples) {
     }
     const double saturated =
         std::accumulate(samples.saturated.begin(), samples.saturated.end(), 0.0);
-    if (used > 0.0 ? false : saturated > 0.5 * static_cast<double>(count))
+    if (used == 0.0 && saturated > 0.5 * static_cast<double>(count))
         throw Refused(
             "the camera is saturated on the whole mock-up",
             "shorten the exposure until white on the mock-up stays under 85% of full scale");
@@ -218,6 +219,15 @@ PooledMixing pool_mixing(const ColourSamples& samples) {
                               kNames[static_cast<std::size_t>(k)] + " picture",
                           "check that red, green and blue photographs are not swapped and that all "
                           "three colours of the projector work");
+    int swapped = 0;
+    for (int c = 0; c < 3; ++c)
+        swapped += channel[0][c] > channel[static_cast<std::size_t>(c)][c] ||
+                   channel[1][c] > channel[static_cast<std::size_t>(c)][c] ||
+                   channel[2][c] > channel[static_cast<std::size_t>(c)][c];
+    if (swapped >= 2)
+        throw Refused(
+            "the camera's red, green and blue see other pictures best than red, green, blue",
+            "check the roles of the photographs: two of the three are swapped");
     pooled.vn = normalised(channel);
     const glm::dvec3 sum = channel[0] + channel[1] + channel[2];
     pooled.additivity_error = glm::length(pooled.bright - sum) / glm::length(pooled.bright);

@@ -190,6 +190,8 @@ ResponseCurve invert_levels(const LevelCurve& levels, int dark_drive, int bright
         const double fraction = up > low ? std::clamp((at - low) / (up - low), 0.0, 1.0) : 0.5;
         curve.drive_from_n[i] = static_cast<float>(above - 1 + fraction);
     }
+    curve.drive_from_n.front() = static_cast<float>(dark_drive);
+    curve.drive_from_n.back() = static_cast<float>(bright_drive);
     // A plateau's middle may lie over the next sample by rounding only.
     for (std::size_t i = 1; i < kResponseSize; ++i)
         curve.drive_from_n[i] = std::max(curve.drive_from_n[i], curve.drive_from_n[i - 1]);

@@ -5,26 +5,15 @@
 
 #include <gtest/gtest.h>
 
+#include "calibration/support/messages.h"
 #include "calibration/support/synthetic_bench.h"
 #include "core/error.h"
 
 namespace livery {
 namespace {
 
+using testing::message_of;
 using testing::SyntheticBench;
-
-template <typename Error, typename Call>
-std::string message_of(const Call& call) {
-    try {
-        call();
-    } catch (const Error& error) {
-        return error.what();
-    }
-    ADD_FAILURE() << "nothing of the expected kind was thrown";
-    return "";
-}
-
-#define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
 
 SyntheticBench small_bench() {
     SyntheticBench bench;

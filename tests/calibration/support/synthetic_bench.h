@@ -5,13 +5,14 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <glm/mat3x3.hpp>
-#include <glm/vec2.hpp>
-#include <glm/vec3.hpp>
 #include <limits>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 
 #include "calibration/gray_code.h"
 #include "calibration/patterns.h"
@@ -60,9 +61,15 @@ struct SyntheticBench {
             light[k] = leak + (1.0 - leak) * std::pow(drive[k] / 255.0, gamma[k]);
         return light;
     }
-    /// Linear camera colour per second of one drive at one place.
+    /// Linear camera colour per second of one drive at one place, before the camera's own scale.
     glm::dvec3 light(glm::dvec3 drive, glm::dvec2 projector_px) const {
-        const glm::dvec3 p = response(drive);
+        return light_of(response(drive), projector_px);
+    }
+    /// The same in the camera's units: (file value - black level) / exposure.
+    glm::dvec3 camera_colour(glm::dvec3 drive, glm::dvec2 projector_px) const {
+        return units_per_light() * light(drive, projector_px);
+    }
+    glm::dvec3 light_of(glm::dvec3 p, glm::dvec2 projector_px) const {
         const double white = white_segment * std::min({p.x, p.y, p.z});
         return (lamp * (mixing * (p + glm::dvec3(white))) + ambient) * scale(projector_px) *
                tint(projector_px);
@@ -81,6 +88,9 @@ struct SyntheticBench {
         photo.saturates_at = black_level + full_scale;
         photo.name = name;
         const double gain = units_per_light() * exposure_s;
+        std::array<glm::dvec3, 256> response_of;
+        for (std::size_t i = 0; i < 256; ++i)
+            response_of[i] = response(glm::dvec3(static_cast<double>(i)));
         for (int y = 0; y < camera_height; ++y)
             for (int x = 0; x < camera_width; ++x) {
                 glm::dvec3 sum(0.0);
@@ -93,7 +103,8 @@ struct SyntheticBench {
                             continue;
                         const std::uint8_t* const d =
                             drive.pixel(static_cast<int>(p->x), static_cast<int>(p->y));
-                        sum += light({d[0], d[1], d[2]}, *p);
+                        sum += light_of(
+                            {response_of[d[0]].x, response_of[d[1]].y, response_of[d[2]].z}, *p);
                     }
                 sum /= sub_samples * sub_samples;
                 for (int c = 0; c < 3; ++c) {
@@ -109,6 +120,9 @@ struct SyntheticBench {
             }
         return photo;
     }
+
+    /// What the robust method calls N: light of a channel over full light, black taken off.
+    double n_of(int channel, double drive) const { return std::pow(drive / 255.0, gamma[channel]); }
 
     std::vector<RoledPhotograph> photograph_all(const std::vector<Pattern>& patterns,
                                                 int shots = 1) {
@@ -134,7 +148,8 @@ struct SyntheticBench {
                 const glm::dvec2 d = glm::dvec2(x + 0.5, y + 0.5) - origin;
                 const glm::dvec2 c((d.x * ey.y - d.y * ey.x) / determinant,
                                    (ex.x * d.y - ex.y * d.x) / determinant);
-                if (c.x < 1 || c.y < 1 || c.x > camera_width - 1 || c.y > camera_height - 1)
+                if (x < 2 || y < 2 || x + 2 >= projector_width || y + 2 >= projector_height ||
+                    c.x < 1 || c.y < 1 || c.x > camera_width - 1 || c.y > camera_height - 1)
                     continue;
                 map.camera_px.at(x, y, 0) = static_cast<float>(c.x);
                 map.camera_px.at(x, y, 1) = static_cast<float>(c.y);
