@@ -83,10 +83,14 @@ FN BsdfEnvironment clearcoat_environment(BsdfParameters p, REAL mu) {
     REAL eta = coat_inverse_index_squared(p);
     REAL path = coat_path(mu, eta);
     REAL passed = coat_transmission(p, mu);
+    // A rough base takes light from higher than the mirror direction.
+    REAL a2 = p.alpha_x * p.alpha_y;
+    REAL mu_in = sqrt((mu * mu + a2) / (R(1.0) + a2));
     BsdfEnvironment e;
     e.coat = VEC3(coat_albedo(p, mu));
-    e.specular = ggx_environment_albedo(p, mu) * coat_absorption(p, R(2.0) * path) *
-                 (passed * passed);
+    e.specular = ggx_environment_albedo(p, mu) *
+                 coat_absorption(p, path + coat_path(mu_in, eta)) *
+                 (passed * coat_transmission(p, mu_in));
     // The diffuse layer is lit from everywhere: absorbed along the path of the mean cosine, 2/3.
     VEC3 one = VEC3(R(1.0));
     VEC3 share =

@@ -7,8 +7,11 @@
 // itself scatters once: at f0 = 1 it loses 1 - E_white, 2% at normal incidence for alpha 0.13, 13%
 // for 0.31, 69% for 1.
 
+// The isotropic slope parameter whose interface reflects at least as much as a stretched one in any
+// azimuth.
 FN REAL ggx_layer_alpha(BsdfParameters p) {
-    return min(p.alpha_x, p.alpha_y);
+    REAL low = min(p.alpha_x, p.alpha_y);
+    return low * sqrt(low / max(p.alpha_x, p.alpha_y));
 }
 
 // What the interface lets through to the layer, at most; 1 - E.

@@ -78,7 +78,7 @@ def lambert(p, wi, wo):
 def ggx_parts(p, wi, wo):
     f90 = grazing(max(p["f0"]))
     dgv, s = microfacets(wi, wo, p["ax"], p["ay"])
-    low = min(p["ax"], p["ay"])
+    low = min(p["ax"], p["ay"])**mpf("1.5") / sqrt(max(p["ax"], p["ay"]))
     specular = [(f + (f90 - f) * s) * dgv for f in p["f0"]]
     through = []
     for f in p["f0"]:
