@@ -186,7 +186,7 @@ TEST(CalibrateLive, SaysWhatIsWrongWithTheSetUp) {
     EXPECT_HAS(message_of<Refused>([&] { off.run(); }), "sees no light of the projector");
 
     LiveBench freezes;
-    freezes.before_photograph = [&](int photograph, int&) { freezes.frozen = photograph > 49; };
+    freezes.before_photograph = [&](int photograph, int&) { freezes.frozen = photograph > 46; };
     EXPECT_HAS(message_of<Refused>([&] { freezes.run(); }),
                "shows no change from the picture before");
 
