@@ -7,7 +7,8 @@
 //   mean = (1 - b / q) / (2 pi r^2) = 2 a^2 / (pi q (q + b)),
 // in units where a is the geometric mean of both slope parameters. The light's disc of half-angle
 // rho has an elliptic picture among the half vectors' slopes; the disc of the same area stands for
-// it: r^2 = rho^2 |H|^2 / (2 H.z^3), H = wi + wo. Normals with mean squared slope m add r^2 = 2 m.
+// it: r^2 = rho^2 / (2 |H| c^3), H = wi + wo, c its cosine (over 60 degrees every lobe is smooth and
+// the size of the light does not matter). Normals with mean squared slope m add r^2 = 2 m.
 
 // Distribution times visibility as ggx_distribution_visibility; light_radius2 = rho^2.
 FN REAL disc_distribution_visibility(VEC3 wi,
@@ -24,7 +25,9 @@ FN REAL disc_distribution_visibility(VEC3 wi,
     REAL ratio = alpha_y / alpha_x;
     REAL hz2 = hz * hz;
     // b and q, times H.z^2
-    REAL r2 = R(0.5) * light_radius2 * hh / hz + R(2.0) * mean_squared_slope * hz2;
+    REAL h = sqrt(hh);
+    REAL c = max(hz / h, R(0.5));
+    REAL r2 = hz2 * (R(0.5) * light_radius2 / (h * c * c * c) + R(2.0) * mean_squared_slope);
     REAL b = hx * hx * ratio + hy * hy / ratio + hz2 * a2 - r2;
     REAL cross_term = R(4.0) * r2 * a2 * hz2;
     REAL q = sqrt(b * b + cross_term);

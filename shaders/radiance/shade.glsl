@@ -35,29 +35,18 @@ uniform float u_light_radius2[LIGHTS]; // half of the disc's angle, squared
 #endif
 
 #if ENVIRONMENT
-uniform vec3 u_sky_diffuse;      // as u_diffuse, under light from everywhere
-uniform sampler2D u_sky;         // radiance of a white diffuser; openness of a wide mirror lobe
-uniform sampler2D u_mirror;      // map coordinates of the mirrored direction; openness, 2 lobes
-uniform sampler2DArray u_layers; // the environment, filtered for each of the layers' alphas
-uniform float u_environment_scale;
+uniform vec3 u_sky_diffuse;       // as u_diffuse, under light from everywhere
+uniform sampler2D u_sky;          // radiance of a white diffuser
+uniform sampler2DArray u_mirror;  // mean radiance over mirror lobes of several alphas
+uniform float u_mirror_unit;
+uniform vec2 u_base_layer;        // the lobe's lower layer, and the weight of the next
+uniform vec2 u_coat_layer;
 
-// Layer k > 0 is filtered for FIRST_ALPHA sqrt(2)^(k-1), layer 0 is the map itself.
-vec3 mirrored(vec2 at, float alpha) {
-    float layer = min(alpha < FIRST_ALPHA ? alpha * (1.0 / FIRST_ALPHA)
-                                          : 1.0 + 2.0 * log2(alpha * (1.0 / FIRST_ALPHA)),
-                      float(LAYERS) - 1.001);
-    float below = floor(layer);
-    return mix(texture(u_layers, vec3(at, below)).rgb,
-               texture(u_layers, vec3(at, below + 1.0)).rgb,
-               layer - below);
-}
-
-// Openness toward the mirrored lobe, interpolated over log alpha between the solved ones.
-float open_to(float alpha, vec3 openness) {
-    float t = log2(alpha);
-    float wide = clamp((t + 3.3219281) * 0.5, 0.0, 1.0);          // from 0.1 to 0.4
-    float narrow = clamp((t + 5.6438562) * 0.43067656, 0.0, 1.0); // from 0.02 to 0.1
-    return mix(mix(openness.x, openness.y, narrow), openness.z, wide);
+vec3 mirrored(ivec2 at, vec2 layer) {
+    int below = int(layer.x);
+    return u_mirror_unit * mix(texelFetch(u_mirror, ivec3(at, below), 0).rgb,
+                               texelFetch(u_mirror, ivec3(at, below + 1), 0).rgb,
+                               layer.y);
 }
 #endif
 
@@ -121,18 +110,11 @@ void main() {
 #endif
 
 #if ENVIRONMENT
-    vec4 sky = texelFetch(u_sky, at, 0);
-    vec4 mirror = texelFetch(u_mirror, at, 0);
-    vec3 openness = vec3(mirror.zw, sky.w);
-    float alpha = min(sqrt(p.alpha_x * p.alpha_y + eye.w), 1.0);
-    vec3 base = ggx_environment_albedo(p, wo.z) *
-                (open_to(alpha, openness) * u_environment_scale * mirrored(mirror.xy, alpha));
-    vec3 diffuse = u_sky_diffuse * layer_o * sky.rgb;
+    vec3 base = ggx_environment_albedo(p, wo.z) * mirrored(at, u_base_layer);
+    vec3 diffuse = u_sky_diffuse * layer_o * texelFetch(u_sky, at, 0).rgb;
 #ifdef CLEARCOAT
-    float coat_alpha = min(sqrt(p.coat_alpha * p.coat_alpha + eye.w), 1.0);
     sum += through_o * (base * through_o + diffuse);
-    sum += coat_albedo(p, wo.z) *
-           (open_to(coat_alpha, openness) * u_environment_scale * mirrored(mirror.xy, coat_alpha));
+    sum += coat_albedo(p, wo.z) * mirrored(at, u_coat_layer);
 #else
     sum += base + diffuse;
 #endif

@@ -48,6 +48,9 @@ FilteredEnvironment filter_environment(const Environment& environment,
 /// Bilinear, wrapped in azimuth.
 glm::vec3 sample_sphere(const ImageF& picture, const glm::dvec2& uv);
 
+/// Interpolated between the layers to either side of alpha.
+glm::vec3 sample_layers(const FilteredEnvironment& filtered, const glm::dvec2& uv, float alpha);
+
 /// Degrees 0, 1, ... of the lobe's Legendre series, 1 at degree 0, up to the last over 1e-6.
 std::vector<double> ggx_lobe_kernel(double alpha, int degree);
 

@@ -38,7 +38,7 @@ QualityRays rays_of(Quality quality) {
         case Quality::draft:
             return {1, 0, 0};
         case Quality::normal:
-            return {16, 16, 4};
+            return {16, 16, 8};
         case Quality::high:
             return {64, 64, 16};
         case Quality::reference:
@@ -124,7 +124,10 @@ bool FragmentInputs::update_sky(const Scene& scene,
     const bool other_map = environment_ != scene.environment;
     return clock.run(kIrradiancePass, other_map || other_rays || occluded != sky_occluded_, [&] {
         if (other_map) {
-            filtered_ = filter_environment(*scene.environment, {false, true, true}, progress);
+            FilteredEnvironment filtered =
+                filter_environment(*scene.environment, {false, true, true}, progress);
+            filtered_.diffuse = std::move(filtered.diffuse);
+            filtered_.blurred = std::move(filtered.blurred);
         }
         sky_ = sky_at_fragments(
             map_, *scene.environment, filtered_, occluded ? &*sky_visibility_ : nullptr);
@@ -137,50 +140,64 @@ bool FragmentInputs::update_mirror(const Scene& scene,
                                    const FramePlan& plan,
                                    StageClock& clock,
                                    const Progress& progress) {
-    bool changed = false;
-    if (!find_pass(plan, kFilterPass)) {
-        changed = mirrored_ != nullptr;
-        mirrored_ = nullptr;
-        shading_.layers = Texture2D();
+    if (!find_pass(plan, kMirrorPass)) {
+        const bool had = mirrored_ != nullptr;
+        layered_ = mirrored_ = nullptr;
+        filtered_.mirrored.clear();
+        mirror_visibility_.reset();
+        shading_.mirror = Texture2D();
+        return had;
     }
-    changed = clock.run(kFilterPass, mirrored_ != scene.environment, [&] {
-        const FilteredEnvironment filtered =
-            filter_environment(*scene.environment, {true, false, false}, progress);
-        const ImageF& sharpest = filtered.mirrored.front();
-        const float largest = *std::max_element(sharpest.values.begin(), sharpest.values.end());
-        // Half floats hold the map in units in which its brightest texel fits.
-        const float unit = std::max(1.0f, largest / kHalfLargest);
-        shading_.layers_scale = unit * static_cast<float>(scene.environment->scale);
-        make(shading_.layers,
-             {sharpest.width, sharpest.height, static_cast<int>(filtered.mirrored.size())},
-             TexelFormat::rgba16f,
-             true);
-        std::vector<float> texels(sharpest.pixel_count() * 4, 1.0f);
-        for (std::size_t k = 0; k < filtered.mirrored.size(); ++k) {
-            for (std::size_t i = 0; i < sharpest.pixel_count(); ++i) {
-                for (std::size_t c = 0; c < 3; ++c) {
-                    texels[4 * i + c] = filtered.mirrored[k].values[3 * i + c] / unit;
-                }
-            }
-            shading_.layers.upload(std::span<const float>(texels), 0, static_cast<int>(k));
-        }
-        mirrored_ = scene.environment;
-    }) || changed;
-
-    if (!find_pass(plan, kReflectionPass)) {
-        changed = changed || !mirror_openness_.empty();
-        mirror_openness_.clear();
-        mirror_eye_.reset();
-        return changed;
-    }
+    clock.run(kFilterPass, layered_ != scene.environment, [&] {
+        filtered_.mirrored =
+            filter_environment(*scene.environment, {true, false, false}, progress).mirrored;
+        layered_ = scene.environment;
+    });
     const int rays = rays_of(plan.quality).mirror;
-    const bool stale = mirror_eye_ != scene.eye_in_world_mm || mirror_rays_ != rays;
-    return clock.run(kReflectionPass, stale, [&] {
-        mirror_openness_ =
-            solve_mirror_openness(mesh_, tracer_, map_, scene.eye_in_world_mm, rays, progress);
+    const bool occluded = find_pass(plan, kReflectionPass) != nullptr;
+    const bool other_rays = occluded && (!mirror_visibility_ || mirror_visibility_->rays != rays ||
+                                         visibility_eye_ != scene.eye_in_world_mm);
+    clock.run(kReflectionPass, other_rays, [&] {
+        mirror_visibility_ =
+            solve_mirror_visibility(mesh_, tracer_, map_, scene.eye_in_world_mm, rays, progress);
+        visibility_eye_ = scene.eye_in_world_mm;
+    });
+    if (!occluded) mirror_visibility_.reset();
+    const bool stale = mirrored_ != scene.environment || other_rays ||
+                       occluded != mirror_occluded_ || mirror_eye_ != scene.eye_in_world_mm;
+    return clock.run(kMirrorPass, stale, [&] {
+        upload_mirror(scene);
+        mirrored_ = scene.environment;
+        mirror_occluded_ = occluded;
         mirror_eye_ = scene.eye_in_world_mm;
-        mirror_rays_ = rays;
-    }) || changed;
+    });
+}
+
+void FragmentInputs::upload_mirror(const Scene& scene) {
+    const MirrorVisibility* visibility = mirror_visibility_ ? &*mirror_visibility_ : nullptr;
+    // Half floats hold the radiance in units in which the brightest texel fits.
+    const ImageF& sharpest = filtered_.mirrored.front();
+    const float largest = *std::max_element(sharpest.values.begin(), sharpest.values.end()) *
+                          static_cast<float>(scene.environment->scale);
+    shading_.mirror_unit = std::max(1.0f, largest / kHalfLargest);
+    make(shading_.mirror,
+         {kPackedWidth, layout_.rows, static_cast<int>(kMirrorAlphas.size())},
+         TexelFormat::rgba16f);
+    for (std::size_t lobe = 0; lobe < kMirrorAlphas.size(); ++lobe) {
+        const auto value = [&](std::size_t i) {
+            const glm::vec3 radiance = mirrored_at_fragment(mesh_,
+                                                            map_,
+                                                            i,
+                                                            lobe,
+                                                            *scene.environment,
+                                                            filtered_,
+                                                            scene.eye_in_world_mm,
+                                                            visibility);
+            return glm::vec4(radiance / shading_.mirror_unit, 1.0f);
+        };
+        shading_.mirror.upload(
+            std::span<const float>(packed(map_, layout_, value)), 0, static_cast<int>(lobe));
+    }
 }
 
 bool FragmentInputs::update_directions(const Scene& scene,
@@ -193,12 +210,12 @@ bool FragmentInputs::update_directions(const Scene& scene,
     }
     const bool stale = changed || eye_ != scene.eye_in_world_mm;
     return clock.run(kDirectionsPass, stale, [&] {
-        upload_directions(scene, find_pass(plan, kFilterPass) != nullptr);
+        upload_directions(scene);
         eye_ = scene.eye_in_world_mm;
     });
 }
 
-void FragmentInputs::upload_directions(const Scene& scene, bool with_environment) {
+void FragmentInputs::upload_directions(const Scene& scene) {
     const TextureShape shape{kPackedWidth, layout_.rows};
     const auto fragment = [&](std::size_t i) -> const Fragment& { return map_.fragments[i]; };
     const auto upload = [&](Texture2D& texture, int layer, const auto& value) {
@@ -227,21 +244,10 @@ void FragmentInputs::upload_directions(const Scene& scene, bool with_environment
             return glm::vec4(to_local(fragment(i), light.at[i].direction), light.at[i].visibility);
         });
     }
-    if (!with_environment) return;
+    if (sky_.empty()) return;
     make(shading_.sky, shape, TexelFormat::rgba16f);
-    const auto openness = [&](std::size_t i) {
-        return mirror_openness_.empty() ? glm::vec3(1.0f) : mirror_openness_[i];
-    };
     upload(shading_.sky, 0, [&](std::size_t i) {
-        return glm::vec4(glm::min(sky_[i], glm::vec3(kHalfLargest)), openness(i).z);
-    });
-    make(shading_.mirror, shape, TexelFormat::rgba32f);
-    upload(shading_.mirror, 0, [&](std::size_t i) {
-        const glm::vec3 n = fragment(i).normal;
-        const glm::vec3 wo = toward_eye(fragment(i), scene.eye_in_world_mm);
-        const glm::dvec2 uv =
-            uv_from_direction(*scene.environment, glm::dvec3(2.0f * glm::dot(n, wo) * n - wo));
-        return glm::vec4(glm::vec2(uv), openness(i).x, openness(i).y);
+        return glm::vec4(glm::min(sky_[i], glm::vec3(kHalfLargest)), 1.0f);
     });
 }
 
@@ -265,17 +271,13 @@ bool FragmentInputs::update_diffuse_light(const FramePlan& plan, StageClock& clo
     });
 }
 
-void FragmentInputs::make(Texture2D& texture, TextureShape shape, TexelFormat format, bool linear) {
+void FragmentInputs::make(Texture2D& texture, TextureShape shape, TexelFormat format) {
     const TextureShape& old = texture.shape();
     if (texture && old.width == shape.width && old.height == shape.height &&
         old.layers == shape.layers) {
         return;
     }
-    texture = Texture2D(shape,
-                        format,
-                        linear ? TexelFilter::linear : TexelFilter::nearest,
-                        linear ? TexelWrap::repeat : TexelWrap::clamp,
-                        TexelWrap::clamp);
+    texture = Texture2D(shape, format);
     ++textures_made_;
 }
 

@@ -21,7 +21,7 @@ namespace livery {
 struct QualityRays {
     int light = 16;  ///< toward each light with a size
     int sky = 16;    ///< toward the environment
-    int mirror = 4;  ///< around the mirrored direction, for each of kMirrorAlphas
+    int mirror = 8;  ///< over each wide mirror lobe (MirrorVisibility)
 };
 QualityRays rays_of(Quality quality);
 
@@ -76,8 +76,9 @@ class FragmentInputs {
     bool update_mirror(const Scene&, const FramePlan&, StageClock&, const Progress&);
     bool update_directions(const Scene&, const FramePlan&, StageClock&, bool changed);
     bool update_diffuse_light(const FramePlan&, StageClock&, bool changed);
-    void upload_directions(const Scene&, bool with_environment);
-    void make(Texture2D& texture, TextureShape shape, TexelFormat format, bool linear = false);
+    void upload_directions(const Scene&);
+    void upload_mirror(const Scene&);
+    void make(Texture2D& texture, TextureShape shape, TexelFormat format);
 
     const Mesh& mesh_;
     const Tracer& tracer_;
@@ -86,14 +87,15 @@ class FragmentInputs {
 
     std::vector<Light> lights_;
     std::shared_ptr<const Environment> environment_;  ///< that sky_ was made for
-    std::shared_ptr<const Environment> mirrored_;     ///< that shading_.layers was made for
+    std::shared_ptr<const Environment> layered_;      ///< that filtered_.mirrored was made for
+    std::shared_ptr<const Environment> mirrored_;     ///< that shading_.mirror was made for
     FilteredEnvironment filtered_;
     std::optional<SkyVisibility> sky_visibility_;
     bool sky_occluded_ = false;
     std::vector<glm::vec3> sky_;
-    std::vector<glm::vec3> mirror_openness_;
-    int mirror_rays_ = 0;
-    std::optional<glm::dvec3> mirror_eye_, eye_;
+    std::optional<MirrorVisibility> mirror_visibility_;
+    bool mirror_occluded_ = false;
+    std::optional<glm::dvec3> visibility_eye_, mirror_eye_, eye_;
     ShadingInputs shading_;
     int textures_made_ = 0;
 };

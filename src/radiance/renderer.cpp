@@ -176,7 +176,8 @@ void RadianceRenderer::count_work(const Scene& scene, FramePlan& plan) const {
     set(kIrradiancePass, fragments);
     set(kOcclusionPass, fragments * rays.sky);
     set(kFilterPass, 512.0 * 256.0 * static_cast<double>(kLayerAlphas.size()));
-    set(kReflectionPass, fragments * rays.mirror * static_cast<double>(kMirrorAlphas.size()));
+    set(kReflectionPass, fragments * mirror_rays(rays.mirror));
+    set(kMirrorPass, fragments * static_cast<double>(kMirrorAlphas.size()));
     set(kDirectionsPass, fragments);
     set(kDiffuseLightPass, fragments);
     for (std::size_t p = 0; p < scene.part_materials.size(); ++p) {

@@ -9,7 +9,7 @@
 
 #include "appearance/bsdf.h"
 #include "core/paths.h"
-#include "radiance/environment_filter.h"
+#include "radiance/sky_visibility.h"
 
 namespace livery {
 namespace {
@@ -34,10 +34,21 @@ glm::vec3 average_through(const BsdfParameters& p) {
     return glm::vec3(1.0f) - f32::ggx_interface_average(p);
 }
 
+/// The lobe of kMirrorAlphas below alpha and the weight of the next: linear in 1 / alpha, which
+/// splits the error evenly between a lobe's core (1 / alpha^2) and its tail (alpha^2).
+glm::vec2 mirror_layer(float alpha) {
+    std::size_t below = 0;
+    while (below + 2 < kMirrorAlphas.size() && kMirrorAlphas[below + 1] <= alpha) ++below;
+    const float a = 1.0f / kMirrorAlphas[below], b = 1.0f / kMirrorAlphas[below + 1];
+    return {static_cast<float>(below), glm::clamp((a - 1.0f / alpha) / (a - b), 0.0f, 1.0f)};
+}
+
 /// What of a paint does not depend on the fragment.
 void set_paint(Program& program, const Material& material) {
     const BsdfParameters p = parameters_of(material);
     program.set("u_f0", p.f0);
+    program.set("u_base_layer", mirror_layer(std::sqrt(p.alpha_x * p.alpha_y)));
+    program.set("u_coat_layer", mirror_layer(p.coat_alpha));
     program.set("u_alpha", glm::vec4(p.alpha_x, p.alpha_y, p.coat_alpha, p.coat_f0));
     switch (material.model) {
         case ReflectanceModel::lambert:
@@ -74,8 +85,6 @@ Program& ShadingPrograms::program_for(const Key& key) {
                         define_of(model),
                         lights,
                         environment ? 1 : 0);
-    text += fmt::format(
-        "#define LAYERS {}\n#define FIRST_ALPHA {:.8f}\n", kLayerAlphas.size(), kLayerAlphas[1]);
     if (model != ReflectanceModel::lambert) text += shipped_text("disc.glsl");
     text += shipped_text("shade.glsl");
     Program program = Program::screen_pass({fmt::format("shade {}", define_of(model)), text});
@@ -90,7 +99,7 @@ void ShadingPrograms::shade(const Material& material,
     if (rectangle.height == 0) return;
     const bool lambert = material.model == ReflectanceModel::lambert;
     const int lights = lambert ? 0 : static_cast<int>(inputs.light_irradiance.size());
-    const bool environment = !lambert && inputs.layers;
+    const bool environment = !lambert && inputs.mirror;
     Program& program = program_for({material.model, lights, environment});
     set_paint(program, material);
     program.set("u_exposure", static_cast<float>(std::exp2(exposure_ev)));
@@ -110,11 +119,9 @@ void ShadingPrograms::shade(const Material& material,
     if (environment) {
         program.set("u_sky", 2);
         program.set("u_mirror", 3);
-        program.set("u_layers", 4);
-        program.set("u_environment_scale", inputs.layers_scale);
+        program.set("u_mirror_unit", inputs.mirror_unit);
         inputs.sky.bind(2);
         inputs.mirror.bind(3);
-        inputs.layers.bind(4);
     }
     DrawState state;
     state.scissor = rectangle;

@@ -21,10 +21,9 @@ struct ShadingInputs {
     Texture2D lit;     ///< light on a white diffuser, for plain diffuse parts
     Texture2D eye;     ///< direction to the eye; mean squared slope
     Texture2D lights;  ///< one layer a light: direction, visibility
-    Texture2D sky;     ///< environment on a white diffuser; openness of a wide mirror lobe
-    Texture2D mirror;  ///< map coordinates of the mirrored direction; openness of two lobes
-    Texture2D layers;  ///< filtered environment
-    float layers_scale = 1.0f;
+    Texture2D sky;     ///< environment on a white diffuser
+    Texture2D mirror;  ///< one layer for each of kMirrorAlphas: environment over the mirror lobe
+    float mirror_unit = 1.0f;                 ///< radiance of a value of 1 in `mirror`
     std::vector<glm::vec3> light_irradiance;  ///< one a layer of `lights`, facing it
     std::vector<float> light_radius2;         ///< half of the disc's angle, squared
 };

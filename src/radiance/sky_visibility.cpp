@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "appearance/bsdf.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/random.h"
@@ -32,7 +33,103 @@ glm::vec3 sky_direction(const glm::vec3& n, const Basis& basis, int k, int count
     return x * basis.s + y * basis.t + static_cast<float>(std::sqrt(1.0 - u)) * n;
 }
 
+/// One sample of a mirror lobe: its share of the lobe's albedo, and of the sphere's solid angle in
+/// the slope parameter of the lobe that would fill it.
+struct LobeSample {
+    glm::vec3 direction;
+    float weight = 0.0f;
+    float alpha = 0.0f;
+};
+
+/// Samples of a fragment's mirror lobes: each of its sub-samples mirrors around its own normal, in
+/// one direction or in several stratified ones (visible normals, Vogel's spiral).
+class MirrorLobe {
+  public:
+    MirrorLobe(const Mesh& mesh, const SurfaceMap& map, std::size_t index, glm::dvec3 eye_mm)
+        : turn_(hash_3d(static_cast<std::uint32_t>(index), 7u, 11u) * 0x1p-32) {
+        const Fragment& fragment = map.fragments[index];
+        // Four quarters of a pixel each keep a quarter of its spread
+        variance_ = fragment.normal_variance / static_cast<float>(kSamplesAFragment);
+        Fragment part = fragment;
+        for (std::size_t k = 0; k < kSamplesAFragment; ++k) {
+            part.normal = sample_normal(mesh, map, index, k);
+            const glm::vec3 wo = toward_eye(part, eye_mm);
+            Facet& facet = facets_[k];
+            facet.normal = part.normal;
+            facet.basis = basis_around(part.normal);
+            facet.wo = {glm::dot(wo, facet.basis.s),
+                        glm::dot(wo, facet.basis.t),
+                        glm::dot(wo, part.normal)};
+        }
+    }
+
+    /// k-th of `count` samples; up to kSamplesAFragment each mirrors straight.
+    LobeSample sample(float alpha, int k, int count) const {
+        const auto each = static_cast<int>(kSamplesAFragment);
+        const Facet& facet = facets_[static_cast<std::size_t>(k % each)];
+        const float a = std::min(std::sqrt(alpha * alpha + variance_), 1.0f);
+        if (count <= each) {
+            const glm::vec3 wi(-facet.wo.x, -facet.wo.y, facet.wo.z);
+            return {facet.to_world(wi), 1.0f, a};
+        }
+        return facet.sample(a, k / each, count / each, turn_ + 0.25 * (k % each));
+    }
+
+  private:
+    struct Facet {
+        glm::vec3 normal, wo;
+        Basis basis;
+
+        glm::vec3 to_world(const glm::vec3& v) const {
+            return v.x * basis.s + v.y * basis.t + v.z * normal;
+        }
+        LobeSample sample(float a, int k, int count, double turn) const;
+    };
+    std::array<Facet, kSamplesAFragment> facets_;
+    float variance_ = 0.0f;
+    double turn_;
+};
+
+LobeSample MirrorLobe::Facet::sample(float a, int k, int count, double turn) const {
+    const double around = turn + (kGoldenAngle / (2.0 * std::numbers::pi)) * k;
+    const glm::vec2 u(static_cast<float>(around - std::floor(around)),
+                      (static_cast<float>(k) + 0.5f) / static_cast<float>(count));
+    const glm::vec3 wi = f32::ggx_sample_lobe(wo, u, a, a);
+    LobeSample result;
+    result.direction = to_world(wi);
+    const float density = f32::ggx_pdf_lobe(wi, wo, a, a);
+    if (wi.z <= 0.0f || !(density > 0.0f)) return result;
+    // G2 / G1 of the height-correlated Smith term
+    const auto slope_length = [&](float mu) { return std::sqrt(a * a + (1 - a * a) * mu * mu); };
+    const float li = slope_length(wi.z), lo = slope_length(wo.z);
+    result.weight = wi.z * (wo.z + lo) / (wi.z * lo + wo.z * li);
+    // A lobe seen along the normal fills about 4 pi alpha^2
+    const float solid_angle = 1.0f / (static_cast<float>(count) * density);
+    result.alpha = std::min(std::sqrt(solid_angle / (4.0f * std::numbers::pi_v<float>)), a);
+    return result;
+}
+
+/// Lobes that are narrower than what the normals of a pixel spread them over: samples of them add
+/// noise and no shape, so each sub-sample mirrors straight and its layer is the lobe.
+bool is_narrow(float alpha) { return alpha < 0.1f; }
+
+int samples_of(float alpha, int rays) {
+    return is_narrow(alpha) ? static_cast<int>(kSamplesAFragment) : rays;
+}
+
 }  // namespace
+
+glm::vec3 sample_normal(const Mesh& mesh,
+                        const SurfaceMap& map,
+                        std::size_t fragment,
+                        std::size_t k) {
+    const SurfaceSample& s = map.samples[fragment * kSamplesAFragment + k];
+    const glm::uvec3 corners = mesh.triangles[s.triangle];
+    const glm::vec3 normal = glm::normalize(
+        (1.0f - s.barycentric.x - s.barycentric.y) * mesh.normals[corners.x] +
+        s.barycentric.x * mesh.normals[corners.y] + s.barycentric.y * mesh.normals[corners.z]);
+    return glm::dot(normal, map.fragments[fragment].normal) < 0.0f ? -normal : normal;
+}
 
 glm::vec3 toward_eye(const Fragment& fragment, glm::dvec3 eye_mm) {
     constexpr float kLowest = 1e-4f;
@@ -107,56 +204,89 @@ std::vector<glm::vec3> sky_at_fragments(const SurfaceMap& map,
     return result;
 }
 
-std::vector<glm::vec3> solve_mirror_openness(const Mesh& mesh,
-                                             const Tracer& tracer,
-                                             const SurfaceMap& map,
-                                             glm::dvec3 eye_mm,
-                                             int rays_a_lobe,
-                                             const Progress& progress) {
-    check_argument(rays_a_lobe > 0, fmt::format("{} rays a lobe", rays_a_lobe));
-    std::vector<glm::vec3> result(map.fragments.size());
+int mirror_rays(int rays_a_wide_lobe) {
+    int sum = static_cast<int>(kSamplesAFragment);
+    for (const float alpha : kMirrorAlphas) {
+        if (!is_narrow(alpha)) sum += samples_of(alpha, rays_a_wide_lobe);
+    }
+    return sum;
+}
+
+MirrorVisibility solve_mirror_visibility(const Mesh& mesh,
+                                         const Tracer& tracer,
+                                         const SurfaceMap& map,
+                                         glm::dvec3 eye_mm,
+                                         int rays_a_lobe,
+                                         const Progress& progress) {
+    check_argument(rays_a_lobe > 0 && rays_a_lobe <= 16,
+                   fmt::format("{} rays a mirror lobe, 1 to 16 are possible", rays_a_lobe));
+    constexpr std::size_t kLobes = kMirrorAlphas.size();
+    MirrorVisibility result;
+    result.rays = rays_a_lobe;
+    result.blocked.assign(map.fragments.size() * kLobes, 0);
     parallel_for(map.fragments.size(), 512, [&](std::size_t begin, std::size_t end) {
         progress.check_stop();
         std::vector<TraceRay> rays;
         std::vector<std::uint8_t> blocked;
         for (std::size_t i = begin; i < end; ++i) {
-            const Fragment& fragment = map.fragments[i];
-            const glm::vec3 n = fragment.normal;
-            const glm::vec3 wo = toward_eye(fragment, eye_mm);
-            const Basis basis = basis_around(n);
-            const double turn = turn_of(i, 7u);
-            rays.clear();
-            std::array<std::size_t, kMirrorAlphas.size() + 1> first{};
-            for (std::size_t lobe = 0; lobe < kMirrorAlphas.size(); ++lobe) {
-                for (int k = 0; k < rays_a_lobe; ++k) {
-                    const double u = (k + 0.5) / rays_a_lobe;
-                    const double slope = kMirrorAlphas[lobe] * std::sqrt(u / (1.0 - u));
-                    const double angle = turn + kGoldenAngle * k;
-                    const glm::vec3 h =
-                        glm::normalize(n + static_cast<float>(slope * std::cos(angle)) * basis.s +
-                                       static_cast<float>(slope * std::sin(angle)) * basis.t);
-                    const glm::vec3 wi = 2.0f * glm::dot(wo, h) * h - wo;
-                    if (glm::dot(wi, n) <= 0.0f) continue;
-                    TraceRay& ray = rays.emplace_back();
-                    ray.origin =
-                        ray_origin(mesh, map, i, static_cast<std::size_t>(k) % kSamplesAFragment);
-                    ray.direction = wi;
+            const MirrorLobe mirror(mesh, map, i, eye_mm);
+            std::uint16_t* words = &result.blocked[i * kLobes];
+            for (std::size_t lobe = 0; lobe < kLobes; ++lobe) {
+                const float alpha = kMirrorAlphas[lobe];
+                if (lobe > 0 && is_narrow(alpha)) {
+                    words[lobe] = words[0];  // they all mirror straight
+                    continue;
                 }
-                first[lobe + 1] = rays.size();
-            }
-            blocked.resize(rays.size());
-            tracer.occluded(rays, blocked);
-            for (std::size_t lobe = 0; lobe < kMirrorAlphas.size(); ++lobe) {
-                const auto count = static_cast<float>(first[lobe + 1] - first[lobe]);
-                float open = 0.0f;
-                for (std::size_t k = first[lobe]; k < first[lobe + 1]; ++k) {
-                    if (!blocked[k]) open += 1.0f;
+                const int count = samples_of(alpha, rays_a_lobe);
+                rays.resize(static_cast<std::size_t>(count));
+                blocked.resize(rays.size());
+                for (std::size_t k = 0; k < rays.size(); ++k) {
+                    rays[k].origin = ray_origin(mesh, map, i, k % kSamplesAFragment);
+                    rays[k].direction = mirror.sample(alpha, static_cast<int>(k), count).direction;
                 }
-                result[i][static_cast<int>(lobe)] = count > 0.0f ? open / count : 1.0f;
+                tracer.occluded(rays, blocked);
+                for (std::size_t k = 0; k < rays.size(); ++k) {
+                    if (blocked[k]) words[lobe] |= static_cast<std::uint16_t>(1u << k);
+                }
             }
         }
     });
     return result;
+}
+
+glm::vec3 mirrored_at_fragment(const Mesh& mesh,
+                               const SurfaceMap& map,
+                               std::size_t fragment,
+                               std::size_t lobe,
+                               const Environment& environment,
+                               const FilteredEnvironment& filtered,
+                               glm::dvec3 eye_mm,
+                               const MirrorVisibility* visibility) {
+    const float alpha = kMirrorAlphas[lobe];
+    const auto radiance = [&](const glm::vec3& direction, float its_alpha) {
+        return sample_layers(
+            filtered, uv_from_direction(environment, glm::dvec3(direction)), its_alpha);
+    };
+    const auto scale = static_cast<float>(environment.scale);
+    if (!visibility) {
+        const Fragment& f = map.fragments[fragment];
+        const glm::vec3 wo = toward_eye(f, eye_mm);
+        return scale * radiance(2.0f * glm::dot(wo, f.normal) * f.normal - wo,
+                                std::sqrt(alpha * alpha + f.normal_variance));
+    }
+    const MirrorLobe mirror(mesh, map, fragment, eye_mm);
+    const std::uint16_t blocked = visibility->blocked[fragment * kMirrorAlphas.size() + lobe];
+    glm::vec3 seen(0.0f);
+    float whole = 0.0f;
+    const int count = samples_of(alpha, visibility->rays);
+    for (int k = 0; k < count; ++k) {
+        const LobeSample sample = mirror.sample(alpha, k, count);
+        if (sample.weight <= 0.0f) continue;
+        whole += sample.weight;
+        if ((blocked >> k) & 1u) continue;
+        seen += sample.weight * radiance(sample.direction, sample.alpha);
+    }
+    return whole > 0.0f ? scale * seen / whole : glm::vec3(0.0f);
 }
 
 }  // namespace livery

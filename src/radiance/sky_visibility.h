@@ -34,16 +34,40 @@ std::vector<glm::vec3> sky_at_fragments(const SurfaceMap& map,
                                         const FilteredEnvironment& filtered,
                                         const SkyVisibility* visibility);
 
-/// Slope parameters at which openness toward the mirrored direction is solved.
-inline constexpr std::array<double, 3> kMirrorAlphas{0.02, 0.1, 0.4};
+/// Slope parameters for which each fragment keeps what it mirrors; paints in between interpolate.
+inline constexpr std::array<float, 10> kMirrorAlphas{
+    0.01f, 0.02f, 0.03f, 0.045f, 0.07f, 0.11f, 0.18f, 0.3f, 0.5f, 1.0f};
 
-/// Of each fragment the share of a mirror's lobe that leaves the product, for kMirrorAlphas.
-std::vector<glm::vec3> solve_mirror_openness(const Mesh& mesh,
-                                             const Tracer& tracer,
-                                             const SurfaceMap& map,
-                                             glm::dvec3 eye_mm,
-                                             int rays_a_lobe,
-                                             const Progress& progress = {});
+/// Which rays of each fragment's mirror lobes meet the product: independent of the environment.
+struct MirrorVisibility {
+    int rays = 0;                        ///< a lobe, at most 16
+    std::vector<std::uint16_t> blocked;  ///< kMirrorAlphas.size() words a fragment; bit k: ray k
+};
+int mirror_rays(int rays_a_wide_lobe);  ///< that a fragment costs
+MirrorVisibility solve_mirror_visibility(const Mesh& mesh,
+                                         const Tracer& tracer,
+                                         const SurfaceMap& map,
+                                         glm::dvec3 eye_mm,
+                                         int rays_a_lobe,
+                                         const Progress& progress = {});
+
+/// Mean radiance of the environment over a fragment's mirror lobe, for one of kMirrorAlphas: over
+/// the visibility's own samples; without `visibility`, unoccluded, as one round lobe widened by the
+/// fragment's normals.
+glm::vec3 mirrored_at_fragment(const Mesh& mesh,
+                               const SurfaceMap& map,
+                               std::size_t fragment,
+                               std::size_t lobe,
+                               const Environment& environment,
+                               const FilteredEnvironment& filtered,
+                               glm::dvec3 eye_mm,
+                               const MirrorVisibility* visibility);
+
+/// The shading normal of a fragment's k-th sub-sample, on the seen side.
+glm::vec3 sample_normal(const Mesh& mesh,
+                        const SurfaceMap& map,
+                        std::size_t fragment,
+                        std::size_t k);
 
 /// Unit direction from a fragment to the eye; kept above the horizon of its normal by 1e-4.
 glm::vec3 toward_eye(const Fragment& fragment, glm::dvec3 eye_mm);

@@ -104,7 +104,8 @@ void plan_lights(const Scene& scene, FramePlan& plan) {
 void plan_environment(const Needs& needs, FramePlan& plan) {
     const std::string glossy = needs.glossy_parts.empty() ? "" : *needs.glossy_parts.begin();
     if (!needs.environment) {
-        for (const char* pass : {kIrradiancePass, kOcclusionPass, kFilterPass, kReflectionPass}) {
+        for (const char* pass :
+             {kIrradiancePass, kOcclusionPass, kFilterPass, kReflectionPass, kMirrorPass}) {
             plan.skipped.push_back({pass, "no environment in the look"});
         }
         return;
@@ -117,9 +118,9 @@ void plan_environment(const Needs& needs, FramePlan& plan) {
         plan_pass(plan, kOcclusionPass, "parts hide the environment from one another");
     }
     if (glossy.empty()) {
-        plan.skipped.push_back({kFilterPass, "no part mirrors the environment: all are diffuse"});
-        plan.skipped.push_back(
-            {kReflectionPass, "no part mirrors the environment: all are diffuse"});
+        for (const char* pass : {kFilterPass, kReflectionPass, kMirrorPass}) {
+            plan.skipped.push_back({pass, "no part mirrors the environment: all are diffuse"});
+        }
         return;
     }
     plan_pass(plan, kFilterPass, fmt::format("part {} mirrors the environment", glossy));
@@ -129,6 +130,9 @@ void plan_environment(const Needs& needs, FramePlan& plan) {
     } else {
         plan_pass(plan, kReflectionPass, fmt::format("part {} may mirror other parts", glossy));
     }
+    plan_pass(plan,
+              kMirrorPass,
+              "what each fragment mirrors does not depend on its paint's colour: solved once");
 }
 
 void plan_shading(const Scene& scene, const Needs& needs, FramePlan& plan) {

@@ -43,6 +43,7 @@ inline constexpr const char* kIrradiancePass = "environment-irradiance";
 inline constexpr const char* kOcclusionPass = "ambient-occlusion";
 inline constexpr const char* kFilterPass = "environment-filter";
 inline constexpr const char* kReflectionPass = "reflection-occlusion";
+inline constexpr const char* kMirrorPass = "mirrored-environment";
 inline constexpr const char* kDirectionsPass = "directions";
 inline constexpr const char* kDiffuseLightPass = "diffuse-light";
 inline constexpr const char* kResolvePass = "resolve";
