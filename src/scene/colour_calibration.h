@@ -16,14 +16,14 @@ namespace livery {
 
 /// Why a projector pixel carries a correction or not (one byte a pixel in `status`).
 enum class PixelStatus : std::uint8_t {
-    unlit = 0,         ///< nothing of the mock-up there, or outside the throw
-    measured = 1,      ///< valid
-    predicted = 2,     ///< hidden from the camera; pooled matrix and geometry; valid, marked
-    too_dark = 3,      ///< T - S under 20 sigma or 0.5% of the maximum
-    saturated = 4,     ///< camera at or over 98% of full scale
+    unlit = 0,      ///< nothing of the mock-up there, or outside the throw
+    measured = 1,   ///< valid
+    predicted = 2,  ///< hidden from the camera; pooled matrix and geometry; valid, marked
+    too_dark = 3,   ///< T - S under 20 sigma or 0.5% of the maximum
+    saturated = 4,  ///< camera at or over 98% of full scale
     ill_conditioned = 5,
-    one_channel = 6,   ///< only some channels pass
-    edge = 7,          ///< the camera pixel straddles a depth or part edge
+    one_channel = 6,  ///< only some channels pass
+    edge = 7,         ///< the camera pixel straddles a depth or part edge
     not_decoded = 8,
 };
 inline bool is_valid(PixelStatus status) {
@@ -45,11 +45,11 @@ struct DriveTable {
 };
 
 struct ColourCalibration {
-    int width = 0, height = 0;  ///< projector pixels
-    std::string id;             ///< hash of the content; set by seal()
-    std::string created;        ///< ISO 8601, UTC
-    std::string mode;           ///< "paper" or "robust"
-    std::string made_with;      ///< captures folder or bench, for a person
+    int width = 0, height = 0;                      ///< projector pixels
+    std::string id;                                 ///< hash of the content; set by seal()
+    std::string created;                            ///< ISO 8601, UTC
+    std::string mode;                               ///< "paper" or "robust"
+    std::string made_with;                          ///< captures folder or bench, for a person
     double dark_drive = 0.0, bright_drive = 255.0;  ///< s and t of the grey images
 
     // Equation 9 per projector pixel: N = (Vn^-1 C - S~) / (T~ - S~), C linear camera RGB.
@@ -78,8 +78,8 @@ struct ColourCalibration {
 /// Sets `id` from the content.
 void seal(ColourCalibration& calibration);
 
-/// One folder: calibration.json + EXR planes + status.png. Throws FileError (also when the id does not
-/// match the content).
+/// One folder: calibration.json + EXR planes + status.png. Throws FileError (also when the id does
+/// not match the content).
 void write_calibration(const std::filesystem::path& folder, const ColourCalibration& calibration);
 ColourCalibration read_calibration(const std::filesystem::path& folder);
 

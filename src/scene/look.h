@@ -29,7 +29,8 @@ struct EnvironmentReference {
 
 struct Look {
     std::string name;
-    std::map<std::string, std::string> parts;  ///< part name -> material name or file; "*": the rest
+    std::map<std::string, std::string>
+        parts;  ///< part name -> material name or file; "*": the rest
     std::vector<DirectionalLight> lights;
     EnvironmentReference environment;
     double exposure_ev = 0.0;

@@ -14,8 +14,8 @@ namespace livery {
 
 struct Part {
     std::string name;
-    std::string material_name;            ///< as the file names it; may be empty
-    glm::dvec3 base_colour_rec709{0.5};   ///< the file's own colour, shown until a look says more
+    std::string material_name;           ///< as the file names it; may be empty
+    glm::dvec3 base_colour_rec709{0.5};  ///< the file's own colour, shown until a look says more
 };
 
 /// World frame: right-handed, y up, millimetres. All vertex arrays have the same length; triangles
@@ -23,7 +23,7 @@ struct Part {
 struct Mesh {
     std::vector<glm::vec3> positions_mm;
     std::vector<glm::vec3> normals;   ///< unit
-    std::vector<glm::vec4> tangents;  ///< unit xyz, w = +-1 gives the bitangent's sign
+    std::vector<glm::vec4> tangents;  ///< unit xyz, w = +-1; v falls along cross(normal, xyz) * w
     std::vector<glm::vec2> uvs;
     std::vector<glm::uvec3> triangles;
     std::vector<std::uint16_t> triangle_part;  ///< index into parts, one a triangle

@@ -12,9 +12,9 @@ namespace livery {
 
 struct Product {
     std::string name;
-    Mesh mesh;                  ///< in the world's frame (the product's frame)
-    double product_scale = 1.0; ///< product millimetres per mock-up millimetre (25 for the car)
-    std::filesystem::path file; ///< where it came from
+    Mesh mesh;                   ///< in the world's frame (the product's frame)
+    double product_scale = 1.0;  ///< product millimetres per mock-up millimetre (25 for the car)
+    std::filesystem::path file;  ///< where it came from
     std::vector<std::string> notes;  ///< what was dropped or repaired while loading
 };
 
