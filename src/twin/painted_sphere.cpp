@@ -77,8 +77,8 @@ ImageF paint_radiance_xyz(const Mesh& mesh,
     check_argument(samples_a_side >= 1 && samples_a_side <= 16,
                    "paint_radiance_xyz: 1 to 16 samples a side");
     const auto lights = neutral_lights(from_lights);
-    const auto observer = d65_observer();
     const PaintBands bands(paint);
+    const auto moments = bands.moments(d65_observer());
     const PixelRect rect = pixels_that_see(view, mesh);
     const PixelRays pixel_rays(view, rect, samples_a_side);
     ImageF xyz(view.width, view.height, 3);
@@ -86,7 +86,6 @@ ImageF paint_radiance_xyz(const Mesh& mesh,
     parallel_for(rows, 2, [&](std::size_t begin, std::size_t end) {
         std::vector<TraceRay> rays;
         std::vector<Hit> hits;
-        Spectrum reflectance{}, radiance{};
         for (std::size_t row = begin; row < end; ++row) {
             progress.check_stop();
             const int y = rect.y0 + static_cast<int>(row);
@@ -96,7 +95,7 @@ ImageF paint_radiance_xyz(const Mesh& mesh,
                 hits.assign(rays.size(), Hit{});
                 tracer.closest(rays, hits);
                 int met = 0;
-                radiance.fill(0.0);
+                glm::dvec3 sum(0.0);
                 for (std::size_t s = 0; s < hits.size(); ++s) {
                     if (!hits[s].valid()) continue;
                     ++met;
@@ -110,6 +109,8 @@ ImageF paint_radiance_xyz(const Mesh& mesh,
                         return glm::dvec3(glm::dot(d, t), glm::dot(d, b), glm::dot(d, n));
                     };
                     const glm::dvec3 wo = local(glm::normalize(eye_mm - place.position_mm));
+                    if (wo.z <= 0.0) continue;
+                    const PaintBands::Side side_o = bands.side_of(wo.z);
                     for (const Light& light : lights) {
                         const auto bits = hash_3d(static_cast<std::uint32_t>(x),
                                                   static_cast<std::uint32_t>(y),
@@ -119,25 +120,16 @@ ImageF paint_radiance_xyz(const Mesh& mesh,
                         const glm::dvec3 to_light = toward(light, u, (bits >> 16u) * 0x1p-16);
                         const glm::dvec3 wi = local(to_light);
                         const glm::dvec3 far_off = place.position_mm + 1e5 * to_light;
-                        if (wi.z <= 0.0 || wo.z <= 0.0 ||
+                        if (wi.z <= 0.0 ||
                             !sees(tracer, place.position_mm, place.geometric_normal, far_off)) {
                             continue;
                         }
-                        bands.evaluate(wi, wo, reflectance);
-                        const double scale = std::numbers::pi * light.radiance * wi.z;
-                        for (std::size_t k = 0; k < radiance.size(); ++k) {
-                            radiance[k] += scale * reflectance[k];
-                        }
+                        sum += std::numbers::pi * light.radiance * wi.z *
+                               bands.evaluate(moments, wi, wo, bands.side_of(wi.z), side_o);
                     }
                 }
                 if (met == 0) continue;
-                for (std::size_t c = 0; c < 3; ++c) {
-                    double sum = 0.0;
-                    for (std::size_t k = 0; k < radiance.size(); ++k) {
-                        sum += radiance[k] * observer[c][k];
-                    }
-                    xyz.at(x, y, static_cast<int>(c)) = static_cast<float>(sum / met);
-                }
+                for (int c = 0; c < 3; ++c) xyz.at(x, y, c) = static_cast<float>(sum[c] / met);
             }
         }
     });

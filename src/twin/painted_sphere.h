@@ -2,6 +2,7 @@
 // on a grey one. Designed paints in calibration/paints.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -47,14 +48,14 @@ Spectrum evaluate_paint(const SpectralPaint& paint, const glm::dvec3& wi, const 
 /// XYZ that the painted mesh sends to the eye, for what each pixel of `view` covers (3 channels;
 /// the mean over `samples_a_side` squared samples that meet the mesh, 0 where none does). The
 /// lights shine with D65; their colours must be neutral (std::invalid_argument). A white diffuser
-/// that faces a light of radiance 1 has Y = 1. Evaluated over all bands, light by light.
+/// that faces a light of radiance 1 has Y = 1. The sum over all bands is exact.
 ImageF paint_radiance_xyz(const Mesh& mesh,
                           const Tracer& tracer,
                           const View& view,
                           glm::dvec3 eye_mm,
                           const SpectralPaint& paint,
                           std::span<const DirectionalLight> lights,
-                          int samples_a_side = 4,
+                          int samples_a_side = 2,
                           const Progress& progress = {});
 
 }  // namespace livery

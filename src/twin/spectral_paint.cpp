@@ -19,53 +19,86 @@ PaintBands::PaintBands(const SpectralPaint& paint) : paint_(paint) {
     largest_f0_ = *std::max_element(paint.f0.begin(), paint.f0.end());
 
     // The diffuse layer's part depends on no direction: three bands in each call of the model.
-    index_squared_ = f64::coat_inverse_index_squared(bands_);
+    const double index_squared = f64::coat_inverse_index_squared(bands_);
     for (std::size_t k = 0; k < kSpectrumCount; k += 3) {
         f64::BsdfParameters p = bands_;
         for (std::size_t c = 0; c < 3; ++c) {
             p.diffuse[static_cast<int>(c)] = paint.diffuse[k + c];
             p.f0[static_cast<int>(c)] = paint.f0[k + c];
         }
-        const glm::dvec3 coated = f64::coated_diffuse(p, index_squared_);
+        const glm::dvec3 coated = f64::coated_diffuse(p, index_squared);
         for (std::size_t c = 0; c < 3; ++c) diffuse_[k + c] = coated[static_cast<int>(c)];
     }
 }
 
-PaintBands::Straight PaintBands::kept_by_interface(double mu) const {
+PaintBands::Side PaintBands::side_of(double mu) const {
     // The interface's albedo is a straight line in f0: its ends come from one call of the model.
     f64::BsdfParameters p = bands_;
     p.f0 = glm::dvec3(0.0, largest_f0_, largest_f0_);
     const glm::dvec3 albedo = f64::ggx_interface_albedo(p, mu);
-    const double slope = largest_f0_ > 0.0 ? (albedo.y - albedo.x) / largest_f0_ : 0.0;
-    return {1.0 - albedo.x, -slope};
+    Side side;
+    side.passed = f64::coat_transmission(bands_, mu);
+    side.kept = 1.0 - albedo.x;
+    side.slope = largest_f0_ > 0.0 ? (albedo.x - albedo.y) / largest_f0_ : 0.0;
+    return side;
+}
+
+bool PaintBands::lobes_at(const glm::dvec3& wi, const glm::dvec3& wo, Lobes& lobes) const {
+    const glm::dvec3 h = wi + wo;
+    const double hh = glm::dot(h, h);
+    if (wi.z <= 0.0 || wo.z <= 0.0 || hh < 1e-8) return false;
+    const double schlick = f64::schlick_weight(hh);
+    const double coat_fresnel =
+        paint_.coat_f0 * (1.0 - schlick) + f64::grazing_reflectance(paint_.coat_f0) * schlick;
+    lobes.coat = coat_fresnel *
+                 f64::ggx_distribution_visibility(wi, wo, hh, paint_.coat_alpha, paint_.coat_alpha);
+    const double base = f64::ggx_distribution_visibility(wi, wo, hh, paint_.alpha, paint_.alpha);
+    lobes.f0 = base * (1.0 - schlick);
+    lobes.grazing = base * f64::grazing_reflectance(largest_f0_) * schlick;
+    return true;
 }
 
 void PaintBands::evaluate(const glm::dvec3& wi, const glm::dvec3& wo, Spectrum& result) const {
     result.fill(0.0);
-    if (wi.z <= 0.0 || wo.z <= 0.0) return;
-    const glm::dvec3 h = wi + wo;
-    const double hh = glm::dot(h, h);
-    if (hh < 1e-8) return;
-
-    // What all bands share.
-    const double schlick = f64::schlick_weight(hh);
-    const double coat_fresnel =
-        paint_.coat_f0 * (1.0 - schlick) + f64::grazing_reflectance(paint_.coat_f0) * schlick;
-    const double coat = coat_fresnel * f64::ggx_distribution_visibility(
-                                           wi, wo, hh, paint_.coat_alpha, paint_.coat_alpha);
-    const double passed =
-        f64::coat_transmission(bands_, wi.z) * f64::coat_transmission(bands_, wo.z);
-    const double lobe = f64::ggx_distribution_visibility(wi, wo, hh, paint_.alpha, paint_.alpha);
-    const double f90 = f64::grazing_reflectance(largest_f0_);
-    const Straight through_i = kept_by_interface(wi.z), through_o = kept_by_interface(wo.z);
-
+    Lobes lobes;
+    if (!lobes_at(wi, wo, lobes)) return;
+    const Side i = side_of(wi.z), o = side_of(wo.z);
     for (std::size_t k = 0; k < kSpectrumCount; ++k) {
         const double f0 = paint_.f0[k];
-        const double specular = (f0 * (1.0 - schlick) + f90 * schlick) * lobe;
-        const double kept =
-            (through_i.at_zero + f0 * through_i.slope) * (through_o.at_zero + f0 * through_o.slope);
-        result[k] = coat + passed * (specular + diffuse_[k] * kept * std::numbers::inv_pi);
+        const double kept = (i.kept + f0 * i.slope) * (o.kept + f0 * o.slope);
+        const double under =
+            f0 * lobes.f0 + lobes.grazing + diffuse_[k] * kept * std::numbers::inv_pi;
+        result[k] = lobes.coat + i.passed * o.passed * under;
     }
+}
+
+PaintBands::Moments PaintBands::moments(const std::array<Spectrum, 3>& curves) const {
+    Moments m;
+    for (std::size_t k = 0; k < kSpectrumCount; ++k) {
+        const glm::dvec3 curve(curves[0][k], curves[1][k], curves[2][k]);
+        const double f0 = paint_.f0[k], d = diffuse_[k];
+        m.white += curve;
+        m.f0 += f0 * curve;
+        m.diffuse += d * curve;
+        m.diffuse_f0 += d * f0 * curve;
+        m.diffuse_f02 += d * f0 * f0 * curve;
+    }
+    return m;
+}
+
+glm::dvec3 PaintBands::evaluate(const Moments& m,
+                                const glm::dvec3& wi,
+                                const glm::dvec3& wo,
+                                const Side& i,
+                                const Side& o) const {
+    Lobes lobes;
+    if (!lobes_at(wi, wo, lobes)) return glm::dvec3(0.0);
+    const glm::dvec3 diffuse = i.kept * o.kept * m.diffuse +
+                               (i.kept * o.slope + i.slope * o.kept) * m.diffuse_f0 +
+                               i.slope * o.slope * m.diffuse_f02;
+    const glm::dvec3 under =
+        lobes.f0 * m.f0 + lobes.grazing * m.white + diffuse * std::numbers::inv_pi;
+    return lobes.coat * m.white + i.passed * o.passed * under;
 }
 
 Spectrum evaluate_paint(const SpectralPaint& paint, const glm::dvec3& wi, const glm::dvec3& wo) {

@@ -8,6 +8,7 @@
 #include "core/colour.h"
 #include "core/random.h"
 #include "small_bench.h"
+#include "twin/spectral_paint.h"
 
 namespace livery {
 namespace {
@@ -40,6 +41,29 @@ TEST(SpectralPaint, EveryBandIsTheClearcoatModel) {
             p.coat_transmittance = glm::dvec3(1.0);
             const double expected = evaluate(ReflectanceModel::clearcoat, p, wi, wo).x;
             EXPECT_NEAR(all[k], expected, 1e-12 * (1.0 + expected)) << name << " band " << k;
+        }
+    }
+}
+
+TEST(SpectralPaint, MomentsGiveTheSumOverAllBands) {
+    Random random(7);
+    const std::array<Spectrum, 3> curves{cie1931_x(), cie1931_y(), illuminant_d65()};
+    for (const auto& name : spectral_paint_names()) {
+        const SpectralPaint paint = read_spectral_paint(name);
+        const PaintBands bands(paint);
+        const auto moments = bands.moments(curves);
+        for (int trial = 0; trial < 50; ++trial) {
+            const glm::dvec3 wi = direction(random), wo = direction(random);
+            const Spectrum all = evaluate_paint(paint, wi, wo);
+            const glm::dvec3 folded =
+                bands.evaluate(moments, wi, wo, bands.side_of(wi.z), bands.side_of(wo.z));
+            for (int c = 0; c < 3; ++c) {
+                double sum = 0.0;
+                for (std::size_t k = 0; k < all.size(); ++k) {
+                    sum += all[k] * curves[static_cast<std::size_t>(c)][k];
+                }
+                EXPECT_NEAR(folded[c] / sum, 1.0, 1e-12) << name;
+            }
         }
     }
 }
