@@ -1,9 +1,9 @@
 #include "gl/check.h"
 
-#include <epoxy/gl.h>
-
 #include <stdexcept>
 #include <string>
+
+#include <epoxy/gl.h>
 
 namespace livery {
 namespace {
@@ -31,13 +31,9 @@ std::string error_name(GLenum error) {
 
 }  // namespace
 
-void set_gl_checks(bool on) {
-    checks_on = on;
-}
+void set_gl_checks(bool on) { checks_on = on; }
 
-bool gl_checks() {
-    return checks_on;
-}
+bool gl_checks() { return checks_on; }
 
 void throw_on_gl_error(std::string_view what) {
     std::string found;

@@ -1,12 +1,12 @@
 #include "gl/context.h"
 
-#include <epoxy/egl.h>
-#include <epoxy/gl.h>
-
 #include <array>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
+
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
 
 namespace livery {
 namespace {
@@ -166,16 +166,10 @@ void HeadlessContext::make_current() {
     }
 }
 
-std::string HeadlessContext::renderer() const {
-    return state_->renderer;
-}
+std::string HeadlessContext::renderer() const { return state_->renderer; }
 
-std::string HeadlessContext::version() const {
-    return state_->version;
-}
+std::string HeadlessContext::version() const { return state_->version; }
 
-bool HeadlessContext::is_software() const {
-    return names_software(state_->renderer);
-}
+bool HeadlessContext::is_software() const { return names_software(state_->renderer); }
 
 }  // namespace livery

@@ -99,8 +99,6 @@ void ScreenPass::run(const Program& program,
     draw(program, no_inputs_, target, Primitive::triangles, 0, 3, state);
 }
 
-void finish_gl() {
-    glFinish();
-}
+void finish_gl() { glFinish(); }
 
 }  // namespace livery

@@ -1,10 +1,10 @@
 #include "gl/handles.h"
 
-#include <epoxy/gl.h>
-
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+
+#include <epoxy/gl.h>
 
 #include "core/error.h"
 #include "gl/check.h"
@@ -12,18 +12,10 @@
 namespace livery {
 namespace gl_detail {
 
-void delete_texture(unsigned name) {
-    glDeleteTextures(1, &name);
-}
-void delete_buffer(unsigned name) {
-    glDeleteBuffers(1, &name);
-}
-void delete_vertex_array(unsigned name) {
-    glDeleteVertexArrays(1, &name);
-}
-void delete_framebuffer(unsigned name) {
-    glDeleteFramebuffers(1, &name);
-}
+void delete_texture(unsigned name) { glDeleteTextures(1, &name); }
+void delete_buffer(unsigned name) { glDeleteBuffers(1, &name); }
+void delete_vertex_array(unsigned name) { glDeleteVertexArrays(1, &name); }
+void delete_framebuffer(unsigned name) { glDeleteFramebuffers(1, &name); }
 
 }  // namespace gl_detail
 
@@ -89,9 +81,7 @@ bool accepts(const FormatFacts& format, GLenum type) {
     return false;
 }
 
-GLint wrap_of(TexelWrap wrap) {
-    return wrap == TexelWrap::clamp ? GL_CLAMP_TO_EDGE : GL_REPEAT;
-}
+GLint wrap_of(TexelWrap wrap) { return wrap == TexelWrap::clamp ? GL_CLAMP_TO_EDGE : GL_REPEAT; }
 
 std::string size_text(int width, int height) {
     return std::to_string(width) + "x" + std::to_string(height);
@@ -99,9 +89,7 @@ std::string size_text(int width, int height) {
 
 }  // namespace
 
-int channel_count(TexelFormat format) {
-    return facts(format).channels;
-}
+int channel_count(TexelFormat format) { return facts(format).channels; }
 
 Texture2D::Texture2D(int width, int height, TexelFormat format)
     : Texture2D(TextureShape{width, height, 0, 1}, format) {}
@@ -221,9 +209,7 @@ void Texture2D::clear(float value) {
     check_gl("clearing a texture");
 }
 
-void Texture2D::bind(unsigned unit) const {
-    bind_texture(unit, name_.get());
-}
+void Texture2D::bind(unsigned unit) const { bind_texture(unit, name_.get()); }
 
 void bind_texture(unsigned unit, unsigned texture_name) {
     glBindTextureUnit(unit, texture_name);
@@ -309,9 +295,7 @@ void VertexArray::indices(const Buffer& buffer) {
     throw_on_gl_error("attaching indices");
 }
 
-void VertexArray::bind() const {
-    glBindVertexArray(name_.get());
-}
+void VertexArray::bind() const { glBindVertexArray(name_.get()); }
 
 Framebuffer::Framebuffer(const std::vector<const Texture2D*>& colours,
                          const Texture2D* depth,

@@ -1,23 +1,19 @@
 #include "gl/program.h"
 
-#include <epoxy/gl.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <set>
 #include <sstream>
 #include <stdexcept>
 
+#include <epoxy/gl.h>
+
 #include "gl/check.h"
 
 namespace livery {
 namespace gl_detail {
-void delete_program(unsigned name) {
-    glDeleteProgram(name);
-}
-void delete_shader(unsigned name) {
-    glDeleteShader(name);
-}
+void delete_program(unsigned name) { glDeleteProgram(name); }
+void delete_shader(unsigned name) { glDeleteShader(name); }
 }  // namespace gl_detail
 
 namespace {
@@ -107,9 +103,7 @@ void Program::link(const std::vector<unsigned>& shaders, const std::string& what
     throw_on_gl_error("linking " + what);
 }
 
-void Program::use() const {
-    glUseProgram(name_.get());
-}
+void Program::use() const { glUseProgram(name_.get()); }
 
 int Program::location(std::string_view uniform) {
     const auto found = locations_.find(std::string(uniform));

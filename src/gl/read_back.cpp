@@ -1,10 +1,10 @@
 #include "gl/read_back.h"
 
-#include <epoxy/gl.h>
-
 #include <algorithm>
 #include <array>
 #include <string>
+
+#include <epoxy/gl.h>
 
 #include "core/error.h"
 #include "gl/check.h"

@@ -4,9 +4,7 @@
 
 namespace livery {
 namespace gl_detail {
-void delete_query(unsigned name) {
-    glDeleteQueries(1, &name);
-}
+void delete_query(unsigned name) { glDeleteQueries(1, &name); }
 }  // namespace gl_detail
 
 Query::Query() {

@@ -1,12 +1,12 @@
 // The headless context and what the handles promise, on whatever OpenGL is there.
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "gl/check.h"
 #include "gl/context.h"

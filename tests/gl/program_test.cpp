@@ -1,12 +1,12 @@
 // What a person who edits a shader reads when it fails.
 #include "gl/program.h"
 
-#include <gtest/gtest.h>
-
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
 #include <string>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "core/paths.h"

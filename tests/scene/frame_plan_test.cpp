@@ -52,9 +52,11 @@ std::string why(const FramePlan& plan, const std::string& name) {
 TEST(FramePlan, DiffuseSceneWithoutLightNeedsFewKindsOfPass) {
     const FramePlan plan = plan_frame(bare_scene(), Quality::high, FrameStage::radiance);
     EXPECT_EQ(passes(plan),
-              (std::set<std::string>{
-                  "surface-map", "diffuse-light", "shade:body:lambert", "shade:wheels:lambert",
-                  "resolve"}));
+              (std::set<std::string>{"surface-map",
+                                     "diffuse-light",
+                                     "shade:body:lambert",
+                                     "shade:wheels:lambert",
+                                     "resolve"}));
     EXPECT_EQ(why(plan, "key-visibility"), "the look has no light");
     EXPECT_EQ(why(plan, "ambient-occlusion"), "no environment in the look");
     EXPECT_EQ(why(plan, "environment-filter"), "no environment in the look");
