@@ -151,16 +151,16 @@ void add_floor(PartMesh& trim) {
 
 /// A door mirror: a housing with a flat back, on a foot at the window's front corner.
 void add_mirror(std::vector<PartMesh>& parts) {
-    const glm::dvec3 centre(21.4, 42.3, 34.6), half(3.2, 2.1, 2.85);
+    const glm::dvec3 centre(21.6, 42.1, 34.9), half(2.7, 1.7, 3.0);
     auto housing = sphere(1.0, 20);
     for (auto& p : housing.positions_mm) {
         const auto round = [](double v, double power) {
             return std::copysign(std::pow(std::abs(v), power), v);
         };
         // A superellipsoid, blunt behind, slimmer toward its outer end.
-        glm::dvec3 q(round(p.x, p.x > 0.0 ? 1.1 : 0.5), round(p.y, 0.75), round(p.z, 0.7));
-        q.x *= p.x > 0.0 ? 1.0 : 0.30;
-        q.y *= 1.0 - 0.16 * q.z;
+        glm::dvec3 q(round(p.x, p.x > 0.0 ? 1.1 : 0.5), round(p.y, 0.65), round(p.z, 0.55));
+        q.x *= p.x > 0.0 ? 1.0 : 0.35;
+        q.y *= 1.0 - 0.12 * q.z;
         p = centre + q * half + glm::dvec3(-0.5 * (q.z + 1.0), 0.0, 0.0);
     }
     compute_smooth_normals(housing);

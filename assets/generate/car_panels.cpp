@@ -55,7 +55,7 @@ std::vector<PanelStyle> cut_car_panels(Sheet& sheet) {
 }
 
 Flare arch_flare(const glm::dvec2& side) {
-    constexpr double kHeight_mm = 0.9, kWidth_mm = 7.0;
+    constexpr double kHeight_mm = 0.9, kWidth_mm = 9.0;
     Flare flare;
     for (const double axle : {kFrontAxle_mm, kRearAxle_mm}) {
         const auto from_axle = side - glm::dvec2(axle, kAxleHeight_mm);
