@@ -107,4 +107,23 @@ ImageF environment_map(glm::dvec3 (*radiance)(const glm::dvec3&), int width) {
     return map;
 }
 
+EnvironmentAverages averages(const ImageF& map) {
+    constexpr double kPi = std::numbers::pi;
+    EnvironmentAverages sum;
+    for (int row = 0; row < map.height; ++row) {
+        const double above = std::cos(kPi * row / map.height);
+        const double below = std::cos(kPi * (row + 1) / map.height);
+        double luminance = 0.0;
+        for (int column = 0; column < map.width; ++column) {
+            const float* rgb = map.pixel(column, row);
+            luminance += (0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]) / map.width;
+        }
+        // Integrals of 1 / (4 pi) and of the cosine / pi over the row's band of directions.
+        sum.mean_radiance += luminance * 0.5 * (above - below);
+        const double upper = std::max(above, 0.0), lower = std::max(below, 0.0);
+        sum.level_white += luminance * (upper * upper - lower * lower);
+    }
+    return sum;
+}
+
 }  // namespace livery::assets

@@ -21,6 +21,13 @@ glm::dvec3 overcast_radiance(const glm::dvec3& direction);
 /// Averages 4 x 4 directions a pixel.
 ImageF environment_map(glm::dvec3 (*radiance)(const glm::dvec3&), int width);
 
+/// Averages over solid angle, of luminance.
+struct EnvironmentAverages {
+    double mean_radiance = 0.0;
+    double level_white = 0.0;  ///< radiance of a level perfect white diffuser
+};
+EnvironmentAverages averages(const ImageF& map);
+
 /// The bytes of a Radiance .hdr (RGBE, run-length encoded).
 std::string hdr_bytes(const ImageF& image);
 

@@ -2,6 +2,7 @@
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <string>
 
 #include "car.h"
 #include "core/paths.h"
@@ -18,7 +19,11 @@ int main(int argument_count, char** arguments) {
     try {
         const std::filesystem::path folder = arguments[1];
         make_output_folder(folder / "environments");
-        write_text_file(folder / "car.glb", assets::glb_bytes("car", assets::make_car()));
+        const auto car = assets::make_car();
+        write_text_file(folder / "car.glb", assets::glb_bytes("car", car));
+        std::size_t triangles = 0;
+        for (const auto& part : car) triangles += part.triangles.size();
+        std::cout << "car.glb: " << triangles << " triangles\n";
 
         constexpr int kSphereRings = 96;
         auto sphere = assets::sphere(25.0, kSphereRings);
@@ -27,10 +32,12 @@ int main(int argument_count, char** arguments) {
         write_text_file(folder / "sphere.glb", assets::glb_bytes("sphere", {sphere}));
 
         constexpr int kEnvironmentWidth = 1024;
-        const auto write_environment = [&](const char* name, auto* radiance) {
-            write_text_file(
-                folder / "environments" / name,
-                assets::hdr_bytes(assets::environment_map(radiance, kEnvironmentWidth)));
+        const auto write_environment = [&](const std::string& name, auto* radiance) {
+            const auto map = assets::environment_map(radiance, kEnvironmentWidth);
+            write_text_file(folder / "environments" / name, assets::hdr_bytes(map));
+            const auto average = assets::averages(map);
+            std::cout << name << ": mean radiance " << average.mean_radiance
+                      << ", a level white diffuser " << average.level_white << "\n";
         };
         write_environment("studio.hdr", assets::studio_radiance);
         write_environment("overcast.hdr", assets::overcast_radiance);

@@ -77,6 +77,11 @@ TEST(Environments, FileHoldsTheMapToTheFormatsPrecision) {
 TEST(Studio, HasItsAverageAndItsLightsWhereTheyShouldBe) {
     const auto map = shipped("studio.hdr");
     const double mean = integral(map, [](const glm::dvec3&) { return 1.0; }) / (4.0 * kPi);
+    // What the generator prints is what this other integral finds.
+    const double level =
+        integral(map, [](const glm::dvec3& d) { return std::max(d.y, 0.0); }) / kPi;
+    EXPECT_NEAR(assets::averages(map).mean_radiance, mean, 1e-6);
+    EXPECT_NEAR(assets::averages(map).level_white, level, 1e-4);
     EXPECT_GT(mean, 0.3);
     EXPECT_LT(mean, 0.5);
     // Overhead, along the car, which points along x.
