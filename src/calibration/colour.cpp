@@ -206,59 +206,6 @@ void check_options(const ColourOptions& options) {
                        "xyz_from_camera is singular or not finite");
 }
 
-/// Colours of the full primaries over black where XYZ was measured; averaged over the
-/// neighbourhood, whose mean is its middle's.
-CameraPrimaries primaries_at(const ColourSamples& samples,
-                             const PixelMixing& mixing,
-                             const std::vector<PixelStatus>& status,
-                             const glm::dvec3& share_of_channel,
-                             const std::optional<glm::dvec2>& place) {
-    std::vector<std::size_t> used;
-    if (place) {
-        for (const double reach : {2.5, 6.5}) {
-            for (std::size_t i = 0; i < samples.pixels.size(); ++i) {
-                const double dx = static_cast<double>(samples.pixels[i] %
-                                                      static_cast<std::uint32_t>(samples.width)) +
-                                  0.5 - place->x;
-                const double dy = static_cast<double>(samples.pixels[i] /
-                                                      static_cast<std::uint32_t>(samples.width)) +
-                                  0.5 - place->y;
-                if (status[i] == PixelStatus::measured && std::abs(dx) <= reach &&
-                    std::abs(dy) <= reach)
-                    used.push_back(i);
-            }
-            if (used.size() >= 4) break;
-            used.clear();
-        }
-        if (used.empty())
-            throw Refused(
-                "no valid pixel lies where the primaries were measured, projector pixel " +
-                    std::to_string(place->x) + ", " + std::to_string(place->y),
-                "measure XYZ on a well-lit part of the mock-up that the camera sees");
-    } else {
-        // Relative scale: pixels of middling brightness
-        std::vector<float> spans;
-        for (std::size_t i = 0; i < status.size(); ++i)
-            if (status[i] == PixelStatus::measured) spans.push_back(mixing.span[i].y);
-        const float low = quantile(spans, 0.45), high = quantile(spans, 0.55);
-        for (std::size_t i = 0; i < status.size(); ++i)
-            if (status[i] == PixelStatus::measured && mixing.span[i].y >= low &&
-                mixing.span[i].y <= high)
-                used.push_back(i);
-    }
-    CameraPrimaries primaries;
-    for (const std::size_t i : used) {
-        const glm::dmat3 vn = glm::inverse(glm::dmat3(mixing.unmixing[i]));
-        for (int k = 0; k < 3; ++k)
-            primaries.columns[k] +=
-                vn[k] * (static_cast<double>(mixing.span[i][k]) * share_of_channel[k]);
-        primaries.white += vn * glm::dvec3(mixing.span[i]);
-    }
-    primaries.columns /= static_cast<double>(used.size());
-    primaries.white /= static_cast<double>(used.size());
-    return primaries;
-}
-
 }  // namespace
 
 ColourCalibration calibrate_colour(const std::vector<RoledPhotograph>& captures,
@@ -359,8 +306,10 @@ ColourCalibration calibrate_colour(const std::vector<RoledPhotograph>& captures,
     progress.update(0.8, "relating the camera to XYZ");
     const CameraToXyz& xyz = options.camera_to_xyz;
     if (xyz.has_primaries) {
-        calibration.xyz_from_camera = xyz_from_primaries(
-            xyz, primaries_at(samples, mixing, status, share_of_channel, xyz.measured_at_px));
+        const CameraPrimaries camera =
+            primaries_at(samples, mixing, status, share_of_channel, xyz.measured_at_px);
+        calibration.xyz_from_camera = xyz_from_primaries(xyz, camera);
+        if (xyz.measured_at_px) match_black(xyz, camera, calibration.xyz_from_camera, mixing);
         calibration.xyz_origin = "primaries";
     } else {
         calibration.xyz_from_camera = xyz.origin.empty() ? xyz_from_rec709() : xyz.xyz_from_camera;

@@ -207,6 +207,40 @@ TEST(CalibrateColour, PrimariesGiveAbsoluteXyz) {
                "no valid pixel lies where the primaries");
 }
 
+TEST(CalibrateColour, RoomLightOfAnotherSpectrumIsMatchedByItsXyz) {
+    // The camera sees the room as `ambient`; the eye sees an XYZ that the projector's matrix does
+    // not give. What is wanted in XYZ must come out in XYZ all the same.
+    const glm::dmat3 truth(0.4, 0.2, 0.02, 0.3, 0.7, 0.1, 0.2, 0.1, 0.9);
+    const glm::dvec3 room_xyz(0.05, 0.04, 0.09);
+    SyntheticBench bench;
+    bench.ambient = {0.05, 0.06, 0.04};
+    bench.scale = [](glm::dvec2 p) { return 0.4 + p.x / 640.0; };
+    const auto seen = [&](glm::dvec3 drive, glm::dvec2 p) {
+        const glm::dvec3 projected = bench.camera_colour(drive, p) -
+                                     bench.units_per_light() * bench.ambient * bench.scale(p);
+        return truth * projected + room_xyz * bench.units_per_light() * bench.scale(p);
+    };
+    const glm::dvec2 place(200.5, 90.5);
+    ColourOptions options;
+    CameraToXyz& xyz = options.camera_to_xyz;
+    xyz.has_primaries = true;
+    xyz.measured_at_px = place;
+    xyz.black_xyz = seen(glm::dvec3(0.0), place);
+    for (int k = 0; k < 3; ++k) {
+        glm::dvec3 drive(0.0);
+        drive[k] = 255.0;
+        xyz.primaries_xyz[k] = seen(drive, place);
+    }
+    const ColourCalibration c = calibrate(bench, options);
+    for (const int x : {40, 160, 280}) {
+        const glm::dvec3 drive(60.0, 150.0, 210.0);
+        const glm::dvec3 wanted = seen(drive, {x + 0.5, 100.5});
+        const glm::dvec3 found = drive_for(
+            c, 100u * 320u + static_cast<std::size_t>(x), glm::inverse(c.xyz_from_camera) * wanted);
+        for (int k = 0; k < 3; ++k) EXPECT_NEAR(found[k], drive[k], 0.3) << x;
+    }
+}
+
 TEST(CalibrateColour, AGivenMatrixIsLabelled) {
     SyntheticBench bench;
     ColourOptions options;
