@@ -1,10 +1,10 @@
-// Shades the fragments of one part: one rectangle of the packed textures. Comes after the model's
-// reflectance functions (bsdf_glsl) and these definitions:
+// Shades one part. Comes after the model's reflectance functions (bsdf_glsl), these definitions
 //   LAMBERT, GGX or CLEARCOAT   the part's model
-//   LIGHTS n                    directional lights, 0 and more (not for LAMBERT)
+//   LIGHTS n                    directional lights, 0 and more
 //   ENVIRONMENT 0 or 1
+// and the inputs of a fragment: inputs_packed.glsl (surface map) or inputs_raster.glsl (preview).
 // Directions are in each fragment's own frame: z its mean normal, x its tangent. What does not
-// depend on the paint was solved beforehand; what does not depend on the fragment is a uniform.
+// depend on the fragment is a uniform.
 uniform float u_exposure;  // 2^EV
 uniform vec3 u_diffuse;    // what the diffuse layer sends for irradiance pi; see each model
 layout(location = 0) out vec4 radiance;
@@ -16,38 +16,18 @@ void write_radiance(vec3 colour) {
 
 #ifdef LAMBERT
 
-uniform sampler2D u_lit;  // radiance of a white diffuser, all lights and environment
-
 void main() {
-    write_radiance(u_diffuse * texelFetch(u_lit, ivec2(gl_FragCoord.xy), 0).rgb);
+    write_radiance(u_diffuse * diffuse_light_here());
 }
 
 #else
 
 uniform vec3 u_f0;
 uniform vec4 u_alpha;  // x, y, coat, coat's f0
-uniform sampler2D u_eye;  // wo, mean squared slope of the normals
-
-#if LIGHTS > 0
-uniform sampler2DArray u_lights;       // wi, visibility
-uniform vec3 u_light_radiance[LIGHTS]; // irradiance, facing the light
-uniform float u_light_radius2[LIGHTS]; // half of the disc's angle, squared
-#endif
-
 #if ENVIRONMENT
-uniform vec3 u_sky_diffuse;       // as u_diffuse, under light from everywhere
-uniform sampler2D u_sky;          // radiance of a white diffuser
-uniform sampler2DArray u_mirror;  // mean radiance over mirror lobes of several alphas
-uniform float u_mirror_unit;
-uniform vec2 u_base_layer;        // the lobe's lower layer, and the weight of the next
+uniform vec3 u_sky_diffuse;  // as u_diffuse, under light from everywhere
+uniform vec2 u_base_layer;   // of kMirrorAlphas: the lobe's lower layer and the weight of the next
 uniform vec2 u_coat_layer;
-
-vec3 mirrored(ivec2 at, vec2 layer) {
-    int below = int(layer.x);
-    return u_mirror_unit * mix(texelFetch(u_mirror, ivec3(at, below), 0).rgb,
-                               texelFetch(u_mirror, ivec3(at, below + 1), 0).rgb,
-                               layer.y);
-}
 #endif
 
 BsdfParameters paint() {
@@ -74,8 +54,7 @@ vec3 through_coat(BsdfParameters p, float mu) {
 #endif
 
 void main() {
-    ivec2 at = ivec2(gl_FragCoord.xy);
-    vec4 eye = texelFetch(u_eye, at, 0);
+    vec4 eye = eye_here();
     vec3 wo = eye.xyz;
     BsdfParameters p = paint();
     float f90 = grazing_reflectance(max_component(p.f0));
@@ -88,7 +67,7 @@ void main() {
 
 #if LIGHTS > 0
     for (int k = 0; k < LIGHTS; ++k) {
-        vec4 light = texelFetch(u_lights, ivec3(at, k), 0);
+        vec4 light = light_here(k);
         vec3 wi = light.xyz;
         vec3 h = wi + wo;
         float hh = max(dot(h, h), 1e-8);
@@ -110,11 +89,11 @@ void main() {
 #endif
 
 #if ENVIRONMENT
-    vec3 base = ggx_environment_albedo(p, wo.z) * mirrored(at, u_base_layer);
-    vec3 diffuse = u_sky_diffuse * layer_o * texelFetch(u_sky, at, 0).rgb;
+    vec3 base = ggx_environment_albedo(p, wo.z) * mirrored_here(u_base_layer, sqrt(p.alpha_x * p.alpha_y));
+    vec3 diffuse = u_sky_diffuse * layer_o * sky_here();
 #ifdef CLEARCOAT
     sum += through_o * (base * through_o + diffuse);
-    sum += coat_albedo(p, wo.z) * mirrored(at, u_coat_layer);
+    sum += coat_albedo(p, wo.z) * mirrored_here(u_coat_layer, p.coat_alpha);
 #else
     sum += base + diffuse;
 #endif

@@ -33,6 +33,15 @@ void sample_disc(const glm::vec3& centre,
     }
 }
 
+/// 1 - cos of the disc's half-angle.
+double cap_of(const DirectionalLight& light) {
+    return 2.0 * std::pow(std::sin(0.25 * light.angle_rad), 2.0);
+}
+
+double turn_of(std::size_t seed) {
+    return 2.0 * std::numbers::pi * (hash_3d(static_cast<std::uint32_t>(seed), 17u, 3u) * 0x1p-32);
+}
+
 /// Sums up what is seen of the light from one fragment.
 LightAtFragment summarise(const glm::vec3& normal,
                           const glm::vec3& centre,
@@ -58,6 +67,28 @@ LightAtFragment summarise(const glm::vec3& normal,
 }
 
 }  // namespace
+
+float disc_openness(const Tracer& tracer,
+                    const glm::vec3& position_mm,
+                    const glm::vec3& normal,
+                    const DirectionalLight& light,
+                    int ray_count,
+                    std::size_t seed) {
+    const glm::vec3 centre(glm::normalize(light.direction));
+    std::vector<glm::vec3> directions(
+        static_cast<std::size_t>(light.angle_rad > 0.0 ? ray_count : 1), centre);
+    if (light.angle_rad > 0.0) {
+        sample_disc(centre, basis_around(centre), cap_of(light), turn_of(seed), directions);
+    }
+    int open = 0;
+    for (const glm::vec3& direction : directions) {
+        TraceRay ray;
+        ray.origin = offset_origin(position_mm, normal);
+        ray.direction = direction;
+        if (!tracer.occluded(ray)) ++open;
+    }
+    return static_cast<float>(open) / static_cast<float>(directions.size());
+}
 
 Basis basis_around(const glm::vec3& n) {
     const float sign = std::copysign(1.0f, n.z);
@@ -87,7 +118,6 @@ std::vector<LightAtFragment> light_at_fragments(const Mesh& mesh,
                    fmt::format("{} shadow rays a fragment", rays_per_fragment));
     const glm::vec3 centre(glm::normalize(light.direction));
     const Basis basis = basis_around(centre);
-    const double one_minus_cos = 2.0 * std::pow(std::sin(0.25 * light.angle_rad), 2.0);
     const bool point = light.angle_rad <= 0.0 || rays_per_fragment == 1;
     const std::size_t ray_count =
         point ? std::min(kSamplesAFragment, static_cast<std::size_t>(rays_per_fragment))
@@ -105,9 +135,7 @@ std::vector<LightAtFragment> light_at_fragments(const Mesh& mesh,
             result[i].direction = centre;
             if (glm::dot(normal, centre) <= lowest) continue;
             if (!point) {
-                const std::uint32_t hash = hash_3d(static_cast<std::uint32_t>(i), 17u, 3u);
-                const double turn = 2.0 * std::numbers::pi * hash * 0x1p-32;
-                sample_disc(centre, basis, one_minus_cos, turn, directions);
+                sample_disc(centre, basis, cap_of(light), turn_of(i), directions);
             }
             for (std::size_t k = 0; k < ray_count; ++k) {
                 rays[k].origin = ray_origin(mesh, map, i, k % kSamplesAFragment);

@@ -28,6 +28,15 @@ std::vector<LightAtFragment> light_at_fragments(const Mesh& mesh,
                                                 int rays_per_fragment,
                                                 const Progress& progress = {});
 
+/// Share of a light's disc that a point sees: `ray_count` stratified rays, turned by a hash of
+/// `seed`. The horizon of `normal` does not count.
+float disc_openness(const Tracer& tracer,
+                    const glm::vec3& position_mm,
+                    const glm::vec3& normal,
+                    const DirectionalLight& light,
+                    int ray_count,
+                    std::size_t seed);
+
 /// Where rays from a fragment start: its k-th sub-sample, moved off the surface on the seen side.
 glm::vec3 ray_origin(const Mesh& mesh, const SurfaceMap& map, std::size_t fragment, std::size_t k);
 

@@ -9,6 +9,7 @@
 
 #include "appearance/bsdf.h"
 #include "core/paths.h"
+#include "radiance/environment_filter.h"
 #include "radiance/sky_visibility.h"
 
 namespace livery {
@@ -43,9 +44,11 @@ glm::vec2 mirror_layer(float alpha) {
     return {static_cast<float>(below), glm::clamp((a - 1.0f / alpha) / (a - b), 0.0f, 1.0f)};
 }
 
-/// What of a paint does not depend on the fragment.
-void set_paint(Program& program, const Material& material) {
+}  // namespace
+
+void set_paint(Program& program, const Material& material, double exposure_ev) {
     const BsdfParameters p = parameters_of(material);
+    program.set("u_exposure", static_cast<float>(std::exp2(exposure_ev)));
     program.set("u_f0", p.f0);
     program.set("u_base_layer", mirror_layer(std::sqrt(p.alpha_x * p.alpha_y)));
     program.set("u_coat_layer", mirror_layer(p.coat_alpha));
@@ -74,21 +77,31 @@ void set_paint(Program& program, const Material& material) {
     }
 }
 
-}  // namespace
+Program make_shading_program(const ShadingKey& key, ShadingSource source) {
+    const auto [model, lights, environment] = key;
+    const bool raster = source == ShadingSource::raster;
+    const std::string defines = fmt::format(
+        "#define {} 1\n#define LIGHTS {}\n#define ENVIRONMENT {}\n"
+        "#define LAYERS {}\n#define FIRST_ALPHA {:.8f}\n",
+        define_of(model),
+        lights,
+        environment ? 1 : 0,
+        kLayerAlphas.size(),
+        kLayerAlphas[1]);
+    std::string text = "#version 450 core\n" + bsdf_glsl(model) + defines;
+    if (model != ReflectanceModel::lambert) text += shipped_text("disc.glsl");
+    text += shipped_text(raster ? "inputs_raster.glsl" : "inputs_packed.glsl");
+    text += shipped_text("shade.glsl");
+    const ShaderSource fragment{fmt::format("shade {}", define_of(model)), text};
+    if (!raster) return Program::screen_pass(fragment);
+    return Program(load_shader("radiance/raster.vert", {fmt::format("LIGHTS {}", lights)}),
+                   fragment);
+}
 
-Program& ShadingPrograms::program_for(const Key& key) {
+Program& ShadingPrograms::program_for(const ShadingKey& key) {
     const auto found = programs_.find(key);
     if (found != programs_.end()) return found->second;
-    const auto [model, lights, environment] = key;
-    std::string text = "#version 450 core\n" + bsdf_glsl(model);
-    text += fmt::format("#define {} 1\n#define LIGHTS {}\n#define ENVIRONMENT {}\n",
-                        define_of(model),
-                        lights,
-                        environment ? 1 : 0);
-    if (model != ReflectanceModel::lambert) text += shipped_text("disc.glsl");
-    text += shipped_text("shade.glsl");
-    Program program = Program::screen_pass({fmt::format("shade {}", define_of(model)), text});
-    return programs_.emplace(key, std::move(program)).first->second;
+    return programs_.emplace(key, make_shading_program(key, ShadingSource::packed)).first->second;
 }
 
 void ShadingPrograms::shade(const Material& material,
@@ -101,8 +114,7 @@ void ShadingPrograms::shade(const Material& material,
     const int lights = lambert ? 0 : static_cast<int>(inputs.light_irradiance.size());
     const bool environment = !lambert && inputs.mirror;
     Program& program = program_for({material.model, lights, environment});
-    set_paint(program, material);
-    program.set("u_exposure", static_cast<float>(std::exp2(exposure_ev)));
+    set_paint(program, material, exposure_ev);
     if (lambert) {
         program.set("u_lit", 0);
         inputs.lit.bind(0);

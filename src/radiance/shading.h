@@ -28,6 +28,18 @@ struct ShadingInputs {
     std::vector<float> light_radius2;         ///< half of the disc's angle, squared
 };
 
+/// Where a shading program finds its fragments' inputs.
+enum class ShadingSource {
+    packed,  ///< the surface map's textures
+    raster   ///< the mesh's vertices
+};
+using ShadingKey = std::tuple<ReflectanceModel, int, bool>;  ///< model, lights, environment
+
+Program make_shading_program(const ShadingKey& key, ShadingSource source);
+
+/// Uniforms that depend on the paint and the exposure only.
+void set_paint(Program& program, const Material& material, double exposure_ev);
+
 /// Compiles on first use.
 class ShadingPrograms {
   public:
@@ -40,10 +52,9 @@ class ShadingPrograms {
     int compiled() const { return static_cast<int>(programs_.size()); }
 
   private:
-    using Key = std::tuple<ReflectanceModel, int, bool>;  ///< model, lights, environment
-    Program& program_for(const Key& key);
+    Program& program_for(const ShadingKey& key);
 
-    std::map<Key, Program> programs_;
+    std::map<ShadingKey, Program> programs_;
     ScreenPass screen_;
 };
 

@@ -1,0 +1,49 @@
+// Inputs of a fragment from the packed textures: what does not depend on the paint was solved
+// beforehand (src/radiance/fragment_inputs.cpp).
+#if LIGHTS > 0
+uniform vec3 u_light_radiance[LIGHTS];  // irradiance, facing the light
+uniform float u_light_radius2[LIGHTS];  // half of the disc's angle, squared
+#endif
+
+#ifdef LAMBERT
+
+uniform sampler2D u_lit;
+
+// Radiance of a white diffuser, all lights and environment.
+vec3 diffuse_light_here() {
+    return texelFetch(u_lit, ivec2(gl_FragCoord.xy), 0).rgb;
+}
+
+#else
+
+uniform sampler2D u_eye;
+uniform sampler2DArray u_lights;
+uniform sampler2D u_sky;
+uniform sampler2DArray u_mirror;
+uniform float u_mirror_unit;
+
+// Direction to the eye, mean squared slope of the normals.
+vec4 eye_here() {
+    return texelFetch(u_eye, ivec2(gl_FragCoord.xy), 0);
+}
+
+// Direction to light k, its visibility.
+vec4 light_here(int k) {
+    return texelFetch(u_lights, ivec3(gl_FragCoord.xy, k), 0);
+}
+
+// Radiance of a white diffuser under the environment.
+vec3 sky_here() {
+    return texelFetch(u_sky, ivec2(gl_FragCoord.xy), 0).rgb;
+}
+
+// Environment over a mirror lobe, between two layers.
+vec3 mirrored_here(vec2 layer, float alpha) {
+    int below = int(layer.x);
+    return u_mirror_unit *
+           mix(texelFetch(u_mirror, ivec3(gl_FragCoord.xy, below), 0).rgb,
+               texelFetch(u_mirror, ivec3(gl_FragCoord.xy, below + 1), 0).rgb,
+               layer.y);
+}
+
+#endif

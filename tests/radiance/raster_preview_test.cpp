@@ -1,0 +1,128 @@
+#include "radiance/raster_preview.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "gl/context.h"
+#include "radiance/renderer.h"
+#include "radiance/scenes.h"
+
+namespace livery {
+namespace {
+
+/// Differences of both paths' pictures on pixels of one part whose neighbours are wholly of that
+/// part: silhouettes, part borders and shadow edges between vertices are each path's own.
+std::vector<double> interior_differences(const ImageF& a, const ImageF& b, const SurfaceMap& map) {
+    std::vector<double> differences;
+    std::vector<int> parts(map.coverage.pixel_count(), -1), fragments(map.coverage.pixel_count());
+    for (const Fragment& f : map.fragments) {
+        parts[f.pixel] = f.part;
+        fragments[f.pixel] += 1;
+    }
+    for (int y = 1; y + 1 < map.height; ++y) {
+        for (int x = 1; x + 1 < map.width; ++x) {
+            bool interior = true;
+            const auto centre = map.coverage.index(x, y);
+            for (int v = y - 1; v <= y + 1; ++v) {
+                for (int u = x - 1; u <= x + 1; ++u) {
+                    const auto i = map.coverage.index(u, v);
+                    interior = interior && map.coverage.values[i] >= 1.0f && fragments[i] == 1 &&
+                               parts[i] == parts[centre];
+                }
+            }
+            if (!interior) continue;
+            double largest = 0.0;
+            for (int c = 0; c < 3; ++c) {
+                largest =
+                    std::max(largest, static_cast<double>(std::abs(a.at(x, y, c) - b.at(x, y, c))));
+            }
+            differences.push_back(largest);
+        }
+    }
+    std::sort(differences.begin(), differences.end());
+    return differences;
+}
+
+/// Brighter to one side and below, turned about the vertical.
+std::shared_ptr<const Environment> gradient() {
+    Environment sky;
+    sky.rotation_rad = 0.9;
+    sky.scale = 0.5;
+    sky.radiance_working = ImageF(64, 32, 3);
+    for (int y = 0; y < 32; ++y) {
+        for (int x = 0; x < 64; ++x) {
+            const glm::dvec3 d = direction_from_uv(sky, {(x + 0.5) / 64, (y + 0.5) / 32});
+            for (int c = 0; c < 3; ++c) {
+                sky.radiance_working.at(x, y, c) = static_cast<float>(1.0 + 0.7 * d.x - 0.2 * d.y);
+            }
+        }
+    }
+    return std::make_shared<const Environment>(sky);
+}
+
+TEST(RasterPreview, AgreesWithTheSurfaceMapInside) {
+    HeadlessContext context(GlDevice::software);
+    View view = test_view(120, 90);
+    view.distortion = {-0.1, 0.02, 1e-3, -5e-4, 0.0};
+    for (const auto model :
+         {ReflectanceModel::lambert, ReflectanceModel::ggx, ReflectanceModel::clearcoat}) {
+        Scene scene = scene_of(two_spheres(), paint_of(model, 0.2));
+        scene.lights = {light_from({0.5, 0.8, 0.6}, 3.0 * kDegree_rad),
+                        light_from({-0.9, 0.3, 0.5}, 0.0, 0.3)};
+        if (model == ReflectanceModel::clearcoat) scene.environment = gradient();
+        RadianceRenderer renderer(scene.product, view);
+        FramePlan plan = plan_frame(scene, Quality::normal, FrameStage::radiance);
+        renderer.render(scene, plan);
+        RasterPreview preview(scene.product);
+        preview.render(scene, view);
+        const auto differences =
+            interior_differences(renderer.read_back(), preview.read_back(), renderer.surface_map());
+        ASSERT_GT(differences.size(), 1000u);
+        // Shadows and openness are interpolated over triangles of a millimetre or two here; the
+        // preview's mirror lobes are round, the renderer's are sampled.
+        const double median = differences[differences.size() / 2];
+        const double p95 = differences[differences.size() * 95 / 100];
+        std::printf("    model %d median %.4f p95 %.4f largest %.4f\n",
+                    static_cast<int>(model),
+                    median,
+                    p95,
+                    differences.back());
+        EXPECT_LT(median, 0.01);
+        EXPECT_LT(p95, 0.05);
+    }
+}
+
+TEST(RasterPreview, FollowsTheViewAndLeavesTheRestEmpty) {
+    HeadlessContext context(GlDevice::software);
+    Scene scene = scene_of(make_sphere({0, 0, 0}, 40.0, 64, "ball"),
+                           paint_of(ReflectanceModel::lambert, 0.5));
+    scene.lights = {light_from({0, 0.3, 1}, 0.0)};
+    RasterPreview preview(scene.product, 1);
+    for (const glm::dvec3 from : {glm::dvec3(0, 0, 500), glm::dvec3(400, 100, 300)}) {
+        const View view = look_at(from, {0, 40, 0}, 0.4, 64, 48);
+        preview.render(scene, view);
+        const ImageF image = preview.read_back();
+        const auto centre = project(view, {0, 0, 0});
+        ASSERT_TRUE(centre);
+        EXPECT_EQ(image.at(static_cast<int>(centre->x), static_cast<int>(centre->y), 3), 1.0f);
+        EXPECT_EQ(image.at(0, 0, 3), 0.0f);
+        EXPECT_EQ(image.at(0, 0, 0), 0.0f);
+    }
+}
+
+TEST(RasterPreview, RefusesWhatItCannotDraw) {
+    HeadlessContext context(GlDevice::software);
+    const Scene scene = scene_of(two_spheres(), paint_of(ReflectanceModel::lambert, 0.5));
+    EXPECT_THROW(RasterPreview(nullptr), std::invalid_argument);
+    EXPECT_THROW(RasterPreview(scene.product, 9), std::invalid_argument);
+    RasterPreview preview(scene.product);
+    const Scene other = scene_of(two_spheres(), paint_of(ReflectanceModel::lambert, 0.5));
+    EXPECT_THROW(preview.render(other, test_view(8, 8)), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace livery
