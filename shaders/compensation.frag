@@ -11,7 +11,6 @@ layout(binding = 4) uniform sampler2D rho;             // drive, one row a chann
 uniform int last_of_rho[3];
 uniform uint dither_per_column;
 uniform uint dither_per_row;
-uniform uvec2 dither_of_green_blue;
 
 out vec4 drive;
 
@@ -136,8 +135,7 @@ void main() {
         drive = vec4(0.0, 0.0, 0.0, 1.0);
         return;
     }
-    uint column = uint(pixel.x) * dither_per_column + uint(pixel.y) * dither_per_row;
-    uvec3 phase = uvec3(column) + uvec3(0u, dither_of_green_blue);
-    vec3 threshold = vec3(phase >> 8u) * (1.0 / 16777216.0);
+    uint phase = uint(pixel.x) * dither_per_column + uint(pixel.y) * dither_per_row;
+    float threshold = float(phase >> 8u) * (1.0 / 16777216.0);
     drive = vec4(min(floor(drive_of(n) + threshold), vec3(255.0)) / 255.0, 1.0);
 }

@@ -85,7 +85,7 @@ void block_from_table(const kernel::Functions& functions,
         const glm::vec3 drive =
             drive_of_n(table.non_additive, glm::vec3(n.r[i], n.g[i], n.b[i]), &residual);
         for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint32_t phase = job.pixels[i] * dither::kPerColumn + job.dither_of_row[k];
+            const std::uint32_t phase = job.pixels[i] * dither::kPerColumn + job.dither_of_row;
             const auto level =
                 static_cast<int>(drive[static_cast<int>(k)] + dither::threshold(phase));
             packed[i] |= static_cast<std::uint32_t>(std::min(level, 255)) << (8 * k);
@@ -116,10 +116,8 @@ double fraction(std::int64_t part, std::int64_t whole) {
 
 }  // namespace
 
-float dither_of(std::uint32_t x, std::uint32_t y, std::uint32_t channel) {
-    return dither::threshold(x * dither::kPerColumn + y * dither::kPerRow +
-                             dither::kOfChannel[channel % 3]) -
-           0.5f;
+float dither_of(std::uint32_t x, std::uint32_t y) {
+    return dither::threshold(x * dither::kPerColumn + y * dither::kPerRow) - 0.5f;
 }
 
 void compensate_with(const kernel::Functions& functions,
@@ -161,10 +159,7 @@ void compensate_with(const kernel::Functions& functions,
         for (std::size_t plane = 0; plane < 12; ++plane) {
             job.coefficients[plane] = table.coefficients.data() + plane * total + begin;
         }
-        for (std::size_t k = 0; k < 3; ++k) {
-            job.dither_of_row[k] =
-                dither::kOfChannel[k] + row * dither::kPerRow - row * width * dither::kPerColumn;
-        }
+        job.dither_of_row = row * dither::kPerRow - row * width * dither::kPerColumn;
         gather(wanted, first, job.count, &colours);
         if (table.non_additive.grid > 0) {
             block_from_table(

@@ -97,7 +97,8 @@ class GamutMap {
     double floor_lightness_ = 0.0;
 };
 
-/// The fixed dither of pixel (x, y), channel c, in [-0.5, 0.5) drive levels; shaders/ has the same.
-float dither_of(std::uint32_t x, std::uint32_t y, std::uint32_t channel);
+/// The fixed dither of pixel (x, y), the same for its three channels, in [-0.5, 0.5) drive levels;
+/// shaders/ has the same.
+float dither_of(std::uint32_t x, std::uint32_t y);
 
 }  // namespace livery

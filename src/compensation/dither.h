@@ -1,5 +1,7 @@
 // The dither's constants, shared by the kernels. An additive lattice (Roberts' R2 sequence): any
-// few neighbouring pixels hold evenly spread thresholds, and it is exact in 32-bit integers.
+// few neighbouring pixels hold evenly spread thresholds, and it is exact in 32-bit integers. The
+// three channels share a pixel's threshold: what cutting to whole levels adds is then mostly
+// lightness, to which the eye is far less sensitive in dark paints than to chroma.
 #pragma once
 
 #include <array>
@@ -9,8 +11,6 @@ namespace livery::dither {
 
 inline constexpr std::uint32_t kPerColumn = 3242174889u;  ///< 2^32 / 1.32471795724...
 inline constexpr std::uint32_t kPerRow = 2447445414u;     ///< 2^32 / 1.32471795724...^2
-/// A third of a turn between channels: they never step up together.
-inline constexpr std::array<std::uint32_t, 3> kOfChannel = {0u, 1431655765u, 2863311530u};
 
 /// In [0, 1): what is added before cutting to whole levels.
 inline float threshold(std::uint32_t phase) {

@@ -91,8 +91,6 @@ struct GpuCompensation::State {
         }
         program.set("dither_per_column", dither::kPerColumn);
         program.set("dither_per_row", dither::kPerRow);
-        program.set("dither_of_green_blue",
-                    glm::uvec2(dither::kOfChannel[1], dither::kOfChannel[2]));
         program.set("tile_px", static_cast<float>(kTile));
         program.set("size_px",
                     glm::vec2(static_cast<float>(table.width), static_cast<float>(table.height)));

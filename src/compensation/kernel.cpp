@@ -63,7 +63,7 @@ LIVERY_ALWAYS_INLINE void add_levels(const Job& job,
     const float* __restrict curve = job.curves[channel].drive_from_n;
     const std::int32_t last = job.curves[channel].count - 1;
     const float scale = static_cast<float>(last);
-    const std::uint32_t row = job.dither_of_row[channel];
+    const std::uint32_t row = job.dither_of_row;
     const std::uint32_t* __restrict pixels = job.pixels;
     const std::size_t count = job.count;
     const auto shift = static_cast<unsigned>(8 * channel);

@@ -25,7 +25,7 @@ struct Job {
     const std::uint32_t* pixels = nullptr;
     std::size_t count = 0;
     std::array<Curve, 3> curves;
-    std::array<std::uint32_t, 3> dither_of_row;  ///< phase of column 0 less the row's pixel index
+    std::uint32_t dither_of_row;  ///< phase of column 0 less the row's pixel index
 };
 
 struct Counts {
