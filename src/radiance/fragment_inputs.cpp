@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/colour.h"
+#include "core/parallel.h"
 
 namespace livery {
 namespace {
@@ -157,9 +158,11 @@ bool FragmentInputs::update_mirror(const Scene& scene,
     const bool occluded = find_pass(plan, kReflectionPass) != nullptr;
     const bool other_rays = occluded && (!mirror_visibility_ || mirror_visibility_->rays != rays ||
                                          visibility_eye_ != scene.eye_in_world_mm);
+    const bool trust_sky = plan.quality != Quality::high && sky_visibility_;
+    const SkyVisibility* sky = trust_sky ? &*sky_visibility_ : nullptr;
     clock.run(kReflectionPass, other_rays, [&] {
-        mirror_visibility_ =
-            solve_mirror_visibility(mesh_, tracer_, map_, scene.eye_in_world_mm, rays, progress);
+        mirror_visibility_ = solve_mirror_visibility(
+            mesh_, tracer_, map_, scene.eye_in_world_mm, rays, sky, progress);
         visibility_eye_ = scene.eye_in_world_mm;
     });
     if (!occluded) mirror_visibility_.reset();
@@ -183,20 +186,25 @@ void FragmentInputs::upload_mirror(const Scene& scene) {
     make(shading_.mirror,
          {kPackedWidth, layout_.rows, static_cast<int>(kMirrorAlphas.size())},
          TexelFormat::rgba16f);
-    for (std::size_t lobe = 0; lobe < kMirrorAlphas.size(); ++lobe) {
-        const auto value = [&](std::size_t i) {
-            const glm::vec3 radiance = mirrored_at_fragment(mesh_,
-                                                            map_,
-                                                            i,
-                                                            lobe,
-                                                            *scene.environment,
-                                                            filtered_,
-                                                            scene.eye_in_world_mm,
-                                                            visibility);
-            return glm::vec4(radiance / shading_.mirror_unit, 1.0f);
-        };
-        shading_.mirror.upload(
-            std::span<const float>(packed(map_, layout_, value)), 0, static_cast<int>(lobe));
+    const std::size_t layer_size = static_cast<std::size_t>(layout_.rows) * kPackedWidth * 4;
+    std::vector<float> texels(layer_size * kMirrorAlphas.size(), 0.0f);
+    parallel_for(map_.fragments.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto lobes = mirrored_at_fragment(
+                mesh_, map_, i, *scene.environment, filtered_, scene.eye_in_world_mm, visibility);
+            const std::size_t at = 4 * layout_.address(i, map_.fragments[i].part);
+            for (std::size_t k = 0; k < lobes.size(); ++k) {
+                for (std::size_t c = 0; c < 3; ++c) {
+                    texels[k * layer_size + at + c] =
+                        lobes[k][static_cast<int>(c)] / shading_.mirror_unit;
+                }
+            }
+        }
+    });
+    for (std::size_t k = 0; k < kMirrorAlphas.size(); ++k) {
+        shading_.mirror.upload(std::span<const float>(texels).subspan(k * layer_size, layer_size),
+                               0,
+                               static_cast<int>(k));
     }
 }
 

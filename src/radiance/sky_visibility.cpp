@@ -217,6 +217,7 @@ MirrorVisibility solve_mirror_visibility(const Mesh& mesh,
                                          const SurfaceMap& map,
                                          glm::dvec3 eye_mm,
                                          int rays_a_lobe,
+                                         const SkyVisibility* sky,
                                          const Progress& progress) {
     check_argument(rays_a_lobe > 0 && rays_a_lobe <= 16,
                    fmt::format("{} rays a mirror lobe, 1 to 16 are possible", rays_a_lobe));
@@ -229,6 +230,7 @@ MirrorVisibility solve_mirror_visibility(const Mesh& mesh,
         std::vector<TraceRay> rays;
         std::vector<std::uint8_t> blocked;
         for (std::size_t i = begin; i < end; ++i) {
+            if (sky && sky->blocked[i] == 0) continue;
             const MirrorLobe mirror(mesh, map, i, eye_mm);
             std::uint16_t* words = &result.blocked[i * kLobes];
             for (std::size_t lobe = 0; lobe < kLobes; ++lobe) {
@@ -254,39 +256,52 @@ MirrorVisibility solve_mirror_visibility(const Mesh& mesh,
     return result;
 }
 
-glm::vec3 mirrored_at_fragment(const Mesh& mesh,
-                               const SurfaceMap& map,
-                               std::size_t fragment,
-                               std::size_t lobe,
-                               const Environment& environment,
-                               const FilteredEnvironment& filtered,
-                               glm::dvec3 eye_mm,
-                               const MirrorVisibility* visibility) {
-    const float alpha = kMirrorAlphas[lobe];
-    const auto radiance = [&](const glm::vec3& direction, float its_alpha) {
-        return sample_layers(
-            filtered, uv_from_direction(environment, glm::dvec3(direction)), its_alpha);
-    };
+std::array<glm::vec3, kMirrorAlphas.size()> mirrored_at_fragment(
+    const Mesh& mesh,
+    const SurfaceMap& map,
+    std::size_t fragment,
+    const Environment& environment,
+    const FilteredEnvironment& filtered,
+    glm::dvec3 eye_mm,
+    const MirrorVisibility* visibility) {
+    std::array<glm::vec3, kMirrorAlphas.size()> result{};
     const auto scale = static_cast<float>(environment.scale);
+    const auto place = [&](const glm::vec3& direction) {
+        return uv_from_direction(environment, glm::dvec3(direction));
+    };
     if (!visibility) {
         const Fragment& f = map.fragments[fragment];
         const glm::vec3 wo = toward_eye(f, eye_mm);
-        return scale * radiance(2.0f * glm::dot(wo, f.normal) * f.normal - wo,
-                                std::sqrt(alpha * alpha + f.normal_variance));
+        const glm::dvec2 uv = place(2.0f * glm::dot(wo, f.normal) * f.normal - wo);
+        for (std::size_t lobe = 0; lobe < result.size(); ++lobe) {
+            const float alpha = kMirrorAlphas[lobe];
+            result[lobe] =
+                scale * sample_layers(filtered, uv, std::sqrt(alpha * alpha + f.normal_variance));
+        }
+        return result;
     }
     const MirrorLobe mirror(mesh, map, fragment, eye_mm);
-    const std::uint16_t blocked = visibility->blocked[fragment * kMirrorAlphas.size() + lobe];
-    glm::vec3 seen(0.0f);
-    float whole = 0.0f;
-    const int count = samples_of(alpha, visibility->rays);
-    for (int k = 0; k < count; ++k) {
-        const LobeSample sample = mirror.sample(alpha, k, count);
-        if (sample.weight <= 0.0f) continue;
-        whole += sample.weight;
-        if ((blocked >> k) & 1u) continue;
-        seen += sample.weight * radiance(sample.direction, sample.alpha);
+    std::array<glm::dvec2, kSamplesAFragment> straight;
+    for (std::size_t k = 0; k < straight.size(); ++k) {
+        const int each = static_cast<int>(kSamplesAFragment);
+        straight[k] = place(mirror.sample(kMirrorAlphas[0], static_cast<int>(k), each).direction);
     }
-    return whole > 0.0f ? scale * seen / whole : glm::vec3(0.0f);
+    for (std::size_t lobe = 0; lobe < result.size(); ++lobe) {
+        const float alpha = kMirrorAlphas[lobe];
+        const std::uint16_t blocked = visibility->blocked[fragment * result.size() + lobe];
+        const int count = samples_of(alpha, visibility->rays);
+        float whole = 0.0f;
+        for (int k = 0; k < count; ++k) {
+            const LobeSample sample = mirror.sample(alpha, k, count);
+            whole += sample.weight;
+            if (sample.weight <= 0.0f || ((blocked >> k) & 1u)) continue;
+            const glm::dvec2 uv =
+                is_narrow(alpha) ? straight[static_cast<std::size_t>(k)] : place(sample.direction);
+            result[lobe] += sample.weight * sample_layers(filtered, uv, sample.alpha);
+        }
+        result[lobe] *= whole > 0.0f ? scale / whole : 0.0f;
+    }
+    return result;
 }
 
 }  // namespace livery
