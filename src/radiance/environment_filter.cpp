@@ -117,13 +117,23 @@ FilteredEnvironment filter_environment(const Environment& environment,
         if (parts.blurred) result.blurred = std::move(pictures[1]);
     }
     if (parts.mirrored) {
-        std::vector<std::vector<double>> kernels;
+        // Lobes of alpha .11 and more are smooth on 128 columns, which stay in a core's cache
+        constexpr float kWide = 0.11f;
+        std::vector<std::vector<double>> narrow, wide;
         for (std::size_t k = 1; k < kLayerAlphas.size(); ++k) {
-            kernels.push_back(ggx_lobe_kernel(static_cast<double>(kLayerAlphas[k]), kDegree));
+            const float alpha = kLayerAlphas[k];
+            (alpha < kWide ? narrow : wide)
+                .push_back(
+                    ggx_lobe_kernel(static_cast<double>(alpha), alpha < kWide ? kDegree : 63));
         }
-        result.mirrored = synthesise_sphere(harmonics, kernels, 512, 256);
+        result.mirrored.push_back(resample(source, 512, 256));
+        for (ImageF& picture : synthesise_sphere(harmonics, narrow, 512, 256)) {
+            result.mirrored.push_back(std::move(picture));
+        }
+        for (ImageF& picture : synthesise_sphere(harmonics, wide, 128, 64)) {
+            result.mirrored.push_back(std::move(picture));
+        }
         for (ImageF& picture : result.mirrored) clamp_to_positive(picture);
-        result.mirrored.insert(result.mirrored.begin(), resample(source, 512, 256));
     }
     progress.update(1.0, "filtering the environment");
     return result;

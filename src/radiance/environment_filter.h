@@ -29,10 +29,14 @@ inline constexpr std::array<float, 14> kLayerAlphas{0.0f,
                                                     0.64f,
                                                     0.905097f};
 
+/// Texels of the layers that filtering writes.
+inline constexpr int kFilterTexels = 7 * 512 * 256 + 7 * 128 * 64;
+
 /// All in the map's own frame (no rotation) and units (no scale), latitude-longitude.
 struct FilteredEnvironment {
-    std::vector<ImageF> mirrored;  ///< one a layer: mean over the GGX lobe seen along the normal
-    ImageF diffuse;                ///< what a white diffuser facing there sends: irradiance / pi
+    /// One a layer: mean over the GGX lobe seen along the normal; fewer texels for wide lobes.
+    std::vector<ImageF> mirrored;
+    ImageF diffuse;  ///< what a white diffuser facing there sends: irradiance / pi
     ImageF blurred;  ///< 0.1 rad Gaussian: the mean over one of many stratified directions
 };
 

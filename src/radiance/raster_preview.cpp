@@ -174,9 +174,14 @@ void RasterPreview::State::upload_layers(const Environment& scene_environment,
                   TexelWrap::clamp);
     std::vector<float> texels(sharpest.pixel_count() * 4, 1.0f);
     for (std::size_t k = 0; k < filtered.mirrored.size(); ++k) {
-        for (std::size_t i = 0; i < sharpest.pixel_count(); ++i) {
-            for (std::size_t c = 0; c < 3; ++c) {
-                texels[4 * i + c] = filtered.mirrored[k].values[3 * i + c] / unit;
+        for (int y = 0; y < sharpest.height; ++y) {
+            for (int x = 0; x < sharpest.width; ++x) {
+                const glm::dvec2 uv((x + 0.5) / sharpest.width, (y + 0.5) / sharpest.height);
+                const glm::vec3 radiance = sample_sphere(filtered.mirrored[k], uv) / unit;
+                for (int c = 0; c < 3; ++c) {
+                    texels[4 * (sharpest.index(x, y) / 3) + static_cast<std::size_t>(c)] =
+                        radiance[c];
+                }
             }
         }
         layers.upload(std::span<const float>(texels), 0, static_cast<int>(k));

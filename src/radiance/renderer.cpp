@@ -175,7 +175,7 @@ void RadianceRenderer::count_work(const Scene& scene, FramePlan& plan) const {
     }
     set(kIrradiancePass, fragments);
     set(kOcclusionPass, fragments * rays.sky);
-    set(kFilterPass, 512.0 * 256.0 * static_cast<double>(kLayerAlphas.size()));
+    set(kFilterPass, static_cast<double>(kFilterTexels));
     set(kReflectionPass, fragments * mirror_rays(rays.mirror));
     set(kMirrorPass, fragments * static_cast<double>(kMirrorAlphas.size()));
     set(kDirectionsPass, fragments);

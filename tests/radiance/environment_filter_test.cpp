@@ -120,7 +120,7 @@ TEST(EnvironmentFilter, LayersAreMeansOverTheirLobes) {
     const Environment environment =
         environment_of(1024, 512, [](glm::dvec3 d) { return glm::dvec3(studio(d)); });
     const FilteredEnvironment filtered = filter_environment(environment, {true, false, false});
-    for (const std::size_t layer : {1u, 2u, 4u, 6u, 8u, 10u, 12u}) {
+    for (const std::size_t layer : {1u, 2u, 4u, 6u, 7u, 8u, 10u, 12u}) {
         const double alpha = static_cast<double>(kLayerAlphas[layer]);
         for (const glm::dvec3 axis : {glm::dvec3(1, 1, 0.4),
                                       glm::dvec3(1, 1, 0.45),
