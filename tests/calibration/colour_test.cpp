@@ -237,7 +237,7 @@ TEST(CalibrateColour, RoomLightOfAnotherSpectrumIsMatchedByItsXyz) {
         const glm::dvec3 wanted = seen(drive, {x + 0.5, 100.5});
         const glm::dvec3 found = drive_for(
             c, 100u * 320u + static_cast<std::size_t>(x), glm::inverse(c.xyz_from_camera) * wanted);
-        for (int k = 0; k < 3; ++k) EXPECT_NEAR(found[k], drive[k], 0.3) << x;
+        for (int k = 0; k < 3; ++k) EXPECT_NEAR(found[k], drive[k], 0.05) << x;
     }
 }
 
