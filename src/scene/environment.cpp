@@ -20,22 +20,6 @@ constexpr double kPi = std::numbers::pi;
 /// 16384 x 8192: larger maps bring nothing to a mock-up and take gigabytes.
 constexpr std::size_t kMaxPixels = std::size_t{1} << 27u;
 
-std::filesystem::path find_map(const std::string& name, const std::filesystem::path& beside) {
-    const std::filesystem::path file = name;
-    if (file.is_absolute()) return file;
-    std::error_code error;
-    if (std::filesystem::exists(beside / file, error)) return beside / file;
-    try {
-        return shipped_path(file);
-    } catch (const FileError& missing) {
-        const auto folder = beside.empty() ? std::filesystem::path(".") : beside;
-        throw FileError(file,
-                        "environment",
-                        missing.found() + ", nor in " + folder.string(),
-                        "an .hdr or .exr map");
-    }
-}
-
 /// Which channels are red, green and blue; a grey map serves all three.
 std::array<int, 3> colour_channels(const std::filesystem::path& file, const ImageFile& map) {
     const auto named = [&](const char* name) {
@@ -53,6 +37,23 @@ std::array<int, 3> colour_channels(const std::filesystem::path& file, const Imag
 
 }  // namespace
 
+std::filesystem::path find_environment_map(const std::string& name,
+                                           const std::filesystem::path& beside) {
+    const std::filesystem::path file = name;
+    if (file.is_absolute()) return file;
+    std::error_code error;
+    if (std::filesystem::exists(beside / file, error)) return beside / file;
+    try {
+        return shipped_path(file);
+    } catch (const FileError& missing) {
+        const auto folder = beside.empty() ? std::filesystem::path(".") : beside;
+        throw FileError(file,
+                        "environment",
+                        missing.found() + ", nor in " + folder.string(),
+                        "an .hdr or .exr map");
+    }
+}
+
 Environment load_environment(const EnvironmentReference& reference,
                              const std::filesystem::path& beside) {
     Environment environment;
@@ -60,7 +61,8 @@ Environment load_environment(const EnvironmentReference& reference,
     environment.scale = reference.scale;
     if (reference.file.empty()) return environment;
 
-    const auto file = find_map(reference.file, beside);
+    const auto file = find_environment_map(reference.file, beside);
+    environment.file = file;
     const ImageFile map = read_image(file, kMaxPixels);
     const ImageF& image = map.image;
     if (!map.floating_point) throw FileError(file, "", "integer pixels", "an .hdr or .exr map");

@@ -48,7 +48,13 @@ struct Environment {
     ImageF radiance_working;  ///< 3 channels; empty: none
     double rotation_rad = 0.0;
     double scale = 1.0;
+    std::filesystem::path file;  ///< where it came from; empty: made in memory
 };
+
+/// The file that a look's environment means: as named, in the folder `beside`, or shipped. Throws
+/// FileError.
+std::filesystem::path find_environment_map(const std::string& name,
+                                           const std::filesystem::path& beside);
 
 /// Reads an .hdr or .exr map (linear Rec.709), checks that it is 2:1, finite, not negative by more
 /// than rounding. A relative name is looked for in the folder `beside`, then among shipped data. No

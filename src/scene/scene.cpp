@@ -44,7 +44,10 @@ void check_part_names(const Product& product, const Look& look) {
 
 }  // namespace
 
-Scene make_scene(std::shared_ptr<const Product> product, const Look& look, glm::dvec3 eye_mm) {
+Scene make_scene(std::shared_ptr<const Product> product,
+                 const Look& look,
+                 glm::dvec3 eye_mm,
+                 const std::shared_ptr<const Environment>& loaded) {
     check_argument(product != nullptr, "make_scene: a product is needed");
     check_part_names(*product, look);
     Scene scene;
@@ -55,8 +58,13 @@ Scene make_scene(std::shared_ptr<const Product> product, const Look& look, glm::
                                                                  : find_paint(look, paint->second));
     }
     if (!look.environment.file.empty()) {
-        scene.environment = std::make_shared<const Environment>(
-            load_environment(look.environment, look.file.parent_path()));
+        const auto beside = look.file.parent_path();
+        const bool same = loaded && loaded->rotation_rad == look.environment.rotation_rad &&
+                          loaded->scale == look.environment.scale &&
+                          loaded->file == find_environment_map(look.environment.file, beside);
+        scene.environment =
+            same ? loaded
+                 : std::make_shared<const Environment>(load_environment(look.environment, beside));
     }
     scene.product = std::move(product);
     scene.lights = look.lights;

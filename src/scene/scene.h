@@ -26,8 +26,12 @@ struct Scene {
 
 /// Resolves a look's names against a product and the paint library. A part that the look does not
 /// name keeps the file's own colour as a plain diffuse. Throws FileError (unknown part or paint,
-/// with the names there are).
-Scene make_scene(std::shared_ptr<const Product> product, const Look& look, glm::dvec3 eye_mm);
+/// with the names there are). `loaded` is shared when it is the environment that the look names: a
+/// map takes a while to read, and renderers keep what they have made of it.
+Scene make_scene(std::shared_ptr<const Product> product,
+                 const Look& look,
+                 glm::dvec3 eye_mm,
+                 const std::shared_ptr<const Environment>& loaded = nullptr);
 
 /// A plain diffuse studio: the default eye and key light when nothing else was given.
 glm::dvec3 default_eye_mm(const Product& product);

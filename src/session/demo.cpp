@@ -29,12 +29,14 @@ void judge_looks(DemoResult& result,
     result.renderer = context.renderer();
     RadianceRenderer renderer(calibrated.product, description.projector.view, progress);
     double done = 0.0;
+    std::shared_ptr<const Environment> environment;
     for (const std::string& name : kDemoLooks) {
         progress.update(done / static_cast<double>(kDemoLooks.size()), "judging " + name);
         const Look look = find_look(name);
         const Scene scene = timed(times, "load the looks", [&] {
-            return make_scene(calibrated.product, look, description.eye_mm);
+            return make_scene(calibrated.product, look, description.eye_mm, environment);
         });
+        environment = scene.environment;
         FramePlan plan = plan_frame(scene, Quality::normal, FrameStage::radiance);
         StageTimes shading;
         timed(shading, "shade", [&] { renderer.render(scene, plan, progress); });

@@ -83,7 +83,8 @@ BenchScene load_scene(SpeedBenchResult& result, const Progress& progress) {
     const BenchDescription bench = read_bench_file("default");
     scene.projector = bench.projector.view;
     for (const std::string& name : shipped_looks()) {
-        scene.looks.push_back(make_scene(scene.product, find_look(name), bench.eye_mm));
+        const auto loaded = scene.looks.empty() ? nullptr : scene.looks.back().environment;
+        scene.looks.push_back(make_scene(scene.product, find_look(name), bench.eye_mm, loaded));
     }
     return scene;
 }

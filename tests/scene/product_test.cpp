@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "core/image_io.h"
 #include "scene/gltf_builder.h"
 #include "scene/scene.h"
 #include "support/file_error.h"
@@ -127,6 +128,19 @@ TEST_F(SceneOfALook, PaintsComeByFileBesideTheLookAndForTheRest) {
     EXPECT_EQ(make_scene(plate_, look_, {}).part_materials[0].name, "my grey");
     look_.parts = {{"*", "no such paint"}, {"plate", "grey.json"}};
     EXPECT_EQ(make_scene(plate_, look_, {}).part_materials[0].name, "my grey");
+}
+
+TEST_F(SceneOfALook, TheSameEnvironmentIsSharedAndAnotherIsRead) {
+    write_exr(folder_ / "sky.exr", ImageF(4, 2, 3, 0.5f));
+    look_.environment.file = "sky.exr";
+    const auto first = make_scene(plate_, look_, {}).environment;
+    EXPECT_EQ(make_scene(plate_, look_, {}, first).environment, first);
+    look_.environment.rotation_rad = 0.5;
+    const auto turned = make_scene(plate_, look_, {}, first).environment;
+    EXPECT_NE(turned, first);
+    EXPECT_EQ(turned->rotation_rad, 0.5);
+    look_.environment.file.clear();
+    EXPECT_EQ(make_scene(plate_, look_, {}, first).environment, nullptr);
 }
 
 TEST_F(SceneOfALook, UnknownPartsPaintsAndMapsAreRefused) {
