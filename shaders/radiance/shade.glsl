@@ -92,7 +92,10 @@ void main() {
     vec3 base = ggx_environment_albedo(p, wo.z) * mirrored_here(u_base_layer, sqrt(p.alpha_x * p.alpha_y));
     vec3 diffuse = u_sky_diffuse * layer_o * sky_here();
 #ifdef CLEARCOAT
-    sum += through_o * (base * through_o + diffuse);
+    // A rough base takes light from higher than the mirror direction (clearcoat_environment).
+    float a2 = p.alpha_x * p.alpha_y;
+    float mu_in = sqrt((wo.z * wo.z + a2) / (1.0 + a2));
+    sum += through_o * (base * through_coat(p, mu_in) + diffuse);
     sum += coat_albedo(p, wo.z) * mirrored_here(u_coat_layer, p.coat_alpha);
 #else
     sum += base + diffuse;

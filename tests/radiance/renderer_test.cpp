@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "appearance/bsdf.h"
 #include "core/colour.h"
 #include "gl/context.h"
 #include "radiance/accuracy.h"
@@ -62,6 +63,7 @@ TEST_F(Renderer, DirectLightAgreesWithBruteForce) {
         print(fmt::format("model {} alpha {}", static_cast<int>(model), alpha), error);
         EXPECT_LT(error.median, 0.001);
         EXPECT_LT(error.p99, 0.06);
+        EXPECT_LT(std::abs(error.mean_signed), 2e-4) << "2% of a narrow lobe's light is 3e-4";
     }
 }
 
@@ -126,6 +128,63 @@ TEST_F(Renderer, WhiteFurnace) {
             ASSERT_NEAR(image.values[4 * i], 1.0f, 2e-3f);
         }
     }
+}
+
+TEST_F(Renderer, GlossyPaintsInUniformLightShowTheirAlbedo) {
+    // Whatever the lobe, light that is the same from everywhere is weighted by the albedo toward
+    // the eye. The weights themselves are tested against quadrature with the reflectance source.
+    const View view = test_view(48, 36);
+    for (const auto model : {ReflectanceModel::ggx, ReflectanceModel::clearcoat}) {
+        Scene scene = scene_of(make_sphere({0, 0, 0}, 40.0, 64, "ball"), paint_of(model, 0.1));
+        Environment uniform;
+        uniform.radiance_working = ImageF(32, 16, 3, 0.5f);
+        scene.environment = std::make_shared<const Environment>(uniform);
+        RadianceRenderer renderer(scene.product, view);
+        FramePlan its_plan = plan(scene, Quality::draft);
+        renderer.render(scene, its_plan);
+        const ImageF image = renderer.read_back();
+        const BsdfParameters paint = parameters_of(scene.part_materials[0]);
+        int compared = 0;
+        for (const Fragment& f : renderer.surface_map().fragments) {
+            const glm::vec3 wo = glm::normalize(glm::vec3(scene.eye_in_world_mm) - f.position_mm);
+            const float mu = glm::dot(wo, f.normal);
+            if (f.coverage < 1.0f || mu < 0.1f) continue;
+            const BsdfEnvironment weights = environment_weights(model, paint, mu);
+            const glm::vec3 expected = 0.5f * (weights.diffuse + weights.specular + weights.coat);
+            const float* pixel = &image.values[4 * f.pixel];
+            // Half floats in three places: 3 x 2^-11
+            for (int c = 0; c < 3; ++c) EXPECT_NEAR(pixel[c], expected[c], 2e-3f * expected[c]);
+            ++compared;
+        }
+        EXPECT_GT(compared, 200);
+    }
+}
+
+TEST_F(Renderer, PixelOfTwoPartsIsTheirMeanByCoverage) {
+    // Two balls of albedo .2 and .8 in uniform light 1, one before the other.
+    Scene scene = scene_of(two_spheres(), paint_of(ReflectanceModel::lambert, 0.5));
+    scene.part_materials[0].diffuse = glm::dvec3(0.2);
+    scene.part_materials[1].diffuse = glm::dvec3(0.8);
+    Environment uniform;
+    uniform.radiance_working = ImageF(32, 16, 3, 1.0f);
+    scene.environment = std::make_shared<const Environment>(uniform);
+    RadianceRenderer renderer(scene.product, test_view(128, 96));
+    FramePlan its_plan = plan(scene, Quality::draft);
+    renderer.render(scene, its_plan);
+    const ImageF image = renderer.read_back();
+    std::vector<float> light(image.pixel_count(), 0.0f), covered(image.pixel_count(), 0.0f);
+    for (const Fragment& f : renderer.surface_map().fragments) {
+        light[f.pixel] += f.coverage * (f.part == 0 ? 0.2f : 0.8f);
+        covered[f.pixel] += f.coverage;
+    }
+    int mixed = 0;
+    for (std::size_t i = 0; i < light.size(); ++i) {
+        if (covered[i] == 0.0f) continue;
+        const float expected = light[i] / covered[i];
+        ASSERT_NEAR(image.values[4 * i], expected, 2e-3f * expected);
+        mixed += expected > 0.21f && expected < 0.79f ? 1 : 0;
+    }
+    EXPECT_GE(mixed, 5);
 }
 
 TEST_F(Renderer, RowsGoDownAndCoverageIsTheSurfaceMaps) {
