@@ -41,6 +41,18 @@ std::string small_camera(const TemporaryFolder& folder) {
     return file.string();
 }
 
+/// The default bench with a quarter of the pixels a side.
+std::string small_bench(const TemporaryFolder& folder) {
+    return folder
+        .write("small bench.json",
+               R"({"format_version": 1, "kind": "bench", "name": "small", "base": "default.json",
+                   "projector": {"width": 320, "height": 200, "at_px": [160, 101],
+                                 "matrix": [882.5, 0, 160, 0, 882.5, 190.5, 0, 0, 1]},
+                   "camera": {"width": 432, "height": 288, "at_px": [216, 145],
+                              "matrix": [1225, 0, 216.5, 0, 1225, 143, 0, 0, 1]}})")
+        .string();
+}
+
 TEST(Program, HelpNamesEveryCommandAndEachHasAnExample) {
     const ProgramRun all = livery_run({"help"});
     EXPECT_EQ(all.exit_code, 0);
@@ -186,8 +198,8 @@ TEST(Program, GoesFromPatternsToProjectorInputThroughFiles) {
     EXPECT_EQ(early.exit_code, 2);
     EXPECT_NE(early.err.find("exposure_s"), std::string::npos) << early.err;
 
-    const ProgramRun taken =
-        livery_run({"photograph", "--size", "320x200", "--patterns", patterns, "--out", captures});
+    const ProgramRun taken = livery_run(
+        {"photograph", "--bench", small_bench(folder), "--patterns", patterns, "--out", captures});
     ASSERT_EQ(taken.exit_code, 0) << taken.err;
     const ProgramRun solved = livery_run({"calibrate",
                                           "color",
@@ -258,7 +270,8 @@ TEST(Program, StopsOnInterrupt) {
 TEST(Program, ASmallDemoWritesAReportThatAsksNobodyForAnything) {
     const TemporaryFolder folder;
     const std::string out = (folder / "demo folder").string();
-    const ProgramRun run = livery_run({"demo", "--json", "--size", "320x200", "--out", out});
+    const ProgramRun run =
+        livery_run({"demo", "--json", "--bench", small_bench(folder), "--out", out});
     ASSERT_EQ(run.exit_code, 0) << run.err;
     const Json figures = json_of(run);
     ASSERT_EQ(figures["designs"].size(), 4u);
@@ -270,7 +283,8 @@ TEST(Program, ASmallDemoWritesAReportThatAsksNobodyForAnything) {
     EXPECT_FALSE(figures["calibration"]["id"].get<std::string>().empty());
     EXPECT_TRUE(figures["simulated"]);
     const std::string report = content(std::filesystem::path(out) / "report.html");
-    EXPECT_EQ(report.find("http"), std::string::npos);
+    EXPECT_EQ(report.find("http:"), std::string::npos);
+    EXPECT_EQ(report.find("https:"), std::string::npos);
     EXPECT_EQ(report.find("<script"), std::string::npos);
     EXPECT_NE(report.find("registration is not part of this run"), std::string::npos);
     // Every picture that the page names is there.
