@@ -11,6 +11,7 @@ namespace livery {
 namespace {
 
 constexpr int kLevels = 256;
+constexpr std::size_t kKnownScatter = 8;  // samples whose scatter says how sure their mean is
 
 /// Solves (W + strength D'D) x = W y for third differences D: a band of seven, by Cholesky.
 std::array<double, 256> solve_smooth(const LevelCurve& measured, double strength) {
@@ -102,6 +103,8 @@ LevelCurve level_means(std::span<const ResponseSample> samples) {
             of_level[sample.drive].push_back(sample);
 
     LevelCurve curve;
+    std::array<double, 256> scatter{}, share{};  // of the samples; of it, what the mean keeps
+    std::vector<double> well_known;
     for (std::size_t level = 0; level < 256; ++level) {
         const auto& here = of_level[level];
         if (here.empty()) continue;
@@ -122,12 +125,21 @@ LevelCurve level_means(std::span<const ResponseSample> samples) {
         for (const ResponseSample& s : here)
             if (std::abs(s.n - centre) <= reach)
                 spread += static_cast<double>(s.weight) * (s.n - mean) * (s.n - mean);
-        // Variance of the weighted mean from the samples' own scatter; the floor (one part in
-        // 100000) keeps a level of a few equal samples from outweighing all others.
-        const double variance = spread / weight * (weight2 / (weight * weight));
-        const double few = here.size() < 4 ? 4.0 : 1.0;
         curve.n[level] = mean;
-        curve.weight[level] = 1.0 / (few * variance + 1e-10);
+        scatter[level] = spread / weight;
+        share[level] = weight2 / (weight * weight);
+        if (here.size() >= kKnownScatter) well_known.push_back(scatter[level]);
+    }
+    // Variance of the weighted mean from the samples' own scatter. That of a few says nothing (of
+    // one it is zero): theirs is at least what other levels have. The floor (one part in 100000)
+    // keeps a level of equal samples from outweighing all others.
+    const double usual = median(well_known);
+    for (std::size_t level = 0; level < 256; ++level) {
+        const auto& here = of_level[level];
+        if (here.empty()) continue;
+        const double least = here.size() < kKnownScatter ? usual : 0.0;
+        const double few = here.size() < 4 ? 4.0 : 1.0;
+        curve.weight[level] = 1.0 / (few * std::max(scatter[level], least) * share[level] + 1e-10);
     }
     return curve;
 }

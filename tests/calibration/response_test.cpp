@@ -1,5 +1,6 @@
 #include "calibration/response.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -197,6 +198,23 @@ TEST(LevelMeans, IgnoreStraysAndWeighByPrecision) {
     EXPECT_EQ(curve.weight[99], 0.0);
     // Inverse variance of the mean: 400 / 0.01^2, from 400 samples' own scatter
     EXPECT_NEAR(curve.weight[100] / (400.0 / 1e-4), 1.0, 0.3);
+}
+
+TEST(LevelMeans, AFewSamplesAreNoSurerThanOtherLevels) {
+    // One sample scatters by nothing, two may agree by chance: neither is exact.
+    std::vector<ResponseSample> samples;
+    Random random(6);
+    for (const std::uint8_t level : std::array<std::uint8_t, 3>{90, 100, 110})
+        for (int i = 0; i < 50; ++i)
+            samples.push_back({static_cast<float>(0.5 + 0.01 * random.normal()), 1.0f, level});
+    samples.push_back({0.7f, 1.0f, 50});
+    samples.push_back({0.7f, 1.0f, 60});
+    samples.push_back({0.7f, 1.0f, 60});
+    const LevelCurve curve = level_means(samples);
+    for (const std::size_t level : {50u, 60u}) {
+        EXPECT_GT(curve.weight[level], 0.0);
+        EXPECT_LT(curve.weight[level], 2.0 / 1e-4);  // two samples of 0.01
+    }
 }
 
 }  // namespace
