@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "calibration/colour_report.h"
 #include "calibration/statistics.h"
@@ -16,6 +17,12 @@ constexpr double kProjectorFrame_s = 1.0 / 60.0;
 
 Image8 uniform(int width, int height, std::uint8_t value) {
     return Image8(width, height, 3, value);
+}
+
+std::string seconds(double value) {
+    char text[32];
+    std::snprintf(text, sizeof(text), "%.3g s", value);
+    return text;
 }
 
 /// A photograph thinned to about 50000 pixels for comparisons: mean of the channels over black
@@ -71,7 +78,37 @@ Photograph BenchSession::photograph(const std::string& name) {
                             std::to_string(photo.image.channels),
                         "a picture of 3 channels");
     photo.name = name;
+    check_photograph(photo);
     return photo;
+}
+
+/// All photographs have the first one's size and finite numbers for the most part.
+void BenchSession::check_photograph(const Photograph& photo) {
+    const ImageF& image = photo.image;
+    const auto size_of = [](int width, int height) {
+        return std::to_string(width) + "x" + std::to_string(height);
+    };
+    if (width_ == 0) {
+        width_ = image.width;
+        height_ = image.height;
+    }
+    if (image.width != width_ || image.height != height_)
+        throw FileError("camera",
+                        "size of the photograph of " + photo.name,
+                        size_of(image.width, image.height),
+                        size_of(width_, height_) + " as the first photograph");
+    std::size_t looked_at = 0, finite = 0;
+    for (std::size_t i = 0; i < image.values.size(); i += 97) {
+        ++looked_at;
+        finite += std::isfinite(image.values[i]);
+    }
+    if (2 * finite < looked_at)
+        throw FileError(
+            "camera",
+            "values of the photograph of " + photo.name,
+            percent(1.0 - static_cast<double>(finite) / static_cast<double>(looked_at)) +
+                " not finite",
+            "finite numbers");
 }
 
 double BenchSession::white_peak() const {
@@ -124,7 +161,9 @@ bool BenchSession::see_white(int width, int height) {
         const std::vector<float> white = thin(white_);
         std::size_t brighter = 0;
         for (std::size_t i = 0; i < white.size(); ++i)
-            brighter += static_cast<double>(white[i] - black[i]) > 10.0 * noise_;
+            // Where a lit room is bright its own noise exceeds the picture's median.
+            brighter += static_cast<double>(white[i] - black[i]) >
+                        std::max(10.0 * noise_, 0.1 * static_cast<double>(black[i]));
         if (static_cast<double>(brighter) > 5e-4 * static_cast<double>(white.size())) return true;
     }
     return false;
@@ -153,16 +192,50 @@ void BenchSession::meet(int width, int height) {
                 peak >= 0.97 ? 0.25 : std::clamp(kTargetPeak / std::max(peak, 1e-3), 0.1, 16.0);
         exposure_s_ = whole_frames(exposure_s_);
         if (exposure_s_ == before) break;
+        const double kept_s = white_.exposure_s;
         white_ = photograph("white");
         find_lit();
         peak = white_peak();
+        if (white_.exposure_s == kept_s) {  // whatever it is asked for
+            exposure_s_ = kept_s;
+            break;
+        }
     }
     if (peak > kHighestPeak || peak < 0.2)
         throw Refused(
             "no exposure brings white on the mock-up near 80% of full scale; the last, " +
-                std::to_string(exposure_s_) + " s, gave " + percent(peak),
-            "open or close the lens, change ISO, or move the camera so that nothing shines at it");
+                seconds(white_.exposure_s) + ", gave " + percent(peak),
+            "open or close the lens, change ISO, let the program set the exposure, or move the "
+            "camera so that nothing shines at it");
+    refuse_curved_files();
     last_ = white_.image;
+}
+
+/// Half the exposure must give half the numbers: a JPEG's or a picture style's curve does not.
+void BenchSession::refuse_curved_files() {
+    const double exposure_s = exposure_s_;
+    exposure_s_ = 0.5 * exposure_s;
+    const Photograph half = photograph("white at half the exposure");
+    exposure_s_ = exposure_s;
+    const double asked = half.exposure_s / white_.exposure_s;
+    if (!(asked < 0.7)) return;  // the camera keeps its exposure: nothing to compare
+    std::vector<float> ratio;
+    for (const std::uint32_t i : lit_) {
+        float bright = 0.0f, dark = 0.0f;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const std::size_t k = 3 * static_cast<std::size_t>(i) + c;
+            bright += white_.image.values[k] - static_cast<float>(white_.black_level);
+            dark += half.image.values[k] - static_cast<float>(half.black_level);
+        }
+        if (std::isfinite(bright + dark) && bright > 0.0f) ratio.push_back(dark / bright);
+    }
+    const double found = static_cast<double>(median(std::move(ratio)));
+    // An sRGB curve gives 0.73 for a half; a shutter is within a few percent.
+    if (std::abs(found - asked) > 0.15 * asked)
+        throw Refused("the camera's numbers are not proportional to light: " + percent(asked) +
+                          " of the exposure gives " + percent(found) + " of white",
+                      "take RAW photographs (JPEG and picture styles bend the numbers), and check "
+                      "that black_level is right and automatic exposure is off");
 }
 
 bool BenchSession::differs(const Photograph& a, const Photograph& b) const {
@@ -192,8 +265,8 @@ Photograph BenchSession::take(const Image8& drive, const std::string& name, bool
         if (retry == kMostLatency)
             throw Refused("the photograph of " + name + " shows no change from the picture before",
                           "the projector's picture did not arrive: check that its screen is not "
-                          "frozen, asleep or "
-                          "mirrored from another");
+                          "frozen, asleep or mirrored from another, and that projector and camera "
+                          "are in focus");
         photo = photograph(name);
     }
     last_ = photo.image;

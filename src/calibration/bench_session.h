@@ -19,7 +19,8 @@ class BenchSession {
 
     /// Finds how many photographs still see the picture before, and the exposure at which white
     /// peaks at about 80% of full scale (at most 85%) in every channel. Throws Refused when no
-    /// light of the projector reaches the camera or no exposure fits.
+    /// light of the projector reaches the camera, no exposure fits, or the camera's numbers are not
+    /// proportional to light.
     void meet(int width, int height);
 
     /// Shows and photographs. Where `compared_to_last`, the photograph must differ from the one
@@ -36,6 +37,8 @@ class BenchSession {
 
   private:
     Photograph photograph(const std::string& name);
+    void check_photograph(const Photograph& photo);
+    void refuse_curved_files();
     bool see_white(int width, int height);
     void find_lit();
     double white_peak() const;
@@ -43,6 +46,7 @@ class BenchSession {
 
     const BenchPorts& ports_;
     const Progress& progress_;
+    int width_ = 0, height_ = 0;  ///< of the photographs
     int expected_ = 0, photographs_ = 0, latency_ = 0;
     double exposure_s_ = 0.0;
     std::vector<std::uint32_t> lit_;  ///< some of the lit camera pixels
