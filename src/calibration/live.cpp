@@ -15,6 +15,10 @@ namespace livery {
 namespace {
 
 constexpr int kMosaics = 6;  // with the six pictures of the method: twelve
+constexpr double kFlickerWarning = 0.003, kLargestFlicker = 0.01;
+constexpr const char* kSteadyLight =
+    "let the lamp warm up for 20 minutes, switch off automatic exposure, eco and dynamic-contrast "
+    "modes, expose for whole projector frames, and repeat";
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -32,6 +36,7 @@ struct Geometry {
     ProjectorToCamera map;
     ImageF light;                      ///< white - black, camera pixels
     double lamp_per_photograph = 0.0;  ///< relative change of the lamp
+    double flicker = 0.0;              ///< its scatter around that, of one photograph
 };
 
 /// Share of the lit pixels on which a stripe picture and its inverse do not add up to white.
@@ -56,11 +61,16 @@ double broken_share(const ImageF& stripes,
     return static_cast<double>(broken) / static_cast<double>(std::max<std::size_t>(lit, 1));
 }
 
-/// Relative change of the lamp from photograph to photograph: each pair of stripes sums to white.
-double lamp_trend(const std::vector<ImageF>& pictures, const GrayCodeResult& decoded) {
+struct Lamp {
+    double per_photograph = 0.0, flicker = 0.0;  ///< relative
+};
+
+/// How the lamp changes from photograph to photograph: each pair of stripes sums to white.
+Lamp lamp_of(const std::vector<ImageF>& pictures, const GrayCodeResult& decoded) {
     const std::size_t pairs = (pictures.size() - 2) / 2;
     const ImageF& white = pictures[pictures.size() - 2];
     const ImageF& black = pictures[pictures.size() - 1];
+    std::vector<double> brightness(pairs);
     double sx = 0, sy = 0, sxx = 0, sxy = 0;
     for (std::size_t pair = 0; pair < pairs; ++pair) {
         double sum = 0.0, expected = 0.0;
@@ -70,14 +80,22 @@ double lamp_trend(const std::vector<ImageF>& pictures, const GrayCodeResult& dec
                                        pictures[2 * pair + 1].values[i] - 2.0f * black.values[i]);
             expected += static_cast<double>(white.values[i] - black.values[i]);
         }
-        const double x = static_cast<double>(2 * pair), y = sum / expected;
+        const double x = static_cast<double>(2 * pair), y = brightness[pair] = sum / expected;
         sx += x;
         sy += y;
         sxx += x * x;
         sxy += x * y;
     }
     const auto n = static_cast<double>(pairs);
-    return (n * sxy - sx * sy) / (n * sxx - sx * sx) / (sy / n);
+    const double slope = (n * sxy - sx * sy) / (n * sxx - sx * sx), mean = sy / n;
+    double scatter = 0.0;
+    for (std::size_t pair = 0; pair < pairs; ++pair) {
+        const double off =
+            brightness[pair] - mean - slope * (static_cast<double>(2 * pair) - sx / n);
+        scatter += off * off;
+    }
+    // A pair holds half the light of each of two photographs.
+    return {slope / mean, std::sqrt(2.0 * scatter / std::max(n - 2.0, 1.0)) / mean};
 }
 
 Geometry photograph_geometry(BenchSession& session, const LiveOptions& options) {
@@ -109,7 +127,13 @@ Geometry photograph_geometry(BenchSession& session, const LiveOptions& options) 
     const GrayCodeResult decoded =
         decode_gray_code(std::span<const ImageF>(pictures), options.width, options.height);
     Geometry geometry;
-    geometry.lamp_per_photograph = lamp_trend(pictures, decoded) / (session.latency() + 1);
+    const Lamp lamp = lamp_of(pictures, decoded);
+    geometry.lamp_per_photograph = lamp.per_photograph / (session.latency() + 1);
+    geometry.flicker = lamp.flicker;
+    if (geometry.flicker > kLargestFlicker)
+        throw Refused("the photographs differ by " + percent(geometry.flicker) +
+                          " in brightness from one to the next",
+                      kSteadyLight);
     geometry.map = invert_map(decoded, options.width, options.height);
     geometry.light = std::move(pictures[white]);
     for (std::size_t i = 0; i < geometry.light.values.size(); ++i)
@@ -264,6 +288,12 @@ LiveResult calibrate_live(const BenchPorts& ports,
         };
     result.calibration =
         calibrate_colour(result.captures, result.patterns, result.map, with_xyz, solving);
+    if (geometry.flicker > kFlickerWarning) {
+        result.calibration.warnings.push_back(
+            "the photographs differ by " + percent(geometry.flicker) +
+            " in brightness from one to the next; " + kSteadyLight);
+        seal(result.calibration);
+    }
     if (session.latency() > 0) {
         result.calibration.warnings.push_back(
             "the projector's picture reaches the camera " + std::to_string(session.latency()) +
