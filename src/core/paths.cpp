@@ -92,6 +92,15 @@ void write_text_file(const std::filesystem::path& file, std::string_view text) {
         throw FileError(
             file, "", std::string(what) + ": " + std::strerror(errno), "a writable place");
     };
+    // A device or a pipe is written to; a file in its place would be something else.
+    std::error_code unknown;
+    const auto status = std::filesystem::status(file, unknown);
+    if (std::filesystem::is_character_file(status) || std::filesystem::is_fifo(status)) {
+        std::ofstream stream(file, std::ios::binary);
+        stream.write(text.data(), static_cast<std::streamsize>(text.size())).flush();
+        if (!stream) fail("cannot write");
+        return;
+    }
     auto temporary = file;
     temporary += ".tmp" + std::to_string(::getpid());
     std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(temporary.c_str(), "wb"),

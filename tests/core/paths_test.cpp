@@ -76,6 +76,15 @@ TEST(TextFile, AFullDiskIsReported) {
     EXPECT_EQ(read_text_file(folder / "a.txt"), "old");
 }
 
+TEST(TextFile, ADeviceIsWrittenToAndNotReplaced) {
+    // /dev/full may be opened by anybody; replacing it would need the rights of root.
+    EXPECT_TRUE(fails_with([&] { write_text_file("/dev/full", "x"); },
+                           {"/dev/full", "cannot write", "a writable place"}));
+    write_text_file("/dev/null", "x");
+    EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+    EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+}
+
 TEST(TextFile, BadFilesSayWhy) {
     const TemporaryFolder folder;
     EXPECT_TRUE(fails_with([&] { read_text_file(folder / "no"); }, {"no", "no such file"}));
