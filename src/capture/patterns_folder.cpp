@@ -33,7 +33,8 @@ bool is_known_role(std::string_view role) {
 void write_patterns_folder(const std::filesystem::path& folder,
                            int width,
                            int height,
-                           const std::vector<PatternFile>& patterns) {
+                           const std::vector<PatternFile>& patterns,
+                           const Progress& progress) {
     check_argument(!patterns.empty(), "write_patterns_folder: no patterns");
     PatternsManifest manifest{width, height, {}};
     for (std::size_t k = 0; k < patterns.size(); ++k) {
@@ -53,6 +54,8 @@ void write_patterns_folder(const std::filesystem::path& folder,
     }
     make_output_folder(folder);
     for (std::size_t k = 0; k < patterns.size(); ++k) {
+        progress.update(static_cast<double>(k) / static_cast<double>(patterns.size()),
+                        "writing " + manifest.patterns[k].file);
         write_png(folder / manifest.patterns[k].file, patterns[k].drive);
     }
     // Last, so that a folder with a manifest is a whole one.

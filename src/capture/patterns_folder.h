@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/image.h"
+#include "core/progress.h"
 
 namespace livery {
 
@@ -41,7 +42,8 @@ bool is_known_role(std::string_view role);
 void write_patterns_folder(const std::filesystem::path& folder,
                            int width,
                            int height,
-                           const std::vector<PatternFile>& patterns);
+                           const std::vector<PatternFile>& patterns,
+                           const Progress& progress = {});
 
 /// Reads what write_patterns_folder wrote. Throws FileError.
 PatternsManifest read_patterns_manifest(const std::filesystem::path& manifest);

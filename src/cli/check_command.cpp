@@ -23,7 +23,7 @@ Command check_command() {
         for (const std::string& file : *files) {
             progress.update(done / static_cast<double>(files->size()), "checking " + file);
             done += 1.0;
-            const FileCheck check = check_file(file);
+            const FileCheck check = check_file(file, progress);
             list.push_back({{"file", file},
                             {"kind", check.kind},
                             {"ok", check.ok()},

@@ -71,7 +71,7 @@ Command patterns_command() {
             progress.check_stop();
             files.push_back({pattern.role, std::move(pattern.drive), pattern.drive_values});
         }
-        write_patterns_folder(arguments->out, size.width, size.height, files);
+        write_patterns_folder(arguments->out, size.width, size.height, files, progress);
         Outcome outcome;
         Json list = Json::array();
         for (std::size_t k = 0; k < files.size(); ++k) {

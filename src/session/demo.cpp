@@ -63,6 +63,9 @@ void judge_looks(DemoResult& result,
 DemoResult run_demo(const DemoOptions& options, const Progress& progress) {
     const auto start = std::chrono::steady_clock::now();
     make_output_folder(options.out / "pictures");
+    // A stop must not leave an older report over newer pictures.
+    std::filesystem::remove(options.out / "report.html");
+    std::filesystem::remove(options.out / "report.json");
     StageTimes times;
 
     const bool sphere = options.product == "sphere";

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <set>
 
 #include "appearance/material.h"
 #include "capture/captures_folder.h"
+#include "capture/patterns_folder.h"
 #include "core/error.h"
 #include "core/image_io.h"
 #include "core/json.h"
@@ -27,11 +29,46 @@ struct Kind {
     std::function<void(const Path&, FileCheck&)> read;
 };
 
+const std::set<std::string> kPictureSuffixes = {".exr",
+                                                ".hdr",
+                                                ".png",
+                                                ".tif",
+                                                ".tiff",
+                                                ".jpg",
+                                                ".jpeg",
+                                                ".arw",
+                                                ".cr2",
+                                                ".cr3",
+                                                ".dng",
+                                                ".nef",
+                                                ".orf",
+                                                ".pef",
+                                                ".raf",
+                                                ".rw2",
+                                                ".srw"};
+
+std::string suffix_of(const Path& file) {
+    std::string suffix = file.extension().string();
+    std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) {
+        return static_cast<char>(std::tolower(c));
+    });
+    return suffix;
+}
+
+bool is_there(const Path& file) {
+    std::error_code error;
+    return std::filesystem::exists(file, error);
+}
+
 void read_mesh(const Path& file, FileCheck& check) { load_mesh(file, &check.notes); }
 
-void read_captures(const Path& folder, FileCheck& check) {
+void read_captures(const Path& folder, FileCheck& check, const Progress& progress) {
     const CapturesFolder captures = read_captures_folder(folder);
+    double done = 0.0;
     for (const Capture& capture : captures.captures) {
+        progress.update(done / static_cast<double>(captures.captures.size()),
+                        "checking " + capture.file.string());
+        done += 1.0;
         try {
             load_photograph(capture);
         } catch (const std::exception& error) {
@@ -57,14 +94,60 @@ void read_map(const Path& file, FileCheck& check) {
                           " projector pixels");
 }
 
-Kind kind_of_json(const Path& file) {
+/// Whether nobody has photographed these patterns yet: the manifest is as `livery patterns` wrote
+/// it, without any exposure and without any photograph's name of its own.
+bool is_unphotographed(const Json& manifest) {
+    const auto& captures = manifest["captures"];
+    return captures.is_array() && !captures.empty() &&
+           std::all_of(captures.begin(), captures.end(), [](const Json& capture) {
+               return capture.is_object() && capture.contains("pattern") &&
+                      capture.contains("exposure_s") && capture["exposure_s"].is_null();
+           });
+}
+
+void read_patterns(const Path& manifest, FileCheck& check) {
+    const PatternsManifest patterns = read_patterns_manifest(manifest);
+    for (const PatternEntry& pattern : patterns.patterns) {
+        read_picture(manifest.parent_path() / pattern.file, check);
+    }
+    check.notes.emplace_back("not photographed yet: every exposure_s is to be filled in");
+}
+
+Kind kind_of_manifest(const Path& manifest, const Progress& progress) {
+    if (is_unphotographed(read_json_file(manifest))) {
+        return {"patterns",
+                [manifest](const Path&, FileCheck& check) { read_patterns(manifest, check); }};
+    }
+    return {"captures", [manifest, progress](const Path&, FileCheck& check) {
+                read_captures(manifest.parent_path(), check, progress);
+            }};
+}
+
+Kind kind_of_folder(const Path& folder, const Progress& progress) {
+    if (is_there(folder / "calibration.json")) {
+        return {"calibration", [](const Path& path, FileCheck&) { read_calibration(path); }};
+    }
+    if (is_there(folder / "manifest.json")) {
+        return kind_of_manifest(folder / "manifest.json", progress);
+    }
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+        if (kPictureSuffixes.contains(suffix_of(entry.path()))) {
+            return {"captures", [progress](const Path& path, FileCheck& check) {
+                        read_captures(path, check, progress);
+                    }};
+        }
+    }
+    throw FileError(folder,
+                    "",
+                    error ? error.message() : "no calibration.json, manifest.json or picture in it",
+                    "a calibration, patterns or captures folder");
+}
+
+Kind kind_of_json(const Path& file, const Progress& progress) {
     const Json json = read_json_file(file);
     const auto has = [&](const char* key) { return json.contains(key); };
-    if (has("captures")) {
-        return {"captures", [](const Path& path, FileCheck& check) {
-                    read_captures(path.parent_path(), check);
-                }};
-    }
+    if (has("captures")) return kind_of_manifest(file, progress);
     if (has("model") || has("parameters")) {
         return {"material", [](const Path& path, FileCheck&) { read_material_file(path); }};
     }
@@ -97,27 +180,16 @@ Kind kind_of_json(const Path& file) {
             }};
 }
 
-Kind kind_of(const Path& file) {
-    std::error_code error;
-    if (!std::filesystem::exists(file, error)) {
-        throw FileError(file, "", "no such file", "a file or folder");
-    }
-    if (std::filesystem::is_directory(file, error)) {
-        if (std::filesystem::exists(file / "calibration.json", error)) {
-            return {"calibration", [](const Path& path, FileCheck&) { read_calibration(path); }};
-        }
-        return {"captures", read_captures};
-    }
-    std::string suffix = file.extension().string();
-    std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) {
-        return static_cast<char>(std::tolower(c));
-    });
+Kind kind_of(const Path& file, const Progress& progress) {
+    if (!is_there(file)) throw FileError(file, "", "no such file", "a file or folder");
+    if (std::filesystem::is_directory(file)) return kind_of_folder(file, progress);
+    const std::string suffix = suffix_of(file);
     if (suffix == ".json") {
         if (file.filename() == "calibration.json") {
             return {"calibration",
                     [](const Path& path, FileCheck&) { read_calibration(path.parent_path()); }};
         }
-        return kind_of_json(file);
+        return kind_of_json(file, progress);
     }
     if (suffix == ".glb" || suffix == ".gltf") return {"mesh", read_mesh};
     if (suffix == ".exr") {
@@ -125,28 +197,28 @@ Kind kind_of(const Path& file) {
         if (names == std::vector<std::string>{"X", "Y"}) return {"map", read_map};
         return {"picture", read_picture};
     }
-    for (const char* picture : {".hdr", ".png", ".tif", ".tiff", ".jpg", ".jpeg"}) {
-        if (suffix == picture) return {"picture", read_picture};
-    }
+    if (kPictureSuffixes.contains(suffix)) return {"picture", read_picture};
     return {"unknown", [](const Path& path, FileCheck&) {
                 throw FileError(
                     path,
                     "suffix",
                     path.extension().string().empty() ? "none" : path.extension().string(),
-                    ".glb, .gltf, .json, .exr, .hdr, .png, .tif, .jpg or a folder");
+                    ".glb, .gltf, .json, .exr, .hdr, .png, .tif, .jpg, RAW or a folder");
             }};
 }
 
 }  // namespace
 
-FileCheck check_file(const std::filesystem::path& file) {
+FileCheck check_file(const std::filesystem::path& file, const Progress& progress) {
     FileCheck check;
     check.file = file;
     check.kind = "unknown";
     try {
-        const Kind kind = kind_of(file);
+        const Kind kind = kind_of(file, progress);
         check.kind = kind.name;
         kind.read(file, check);
+    } catch (const Cancelled&) {
+        throw;
     } catch (const std::exception& error) {
         check.problems.emplace_back(error.what());
     }

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/progress.h"
+
 namespace livery {
 
 struct FileCheck {
@@ -15,7 +17,8 @@ struct FileCheck {
     bool ok() const { return problems.empty(); }
 };
 
-/// Reads the file with the reader that the program itself uses; never throws for a bad file.
-FileCheck check_file(const std::filesystem::path& file);
+/// Reads the file with the reader that the program itself uses; never throws for a bad file, only
+/// Cancelled.
+FileCheck check_file(const std::filesystem::path& file, const Progress& progress = {});
 
 }  // namespace livery

@@ -117,6 +117,9 @@ SimulatedCaptures photograph_patterns(const SimulatedCapturesRequest& request,
     Bench bench(request.bench, find_product(request.bench.product.string()), progress);
     const BenchPorts ports = bench.ports();
 
+    // Until every photograph is there: a stop must not leave an older manifest over a mixture.
+    std::filesystem::remove(request.out / "manifest.json");
+
     SimulatedCaptures result;
     Json captures = Json::array();
     for (const PatternEntry& pattern : manifest.patterns) {
