@@ -69,8 +69,9 @@ Command bench_command() {
         {"--suite", "NAME", "speed (default speed)", &arguments->suite, false, {"speed"}},
     };
     command.run = [arguments](const CommonOptions& common, const Progress& progress) {
+        const auto kept = bench_file();  // asked for before the work: it needs a home folder
         const SpeedBenchResult result = run_speed_bench(common.gl_device(), progress);
-        write_pass_costs(bench_file(), result.renderer, result.pass_costs);
+        write_pass_costs(kept, result.renderer, result.pass_costs);
         Outcome outcome;
         outcome.figures = json_of(result);
         outcome.text = text_of(result);

@@ -3,6 +3,8 @@
 #include <charconv>
 #include <cmath>
 
+#include <fmt/format.h>
+
 namespace livery {
 
 namespace {
@@ -58,6 +60,13 @@ std::vector<double> parse_numbers(const std::string& option,
                                     " numbers, expected " + std::to_string(count));
     }
     return values;
+}
+
+void check_percentile(const std::string& option, double value) {
+    if (value < 0.0 || value > 100.0) {
+        throw std::invalid_argument(
+            fmt::format("{}: found {}, expected a percentile, 0 to 100", option, value));
+    }
 }
 
 }  // namespace livery

@@ -71,4 +71,7 @@ std::vector<double> parse_numbers(const std::string& option,
                                   const std::string& text,
                                   std::size_t count);
 
+/// For options that are a percentile. Throws std::invalid_argument outside 0 to 100.
+void check_percentile(const std::string& option, double value);
+
 }  // namespace livery

@@ -6,6 +6,7 @@
 
 #include "cli/command.h"
 #include "compensation/compensation.h"
+#include "core/error.h"
 #include "core/image_io.h"
 #include "session/target_picture.h"
 
@@ -45,6 +46,14 @@ Command compensate_command() {
          {}},
     };
     command.run = [arguments](const CommonOptions&, const Progress& progress) {
+        check_percentile("--design-white", arguments->design_white);
+        if (const auto suffix = std::filesystem::path(arguments->out).extension();
+            suffix != ".png") {
+            throw FileError(arguments->out,
+                            "suffix",
+                            suffix.empty() ? "none" : suffix.string(),
+                            ".png: device values, untagged");
+        }
         const ColourCalibration calibration = read_calibration(arguments->calibration);
         const ImageF wanted =
             read_target_picture(arguments->target, calibration.width, calibration.height);

@@ -31,6 +31,7 @@ struct Console {
     Clock::time_point start = Clock::now();
     Clock::time_point last_shown = start;
     bool terminal = ::isatty(STDERR_FILENO) == 1;
+    bool shown = false;  ///< anything yet
     bool bar_drawn = false;
 };
 
@@ -55,7 +56,8 @@ Progress console_progress() {
         if (now - state.start < std::chrono::seconds(2)) return;
         const auto pause =
             state.terminal ? std::chrono::milliseconds(100) : std::chrono::seconds(3);
-        if (now - state.last_shown < pause) return;
+        if (state.shown && now - state.last_shown < pause) return;
+        state.shown = true;
         state.last_shown = now;
         if (state.terminal) {
             const int filled = static_cast<int>(24.0 * fraction + 0.5);

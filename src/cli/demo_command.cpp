@@ -53,6 +53,7 @@ Command demo_command() {
          {}},
     };
     command.run = [arguments](const CommonOptions& common, const Progress& progress) {
+        check_percentile("--design-white", arguments->design_white);
         DemoOptions options;
         options.out = arguments->out;
         options.bench = arguments->bench;

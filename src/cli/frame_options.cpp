@@ -78,6 +78,11 @@ ResolvedFrame resolve_frame(const FrameArguments& arguments, const CommonOptions
         throw std::invalid_argument("--budget-ms: found --quality as well, expected one of them");
     }
 
+    if (arguments.budget_ms < 0.0) {
+        throw std::invalid_argument("--budget-ms: found a negative number, expected milliseconds");
+    }
+    check_percentile("--design-white", arguments.design_white);
+
     // The view and the eye.
     std::optional<View> view;
     if (!arguments.camera.empty()) view = read_camera_file(arguments.camera);

@@ -15,10 +15,21 @@
 namespace livery {
 namespace {
 
-int fail(int code, const std::string& line) {
+/// One line on stderr, whatever the message brings along (a file name may hold a line break).
+int fail(int code, const std::string& message) {
     finish_progress_line();
+    std::string line;
+    for (const char c : message) {
+        const bool gap = c == '\n' || c == ' ';
+        if (!gap || line.empty() || line.back() != ' ') line += gap ? ' ' : c;
+    }
     std::fputs((line + "\n").c_str(), stderr);
     return code;
+}
+
+int print(const std::string& text, int exit_code) {
+    const bool written = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+    return written ? exit_code : fail(2, "livery: stdout: cannot write");
 }
 
 int run(const std::vector<std::string>& arguments) {
@@ -33,17 +44,23 @@ int run(const std::vector<std::string>& arguments) {
                                      bench_command()};
     const ParsedCommandLine parsed = parse_command_line(arguments, commands);
     if (!parsed.command) {
-        if (parsed.exit_code != 0) return fail(parsed.exit_code, parsed.text);
-        std::fputs(parsed.text.c_str(), stdout);
-        return 0;
+        return parsed.exit_code != 0 ? fail(parsed.exit_code, parsed.text) : print(parsed.text, 0);
     }
     set_data_folder(parsed.common.data);
     set_thread_count(parsed.common.threads);
-    const Outcome outcome = parsed.command->run(parsed.common, console_progress());
+    Outcome outcome;
+    try {
+        outcome = parsed.command->run(parsed.common, console_progress());
+    } catch (const Refused& refused) {
+        if (!parsed.common.json) throw;
+        outcome.figures = {{"refused", {{{"why", refused.why()}, {"fix", refused.fix()}}}}};
+        outcome.text = "livery: refused: " + std::string(refused.what()) + "\n";
+        outcome.exit_code = 1;
+    }
     finish_progress_line();
-    std::fputs(outcome.text.c_str(), parsed.common.json ? stderr : stdout);
-    if (parsed.common.json) std::fputs((outcome.figures.dump(2) + "\n").c_str(), stdout);
-    return std::fflush(stdout) == 0 ? outcome.exit_code : fail(2, "stdout: cannot write");
+    if (!parsed.common.json) return print(outcome.text, outcome.exit_code);
+    std::fputs(outcome.text.c_str(), stderr);
+    return print(outcome.figures.dump(2) + "\n", outcome.exit_code);
 }
 
 }  // namespace

@@ -1,11 +1,14 @@
 #include "cli/parse.h"
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <map>
 #include <memory>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace livery {
 
@@ -33,6 +36,34 @@ std::vector<Option> common_options(CommonOptions& common) {
     };
 }
 
+std::string found_expected(const std::string& found, const std::string& expected) {
+    return "found \"" + found + "\", expected " + expected;
+}
+
+/// Ours, so that a wrong value is answered as everywhere: what was found, what was expected.
+template <typename Number>
+CLI::Validator number_check(const std::string& expected) {
+    return {[expected](const std::string& text) {
+                Number value{};
+                const char* end = text.data() + text.size();
+                const auto [stop, error] = std::from_chars(text.data(), end, value);
+                const bool finite = std::isfinite(static_cast<double>(value));
+                return error == std::errc() && stop == end && finite
+                           ? std::string()
+                           : found_expected(text, expected);
+            },
+            ""};
+}
+
+CLI::Validator choice_check(const std::vector<std::string>& choices) {
+    return {[choices](const std::string& text) {
+                const bool known = std::find(choices.begin(), choices.end(), text) != choices.end();
+                return known ? std::string()
+                             : found_expected(text, fmt::format("{}", fmt::join(choices, ", ")));
+            },
+            ""};
+}
+
 CLI::Option* bind(CLI::App& app, const Option& option) {
     return std::visit(
         [&](auto* target) -> CLI::Option* {
@@ -42,7 +73,12 @@ CLI::Option* bind(CLI::App& app, const Option& option) {
             } else {
                 auto* bound = app.add_option(option.flag, *target, option.help);
                 if (option.required) bound->required();
-                if (!option.choices.empty()) bound->check(CLI::IsMember(option.choices));
+                if constexpr (std::is_same_v<Value, int>) {
+                    bound->check(number_check<int>("a whole number"));
+                } else if constexpr (std::is_same_v<Value, double>) {
+                    bound->check(number_check<double>("a finite number"));
+                }
+                if (!option.choices.empty()) bound->check(choice_check(option.choices));
                 return bound;
             }
         },
@@ -57,6 +93,18 @@ std::string option_lines(const std::vector<Option>& options) {
             fmt::format("  {:<26} {}{}\n", left, option.help, option.required ? " (required)" : "");
     }
     return text;
+}
+
+std::string unknown_command(const std::string& name) {
+    return "livery: " + found_expected(name, "a command that livery help lists");
+}
+
+/// Whether the words start with a command, or with a group's name and a command of it.
+bool names_command(const std::vector<std::string>& words, const std::vector<Command>& commands) {
+    return std::any_of(commands.begin(), commands.end(), [&](const Command& command) {
+        return command.name == words[0] ||
+               (words.size() > 1 && command.name == words[0] + " " + words[1]);
+    });
 }
 
 }  // namespace
@@ -110,18 +158,28 @@ ParsedCommandLine parse_command_line(const std::vector<std::string>& arguments,
         parsed.text = help_text(commands, name);
         if (parsed.text.empty()) parsed.text = help_text(commands, name.substr(0, name.find(' ')));
         if (parsed.text.empty()) {
-            parsed.text = "livery: found the command \"" + name + "\", expected one of livery help";
+            parsed.text = unknown_command(name);
             parsed.exit_code = 2;
         }
         if (arguments.empty()) {
             parsed.text =
-                "livery: this build has no desktop program; give a command\n\n" + parsed.text;
+                "livery: this build has no desktop program; give a command (see livery help)";
             parsed.exit_code = 2;
         }
         return parsed;
     }
     if (arguments.size() == 1 && arguments[0] == "--version") {
         parsed.text = "livery " LIVERY_VERSION "\n";
+        return parsed;
+    }
+
+    if (!names_command(arguments, commands)) {
+        const bool group = std::any_of(commands.begin(), commands.end(), [&](const Command& c) {
+            return c.name.starts_with(arguments[0] + " ");
+        });
+        const bool two_words = group && arguments.size() > 1 && !arguments[1].starts_with("-");
+        parsed.text = unknown_command(arguments[0] + (two_words ? " " + arguments[1] : ""));
+        parsed.exit_code = 2;
         return parsed;
     }
 
@@ -155,8 +213,9 @@ ParsedCommandLine parse_command_line(const std::vector<std::string>& arguments,
         app.parse(reversed);
     } catch (const CLI::ParseError& error) {
         parsed.exit_code = 2;
-        parsed.text =
-            "livery: " + std::string(error.what()) + " (see livery help " + arguments[0] + ")";
+        const bool of_group = groups.contains(arguments[0]) && arguments.size() > 1;
+        parsed.text = "livery: " + std::string(error.what()) + " (see livery help " + arguments[0] +
+                      (of_group ? " " + arguments[1] : "") + ")";
         return parsed;
     }
     for (const auto& [sub, command] : bound) {

@@ -36,7 +36,7 @@ Command photograph_command() {
          {}},
         {"--exposure-s",
          "S",
-         "exposure in seconds (default: as the bench meters)",
+         "exposure in seconds (default 0: as the bench meters)",
          &arguments->exposure_s,
          false,
          {}},
@@ -44,6 +44,12 @@ Command photograph_command() {
     command.run = [arguments](const CommonOptions& common, const Progress& progress) {
         if (arguments->exposure_s < 0.0) {
             throw std::invalid_argument("--exposure-s: found a negative number, expected seconds");
+        }
+        std::error_code error;
+        if (std::filesystem::equivalent(arguments->patterns, arguments->out, error)) {
+            throw std::invalid_argument(
+                "--out: found the folder of --patterns, expected another: its manifest.json would "
+                "be overwritten");
         }
         SimulatedCapturesRequest request;
         request.bench = read_bench_file(arguments->bench);

@@ -8,6 +8,32 @@
 
 namespace livery {
 
+namespace {
+
+/// Of the picture's area, how much the product fills.
+double covered_fraction(const ImageF& picture) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < picture.pixel_count(); ++i) {
+        sum += static_cast<double>(picture.values[4 * i + 3]);
+    }
+    return sum / static_cast<double>(picture.pixel_count());
+}
+
+std::string nothing_seen(const Mesh& mesh) {
+    const auto [low, high] = bounds_of(mesh);
+    return fmt::format(
+        "the picture is empty: the view meets nothing of the product, which reaches from "
+        "({:.0f}, {:.0f}, {:.0f}) to ({:.0f}, {:.0f}, {:.0f}) mm; give a --camera that looks at it",
+        low.x,
+        low.y,
+        low.z,
+        high.x,
+        high.y,
+        high.z);
+}
+
+}  // namespace
+
 Command render_command() {
     struct Arguments {
         FrameArguments frame;
@@ -39,6 +65,9 @@ Command render_command() {
           {}},
          {"--out", "FILE", "picture, .exr (linear Rec.709) or .png", &arguments->out, true, {}}});
     command.run = [arguments](const CommonOptions& common, const Progress& progress) {
+        check_frame_file(
+            arguments->out,
+            arguments->frame.stage == "projector" ? FrameStage::projector : FrameStage::radiance);
         ResolvedFrame frame = resolve_frame(arguments->frame, common);
         RenderRequest& request = frame.request;
         if (arguments->samples < 0 || arguments->seconds < 0.0 || arguments->bounces < 0) {
@@ -60,8 +89,10 @@ Command render_command() {
         const RenderedFrame rendered = render_frame(request, progress);
         write_frame(arguments->out, rendered, request.stage);
 
+        const double covered = covered_fraction(rendered.radiance_working);
         Outcome outcome;
         outcome.figures = json_of(rendered.plan);
+        outcome.figures["covered_fraction"] = covered;
         outcome.figures["ms_total"] = rendered.ms_total;
         outcome.figures["renderer"] = rendered.renderer;
         outcome.figures["file"] = arguments->out;
@@ -71,6 +102,11 @@ Command render_command() {
                                    rendered.ms_total,
                                    rendered.renderer,
                                    arguments->out);
+        if (covered == 0.0) {
+            const std::string warning = nothing_seen(request.scene.product->mesh);
+            outcome.figures["warnings"] = {warning};
+            outcome.text += "warning: " + warning + "\n";
+        }
         return outcome;
     };
     return command;

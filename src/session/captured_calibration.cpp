@@ -87,6 +87,18 @@ ColourCalibration calibrate_from_folder(const CapturedCalibrationRequest& reques
                                         const Progress& progress) {
     const CapturesFolder folder = read_captures_folder(request.captures, request.patterns_manifest);
 
+    const bool has_colours =
+        std::any_of(folder.captures.begin(), folder.captures.end(), [](const Capture& capture) {
+            return !is_geometry(capture.role);
+        });
+    if (!has_colours) {
+        throw FileError(request.captures,
+                        "captures",
+                        std::to_string(folder.captures.size()) + " Gray code photographs alone",
+                        "photographs of the colour patterns too (livery patterns --kind all or "
+                        "color), with their roles in manifest.json");
+    }
+
     ColourOptions options;
     options.mode = request.mode;
     options.camera_to_xyz =

@@ -47,6 +47,17 @@ double items_of(const std::string& pass, const FragmentCounts& counts) {
     return part == counts.by_part.end() ? 0.0 : part->second;
 }
 
+/// Without a home folder no bench can have been kept.
+std::optional<std::vector<PassCost>> known_pass_costs() {
+    std::filesystem::path file;
+    try {
+        file = bench_file();
+    } catch (const FileError&) {
+        return std::nullopt;
+    }
+    return read_pass_costs(file);
+}
+
 }  // namespace
 
 std::filesystem::path bench_file() { return user_folder() / "bench.json"; }
@@ -95,7 +106,7 @@ std::string predict(FramePlan& plan,
                     const Scene& scene,
                     const View& view,
                     const Progress& progress) {
-    const auto costs = read_pass_costs(bench_file());
+    const auto costs = known_pass_costs();
     const char* no_error_bench = "errors are not part of the speed bench";
     if (!costs) {
         for (PlannedPass& pass : plan.passes) {
@@ -127,7 +138,7 @@ BudgetChoice quality_within(const Scene& scene,
                             const View& view,
                             FrameStage stage,
                             double budget_ms) {
-    if (!read_pass_costs(bench_file())) {
+    if (!known_pass_costs()) {
         throw Refused("--budget-ms: no bench has run on this machine, so no cost is known",
                       "run livery bench --suite speed, or choose --quality");
     }

@@ -99,15 +99,25 @@ std::optional<View> projector_view_of(const std::filesystem::path& calibration_f
     return read_camera_file(file);
 }
 
-void write_frame(const std::filesystem::path& file, const RenderedFrame& frame, FrameStage stage) {
+void check_frame_file(const std::filesystem::path& file, FrameStage stage) {
     const auto suffix = file.extension();
-    if (suffix != ".png" && suffix != ".exr") {
-        throw FileError(file, "suffix", suffix.string(), ".exr or .png");
+    const std::string found = suffix.empty() ? "none" : suffix.string();
+    if (stage == FrameStage::projector && suffix != ".png") {
+        throw FileError(file, "suffix", found, ".png for projector input");
     }
+    if (suffix != ".png" && suffix != ".exr") {
+        throw FileError(file, "suffix", found, ".exr or .png");
+    }
+    const auto folder = file.parent_path();
+    if (std::error_code error; !folder.empty() && !std::filesystem::is_directory(folder, error)) {
+        throw FileError(file, "folder", "no folder " + folder.string(), "a folder that is there");
+    }
+}
+
+void write_frame(const std::filesystem::path& file, const RenderedFrame& frame, FrameStage stage) {
+    check_frame_file(file, stage);
+    const auto suffix = file.extension();
     if (stage == FrameStage::projector) {
-        if (suffix != ".png") {
-            throw FileError(file, "suffix", suffix.string(), ".png for projector input");
-        }
         write_png(file, frame.drive);
         return;
     }

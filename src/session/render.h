@@ -49,6 +49,10 @@ RenderedFrame render_frame(const RenderRequest& request, const Progress& progres
 /// What a calibration folder says besides the colours: `projector.json`, if it is there.
 std::optional<View> projector_view_of(const std::filesystem::path& calibration_folder);
 
+/// So that a wrong name fails before the work, not after it. Throws FileError for a suffix that
+/// write_frame does not write, and for a folder that is not there.
+void check_frame_file(const std::filesystem::path& file, FrameStage stage);
+
 /// EXR: linear Rec.709 with coverage in A. PNG: sRGB for looking at, or device values when the
 /// frame reached the projector stage. Throws FileError for another suffix.
 void write_frame(const std::filesystem::path& file, const RenderedFrame& frame, FrameStage stage);

@@ -201,9 +201,9 @@ Json figures_of(const DemoResult& result) {
     for (const DesignResult& design : result.designs) {
         Json entry = {
             {"name", design.name},
-            {"de00_median", design.corrected.interior.median},
-            {"de00_p95", design.corrected.interior.p95},
-            {"de00_uncompensated_median", design.uncorrected.interior.median},
+            {"de00_median", figures_of(design.corrected.interior)["median"]},
+            {"de00_p95", figures_of(design.corrected.interior)["p95"]},
+            {"de00_uncompensated_median", figures_of(design.uncorrected.interior)["median"]},
             {"de00", figures_of(design.corrected.interior)},
             {"de00_edge_band", figures_of(design.corrected.edge)},
             {"de00_clipped", figures_of(design.corrected.clipped)},
