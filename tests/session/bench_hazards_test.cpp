@@ -13,11 +13,13 @@ namespace {
 using namespace testing;
 
 // Bounds of the median and the 95th percentile of CIEDE2000 over the reachable, valid interior.
-// Clean and with a clear segment: the published targets. With one nuisance: those for all of them.
+// Clean and with a clear segment: the published targets, the median tightened from 0.5 so that an
+// error of 2% shows: that adds 0.5 at mid grey to the 0.2 to 0.3 that 8 bits and one shot leave.
+// With one nuisance: the targets for all of them.
 struct Bound {
     double median, p95;
 };
-constexpr Bound kClean{0.5, 1.5}, kWhiteSegment{0.5, 1.0}, kNuisance{1.0, 2.5};
+constexpr Bound kClean{0.4, 1.5}, kWhiteSegment{0.4, 1.0}, kNuisance{1.0, 2.5};
 
 void expect_within(const Judged& judged, const Bound& bound) {
     EXPECT_LE(judged.comparison.interior.median, bound.median);
@@ -64,8 +66,6 @@ TEST(BenchHazards, CleanAdditiveProjectorMeetsTheTargets) {
     expect_additive_and_quiet(judged);
     EXPECT_EQ(judged.live.calibration.xyz_origin, "primaries");
     EXPECT_GE(judged.comparison.reachable_fraction, 0.9);
-    // 2% too much light is 0.5 at mid grey: the median tells it from what rounding leaves.
-    EXPECT_LE(judged.comparison.interior.median, 0.35);
 }
 
 TEST(BenchHazards, EightShotsAreNoWorseThanOne) {

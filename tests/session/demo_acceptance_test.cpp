@@ -1,4 +1,4 @@
-// The published targets, on the full benches, through the whole demo (docs/evaluation.md).
+// The published targets, on the full benches, through the whole demo.
 #include <cmath>
 #include <cstdio>
 
