@@ -75,6 +75,12 @@ void seal(ColourCalibration& calibration) {
                                   c.mixing_spread}) {
         add(hasher, residual);
     }
+    // Calibrations without a prediction keep the id that they had before there were any.
+    const double prediction[] = {
+        c.predicted_fraction, c.prediction_error_median, c.prediction_error_p95};
+    if (prediction[0] != 0.0 || prediction[1] != 0.0 || prediction[2] != 0.0) {
+        for (const double figure : prediction) add(hasher, figure);
+    }
     for (const auto& warning : c.warnings) hasher.add(warning);
     calibration.id = hasher.hex();
 }

@@ -69,9 +69,13 @@ struct ColourCalibration {
     // Residuals, all measured.
     double additivity_error = 0.0;
     double condition_p99 = 0.0;
-    double valid_fraction = 0.0;        ///< of the lit pixels
-    double ambient_fraction = 0.0;      ///< dark picture over bright picture, median
-    double mixing_spread = 0.0;         ///< spatial spread of Vn over its noise
+    double valid_fraction = 0.0;      ///< measured, of the lit pixels
+    double ambient_fraction = 0.0;    ///< dark picture over bright picture, median
+    double mixing_spread = 0.0;       ///< spatial spread of Vn over its noise
+    double predicted_fraction = 0.0;  ///< of the measured and predicted pixels
+    /// Relative error of T - S where measured pixels are predicted without their surroundings; 0
+    /// when nothing was.
+    double prediction_error_median = 0.0, prediction_error_p95 = 0.0;
     std::vector<std::string> warnings;  ///< each names what, the likely cause and the fix
 };
 

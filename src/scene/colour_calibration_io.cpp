@@ -57,7 +57,8 @@ void check_complete(const ColourCalibration& c) {
                        "write_calibration: a response curve is missing");
     }
     check_argument(std::isfinite(c.additivity_error + c.condition_p99 + c.valid_fraction +
-                                 c.ambient_fraction + c.mixing_spread),
+                                 c.ambient_fraction + c.mixing_spread + c.predicted_fraction +
+                                 c.prediction_error_median + c.prediction_error_p95),
                    "write_calibration: a residual is not finite");
     ColourCalibration again = c;
     seal(again);
@@ -181,6 +182,13 @@ void read_residuals(const JsonReader& field, ColourCalibration& c) {
     c.valid_fraction = field["valid_fraction"].number_between(0.0, 1.0);
     c.ambient_fraction = field["ambient_fraction"].number_between(0.0, kHuge);
     c.mixing_spread = field["mixing_spread"].number_between(0.0, kHuge);
+    // Files from before there were predictions do not have these.
+    const auto later = [&](const char* name, double high) {
+        return field.has(name) ? field[name].number_between(0.0, high) : 0.0;
+    };
+    c.predicted_fraction = later("predicted_fraction", 1.0);
+    c.prediction_error_median = later("prediction_error_median", kHuge);
+    c.prediction_error_p95 = later("prediction_error_p95", kHuge);
 }
 
 }  // namespace
@@ -211,7 +219,10 @@ void write_calibration(const std::filesystem::path& folder, const ColourCalibrat
                          {"condition_p99", c.condition_p99},
                          {"valid_fraction", c.valid_fraction},
                          {"ambient_fraction", c.ambient_fraction},
-                         {"mixing_spread", c.mixing_spread}};
+                         {"mixing_spread", c.mixing_spread},
+                         {"predicted_fraction", c.predicted_fraction},
+                         {"prediction_error_median", c.prediction_error_median},
+                         {"prediction_error_p95", c.prediction_error_p95}};
     json["warnings"] = c.warnings;
 
     // The JSON comes last: a folder whose writing was cut off does not open.

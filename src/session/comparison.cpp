@@ -45,7 +45,8 @@ Comparison compare_xyz(const ImageF& wanted_xyz,
     const std::size_t count = wanted_xyz.pixel_count();
     check_argument(shown_xyz.pixel_count() == count && masks.lit.pixel_count() == count &&
                        masks.edge.pixel_count() == count && masks.valid.pixel_count() == count &&
-                       masks.reachable.pixel_count() == count,
+                       masks.reachable.pixel_count() == count &&
+                       (masks.predicted.empty() || masks.predicted.pixel_count() == count),
                    "compare_xyz: pictures and masks must have one size");
     check_argument(wanted_xyz.channels == 3 && shown_xyz.channels == 3,
                    "compare_xyz: pictures must have three channels");
@@ -63,8 +64,9 @@ Comparison compare_xyz(const ImageF& wanted_xyz,
         }
     });
 
-    std::vector<float> interior, edge, clipped, reachable;
-    std::size_t lit = 0, lit_reachable = 0, masked = 0, interior_reachable = 0, interior_valid = 0;
+    std::vector<float> interior, edge, clipped, reachable, predicted;
+    std::size_t lit = 0, lit_predicted = 0, lit_reachable = 0, masked = 0, interior_reachable = 0,
+                interior_valid = 0;
     for (std::size_t i = 0; i < count; ++i) {
         if (!masks.lit.values[i]) continue;
         const bool valid = masks.valid.values[i] != 0;
@@ -79,6 +81,10 @@ Comparison compare_xyz(const ImageF& wanted_xyz,
             reachable.push_back(result.de00.values[i]);
         }
         if (!valid) continue;
+        if (!masks.predicted.empty() && masks.predicted.values[i]) {
+            ++lit_predicted;
+            if (can) predicted.push_back(result.de00.values[i]);
+        }
         if (can) {
             (at_edge ? edge : interior).push_back(result.de00.values[i]);
         } else if (!at_edge) {
@@ -92,9 +98,11 @@ Comparison compare_xyz(const ImageF& wanted_xyz,
     result.edge = statistics_of(std::move(edge));
     result.clipped = statistics_of(std::move(clipped));
     result.reachable_with_masked = statistics_of(std::move(reachable));
+    result.predicted = statistics_of(std::move(predicted));
     result.reachable_fraction = fraction(lit_reachable, lit);
     result.valid_fraction = fraction(interior_valid, interior_reachable);
     result.masked_fraction = fraction(masked, lit);
+    result.predicted_fraction = fraction(lit_predicted, lit);
     return result;
 }
 

@@ -12,10 +12,11 @@ namespace livery {
 
 /// Which pixels count, one channel each, 255 or 0, projector pixels.
 struct ComparisonMasks {
-    Image8 lit;        ///< on the mock-up, by the world's truth
-    Image8 edge;       ///< within 2 px of a silhouette, depth or part edge
-    Image8 valid;      ///< carries a correction
-    Image8 reachable;  ///< some drive shows the wanted colour, by the world's truth
+    Image8 lit;          ///< on the mock-up, by the world's truth
+    Image8 edge;         ///< within 2 px of a silhouette, depth or part edge
+    Image8 valid;        ///< carries a correction
+    Image8 reachable;    ///< some drive shows the wanted colour, by the world's truth
+    Image8 predicted{};  ///< of `valid`, those not measured but predicted; empty: none
 };
 
 struct ErrorStatistics {
@@ -30,9 +31,11 @@ struct Comparison {
     ErrorStatistics clipped;   ///< lit, valid, interior, not reachable
     ErrorStatistics
         reachable_with_masked;        ///< interior and reachable, masked ones counted as shown
+    ErrorStatistics predicted;        ///< lit, reachable, predicted: interior and edge band
     double reachable_fraction = 0.0;  ///< of the lit pixels
     double valid_fraction = 0.0;      ///< of the interior reachable pixels
     double masked_fraction = 0.0;     ///< of the lit pixels
+    double predicted_fraction = 0.0;  ///< of the lit pixels
 };
 
 /// Both pictures are XYZ on one absolute scale (3 channels); `white_xyz` is design white there.

@@ -6,20 +6,23 @@
 
 #include <glm/matrix.hpp>
 
+#include "calibration/predict.h"
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/image_io.h"
 #include "core/paths.h"
+#include "session/projector_irradiance.h"
 #include "twin/chart.h"
 
 namespace livery {
 
 namespace {
 
-Image8 valid_mask(const ColourCalibration& calibration) {
+template <typename Holds>
+Image8 mask_of(const ColourCalibration& calibration, const Holds& holds) {
     Image8 mask(calibration.width, calibration.height, 1);
     for (std::size_t i = 0; i < mask.values.size(); ++i) {
-        mask.values[i] = is_valid(static_cast<PixelStatus>(calibration.status.values[i])) ? 255 : 0;
+        mask.values[i] = holds(static_cast<PixelStatus>(calibration.status.values[i])) ? 255 : 0;
     }
     return mask;
 }
@@ -100,8 +103,15 @@ CalibratedBench calibrate_bench(const DemoOptions& options,
     LiveResult calibrated = calibrate_live(result.bench->ports(), live, progress);
     times.add("photograph the patterns", calibrated.capture_seconds);
     times.add("solve the calibration", calibrated.solve_seconds);
-    result.calibration = std::move(calibrated.calibration);
-    result.valid = valid_mask(result.calibration);
+    const ImageF geometry = timed(times, "predict hidden pixels", [&] {
+        return projector_irradiance(product->mesh, description.projector.view, progress);
+    });
+    result.calibration = timed(times, "predict hidden pixels", [&] {
+        return predict_hidden(std::move(calibrated.calibration), geometry);
+    });
+    result.valid = mask_of(result.calibration, is_valid);
+    result.predicted = mask_of(result.calibration,
+                               [](PixelStatus status) { return status == PixelStatus::predicted; });
 
     timed(times, "write the calibration", [&] {
         const auto folder = options.out / "calibration";
@@ -119,8 +129,12 @@ CalibratedBench calibrate_bench(const DemoOptions& options,
         with_chart.colour.camera_to_xyz.xyz_from_camera =
             chart_matrix(description, result.calibration);
         with_chart.colour.camera_to_xyz.origin = "chart";
-        const ColourCalibration by_chart = calibrate_colour(
-            calibrated.captures, calibrated.patterns, calibrated.map, with_chart.colour, progress);
+        const ColourCalibration by_chart = predict_hidden(calibrate_colour(calibrated.captures,
+                                                                           calibrated.patterns,
+                                                                           calibrated.map,
+                                                                           with_chart.colour,
+                                                                           progress),
+                                                          geometry);
         result.chart_table = bake(by_chart, result.design_white_y);
     });
     return result;
@@ -152,7 +166,8 @@ DesignResult judge_design(const std::string& name,
         timed(times, "observe", [&] { return bench.observe_xyz(corrected_drive); });
     const ImageF uncorrected_xyz =
         timed(times, "observe", [&] { return bench.observe_xyz(uncorrected_drive); });
-    ComparisonMasks masks{bench.truth().lit, bench.truth().edge, calibrated.valid, {}};
+    ComparisonMasks masks{
+        bench.truth().lit, bench.truth().edge, calibrated.valid, {}, calibrated.predicted};
     masks.reachable = timed(times, "observe", [&] { return bench.reachable(wanted_xyz); });
     timed(times, "compare", [&] {
         result.corrected = compare_xyz(wanted_xyz, corrected_xyz, white_xyz, masks);

@@ -37,11 +37,12 @@ struct CalibratedBench {
     CompensationTable table;
     std::optional<CompensationTable> chart_table;  ///< the same photographs, camera matrix by chart
     Image8 valid;                                  ///< 255 where the calibration is valid
+    Image8 predicted;                              ///< 255 where it is predicted, not measured
     double design_white_y = 0.0;
 };
 
-/// Traces the bench, calibrates through its three ports and writes `out/calibration` with the
-/// projector's view beside it.
+/// Traces the bench, calibrates through its three ports, predicts from the bench file's pose what
+/// the camera did not see, and writes `out/calibration` with the projector's view beside it.
 CalibratedBench calibrate_bench(const DemoOptions& options,
                                 const BenchDescription& description,
                                 std::shared_ptr<const Product> product,

@@ -105,10 +105,11 @@ std::string design_table(const DemoResult& result) {
         "the "
         "eye point</caption><tr><th>Look</th><th>Corrected</th><th>2 px edge band</th>"
         "<th>Out of reach (clipped)</th><th>Uncorrected</th><th>Chart-only camera matrix</th>"
-        "<th>In reach</th><th>Valid of these</th><th>Masked</th></tr>\n";
+        "<th>In reach</th><th>Valid of these</th><th>Predicted pixels alone</th><th>Predicted</th>"
+        "<th>Masked</th></tr>\n";
     for (const DesignResult& design : result.designs) {
         html += fmt::format(
-            "<tr><th>{}</th>{}{}{}{}{}<td>{}</td><td>{}</td><td>{}</td></tr>\n",
+            "<tr><th>{}</th>{}{}{}{}{}<td>{}</td><td>{}</td>{}<td>{}</td><td>{}</td></tr>\n",
             escaped(design.name),
             cell(design.corrected.interior),
             cell(design.corrected.edge),
@@ -117,6 +118,8 @@ std::string design_table(const DemoResult& result) {
             design.chart_corrected ? cell(design.chart_corrected->interior) : "<td>not run</td>",
             percent(design.corrected.reachable_fraction),
             percent(design.corrected.valid_fraction),
+            cell(design.corrected.predicted),
+            percent(design.corrected.predicted_fraction),
             percent(design.corrected.masked_fraction));
     }
     return html + "</table>\n";
@@ -136,7 +139,10 @@ std::string calibration_section(const DemoResult& result) {
     row("Camera to XYZ", c.xyz_origin);
     row("Additivity error", percent(c.additivity_error));
     row("Condition of the mixing, 99th percentile", fmt::format("{:.2f}", c.condition_p99));
-    row("Valid, of the lit pixels", percent(c.valid_fraction));
+    row("Measured, of the lit pixels", percent(c.valid_fraction));
+    row("Predicted from the pose, of the valid pixels", percent(c.predicted_fraction));
+    row("Error of predicting measured pixels, median / 95th percentile",
+        percent(c.prediction_error_median) + " / " + percent(c.prediction_error_p95));
     row("Ambient over white", percent(c.ambient_fraction));
     row("Design white, Y at the eye", fmt::format("{:.4g}", result.design_white_y));
     row("Mock-up in the picture",
@@ -207,11 +213,13 @@ Json figures_of(const DemoResult& result) {
             {"de00", figures_of(design.corrected.interior)},
             {"de00_edge_band", figures_of(design.corrected.edge)},
             {"de00_clipped", figures_of(design.corrected.clipped)},
+            {"de00_predicted", figures_of(design.corrected.predicted)},
             {"de00_reachable_with_masked", figures_of(design.corrected.reachable_with_masked)},
             {"de00_uncompensated", figures_of(design.uncorrected.interior)},
             {"reachable_fraction", design.corrected.reachable_fraction},
             {"valid_fraction", design.corrected.valid_fraction},
             {"masked_fraction", design.corrected.masked_fraction},
+            {"predicted_fraction", design.corrected.predicted_fraction},
             {"out_of_gamut_fraction", design.out_of_gamut_fraction},
             {"shade_ms", design.shade_ms},
             {"compensate_ms", design.compensate_ms},
@@ -240,6 +248,9 @@ Json figures_of(const DemoResult& result) {
               {"additivity_error", c.additivity_error},
               {"condition_p99", c.condition_p99},
               {"valid_fraction", c.valid_fraction},
+              {"predicted_fraction", c.predicted_fraction},
+              {"prediction_error_median", c.prediction_error_median},
+              {"prediction_error_p95", c.prediction_error_p95},
               {"ambient_fraction", c.ambient_fraction},
               {"camera_to_xyz", c.xyz_origin},
               {"warnings", c.warnings}}},
@@ -277,12 +288,14 @@ std::string summary_of(const DemoResult& result) {
         "{} on the simulated bench \"{}\"; CIEDE2000 median / 95th percentile at the eye\n",
         result.product_name,
         result.bench_name);
-    text += fmt::format("{:<24}{:>16}{:>18}{:>18}{:>10}{:>9}\n",
+    text += fmt::format("{:<24}{:>16}{:>18}{:>18}{:>16}{:>10}{:>11}{:>9}\n",
                         "look",
                         "corrected",
                         "uncorrected",
                         "chart matrix",
+                        "predicted px",
                         "in reach",
+                        "predicted",
                         "masked");
     const auto pair = [](const ErrorStatistics& s) {
         return s.pixels == 0 ? std::string("none")
@@ -290,12 +303,14 @@ std::string summary_of(const DemoResult& result) {
     };
     for (const DesignResult& design : result.designs) {
         text +=
-            fmt::format("{:<24}{:>16}{:>18}{:>18}{:>10}{:>9}\n",
+            fmt::format("{:<24}{:>16}{:>18}{:>18}{:>16}{:>10}{:>11}{:>9}\n",
                         design.name,
                         pair(design.corrected.interior),
                         pair(design.uncorrected.interior),
                         design.chart_corrected ? pair(design.chart_corrected->interior) : "not run",
+                        pair(design.corrected.predicted),
                         percent(design.corrected.reachable_fraction),
+                        percent(design.corrected.predicted_fraction),
                         percent(design.corrected.masked_fraction));
     }
     for (const auto& warning : result.calibration.warnings) text += "warning: " + warning + "\n";

@@ -56,6 +56,9 @@ ColourCalibration some_calibration() {
     c.valid_fraction = 0.9;
     c.ambient_fraction = 0.02;
     c.mixing_spread = 1.1;
+    c.predicted_fraction = 0.05;
+    c.prediction_error_median = 0.01;
+    c.prediction_error_p95 = 0.04;
     c.warnings = {"one", "two"};
     seal(c);
     return c;
@@ -89,6 +92,9 @@ TEST(ColourCalibration, ComesBackBitForBit) {
     EXPECT_EQ(back.warnings, c.warnings);
     EXPECT_EQ(back.created, c.created);
     EXPECT_EQ(back.additivity_error, c.additivity_error);
+    EXPECT_EQ(back.predicted_fraction, c.predicted_fraction);
+    EXPECT_EQ(back.prediction_error_median, c.prediction_error_median);
+    EXPECT_EQ(back.prediction_error_p95, c.prediction_error_p95);
 }
 
 TEST(ColourCalibration, TheIdDependsOnEveryField) {
@@ -118,6 +124,9 @@ TEST(ColourCalibration, TheIdDependsOnEveryField) {
         [](auto& d) { d.valid_fraction += 1e-9; },
         [](auto& d) { d.ambient_fraction += 1e-9; },
         [](auto& d) { d.mixing_spread += 1e-9; },
+        [](auto& d) { d.predicted_fraction += 1e-9; },
+        [](auto& d) { d.prediction_error_median += 1e-9; },
+        [](auto& d) { d.prediction_error_p95 += 1e-9; },
         [](auto& d) { d.warnings.pop_back(); },
     };
     std::set<std::string> ids{c.id};
@@ -130,6 +139,21 @@ TEST(ColourCalibration, TheIdDependsOnEveryField) {
     auto again = c;
     seal(again);
     EXPECT_EQ(again.id, c.id);
+}
+
+TEST(ColourCalibration, FilesFromBeforePredictionsOpen) {
+    const TemporaryFolder folder;
+    auto c = some_calibration();
+    c.predicted_fraction = c.prediction_error_median = c.prediction_error_p95 = 0.0;
+    seal(c);
+    write_calibration(folder / "c", c);
+    Json json = read_json_file(folder / "c/calibration.json");
+    for (const char* name :
+         {"predicted_fraction", "prediction_error_median", "prediction_error_p95"}) {
+        ASSERT_EQ(json["residuals"].erase(name), 1u);
+    }
+    folder.write("c/calibration.json", json.dump());
+    EXPECT_EQ(read_calibration(folder / "c").id, c.id);
 }
 
 TEST(ColourCalibration, OnlySealedAndCompleteOnesAreWritten) {
@@ -190,6 +214,9 @@ const Broken kBroken[] = {
     {"fraction",
      [](Json& c) { c["residuals"]["valid_fraction"] = 1.5; },
      "valid_fraction: found 1.5"},
+    {"predicted fraction",
+     [](Json& c) { c["residuals"]["predicted_fraction"] = -0.5; },
+     "predicted_fraction: found -0.5"},
     {"warnings",
      [](Json& c) { c["warnings"] = "none"; },
      "warnings: found \"none\", expected an array"},

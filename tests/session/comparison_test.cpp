@@ -36,6 +36,7 @@ TEST(Comparison, SortsPixelsByKind) {
     masks.edge = mask({0, 0, 255, 0, 0, 0});
     masks.valid = mask({255, 255, 255, 0, 255, 255});
     masks.reachable = mask({255, 255, 255, 255, 0, 255});
+    masks.predicted = mask({0, 255, 255, 0, 255, 0});
     const Comparison result = compare_xyz(wanted, shown, white, masks);
     EXPECT_EQ(result.interior.pixels, 2u);
     EXPECT_NEAR(result.interior.median, 0.0, 1e-4);
@@ -50,6 +51,10 @@ TEST(Comparison, SortsPixelsByKind) {
     EXPECT_DOUBLE_EQ(result.reachable_fraction, 4.0 / 5.0);
     EXPECT_DOUBLE_EQ(result.valid_fraction, 2.0 / 3.0);
     EXPECT_DOUBLE_EQ(result.masked_fraction, 1.0 / 5.0);
+    // Interior and edge band together, without what is out of reach.
+    EXPECT_EQ(result.predicted.pixels, 2u);
+    EXPECT_NEAR(result.predicted.median, ten_percent, 1e-4);
+    EXPECT_DOUBLE_EQ(result.predicted_fraction, 3.0 / 5.0);
     EXPECT_TRUE(std::isnan(result.de00.at(5, 0)));
 }
 
