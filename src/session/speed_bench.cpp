@@ -57,11 +57,17 @@ struct PassTimes {
 };
 
 void collect(PassTimes& times, const FramePlan& plan) {
+    // A prediction knows how much of the picture the mock-up fills, not how many rays that takes:
+    // all but shading is kept for its pixels.
+    double pixels = 0.0;
+    for (const PlannedPass& pass : plan.passes) {
+        if (pass.name == kResolvePass) pixels = pass.work_items;
+    }
     std::map<std::string, double> ms, items;
     for (const PlannedPass& pass : plan.passes) {
         if (!pass.ms) continue;
         ms[cost_key(pass.name)] += *pass.ms;
-        items[cost_key(pass.name)] += pass.work_items;
+        items[cost_key(pass.name)] += pass.name.starts_with("shade:") ? pass.work_items : pixels;
     }
     for (const auto& [key, value] : ms) {
         if (value <= 0.0) continue;
