@@ -1,6 +1,19 @@
 // GGX microfacets with height-correlated Smith masking, in forms that stay finite.
 // Walter et al. (2007), Heitz (2014), Heitz (2018), Dupuy and Benyoub (2023).
 
+// Height-correlated Smith masking and shadowing: G / (4 mu_i mu_o) is one over twice this.
+FN REAL smith_denominator(VEC3 wi, VEC3 wo, REAL alpha_x, REAL alpha_y) {
+    REAL mu_i = max(wi.z, R(1e-6));
+    REAL mu_o = max(wo.z, R(1e-6));
+    REAL xi = alpha_x * wi.x;
+    REAL yi = alpha_y * wi.y;
+    REAL xo = alpha_x * wo.x;
+    REAL yo = alpha_y * wo.y;
+    REAL length_i = sqrt(xi * xi + yi * yi + mu_i * mu_i);
+    REAL length_o = sqrt(xo * xo + yo * yo + mu_o * mu_o);
+    return mu_i * length_o + mu_o * length_i;
+}
+
 // Distribution times visibility, D G / (4 mu_i mu_o). H is not normalised: with s2 = |N x H|^2
 // taken from its tangential components there is no 1 - cos^2, and nothing cancels at the peak.
 // hh = |H|^2.
@@ -11,15 +24,7 @@ FN REAL ggx_distribution_visibility(VEC3 wi, VEC3 wo, REAL hh, REAL alpha_x, REA
     REAL a2 = alpha_x * alpha_y;
     REAL ratio = alpha_y / alpha_x;
     REAL k = hh / (hx * hx * ratio + hy * hy / ratio + hz * hz * a2);
-    REAL mu_i = max(wi.z, R(1e-6));
-    REAL mu_o = max(wo.z, R(1e-6));
-    REAL xi = alpha_x * wi.x;
-    REAL yi = alpha_y * wi.y;
-    REAL xo = alpha_x * wo.x;
-    REAL yo = alpha_y * wo.y;
-    REAL length_i = sqrt(xi * xi + yi * yi + mu_i * mu_i);
-    REAL length_o = sqrt(xo * xo + yo * yo + mu_o * mu_o);
-    return a2 * k * k * R(0.15915494309189535) / (mu_i * length_o + mu_o * length_i);
+    return a2 * k * k * R(0.15915494309189535) / smith_denominator(wi, wo, alpha_x, alpha_y);
 }
 
 // A visible normal (spherical caps), then the mirror direction. May lie below the horizon.

@@ -32,14 +32,6 @@ FN REAL disc_distribution_visibility(VEC3 wi,
     REAL cross_term = R(4.0) * r2 * a2 * hz2;
     REAL q = sqrt(b * b + cross_term);
     REAL sum = b > R(0.0) ? q + b : cross_term / (q - b);
-    REAL mu_i = max(wi.z, R(1e-6));
-    REAL mu_o = max(wo.z, R(1e-6));
-    REAL xi = alpha_x * wi.x;
-    REAL yi = alpha_y * wi.y;
-    REAL xo = alpha_x * wo.x;
-    REAL yo = alpha_y * wo.y;
-    REAL length_i = sqrt(xi * xi + yi * yi + mu_i * mu_i);
-    REAL length_o = sqrt(xo * xo + yo * yo + mu_o * mu_o);
     return a2 * hh * hh * R(0.3183098861837907) /
-           (q * sum * (mu_i * length_o + mu_o * length_i));
+           (q * sum * smith_denominator(wi, wo, alpha_x, alpha_y));
 }

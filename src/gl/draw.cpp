@@ -54,6 +54,16 @@ GLenum mode_of(Primitive primitive) {
     return GL_TRIANGLES;
 }
 
+void prepare(const Program& program,
+             const VertexArray& vertices,
+             const Framebuffer& target,
+             const DrawState& state) {
+    target.bind();
+    apply(state);
+    program.use();
+    vertices.bind();
+}
+
 }  // namespace
 
 void draw(const Program& program,
@@ -64,10 +74,7 @@ void draw(const Program& program,
           int count,
           const DrawState& state,
           int instances) {
-    target.bind();
-    apply(state);
-    program.use();
-    vertices.bind();
+    prepare(program, vertices, target, state);
     glDrawArraysInstanced(mode_of(primitive), first, count, instances);
     check_gl("drawing");
 }
@@ -80,10 +87,7 @@ void draw_indexed(const Program& program,
                   int count,
                   const DrawState& state,
                   int instances) {
-    target.bind();
-    apply(state);
-    program.use();
-    vertices.bind();
+    prepare(program, vertices, target, state);
     const auto offset = static_cast<std::size_t>(first) * sizeof(std::uint32_t);
     glDrawElementsInstanced(mode_of(primitive),
                             count,
