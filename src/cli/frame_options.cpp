@@ -9,6 +9,13 @@
 
 namespace livery {
 
+namespace {
+
+/// Vertical field of view that holds a product seen from default_eye_mm().
+constexpr double kWholeProduct_rad = 0.5;
+
+}  // namespace
+
 std::vector<Option> frame_options(FrameArguments& arguments) {
     return {
         {"--product",
@@ -31,13 +38,13 @@ std::vector<Option> frame_options(FrameArguments& arguments) {
          {}},
         {"--camera",
          "FILE",
-         "camera file to draw from (default: the default bench's projector)",
+         "camera file to draw from (default: the bench's projector; all of your own product)",
          &arguments.camera,
          false,
          {}},
         {"--eye",
          "X,Y,Z",
-         "the audience's eye, mm (default: the default bench's)",
+         "the audience's eye, mm (default: the bench's; in front of your own product)",
          &arguments.eye,
          false,
          {}},
@@ -102,10 +109,22 @@ ResolvedFrame resolve_frame(const FrameArguments& arguments, const CommonOptions
             "--stage projector: found no --calibration, expected the folder to correct with");
     }
     const auto product = find_product(arguments.product);
-    const BenchDescription bench =
-        read_bench_file(arguments.product == "sphere" ? "sphere" : "default");
-    request.view = view ? *view : bench.projector.view;
-    glm::dvec3 eye_mm = bench.eye_mm;
+    glm::dvec3 eye_mm;
+    if (arguments.product == "car" || arguments.product == "sphere") {
+        const BenchDescription bench =
+            read_bench_file(arguments.product == "sphere" ? "sphere" : "default");
+        if (!view) view = bench.projector.view;
+        eye_mm = bench.eye_mm;
+    } else {
+        // No bench was made for a product of somebody's own: the eye sees all of it, and so does
+        // the picture.
+        eye_mm = default_eye_mm(*product);
+        const Bounds bounds = bounds_of(product->mesh);
+        if (!view) {
+            view = look_at(eye_mm, 0.5 * (bounds.low + bounds.high), kWholeProduct_rad, 1280, 800);
+        }
+    }
+    request.view = *view;
     if (!arguments.eye.empty()) {
         const auto numbers = parse_numbers("--eye", arguments.eye, 3);
         eye_mm = {numbers[0], numbers[1], numbers[2]};
