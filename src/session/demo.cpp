@@ -25,8 +25,6 @@ void judge_looks(DemoResult& result,
                  StageTimes& times,
                  const Progress& progress) {
     const BenchDescription& description = calibrated.bench->description();
-    const HeadlessContext context(options.gl_device);
-    result.renderer = context.renderer();
     RadianceRenderer renderer(calibrated.product, description.projector.view, progress);
     double done = 0.0;
     std::shared_ptr<const Environment> environment;
@@ -77,9 +75,12 @@ DemoResult run_demo(const DemoOptions& options, const Progress& progress) {
     const auto product = timed(
         times, "load the product", [&] { return find_product(description.product.string()); });
 
+    // Before anything slow: a missing driver is said at once. Current until the end.
+    const HeadlessContext context(options.gl_device);
     const CalibratedBench calibrated =
         calibrate_bench(options, description, product, times, progress);
     DemoResult result;
+    result.renderer = context.renderer();
     result.bench_name = description.name;
     result.product_name = product->name;
     result.design_white_y = calibrated.design_white_y;

@@ -40,8 +40,6 @@ void judge_painted_spheres(DemoResult& result,
     const BenchDescription& description = calibrated.bench->description();
     const Mesh& mesh = calibrated.product->mesh;
     const Tracer tracer(mesh);
-    const HeadlessContext context(options.gl_device);
-    result.renderer = context.renderer();
     RadianceRenderer renderer(calibrated.product, description.projector.view, progress);
 
     Scene scene;
