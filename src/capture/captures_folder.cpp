@@ -16,34 +16,10 @@ namespace {
 
 /// Names of the pictures in a folder, in name order.
 std::vector<std::filesystem::path> pictures_in(const std::filesystem::path& folder) {
-    static constexpr std::string_view extensions[] = {".png",
-                                                      ".tif",
-                                                      ".tiff",
-                                                      ".jpg",
-                                                      ".jpeg",
-                                                      ".exr",
-                                                      ".hdr",
-                                                      ".arw",
-                                                      ".cr2",
-                                                      ".cr3",
-                                                      ".dng",
-                                                      ".nef",
-                                                      ".orf",
-                                                      ".pef",
-                                                      ".raf",
-                                                      ".rw2",
-                                                      ".srw"};
     std::vector<std::filesystem::path> files;
     std::error_code error;
     for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-        std::string extension = entry.path().extension().string();
-        std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) {
-            return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-        });
-        if (std::find(std::begin(extensions), std::end(extensions), extension) !=
-            std::end(extensions)) {
-            files.push_back(entry.path());
-        }
+        if (has_picture_suffix(entry.path())) files.push_back(entry.path());
     }
     if (error) throw FileError(folder, "", error.message(), "a readable folder");
     std::sort(files.begin(), files.end());

@@ -1,9 +1,11 @@
 #include "core/image_io.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <memory>
 #include <string_view>
 
@@ -204,6 +206,31 @@ void write_png(const std::filesystem::path& file, const Image8& image) {
 void write_png(const std::filesystem::path& file, const Image16& image) {
     check_png_channels(image.channels);
     write_image(file, "png", image, 16, {});
+}
+
+bool has_picture_suffix(const std::filesystem::path& file) {
+    static constexpr std::string_view suffixes[] = {".exr",
+                                                    ".hdr",
+                                                    ".png",
+                                                    ".tif",
+                                                    ".tiff",
+                                                    ".jpg",
+                                                    ".jpeg",
+                                                    ".arw",
+                                                    ".cr2",
+                                                    ".cr3",
+                                                    ".dng",
+                                                    ".nef",
+                                                    ".orf",
+                                                    ".pef",
+                                                    ".raf",
+                                                    ".rw2",
+                                                    ".srw"};
+    std::string suffix = file.extension().string();
+    std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](char c) {
+        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    });
+    return std::find(std::begin(suffixes), std::end(suffixes), suffix) != std::end(suffixes);
 }
 
 }  // namespace livery

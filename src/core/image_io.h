@@ -17,6 +17,9 @@ struct ImageFile {
     bool floating_point = false;
 };
 
+/// Whether a file's suffix, in any case, is one of a picture or of a camera's RAW file.
+bool has_picture_suffix(const std::filesystem::path& file);
+
 /// EXR, HDR, PNG, TIFF, JPEG, RAW. Values as stored: integers 0 to full_scale, floats untouched
 /// (NaN and Inf included: the caller decides). Throws FileError; a declared size over
 /// `max_pixels` is refused before anything is allocated.

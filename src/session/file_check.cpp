@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <set>
 
 #include "appearance/material.h"
 #include "capture/captures_folder.h"
@@ -28,24 +27,6 @@ struct Kind {
     std::string name;
     std::function<void(const Path&, FileCheck&)> read;
 };
-
-const std::set<std::string> kPictureSuffixes = {".exr",
-                                                ".hdr",
-                                                ".png",
-                                                ".tif",
-                                                ".tiff",
-                                                ".jpg",
-                                                ".jpeg",
-                                                ".arw",
-                                                ".cr2",
-                                                ".cr3",
-                                                ".dng",
-                                                ".nef",
-                                                ".orf",
-                                                ".pef",
-                                                ".raf",
-                                                ".rw2",
-                                                ".srw"};
 
 std::string suffix_of(const Path& file) {
     std::string suffix = file.extension().string();
@@ -132,7 +113,7 @@ Kind kind_of_folder(const Path& folder, const Progress& progress) {
     }
     std::error_code error;
     for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-        if (kPictureSuffixes.contains(suffix_of(entry.path()))) {
+        if (has_picture_suffix(entry.path())) {
             return {"captures", [progress](const Path& path, FileCheck& check) {
                         read_captures(path, check, progress);
                     }};
@@ -197,7 +178,7 @@ Kind kind_of(const Path& file, const Progress& progress) {
         if (names == std::vector<std::string>{"X", "Y"}) return {"map", read_map};
         return {"picture", read_picture};
     }
-    if (kPictureSuffixes.contains(suffix)) return {"picture", read_picture};
+    if (has_picture_suffix(file)) return {"picture", read_picture};
     return {"unknown", [](const Path& path, FileCheck&) {
                 throw FileError(
                     path,
