@@ -24,8 +24,8 @@ namespace livery {
 /// Throws std::invalid_argument for a geometry of another size, negative or not finite.
 ColourCalibration predict_hidden(ColourCalibration calibration, const ImageF& geometry);
 
-/// At 5% of full irradiance light falls 2.9 degrees from grazing: a normal that is half a degree off
-/// there changes it by 17%, and what such pixels can show is nearly black.
+/// At 5% of full irradiance light falls 2.9 degrees from grazing: a normal that is half a degree
+/// off there changes it by 17%, and what such pixels can show is nearly black.
 inline constexpr double kGrazingShare = 0.05;
 
 /// Largest median error of the measured pixels' prediction with which pixels are still predicted.
