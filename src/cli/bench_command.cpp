@@ -22,8 +22,8 @@ Json json_of(const SpeedBenchResult& result) {
                               {"fastest_ms", level.fastest_ms},
                               {"repeats", level.repeats},
                               {"work_items", level.work_items},
-                              {"error", nullptr},
-                              {"unit", nullptr}});
+                              {"error", level.error ? Json(*level.error) : Json(nullptr)},
+                              {"unit", level.error ? Json(level.unit) : Json(nullptr)}});
         }
         effects.push_back({{"name", effect.name}, {"levels", levels}});
     }
@@ -48,6 +48,9 @@ std::string text_of(const SpeedBenchResult& result) {
                                 level.ms,
                                 level.fastest_ms,
                                 level.repeats);
+            if (level.error) {
+                text += fmt::format("  {:<22}{:10.4f} {}\n", "", *level.error, level.unit);
+            }
         }
     }
     return text;

@@ -204,4 +204,13 @@ View resized(const View& view, int width, int height) {
     return result;
 }
 
+View cropped(const View& view, int left, int top, int width, int height) {
+    check_argument(width > 0 && height > 0, "cropped: needs a positive size");
+    View result = view;
+    result.principal_px -= glm::dvec2(left, top);
+    result.width = width;
+    result.height = height;
+    return result;
+}
+
 }  // namespace livery

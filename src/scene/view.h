@@ -59,6 +59,9 @@ View look_at(glm::dvec3 from, glm::dvec3 at, double vertical_fov_rad, int width,
 /// The same lens and pose with other pixels.
 View resized(const View& view, int width, int height);
 
+/// A rectangle of the same picture, with the same lens, pose and scale.
+View cropped(const View& view, int left, int top, int width, int height);
+
 /// Camera file (docs/files.md). Converts OpenCV's pixel centres at integers. Throws FileError.
 View read_camera_file(const std::filesystem::path& file);
 void write_camera_file(const std::filesystem::path& file, const View& view);

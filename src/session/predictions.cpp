@@ -78,6 +78,7 @@ void write_pass_costs(const std::filesystem::path& file,
                         {"quality", to_string(cost.quality)},
                         {"ms", cost.ms},
                         {"work_items", cost.work_items}});
+        if (cost.error) list.back()["error"] = *cost.error;
     }
     write_json_file(file, {{"format_version", 1}, {"renderer", renderer}, {"passes", list}});
 }
@@ -97,6 +98,7 @@ std::optional<std::vector<PassCost>> read_pass_costs(const std::filesystem::path
         cost.quality = parse_quality(entry["quality"].text());
         cost.ms = entry["ms"].number_between(0.0, 1e9);
         cost.work_items = entry["work_items"].number_between(0.0, 1e12);
+        if (entry.has("error")) cost.error = entry["error"].number_between(0.0, 1e6);
         costs.push_back(cost);
     }
     return costs;
@@ -107,7 +109,6 @@ std::string predict(FramePlan& plan,
                     const View& view,
                     const Progress& progress) {
     const auto costs = known_pass_costs();
-    const char* no_error_bench = "errors are not part of the speed bench";
     if (!costs) {
         for (PlannedPass& pass : plan.passes) {
             pass.unpredicted_because = "no bench has run on this machine";
@@ -129,7 +130,12 @@ std::string predict(FramePlan& plan,
         pass.work_items = items_of(pass.name, counts);
         pass.predicted_ms =
             known->work_items > 0.0 ? known->ms * pass.work_items / known->work_items : known->ms;
-        pass.unpredicted_because = no_error_bench;
+        pass.predicted_error = known->error;
+        if (!known->error) {
+            pass.unpredicted_because =
+                "its part of the error is not measured apart: the frame's stands at " +
+                std::string(kResolvePass);
+        }
     }
     return note;
 }

@@ -17,6 +17,8 @@ struct PassCost {
     Quality quality = Quality::normal;
     double ms = 0.0;
     double work_items = 0.0;  ///< 0: cost does not depend on the picture
+    /// At the pass that ends the frame: the whole frame's median error, in design white.
+    std::optional<double> error;
 };
 
 /// Where the bench leaves its costs: the user's folder.

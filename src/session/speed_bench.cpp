@@ -9,7 +9,9 @@
 #include "compensation/compensation.h"
 #include "compensation/gpu_pass.h"
 #include "core/parallel.h"
+#include "radiance/accuracy.h"
 #include "radiance/renderer.h"
+#include "reference/path_tracer.h"
 #include "session/library.h"
 #include "session/synthetic_calibration.h"
 #include "twin/description.h"
@@ -26,7 +28,13 @@ double milliseconds_since(Clock::time_point start) {
 
 BenchLevel level_of(const std::string& name, std::vector<double> ms, double work_items) {
     std::sort(ms.begin(), ms.end());
-    return {name, ms[ms.size() / 2], ms.front(), static_cast<int>(ms.size()), work_items};
+    return {name,
+            ms[ms.size() / 2],
+            ms.front(),
+            static_cast<int>(ms.size()),
+            work_items,
+            std::nullopt,
+            ""};
 }
 
 template <typename Work>
@@ -175,7 +183,37 @@ void bench_frames(SpeedBenchResult& result,
         const BenchLevel level = level_of(name, ms, passes.work_items[key]);
         effect(result, "pass " + key).levels.push_back(level);
         result.pass_costs.push_back(
-            {key, quality, level.ms, key == kFilterPass ? 0.0 : level.work_items});
+            {key, quality, level.ms, key == kFilterPass ? 0.0 : level.work_items, std::nullopt});
+    }
+}
+
+/// What each quality level is worth: the same look by the path tracer, on a part of the picture at
+/// its own scale (the car's bonnet and wing), direct light.
+void bench_accuracy(SpeedBenchResult& result, const BenchScene& scene, const Progress& progress) {
+    const Scene& look = scene.looks.front();
+    const View part = cropped(scene.projector, 680, 470, 160, 100);
+    ReferenceOptions options;
+    options.samples_per_pixel = 400;
+    progress.update(0.0, "tracing the truth");
+    const ReferenceResult truth = trace_reference(look, part, options, progress);
+    for (const Quality quality : {Quality::draft, Quality::normal, Quality::high}) {
+        RadianceRenderer renderer(scene.product, part, progress);
+        FramePlan plan = plan_frame(look, quality, FrameStage::radiance);
+        renderer.render(look, plan, progress);
+        const RadianceError error = radiance_error(renderer.read_back(), truth.radiance_working);
+
+        const auto& frames = effect(result, "first frame").levels;
+        const std::string name = fmt::format("1280x800, {}", to_string(quality));
+        const auto frame = std::find_if(frames.begin(), frames.end(), [&](const BenchLevel& level) {
+            return level.name == name;
+        });
+        BenchLevel level = *frame;
+        level.error = error.median;
+        level.unit = "of design white, median difference from the path tracer";
+        effect(result, "quality level: first frame, and its error").levels.push_back(level);
+        for (PassCost& cost : result.pass_costs) {
+            if (cost.pass == kResolvePass && cost.quality == quality) cost.error = error.median;
+        }
     }
 }
 
@@ -193,6 +231,7 @@ SpeedBenchResult run_speed_bench(GlDevice device, const Progress& progress) {
             bench_frames(result, scene, view, quality, progress);
         }
     }
+    bench_accuracy(result, scene, progress);
     return result;
 }
 

@@ -1,6 +1,7 @@
 // `livery bench --suite speed`: every stage of the chain timed on this machine.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct BenchLevel {
     double fastest_ms = 0.0;
     int repeats = 0;
     double work_items = 0.0;
+    std::optional<double> error;  ///< where the bench has a truth to compare with
+    std::string unit;             ///< of the error
 };
 
 struct BenchEffect {
