@@ -105,7 +105,11 @@ LobeSample MirrorLobe::Facet::sample(float a, int k, int count, double turn) con
     result.weight = wi.z * (wo.z + lo) / (wi.z * lo + wo.z * li);
     // A lobe seen along the normal fills about 4 pi alpha^2
     const float solid_angle = 1.0f / (static_cast<float>(count) * density);
-    result.alpha = std::min(std::sqrt(solid_angle / (4.0f * std::numbers::pi_v<float>)), a);
+    // The directions carry the lobe's width; a layer with a GGX lobe's own long tails as wide as
+    // the share would blur it a second time. The factor was found against the path tracer.
+    constexpr float kOfShare = 0.3f;
+    result.alpha =
+        std::min(kOfShare * std::sqrt(solid_angle / (4.0f * std::numbers::pi_v<float>)), a);
     return result;
 }
 
