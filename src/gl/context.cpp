@@ -93,7 +93,6 @@ std::string gl_text(GLenum name) {
 struct HeadlessContext::State {
     EGLDisplay display = EGL_NO_DISPLAY;
     EGLContext context = EGL_NO_CONTEXT;
-    std::string renderer, version;
 
     // The display stays initialised: EGL counts no users of it, and terminating it would take
     // down every other context of the process.
@@ -108,7 +107,7 @@ struct HeadlessContext::State {
     ~State() { release(); }
 
     /// Empty on success, else why not.
-    std::string open(const Candidate& candidate) {
+    std::string open(const Candidate& candidate, EGLContext share) {
         display = eglGetPlatformDisplayEXT(candidate.platform, candidate.native, nullptr);
         if (display == EGL_NO_DISPLAY) return "no display (" + egl_error() + ")";
         if (!eglInitialize(display, nullptr, nullptr)) {
@@ -118,8 +117,7 @@ struct HeadlessContext::State {
             return "has no EGL_KHR_surfaceless_context";
         }
         if (!eglBindAPI(EGL_OPENGL_API)) return "has no desktop OpenGL";
-        context =
-            eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, kContextAttributes.data());
+        context = eglCreateContext(display, EGL_NO_CONFIG_KHR, share, kContextAttributes.data());
         if (context == EGL_NO_CONTEXT) {
             return "no OpenGL 4.5 core context (" + egl_error() + ")";
         }
@@ -128,21 +126,29 @@ struct HeadlessContext::State {
             release();
             return "context cannot be made current (" + why + ")";
         }
-        renderer = gl_text(GL_RENDERER);
-        version = gl_text(GL_VERSION);
         return {};
     }
 };
 
-HeadlessContext::HeadlessContext(GlDevice device) : state_(std::make_unique<State>()) {
+bool GlContext::is_software() const { return names_software(renderer_); }
+
+void GlContext::read_names() {
+    renderer_ = gl_text(GL_RENDERER);
+    version_ = gl_text(GL_VERSION);
+}
+
+HeadlessContext::HeadlessContext(GlDevice device, const HeadlessContext* share)
+    : state_(std::make_unique<State>()) {
+    const EGLContext shared = share ? share->state_->context : EGL_NO_CONTEXT;
     std::string tried;
     for (const bool software : {false, true}) {
         if (device == GlDevice::software && !software) continue;
         if (device == GlDevice::hardware && software) continue;
         for (const Candidate& candidate : candidates_for(software)) {
-            std::string why = state_->open(candidate);
-            if (why.empty() && names_software(state_->renderer) != software) {
-                why = "gives " + state_->renderer;
+            std::string why = state_->open(candidate, shared);
+            if (why.empty()) read_names();
+            if (why.empty() && is_software() != software) {
+                why = "gives " + renderer();
                 state_->release();
             }
             if (why.empty()) return;
@@ -166,10 +172,8 @@ void HeadlessContext::make_current() {
     }
 }
 
-std::string HeadlessContext::renderer() const { return state_->renderer; }
-
-std::string HeadlessContext::version() const { return state_->version; }
-
-bool HeadlessContext::is_software() const { return names_software(state_->renderer); }
+void HeadlessContext::release() {
+    eglMakeCurrent(state_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+}
 
 }  // namespace livery

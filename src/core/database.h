@@ -1,0 +1,59 @@
+// SQLite behind a few values; nothing else names it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace livery {
+
+using DatabaseValue = std::variant<std::monostate, std::int64_t, double, std::string>;
+
+/// One open database file, WAL with synchronous=FULL: what a transaction committed survives a kill
+/// and a power cut. For one thread at a time. Every failure throws FileError (missing folder,
+/// read-only, full disk, not a database, corrupt, newer `application version`), and leaves what was
+/// committed before.
+class Database {
+  public:
+    enum class Mode { create, existing, read_only };
+    /// `application_id` tells our kinds of file apart (PRAGMA application_id); a file of another
+    /// kind or with a user_version above `newest_version` is refused by name.
+    Database(const std::filesystem::path& file,
+             Mode mode,
+             std::int32_t application_id,
+             int newest_version);
+    ~Database();
+    Database(const Database&) = delete;
+    Database& operator=(const Database&) = delete;
+
+    /// Runs one statement; rows come back as values. Parameters are bound to ?1, ?2, ...
+    std::vector<std::vector<DatabaseValue>> run(std::string_view sql,
+                                                const std::vector<DatabaseValue>& values = {});
+    int version() const;  ///< user_version; 0: new
+    void set_version(int version);
+    const std::filesystem::path& file() const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+/// BEGIN IMMEDIATE ... COMMIT; rolled back when destroyed without commit().
+class Transaction {
+  public:
+    explicit Transaction(Database& database);
+    ~Transaction();
+    Transaction(const Transaction&) = delete;
+    Transaction& operator=(const Transaction&) = delete;
+    void commit();
+
+  private:
+    Database& database_;
+    bool done_ = false;
+};
+
+}  // namespace livery

@@ -1,0 +1,82 @@
+// (3) projector input -> the projector's screen, and nowhere else.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gl/fence.h"
+#include "gl/handles.h"
+#include "gl/window.h"
+#include "projection/monitors.h"
+
+namespace livery {
+
+/// One finished picture for the projector: immutable once presented. The texture (RGBA8, row 0 on
+/// top) belongs to the share group; whoever made it keeps it alive through `owner` until the last
+/// reference goes.
+struct ProjectorPicture {
+    std::uint64_t number = 0;  ///< of the frame description that it shows
+    unsigned texture = 0;
+    glm::ivec2 size_px{0};
+    std::shared_ptr<const Fence> ready;
+    std::shared_ptr<const void> owner;
+};
+
+/// What is on the projector now, for the operator's window and for the trace.
+struct ShownPicture {
+    std::uint64_t number = 0;
+    std::chrono::steady_clock::time_point at{};  ///< when the swap returned
+    std::uint64_t frames = 0;                    ///< drawn since the start: idle adds none
+};
+
+/// The projector's window with its own context and thread. Borderless, without pointer, never
+/// focused, out of the window manager's reach (override-redirect), so that nothing moves it to
+/// another monitor; hidden at once when its monitor goes and shown again when it is back, with the
+/// picture it should then have. Keeps the screens from blanking while it is shown. Draws only when
+/// something changed.
+class ProjectorScreen {
+  public:
+    /// Main thread. `share` is the share group of the pictures. `on_shown` is called on the
+    /// projector's thread after every swap.
+    ProjectorScreen(const Window& share, std::function<void(const ShownPicture&)> on_shown = {});
+    ~ProjectorScreen();
+    ProjectorScreen(const ProjectorScreen&) = delete;
+    ProjectorScreen& operator=(const ProjectorScreen&) = delete;
+
+    // Main thread.
+    void use_monitor(const std::optional<std::string>& monitor_id);  ///< none: hidden
+    /// To be called when monitors came or went: hides or shows again. True when that changed.
+    bool monitors_changed(const std::vector<Monitor>& monitors);
+    enum class State { off, waiting_for_monitor, showing };
+    State state() const;
+
+    // Any thread. The newest picture wins; none: black.
+    void present(std::shared_ptr<const ProjectorPicture> picture);
+    void set_black(bool black);    ///< before anything else, within one refresh
+    void set_frozen(bool frozen);  ///< keeps what is shown; thawing shows the newest
+    bool is_black() const;
+    bool is_frozen() const;
+    ShownPicture shown() const;
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+/// Shows each monitor's number, large, on every monitor for as long as it lives. Main thread.
+class MonitorNumbers {
+  public:
+    MonitorNumbers(const Window& share, const std::vector<Monitor>& monitors);
+    ~MonitorNumbers();
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace livery

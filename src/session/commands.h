@@ -1,0 +1,106 @@
+// The only ways in which a session changes: the same for panel, keys, command line and tests.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "session/document.h"
+
+namespace livery {
+
+struct SetPaint {
+    int look = 0;
+    std::string part;  ///< "*": every part that is not named
+    std::string paint;
+};
+/// Changes a paint's parameters on one part. A paint of the library, or one that other parts and
+/// looks use as well, becomes the session's own under `material.name` with a number behind it.
+struct EditPaint {
+    int look = 0;
+    std::string part;
+    Material material;
+};
+struct AddLook {
+    Look look;    ///< a new one, or what was read from a file; its name is made unique
+    int at = -1;  ///< place in the list; -1: last
+};
+struct DuplicateLook {
+    int look = 0;
+};
+struct RenameLook {
+    int look = 0;
+    std::string name;
+};
+struct DeleteLook {
+    int look = 0;
+};
+struct MoveLook {
+    int look = 0;
+    int to = 0;
+};
+struct SetLights {
+    int look = 0;
+    std::vector<DirectionalLight> lights;
+};
+struct SetEnvironment {
+    int look = 0;
+    EnvironmentReference environment;
+};
+/// Gives every look the lights and the environment of this one, for a fair comparison.
+struct ShareLighting {
+    int look = 0;
+};
+struct SetEye {
+    glm::dvec3 eye_mm{0.0};
+};
+struct SetExposure {
+    double ev = 0.0;
+};
+struct SetQuality {
+    Quality quality = Quality::normal;
+};
+struct SetCalibration {
+    std::string folder;  ///< empty: uncorrected
+};
+struct SetBench {
+    std::string bench;
+};
+struct SetDesignWhite {
+    double percentile = 20.0;
+};
+
+using SessionCommand = std::variant<SetPaint,
+                                    EditPaint,
+                                    AddLook,
+                                    DuplicateLook,
+                                    RenameLook,
+                                    DeleteLook,
+                                    MoveLook,
+                                    SetLights,
+                                    SetEnvironment,
+                                    ShareLighting,
+                                    SetEye,
+                                    SetExposure,
+                                    SetQuality,
+                                    SetCalibration,
+                                    SetBench,
+                                    SetDesignWhite>;
+
+/// The document after the command; a pure function. Throws std::invalid_argument with the values
+/// (no such look, part, paint; empty name; not finite; the last look deleted).
+Document applied(const Document& document, const SessionCommand& command);
+
+/// "Paint body solid red", for the undo menu and the log; of the document before it.
+std::string label_of(const Document& before, const SessionCommand& command);
+
+/// The look to show after the command, when there is one that it is about.
+std::optional<int> look_of(const Document& after, const SessionCommand& command);
+
+/// One line of JSON: {"set-paint": {"look": 1, "part": "body", "paint": "solid red"}}.
+std::string text_of(const SessionCommand& command);
+/// Throws FileError (as of `origin`) that names the field.
+SessionCommand parse_session_command(const std::string& text, const std::string& origin);
+
+}  // namespace livery

@@ -1,0 +1,52 @@
+// The session as a value: everything that undo brings back.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "appearance/material.h"
+#include "scene/frame_plan.h"
+#include "scene/look.h"
+#include "scene/scene.h"
+
+namespace livery {
+
+/// A look with a number that stays its own through renaming, moving, deleting and undo.
+struct SessionLook {
+    int id = 0;
+    Look look;  ///< its exposure is the session's, its file is empty
+};
+
+struct Document {
+    std::string product = "car";  ///< a shipped product's name, or a file
+    std::vector<SessionLook> looks;
+    int next_look_id = 1;
+    std::vector<Material> paints;  ///< the session's own; they come before the library's by name
+    glm::dvec3 eye_mm{0.0};
+    double exposure_ev = 0.0;  ///< the same for all looks
+    Quality quality = Quality::normal;
+    std::string bench = "default";  ///< the simulated bench; a shipped name or a file
+    std::string calibration;        ///< folder; empty: none, the picture goes out uncorrected
+    double design_white_percentile = 20.0;
+};
+
+/// The shipped looks on a product, seen as the default bench has it. Throws FileError.
+Document new_document(const std::string& product = "car");
+
+const SessionLook* find_look(const Document& document, int id);
+/// The session's own paint, else the library's. Throws FileError with the nearest names.
+Material find_paint(const Document& document, const std::string& name);
+/// The session's and the library's names, sorted, each once.
+std::vector<std::string> paint_names(const Document& document);
+
+/// What to draw for one look. Shares product and environment with `previous` where they are the
+/// same. Throws FileError.
+Scene scene_of(const Document& document,
+               int look_id,
+               std::shared_ptr<const Product> product,
+               const std::shared_ptr<const Environment>& loaded = nullptr);
+
+}  // namespace livery
