@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace livery {
 
@@ -15,6 +16,13 @@ void set_data_folder(const std::filesystem::path& folder);
 /// `--data`, then LIVERY_DATA, then ../share/livery beside the program, then the build's source and
 /// generated folders. Throws FileError that lists the places looked at.
 std::filesystem::path shipped_path(const std::filesystem::path& relative);
+
+/// Names of the JSON files in a folder of the shipped data, without ".json", sorted: what people
+/// may type instead of a file. Throws FileError when the folder is not there.
+std::vector<std::string> shipped_names(const std::filesystem::path& folder);
+
+/// "a, b, c", for messages.
+std::string list_of(const std::vector<std::string>& names);
 
 /// The user's folder: LIVERY_HOME, else XDG_DATA_HOME/livery, else ~/.local/share/livery.
 std::filesystem::path user_folder();

@@ -28,24 +28,9 @@ bool looks_like_path(const std::string& name) {
     return name.find('/') != std::string::npos || !std::filesystem::path(name).extension().empty();
 }
 
-std::vector<std::string> json_stems(const std::filesystem::path& folder) {
-    std::vector<std::string> stems;
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-        if (entry.path().extension() == ".json") stems.push_back(entry.path().stem().string());
-    }
-    std::sort(stems.begin(), stems.end());
-    return stems;
-}
-
-std::string list_of(const std::vector<std::string>& names) {
-    std::string text;
-    for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
-    return text;
-}
-
 }  // namespace
 
-std::vector<std::string> shipped_looks() { return json_stems(shipped_path("assets/looks")); }
+std::vector<std::string> shipped_looks() { return shipped_names("assets/looks"); }
 
 std::filesystem::path shipped_look_file(const std::string& name) {
     const auto names = shipped_looks();

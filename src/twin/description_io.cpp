@@ -318,6 +318,13 @@ BenchDescription read_bench_file(const std::filesystem::path& file_or_name) {
     std::error_code error;
     const bool a_name = !file.has_extension() || file.extension() != ".json";
     if (a_name && !file.has_parent_path() && !std::filesystem::exists(file, error)) {
+        const auto names = shipped_names("calibration");
+        if (std::find(names.begin(), names.end(), file.string()) == names.end()) {
+            throw FileError(file,
+                            "bench",
+                            "no such file or shipped bench",
+                            "a bench file or " + list_of(names));
+        }
         file = shipped_path(std::filesystem::path("calibration") / (file.string() + ".json"));
     }
     const Json merged = with_base(file);

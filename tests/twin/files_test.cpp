@@ -136,7 +136,10 @@ TEST_F(Files, BrokenBenchFilesAreRefusedByName) {
             expect_refused([&] { read_bench_file(file); }, field, found, expected);
         };
     expect_refused([&] { read_bench_file(folder_ / "none.json"); }, "", "no such file", "a file");
-    expect_refused([&] { read_bench_file("no-such-bench"); }, "", "nothing in", "shipped");
+    expect_refused([&] { read_bench_file("no-such-bench"); },
+                   "bench",
+                   "no such file or shipped bench",
+                   "a bench file or default, hard, led, paper-2.75m, sphere, white-segment");
     refuses("", "", "an empty file", "a JSON object");
     refuses(bench_text().substr(0, 200), "line 3, column 31", "not JSON", "complete");
     refuses(with("\"bench\"", "\"captures\""), "kind", "'captures'", "'bench'");
