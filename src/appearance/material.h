@@ -34,8 +34,9 @@ struct Material {
 Material read_material_file(const std::filesystem::path& file);
 void write_material_file(const std::filesystem::path& file, const Material& material);
 
-/// A file if there is one of that name, else a paint of the library (materials/) by its name.
-/// Throws FileError with the nearest names.
+/// A file if there is one of that name, else a paint of the library by its name: of the shipped
+/// ones (materials/), then of the user's own (material_library.h). Throws FileError with the
+/// nearest names.
 Material find_material(const std::string& name_or_file);
 std::vector<Material> load_library(const std::filesystem::path& folder);
 

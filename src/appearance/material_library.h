@@ -1,0 +1,38 @@
+// The paints that people choose from by name: the shipped ones, then the user's own.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "appearance/material.h"
+
+namespace livery {
+
+/// Where the user's own paints lie (`materials` in the user's folder); need not exist.
+std::filesystem::path user_materials_folder();
+
+struct PaintLibrary {
+    std::vector<Material> shipped, users;  ///< each sorted by file name
+    /// One line for each of the user's files that was left out (unreadable, or a name that another
+    /// paint has), with the fix. The others are there all the same.
+    std::vector<std::string> problems;
+
+    /// By name; case, hyphens and underlines do not matter. Null: none.
+    const Material* find(const std::string& name) const;
+    /// The names that differ least, nearest first.
+    std::vector<std::string> nearest(const std::string& name, std::size_t count) const;
+};
+
+/// Reads both folders. Throws FileError when a shipped paint cannot be read.
+PaintLibrary read_paint_library();
+
+/// Whether two names mean the same paint.
+bool same_paint_name(const std::string& a, const std::string& b);
+
+/// Writes a paint into the user's folder under its name, and returns the file. Never replaces one.
+/// Throws std::invalid_argument on an empty name or parameters out of range, Refused (with the fix)
+/// when the library has a paint of that name, FileError when it cannot be written.
+std::filesystem::path save_to_library(const Material& material);
+
+}  // namespace livery
