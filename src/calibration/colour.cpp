@@ -1,9 +1,7 @@
 #include "calibration/colour.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <ctime>
 #include <limits>
 #include <numeric>
 
@@ -17,6 +15,7 @@
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/utc.h"
 
 namespace livery {
 namespace {
@@ -177,15 +176,6 @@ std::vector<TableSample> table_samples(const ColourSamples& samples,
     return found;
 }
 
-std::string now_utc() {
-    const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-    std::tm parts{};
-    gmtime_r(&now, &parts);
-    char text[32];
-    std::strftime(text, sizeof(text), "%Y-%m-%dT%H:%M:%SZ", &parts);
-    return text;
-}
-
 void check_options(const ColourOptions& options) {
     check_argument(options.dark_drive >= 0 && options.dark_drive < options.bright_drive &&
                        options.bright_drive <= 255,
@@ -319,7 +309,7 @@ ColourCalibration calibrate_colour(const std::vector<RoledPhotograph>& captures,
     progress.update(0.9, "writing the planes");
     calibration.width = samples.width;
     calibration.height = samples.height;
-    calibration.created = now_utc();
+    calibration.created = utc_now();
     calibration.mode = options.mode == ColourMode::paper ? "paper" : "robust";
     calibration.made_with = options.made_with;
     calibration.dark_drive = options.dark_drive;
