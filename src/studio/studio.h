@@ -16,6 +16,8 @@
 #include "session/frame_thread.h"
 #include "session/preview_thread.h"
 #include "session/session.h"
+#include "studio/background.h"
+#include "studio/file_dialog.h"
 
 namespace livery {
 
@@ -62,20 +64,43 @@ struct Studio {
     std::optional<int> selected_part;
     StageView view = StageView::preview;
 
-    /// What the pointer or the arrow keys are on: shown on the mock-up, not in the document. A
-    /// panel sets it anew in every frame in which it still holds; Esc takes it back until the
-    /// pointer is on something else.
+    /// What the pointer or the arrow keys are on: shown on the mock-up, not in the document. It is
+    /// what try_out() was given in the frame before; Esc, undo and a change of look take it back
+    /// until the pointer is on something else.
     std::optional<SessionCommand> tried;
+    std::optional<SessionCommand> trying;   ///< given to try_out() in this frame
+    std::optional<unsigned> untried_item;   ///< the item whose trial was taken back
+    bool untried_item_still_there = false;  ///< in this frame
+    bool gave_up = false;                   ///< Esc was pressed: no drag commits in this frame
+    std::optional<int> hovered_part;        ///< in a list: shows in the preview
+    std::optional<int> glowing_part;        ///< clicked: glows on the mock-up
+    double glowing_until_s = 0.0;
 
     std::vector<Notice> notices;
     float ui_scale = 1.0f;
+    std::unique_ptr<Background> background;
+    std::unique_ptr<FileDialog> file_dialog;
 };
 
 /// Executes, shows the look that it is about, and turns what it throws into a notice.
 void commit(Studio& studio, const SessionCommand& command);
 
-/// Shows on the mock-up what committing would show, for this frame of the window.
+/// Shows on the mock-up what committing would show, for this frame of the window. To be called
+/// right after the item that the pointer is on.
 void try_out(Studio& studio, const SessionCommand& command);
+
+/// For the slider, drag or colour field just drawn: tries `command` out while it is held and
+/// commits once when it is let go; Esc while it is held gives it up.
+void edit_with_last_item(Studio& studio, const SessionCommand& command);
+
+/// Takes back what is being tried until the pointer is on something else.
+void stop_trying(Studio& studio);
+
+/// Shows a look of the document; the one shown before becomes B of A/B unless B was chosen.
+void show_look(Studio& studio, int look);
+
+/// Selects a part and lets it glow on the mock-up for a moment.
+void select_part(Studio& studio, int part);
 
 /// The document with what is being tried.
 Document shown_document(const Studio& studio);
