@@ -18,6 +18,7 @@
 #include "session/session.h"
 #include "studio/background.h"
 #include "studio/file_dialog.h"
+#include "studio/panel_state.h"
 
 namespace livery {
 
@@ -80,6 +81,7 @@ struct Studio {
     float ui_scale = 1.0f;
     std::unique_ptr<Background> background;
     std::unique_ptr<FileDialog> file_dialog;
+    PanelStates panels;
 };
 
 /// Executes, shows the look that it is about, and turns what it throws into a notice.

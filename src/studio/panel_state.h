@@ -1,0 +1,110 @@
+// What the panels remember from one frame of the window to the next; nothing here is part of the
+// session. Owns textures: destroy it with the window's context current.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "appearance/material_library.h"
+#include "core/image.h"
+#include "evaluation/ballots.h"
+#include "gl/handles.h"
+#include "scene/frame_plan.h"
+#include "scene/look.h"
+#include "session/predictions.h"
+
+namespace livery {
+
+/// Where the preview's thread leaves swatches. Shared, because a swatch may be finished after the
+/// panel that asked for it is gone.
+struct SwatchInbox {
+    std::mutex mutex;
+    std::map<std::string, Image8> drawn;  ///< by the paint's parameters
+};
+
+struct LibraryPanelState {
+    PaintLibrary library;
+    std::string problem;      ///< why there is no library
+    double read_at_s = -1.0;  ///< of the window's clock; negative: to be read
+    std::string search;
+    bool focus_search = false;  ///< set by a key: the next frame puts the text cursor there
+    std::string family;         ///< empty: all
+    bool whole_product = false;
+    std::optional<std::string> cursor;  ///< the paint that the arrow keys are on
+    bool cursor_moved = false;          ///< it must be scrolled to
+    std::shared_ptr<SwatchInbox> inbox = std::make_shared<SwatchInbox>();
+    std::map<std::string, Texture2D> swatches;
+    std::set<std::string> asked;
+};
+
+struct PaintPanelState {
+    std::optional<Material> held;  ///< while a control is held
+    std::string hex;               ///< being typed
+    // What the panel shows, looked up again when one of these changes.
+    std::uint64_t revision = 0;
+    int look = -1, part = -1;
+    std::optional<Material> material;
+    std::string problem;
+    std::string becomes;  ///< the name that the first change gives
+    // "Save as new paint"
+    std::string new_name, new_family, save_problem;
+};
+
+struct LightingPanelState {
+    std::optional<Look> held;  ///< lights and environment while a control is held
+    std::optional<glm::dvec3> held_eye_mm;
+    std::optional<double> held_ev;
+    std::optional<std::size_t> grabbed_light;
+    std::string thumbnail_of;
+    Texture2D thumbnail;
+    std::string thumbnail_problem;
+    std::vector<std::string> shipped_environments;
+    bool listed = false;
+    std::map<Quality, double> swap_ms;  ///< newest measured, by quality
+};
+
+struct PlanPanelState {
+    bool costs_read = false;
+    std::optional<std::vector<PassCost>> costs;
+    std::string problem;
+};
+
+struct CalibrationPanelState {
+    std::vector<std::filesystem::path> kept;
+    std::vector<std::string> benches;
+    double listed_at_s = -1.0;
+    std::optional<double> held_percentile;
+    std::filesystem::path taken;  ///< the finished calibration that was put to use
+    bool dismissed = false;       ///< the refusal was read
+};
+
+struct BallotDialogState {
+    enum class Page { start, vote, thanks, result };
+    Page page = Page::start;
+    std::map<int, bool> chosen_looks;  ///< by the look's number
+    std::string evaluator;
+    std::optional<int> best, second;
+    std::string problem;
+    std::optional<int> shown_round;
+    bool asking_to_close = false;
+    std::vector<Round> rounds;
+    bool rounds_read = false;
+};
+
+struct PanelStates {
+    LibraryPanelState library;
+    PaintPanelState paint;
+    LightingPanelState lighting;
+    PlanPanelState plan;
+    CalibrationPanelState calibration;
+    BallotDialogState ballot;
+};
+
+}  // namespace livery
