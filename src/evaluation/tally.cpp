@@ -1,0 +1,32 @@
+#include "evaluation/tally.h"
+
+#include "core/error.h"
+
+namespace livery {
+
+namespace {
+
+std::string csv_field(const std::string& text) {
+    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + '"';
+}
+
+}  // namespace
+
+std::string tally_csv(const Tally& tally) {
+    check_argument(
+        tally.best.size() == tally.designs.size() && tally.second.size() == tally.designs.size(),
+        "tally_csv: " + std::to_string(tally.designs.size()) + " designs, " +
+            std::to_string(tally.best.size()) + " and " + std::to_string(tally.second.size()) +
+            " counts");
+    std::string text = "design,best,second\r\n";
+    for (std::size_t k = 0; k < tally.designs.size(); ++k) {
+        text += csv_field(tally.designs[k]) + ',' + std::to_string(tally.best[k]) + ',' +
+                std::to_string(tally.second[k]) + "\r\n";
+    }
+    return text;
+}
+
+}  // namespace livery

@@ -1,0 +1,18 @@
+// The counts of a round.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace livery {
+
+/// Table 3 of the paper: counts a design.
+struct Tally {
+    std::vector<std::string> designs;
+    std::vector<int> best, second;
+};
+
+/// "design,best,second" and a line a design, as RFC 4180 quotes; UTF-8.
+std::string tally_csv(const Tally& tally);
+
+}  // namespace livery
