@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -56,171 +57,190 @@ double StageClock::now_ms() {
 FragmentInputs::FragmentInputs(const Mesh& mesh,
                                const Tracer& tracer,
                                const SurfaceMap& map,
-                               const PackedLayout& layout)
-    : mesh_(mesh), tracer_(tracer), map_(map), layout_(layout) {}
+                               const PackedLayout& layout,
+                               bool keep_better)
+    : mesh_(mesh), tracer_(tracer), map_(map), layout_(layout), keep_better_(keep_better) {}
 
-bool FragmentInputs::update(const Scene& scene,
-                            const FramePlan& plan,
-                            StageClock& clock,
-                            const Progress& progress) {
-    bool changed = update_lights(scene, plan, clock, progress);
-    changed = update_sky(scene, plan, clock, progress) || changed;
-    const bool mirror = update_mirror(scene, plan, clock, progress);
-    const bool directions = update_directions(scene, plan, clock, changed || mirror);
-    const bool diffuse = update_diffuse_light(plan, clock, changed);
-    return changed || mirror || directions || diffuse;
+void FragmentInputs::solve(const Scene& scene,
+                           const FramePlan& plan,
+                           StageClock& clock,
+                           const Progress& progress) {
+    solve_lights(scene, plan, clock, progress);
+    solve_sky(scene, plan, clock, progress);
+    solve_mirror(scene, plan, clock, progress);
 }
 
-bool FragmentInputs::update_lights(const Scene& scene,
-                                   const FramePlan& plan,
-                                   StageClock& clock,
-                                   const Progress& progress) {
+void FragmentInputs::solve_lights(const Scene& scene,
+                                  const FramePlan& plan,
+                                  StageClock& clock,
+                                  const Progress& progress) {
     const int rays = rays_of(plan.quality).light;
-    bool changed = false;
-    std::vector<Light> lights;
+    std::size_t planned = 0;
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
         const std::string pass = visibility_pass(i);
         if (!find_pass(plan, pass)) continue;
         const DirectionalLight& light = scene.lights[i];
         const auto found = std::find_if(lights_.begin(), lights_.end(), [&](const Light& l) {
-            return l.index == i && l.rays == rays && same_disc(l.light, light) && !l.at.empty();
+            return l.index == i && enough(l.rays, rays) && same_disc(l.light, light);
         });
-        Light next;
-        next.index = i;
-        next.light = light;
-        next.rays = rays;
+        Light next{i, light, rays, {}};
         const bool stale = found == lights_.end();
+        bool changed = stale || found != lights_.begin() + static_cast<std::ptrdiff_t>(planned);
         if (!stale) {
             changed = changed || found->light.radiance_rec709 != light.radiance_rec709;
-            next.at = found->at;
+            next.rays = found->rays;
+            next.at = std::move(found->at);
+            lights_.erase(found);
         }
-        const bool solved = clock.run(pass, stale, [&] {
+        clock.run(pass, stale, [&] {
             next.at = light_at_fragments(mesh_, tracer_, map_, light, rays, progress);
         });
-        changed = changed || solved;
-        lights.push_back(std::move(next));
+        lights_.insert(lights_.begin() + static_cast<std::ptrdiff_t>(planned++), std::move(next));
+        if (changed) directions_stale_ = diffuse_light_stale_ = true;
     }
-    changed = changed || lights.size() != lights_.size();
-    lights_ = std::move(lights);
-    return changed;
+    if (planned == lights_.size()) return;
+    lights_.resize(planned);
+    directions_stale_ = diffuse_light_stale_ = true;
 }
 
-bool FragmentInputs::update_sky(const Scene& scene,
-                                const FramePlan& plan,
-                                StageClock& clock,
-                                const Progress& progress) {
+void FragmentInputs::solve_sky(const Scene& scene,
+                               const FramePlan& plan,
+                               StageClock& clock,
+                               const Progress& progress) {
     if (!find_pass(plan, kIrradiancePass)) {
-        const bool had = environment_ != nullptr;
-        environment_ = nullptr;
+        if (sky_made_.of) directions_stale_ = diffuse_light_stale_ = true;
+        sky_made_ = {};
+        diffused_ = nullptr;
+        filtered_.diffuse = filtered_.blurred = {};
         sky_.clear();
-        return had;
+        return;
     }
-    const int directions = rays_of(plan.quality).sky;
     const bool occluded = find_pass(plan, kOcclusionPass) != nullptr;
-    const bool other_rays =
-        occluded && (!sky_visibility_ || sky_visibility_->directions != directions);
-    clock.run(kOcclusionPass, other_rays, [&] {
-        sky_visibility_ = solve_sky_visibility(mesh_, tracer_, map_, directions, progress);
+    const int rays = occluded ? rays_of(plan.quality).sky : 0;
+    const bool stands = sky_made_.of == scene.environment && enough(sky_made_.rays, rays);
+    const bool visible =
+        !occluded || stands || (sky_visibility_ && enough(sky_visibility_->directions, rays));
+    clock.run(kOcclusionPass, !visible, [&] {
+        sky_visibility_ = solve_sky_visibility(mesh_, tracer_, map_, rays, progress);
     });
-    const bool other_map = environment_ != scene.environment;
-    return clock.run(kIrradiancePass, other_map || other_rays || occluded != sky_occluded_, [&] {
-        if (other_map) {
+    clock.run(kIrradiancePass, !stands, [&] {
+        if (diffused_ != scene.environment) {
             FilteredEnvironment filtered =
                 filter_environment(*scene.environment, {false, true, true}, progress);
             filtered_.diffuse = std::move(filtered.diffuse);
             filtered_.blurred = std::move(filtered.blurred);
+            diffused_ = scene.environment;
         }
         sky_ = sky_at_fragments(
             map_, *scene.environment, filtered_, occluded ? &*sky_visibility_ : nullptr);
-        environment_ = scene.environment;
-        sky_occluded_ = occluded;
+        sky_made_ = {scene.environment, occluded ? sky_visibility_->directions : 0, {}};
+        directions_stale_ = diffuse_light_stale_ = true;
     });
 }
 
-bool FragmentInputs::update_mirror(const Scene& scene,
-                                   const FramePlan& plan,
-                                   StageClock& clock,
-                                   const Progress& progress) {
+void FragmentInputs::solve_mirror(const Scene& scene,
+                                  const FramePlan& plan,
+                                  StageClock& clock,
+                                  const Progress& progress) {
+    // A scene whose paints do not mirror keeps what the next one may; one without environment not.
     if (!find_pass(plan, kMirrorPass)) {
-        const bool had = mirrored_ != nullptr;
-        layered_ = mirrored_ = nullptr;
+        if (find_pass(plan, kIrradiancePass)) return;
+        if (mirror_made_.of) shading_stale_ = true;
+        mirror_made_ = {};
+        layered_ = nullptr;
         filtered_.mirrored.clear();
         mirror_visibility_.reset();
-        shading_.mirror = Texture2D();
-        return had;
+        mirror_texels_ = {};
+        return;
     }
     clock.run(kFilterPass, layered_ != scene.environment, [&] {
         filtered_.mirrored =
             filter_environment(*scene.environment, {true, false, false}, progress).mirrored;
         layered_ = scene.environment;
     });
-    const int rays = rays_of(plan.quality).mirror;
+    const glm::dvec3 eye = scene.eye_in_world_mm;
     const bool occluded = find_pass(plan, kReflectionPass) != nullptr;
-    const bool other_rays = occluded && (!mirror_visibility_ || mirror_visibility_->rays != rays ||
-                                         visibility_eye_ != scene.eye_in_world_mm);
+    const int rays = occluded ? rays_of(plan.quality).mirror : 0;
+    const bool stands = mirror_made_.of == scene.environment && mirror_made_.eye_mm == eye &&
+                        enough(mirror_made_.rays, rays);
+    const bool visible =
+        !occluded || stands ||
+        (mirror_visibility_ && enough(mirror_visibility_->rays, rays) && visibility_eye_ == eye);
     const bool trust_sky = plan.quality != Quality::high && sky_visibility_;
     const SkyVisibility* sky = trust_sky ? &*sky_visibility_ : nullptr;
-    clock.run(kReflectionPass, other_rays, [&] {
-        mirror_visibility_ = solve_mirror_visibility(
-            mesh_, tracer_, map_, scene.eye_in_world_mm, rays, sky, progress);
-        visibility_eye_ = scene.eye_in_world_mm;
+    clock.run(kReflectionPass, !visible, [&] {
+        mirror_visibility_ =
+            solve_mirror_visibility(mesh_, tracer_, map_, eye, rays, sky, progress);
+        visibility_eye_ = eye;
     });
-    if (!occluded) mirror_visibility_.reset();
-    const bool stale = mirrored_ != scene.environment || other_rays ||
-                       occluded != mirror_occluded_ || mirror_eye_ != scene.eye_in_world_mm;
-    return clock.run(kMirrorPass, stale, [&] {
-        upload_mirror(scene);
-        mirrored_ = scene.environment;
-        mirror_occluded_ = occluded;
-        mirror_eye_ = scene.eye_in_world_mm;
+    clock.run(kMirrorPass, !stands, [&] {
+        fill_mirror(scene, occluded, progress);
+        mirror_made_ = {scene.environment, occluded ? mirror_visibility_->rays : 0, eye};
     });
 }
 
-void FragmentInputs::upload_mirror(const Scene& scene) {
-    const MirrorVisibility* visibility = mirror_visibility_ ? &*mirror_visibility_ : nullptr;
+void FragmentInputs::fill_mirror(const Scene& scene, bool occluded, const Progress& progress) {
+    const MirrorVisibility* visibility = occluded ? &*mirror_visibility_ : nullptr;
     // Half floats hold the radiance in units in which the brightest texel fits.
     const ImageF& sharpest = filtered_.mirrored.front();
     const float largest = *std::max_element(sharpest.values.begin(), sharpest.values.end()) *
                           static_cast<float>(scene.environment->scale);
-    shading_.mirror_unit = std::max(1.0f, largest / kHalfLargest);
-    make(shading_.mirror,
-         {kPackedWidth, layout_.rows, static_cast<int>(kMirrorAlphas.size())},
-         TexelFormat::rgba16f);
+    const float unit = std::max(1.0f, largest / kHalfLargest);
     const std::size_t layer_size = static_cast<std::size_t>(layout_.rows) * kPackedWidth * 4;
     std::vector<float> texels(layer_size * kMirrorAlphas.size(), 0.0f);
     parallel_for(map_.fragments.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        progress.check_stop();
         for (std::size_t i = begin; i < end; ++i) {
             const auto lobes = mirrored_at_fragment(
                 mesh_, map_, i, *scene.environment, filtered_, scene.eye_in_world_mm, visibility);
             const std::size_t at = 4 * layout_.address(i, map_.fragments[i].part);
             for (std::size_t k = 0; k < lobes.size(); ++k) {
                 for (std::size_t c = 0; c < 3; ++c) {
-                    texels[k * layer_size + at + c] =
-                        lobes[k][static_cast<int>(c)] / shading_.mirror_unit;
+                    texels[k * layer_size + at + c] = lobes[k][static_cast<int>(c)] / unit;
                 }
             }
         }
     });
-    for (std::size_t k = 0; k < kMirrorAlphas.size(); ++k) {
-        shading_.mirror.upload(std::span<const float>(texels).subspan(k * layer_size, layer_size),
-                               0,
-                               static_cast<int>(k));
-    }
+    mirror_texels_ = std::move(texels);
+    mirror_unit_ = unit;
 }
 
-bool FragmentInputs::update_directions(const Scene& scene,
-                                       const FramePlan& plan,
-                                       StageClock& clock,
-                                       bool changed) {
-    if (!find_pass(plan, kDirectionsPass)) {
-        eye_.reset();
-        return false;
+bool FragmentInputs::upload(const Scene& scene, StageClock& clock) {
+    if (!mirror_made_.of) shading_.mirror = Texture2D();
+    if (!mirror_texels_.empty()) {
+        clock.add(kMirrorPass, [&] {
+            upload_mirror();
+            shading_stale_ = true;
+        });
     }
-    const bool stale = changed || eye_ != scene.eye_in_world_mm;
-    return clock.run(kDirectionsPass, stale, [&] {
+    const bool other_eye = eye_ != scene.eye_in_world_mm;
+    clock.run(kDirectionsPass, directions_stale_ || other_eye, [&] {
         upload_directions(scene);
         eye_ = scene.eye_in_world_mm;
+        directions_stale_ = false;
+        shading_stale_ = true;
     });
+    clock.run(kDiffuseLightPass, diffuse_light_stale_, [&] {
+        upload_diffuse_light();
+        diffuse_light_stale_ = false;
+        shading_stale_ = true;
+    });
+    return std::exchange(shading_stale_, false);
+}
+
+void FragmentInputs::upload_mirror() {
+    make(shading_.mirror,
+         {kPackedWidth, layout_.rows, static_cast<int>(kMirrorAlphas.size())},
+         TexelFormat::rgba16f);
+    const std::size_t layer_size = mirror_texels_.size() / kMirrorAlphas.size();
+    for (std::size_t k = 0; k < kMirrorAlphas.size(); ++k) {
+        shading_.mirror.upload(
+            std::span<const float>(mirror_texels_).subspan(k * layer_size, layer_size),
+            0,
+            static_cast<int>(k));
+    }
+    shading_.mirror_unit = mirror_unit_;
+    mirror_texels_ = {};
 }
 
 void FragmentInputs::upload_directions(const Scene& scene) {
@@ -259,24 +279,18 @@ void FragmentInputs::upload_directions(const Scene& scene) {
     });
 }
 
-bool FragmentInputs::update_diffuse_light(const FramePlan& plan, StageClock& clock, bool changed) {
-    if (!find_pass(plan, kDiffuseLightPass)) {
-        shading_.lit = Texture2D();
-        return false;
-    }
-    return clock.run(kDiffuseLightPass, changed || !shading_.lit, [&] {
-        make(shading_.lit, {kPackedWidth, layout_.rows}, TexelFormat::rgba16f);
-        const auto light_on = [&](std::size_t i) {
-            glm::vec3 sum = sky_.empty() ? glm::vec3(0.0f) : sky_[i];
-            for (const Light& light : lights_) {
-                const float cosine = glm::dot(map_.fragments[i].normal, light.at[i].direction);
-                sum += radiance_working(light.light) *
-                       (light.at[i].visibility * std::max(cosine, 0.0f));
-            }
-            return glm::vec4(glm::min(sum, glm::vec3(kHalfLargest)), 1.0f);
-        };
-        shading_.lit.upload(std::span<const float>(packed(map_, layout_, light_on)));
-    });
+void FragmentInputs::upload_diffuse_light() {
+    make(shading_.lit, {kPackedWidth, layout_.rows}, TexelFormat::rgba16f);
+    const auto light_on = [&](std::size_t i) {
+        glm::vec3 sum = sky_.empty() ? glm::vec3(0.0f) : sky_[i];
+        for (const Light& light : lights_) {
+            const float cosine = glm::dot(map_.fragments[i].normal, light.at[i].direction);
+            sum +=
+                radiance_working(light.light) * (light.at[i].visibility * std::max(cosine, 0.0f));
+        }
+        return glm::vec4(glm::min(sum, glm::vec3(kHalfLargest)), 1.0f);
+    };
+    shading_.lit.upload(std::span<const float>(packed(map_, layout_, light_on)));
 }
 
 void FragmentInputs::make(Texture2D& texture, TextureShape shape, TexelFormat format) {

@@ -41,6 +41,15 @@ class StageClock {
         ++passes_run_;
         return true;
     }
+    /// What more a listed pass takes after it ran.
+    template <typename Work>
+    void add(const std::string& pass, const Work& work) {
+        PlannedPass* planned = find_pass(*plan_, pass);
+        if (!planned) return;
+        const double begin = now_ms();
+        work();
+        planned->ms = planned->ms.value_or(0.0) + now_ms() - begin;
+    }
     int passes_run() const { return passes_run_; }
     static double now_ms();
 
@@ -51,16 +60,21 @@ class StageClock {
 
 class FragmentInputs {
   public:
+    /// With `keep_better`, what was solved with more rays than the plan's quality asks for stands.
     FragmentInputs(const Mesh& mesh,
                    const Tracer& tracer,
                    const SurfaceMap& map,
-                   const PackedLayout& layout);
+                   const PackedLayout& layout,
+                   bool keep_better);
 
-    /// Brings everything that the plan lists up to date; true when shading must follow.
-    bool update(const Scene& scene,
-                const FramePlan& plan,
-                StageClock& clock,
-                const Progress& progress);
+    /// Solves everything that the plan lists and that does not stand, without OpenGL. A stop leaves
+    /// what was solved until then; what a plan does not list is kept while its light stays.
+    void solve(const Scene& scene,
+               const FramePlan& plan,
+               StageClock& clock,
+               const Progress& progress);
+    /// Hands what solve() changed to OpenGL; true when shading must follow.
+    bool upload(const Scene& scene, StageClock& clock);
     const ShadingInputs& shading() const { return shading_; }
     int textures_made() const { return textures_made_; }
 
@@ -71,13 +85,16 @@ class FragmentInputs {
         int rays = 0;
         std::vector<LightAtFragment> at;
     };
-    bool update_lights(const Scene&, const FramePlan&, StageClock&, const Progress&);
-    bool update_sky(const Scene&, const FramePlan&, StageClock&, const Progress&);
-    bool update_mirror(const Scene&, const FramePlan&, StageClock&, const Progress&);
-    bool update_directions(const Scene&, const FramePlan&, StageClock&, bool changed);
-    bool update_diffuse_light(const FramePlan&, StageClock&, bool changed);
+    void solve_lights(const Scene&, const FramePlan&, StageClock&, const Progress&);
+    void solve_sky(const Scene&, const FramePlan&, StageClock&, const Progress&);
+    void solve_mirror(const Scene&, const FramePlan&, StageClock&, const Progress&);
+    void fill_mirror(const Scene&, bool occluded, const Progress&);
+    void upload_mirror();
     void upload_directions(const Scene&);
-    void upload_mirror(const Scene&);
+    void upload_diffuse_light();
+    bool enough(int rays, int wanted) const {
+        return keep_better_ ? rays >= wanted : rays == wanted;
+    }
     void make(Texture2D& texture, TextureShape shape, TexelFormat format);
 
     const Mesh& mesh_;
@@ -85,17 +102,29 @@ class FragmentInputs {
     const SurfaceMap& map_;
     const PackedLayout& layout_;
 
+    const bool keep_better_;
+
     std::vector<Light> lights_;
-    std::shared_ptr<const Environment> environment_;  ///< that sky_ was made for
-    std::shared_ptr<const Environment> layered_;      ///< that filtered_.mirrored was made for
-    std::shared_ptr<const Environment> mirrored_;     ///< that shading_.mirror was made for
     FilteredEnvironment filtered_;
+    std::shared_ptr<const Environment> diffused_;  ///< that filtered_.diffuse was made for
+    std::shared_ptr<const Environment> layered_;   ///< that filtered_.mirrored was made for
     std::optional<SkyVisibility> sky_visibility_;
-    bool sky_occluded_ = false;
     std::vector<glm::vec3> sky_;
     std::optional<MirrorVisibility> mirror_visibility_;
-    bool mirror_occluded_ = false;
-    std::optional<glm::dvec3> visibility_eye_, mirror_eye_, eye_;
+    std::optional<glm::dvec3> visibility_eye_;
+    std::vector<float> mirror_texels_;  ///< solved and not yet uploaded
+    float mirror_unit_ = 1.0f;
+
+    /// What sky_ and the mirror were made of. No rays: unoccluded.
+    struct Made {
+        std::shared_ptr<const Environment> of;
+        int rays = 0;
+        glm::dvec3 eye_mm{0.0};
+    };
+    Made sky_made_, mirror_made_;
+    std::optional<glm::dvec3> eye_;  ///< that shading_.eye is for
+    /// Sticky, so that a stop between two passes loses nothing.
+    bool directions_stale_ = true, diffuse_light_stale_ = true, shading_stale_ = false;
     ShadingInputs shading_;
     int textures_made_ = 0;
 };

@@ -1,5 +1,6 @@
 #include "radiance/renderer.h"
 
+#include <algorithm>
 #include <deque>
 #include <optional>
 
@@ -31,12 +32,20 @@ void check_fits(const Scene& scene, const FramePlan& plan, const Product* produc
 
 }  // namespace
 
+FrameGeometry::FrameGeometry(std::shared_ptr<const Product> its_product,
+                             const View& its_view,
+                             const Progress& progress)
+    : product(std::move(its_product)),
+      view(its_view),
+      tracer((check_argument(product != nullptr, "a renderer needs a product"), product->mesh)) {
+    const double begin_ms = StageClock::now_ms();
+    map = build_surface_map(product->mesh, tracer, view, kSubSamples, progress);
+    ms = StageClock::now_ms() - begin_ms;
+}
+
 struct RadianceRenderer::State {
-    std::shared_ptr<const Product> product;
-    double map_begin_ms = StageClock::now_ms();
-    Tracer tracer;
-    SurfaceMap map;
-    double map_ms;
+    std::shared_ptr<const FrameGeometry> geometry;
+    const SurfaceMap& map;
     bool map_reported = false;
 
     PackedLayout layout;
@@ -55,20 +64,20 @@ struct RadianceRenderer::State {
     int own_textures = 0;
     Counters counters;
 
-    State(std::shared_ptr<const Product> its_product, const View& view, const Progress& progress)
-        : product(std::move(its_product)),
-          tracer(product->mesh),
-          map(build_surface_map(product->mesh, tracer, view, kSubSamples, progress)),
-          map_ms(StageClock::now_ms() - map_begin_ms),
+    State(std::shared_ptr<const FrameGeometry> its_geometry, bool keep_better)
+        : geometry(std::move(its_geometry)),
+          map(geometry->map),
           layout(layout_of(map)),
-          inputs(product->mesh, tracer, map, layout),
+          inputs(geometry->product->mesh, geometry->tracer, map, layout, keep_better),
           target(map.width, map.height, TexelFormat::rgba16f),
           target_framebuffer({&target}),
-          parts(product->mesh.parts.size()) {
+          parts(geometry->product->mesh.parts.size()) {
         target.clear();
         own_textures = 1;
     }
 
+    void solve(const Scene& scene, FramePlan& plan, StageClock& clock, const Progress& progress);
+    void make_shaded();
     /// Shades the parts that need it; their timers are read when all is drawn.
     void shade(const Scene& scene, FramePlan& plan, bool inputs_changed);
     void run_resolve(FramePlan& plan, bool any_shaded);
@@ -83,18 +92,38 @@ struct RadianceRenderer::State {
     }
 };
 
-void RadianceRenderer::State::shade(const Scene& scene, FramePlan& plan, bool inputs_changed) {
-    if (!shaded) {
-        shaded = Texture2D(kPackedWidth, layout.rows, TexelFormat::rgba16f);
-        shaded_framebuffer = Framebuffer({&shaded});
-        ++own_textures;
+void RadianceRenderer::State::solve(const Scene& scene,
+                                    FramePlan& plan,
+                                    StageClock& clock,
+                                    const Progress& progress) {
+    rays_of(plan.quality);
+    check_fits(scene, plan, geometry->product.get());
+    if (PlannedPass* pass = find_pass(plan, kSurfaceMapPass)) {
+        pass->ms = map_reported ? 0.0 : geometry->ms;
+        if (!map_reported) ++counters.passes_run;
+        map_reported = true;
     }
+    const int before = clock.passes_run();
+    inputs.solve(scene, plan, clock, progress);
+    counters.passes_run += clock.passes_run() - before;
+    progress.check_stop();
+}
+
+void RadianceRenderer::State::make_shaded() {
+    if (shaded) return;
+    shaded = Texture2D(kPackedWidth, layout.rows, TexelFormat::rgba16f);
+    shaded_framebuffer = Framebuffer({&shaded});
+    ++own_textures;
+}
+
+void RadianceRenderer::State::shade(const Scene& scene, FramePlan& plan, bool inputs_changed) {
+    make_shaded();
+    if (inputs_changed) std::fill(parts.begin(), parts.end(), std::nullopt);
     for (std::size_t p = 0; p < parts.size(); ++p) {
         PlannedPass* pass = find_pass(plan, shade_pass(scene, p));
         pass->ms = 0.0;
         const Material& material = scene.part_materials[p];
-        const bool stands = !inputs_changed && parts[p] &&
-                            same_paint(parts[p]->material, material) &&
+        const bool stands = parts[p] && same_paint(parts[p]->material, material) &&
                             parts[p]->exposure_ev == scene.exposure_ev;
         if (stands) continue;
         parts[p] = Shaded{material, scene.exposure_ev};
@@ -133,27 +162,44 @@ void RadianceRenderer::State::read_timers() {
 
 RadianceRenderer::RadianceRenderer(std::shared_ptr<const Product> product,
                                    const View& view,
-                                   const Progress& progress) {
-    check_argument(product != nullptr, "a renderer needs a product");
-    state_ = std::make_unique<State>(std::move(product), view, progress);
+                                   const Progress& progress)
+    : RadianceRenderer(std::make_shared<const FrameGeometry>(std::move(product), view, progress)) {}
+
+RadianceRenderer::RadianceRenderer(std::shared_ptr<const FrameGeometry> geometry,
+                                   bool keep_better) {
+    check_argument(geometry != nullptr, "a renderer needs a geometry");
+    state_ = std::make_unique<State>(std::move(geometry), keep_better);
 }
 
 RadianceRenderer::~RadianceRenderer() = default;
 
+void RadianceRenderer::solve(const Scene& scene, FramePlan& plan, const Progress& progress) {
+    StageClock clock(plan);
+    state_->solve(scene, plan, clock, progress);
+}
+
+void RadianceRenderer::prepare(const Scene& scene, FramePlan& plan, const Progress& progress) {
+    State& s = *state_;
+    StageClock clock(plan);
+    s.solve(scene, plan, clock, progress);
+    // The picture is not drawn again here, and so must be when it is next asked for.
+    if (s.inputs.upload(scene, clock)) {
+        std::fill(s.parts.begin(), s.parts.end(), std::nullopt);
+    }
+    for (const Material& material : scene.part_materials) {
+        progress.check_stop();
+        s.programs.compile(material, s.inputs.shading());
+    }
+}
+
 void RadianceRenderer::render(const Scene& scene, FramePlan& plan, const Progress& progress) {
     State& s = *state_;
-    rays_of(plan.quality);
-    check_fits(scene, plan, s.product.get());
-    count_work(scene, plan);
     StageClock clock(plan);
-    if (PlannedPass* pass = find_pass(plan, kSurfaceMapPass)) {
-        pass->ms = s.map_reported ? 0.0 : s.map_ms;
-        if (!s.map_reported) ++s.counters.passes_run;
-        s.map_reported = true;
-    }
-    const bool inputs_changed = s.inputs.update(scene, plan, clock, progress);
-    s.counters.passes_run += clock.passes_run();
-    progress.check_stop();
+    s.solve(scene, plan, clock, progress);
+    count_work(scene, plan);
+    const int before = clock.passes_run();
+    const bool inputs_changed = s.inputs.upload(scene, clock);
+    s.counters.passes_run += clock.passes_run() - before;
     s.running.clear();
     s.shade(scene, plan, inputs_changed);
     s.run_resolve(plan, !s.running.empty());
@@ -191,6 +237,10 @@ ImageF RadianceRenderer::read_back() const { return read_floats(state_->target);
 unsigned RadianceRenderer::texture() const { return state_->target.name(); }
 
 const SurfaceMap& RadianceRenderer::surface_map() const { return state_->map; }
+
+const std::shared_ptr<const FrameGeometry>& RadianceRenderer::geometry() const {
+    return state_->geometry;
+}
 
 RadianceRenderer::Counters RadianceRenderer::counters() const {
     Counters counters = state_->counters;

@@ -10,8 +10,23 @@
 #include "scene/frame_plan.h"
 #include "scene/scene.h"
 #include "scene/view.h"
+#include "tracing/tracer.h"
 
 namespace livery {
+
+/// What a product and a view fix, whatever it is painted and lit with: rays through the product and
+/// its surface map. Immutable: renderers of the same product and view share it.
+struct FrameGeometry {
+    FrameGeometry(std::shared_ptr<const Product> its_product,
+                  const View& its_view,
+                  const Progress& progress = {});
+
+    std::shared_ptr<const Product> product;
+    View view;
+    Tracer tracer;
+    SurfaceMap map;
+    double ms = 0.0;  ///< that making it took
+};
 
 /// Draws one product from one view; needs a current OpenGL context, the same for its whole life.
 /// What does not change between frames (surface map, visibility, filtered environment, programs)
@@ -21,9 +36,20 @@ class RadianceRenderer {
     RadianceRenderer(std::shared_ptr<const Product> product,
                      const View& view,
                      const Progress& progress = {});
+    /// With `keep_better`, what was solved with more rays than a plan's quality asks for stands, so
+    /// that a draft of a new light keeps the environment of a better level.
+    explicit RadianceRenderer(std::shared_ptr<const FrameGeometry> geometry,
+                              bool keep_better = false);
     ~RadianceRenderer();
     RadianceRenderer(const RadianceRenderer&) = delete;
     RadianceRenderer& operator=(const RadianceRenderer&) = delete;
+
+    /// The part of render() that needs no OpenGL, ahead of it: on any thread, while no other call
+    /// runs. Stopped by `progress`, it keeps what it has solved until then.
+    void solve(const Scene& scene, FramePlan& plan, const Progress& progress = {});
+
+    /// Everything that render() would need for this scene, programs included, without drawing.
+    void prepare(const Scene& scene, FramePlan& plan, const Progress& progress = {});
 
     /// Shades whatever changed since the last call, and nothing else. Fills in the plan's measured
     /// milliseconds (0 for a pass whose result still stood) and work items. `plan` must be
@@ -42,6 +68,7 @@ class RadianceRenderer {
     /// OpenGL name of the RGBA16F texture that holds the last frame, for the compensation pass.
     unsigned texture() const;
     const SurfaceMap& surface_map() const;
+    const std::shared_ptr<const FrameGeometry>& geometry() const;
 
     /// Programs compiled, textures allocated and passes run so far: a test counts that what is not
     /// in the plan costs nothing.

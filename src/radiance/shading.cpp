@@ -104,18 +104,35 @@ Program& ShadingPrograms::program_for(const ShadingKey& key) {
     return programs_.emplace(key, make_shading_program(key, ShadingSource::packed)).first->second;
 }
 
+ShadingKey ShadingPrograms::key_of(const Material& material, const ShadingInputs& inputs) {
+    if (material.model == ReflectanceModel::lambert) return {material.model, 0, false};
+    return {material.model,
+            static_cast<int>(inputs.light_irradiance.size()),
+            static_cast<bool>(inputs.mirror)};
+}
+
+void ShadingPrograms::compile(const Material& material, const ShadingInputs& inputs) {
+    if (drawn_.contains(key_of(material, inputs))) return;
+    if (!nowhere_) {
+        nowhere_ = Texture2D(1, 1, TexelFormat::rgba16f);
+        nowhere_framebuffer_ = Framebuffer({&nowhere_});
+    }
+    shade(material, inputs, 0.0, {0, 0, 1, 1}, nowhere_framebuffer_);
+    finish_gl();
+}
+
 void ShadingPrograms::shade(const Material& material,
                             const ShadingInputs& inputs,
                             double exposure_ev,
                             const PixelRect& rectangle,
                             const Framebuffer& target) {
     if (rectangle.height == 0) return;
-    const bool lambert = material.model == ReflectanceModel::lambert;
-    const int lights = lambert ? 0 : static_cast<int>(inputs.light_irradiance.size());
-    const bool environment = !lambert && inputs.mirror;
-    Program& program = program_for({material.model, lights, environment});
+    const ShadingKey key = key_of(material, inputs);
+    const auto [model, lights, environment] = key;
+    Program& program = program_for(key);
+    drawn_.insert(key);
     set_paint(program, material, exposure_ev);
-    if (lambert) {
+    if (model == ReflectanceModel::lambert) {
         program.set("u_lit", 0);
         inputs.lit.bind(0);
     } else {

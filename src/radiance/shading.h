@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <set>
 #include <tuple>
 #include <vector>
 
@@ -49,13 +50,20 @@ class ShadingPrograms {
                double exposure_ev,
                const PixelRect& rectangle,
                const Framebuffer& target);
+    /// The program that the paint would be shaded with, down to the machine's code: drivers put
+    /// that off until the first draw, so one pixel is drawn, nowhere.
+    void compile(const Material& material, const ShadingInputs& inputs);
     int compiled() const { return static_cast<int>(programs_.size()); }
 
   private:
+    static ShadingKey key_of(const Material& material, const ShadingInputs& inputs);
     Program& program_for(const ShadingKey& key);
 
     std::map<ShadingKey, Program> programs_;
+    std::set<ShadingKey> drawn_;
     ScreenPass screen_;
+    Texture2D nowhere_;
+    Framebuffer nowhere_framebuffer_;
 };
 
 /// Whether both shade alike (names and files aside).

@@ -10,8 +10,7 @@
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/image_io.h"
-#include "core/paths.h"
-#include "session/projector_irradiance.h"
+#include "session/bench_calibration.h"
 #include "twin/chart.h"
 
 namespace livery {
@@ -96,28 +95,17 @@ CalibratedBench calibrate_bench(const DemoOptions& options,
         return std::make_unique<Bench>(description, product, progress);
     });
 
-    LiveOptions live;
-    live.width = description.projector.view.width;
-    live.height = description.projector.view.height;
-    live.colour.made_with = "simulated bench " + description.name;
-    LiveResult calibrated = calibrate_live(result.bench->ports(), live, progress);
-    times.add("photograph the patterns", calibrated.capture_seconds);
-    times.add("solve the calibration", calibrated.solve_seconds);
-    const ImageF geometry = timed(times, "predict hidden pixels", [&] {
-        return projector_irradiance(product->mesh, description.projector.view, progress);
-    });
-    result.calibration = timed(times, "predict hidden pixels", [&] {
-        return predict_hidden(std::move(calibrated.calibration), geometry);
-    });
+    BenchCalibration calibrated = calibrate_through_ports(*result.bench, *product, progress);
+    times.add("photograph the patterns", calibrated.live.capture_seconds);
+    times.add("solve the calibration", calibrated.live.solve_seconds);
+    times.add("predict hidden pixels", calibrated.predict_seconds);
+    result.calibration = std::move(calibrated.calibration);
     result.valid = mask_of(result.calibration, is_valid);
     result.predicted = mask_of(result.calibration,
                                [](PixelStatus status) { return status == PixelStatus::predicted; });
 
     timed(times, "write the calibration", [&] {
-        const auto folder = options.out / "calibration";
-        make_output_folder(folder);
-        write_calibration(folder, result.calibration);
-        write_camera_file(folder / "projector.json", description.projector.view);
+        write_setup(options.out / "calibration", result.calibration, description.projector.view);
     });
 
     result.design_white_y =
@@ -125,16 +113,16 @@ CalibratedBench calibrate_bench(const DemoOptions& options,
     result.table = bake(result.calibration, result.design_white_y);
 
     timed(times, "solve again with the chart's matrix", [&] {
-        LiveOptions with_chart = live;
-        with_chart.colour.camera_to_xyz.xyz_from_camera =
-            chart_matrix(description, result.calibration);
-        with_chart.colour.camera_to_xyz.origin = "chart";
-        const ColourCalibration by_chart = predict_hidden(calibrate_colour(calibrated.captures,
-                                                                           calibrated.patterns,
-                                                                           calibrated.map,
-                                                                           with_chart.colour,
+        ColourOptions with_chart;
+        with_chart.made_with = result.calibration.made_with;
+        with_chart.camera_to_xyz.xyz_from_camera = chart_matrix(description, result.calibration);
+        with_chart.camera_to_xyz.origin = "chart";
+        const ColourCalibration by_chart = predict_hidden(calibrate_colour(calibrated.live.captures,
+                                                                           calibrated.live.patterns,
+                                                                           calibrated.live.map,
+                                                                           with_chart,
                                                                            progress),
-                                                          geometry);
+                                                          calibrated.geometry);
         result.chart_table = bake(by_chart, result.design_white_y);
     });
     return result;

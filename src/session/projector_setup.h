@@ -5,34 +5,43 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "compensation/compensation.h"
 #include "core/progress.h"
 #include "scene/colour_calibration.h"
 #include "scene/product.h"
 #include "scene/view.h"
+#include "twin/bench.h"
 
 namespace livery {
 
 /// Immutable and shared: the frame thread, the panels and the bench read the same one.
 struct ProjectorSetup {
-    View view;                                     ///< the projector's
-    std::optional<ColourCalibration> calibration;  ///< planes dropped; none: uncorrected
+    View view;  ///< the projector's
+    /// Its large planes dropped (status stays); none: uncorrected.
+    std::optional<ColourCalibration> calibration;
     std::optional<CompensationTable> table;
     double design_white_y = 0.0;
     std::string why_uncorrected;  ///< empty when there is a table
 };
 
-/// From a calibration folder (calibration.json and projector.json). Throws FileError.
+/// From a calibration folder (calibration.json and projector.json). Throws FileError (also for a
+/// projector of another size than the calibration), Refused when nothing in it is valid.
 std::shared_ptr<const ProjectorSetup> load_setup(const std::filesystem::path& folder,
                                                  double design_white_percentile);
 /// No calibration yet: the bench's projector, pictures go out as sRGB.
 std::shared_ptr<const ProjectorSetup> uncorrected_setup(const std::string& bench);
 
 /// Calibrates on the simulated bench, keeps the result under `calibrations` in the user's folder
-/// (named by date and id; older ones stay) and returns that folder. Throws Refused, Cancelled.
+/// (named by date and id; older ones stay) and returns that folder. Throws Refused, Cancelled,
+/// FileError; after any of them nothing is left behind.
 std::filesystem::path calibrate_on_bench(const std::string& bench,
                                          std::shared_ptr<const Product> product,
+                                         const Progress& progress);
+/// The same on a bench that is already traced with this product as its mock-up.
+std::filesystem::path calibrate_on_bench(Bench& bench,
+                                         const Product& product,
                                          const Progress& progress);
 
 /// Folders of the calibrations kept in the user's folder, newest first.

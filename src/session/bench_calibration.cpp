@@ -1,0 +1,40 @@
+#include "session/bench_calibration.h"
+
+#include <chrono>
+
+#include "calibration/predict.h"
+#include "core/paths.h"
+#include "session/projector_irradiance.h"
+
+namespace livery {
+
+BenchCalibration calibrate_through_ports(Bench& bench,
+                                         const Product& product,
+                                         const Progress& progress) {
+    const View& projector = bench.description().projector.view;
+    LiveOptions options;
+    options.width = projector.width;
+    options.height = projector.height;
+    options.colour.made_with = "simulated bench " + bench.description().name;
+    BenchCalibration result;
+    result.live = calibrate_live(bench.ports(), options, progress);
+
+    const auto start = std::chrono::steady_clock::now();
+    result.geometry = projector_irradiance(product.mesh, projector, progress);
+    progress.check_stop();
+    result.calibration = predict_hidden(std::move(result.live.calibration), result.geometry);
+    result.predict_seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return result;
+}
+
+void write_setup(const std::filesystem::path& folder,
+                 const ColourCalibration& calibration,
+                 const View& projector) {
+    make_output_folder(folder);
+    // The camera first: a calibration without its projector would open and then miss it.
+    write_camera_file(folder / "projector.json", projector);
+    write_calibration(folder, calibration);
+}
+
+}  // namespace livery
