@@ -29,9 +29,12 @@ void Fence::wait_on_device() const {
     if (sync_) glWaitSync(static_cast<GLsync>(sync_), 0, GL_TIMEOUT_IGNORED);
 }
 
-bool Fence::is_reached() const {
+bool Fence::is_reached() const { return wait_for(0.0); }
+
+bool Fence::wait_for(double seconds) const {
     if (!sync_) return true;
-    const GLenum status = glClientWaitSync(static_cast<GLsync>(sync_), 0, 0);
+    const auto nanoseconds = static_cast<GLuint64>(seconds * 1e9);
+    const GLenum status = glClientWaitSync(static_cast<GLsync>(sync_), 0, nanoseconds);
     return status == GL_ALREADY_SIGNALED || status == GL_CONDITION_SATISFIED;
 }
 

@@ -15,6 +15,8 @@ class Fence {
 
     void wait_on_device() const;  ///< later work of the current context waits; this thread does not
     bool is_reached() const;
+    /// This thread waits, `seconds` at most; whether it was reached.
+    bool wait_for(double seconds) const;
 
   private:
     void* sync_ = nullptr;

@@ -9,8 +9,9 @@
 #include <string>
 #include <vector>
 
+#include <glm/vec2.hpp>
+
 #include "gl/fence.h"
-#include "gl/handles.h"
 #include "gl/window.h"
 #include "projection/monitors.h"
 
@@ -29,7 +30,7 @@ struct ProjectorPicture {
 
 /// What is on the projector now, for the operator's window and for the trace.
 struct ShownPicture {
-    std::uint64_t number = 0;
+    std::uint64_t number = 0;                    ///< the picture's; 0: black
     std::chrono::steady_clock::time_point at{};  ///< when the swap returned
     std::uint64_t frames = 0;                    ///< drawn since the start: idle adds none
 };
@@ -50,15 +51,18 @@ class ProjectorScreen {
 
     // Main thread.
     void use_monitor(const std::optional<std::string>& monitor_id);  ///< none: hidden
-    /// To be called when monitors came or went: hides or shows again. True when that changed.
-    bool monitors_changed(const std::vector<Monitor>& monitors);
+    /// The window follows its monitor by itself; this waits until it has, so that state() tells
+    /// what is so now. True when that changed since the last call of this or of use_monitor().
+    bool monitors_changed();
     enum class State { off, waiting_for_monitor, showing };
     State state() const;
+    /// While waiting_for_monitor: what is in the way and what to do, a sentence; else empty.
+    std::string why_waiting() const;
 
     // Any thread. The newest picture wins; none: black.
     void present(std::shared_ptr<const ProjectorPicture> picture);
     void set_black(bool black);    ///< before anything else, within one refresh
-    void set_frozen(bool frozen);  ///< keeps what is shown; thawing shows the newest
+    void set_frozen(bool frozen);  ///< keeps the newest so far; thawing shows the newest then
     bool is_black() const;
     bool is_frozen() const;
     ShownPicture shown() const;
@@ -71,8 +75,10 @@ class ProjectorScreen {
 /// Shows each monitor's number, large, on every monitor for as long as it lives. Main thread.
 class MonitorNumbers {
   public:
-    MonitorNumbers(const Window& share, const std::vector<Monitor>& monitors);
+    explicit MonitorNumbers(const std::vector<Monitor>& monitors);
     ~MonitorNumbers();
+    MonitorNumbers(const MonitorNumbers&) = delete;
+    MonitorNumbers& operator=(const MonitorNumbers&) = delete;
 
   private:
     struct Implementation;

@@ -1,0 +1,137 @@
+#include "projection/outputs.h"
+
+#include <algorithm>
+#include <map>
+#include <span>
+#include <tuple>
+
+#include <xcb/randr.h>
+
+#include "core/hash.h"
+
+namespace livery {
+namespace {
+
+constexpr std::size_t kEdidBlock = 128;
+
+double refresh_hz(const xcb_randr_mode_info_t& mode) {
+    double lines = mode.vtotal;
+    if (mode.mode_flags & XCB_RANDR_MODE_FLAG_DOUBLE_SCAN) lines *= 2.0;
+    if (mode.mode_flags & XCB_RANDR_MODE_FLAG_INTERLACE) lines /= 2.0;
+    const double pixels = lines * mode.htotal;
+    return pixels > 0.0 ? mode.dot_clock / pixels : 0.0;
+}
+
+std::string identity(const std::string& output, const std::vector<std::uint8_t>& edid) {
+    if (edid.empty()) return output;
+    Hasher hasher;
+    hasher.add(std::span<const std::uint8_t>(edid));
+    return output + ":" + hasher.hex().substr(0, 16);
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> output_property(const XConnection& x,
+                                          std::uint32_t output,
+                                          std::string_view name) {
+    constexpr std::uint32_t kLongestInWords = 256;  // EDID: eight blocks
+    const auto cookie = xcb_randr_get_output_property(
+        x.get(), output, x.atom(name), XCB_ATOM_NONE, 0, kLongestInWords, false, false);
+    const XReply<xcb_randr_get_output_property_reply_t> reply(
+        xcb_randr_get_output_property_reply(x.get(), cookie, nullptr));
+    if (!reply) return {};
+    const auto* data = xcb_randr_get_output_property_data(reply.get());
+    return {data, data + xcb_randr_get_output_property_data_length(reply.get())};
+}
+
+std::string edid_name(const std::vector<std::uint8_t>& edid) {
+    constexpr std::size_t kFirstDescriptor = 54, kDescriptorBytes = 18, kTextAt = 5;
+    constexpr std::uint8_t kDisplayName = 0xFC;
+    if (edid.size() < kEdidBlock) return {};
+    for (std::size_t at = kFirstDescriptor; at + kDescriptorBytes < kEdidBlock;
+         at += kDescriptorBytes) {
+        if (edid[at] != 0 || edid[at + 1] != 0 || edid[at + 3] != kDisplayName) continue;
+        std::string name;
+        for (std::size_t i = at + kTextAt; i < at + kDescriptorBytes && edid[i] != '\n'; ++i) {
+            if (edid[i] >= 0x20 && edid[i] < 0x7F) name += static_cast<char>(edid[i]);
+        }
+        while (name.ends_with(' ')) name.pop_back();
+        if (!name.empty()) return name;
+    }
+    const unsigned packed = static_cast<unsigned>(edid[8]) << 8u | edid[9];
+    std::string maker;
+    for (const unsigned shift : {10u, 5u, 0u}) {
+        const unsigned letter = packed >> shift & 31u;
+        if (letter < 1 || letter > 26) return {};
+        maker += static_cast<char>('A' + static_cast<int>(letter) - 1);
+    }
+    return maker;
+}
+
+bool overlap(const Monitor& a, const Monitor& b) {
+    return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height &&
+           b.y < a.y + a.height;
+}
+
+std::vector<Output> read_outputs(const XConnection& x) {
+    auto* c = x.get();
+    const XReply<xcb_randr_get_screen_resources_current_reply_t> resources(
+        xcb_randr_get_screen_resources_current_reply(
+            c, xcb_randr_get_screen_resources_current(c, x.root()), nullptr));
+    if (!resources) return {};
+    const XReply<xcb_randr_get_output_primary_reply_t> primary(
+        xcb_randr_get_output_primary_reply(c, xcb_randr_get_output_primary(c, x.root()), nullptr));
+    std::map<std::uint32_t, xcb_randr_mode_info_t> modes;
+    const auto* infos = xcb_randr_get_screen_resources_current_modes(resources.get());
+    for (int i = 0; i < resources->num_modes; ++i) modes[infos[i].id] = infos[i];
+
+    std::vector<Output> list;
+    const auto* ids = xcb_randr_get_screen_resources_current_outputs(resources.get());
+    for (int i = 0; i < resources->num_outputs; ++i) {
+        const auto time = resources->config_timestamp;
+        const XReply<xcb_randr_get_output_info_reply_t> info(xcb_randr_get_output_info_reply(
+            c, xcb_randr_get_output_info(c, ids[i], time), nullptr));
+        if (!info || info->connection == XCB_RANDR_CONNECTION_DISCONNECTED || info->crtc == 0) {
+            continue;
+        }
+        const XReply<xcb_randr_get_crtc_info_reply_t> crtc(xcb_randr_get_crtc_info_reply(
+            c, xcb_randr_get_crtc_info(c, info->crtc, time), nullptr));
+        if (!crtc || crtc->mode == 0) continue;
+        const auto edid = output_property(x, ids[i], "EDID");
+        const auto* name =
+            reinterpret_cast<const char*>(xcb_randr_get_output_info_name(info.get()));
+        const std::string socket(name, name + info->name_len);
+        const std::string model = edid_name(edid);
+
+        Output output;
+        output.output = ids[i];
+        output.crtc = info->crtc;
+        output.monitor.id = identity(socket, edid);
+        output.monitor.name = model.empty() ? socket : socket + ", " + model;
+        output.monitor.x = crtc->x;
+        output.monitor.y = crtc->y;
+        output.monitor.width = crtc->width;
+        output.monitor.height = crtc->height;
+        output.monitor.primary = primary && primary->output == ids[i];
+        if (const auto mode = modes.find(crtc->mode); mode != modes.end()) {
+            output.mode_px = {mode->second.width, mode->second.height};
+            output.monitor.refresh_hz = refresh_hz(mode->second);
+        }
+        if (info->num_preferred > 0 && info->num_modes > 0) {
+            const auto best = modes.find(xcb_randr_get_output_info_modes(info.get())[0]);
+            if (best != modes.end()) {
+                output.preferred_px = {best->second.width, best->second.height};
+            }
+        }
+        list.push_back(std::move(output));
+    }
+    std::sort(list.begin(), list.end(), [](const Output& a, const Output& b) {
+        return std::tie(a.monitor.x, a.monitor.y, a.monitor.id) <
+               std::tie(b.monitor.x, b.monitor.y, b.monitor.id);
+    });
+    int number = 0;
+    for (auto& output : list) output.monitor.number = ++number;
+    return list;
+}
+
+}  // namespace livery

@@ -1,0 +1,37 @@
+// RandR's outputs that show something, as values.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+#include "projection/monitors.h"
+#include "projection/x_connection.h"
+
+namespace livery {
+
+struct Output {
+    Monitor monitor;
+    std::uint32_t output = 0, crtc = 0;  ///< RandR's
+    glm::ivec2 mode_px{0};               ///< what goes down the cable
+    glm::ivec2 preferred_px{0};          ///< what the monitor asks for; 0: it does not say
+};
+
+/// Connected and lit, ordered and numbered by position: left to right, then top to bottom. Asks
+/// what the server knows, not the hardware, so it takes well under a millisecond.
+std::vector<Output> read_outputs(const XConnection& x);
+
+/// A property of an output as bytes; empty where there is none.
+std::vector<std::uint8_t> output_property(const XConnection& x,
+                                          std::uint32_t output,
+                                          std::string_view name);
+
+/// The display name in an EDID block, else the maker's three letters; empty for neither.
+std::string edid_name(const std::vector<std::uint8_t>& edid);
+
+bool overlap(const Monitor& a, const Monitor& b);
+
+}  // namespace livery

@@ -1,0 +1,296 @@
+#include "projection/projector_screen.h"
+
+#include <algorithm>
+#include <cmath>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "core/log.h"
+#include "gl/window_blit.h"
+#include "projection/window_keeper.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#define GLFW_EXPOSE_NATIVE_X11
+#include <GLFW/glfw3native.h>
+
+namespace livery {
+namespace {
+
+using Picture = std::shared_ptr<const ProjectorPicture>;
+
+/// How long an unfinished picture may keep black, a newer picture or the end of the program
+/// waiting.
+constexpr double kPatience_s = 0.004;
+
+/// Where a picture goes in the window: pixel for pixel, or as large as fits when the shape is the
+/// window's, else in the middle.
+PixelRect placed(glm::ivec2 picture_px, glm::ivec2 window_px) {
+    constexpr double kSameShape = 0.01;
+    const glm::dvec2 ratio = glm::dvec2(window_px) / glm::dvec2(picture_px);
+    if (std::abs(ratio.x / ratio.y - 1.0) <= kSameShape) return {0, 0, window_px.x, window_px.y};
+    const double scale = std::min({1.0, ratio.x, ratio.y});
+    const glm::ivec2 size(static_cast<int>(std::lround(picture_px.x * scale)),
+                          static_cast<int>(std::lround(picture_px.y * scale)));
+    return {(window_px.x - size.x) / 2, (window_px.y - size.y) / 2, size.x, size.y};
+}
+
+std::unique_ptr<Window> hidden_window(const Window& share) {
+    WindowOptions options;
+    options.title = "Livery projector";
+    options.visible = false;
+    options.decorated = false;
+    auto window = std::make_unique<Window>(options, &share);
+    glfwSetInputMode(window->native(), GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
+    // Asks the server something, so that the window exists there before another connection names
+    // it.
+    int x = 0, y = 0;
+    glfwGetWindowPos(window->native(), &x, &y);
+    return window;
+}
+
+}  // namespace
+
+struct ProjectorScreen::Implementation {
+    const std::unique_ptr<Window> window;
+    const std::function<void(const ShownPicture&)> on_shown;
+
+    mutable std::mutex mutex;
+    std::condition_variable changed;
+    Picture newest, wanted;             ///< they differ while frozen
+    std::vector<Picture> let_go;        ///< OpenGL objects: dropped where a context is current
+    std::optional<glm::ivec2> size_px;  ///< of the window; none: hidden
+    bool black = false, frozen = false, exposed = false, quit = false;
+    ShownPicture shown;
+
+    bool following = false;   ///< main thread
+    State told = State::off;  ///< main thread
+    std::unique_ptr<WindowKeeper> keeper;
+    std::thread thread;
+
+    Implementation(const Window& share, std::function<void(const ShownPicture&)> callback)
+        : window(hidden_window(share)), on_shown(std::move(callback)) {
+        keeper = std::make_unique<WindowKeeper>(
+            static_cast<std::uint32_t>(glfwGetX11Window(window->native())),
+            WindowKeeper::Listener{[this](const WindowKeeper::Place& place) { moved(place); },
+                                   [this] { was_exposed(); }});
+        thread = std::thread([this] { run(); });
+    }
+
+    ~Implementation() {
+        keeper.reset();
+        {
+            const std::lock_guard lock(mutex);
+            quit = true;
+        }
+        changed.notify_one();
+        thread.join();
+    }
+
+    void moved(const WindowKeeper::Place& place) {
+        {
+            const std::lock_guard lock(mutex);
+            size_px = place.size_px;
+            exposed = false;  // no longer, or not yet
+        }
+        wake_main_thread();
+    }
+
+    void was_exposed() {
+        {
+            const std::lock_guard lock(mutex);
+            exposed = true;
+        }
+        changed.notify_one();
+    }
+
+    void present(Picture picture) {
+        {
+            const std::lock_guard lock(mutex);
+            let_go.push_back(std::exchange(newest, std::move(picture)));
+            if (!frozen) let_go.push_back(std::exchange(wanted, newest));
+        }
+        changed.notify_one();
+    }
+
+    void set_frozen(bool on) {
+        {
+            const std::lock_guard lock(mutex);
+            frozen = on;
+            if (!frozen) let_go.push_back(std::exchange(wanted, newest));
+        }
+        changed.notify_one();
+    }
+
+    State state() const {
+        if (!following) return State::off;
+        const std::lock_guard lock(mutex);
+        return size_px ? State::showing : State::waiting_for_monitor;
+    }
+
+    void run() {
+        try {
+            window->make_current();
+            glfwSwapInterval(1);
+            draw_until_quit();
+        } catch (const std::exception& error) {
+            log_line(LogLevel::error, std::string("the projector's picture: ") + error.what());
+        }
+        {
+            const std::lock_guard lock(mutex);
+            let_go.clear();
+            newest.reset();
+            wanted.reset();
+        }
+        window->release();
+    }
+
+    /// What the projector's thread knows about its window's content.
+    struct Canvas {
+        WindowBlit blit;
+        Picture drawn;  ///< in the window, or under the black
+        bool is_black = false;
+        Fence read;  ///< reached when the device has read `drawn`
+    };
+
+    void draw_until_quit() {
+        Canvas canvas;
+        while (auto next = wait_for_work(canvas)) {
+            try {
+                draw(*next, canvas);
+            } catch (const std::exception& error) {
+                log_line(LogLevel::error, std::string("the projector's picture: ") + error.what());
+                canvas.drawn = next->picture;  // not again and again
+                canvas.is_black = next->black;
+            }
+        }
+        canvas.read.wait_for(1.0);
+    }
+
+    struct Work {
+        glm::ivec2 window_px{0};
+        Picture picture;
+        bool black = false;
+        bool at_once = false;  ///< even if the picture is not finished yet
+        std::vector<Picture> finished_with;
+    };
+
+    /// Nothing: the end.
+    std::optional<Work> wait_for_work(const Canvas& canvas) {
+        for (;;) {
+            Work work;
+            std::unique_lock lock(mutex);
+            const auto must_draw = [&] { return exposed || canvas.is_black != black; };
+            const auto has_new = [&] { return !black && canvas.drawn != wanted; };
+            changed.wait(lock, [&] {
+                return quit || !let_go.empty() || (size_px && (must_draw() || has_new()));
+            });
+            if (quit) return std::nullopt;
+            work.finished_with.swap(let_go);
+            if (size_px && (must_draw() || has_new())) {
+                work.window_px = *size_px;
+                work.picture = wanted;
+                work.black = black;
+                work.at_once = must_draw();
+                exposed = false;
+                return work;
+            }
+            // Only to let go, which may take a driver a while.
+            lock.unlock();
+        }
+    }
+
+    void draw(const Work& work, Canvas& canvas) {
+        Picture next = work.picture;
+        if (!work.black && next && next != canvas.drawn && next->ready &&
+            !next->ready->wait_for(kPatience_s)) {
+            if (!work.at_once) return;
+            next = canvas.drawn;
+        }
+        const bool draws_black = work.black || !next;
+        if (draws_black) {
+            canvas.blit.black(work.window_px);
+        } else {
+            canvas.blit.show(next->texture,
+                             next->size_px,
+                             placed(next->size_px, work.window_px),
+                             work.window_px);
+        }
+        window->swap();
+        const auto at = std::chrono::steady_clock::now();
+        if (!work.black) {
+            // Whoever made the old picture may draw into it again once it is let go.
+            canvas.read.wait_for(1.0);
+            canvas.read = Fence::after_everything_so_far();
+            canvas.drawn = std::move(next);
+        }
+        canvas.is_black = work.black;
+        ShownPicture now;
+        {
+            const std::lock_guard lock(mutex);
+            shown.number = draws_black ? 0 : canvas.drawn->number;
+            shown.at = at;
+            ++shown.frames;
+            now = shown;
+        }
+        if (on_shown) on_shown(now);
+    }
+};
+
+ProjectorScreen::ProjectorScreen(const Window& share,
+                                 std::function<void(const ShownPicture&)> on_shown)
+    : implementation_(std::make_unique<Implementation>(share, std::move(on_shown))) {}
+
+ProjectorScreen::~ProjectorScreen() = default;
+
+void ProjectorScreen::use_monitor(const std::optional<std::string>& monitor_id) {
+    auto& self = *implementation_;
+    self.following = monitor_id.has_value();
+    self.keeper->follow(monitor_id);
+    self.told = self.state();
+}
+
+bool ProjectorScreen::monitors_changed() {
+    auto& self = *implementation_;
+    self.keeper->catch_up();
+    return std::exchange(self.told, self.state()) != self.told;
+}
+
+ProjectorScreen::State ProjectorScreen::state() const { return implementation_->state(); }
+
+std::string ProjectorScreen::why_waiting() const {
+    return implementation_->keeper->place().why_hidden;
+}
+
+void ProjectorScreen::present(std::shared_ptr<const ProjectorPicture> picture) {
+    implementation_->present(std::move(picture));
+}
+
+void ProjectorScreen::set_black(bool black) {
+    {
+        const std::lock_guard lock(implementation_->mutex);
+        implementation_->black = black;
+    }
+    implementation_->changed.notify_one();
+}
+
+void ProjectorScreen::set_frozen(bool frozen) { implementation_->set_frozen(frozen); }
+
+bool ProjectorScreen::is_black() const {
+    const std::lock_guard lock(implementation_->mutex);
+    return implementation_->black;
+}
+
+bool ProjectorScreen::is_frozen() const {
+    const std::lock_guard lock(implementation_->mutex);
+    return implementation_->frozen;
+}
+
+ShownPicture ProjectorScreen::shown() const {
+    const std::lock_guard lock(implementation_->mutex);
+    return implementation_->shown;
+}
+
+}  // namespace livery

@@ -1,0 +1,327 @@
+#include "projection/window_keeper.h"
+
+#include <array>
+#include <condition_variable>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+#include <xcb/randr.h>
+#include <xcb/screensaver.h>
+#include <xcb/xtest.h>
+
+#include "core/log.h"
+#include "projection/outputs.h"
+#include "projection/x_connection.h"
+
+namespace livery {
+namespace {
+
+/// Wakes a thread that polls.
+class Doorbell {
+  public:
+    Doorbell() {
+        if (::pipe2(ends_.data(), O_CLOEXEC | O_NONBLOCK) != 0) {
+            throw std::runtime_error("no pipe: too many files are open");
+        }
+    }
+    ~Doorbell() {
+        ::close(ends_[0]);
+        ::close(ends_[1]);
+    }
+    Doorbell(const Doorbell&) = delete;
+    Doorbell& operator=(const Doorbell&) = delete;
+
+    void ring() const {
+        const char byte = 0;
+        // A full pipe has rung already.
+        [[maybe_unused]] const auto written = ::write(ends_[1], &byte, 1);
+    }
+    void silence() const {
+        std::array<char, 64> bytes{};
+        while (::read(ends_[0], bytes.data(), bytes.size()) > 0) {
+        }
+    }
+    int descriptor() const { return ends_[0]; }
+
+  private:
+    std::array<int, 2> ends_{-1, -1};
+};
+
+bool same_place(const Monitor& a, const Monitor& b) {
+    return a.x == b.x && a.y == b.y && a.width == b.width && a.height == b.height;
+}
+
+}  // namespace
+
+struct WindowKeeper::Implementation {
+    const XConnection x;
+    const xcb_window_t window;
+    const Listener listener;
+    const bool passes_grabs, has_screensaver;
+    std::uint8_t randr_event = 0;
+
+    // Of the keeper's thread.
+    std::optional<Output> shown_on;
+
+    mutable std::mutex mutex;
+    std::condition_variable caught_up;
+    std::optional<std::string> monitor_id;
+    std::uint64_t asked = 0, answered = 0;
+    bool quit = false, ended = false;
+    Place place;
+
+    const Doorbell doorbell;
+    std::thread thread;
+
+    Implementation(xcb_window_t window_id, Listener listens)
+        : window(window_id),
+          listener(std::move(listens)),
+          passes_grabs(x.has(xcb_test_id)),
+          has_screensaver(x.has(xcb_screensaver_id)) {
+        if (!x.has(xcb_randr_id)) {
+            throw std::runtime_error("the X server has no RandR, so nothing tells its monitors");
+        }
+        auto* c = x.get();
+        randr_event = xcb_get_extension_data(c, &xcb_randr_id)->first_event;
+        const XReply<xcb_randr_query_version_reply_t> version(
+            xcb_randr_query_version_reply(c, xcb_randr_query_version(c, 1, 5), nullptr));
+        const std::array<std::uint32_t, 3> values = {
+            x.screen().black_pixel,
+            1,  // override-redirect
+            XCB_EVENT_MASK_EXPOSURE | XCB_EVENT_MASK_VISIBILITY_CHANGE};
+        const auto changed = xcb_change_window_attributes_checked(
+            c,
+            window,
+            XCB_CW_BACK_PIXEL | XCB_CW_OVERRIDE_REDIRECT | XCB_CW_EVENT_MASK,
+            values.data());
+        if (const XReply<xcb_generic_error_t> error{xcb_request_check(c, changed)}) {
+            throw std::runtime_error("the projector's window cannot be kept: X error " +
+                                     std::to_string(error->error_code));
+        }
+        const std::uint32_t yes = 1;
+        xcb_change_property(c,
+                            XCB_PROP_MODE_REPLACE,
+                            window,
+                            x.atom("_NET_WM_BYPASS_COMPOSITOR"),
+                            XCB_ATOM_CARDINAL,
+                            32,
+                            1,
+                            &yes);
+        xcb_randr_select_input(c,
+                               x.root(),
+                               XCB_RANDR_NOTIFY_MASK_SCREEN_CHANGE |
+                                   XCB_RANDR_NOTIFY_MASK_CRTC_CHANGE |
+                                   XCB_RANDR_NOTIFY_MASK_OUTPUT_CHANGE);
+        pass_grabs(true);
+        x.synchronise();
+        thread = std::thread([this] { run(); });
+    }
+
+    ~Implementation() {
+        {
+            const std::lock_guard lock(mutex);
+            quit = true;
+        }
+        doorbell.ring();
+        thread.join();
+    }
+
+    void pass_grabs(bool pass) const {
+        if (passes_grabs) xcb_test_grab_control(x.get(), pass);
+    }
+
+    void hide() {
+        if (!shown_on) return;
+        xcb_unmap_window(x.get(), window);
+        xcb_flush(x.get());
+        shown_on.reset();
+        if (has_screensaver) xcb_screensaver_suspend(x.get(), false);
+    }
+
+    void show(const Output& output) {
+        const std::array<std::uint32_t, 5> values = {
+            static_cast<std::uint32_t>(output.monitor.x),
+            static_cast<std::uint32_t>(output.monitor.y),
+            static_cast<std::uint32_t>(output.monitor.width),
+            static_cast<std::uint32_t>(output.monitor.height),
+            XCB_STACK_MODE_ABOVE};
+        xcb_configure_window(x.get(),
+                             window,
+                             XCB_CONFIG_WINDOW_X | XCB_CONFIG_WINDOW_Y | XCB_CONFIG_WINDOW_WIDTH |
+                                 XCB_CONFIG_WINDOW_HEIGHT | XCB_CONFIG_WINDOW_STACK_MODE,
+                             values.data());
+        xcb_map_window(x.get(), window);
+        // Blank screens come from the server; its connection's end takes this back, too.
+        if (has_screensaver) xcb_screensaver_suspend(x.get(), true);
+        x.synchronise();
+        shown_on = output;
+    }
+
+    /// Where the window belongs now, or why nowhere.
+    std::optional<Output> wanted(const std::string& id, std::string& why_hidden) const {
+        const auto outputs = read_outputs(x);
+        const Output* found = nullptr;
+        for (const auto& output : outputs) {
+            if (output.monitor.id == id) found = &output;
+        }
+        if (!found) {
+            why_hidden = "The projector is unplugged or switched off in the display settings.";
+            return std::nullopt;
+        }
+        for (const auto& output : outputs) {
+            if (&output != found && overlap(output.monitor, found->monitor)) {
+                why_hidden = "The projector mirrors " + output.monitor.name +
+                             "; set the displays to extend the desktop.";
+                return std::nullopt;
+            }
+        }
+        return *found;
+    }
+
+    /// Puts the window where it belongs.
+    void settle() {
+        std::optional<std::string> id;
+        {
+            const std::lock_guard lock(mutex);
+            id = monitor_id;
+        }
+        std::string why_hidden;
+        std::optional<Output> target = id ? wanted(*id, why_hidden) : std::nullopt;
+        if (shown_on && target && same_place(shown_on->monitor, target->monitor)) {
+            shown_on = target;
+        } else {
+            hide();
+            if (target) {
+                // Whoever holds the server may still be moving monitors: ask again when it is done.
+                pass_grabs(false);
+                target = wanted(*id, why_hidden);
+                if (target) show(*target);
+                pass_grabs(true);
+            }
+        }
+        publish(std::move(why_hidden));
+    }
+
+    void publish(std::string why_hidden) {
+        Place now;
+        if (shown_on) {
+            now.size_px = glm::ivec2(shown_on->monitor.width, shown_on->monitor.height);
+        } else {
+            now.why_hidden = std::move(why_hidden);
+        }
+        {
+            const std::lock_guard lock(mutex);
+            if (now.size_px == place.size_px && now.why_hidden == place.why_hidden) return;
+            place = now;
+        }
+        listener.moved(now);
+    }
+
+    /// Hides at once where the event says that the window may now be on somebody's screen. True
+    /// when settle() has to look.
+    bool handle(const xcb_generic_event_t& event) {
+        const unsigned type = event.response_type & 0x7Fu;
+        if (type == XCB_EXPOSE) {
+            const auto& expose = reinterpret_cast<const xcb_expose_event_t&>(event);
+            if (expose.count == 0 && shown_on) listener.exposed();
+            return false;
+        }
+        if (type == randr_event + XCB_RANDR_SCREEN_CHANGE_NOTIFY) return true;
+        if (type != static_cast<unsigned>(randr_event + XCB_RANDR_NOTIFY)) return false;
+        const auto& notice = reinterpret_cast<const xcb_randr_notify_event_t&>(event);
+        if (!shown_on) return true;
+        if (notice.subCode == XCB_RANDR_NOTIFY_CRTC_CHANGE) {
+            const auto& crtc = notice.u.cc;
+            Monitor area;
+            area.x = crtc.x;
+            area.y = crtc.y;
+            area.width = crtc.mode != 0 ? crtc.width : 0;
+            area.height = crtc.mode != 0 ? crtc.height : 0;
+            const bool harmless = crtc.crtc == shown_on->crtc ? same_place(area, shown_on->monitor)
+                                                              : !overlap(area, shown_on->monitor);
+            if (!harmless) hide();
+        } else if (notice.subCode == XCB_RANDR_NOTIFY_OUTPUT_CHANGE) {
+            const auto& output = notice.u.oc;
+            if (output.output == shown_on->output &&
+                (output.connection == XCB_RANDR_CONNECTION_DISCONNECTED ||
+                 output.crtc != shown_on->crtc)) {
+                hide();
+            }
+        }
+        return true;
+    }
+
+    Place place_now() const {
+        const std::lock_guard lock(mutex);
+        return place;
+    }
+
+    void run() {
+        try {
+            for (;;) {
+                std::uint64_t answering = 0;
+                {
+                    const std::lock_guard lock(mutex);
+                    if (quit) break;
+                    answering = asked;
+                }
+                bool look = answering != answered;
+                while (const XReply<xcb_generic_event_t> event{xcb_poll_for_event(x.get())}) {
+                    look = handle(*event) || look;
+                }
+                if (!x.is_alive()) throw std::runtime_error("the X server is gone");
+                if (look) {
+                    settle();
+                    const std::lock_guard lock(mutex);
+                    answered = answering;
+                    caught_up.notify_all();
+                    continue;  // reading replies may have queued events
+                }
+                xcb_flush(x.get());
+                std::array<pollfd, 2> sources = {
+                    pollfd{xcb_get_file_descriptor(x.get()), POLLIN, 0},
+                    pollfd{doorbell.descriptor(), POLLIN, 0}};
+                ::poll(sources.data(), sources.size(), -1);
+                doorbell.silence();
+            }
+            hide();
+            x.synchronise();
+        } catch (const std::exception& error) {
+            log_line(LogLevel::error, std::string("the projector's window: ") + error.what());
+        }
+        const std::lock_guard lock(mutex);
+        ended = true;
+        caught_up.notify_all();
+    }
+
+    void ask_and_wait() {
+        std::unique_lock lock(mutex);
+        const std::uint64_t mine = ++asked;
+        doorbell.ring();
+        caught_up.wait(lock, [&] { return answered >= mine || ended; });
+    }
+};
+
+WindowKeeper::WindowKeeper(std::uint32_t window, Listener listener)
+    : implementation_(std::make_unique<Implementation>(window, std::move(listener))) {}
+
+WindowKeeper::~WindowKeeper() = default;
+
+void WindowKeeper::follow(std::optional<std::string> monitor_id) {
+    {
+        const std::lock_guard lock(implementation_->mutex);
+        implementation_->monitor_id = std::move(monitor_id);
+    }
+    implementation_->ask_and_wait();
+}
+
+void WindowKeeper::catch_up() { implementation_->ask_and_wait(); }
+
+WindowKeeper::Place WindowKeeper::place() const { return implementation_->place_now(); }
+
+}  // namespace livery
