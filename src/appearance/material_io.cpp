@@ -6,6 +6,7 @@
 
 #include "appearance/bsdf.h"
 #include "appearance/material.h"
+#include "appearance/material_json.h"
 #include "core/error.h"
 #include "core/json.h"
 
@@ -75,32 +76,26 @@ void read_parameters(const JsonReader& reader,
 
 }  // namespace
 
-Material read_material_file(const std::filesystem::path& file) {
-    const Json json = read_json_file(file, std::size_t{1} << 20u);
-    const JsonReader reader(file, json);
-    reader.require_format_version(kFormatVersion);
-    reader.allow_only({"format_version", "name", "family", "model", "parameters", "provenance"});
+Material read_material(const JsonReader& reader) {
     Material material;
-    material.file = file;
     material.name = reader["name"].text();
     if (material.name.empty()) reader["name"].fail("empty text", "a name");
     if (reader.has("family")) material.family = reader["family"].text();
     if (reader.has("provenance")) material.provenance = reader["provenance"].text();
     const ModelDescription& description = read_model(reader["model"]);
     material.model = description.model;
-    read_parameters(reader["parameters"], description, material);
+    const JsonReader parameters = reader["parameters"];
+    read_parameters(parameters, description, material);
     try {
         parameters_of_f64(material);
     } catch (const std::invalid_argument& mistake) {
-        throw FileError(file,
-                        "parameters",
-                        mistake.what(),
+        parameters.fail(mistake.what(),
                         "colours in [0, 1] of the working space (docs/materials.md)");
     }
     return material;
 }
 
-void write_material_file(const std::filesystem::path& file, const Material& material) {
+Json json_of(const Material& material) {
     parameters_of_f64(material);
     Json parameters = Json::object();
     const ModelDescription& description = models()[static_cast<std::size_t>(material.model)];
@@ -121,12 +116,28 @@ void write_material_file(const std::filesystem::path& file, const Material& mate
         }
     }
     Json json = Json::object();
-    json["format_version"] = kFormatVersion;
     json["name"] = material.name;
     json["family"] = material.family;
     json["model"] = description.name;
     json["parameters"] = parameters;
     json["provenance"] = material.provenance;
+    return json;
+}
+
+Material read_material_file(const std::filesystem::path& file) {
+    const Json json = read_json_file(file, std::size_t{1} << 20u);
+    const JsonReader reader(file, json);
+    reader.require_format_version(kFormatVersion);
+    reader.allow_only({"format_version", "name", "family", "model", "parameters", "provenance"});
+    Material material = read_material(reader);
+    material.file = file;
+    return material;
+}
+
+void write_material_file(const std::filesystem::path& file, const Material& material) {
+    Json json = Json::object();
+    json["format_version"] = kFormatVersion;
+    json.update(json_of(material));
     write_json_file(file, json);
 }
 

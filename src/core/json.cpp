@@ -46,8 +46,7 @@ std::size_t depth_of(const std::string& text) {
 
 }  // namespace
 
-Json read_json_file(const std::filesystem::path& file, std::size_t max_bytes) {
-    const std::string text = read_text_file(file, max_bytes);
+Json parse_json(const std::string& text, const std::filesystem::path& file) {
     if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
         throw FileError(file, "", "an empty file", "a JSON object");
     }
@@ -68,6 +67,10 @@ Json read_json_file(const std::filesystem::path& file, std::size_t max_bytes) {
     } catch (const nlohmann::json::exception& error) {
         throw FileError(file, "", error.what(), "a JSON object");
     }
+}
+
+Json read_json_file(const std::filesystem::path& file, std::size_t max_bytes) {
+    return parse_json(read_text_file(file, max_bytes), file);
 }
 
 void write_json_file(const std::filesystem::path& file, const Json& json) {

@@ -21,6 +21,9 @@ using Json = nlohmann::ordered_json;
 /// `max_bytes`, not an object).
 Json read_json_file(const std::filesystem::path& file, std::size_t max_bytes = 64u << 20u);
 
+/// The same for a text that came from elsewhere; `origin` stands in messages where a file would.
+Json parse_json(const std::string& text, const std::filesystem::path& origin);
+
 /// Writes atomically: to a temporary file beside it, then renames. Throws FileError.
 void write_json_file(const std::filesystem::path& file, const Json& json);
 

@@ -21,6 +21,10 @@ struct DirectionalLight {
     double angle_rad = 0.0;  ///< angular diameter of its disc; 0: a point at infinity
 };
 
+/// Of length 1. What already is, to rounding, comes back as it is: writing and reading a light
+/// again and again never moves it.
+glm::dvec3 unit_direction(const glm::dvec3& direction);
+
 struct EnvironmentReference {
     std::string file;  ///< empty: no environment; relative names are looked up by load_scene
     double rotation_rad = 0.0;  ///< turns the map about +y, counter-clockwise seen from above

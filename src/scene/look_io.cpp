@@ -1,7 +1,10 @@
+#include <cmath>
+
 #include <glm/geometric.hpp>
 
 #include "core/json.h"
 #include "scene/look.h"
+#include "scene/look_json.h"
 
 namespace livery {
 
@@ -17,25 +20,68 @@ DirectionalLight read_light(const JsonReader& field) {
     }
     DirectionalLight light;
     light.direction = field["direction"].vec3();
-    const double length = glm::length(light.direction);
-    if (!(length > 1e-12)) field["direction"].fail("a vector of no length", "a direction");
-    light.direction /= length;
+    if (!(glm::length(light.direction) > 1e-12)) {
+        field["direction"].fail("a vector of no length", "a direction");
+    }
+    light.direction = unit_direction(light.direction);
     light.radiance_rec709 = field["radiance"].vec3();
     for (std::size_t k = 0; k < 3; ++k) field["radiance"].at(k).number_between(-1e6, 1e6);
     if (field.has("angle_rad")) light.angle_rad = field["angle_rad"].number_between(0.0, kPi);
     return light;
 }
 
+EnvironmentReference read_environment_reference(const JsonReader& environment) {
+    environment.allow_only({"file", "rotation_rad", "scale"});
+    EnvironmentReference reference;
+    reference.file = environment["file"].text();
+    if (reference.file.empty()) environment["file"].fail("an empty name", "a picture");
+    if (environment.has("rotation_rad")) {
+        reference.rotation_rad = environment["rotation_rad"].number_between(-100.0, 100.0);
+    }
+    if (environment.has("scale")) {
+        reference.scale = environment["scale"].number_between(0.0, 1e6);
+    }
+    return reference;
+}
+
 }  // namespace
 
-Look read_look_file(const std::filesystem::path& file) {
-    const Json json = read_json_file(file);
-    const JsonReader root(file, json);
-    root.require_format_version(kFormatVersion);
-    root.allow_only({"format_version", "name", "parts", "lights", "environment", "exposure_ev"});
+glm::dvec3 unit_direction(const glm::dvec3& direction) {
+    const double length = glm::length(direction);
+    return std::abs(length - 1.0) < 1e-12 ? direction : direction / length;
+}
+
+std::vector<DirectionalLight> read_lights(const JsonReader& list) {
+    std::vector<DirectionalLight> lights;
+    for (std::size_t k = 0; k < list.size(); ++k) lights.push_back(read_light(list.at(k)));
+    return lights;
+}
+
+Json json_of(const std::vector<DirectionalLight>& lights) {
+    Json json = Json::array();
+    for (const auto& light : lights) {
+        json.push_back({{"type", "directional"},
+                        {"direction", json_from(light.direction)},
+                        {"radiance", json_from(light.radiance_rec709)},
+                        {"angle_rad", light.angle_rad}});
+    }
+    return json;
+}
+
+EnvironmentReference read_environment(const JsonReader& parent) {
+    if (!parent.has("environment")) return {};
+    return read_environment_reference(parent["environment"]);
+}
+
+Json json_of(const EnvironmentReference& environment) {
+    return {{"file", environment.file},
+            {"rotation_rad", environment.rotation_rad},
+            {"scale", environment.scale}};
+}
+
+Look read_look(const JsonReader& root) {
     Look look;
-    look.file = file;
-    look.name = root.has("name") ? root["name"].text() : file.stem().string();
+    if (root.has("name")) look.name = root["name"].text();
     if (root.has("parts")) {
         for (const auto& part : root["parts"].keys()) {
             const auto paint = root["parts"][part];
@@ -43,47 +89,38 @@ Look read_look_file(const std::filesystem::path& file) {
             if (look.parts[part].empty()) paint.fail("an empty name", "a paint or a material file");
         }
     }
-    if (root.has("lights")) {
-        for (std::size_t k = 0; k < root["lights"].size(); ++k) {
-            look.lights.push_back(read_light(root["lights"].at(k)));
-        }
-    }
-    if (root.has("environment")) {
-        const auto environment = root["environment"];
-        environment.allow_only({"file", "rotation_rad", "scale"});
-        look.environment.file = environment["file"].text();
-        if (look.environment.file.empty()) environment["file"].fail("an empty name", "a picture");
-        if (environment.has("rotation_rad")) {
-            look.environment.rotation_rad =
-                environment["rotation_rad"].number_between(-100.0, 100.0);
-        }
-        if (environment.has("scale")) {
-            look.environment.scale = environment["scale"].number_between(0.0, 1e6);
-        }
-    }
+    if (root.has("lights")) look.lights = read_lights(root["lights"]);
+    look.environment = read_environment(root);
     if (root.has("exposure_ev")) look.exposure_ev = root["exposure_ev"].number_between(-30.0, 30.0);
+    return look;
+}
+
+Json json_of(const Look& look) {
+    Json json = Json::object();
+    json["name"] = look.name;
+    json["parts"] = Json::object();
+    for (const auto& [part, paint] : look.parts) json["parts"][part] = paint;
+    json["lights"] = json_of(look.lights);
+    if (!look.environment.file.empty()) json["environment"] = json_of(look.environment);
+    json["exposure_ev"] = look.exposure_ev;
+    return json;
+}
+
+Look read_look_file(const std::filesystem::path& file) {
+    const Json json = read_json_file(file);
+    const JsonReader root(file, json);
+    root.require_format_version(kFormatVersion);
+    root.allow_only({"format_version", "name", "parts", "lights", "environment", "exposure_ev"});
+    Look look = read_look(root);
+    if (!root.has("name")) look.name = file.stem().string();
+    look.file = file;
     return look;
 }
 
 void write_look_file(const std::filesystem::path& file, const Look& look) {
     Json json;
     json["format_version"] = kFormatVersion;
-    json["name"] = look.name;
-    json["parts"] = Json::object();
-    for (const auto& [part, paint] : look.parts) json["parts"][part] = paint;
-    json["lights"] = Json::array();
-    for (const auto& light : look.lights) {
-        json["lights"].push_back({{"type", "directional"},
-                                  {"direction", json_from(light.direction)},
-                                  {"radiance", json_from(light.radiance_rec709)},
-                                  {"angle_rad", light.angle_rad}});
-    }
-    if (!look.environment.file.empty()) {
-        json["environment"] = {{"file", look.environment.file},
-                               {"rotation_rad", look.environment.rotation_rad},
-                               {"scale", look.environment.scale}};
-    }
-    json["exposure_ev"] = look.exposure_ev;
+    json.update(json_of(look));
     write_json_file(file, json);
 }
 

@@ -11,7 +11,12 @@ namespace livery {
 namespace {
 
 /// A material file may stand beside the look that names it.
-Material find_paint(const Look& look, const std::string& name_or_file) {
+Material find_paint(const Look& look,
+                    const std::string& name_or_file,
+                    const std::vector<Material>& own_paints) {
+    for (const Material& own : own_paints) {
+        if (own.name == name_or_file) return own;
+    }
     std::error_code error;
     const auto beside = look.file.parent_path() / name_or_file;
     if (!look.file.empty() && std::filesystem::is_regular_file(beside, error)) {
@@ -47,15 +52,17 @@ void check_part_names(const Product& product, const Look& look) {
 Scene make_scene(std::shared_ptr<const Product> product,
                  const Look& look,
                  glm::dvec3 eye_mm,
-                 const std::shared_ptr<const Environment>& loaded) {
+                 const std::shared_ptr<const Environment>& loaded,
+                 const std::vector<Material>& own_paints) {
     check_argument(product != nullptr, "make_scene: a product is needed");
     check_part_names(*product, look);
     Scene scene;
     for (const auto& part : product->mesh.parts) {
         auto paint = look.parts.find(part.name);
         if (paint == look.parts.end()) paint = look.parts.find("*");
-        scene.part_materials.push_back(paint == look.parts.end() ? plain_material(part)
-                                                                 : find_paint(look, paint->second));
+        scene.part_materials.push_back(paint == look.parts.end()
+                                           ? plain_material(part)
+                                           : find_paint(look, paint->second, own_paints));
     }
     if (!look.environment.file.empty()) {
         const auto beside = look.file.parent_path();

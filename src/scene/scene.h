@@ -27,11 +27,13 @@ struct Scene {
 /// Resolves a look's names against a product and the paint library. A part that the look does not
 /// name keeps the file's own colour as a plain diffuse. Throws FileError (unknown part or paint,
 /// with the names there are). `loaded` is shared when it is the environment that the look names: a
-/// map takes a while to read, and renderers keep what they have made of it.
+/// map takes a while to read, and renderers keep what they have made of it. `own_paints` come
+/// before the library's and files by name.
 Scene make_scene(std::shared_ptr<const Product> product,
                  const Look& look,
                  glm::dvec3 eye_mm,
-                 const std::shared_ptr<const Environment>& loaded = nullptr);
+                 const std::shared_ptr<const Environment>& loaded = nullptr,
+                 const std::vector<Material>& own_paints = {});
 
 /// A plain diffuse studio: the default eye and key light when nothing else was given.
 glm::dvec3 default_eye_mm(const Product& product);

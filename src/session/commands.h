@@ -92,6 +92,10 @@ using SessionCommand = std::variant<SetPaint,
 /// (no such look, part, paint; empty name; not finite; the last look deleted).
 Document applied(const Document& document, const SessionCommand& command);
 
+/// A look read from a file as it can stand in a session: what it names beside that file by its
+/// whole path, and no file. AddLook takes either.
+Look portable_look(Look look);
+
 /// "Paint body solid red", for the undo menu and the log; of the document before it.
 std::string label_of(const Document& before, const SessionCommand& command);
 

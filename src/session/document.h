@@ -1,6 +1,7 @@
 // The session as a value: everything that undo brings back.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,7 +18,7 @@ namespace livery {
 /// A look with a number that stays its own through renaming, moving, deleting and undo.
 struct SessionLook {
     int id = 0;
-    Look look;  ///< its exposure is the session's, its file is empty
+    Look look;  ///< its exposure is 0 (the session has one), its file is empty
 };
 
 struct Document {
@@ -42,11 +43,16 @@ Material find_paint(const Document& document, const std::string& name);
 /// The session's and the library's names, sorted, each once.
 std::vector<std::string> paint_names(const Document& document);
 
-/// What to draw for one look. Shares product and environment with `previous` where they are the
-/// same. Throws FileError.
+/// What to draw for one look. Shares the environment with `loaded` where it is the same. Throws
+/// FileError.
 Scene scene_of(const Document& document,
                int look_id,
                std::shared_ptr<const Product> product,
                const std::shared_ptr<const Environment>& loaded = nullptr);
+
+/// One line of JSON with a `format_version`, and back. Throws FileError (as of `origin`) that names
+/// the field; a newer version is refused.
+std::string text_of(const Document& document);
+Document parse_document(const std::string& text, const std::filesystem::path& origin);
 
 }  // namespace livery

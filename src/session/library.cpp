@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
+#include <mutex>
 
 #include "core/error.h"
 #include "core/paths.h"
@@ -57,6 +59,21 @@ std::shared_ptr<const Product> find_product(const std::string& name_or_file) {
             name_or_file, "product", "no such file or shipped product", "a file, car or sphere");
     }
     return std::make_shared<const Product>(load_product(shipped_path("assets/" + stem + ".json")));
+}
+
+std::vector<std::string> part_names(const std::string& product_name_or_file) {
+    // Every command that names a part asks; the mesh takes a tenth of a second to read.
+    static std::mutex mutex;
+    static std::map<std::string, std::vector<std::string>> known;
+    const std::lock_guard lock(mutex);
+    auto entry = known.find(product_name_or_file);
+    if (entry == known.end()) {
+        const auto product = find_product(product_name_or_file);
+        std::vector<std::string> names;
+        for (const Part& part : product->mesh.parts) names.push_back(part.name);
+        entry = known.emplace(product_name_or_file, std::move(names)).first;
+    }
+    return entry->second;
 }
 
 }  // namespace livery

@@ -15,6 +15,9 @@ namespace livery {
 /// there are.
 std::shared_ptr<const Product> find_product(const std::string& name_or_file);
 
+/// Names of a product's parts; the product is read once a run. Throws FileError.
+std::vector<std::string> part_names(const std::string& product_name_or_file);
+
 /// A file, or the name of a shipped look. Throws FileError with the names there are.
 Look find_look(const std::string& name_or_file);
 

@@ -1,0 +1,16 @@
+// A paint's fields as JSON, for material files and for whatever holds paints. Include only in
+// *_io.cpp.
+#pragma once
+
+#include "appearance/material.h"
+#include "core/json.h"
+
+namespace livery {
+
+/// The fields of a material file without its `format_version`. Which others the object may have is
+/// the caller's to check. Throws FileError (unknown model or parameter, out of range).
+Material read_material(const JsonReader& object);
+/// Throws std::invalid_argument for parameters out of range.
+Json json_of(const Material& material);
+
+}  // namespace livery

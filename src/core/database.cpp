@@ -1,0 +1,283 @@
+#include "core/database.h"
+
+#include <cerrno>
+#include <cstring>
+#include <optional>
+
+#include <fcntl.h>
+#include <sqlite3.h>
+#include <sys/vfs.h>
+#include <unistd.h>
+
+#include "core/error.h"
+
+namespace livery {
+
+namespace {
+
+constexpr int kBusyTimeout_ms = 5000;
+constexpr int kLongestValue = 64 << 20;  ///< bytes; more is no value of ours
+
+/// What was found and what was expected, in words for people.
+struct Finding {
+    std::string found, expected;
+};
+
+/// Nothing can be written beside a file on a full disk, and SQLite says so in several ways.
+bool is_full(const std::filesystem::path& file) {
+    struct statfs space {};
+    return ::statfs(file.parent_path().empty() ? "." : file.parent_path().c_str(), &space) == 0 &&
+           space.f_bavail == 0;
+}
+
+Finding cannot_open(const std::filesystem::path& file) {
+    std::error_code error;
+    const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+    const auto status = std::filesystem::status(folder, error);
+    if (!std::filesystem::exists(status)) {
+        return {"no folder " + folder.string(), "a folder that is there"};
+    }
+    if (!std::filesystem::is_directory(status)) {
+        return {folder.string() + ", which is a file", "a folder"};
+    }
+    if (std::filesystem::is_directory(file, error)) return {"a folder", "a file"};
+    if (is_full(file)) return {"a full disk", "free space"};
+    if (::access(folder.c_str(), W_OK) != 0) {
+        return {"a folder that cannot be written (" + std::string(std::strerror(errno)) + ")",
+                "a folder of your own"};
+    }
+    return {"a file that cannot be opened", "a file that you may read and write"};
+}
+
+Finding finding_of(int code, const std::string& message, const std::filesystem::path& file) {
+    switch (code & 0xff) {
+        case SQLITE_CANTOPEN:
+            return cannot_open(file);
+        case SQLITE_NOTADB:
+            return {"a file that is not a database", "an SQLite database"};
+        case SQLITE_CORRUPT:
+            return {"a damaged database (" + message + ")", "a whole one; restore a copy"};
+        case SQLITE_FULL:
+            return {"a full disk", "free space"};
+        case SQLITE_READONLY:
+        case SQLITE_PERM:
+            return {"a file or folder that cannot be written", "one that you may write"};
+        case SQLITE_BUSY:
+        case SQLITE_LOCKED:
+            return {"a database that another program is writing", "that program to finish"};
+        case SQLITE_IOERR:
+            if (is_full(file)) return {"a full disk", "free space"};
+            return {"a disk that fails to read or write (" + message + ")", "a working disk"};
+        case SQLITE_CONSTRAINT:
+            return {"values that its rules refuse (" + message + ")", "values that they allow"};
+        case SQLITE_TOOBIG:
+            return {"a value of more than " + std::to_string(kLongestValue) + " bytes",
+                    "a smaller one"};
+        default:
+            return {"a database of another shape (" + message + ")", "one that Livery has written"};
+    }
+}
+
+using Statement = std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)>;
+
+DatabaseValue value_of(sqlite3_stmt* row, int column) {
+    switch (sqlite3_column_type(row, column)) {
+        case SQLITE_INTEGER:
+            return static_cast<std::int64_t>(sqlite3_column_int64(row, column));
+        case SQLITE_FLOAT:
+            return sqlite3_column_double(row, column);
+        case SQLITE_TEXT:
+        case SQLITE_BLOB: {
+            const void* bytes = sqlite3_column_blob(row, column);
+            const auto size = static_cast<std::size_t>(sqlite3_column_bytes(row, column));
+            return bytes ? std::string(static_cast<const char*>(bytes), size) : std::string();
+        }
+        default:
+            return std::monostate();
+    }
+}
+
+int bind(sqlite3_stmt* statement, int index, const DatabaseValue& value) {
+    if (const auto* whole = std::get_if<std::int64_t>(&value)) {
+        return sqlite3_bind_int64(statement, index, *whole);
+    }
+    if (const auto* number = std::get_if<double>(&value)) {
+        return sqlite3_bind_double(statement, index, *number);
+    }
+    if (const auto* text = std::get_if<std::string>(&value)) {
+        return sqlite3_bind_text64(
+            statement, index, text->data(), text->size(), SQLITE_TRANSIENT, SQLITE_UTF8);
+    }
+    return sqlite3_bind_null(statement, index);
+}
+
+/// The file as SQLite's URI, every byte that could mean something else escaped.
+std::string uri_of(const std::filesystem::path& file, bool immutable) {
+    constexpr const char* kDigits = "0123456789ABCDEF";
+    std::string uri = "file:";
+    for (const char c : std::filesystem::absolute(file).string()) {
+        const auto byte = static_cast<unsigned char>(c);
+        const bool plain = (byte >= '0' && byte <= '9') || (byte >= 'A' && byte <= 'Z') ||
+                           (byte >= 'a' && byte <= 'z') || byte == '/' || byte == '.' ||
+                           byte == '-' || byte == '_';
+        if (plain) {
+            uri += c;
+        } else {
+            uri += '%';
+            uri += kDigits[byte >> 4u];
+            uri += kDigits[byte & 15u];
+        }
+    }
+    return immutable ? uri + "?immutable=1" : uri;
+}
+
+std::string hexadecimal(std::int64_t value) {
+    char text[24];
+    std::snprintf(text, sizeof text, "0x%08llx", static_cast<unsigned long long>(value));
+    return text;
+}
+
+/// One that nobody can write beside: SQLite could not make its index of the log there. It holds
+/// still, then.
+bool stands_still(const std::filesystem::path& file) {
+    std::error_code error;
+    auto log = file;
+    log += "-wal";
+    const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+    return ::access(folder.c_str(), W_OK) != 0 && !std::filesystem::exists(log, error);
+}
+
+}  // namespace
+
+struct Database::State {
+    std::filesystem::path file;
+    std::unique_ptr<sqlite3, int (*)(sqlite3*)> handle{nullptr, &sqlite3_close_v2};
+
+    [[noreturn]] void fail(int code) const {
+        const std::string message =
+            handle ? sqlite3_errmsg(handle.get()) : std::string(sqlite3_errstr(code));
+        const Finding finding = finding_of(code, message, file);
+        throw FileError(file, "", finding.found, finding.expected);
+    }
+
+    void open(int flags, bool immutable) {
+        sqlite3* opened = nullptr;
+        const int code =
+            sqlite3_open_v2(uri_of(file, immutable).c_str(),
+                            &opened,
+                            flags | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE,
+                            nullptr);
+        handle.reset(opened);
+        if (code != SQLITE_OK) fail(code);
+        sqlite3_busy_timeout(opened, kBusyTimeout_ms);
+        sqlite3_limit(opened, SQLITE_LIMIT_LENGTH, kLongestValue);
+        // A file from elsewhere may bring a schema of its own; nothing in it is to run.
+        sqlite3_db_config(opened, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+        sqlite3_db_config(opened, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+    }
+};
+
+Database::Database(const std::filesystem::path& file,
+                   Mode mode,
+                   std::int32_t application_id,
+                   int newest_version)
+    : state_(std::make_unique<State>()) {
+    state_->file = file;
+    std::error_code error;
+    const auto status = std::filesystem::status(file, error);
+    if (std::filesystem::is_directory(status)) throw FileError(file, "", "a folder", "a file");
+    const bool exists = std::filesystem::exists(status);
+    const bool empty = !exists || std::filesystem::file_size(file, error) == 0;
+    if (mode != Mode::create) {
+        if (!exists) throw FileError(file, "", "no such file", "a file");
+        if (empty) throw FileError(file, "", "an empty file", "an SQLite database");
+    }
+    int flags = SQLITE_OPEN_READWRITE;
+    if (mode == Mode::create) flags |= SQLITE_OPEN_CREATE;
+    if (mode == Mode::read_only) flags = SQLITE_OPEN_READONLY;
+    state_->open(flags, mode == Mode::read_only && stands_still(file));
+
+    const auto number = [&](const char* pragma) {
+        const auto rows = run(pragma);
+        const auto* value =
+            rows.empty() || rows[0].empty() ? nullptr : std::get_if<std::int64_t>(&rows[0][0]);
+        return value ? *value : 0;
+    };
+    const std::int64_t pages = number("PRAGMA page_count");
+    const std::int64_t found_id = number("PRAGMA application_id");
+    if (pages != 0 && found_id != application_id) {
+        throw FileError(file,
+                        "application_id",
+                        hexadecimal(found_id) + ", another program's or another kind of file",
+                        hexadecimal(application_id));
+    }
+    if (const int found = version(); found > newest_version || found < 0) {
+        throw FileError(file,
+                        "user_version",
+                        std::to_string(found) + " (written by a newer Livery)",
+                        "at most " + std::to_string(newest_version));
+    }
+    if (mode == Mode::read_only) return;
+    if (pages == 0) run("PRAGMA application_id = " + std::to_string(application_id));
+    const auto journal = run("PRAGMA journal_mode = WAL");
+    if (journal.empty() || journal[0].empty() || journal[0][0] != DatabaseValue("wal")) {
+        throw FileError(file, "", "a folder without shared memory between programs", "a local one");
+    }
+    run("PRAGMA synchronous = FULL");
+}
+
+Database::~Database() = default;
+
+std::vector<std::vector<DatabaseValue>> Database::run(std::string_view sql,
+                                                      const std::vector<DatabaseValue>& values) {
+    sqlite3_stmt* prepared = nullptr;
+    int code = sqlite3_prepare_v2(
+        state_->handle.get(), sql.data(), static_cast<int>(sql.size()), &prepared, nullptr);
+    const Statement statement(prepared, &sqlite3_finalize);
+    if (code != SQLITE_OK) state_->fail(code);
+    check_argument(
+        sqlite3_bind_parameter_count(prepared) == static_cast<int>(values.size()),
+        "Database::run: " + std::to_string(values.size()) + " values for " + std::string(sql));
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        code = bind(prepared, static_cast<int>(k) + 1, values[k]);
+        if (code != SQLITE_OK) state_->fail(code);
+    }
+    std::vector<std::vector<DatabaseValue>> rows;
+    while ((code = sqlite3_step(prepared)) == SQLITE_ROW) {
+        auto& row = rows.emplace_back();
+        for (int column = 0; column < sqlite3_column_count(prepared); ++column) {
+            row.push_back(value_of(prepared, column));
+        }
+    }
+    if (code != SQLITE_DONE) state_->fail(code);
+    return rows;
+}
+
+int Database::version() const {
+    const auto rows = const_cast<Database*>(this)->run("PRAGMA user_version");
+    return static_cast<int>(std::get<std::int64_t>(rows.at(0).at(0)));
+}
+
+void Database::set_version(int version) { run("PRAGMA user_version = " + std::to_string(version)); }
+
+const std::filesystem::path& Database::file() const { return state_->file; }
+
+Transaction::Transaction(Database& database) : database_(database) {
+    database_.run("BEGIN IMMEDIATE");
+}
+
+Transaction::~Transaction() {
+    if (done_) return;
+    try {
+        database_.run("ROLLBACK");
+    } catch (const FileError&) {
+        // A full disk or an unreadable page has rolled it back already.
+    }
+}
+
+void Transaction::commit() {
+    database_.run("COMMIT");
+    done_ = true;
+}
+
+}  // namespace livery

@@ -1,0 +1,192 @@
+#include <array>
+#include <limits>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "appearance/material_json.h"
+#include "core/error.h"
+#include "scene/look_json.h"
+#include "session/commands.h"
+
+namespace livery {
+
+namespace {
+
+int look_in(const JsonReader& fields) {
+    return fields["look"].integer(1, std::numeric_limits<int>::max());
+}
+
+Json fields_of(const SetPaint& c) {
+    return {{"look", c.look}, {"part", c.part}, {"paint", c.paint}};
+}
+void read(const JsonReader& fields, SetPaint& c) {
+    fields.allow_only({"look", "part", "paint"});
+    c = {look_in(fields), fields["part"].text(), fields["paint"].text()};
+}
+
+Json fields_of(const EditPaint& c) {
+    return {{"look", c.look}, {"part", c.part}, {"material", json_of(c.material)}};
+}
+void read(const JsonReader& fields, EditPaint& c) {
+    fields.allow_only({"look", "part", "material"});
+    const JsonReader material = fields["material"];
+    material.allow_only({"name", "family", "model", "parameters", "provenance"});
+    c = {look_in(fields), fields["part"].text(), read_material(material)};
+}
+
+Json fields_of(const AddLook& c) {
+    Json json = {{"look", json_of(portable_look(c.look))}};
+    json["look"].erase("exposure_ev");
+    if (c.at >= 0) json["at"] = c.at;
+    return json;
+}
+void read(const JsonReader& fields, AddLook& c) {
+    fields.allow_only({"look", "at"});
+    const JsonReader look = fields["look"];
+    look.allow_only({"name", "parts", "lights", "environment"});
+    look["name"].text();
+    c.look = read_look(look);
+    if (fields.has("at")) c.at = fields["at"].integer(0, std::numeric_limits<int>::max());
+}
+
+Json fields_of(const DuplicateLook& c) { return {{"look", c.look}}; }
+void read(const JsonReader& fields, DuplicateLook& c) {
+    fields.allow_only({"look"});
+    c.look = look_in(fields);
+}
+
+Json fields_of(const RenameLook& c) { return {{"look", c.look}, {"name", c.name}}; }
+void read(const JsonReader& fields, RenameLook& c) {
+    fields.allow_only({"look", "name"});
+    c = {look_in(fields), fields["name"].text()};
+}
+
+Json fields_of(const DeleteLook& c) { return {{"look", c.look}}; }
+void read(const JsonReader& fields, DeleteLook& c) {
+    fields.allow_only({"look"});
+    c.look = look_in(fields);
+}
+
+Json fields_of(const MoveLook& c) { return {{"look", c.look}, {"to", c.to}}; }
+void read(const JsonReader& fields, MoveLook& c) {
+    fields.allow_only({"look", "to"});
+    c = {look_in(fields), fields["to"].integer(0, std::numeric_limits<int>::max())};
+}
+
+Json fields_of(const SetLights& c) { return {{"look", c.look}, {"lights", json_of(c.lights)}}; }
+void read(const JsonReader& fields, SetLights& c) {
+    fields.allow_only({"look", "lights"});
+    c = {look_in(fields), read_lights(fields["lights"])};
+}
+
+Json fields_of(const SetEnvironment& c) {
+    Json json = {{"look", c.look}};
+    if (!c.environment.file.empty()) json["environment"] = json_of(c.environment);
+    return json;
+}
+void read(const JsonReader& fields, SetEnvironment& c) {
+    fields.allow_only({"look", "environment"});
+    c = {look_in(fields), read_environment(fields)};
+}
+
+Json fields_of(const ShareLighting& c) { return {{"look", c.look}}; }
+void read(const JsonReader& fields, ShareLighting& c) {
+    fields.allow_only({"look"});
+    c.look = look_in(fields);
+}
+
+Json fields_of(const SetEye& c) { return {{"eye_mm", json_from(c.eye_mm)}}; }
+void read(const JsonReader& fields, SetEye& c) {
+    fields.allow_only({"eye_mm"});
+    c.eye_mm = fields["eye_mm"].vec3();
+}
+
+Json fields_of(const SetExposure& c) { return {{"ev", c.ev}}; }
+void read(const JsonReader& fields, SetExposure& c) {
+    fields.allow_only({"ev"});
+    c.ev = fields["ev"].number();
+}
+
+Json fields_of(const SetQuality& c) { return {{"quality", to_string(c.quality)}}; }
+void read(const JsonReader& fields, SetQuality& c) {
+    fields.allow_only({"quality"});
+    const JsonReader quality = fields["quality"];
+    try {
+        c.quality = parse_quality(quality.text());
+    } catch (const std::invalid_argument&) {
+        quality.fail(quality.found(), "draft, normal, high or reference");
+    }
+}
+
+Json fields_of(const SetCalibration& c) { return {{"folder", c.folder}}; }
+void read(const JsonReader& fields, SetCalibration& c) {
+    fields.allow_only({"folder"});
+    c.folder = fields["folder"].text();
+}
+
+Json fields_of(const SetBench& c) { return {{"bench", c.bench}}; }
+void read(const JsonReader& fields, SetBench& c) {
+    fields.allow_only({"bench"});
+    c.bench = fields["bench"].text();
+}
+
+Json fields_of(const SetDesignWhite& c) { return {{"percentile", c.percentile}}; }
+void read(const JsonReader& fields, SetDesignWhite& c) {
+    fields.allow_only({"percentile"});
+    c.percentile = fields["percentile"].number();
+}
+
+/// In the order of SessionCommand's alternatives.
+constexpr std::array<const char*, std::variant_size_v<SessionCommand>> kNames = {
+    "set-paint",
+    "edit-paint",
+    "add-look",
+    "duplicate-look",
+    "rename-look",
+    "delete-look",
+    "move-look",
+    "set-lights",
+    "set-environment",
+    "share-lighting",
+    "set-eye",
+    "set-exposure",
+    "set-quality",
+    "set-calibration",
+    "set-bench",
+    "set-design-white"};
+
+template <std::size_t K = 0>
+SessionCommand read_kind(const std::string& name, const JsonReader& root) {
+    if constexpr (K < kNames.size()) {
+        if (name != kNames[K]) return read_kind<K + 1>(name, root);
+        const JsonReader fields = root[name];
+        if (!fields.is_object()) fields.fail(fields.found(), "an object");
+        std::variant_alternative_t<K, SessionCommand> command;
+        read(fields, command);
+        return command;
+    } else {
+        root.fail(fmt::format("the command \"{}\"", name),
+                  fmt::format("one of {}", fmt::join(kNames, ", ")));
+    }
+}
+
+}  // namespace
+
+std::string text_of(const SessionCommand& command) {
+    Json json = Json::object();
+    json[kNames[command.index()]] = std::visit([](const auto& c) { return fields_of(c); }, command);
+    return json.dump();
+}
+
+SessionCommand parse_session_command(const std::string& text, const std::string& origin) {
+    const Json json = parse_json(text, origin);
+    const JsonReader root(origin, json);
+    const auto names = root.keys();
+    if (names.size() != 1) {
+        root.fail(std::to_string(names.size()) + " members", "one: the command's name");
+    }
+    return read_kind(names.front(), root);
+}
+
+}  // namespace livery

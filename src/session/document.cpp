@@ -1,0 +1,101 @@
+#include "session/document.h"
+
+#include <algorithm>
+
+#include "appearance/material_library.h"
+#include "core/error.h"
+#include "session/library.h"
+#include "twin/description.h"
+
+namespace livery {
+
+namespace {
+
+bool has_part(const std::vector<std::string>& parts, const std::string& name) {
+    return std::find(parts.begin(), parts.end(), name) != parts.end();
+}
+
+/// A shipped look says what a car wears. Parts that another product lacks are left out, and without
+/// a body all of it wears the body's paint.
+Look fitted(Look look, const std::vector<std::string>& parts) {
+    const auto body = look.parts.find("body");
+    const std::string body_paint = body == look.parts.end() ? "" : body->second;
+    std::erase_if(look.parts, [&](const auto& entry) {
+        return entry.first != "*" && !has_part(parts, entry.first);
+    });
+    if (!body_paint.empty() && !look.parts.contains("body")) look.parts["*"] = body_paint;
+    return look;
+}
+
+}  // namespace
+
+Document new_document(const std::string& product) {
+    Document document;
+    std::error_code error;
+    document.product = std::filesystem::is_regular_file(product, error)
+                           ? std::filesystem::absolute(product).string()
+                           : product;
+    const std::vector<std::string> parts = part_names(product);
+    const PaintLibrary library = read_paint_library();
+    for (const std::string& name : shipped_looks()) {
+        Look look = fitted(find_look(name), parts);
+        for (auto& [part, paint] : look.parts) {
+            const Material* known = library.find(paint);
+            if (!known) throw FileError(look.file, "parts." + part, paint, "a paint's name");
+            paint = known->name;
+        }
+        if (document.looks.empty()) document.exposure_ev = look.exposure_ev;
+        look.exposure_ev = 0.0;
+        look.file.clear();
+        document.looks.push_back({document.next_look_id++, std::move(look)});
+    }
+    if (product == "car" || product == "sphere") {
+        document.bench = product == "sphere" ? "sphere" : "default";
+        document.eye_mm = read_bench_file(document.bench).eye_mm;
+    } else {
+        document.eye_mm = default_eye_mm(*find_product(product));
+    }
+    return document;
+}
+
+const SessionLook* find_look(const Document& document, int id) {
+    for (const SessionLook& look : document.looks) {
+        if (look.id == id) return &look;
+    }
+    return nullptr;
+}
+
+Material find_paint(const Document& document, const std::string& name) {
+    for (const Material& paint : document.paints) {
+        if (same_paint_name(paint.name, name)) return paint;
+    }
+    return find_material(name);
+}
+
+std::vector<std::string> paint_names(const Document& document) {
+    const PaintLibrary library = read_paint_library();
+    std::vector<std::string> names;
+    for (const auto* paints : {&document.paints, &library.shipped, &library.users}) {
+        for (const Material& paint : *paints) {
+            const bool known = std::any_of(names.begin(), names.end(), [&](const auto& name) {
+                return same_paint_name(name, paint.name);
+            });
+            if (!known) names.push_back(paint.name);
+        }
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+Scene scene_of(const Document& document,
+               int look_id,
+               std::shared_ptr<const Product> product,
+               const std::shared_ptr<const Environment>& loaded) {
+    const SessionLook* found = find_look(document, look_id);
+    check_argument(found != nullptr, "scene_of: there is no look " + std::to_string(look_id));
+    Look look = found->look;
+    look.exposure_ev = document.exposure_ev;
+    return make_scene(std::move(product), look, document.eye_mm, loaded, document.paints);
+}
+
+}  // namespace livery

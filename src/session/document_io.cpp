@@ -1,0 +1,143 @@
+#include <algorithm>
+#include <limits>
+
+#include "appearance/material_json.h"
+#include "scene/look_json.h"
+#include "session/document_json.h"
+#include "session/naming.h"
+
+namespace livery {
+
+namespace {
+
+constexpr int kFormatVersion = 1;
+constexpr int kLargestId = std::numeric_limits<int>::max() - 1;
+
+/// A text that `check` accepts; a mistake is told of its field.
+std::string checked_text(const JsonReader& field,
+                         void (*check)(const std::string&, const std::string&)) {
+    const std::string text = field.text();
+    try {
+        check(text, "the text");
+    } catch (const std::invalid_argument& mistake) {
+        field.fail(mistake.what(), "a text that can be shown");
+    }
+    return text;
+}
+
+SessionLook read_session_look(const JsonReader& object) {
+    object.allow_only({"id", "name", "parts", "lights", "environment"});
+    SessionLook look;
+    look.id = object["id"].integer(1, kLargestId);
+    look.look = read_look(object);
+    look.look.name = checked_text(object["name"], check_name);
+    return look;
+}
+
+Json json_of(const SessionLook& look) {
+    Json json = Json::object();
+    json["id"] = look.id;
+    json.update(json_of(look.look));
+    json.erase("exposure_ev");
+    return json;
+}
+
+void read_looks(const JsonReader& list, Document& document) {
+    for (std::size_t k = 0; k < list.size(); ++k) {
+        const JsonReader field = list.at(k);
+        SessionLook look = read_session_look(field);
+        for (const SessionLook& other : document.looks) {
+            if (other.id == look.id) {
+                field["id"].fail(field["id"].found() + " for a second time", "each number once");
+            }
+            if (other.look.name == look.look.name) {
+                field["name"].fail(field["name"].found() + " for a second time", "each name once");
+            }
+        }
+        document.looks.push_back(std::move(look));
+    }
+    if (document.looks.empty()) list.fail("no look", "at least one");
+}
+
+void read_paints(const JsonReader& list, Document& document) {
+    for (std::size_t k = 0; k < list.size(); ++k) {
+        const JsonReader field = list.at(k);
+        field.allow_only({"name", "family", "model", "parameters", "provenance"});
+        Material paint = read_material(field);
+        paint.name = checked_text(field["name"], check_name);
+        for (const Material& other : document.paints) {
+            if (other.name == paint.name) {
+                field["name"].fail(field["name"].found() + " for a second time", "each name once");
+            }
+        }
+        document.paints.push_back(std::move(paint));
+    }
+}
+
+}  // namespace
+
+Json json_of(const Document& document) {
+    Json json = Json::object();
+    json["format_version"] = kFormatVersion;
+    json["product"] = document.product;
+    json["looks"] = Json::array();
+    for (const SessionLook& look : document.looks) json["looks"].push_back(json_of(look));
+    json["next_look_id"] = document.next_look_id;
+    json["paints"] = Json::array();
+    for (const Material& paint : document.paints) json["paints"].push_back(json_of(paint));
+    json["eye_mm"] = json_from(document.eye_mm);
+    json["exposure_ev"] = document.exposure_ev;
+    json["quality"] = to_string(document.quality);
+    json["bench"] = document.bench;
+    json["calibration"] = document.calibration;
+    json["design_white_percentile"] = document.design_white_percentile;
+    return json;
+}
+
+Document read_document(const JsonReader& root) {
+    root.require_format_version(kFormatVersion);
+    root.allow_only({"format_version",
+                     "product",
+                     "looks",
+                     "next_look_id",
+                     "paints",
+                     "eye_mm",
+                     "exposure_ev",
+                     "quality",
+                     "bench",
+                     "calibration",
+                     "design_white_percentile"});
+    Document document;
+    document.product = checked_text(root["product"], check_text);
+    read_looks(root["looks"], document);
+    document.next_look_id = root["next_look_id"].integer(1, kLargestId);
+    for (const SessionLook& look : document.looks) {
+        if (look.id >= document.next_look_id) {
+            root["next_look_id"].fail(
+                root["next_look_id"].found(),
+                "more than the looks' numbers (" + std::to_string(look.id) + " is one)");
+        }
+    }
+    read_paints(root["paints"], document);
+    const auto eye = root["eye_mm"];
+    document.eye_mm = eye.vec3();
+    document.exposure_ev = root["exposure_ev"].number_between(-30.0, 30.0);
+    try {
+        document.quality = parse_quality(root["quality"].text());
+    } catch (const std::invalid_argument&) {
+        root["quality"].fail(root["quality"].found(), "draft, normal, high or reference");
+    }
+    document.bench = checked_text(root["bench"], check_text);
+    document.calibration = checked_text(root["calibration"], check_text);
+    document.design_white_percentile = root["design_white_percentile"].number_between(0.0, 100.0);
+    return document;
+}
+
+std::string text_of(const Document& document) { return json_of(document).dump(); }
+
+Document parse_document(const std::string& text, const std::filesystem::path& origin) {
+    const Json json = parse_json(text, origin);
+    return read_document(JsonReader(origin, json));
+}
+
+}  // namespace livery

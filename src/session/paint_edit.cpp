@@ -1,0 +1,89 @@
+#include "session/paint_edit.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "appearance/bsdf.h"
+#include "appearance/material_library.h"
+#include "core/error.h"
+#include "session/naming.h"
+
+namespace livery {
+
+namespace {
+
+const Material* own_paint(const Document& document, const std::string& name) {
+    for (const Material& paint : document.paints) {
+        if (same_paint_name(paint.name, name)) return &paint;
+    }
+    return nullptr;
+}
+
+std::ptrdiff_t times_used(const Document& document, const std::string& paint) {
+    std::ptrdiff_t count = 0;
+    for (const SessionLook& look : document.looks) {
+        count += std::count_if(look.look.parts.begin(),
+                               look.look.parts.end(),
+                               [&](const auto& entry) { return entry.second == paint; });
+    }
+    return count;
+}
+
+/// What was edited is no longer what was measured or designed under that name.
+std::string provenance_of_edit(const std::string& name) {
+    return "edited in a session, from " + name;
+}
+
+}  // namespace
+
+std::string known_paint(const Document& document, const std::string& name) {
+    check_text(name, "the paint's name");
+    if (const Material* own = own_paint(document, name)) return own->name;
+    if (const Material* paint = read_paint_library().find(name)) return paint->name;
+    try {
+        const Material paint = find_material(name);
+        return std::filesystem::absolute(paint.file).lexically_normal().string();
+    } catch (const FileError& error) {
+        throw std::invalid_argument(error.what());
+    }
+}
+
+void edit_paint(Document& document, const EditPaint& command) {
+    Material edited = command.material;
+    check_name(edited.name, "the paint's name");
+    check_text(edited.family, "the paint's family");
+    check_text(edited.provenance, "the paint's provenance");
+    parameters_of_f64(edited);  // throws what is out of range
+    edited.file.clear();
+
+    const auto look = std::find_if(document.looks.begin(),
+                                   document.looks.end(),
+                                   [&](const auto& one) { return one.id == command.look; });
+    auto& parts = look->look.parts;
+    const auto worn = parts.find(command.part);
+    const auto own =
+        std::find_if(document.paints.begin(), document.paints.end(), [&](const Material& paint) {
+            return worn != parts.end() && paint.name == worn->second;
+        });
+    const auto taken_by_another = [&](const std::string& name) {
+        const bool itself = own != document.paints.end() && same_paint_name(own->name, name);
+        return !itself && (own_paint(document, name) || read_paint_library().find(name));
+    };
+    if (own != document.paints.end() && times_used(document, own->name) == 1) {
+        edited.name = free_name(edited.name, taken_by_another);
+        worn->second = edited.name;
+        *own = std::move(edited);
+        return;
+    }
+    const std::string from = edited.name;
+    const PaintLibrary library = read_paint_library();
+    edited.name = free_name(from, [&](const std::string& name) {
+        return own_paint(document, name) || library.find(name);
+    });
+    edited.provenance = provenance_of_edit(from);
+    parts[command.part] = edited.name;
+    document.paints.push_back(std::move(edited));
+}
+
+}  // namespace livery

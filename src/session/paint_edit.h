@@ -1,0 +1,17 @@
+// Paints by name, and what becomes of one that is edited.
+#pragma once
+
+#include <string>
+
+#include "session/commands.h"
+
+namespace livery {
+
+/// How the document calls that paint: its own and the library's by their names, a file by its whole
+/// path. Throws std::invalid_argument with the nearest names.
+std::string known_paint(const Document& document, const std::string& name);
+
+/// EditPaint on a look and a part that there are. Throws std::invalid_argument.
+void edit_paint(Document& document, const EditPaint& command);
+
+}  // namespace livery

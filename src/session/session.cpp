@@ -1,0 +1,198 @@
+#include "session/session.h"
+
+#include "core/error.h"
+#include "core/log.h"
+#include "core/paths.h"
+#include "session/file_lock.h"
+#include "session/session_file.h"
+
+namespace livery {
+
+// Steps 0 to `saved_last` lie in the file, those behind them wait in `unsaved`: none, as long as
+// saving works. Without a file all wait.
+struct Session::State {
+    std::unique_ptr<FileLock> lock;  ///< let go of after the file is closed
+    std::unique_ptr<SessionFile> store;
+    std::filesystem::path path;
+
+    Document document;
+    std::uint64_t revision = 0;
+    std::int64_t position = 0;
+    std::int64_t saved_last = -1;
+    std::vector<SessionStep> unsaved;
+    Workspace workspace, unsaved_workspace;
+    std::optional<std::string> problem;
+    std::string undo_label, redo_label;
+
+    State() = default;
+    State(const State&) = delete;
+    State& operator=(const State&) = delete;
+    ~State() {
+        if (problem) save();
+    }
+
+    std::int64_t last() const { return saved_last + static_cast<std::int64_t>(unsaved.size()); }
+
+    SessionStep step(std::int64_t number) const {
+        if (number <= saved_last) return store->step(number);
+        return unsaved[static_cast<std::size_t>(number - saved_last - 1)];
+    }
+
+    Document document_at(std::int64_t number) const {
+        if (number <= saved_last) return store->document(number);
+        return parse_document(step(number).document, "unsaved session");
+    }
+
+    void read_labels() {
+        undo_label = position > 0 ? step(position).label : "";
+        redo_label = position < last() ? step(position + 1).label : "";
+    }
+
+    /// What cannot be saved now goes along with the next that can.
+    void save() {
+        if (!store) return;
+        try {
+            store->save(saved_last, unsaved, position, unsaved_workspace);
+        } catch (const FileError& failure) {
+            if (!problem) log_line(LogLevel::error, std::string("not saved: ") + failure.what());
+            problem = failure.what();
+            return;
+        }
+        if (problem) log_line(LogLevel::info, "saved again: " + path.string());
+        problem.reset();
+        saved_last = last();
+        unsaved.clear();
+        unsaved_workspace.clear();
+    }
+
+    void add(SessionStep added, Document after) {
+        if (position < saved_last) {
+            // Kept in the file until the transaction that also adds the new step.
+            saved_last = position;
+            unsaved.clear();
+        } else {
+            unsaved.resize(static_cast<std::size_t>(position - saved_last));
+        }
+        undo_label = added.label;
+        redo_label.clear();
+        unsaved.push_back(std::move(added));
+        document = std::move(after);
+        ++position;
+        ++revision;
+        save();
+    }
+
+    /// To the step before (-1) or after (+1). Returns the look that `command`, the one taken back
+    /// or done again, was about.
+    std::optional<int> go(std::int64_t by) {
+        const std::int64_t about = by < 0 ? position : position + 1;
+        const SessionCommand command = parse_session_command(step(about).command, path.string());
+        const Document before = document;
+        const std::int64_t from = position;
+        document = document_at(position + by);
+        position += by;
+        try {
+            read_labels();
+        } catch (...) {
+            document = before;
+            position = from;
+            throw;
+        }
+        ++revision;
+        save();
+        const bool made_one = std::holds_alternative<AddLook>(command) ||
+                              std::holds_alternative<DuplicateLook>(command);
+        if (by < 0 && made_one) return std::nullopt;
+        return look_of(document, command);
+    }
+};
+
+namespace {
+
+/// Whether this is the session in the user's folder, whose folder may not be there yet.
+bool is_default(const std::filesystem::path& file) {
+    try {
+        return file == default_session_file();
+    } catch (const FileError&) {
+        return false;  // no user's folder, and so not in it
+    }
+}
+
+}  // namespace
+
+Session::Session(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Session::Session(Session&&) noexcept = default;
+Session& Session::operator=(Session&&) noexcept = default;
+
+Session::~Session() = default;
+
+Session Session::open(const std::filesystem::path& file, const std::string& product) {
+    auto state = std::make_unique<State>();
+    if (is_default(file)) make_output_folder(file.parent_path());
+    state->path = file;
+    state->lock = std::make_unique<FileLock>(file,
+                                             file.string() + " is open in another Livery",
+                                             "close it there, or name another session file here");
+    std::error_code error;
+    if (!std::filesystem::exists(file, error)) {
+        SessionFile::create(file, {"", "", text_of(new_document(product))});
+    }
+    state->store = std::make_unique<SessionFile>(file, SessionFile::Access::change);
+    state->store->check_pages();
+    state->position = state->store->position();
+    state->saved_last = state->store->last_step();
+    state->document = state->store->document(state->position);
+    state->workspace = state->store->workspace();
+    state->read_labels();
+    return Session(std::move(state));
+}
+
+Session Session::unsaved(const Document& document, std::string why) {
+    auto state = std::make_unique<State>();
+    state->unsaved = {{"", "", text_of(document)}};
+    state->document = document;
+    state->problem = std::move(why);
+    return Session(std::move(state));
+}
+
+const Document& Session::document() const { return state_->document; }
+std::uint64_t Session::revision() const { return state_->revision; }
+
+void Session::execute(const SessionCommand& command) {
+    Document after = applied(state_->document, command);
+    std::string text = text_of(after);
+    // A step back that changes nothing would only puzzle.
+    if (text == text_of(state_->document)) return;
+    state_->add({text_of(command), label_of(state_->document, command), std::move(text)},
+                std::move(after));
+}
+
+bool Session::can_undo() const { return state_->position > 0; }
+bool Session::can_redo() const { return state_->position < state_->last(); }
+std::string Session::undo_label() const { return state_->undo_label; }
+std::string Session::redo_label() const { return state_->redo_label; }
+
+std::optional<int> Session::undo() { return can_undo() ? state_->go(-1) : std::nullopt; }
+std::optional<int> Session::redo() { return can_redo() ? state_->go(+1) : std::nullopt; }
+
+const Workspace& Session::workspace() const { return state_->workspace; }
+
+void Session::set_workspace(const std::string& name, const std::string& value) {
+    const auto known = state_->workspace.find(name);
+    if (known != state_->workspace.end() && known->second == value) return;
+    state_->workspace[name] = value;
+    state_->unsaved_workspace[name] = value;
+    state_->save();
+}
+
+std::optional<std::string> Session::save_problem() const { return state_->problem; }
+
+std::optional<std::filesystem::path> Session::file() const {
+    return state_->store ? std::optional(state_->path) : std::nullopt;
+}
+
+std::filesystem::path default_session_file() {
+    return user_folder() / "sessions" / "default.livery";
+}
+
+}  // namespace livery
