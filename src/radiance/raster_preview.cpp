@@ -11,24 +11,25 @@
 
 #include "core/colour.h"
 #include "core/error.h"
-#include "core/parallel.h"
 #include "gl/draw.h"
 #include "gl/read_back.h"
 #include "radiance/environment_filter.h"
-#include "radiance/light_visibility.h"
 #include "radiance/shading.h"
-#include "tracing/tracer.h"
 
 namespace livery {
 namespace {
 
-constexpr int kRaysALight = 8;
-constexpr int kSkyRays = 32;
 constexpr float kHalfLargest = 65000.0f;
+
+constexpr const char* kFlatFragment = R"(#version 450 core
+uniform float u_value;
+layout(location = 0) out vec4 value;
+void main() { value = vec4(u_value, 0.0, 0.0, 1.0); }
+)";
 
 struct Vertex {
     glm::vec3 position_mm, normal;
-    glm::vec4 tangent, sky;
+    glm::vec4 tangent;
 };
 
 /// Vertices and triangles sorted by part, so that a part is one range of indices.
@@ -36,50 +37,77 @@ struct PartRange {
     int first = 0, count = 0;
 };
 
+/// What a picture is drawn into: samples, and pixels that are their mean.
+struct Target {
+    Texture2D samples, depth, pixels;
+    Framebuffer samples_framebuffer, pixels_framebuffer;
+
+    void resize(int width, int height, int factor, TexelFormat format) {
+        if (pixels && pixels.width() == width && pixels.height() == height &&
+            samples.width() == factor * width) {
+            return;
+        }
+        samples = Texture2D(factor * width, factor * height, format);
+        depth = Texture2D(factor * width, factor * height, TexelFormat::depth32f);
+        pixels = Texture2D(width, height, format);
+        samples_framebuffer = Framebuffer({&samples}, &depth);
+        pixels_framebuffer = Framebuffer({&pixels});
+    }
+    void clear() const {
+        samples_framebuffer.clear_colour(0, 0.0f, 0.0f, 0.0f, 0.0f);
+        samples_framebuffer.clear_depth();
+    }
+};
+
+void check_supersampling(int supersampling) {
+    check_argument(supersampling >= 1 && supersampling <= 4,
+                   fmt::format("supersampling is {}, 1 to 4 are possible", supersampling));
+}
+
 }  // namespace
 
 struct RasterPreview::State {
     std::shared_ptr<const Product> product;
     int factor;
-    Tracer tracer;
-    std::vector<float> openness;  ///< of each vertex; solved with the first environment
+    std::unique_ptr<VertexLightSolver> solver;  ///< made when light is first solved here
 
-    std::vector<DirectionalLight> lights;  ///< that `visibility` was solved for
-    std::shared_ptr<const Environment> environment;
-    std::vector<Vertex> vertices;
-    Buffer vertex_buffer, index_buffer, visibility;
+    std::shared_ptr<const VertexLight> light;
+    Buffer vertex_buffer, sky_buffer, index_buffer, visibility;
     VertexArray vertex_array;
     std::vector<PartRange> parts;
+    std::shared_ptr<const FilteredEnvironment> uploaded;  ///< that `layers` holds
     Texture2D layers;
-    float layers_unit = 1.0f;
+    float layers_unit = 1.0f;  ///< radiance of a value of 1, before the environment's scale
     std::map<ShadingKey, Program> programs;
-    Program downsample;
+    std::map<int, Program> downsamples;  ///< by factor
+    Program flat;
     ScreenPass screen;
-    Texture2D samples, depth, target;
-    Framebuffer samples_framebuffer, target_framebuffer;
+    Target target, coverage;
+    View view;  ///< of the last picture
 
     State(std::shared_ptr<const Product> its_product, int supersampling);
-    void resize(const View& view);
-    void solve_lights(const Scene& scene, const Progress& progress);
-    void solve_environment(const Scene& scene, const Progress& progress);
-    void upload_layers(const Environment& scene_environment, const FilteredEnvironment& filtered);
-    void draw_part(const Scene& scene, const View& view, std::size_t part);
-    void set_view(Program& program, const View& view) const;
+    void upload_layers(const FilteredEnvironment& filtered);
+    void draw_part(const Scene& scene, std::size_t part);
+    void draw_range(const Program& program, const Target& into, std::size_t part);
+    void downsample(const Target& from);
+    void set_view(Program& program) const;
+    Program& shading_program(const ShadingKey& key);
 };
 
 RasterPreview::State::State(std::shared_ptr<const Product> its_product, int supersampling)
-    : product(std::move(its_product)), factor(supersampling), tracer(product->mesh) {
+    : product(std::move(its_product)), factor(supersampling) {
     const Mesh& mesh = product->mesh;
+    std::vector<Vertex> vertices;
     for (std::size_t i = 0; i < mesh.positions_mm.size(); ++i) {
-        vertices.push_back(
-            {mesh.positions_mm[i], mesh.normals[i], mesh.tangents[i], glm::vec4(0.0f)});
+        vertices.push_back({mesh.positions_mm[i], mesh.normals[i], mesh.tangents[i]});
     }
     vertex_buffer = Buffer(vertices);
+    sky_buffer = Buffer(vertices.size() * sizeof(glm::vec4));
     const int stride = sizeof(Vertex);
     vertex_array.floats(0, vertex_buffer, 3, stride, offsetof(Vertex, position_mm));
     vertex_array.floats(1, vertex_buffer, 3, stride, offsetof(Vertex, normal));
     vertex_array.floats(2, vertex_buffer, 4, stride, offsetof(Vertex, tangent));
-    vertex_array.floats(3, vertex_buffer, 4, stride, offsetof(Vertex, sky));
+    vertex_array.floats(3, sky_buffer, 4, sizeof(glm::vec4));
 
     parts.resize(mesh.parts.size());
     std::vector<glm::uvec3> sorted;
@@ -92,80 +120,13 @@ RasterPreview::State::State(std::shared_ptr<const Product> its_product, int supe
     }
     index_buffer = Buffer(sorted);
     vertex_array.indices(index_buffer);
-    downsample = Program::screen_pass(
-        load_shader("radiance/downsample.frag", {fmt::format("FACTOR {}", factor)}));
 }
 
-void RasterPreview::State::resize(const View& view) {
-    if (target && target.width() == view.width && target.height() == view.height) return;
-    samples = Texture2D(factor * view.width, factor * view.height, TexelFormat::rgba16f);
-    depth = Texture2D(factor * view.width, factor * view.height, TexelFormat::depth32f);
-    target = Texture2D(view.width, view.height, TexelFormat::rgba16f);
-    samples_framebuffer = Framebuffer({&samples}, &depth);
-    target_framebuffer = Framebuffer({&target});
-}
-
-void RasterPreview::State::solve_lights(const Scene& scene, const Progress& progress) {
-    const auto same = [](const DirectionalLight& a, const DirectionalLight& b) {
-        return a.direction == b.direction && a.angle_rad == b.angle_rad;
-    };
-    if (std::equal(lights.begin(), lights.end(), scene.lights.begin(), scene.lights.end(), same)) {
-        return;
-    }
-    progress.update(0.0, "shadows");
-    const std::size_t count = scene.lights.size();
-    std::vector<float> open(vertices.size() * count);
-    parallel_for(vertices.size(), 1024, [&](std::size_t begin, std::size_t end) {
-        progress.check_stop();
-        for (std::size_t i = begin; i < end; ++i) {
-            for (std::size_t k = 0; k < count; ++k) {
-                open[i * count + k] = disc_openness(tracer,
-                                                    vertices[i].position_mm,
-                                                    vertices[i].normal,
-                                                    scene.lights[k],
-                                                    kRaysALight,
-                                                    i);
-            }
-        }
-    });
-    visibility = count > 0 ? Buffer(open) : Buffer();
-    lights = scene.lights;
-}
-
-void RasterPreview::State::solve_environment(const Scene& scene, const Progress& progress) {
-    if (environment == scene.environment) return;
-    environment = scene.environment;
-    if (!environment) {
-        for (Vertex& vertex : vertices) vertex.sky = glm::vec4(0.0f);
-        layers = Texture2D();
-    } else {
-        if (openness.empty()) {
-            progress.update(0.2, "openness");
-            openness = ambient_openness(
-                tracer, product->mesh.positions_mm, product->mesh.normals, kSkyRays, 1e30f);
-        }
-        const FilteredEnvironment filtered =
-            filter_environment(*environment, {true, true, false}, progress);
-        parallel_for(vertices.size(), 1024, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                const glm::vec3 light =
-                    sample_sphere(filtered.diffuse,
-                                  uv_from_direction(*environment, glm::dvec3(vertices[i].normal)));
-                vertices[i].sky = glm::vec4(
-                    static_cast<float>(environment->scale) * openness[i] * light, openness[i]);
-            }
-        });
-        upload_layers(*environment, filtered);
-    }
-    vertex_buffer.update(std::span<const Vertex>(vertices));
-}
-
-void RasterPreview::State::upload_layers(const Environment& scene_environment,
-                                         const FilteredEnvironment& filtered) {
+void RasterPreview::State::upload_layers(const FilteredEnvironment& filtered) {
     const ImageF& sharpest = filtered.mirrored.front();
     const float largest = *std::max_element(sharpest.values.begin(), sharpest.values.end());
     const float unit = std::max(1.0f, largest / kHalfLargest);
-    layers_unit = unit * static_cast<float>(scene_environment.scale);
+    layers_unit = unit;
     layers =
         Texture2D({sharpest.width, sharpest.height, static_cast<int>(filtered.mirrored.size())},
                   TexelFormat::rgba16f,
@@ -188,7 +149,7 @@ void RasterPreview::State::upload_layers(const Environment& scene_environment,
     }
 }
 
-void RasterPreview::State::set_view(Program& program, const View& view) const {
+void RasterPreview::State::set_view(Program& program) const {
     program.set("u_view_from_world", glm::mat3(view.view_from_world.rotation));
     program.set("u_translation_mm", glm::vec3(view.view_from_world.translation));
     program.set("u_lens", glm::vec4(view.focal_px, view.principal_px));
@@ -206,78 +167,148 @@ void RasterPreview::State::set_view(Program& program, const View& view) const {
     program.set("u_depth_mm", glm::vec2(nearest, middle + radius));
 }
 
-void RasterPreview::State::draw_part(const Scene& scene, const View& view, std::size_t part) {
-    if (parts[part].count == 0) return;
-    const Material& material = scene.part_materials[part];
-    const auto count = static_cast<int>(scene.lights.size());
-    const ShadingKey key{material.model, count, environment != nullptr};
+Program& RasterPreview::State::shading_program(const ShadingKey& key) {
     auto found = programs.find(key);
     if (found == programs.end()) {
         found = programs.emplace(key, make_shading_program(key, ShadingSource::raster)).first;
     }
-    Program& program = found->second;
-    set_paint(program, material, scene.exposure_ev);
-    set_view(program, view);
-    program.set("u_eye_mm", glm::vec3(scene.eye_in_world_mm));
-    if (count > 0) {
-        std::vector<glm::vec3> directions, irradiance;
-        std::vector<float> radius2;
-        for (const DirectionalLight& light : scene.lights) {
-            directions.emplace_back(glm::normalize(light.direction));
-            irradiance.push_back(std::numbers::pi_v<float> *
-                                 glm::vec3(working_from_rec709() * light.radiance_rec709));
-            radius2.push_back(static_cast<float>(0.25 * light.angle_rad * light.angle_rad));
-        }
-        program.set("u_light_direction", std::span<const glm::vec3>(directions));
-        program.set("u_light_radiance", std::span<const glm::vec3>(irradiance));
-        program.set("u_light_radius2", std::span<const float>(radius2));
-        visibility.bind_storage_block(0);
-    }
-    if (environment) {
-        program.set("u_layers", 0);
-        program.set("u_layers_unit", layers_unit);
-        program.set("u_rotation", static_cast<float>(environment->rotation_rad));
-        layers.bind(0);
-    }
+    return found->second;
+}
+
+void RasterPreview::State::draw_range(const Program& program,
+                                      const Target& into,
+                                      std::size_t part) {
     DrawState state;
     state.depth_test = true;
     draw_indexed(program,
                  vertex_array,
-                 samples_framebuffer,
+                 into.samples_framebuffer,
                  Primitive::triangles,
                  parts[part].first,
                  parts[part].count,
                  state);
 }
 
+void RasterPreview::State::draw_part(const Scene& scene, std::size_t part) {
+    if (parts[part].count == 0) return;
+    const Material& material = scene.part_materials[part];
+    const std::vector<DirectionalLight>& lights =
+        is_solved_for(*light, scene.lights, light->environment.get()) ? scene.lights
+                                                                      : light->lights;
+    const auto count = static_cast<int>(lights.size());
+    Program& program = shading_program({material.model, count, light->environment != nullptr});
+    set_paint(program, material, scene.exposure_ev);
+    set_view(program);
+    program.set("u_eye_mm", glm::vec3(scene.eye_in_world_mm));
+    if (count > 0) {
+        std::vector<glm::vec3> directions, irradiance;
+        std::vector<float> radius2;
+        for (const DirectionalLight& one : lights) {
+            directions.emplace_back(glm::normalize(one.direction));
+            irradiance.push_back(std::numbers::pi_v<float> *
+                                 glm::vec3(working_from_rec709() * one.radiance_rec709));
+            radius2.push_back(static_cast<float>(0.25 * one.angle_rad * one.angle_rad));
+        }
+        program.set("u_light_direction", std::span<const glm::vec3>(directions));
+        program.set("u_light_radiance", std::span<const glm::vec3>(irradiance));
+        program.set("u_light_radius2", std::span<const float>(radius2));
+        visibility.bind_storage_block(0);
+    }
+    if (light->environment) {
+        program.set("u_layers", 0);
+        program.set("u_layers_unit", layers_unit * static_cast<float>(light->environment->scale));
+        program.set("u_rotation", static_cast<float>(light->environment->rotation_rad));
+        layers.bind(0);
+    }
+    draw_range(program, target, part);
+}
+
+void RasterPreview::State::downsample(const Target& from) {
+    auto found = downsamples.find(factor);
+    if (found == downsamples.end()) {
+        found = downsamples
+                    .emplace(factor,
+                             Program::screen_pass(load_shader("radiance/downsample.frag",
+                                                              {fmt::format("FACTOR {}", factor)})))
+                    .first;
+    }
+    found->second.set("u_samples", 0);
+    from.samples.bind(0);
+    screen.run(found->second, from.pixels_framebuffer);
+}
+
 RasterPreview::RasterPreview(std::shared_ptr<const Product> product, int supersampling) {
     check_argument(product != nullptr, "a preview needs a product");
-    check_argument(supersampling >= 1 && supersampling <= 4,
-                   fmt::format("supersampling is {}, 1 to 4 are possible", supersampling));
+    check_supersampling(supersampling);
     state_ = std::make_unique<State>(std::move(product), supersampling);
 }
 
 RasterPreview::~RasterPreview() = default;
 
+void RasterPreview::set_supersampling(int supersampling) {
+    check_supersampling(supersampling);
+    state_->factor = supersampling;
+}
+
 void RasterPreview::render(const Scene& scene, const View& view, const Progress& progress) {
+    State& s = *state_;
+    check_argument(scene.product == s.product, "the scene shows another product");
+    if (!s.solver) s.solver = std::make_unique<VertexLightSolver>(s.product);
+    take(s.solver->solve(scene.lights, scene.environment, progress));
+    draw(scene, view);
+}
+
+void RasterPreview::take(std::shared_ptr<const VertexLight> light) {
+    State& s = *state_;
+    check_argument(light != nullptr, "a preview was given no light");
+    const std::size_t vertices = s.product->mesh.positions_mm.size();
+    check_argument(light->sky.size() == vertices,
+                   fmt::format("light at {} vertices for {}", light->sky.size(), vertices));
+    if (light == s.light) return;
+    s.light = std::move(light);
+    s.sky_buffer.update(std::span<const glm::vec4>(s.light->sky));
+    s.visibility = s.light->lights.empty() ? Buffer() : Buffer(s.light->visibility);
+    if (s.light->filtered && s.light->filtered != s.uploaded) s.upload_layers(*s.light->filtered);
+    s.uploaded = s.light->filtered;
+    if (!s.uploaded) s.layers = Texture2D();
+}
+
+void RasterPreview::draw(const Scene& scene, const View& view) {
     State& s = *state_;
     check_argument(scene.product == s.product, "the scene shows another product");
     check_argument(
         scene.part_materials.size() == s.parts.size(),
         fmt::format("{} materials for {} parts", scene.part_materials.size(), s.parts.size()));
-    s.resize(view);
-    s.solve_lights(scene, progress);
-    s.solve_environment(scene, progress);
-    s.samples_framebuffer.clear_colour(0, 0.0f, 0.0f, 0.0f, 0.0f);
-    s.samples_framebuffer.clear_depth();
-    for (std::size_t p = 0; p < s.parts.size(); ++p) s.draw_part(scene, view, p);
-    s.downsample.set("u_samples", 0);
-    s.samples.bind(0);
-    s.screen.run(s.downsample, s.target_framebuffer);
+    check_argument(s.light != nullptr, "a preview is drawn without light");
+    s.view = view;
+    s.target.resize(view.width, view.height, s.factor, TexelFormat::rgba16f);
+    s.target.clear();
+    for (std::size_t p = 0; p < s.parts.size(); ++p) s.draw_part(scene, p);
+    s.downsample(s.target);
 }
 
-ImageF RasterPreview::read_back() const { return read_floats(state_->target); }
+unsigned RasterPreview::draw_part_coverage(std::size_t part) {
+    State& s = *state_;
+    check_argument(part < s.parts.size(),
+                   fmt::format("part {} of {}, counted from 0", part, s.parts.size()));
+    check_argument(s.view.width > 0, "a part's coverage is of a picture, and there is none yet");
+    if (!s.flat)
+        s.flat = Program(load_shader("radiance/raster.vert", {"LIGHTS 0"}),
+                         ShaderSource{"part coverage", kFlatFragment});
+    s.coverage.resize(s.view.width, s.view.height, s.factor, TexelFormat::rgba8);
+    s.coverage.clear();
+    s.set_view(s.flat);
+    for (std::size_t p = 0; p < s.parts.size(); ++p) {
+        if (s.parts[p].count == 0) continue;
+        s.flat.set("u_value", p == part ? 1.0f : 0.0f);
+        s.draw_range(s.flat, s.coverage, p);
+    }
+    s.downsample(s.coverage);
+    return s.coverage.pixels.name();
+}
 
-unsigned RasterPreview::texture() const { return state_->target.name(); }
+ImageF RasterPreview::read_back() const { return read_floats(state_->target.pixels); }
+
+unsigned RasterPreview::texture() const { return state_->target.pixels.name(); }
 
 }  // namespace livery

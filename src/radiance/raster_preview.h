@@ -6,6 +6,7 @@
 
 #include "core/image.h"
 #include "core/progress.h"
+#include "radiance/vertex_light.h"
 #include "scene/scene.h"
 #include "scene/view.h"
 
@@ -21,9 +22,23 @@ class RasterPreview {
     RasterPreview(const RasterPreview&) = delete;
     RasterPreview& operator=(const RasterPreview&) = delete;
 
+    void set_supersampling(int supersampling);
+
+    /// Solves what light changed, then draws.
     void render(const Scene& scene, const View& view, const Progress& progress = {});
+
+    /// For those who solve light elsewhere: takes a solved one, and draws with the newest taken,
+    /// whatever the scene says. Its lights shine as brightly as the scene's where they are the
+    /// same. Throws std::invalid_argument when none was taken, or for another product.
+    void take(std::shared_ptr<const VertexLight> light);
+    void draw(const Scene& scene, const View& view);
+
     ImageF read_back() const;  ///< as RadianceRenderer::read_back
     unsigned texture() const;  ///< RGBA16F of the view's size
+
+    /// One part in the last picture, RGBA8 of the view's size: R is its share of what is covered
+    /// of a pixel, A how much that is.
+    unsigned draw_part_coverage(std::size_t part);
 
   private:
     struct State;

@@ -1,6 +1,7 @@
 // The simulated bench on a thread of its own: its photograph of the mock-up, and its calibration.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -14,36 +15,40 @@ namespace livery {
 
 struct BenchPhotograph {
     std::uint64_t number = 0;  ///< of the frame that it shows
-    Image8 srgb;               ///< 3 channels, cropped to the mock-up
+    Image8 srgb;               ///< 3 channels, cropped to the mock-up; empty: none yet
     double seconds = 0.0;
-    std::string problem;
+    std::string problem;  ///< why there is none of this frame; `srgb` is the last good one
 };
 
 class BenchThread {
   public:
-    explicit BenchThread(std::function<void()> on_change);  ///< called on the bench's thread
+    /// `on_change` is called on the bench's thread after every change and must not throw.
+    explicit BenchThread(std::function<void()> on_change);
     ~BenchThread();
     BenchThread(const BenchThread&) = delete;
     BenchThread& operator=(const BenchThread&) = delete;
 
-    /// Which bench with which mock-up; traced when first needed.
+    /// Which bench with which mock-up; traced when first needed. Another one than before ends a
+    /// calibration that runs.
     void use(const std::string& bench, std::shared_ptr<const Product> product);
-    /// Shows a drive picture on the bench and photographs it; the newest wins. `design_white_y`
-    /// scales the photograph for looking at (0: by its own brightest).
+    /// Shows a drive picture on the bench and photographs it; the newest wins, and waits while the
+    /// bench is being calibrated. `design_white_y` scales the photograph for looking at (0: by its
+    /// own brightest). Throws std::invalid_argument before use() and without a picture.
     void photograph(std::uint64_t number,
                     std::shared_ptr<const Image8> drive,
                     double design_white_y);
-    std::shared_ptr<const BenchPhotograph> newest_photograph() const;
+    std::shared_ptr<const BenchPhotograph> newest_photograph() const;  ///< null: none yet
 
     struct Calibrating {
         bool running = false;
-        double fraction = 0.0;
+        double fraction = 0.0;  ///< of the stage
         std::string stage;
         std::string refused_why, refused_fix;           ///< after a refusal
         std::optional<std::filesystem::path> finished;  ///< the new calibration's folder
     };
+    /// Nothing happens when one runs already. Throws std::invalid_argument before use().
     void start_calibration();
-    void cancel_calibration();
+    void cancel_calibration();  ///< returns at once; running becomes false when it has stopped
     Calibrating calibrating() const;
 
   private:

@@ -45,24 +45,6 @@ std::string slug(const std::string& name) {
     return text;
 }
 
-/// Camera colour -> XYZ as the calibration sees it, for showing a photograph to people.
-ImageF developed(const Photograph& photograph, const glm::dmat3& xyz_from_camera) {
-    ImageF xyz(photograph.image.width, photograph.image.height, 3);
-    for (std::size_t i = 0; i < xyz.pixel_count(); ++i) {
-        glm::dvec3 camera;
-        for (int c = 0; c < 3; ++c) {
-            camera[c] = linear_from_file_units(
-                photograph,
-                static_cast<double>(photograph.image.values[3 * i + static_cast<std::size_t>(c)]));
-        }
-        const glm::dvec3 value = xyz_from_camera * camera;
-        for (int c = 0; c < 3; ++c) {
-            xyz.values[3 * i + static_cast<std::size_t>(c)] = static_cast<float>(value[c]);
-        }
-    }
-    return xyz;
-}
-
 /// The part of a photograph that is brighter than its background.
 PixelRectangle bright_part(const ImageF& xyz, double white_y) {
     Image8 mask(xyz.width, xyz.height, 1);

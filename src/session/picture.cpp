@@ -71,6 +71,23 @@ PixelRectangle bounds_of_mask(const Image8& mask, int margin_px) {
             std::min(mask.height, box.bottom + margin_px)};
 }
 
+ImageF developed(const Photograph& photograph, const glm::dmat3& xyz_from_camera) {
+    ImageF xyz(photograph.image.width, photograph.image.height, 3);
+    for (std::size_t i = 0; i < xyz.pixel_count(); ++i) {
+        glm::dvec3 camera;
+        for (int c = 0; c < 3; ++c) {
+            camera[c] = linear_from_file_units(
+                photograph,
+                static_cast<double>(photograph.image.values[3 * i + static_cast<std::size_t>(c)]));
+        }
+        const glm::dvec3 value = xyz_from_camera * camera;
+        for (int c = 0; c < 3; ++c) {
+            xyz.values[3 * i + static_cast<std::size_t>(c)] = static_cast<float>(value[c]);
+        }
+    }
+    return xyz;
+}
+
 Image8 srgb_from_xyz(const ImageF& xyz, double white_y) {
     return encode_srgb(xyz, rec709_from_xyz() * (1.0 / white_y));
 }

@@ -1,8 +1,10 @@
 // Pictures for people: XYZ as sRGB, difference maps, crops.
 #pragma once
 
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
+#include "core/bench_ports.h"
 #include "core/image.h"
 
 namespace livery {
@@ -27,6 +29,9 @@ Image<T> crop(const Image<T>& image, const PixelRectangle& rectangle) {
     }
     return result;
 }
+
+/// A photograph's linear camera colour through `xyz_from_camera`, for showing it to people.
+ImageF developed(const Photograph& photograph, const glm::dmat3& xyz_from_camera);
 
 /// XYZ relative to `white_y` -> 8-bit sRGB, clipped.
 Image8 srgb_from_xyz(const ImageF& xyz, double white_y);

@@ -21,22 +21,31 @@ struct PreviewDescription {
     std::uint64_t number = 0;
     Scene scene;
     View view;
-    std::optional<int> highlighted_part;
+    std::optional<int> highlighted_part;  ///< outlined, on the part itself
+    bool ground = true;                   ///< the product darkens the ground that it stands on
 };
 
 /// An sRGB picture in the share group.
 struct PreviewPicture {
     std::uint64_t number = 0;
-    unsigned texture = 0;  ///< RGBA8, sRGB-encoded, row 0 on top, alpha: coverage
+    unsigned texture = 0;  ///< RGBA8, sRGB-encoded, row 0 on top, straight alpha; 0: none yet
     glm::ivec2 size_px{0};
     std::shared_ptr<const Fence> ready;
     double ms = 0.0;
-    std::string problem;
+    int supersampling = 1;      ///< samples a pixel are its square
+    bool light_is_old = false;  ///< drawn before the scene's light was solved: another one follows
+    std::string problem;        ///< why it could not be drawn; the last good picture stays
     std::shared_ptr<const void> owner;
 };
 
+/// Descriptions that come fast (orbiting) are drawn with one sample a pixel and refined when they
+/// pause; a change of light or environment is drawn at once in the light that is there, and again
+/// when the new one is solved. So one description may give several pictures with its number.
+/// Pictures are valid until the thread is destroyed.
 class PreviewThread {
   public:
+    /// A context of the share group, current nowhere; it must outlive this. `on_finished` is called
+    /// on the preview's thread and must not throw.
     PreviewThread(GlContext& context,
                   std::function<void(std::shared_ptr<const PreviewPicture>)> on_finished);
     ~PreviewThread();
@@ -45,8 +54,11 @@ class PreviewThread {
 
     void show(PreviewDescription description);  ///< any thread; the newest wins
 
-    /// A paint on a sphere in the studio's light, square, sRGB with coverage in alpha; drawn when
-    /// nothing more urgent is asked for, kept in the user's folder by the paint's parameters.
+    /// A paint on a sphere in the studio's light, square, sRGB with coverage in a straight alpha;
+    /// drawn when nothing more urgent is asked for, the last requested first, and kept in the
+    /// user's folder by the paint's parameters. `on_drawn` is called on the preview's thread; an
+    /// empty picture when it cannot be drawn (the log says why). Throws std::invalid_argument for a
+    /// size beyond 8 to 1024.
     void request_swatch(const Material& material,
                         int size_px,
                         std::function<void(const Image8& rgba)> on_drawn);
@@ -61,6 +73,8 @@ class PartPicker {
   public:
     explicit PartPicker(std::shared_ptr<const Product> product);
     ~PartPicker();
+    PartPicker(const PartPicker&) = delete;
+    PartPicker& operator=(const PartPicker&) = delete;
     std::optional<int> part_at(const View& view, const glm::dvec2& pixel) const;
 
   private:

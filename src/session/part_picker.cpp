@@ -1,0 +1,37 @@
+#include <glm/vec3.hpp>
+
+#include "core/error.h"
+#include "session/preview_thread.h"
+#include "tracing/tracer.h"
+
+namespace livery {
+
+struct PartPicker::State {
+    std::shared_ptr<const Product> product;
+    Tracer tracer;
+
+    explicit State(std::shared_ptr<const Product> its_product)
+        : product(std::move(its_product)), tracer(product->mesh) {}
+};
+
+PartPicker::PartPicker(std::shared_ptr<const Product> product) {
+    check_argument(product != nullptr, "picking parts needs a product");
+    state_ = std::make_unique<State>(std::move(product));
+}
+
+PartPicker::~PartPicker() = default;
+
+std::optional<int> PartPicker::part_at(const View& view, const glm::dvec2& pixel) const {
+    if (!(pixel.x >= 0.0 && pixel.y >= 0.0 && pixel.x < view.width && pixel.y < view.height)) {
+        return std::nullopt;
+    }
+    const Ray ray = ray_through(view, pixel);
+    TraceRay traced;
+    traced.origin = glm::vec3(ray.origin);
+    traced.direction = glm::vec3(ray.direction);
+    const Hit hit = state_->tracer.closest(traced);
+    if (!hit.valid()) return std::nullopt;
+    return static_cast<int>(state_->product->mesh.triangle_part[hit.triangle]);
+}
+
+}  // namespace livery
