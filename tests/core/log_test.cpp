@@ -16,6 +16,7 @@
 
 #include "core/utc.h"
 #include "support/temporary_folder.h"
+#include "support/without_rights.h"
 
 namespace livery {
 namespace {
@@ -35,18 +36,6 @@ std::vector<std::string> lines_of(const std::filesystem::path& file) {
 
 /// What comes after the time.
 std::string body(const std::string& line) { return line.substr(line.find(' ') + 1); }
-
-/// Files without the rights of root for as long as it lives, whoever runs the test.
-class WithoutRights {
-  public:
-    WithoutRights() { EXPECT_EQ(::seteuid(was_ == 0 ? 65534 : was_), 0); }
-    ~WithoutRights() { EXPECT_EQ(::seteuid(was_), 0); }
-    WithoutRights(const WithoutRights&) = delete;
-    WithoutRights& operator=(const WithoutRights&) = delete;
-
-  private:
-    uid_t was_ = ::geteuid();
-};
 
 // Must stay the first of this file: nothing is open yet.
 TEST(Log, GoesNowhereUntilOpened) {
