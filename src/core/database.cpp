@@ -2,7 +2,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <optional>
 
 #include <fcntl.h>
 #include <sqlite3.h>
@@ -23,6 +22,10 @@ struct Finding {
     std::string found, expected;
 };
 
+bool may_write(const std::filesystem::path& path) {
+    return ::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) == 0;
+}
+
 /// Nothing can be written beside a file on a full disk, and SQLite says so in several ways.
 bool is_full(const std::filesystem::path& file) {
     struct statfs space {};
@@ -42,14 +45,25 @@ Finding cannot_open(const std::filesystem::path& file) {
     }
     if (std::filesystem::is_directory(file, error)) return {"a folder", "a file"};
     if (is_full(file)) return {"a full disk", "free space"};
-    if (::access(folder.c_str(), W_OK) != 0) {
+    if (!may_write(folder)) {
         return {"a folder that cannot be written (" + std::string(std::strerror(errno)) + ")",
                 "a folder of your own"};
     }
     return {"a file that cannot be opened", "a file that you may read and write"};
 }
 
-Finding finding_of(int code, const std::string& message, const std::filesystem::path& file) {
+/// Why reading or writing failed, as the system says it.
+Finding disk_failure(int system_error, const std::filesystem::path& file) {
+    const bool no_room = system_error == ENOSPC || system_error == EDQUOT || system_error == EFBIG;
+    if (no_room || is_full(file)) return {"a full disk", "free space"};
+    const char* reason = system_error ? std::strerror(system_error) : "no reason given";
+    return {std::string("a disk that fails to read or write (") + reason + ")", "a working one"};
+}
+
+Finding finding_of(int code,
+                   const std::string& message,
+                   int system_error,
+                   const std::filesystem::path& file) {
     switch (code & 0xff) {
         case SQLITE_CANTOPEN:
             return cannot_open(file);
@@ -66,8 +80,7 @@ Finding finding_of(int code, const std::string& message, const std::filesystem::
         case SQLITE_LOCKED:
             return {"a database that another program is writing", "that program to finish"};
         case SQLITE_IOERR:
-            if (is_full(file)) return {"a full disk", "free space"};
-            return {"a disk that fails to read or write (" + message + ")", "a working disk"};
+            return disk_failure(system_error, file);
         case SQLITE_CONSTRAINT:
             return {"values that its rules refuse (" + message + ")", "values that they allow"};
         case SQLITE_TOOBIG:
@@ -137,14 +150,16 @@ std::string hexadecimal(std::int64_t value) {
     return text;
 }
 
-/// One that nobody can write beside: SQLite could not make its index of the log there. It holds
-/// still, then.
-bool stands_still(const std::filesystem::path& file) {
+bool can_write(const std::filesystem::path& file) {
+    const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+    return may_write(folder) && may_write(file);
+}
+
+bool has_log(const std::filesystem::path& file) {
     std::error_code error;
     auto log = file;
     log += "-wal";
-    const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
-    return ::access(folder.c_str(), W_OK) != 0 && !std::filesystem::exists(log, error);
+    return std::filesystem::exists(log, error);
 }
 
 }  // namespace
@@ -154,9 +169,13 @@ struct Database::State {
     std::unique_ptr<sqlite3, int (*)(sqlite3*)> handle{nullptr, &sqlite3_close_v2};
 
     [[noreturn]] void fail(int code) const {
+        // A step that fails leaves its reason in errno only.
+        const int reason = errno;
+        const int noted = handle ? sqlite3_system_errno(handle.get()) : 0;
+        const int system_error = noted != 0 ? noted : reason;
         const std::string message =
             handle ? sqlite3_errmsg(handle.get()) : std::string(sqlite3_errstr(code));
-        const Finding finding = finding_of(code, message, file);
+        const Finding finding = finding_of(code, message, system_error, file);
         throw FileError(file, "", finding.found, finding.expected);
     }
 
@@ -192,10 +211,15 @@ Database::Database(const std::filesystem::path& file,
         if (!exists) throw FileError(file, "", "no such file", "a file");
         if (empty) throw FileError(file, "", "an empty file", "an SQLite database");
     }
-    int flags = SQLITE_OPEN_READWRITE;
+    // A reader makes the log's index beside the file and only one that may write clears it away
+    // again. Where nobody can write, nothing changes either: SQLite then needs no index.
+    const bool only_reading = mode == Mode::read_only && !can_write(file);
+    int flags = only_reading ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE;
     if (mode == Mode::create) flags |= SQLITE_OPEN_CREATE;
-    if (mode == Mode::read_only) flags = SQLITE_OPEN_READONLY;
-    state_->open(flags, mode == Mode::read_only && stands_still(file));
+    state_->open(flags, only_reading && !has_log(file));
+    if (mode != Mode::read_only && sqlite3_db_readonly(state_->handle.get(), "main") == 1) {
+        state_->fail(SQLITE_READONLY);
+    }
 
     const auto number = [&](const char* pragma) {
         const auto rows = run(pragma);
@@ -217,7 +241,10 @@ Database::Database(const std::filesystem::path& file,
                         std::to_string(found) + " (written by a newer Livery)",
                         "at most " + std::to_string(newest_version));
     }
-    if (mode == Mode::read_only) return;
+    if (mode == Mode::read_only) {
+        run("PRAGMA query_only = 1");
+        return;
+    }
     if (pages == 0) run("PRAGMA application_id = " + std::to_string(application_id));
     const auto journal = run("PRAGMA journal_mode = WAL");
     if (journal.empty() || journal[0].empty() || journal[0][0] != DatabaseValue("wal")) {
@@ -243,6 +270,7 @@ std::vector<std::vector<DatabaseValue>> Database::run(std::string_view sql,
         if (code != SQLITE_OK) state_->fail(code);
     }
     std::vector<std::vector<DatabaseValue>> rows;
+    errno = 0;
     while ((code = sqlite3_step(prepared)) == SQLITE_ROW) {
         auto& row = rows.emplace_back();
         for (int column = 0; column < sqlite3_column_count(prepared); ++column) {

@@ -19,6 +19,8 @@ using DatabaseValue = std::variant<std::monostate, std::int64_t, double, std::st
 /// committed before.
 class Database {
   public:
+    /// `read_only` changes nothing that the file holds; an unfinished log of a killed program may
+    /// be taken up into it.
     enum class Mode { create, existing, read_only };
     /// `application_id` tells our kinds of file apart (PRAGMA application_id); a file of another
     /// kind or with a user_version above `newest_version` is refused by name.
