@@ -42,6 +42,7 @@ int run(const std::vector<std::string>& arguments) {
                                      compensate_command(),
                                      check_command(),
                                      bench_command()};
+    for (Command& command : session_commands()) commands.push_back(std::move(command));
     const ParsedCommandLine parsed = parse_command_line(arguments, commands);
     if (!parsed.command) {
         return parsed.exit_code != 0 ? fail(parsed.exit_code, parsed.text) : print(parsed.text, 0);

@@ -176,7 +176,12 @@ SessionCommand read_kind(const std::string& name, const JsonReader& root) {
 std::string text_of(const SessionCommand& command) {
     Json json = Json::object();
     json[kNames[command.index()]] = std::visit([](const auto& c) { return fields_of(c); }, command);
-    return json.dump();
+    try {
+        return json.dump();
+    } catch (const Json::exception&) {
+        throw std::invalid_argument(std::string(kNames[command.index()]) +
+                                    " has a text that is not UTF-8");
+    }
 }
 
 SessionCommand parse_session_command(const std::string& text, const std::string& origin) {

@@ -5,6 +5,7 @@
 #include "appearance/material_library.h"
 #include "core/error.h"
 #include "session/library.h"
+#include "session/naming.h"
 #include "twin/description.h"
 
 namespace livery {
@@ -30,6 +31,7 @@ Look fitted(Look look, const std::vector<std::string>& parts) {
 }  // namespace
 
 Document new_document(const std::string& product) {
+    check_text(product, "the product's name");
     Document document;
     std::error_code error;
     document.product = std::filesystem::is_regular_file(product, error)

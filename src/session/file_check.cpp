@@ -15,6 +15,7 @@
 #include "scene/product.h"
 #include "scene/view.h"
 #include "session/camera_to_xyz_file.h"
+#include "session/session_file.h"
 #include "twin/description.h"
 
 namespace livery {
@@ -92,6 +93,19 @@ void read_patterns(const Path& manifest, FileCheck& check) {
         read_picture(manifest.parent_path() / pattern.file, check);
     }
     check.notes.emplace_back("not photographed yet: every exposure_s is to be filled in");
+}
+
+void read_session(const Path& file, FileCheck& check) {
+    SessionFile session(file, SessionFile::Access::read);
+    session.check_all();
+    const std::int64_t steps = session.last_step();
+    const Document document = session.document(session.position());
+    check.notes.push_back(std::to_string(document.looks.size()) + " looks, " +
+                          std::to_string(steps) + (steps == 1 ? " step" : " steps"));
+    for (const SessionLook& look : document.looks) {
+        for (const auto& [part, paint] : look.look.parts) find_paint(document, paint);
+        load_environment(look.look.environment, {});
+    }
 }
 
 Kind kind_of_manifest(const Path& manifest, const Progress& progress) {
@@ -172,6 +186,7 @@ Kind kind_of(const Path& file, const Progress& progress) {
         }
         return kind_of_json(file, progress);
     }
+    if (suffix == ".livery" || is_session_file(file)) return {"session", read_session};
     if (suffix == ".glb" || suffix == ".gltf") return {"mesh", read_mesh};
     if (suffix == ".exr") {
         const auto names = read_image(file).channel_names;
@@ -184,7 +199,7 @@ Kind kind_of(const Path& file, const Progress& progress) {
                     path,
                     "suffix",
                     path.extension().string().empty() ? "none" : path.extension().string(),
-                    ".glb, .gltf, .json, .exr, .hdr, .png, .tif, .jpg, RAW or a folder");
+                    ".livery, .glb, .gltf, .json, .exr, .hdr, .png, .tif, .jpg, RAW or a folder");
             }};
 }
 

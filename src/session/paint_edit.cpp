@@ -40,7 +40,8 @@ std::string provenance_of_edit(const std::string& name) {
 std::string known_paint(const Document& document, const std::string& name) {
     check_text(name, "the paint's name");
     if (const Material* own = own_paint(document, name)) return own->name;
-    if (const Material* paint = read_paint_library().find(name)) return paint->name;
+    const PaintLibrary library = read_paint_library();
+    if (const Material* paint = library.find(name)) return paint->name;
     try {
         const Material paint = find_material(name);
         return std::filesystem::absolute(paint.file).lexically_normal().string();
@@ -66,21 +67,20 @@ void edit_paint(Document& document, const EditPaint& command) {
         std::find_if(document.paints.begin(), document.paints.end(), [&](const Material& paint) {
             return worn != parts.end() && paint.name == worn->second;
         });
-    const auto taken_by_another = [&](const std::string& name) {
-        const bool itself = own != document.paints.end() && same_paint_name(own->name, name);
-        return !itself && (own_paint(document, name) || read_paint_library().find(name));
+    const PaintLibrary library = read_paint_library();
+    const auto taken = [&](const std::string& name) {
+        return own_paint(document, name) || library.find(name);
     };
     if (own != document.paints.end() && times_used(document, own->name) == 1) {
-        edited.name = free_name(edited.name, taken_by_another);
+        edited.name = free_name(edited.name, [&](const std::string& name) {
+            return !same_paint_name(own->name, name) && taken(name);
+        });
         worn->second = edited.name;
         *own = std::move(edited);
         return;
     }
     const std::string from = edited.name;
-    const PaintLibrary library = read_paint_library();
-    edited.name = free_name(from, [&](const std::string& name) {
-        return own_paint(document, name) || library.find(name);
-    });
+    edited.name = free_name(from, taken);
     edited.provenance = provenance_of_edit(from);
     parts[command.part] = edited.name;
     document.paints.push_back(std::move(edited));
