@@ -116,20 +116,28 @@ std::string predict(FramePlan& plan,
         return "no predictions: no bench has run on this machine (livery bench --suite speed)";
     }
     const FragmentCounts counts = count_fragments(scene, view, progress);
+    for (PlannedPass& pass : plan.passes) pass.work_items = items_of(pass.name, counts);
+    return predict_drawn(plan, *costs);
+}
+
+std::string predict_drawn(FramePlan& plan, const std::vector<PassCost>& costs) {
+    // The bench times shading per fragment and all else per pixel of the mock-up.
+    const PlannedPass* resolve = find_pass(plan, kResolvePass);
+    const double pixels = resolve ? resolve->work_items : 0.0;
     std::string note;
     for (PlannedPass& pass : plan.passes) {
-        const auto known = std::find_if(costs->begin(), costs->end(), [&](const PassCost& cost) {
+        const auto known = std::find_if(costs.begin(), costs.end(), [&](const PassCost& cost) {
             return cost.pass == cost_key(pass.name) && cost.quality == plan.quality;
         });
-        if (known == costs->end()) {
+        if (known == costs.end()) {
             pass.unpredicted_because = fmt::format(
                 "the last bench did not time {} at {} quality", pass.name, to_string(plan.quality));
             note = "some passes are not predicted: see unpredicted_because";
             continue;
         }
-        pass.work_items = items_of(pass.name, counts);
+        const double items = pass.name.starts_with("shade:") ? pass.work_items : pixels;
         pass.predicted_ms =
-            known->work_items > 0.0 ? known->ms * pass.work_items / known->work_items : known->ms;
+            known->work_items > 0.0 ? known->ms * items / known->work_items : known->ms;
         pass.predicted_error = known->error;
         if (!known->error) {
             pass.unpredicted_because =

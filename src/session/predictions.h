@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/progress.h"
 #include "scene/frame_plan.h"
@@ -38,6 +39,10 @@ std::string predict(FramePlan& plan,
                     const Scene& scene,
                     const View& view,
                     const Progress& progress = {});
+
+/// The same from costs at hand, for a plan whose passes know their work items (a drawn frame's):
+/// casts no ray.
+std::string predict_drawn(FramePlan& plan, const std::vector<PassCost>& costs);
 
 struct BudgetChoice {
     Quality quality = Quality::draft;

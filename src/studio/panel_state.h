@@ -18,7 +18,9 @@
 #include "gl/handles.h"
 #include "scene/frame_plan.h"
 #include "scene/look.h"
+#include "scene/product.h"
 #include "session/predictions.h"
+#include "studio/held.h"
 
 namespace livery {
 
@@ -33,24 +35,29 @@ struct LibraryPanelState {
     PaintLibrary library;
     std::string problem;      ///< why there is no library
     double read_at_s = -1.0;  ///< of the window's clock; negative: to be read
+    std::filesystem::file_time_type folder_changed_at{};
     std::string search;
+    bool searching = false;     ///< the text cursor is in the search
     bool focus_search = false;  ///< set by a key: the next frame puts the text cursor there
     std::string family;         ///< empty: all
     bool whole_product = false;
     std::optional<std::string> cursor;  ///< the paint that the arrow keys are on
     bool cursor_moved = false;          ///< it must be scrolled to
+    bool pointer_on_swatch = false, pointer_on_swatch_now = false;  ///< last frame, this frame
     std::shared_ptr<SwatchInbox> inbox = std::make_shared<SwatchInbox>();
     std::map<std::string, Texture2D> swatches;
     std::set<std::string> asked;
 };
 
 struct PaintPanelState {
-    std::optional<Material> held;  ///< while a control is held
-    std::string hex;               ///< being typed
+    Held<Material> held;
+    bool brushed = false;  ///< along and across are shown although they are equal
     // What the panel shows, looked up again when one of these changes.
+    bool read = false;
     std::uint64_t revision = 0;
     int look = -1, part = -1;
-    std::optional<Material> material;
+    std::string part_name;             ///< empty: none is chosen
+    std::optional<Material> material;  ///< none: the product file's own colour
     std::string problem;
     std::string becomes;  ///< the name that the first change gives
     // "Save as new paint"
@@ -58,16 +65,17 @@ struct PaintPanelState {
 };
 
 struct LightingPanelState {
-    std::optional<Look> held;  ///< lights and environment while a control is held
-    std::optional<glm::dvec3> held_eye_mm;
-    std::optional<double> held_ev;
-    std::optional<std::size_t> grabbed_light;
+    Held<Look> held;  ///< lights and environment
+    Held<glm::dvec3> held_eye_mm;
+    Held<double> held_ev;
+    int lit_look = -1;  ///< whose lights are held
+    std::shared_ptr<const Product> centre_of;
+    glm::dvec3 centre_mm{0.0};  ///< of that product
     std::string thumbnail_of;
     Texture2D thumbnail;
     std::string thumbnail_problem;
     std::vector<std::string> shipped_environments;
     bool listed = false;
-    std::map<Quality, double> swap_ms;  ///< newest measured, by quality
 };
 
 struct PlanPanelState {
@@ -80,7 +88,8 @@ struct CalibrationPanelState {
     std::vector<std::filesystem::path> kept;
     std::vector<std::string> benches;
     double listed_at_s = -1.0;
-    std::optional<double> held_percentile;
+    Held<double> held_percentile;
+    std::string list_problem;
     std::filesystem::path taken;  ///< the finished calibration that was put to use
     bool dismissed = false;       ///< the refusal was read
 };
@@ -88,14 +97,15 @@ struct CalibrationPanelState {
 struct BallotDialogState {
     enum class Page { start, vote, thanks, result };
     Page page = Page::start;
+    bool was_open = false;             ///< in the frame before
+    std::vector<Round> rounds;         ///< read when the dialog opens and after each change
     std::map<int, bool> chosen_looks;  ///< by the look's number
-    std::string evaluator;
+    std::string evaluator, thanked;
+    bool focus_name = false;
     std::optional<int> best, second;
     std::string problem;
     std::optional<int> shown_round;
     bool asking_to_close = false;
-    std::vector<Round> rounds;
-    bool rounds_read = false;
 };
 
 struct PanelStates {

@@ -1,0 +1,272 @@
+// Which calibration corrects the picture, how good it is, and how to get another.
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "core/error.h"
+#include "core/paths.h"
+#include "studio/calibration_grade.h"
+#include "studio/studio.h"
+#include "studio/theme.h"
+#include "studio/widgets.h"
+
+namespace livery {
+
+namespace {
+
+constexpr double kBetweenListings_s = 2.0;
+
+const ImVec4& colour_of(Grade grade) {
+    switch (grade) {
+        case Grade::good:
+            return colours::good;
+        case Grade::usable:
+            return colours::warning;
+        case Grade::bad:
+            return colours::error;
+    }
+    return colours::text;
+}
+
+void list_what_there_is(Studio& studio) {
+    CalibrationPanelState& state = studio.panels.calibration;
+    const bool recently =
+        state.listed_at_s >= 0.0 && studio.now_s - state.listed_at_s < kBetweenListings_s;
+    if (recently) return;
+    state.listed_at_s = studio.now_s;
+    state.list_problem.clear();
+    try {
+        state.kept = kept_calibrations();
+        if (state.benches.empty()) {
+            for (const auto& entry : list_folder(shipped_path("calibration"), {".json"}, false)) {
+                if (entry.is_folder) continue;
+                state.benches.push_back(std::filesystem::path(entry.name).stem().string());
+            }
+        }
+    } catch (const FileError& error) {
+        state.list_problem = error.what();
+    }
+}
+
+/// "20261121T085500Z-3f2a" or whatever the folder is called, and the shipped or loaded ones.
+std::string short_name(const std::filesystem::path& folder) {
+    const auto name =
+        folder.filename().empty() ? folder.parent_path().filename() : folder.filename();
+    return name.string();
+}
+
+bool same_folder(const std::filesystem::path& a, const std::filesystem::path& b) {
+    return a.lexically_normal() == b.lexically_normal();
+}
+
+void fact(const char* label, const std::string& value) {
+    row_label(label, 0.3f);
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::TextUnformatted(value.c_str());
+    ImGui::PopTextWrapPos();
+    tooltip(value);
+}
+
+void draw_figures(const std::vector<GradedFigure>& figures) {
+    for (const GradedFigure& figure : figures) {
+        ImGui::PushID(figure.name.c_str());
+        ImGui::TextUnformatted(figure.name.c_str());
+        std::string meaning = figure.meaning;
+        if (!figure.scale.empty()) meaning += fmt::format("\nScale: {}.", figure.scale);
+        if (figure.grade != Grade::good) meaning += "\n" + figure.fix;
+        tooltip(meaning);
+        const std::string mark = figure.scale.empty()
+                                     ? figure.value
+                                     : fmt::format("{}  {}", figure.value, to_string(figure.grade));
+        const float width = ImGui::CalcTextSize(mark.c_str()).x;
+        ImGui::SameLine();
+        ImGui::SetCursorPosX(
+            std::max(ImGui::GetCursorPosX(), ImGui::GetWindowContentRegionMax().x - width));
+        ImGui::TextColored(
+            figure.scale.empty() ? colours::text : colour_of(figure.grade), "%s", mark.c_str());
+        tooltip(meaning);
+        ImGui::PopID();
+    }
+}
+
+void draw_calibration_in_use(const ColourCalibration& calibration) {
+    const auto figures = grade_figures(calibration);
+    const CalibrationGrade grade = grade_of(figures);
+    ImGui::PushFont(large_font());
+    ImGui::TextColored(colour_of(grade.grade), "%s", to_string(grade.grade).c_str());
+    ImGui::PopFont();
+    name_last_item("calibration-grade");
+    dim_text(grade.grade == Grade::good ? "Every figure is within its good range."
+                                        : fmt::format("{}. {}", grade.reason, grade.fix));
+    fact("Made", calibration.created);
+    fact("Id", calibration.id);
+    fact("With", calibration.made_with);
+    fact("Mode", calibration.mode);
+    fact("Colours", calibration.xyz_origin);
+    ImGui::Spacing();
+    draw_figures(figures);
+    for (const std::string& warning : calibration.warnings) warning_text(warning);
+}
+
+void draw_in_use(const Studio& studio) {
+    heading("In use");
+    if (!studio.setup) {
+        dim_text("Being loaded…");
+        return;
+    }
+    if (studio.setup->table && studio.setup->calibration) {
+        draw_calibration_in_use(*studio.setup->calibration);
+        return;
+    }
+    ImGui::PushFont(large_font());
+    ImGui::TextColored(colours::warning, "Uncorrected");
+    ImGui::PopFont();
+    name_last_item("uncorrected");
+    dim_text(studio.setup->why_uncorrected.empty()
+                 ? "The picture goes out as plain sRGB: colours on the mock-up are not right."
+                 : studio.setup->why_uncorrected);
+    dim_text("Calibrate below, or load a calibration.");
+}
+
+void draw_design_white(Studio& studio) {
+    Held<double>& held = studio.panels.calibration.held_percentile;
+    double& percentile = held.start(studio.session.document().design_white_percentile);
+    row_label("Design white");
+    number_slider("##design-white", percentile, 0.0, 100.0, "%.0f %%");
+    held.after_item();
+    name_last_item("design-white");
+    // Not tried while it is dragged: every value bakes the correction anew.
+    if (ImGui::IsItemDeactivatedAfterEdit() && !studio.gave_up) {
+        commit(studio, SetDesignWhite{percentile});
+    }
+    tooltip(
+        "The brightest neutral that the looks are scaled to. At 20 %, four fifths of the "
+        "mock-up's pixels can show it; lower is safer and darker, higher is brighter and clips "
+        "more.");
+    held.finish();
+    if (studio.setup && studio.setup->table) {
+        dim_text(fmt::format("Brightest neutral for {:.0f} % of the pixels: Y = {:.4g}.",
+                             100.0 - studio.session.document().design_white_percentile,
+                             studio.setup->design_white_y));
+    }
+}
+
+void draw_bench_choice(Studio& studio, bool calibrating) {
+    CalibrationPanelState& state = studio.panels.calibration;
+    const std::string& bench = studio.session.document().bench;
+    begin_disabled(calibrating);
+    row_label("Bench");
+    if (ImGui::BeginCombo("##bench", short_name(bench).c_str())) {
+        for (const std::string& name : state.benches) {
+            if (ImGui::Selectable(name.c_str(), name == bench) && name != bench) {
+                commit(studio, SetBench{name});
+            }
+            name_last_item("bench:" + name);
+        }
+        if (ImGui::Selectable("File…") && studio.file_dialog) {
+            FileQuestion question;
+            question.title = "Open a bench";
+            question.action = "Open";
+            question.suffixes = {".json"};
+            question.then = [&studio](const std::filesystem::path& file) {
+                commit(studio, SetBench{std::filesystem::absolute(file).string()});
+            };
+            studio.file_dialog->ask(std::move(question));
+        }
+        name_last_item("bench:file");
+        ImGui::EndCombo();
+    }
+    name_last_item("bench");
+    tooltip("The simulated projector, camera, room and mock-up: " + bench);
+    end_disabled();
+}
+
+void draw_calibrating(Studio& studio) {
+    heading("Calibrate");
+    CalibrationPanelState& state = studio.panels.calibration;
+    const auto calibrating =
+        studio.bench ? studio.bench->calibrating() : BenchThread::Calibrating{};
+    draw_bench_choice(studio, calibrating.running);
+    if (calibrating.running) {
+        progress_bar(calibrating.fraction, fmt::format("{:.0f} %", 100.0 * calibrating.fraction));
+        name_last_item("calibration-progress");
+        dim_text(calibrating.stage);
+        if (ImGui::Button("Cancel", {-FLT_MIN, 0.0f})) studio.bench->cancel_calibration();
+        name_last_item("cancel-calibration");
+        tooltip("The calibration in use stays as it is.");
+        return;
+    }
+    begin_disabled(!studio.bench);
+    if (ImGui::Button("Calibrate on the simulated bench", {-FLT_MIN, 0.0f})) {
+        state.dismissed = false;
+        studio.bench->start_calibration();
+    }
+    name_last_item("calibrate");
+    tooltip(
+        "Shows the patterns on the bench, photographs them and solves. The picture on the "
+        "mock-up stays; the calibrations before are kept.");
+    end_disabled();
+    if (!calibrating.refused_why.empty() && !state.dismissed) {
+        warning_text("Refused: " + calibrating.refused_why);
+        name_last_item("calibration-refused");
+        if (!calibrating.refused_fix.empty()) dim_text("What helps: " + calibrating.refused_fix);
+        dim_text("The calibration before stays in use.");
+        if (ImGui::Button("Dismiss")) state.dismissed = true;
+        name_last_item("dismiss-refusal");
+    }
+}
+
+void draw_kept(Studio& studio) {
+    heading("Go back to");
+    CalibrationPanelState& state = studio.panels.calibration;
+    const std::filesystem::path in_use = studio.session.document().calibration;
+    if (!state.list_problem.empty()) warning_text(state.list_problem);
+    const auto offer = [&](const std::string& label,
+                           const std::filesystem::path& folder,
+                           const std::string& meaning) {
+        const bool on = folder.empty() ? in_use.empty() : same_folder(folder, in_use);
+        const std::string shown = (on ? "● " : "○ ") + label;
+        if (ImGui::Selectable(shown.c_str(), on) && !on) {
+            commit(studio, SetCalibration{folder.string()});
+        }
+        name_last_item("calibration:" + (folder.empty() ? "none" : short_name(folder)));
+        tooltip(meaning);
+    };
+    bool listed = in_use.empty();
+    for (const auto& folder : state.kept) {
+        offer(short_name(folder), folder, folder.string());
+        listed = listed || same_folder(folder, in_use);
+    }
+    if (!listed) offer(short_name(in_use), in_use, in_use.string());
+    offer("None: uncorrected", {}, "The picture goes out as plain sRGB.");
+    if (ImGui::Button("Load calibration folder…") && studio.file_dialog) {
+        FileQuestion question;
+        question.kind = FileQuestion::Kind::folder;
+        question.title = "Load a calibration";
+        question.action = "Load";
+        question.then = [&studio](const std::filesystem::path& folder) {
+            commit(studio, SetCalibration{std::filesystem::absolute(folder).string()});
+        };
+        studio.file_dialog->ask(std::move(question));
+    }
+    name_last_item("load-calibration");
+}
+
+}  // namespace
+
+void draw_calibration_panel(Studio& studio) {
+    list_what_there_is(studio);
+    draw_in_use(studio);
+    draw_design_white(studio);
+    ImGui::Spacing();
+    draw_calibrating(studio);
+    ImGui::Spacing();
+    draw_kept(studio);
+}
+
+}  // namespace livery

@@ -1,0 +1,356 @@
+// The paints: swatches to hover and to click, found by typing, walked through with the arrow keys.
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include "studio/paint_parameters.h"
+#include "studio/paint_search.h"
+#include "studio/studio.h"
+#include "studio/swatch_textures.h"
+#include "studio/theme.h"
+#include "studio/users_library.h"
+#include "studio/widgets.h"
+
+namespace livery {
+
+namespace {
+
+/// One swatch of the grid.
+struct Cell {
+    const Material* paint = nullptr;
+    ImVec2 centre{0.0f, 0.0f};
+};
+
+struct Section {
+    const char* title;
+    const std::vector<Material>* paints;
+    std::vector<std::size_t> found;
+};
+
+/// What a click paints.
+struct Target {
+    std::string part;   ///< empty: nothing is chosen
+    std::string label;  ///< "body"
+    std::string paint;  ///< that it wears
+};
+
+Target target_of(const Studio& studio) {
+    Target target;
+    const SessionLook* look = find_look(studio.session.document(), studio.shown_look);
+    if (!look || !studio.product) return target;
+    const auto& parts = studio.product->mesh.parts;
+    const auto& painted = look->look.parts;
+    const auto rest = painted.find("*");
+    if (studio.panels.library.whole_product) {
+        target = {"*", "every part without a paint of its own", ""};
+        if (rest != painted.end()) target.paint = rest->second;
+    } else if (studio.selected_part &&
+               static_cast<std::size_t>(*studio.selected_part) < parts.size()) {
+        target.part = target.label = parts[static_cast<std::size_t>(*studio.selected_part)].name;
+        const auto own = painted.find(target.part);
+        if (own != painted.end()) {
+            target.paint = own->second;
+        } else if (rest != painted.end()) {
+            target.paint = rest->second;
+        }
+    }
+    return target;
+}
+
+/// Whether some part has no paint of its own, so that "*" shows.
+bool has_rest(const Studio& studio) {
+    const SessionLook* look = find_look(studio.session.document(), studio.shown_look);
+    if (!look || !studio.product) return false;
+    const auto& parts = studio.product->mesh.parts;
+    return std::any_of(parts.begin(), parts.end(), [&](const Part& part) {
+        return !look->look.parts.contains(part.name);
+    });
+}
+
+void draw_search(LibraryPanelState& state) {
+    const float clear_width = button_width("×");
+    const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x -
+                            (state.search.empty() ? 0.0f : clear_width + gap));
+    if (state.focus_search) ImGui::SetKeyboardFocusHere();
+    state.focus_search = false;
+    if (ImGui::InputTextWithHint("##search", "Search by name or family  ( / )", &state.search)) {
+        state.cursor.reset();
+    }
+    name_last_item("paint-search");
+    state.searching = ImGui::IsItemActive();
+    if (state.search.empty()) return;
+    ImGui::SameLine(0.0f, gap);
+    if (ImGui::Button("×##clear", {clear_width, 0.0f})) state.search.clear();
+    name_last_item("paint-search-clear");
+    tooltip("Shows all paints again.");
+}
+
+void draw_families(LibraryPanelState& state, const std::vector<Section>& sections) {
+    std::vector<std::string> families;
+    for (const Section& section : sections) {
+        for (const Material& paint : *section.paints) {
+            const bool known =
+                std::find(families.begin(), families.end(), paint.family) != families.end();
+            if (!known && !paint.family.empty()) families.push_back(paint.family);
+        }
+    }
+    std::sort(families.begin(), families.end());
+    if (chip("All", state.family.empty())) state.family.clear();
+    name_last_item("family:all");
+    for (const std::string& family : families) {
+        place_in_row(button_width(family.c_str()));
+        const bool on = state.family == family;
+        if (chip(family.c_str(), on)) state.family = on ? "" : family;
+        name_last_item("family:" + family);
+    }
+}
+
+void draw_target(Studio& studio, const Target& target) {
+    LibraryPanelState& state = studio.panels.library;
+    if (target.part.empty()) {
+        dim_text("Choose a part, on the product or in the list, to paint it.");
+    } else {
+        ImGui::AlignTextToFramePadding();
+        ImGui::PushTextWrapPos(0.0f);
+        ImGui::Text("Painting: %s", target.label.c_str());
+        ImGui::PopTextWrapPos();
+    }
+    if (!has_rest(studio)) {
+        state.whole_product = false;
+        return;
+    }
+    const char* label = "All other parts";
+    if (!target.part.empty()) place_in_row(button_width(label));
+    if (chip(label, state.whole_product)) state.whole_product = !state.whole_product;
+    name_last_item("paint-target:rest");
+    tooltip("Paints every part of this look that has no paint of its own.");
+}
+
+void paint_tooltip(const Material& paint) {
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(em(22.0f));
+    heading(paint.name.c_str());
+    ImGui::TextUnformatted(summary_of(paint).c_str());
+    if (!paint.provenance.empty()) dim_text(paint.provenance);
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+}
+
+void draw_cell_picture(
+    Studio& studio, const Material& paint, const ImVec2& corner, float width, bool worn, bool lit) {
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    const float side = std::floor(0.78f * width);
+    const float left = std::floor(corner.x + 0.5f * (width - side)), top = corner.y + em(0.3f);
+    const ImVec2 end{corner.x + width, corner.y + ImGui::GetItemRectSize().y};
+    const float rounding = ImGui::GetStyle().FrameRounding;
+    if (lit) draw->AddRectFilled(corner, end, ImGui::GetColorU32(colours::raised), rounding);
+    draw_swatch(studio, paint, {left, top}, side);
+    if (worn) {
+        draw->AddRect(
+            corner, end, ImGui::GetColorU32(colours::text), rounding, 0, std::max(1.5f, em(0.1f)));
+    }
+    ImGui::PushFont(small_font());
+    centred_lines(fitted_lines(paint.name, width - em(0.3f), 2),
+                  {corner.x, top + side + em(0.25f)},
+                  width,
+                  worn || lit ? colours::text : colours::dim_text);
+    ImGui::PopFont();
+}
+
+/// One swatch; true when it was clicked.
+bool draw_cell(Studio& studio, const Target& target, Cell& cell, float width, float height) {
+    LibraryPanelState& state = studio.panels.library;
+    const Material& paint = *cell.paint;
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    cell.centre = {corner.x + 0.5f * width, corner.y + 0.5f * height};
+    const bool clicked = ImGui::InvisibleButton(paint.name.c_str(), {width, height});
+    name_last_item("paint:" + paint.name);
+    const bool hovered = ImGui::IsItemHovered();
+    const bool on_cursor = state.cursor == paint.name;
+    const bool worn = !target.paint.empty() && same_paint_name(target.paint, paint.name);
+    // The pointer says what is meant when both point at something.
+    if (!target.part.empty() && (hovered || (on_cursor && !state.pointer_on_swatch))) {
+        try_out(studio, SetPaint{studio.shown_look, target.part, paint.name});
+    }
+    state.pointer_on_swatch_now = state.pointer_on_swatch_now || hovered;
+    if (on_cursor && std::exchange(state.cursor_moved, false)) ImGui::SetScrollHereY();
+    if (ImGui::IsItemVisible()) {
+        draw_cell_picture(studio, paint, corner, width, worn, hovered || on_cursor);
+    }
+    if (hovered) paint_tooltip(paint);
+    return clicked;
+}
+
+/// The swatch that an arrow key leads to: the next in reading order, or the nearest in the row
+/// above or below.
+std::optional<std::size_t> neighbour(const std::vector<Cell>& cells,
+                                     std::optional<std::size_t> from,
+                                     int across,
+                                     int down) {
+    if (cells.empty()) return std::nullopt;
+    if (!from) return std::size_t{0};
+    if (across != 0) {
+        const auto to = static_cast<std::ptrdiff_t>(*from) + across;
+        if (to < 0 || to >= static_cast<std::ptrdiff_t>(cells.size())) return from;
+        return static_cast<std::size_t>(to);
+    }
+    const ImVec2 here = cells[*from].centre;
+    std::optional<std::size_t> best;
+    float best_y = FLT_MAX, best_x = FLT_MAX;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        const float y = (cells[i].centre.y - here.y) * static_cast<float>(down);
+        const float x = std::abs(cells[i].centre.x - here.x);
+        if (y < 1.0f) continue;
+        if (y < best_y - 1.0f || (y < best_y + 1.0f && x < best_x)) {
+            best = i;
+            best_y = y;
+            best_x = x;
+        }
+    }
+    return best ? best : from;
+}
+
+void follow_keys(Studio& studio, const Target& target, const std::vector<Cell>& cells) {
+    LibraryPanelState& state = studio.panels.library;
+    const bool here = ImGui::IsWindowFocused(ImGuiFocusedFlags_ChildWindows) || state.searching;
+    if (!here) return;
+    std::optional<std::size_t> at;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        if (state.cursor == cells[i].paint->name) at = i;
+    }
+    // While a text is being typed the sideways arrows move in it.
+    int across = 0, down = 0;
+    if (!state.searching) {
+        across = int{was_pressed(ImGuiKey_RightArrow)} - int{was_pressed(ImGuiKey_LeftArrow)};
+    }
+    down = int{was_pressed(ImGuiKey_DownArrow)} - int{was_pressed(ImGuiKey_UpArrow)};
+    if (across != 0 || down != 0) {
+        const auto to = neighbour(cells, at, across, down);
+        if (to && to != at) {
+            state.cursor = cells[*to].paint->name;
+            state.cursor_moved = true;
+        }
+    }
+    const bool enter = was_pressed(ImGuiKey_Enter) || was_pressed(ImGuiKey_KeyPadEnter);
+    if (enter && !target.part.empty()) {
+        // Enter in the search takes the first that was found.
+        if (!at && state.searching && !cells.empty() && !state.search.empty()) at = 0;
+        if (at) {
+            state.cursor = cells[*at].paint->name;
+            commit(studio, SetPaint{studio.shown_look, target.part, *state.cursor});
+        }
+    }
+    if (was_pressed(ImGuiKey_Escape)) state.cursor.reset();
+}
+
+void draw_grid(Studio& studio, const Target& target, const std::vector<Section>& sections) {
+    const float gap = em(0.3f), available = ImGui::GetContentRegionAvail().x;
+    const auto columns =
+        std::max(1, static_cast<int>(std::floor((available + gap) / (em(5.4f) + gap))));
+    const float width = std::floor((available - gap * static_cast<float>(columns - 1)) /
+                                   static_cast<float>(columns));
+    const float height = std::floor(0.78f * width) + em(2.75f);
+    std::vector<Cell> cells;
+    std::optional<std::string> clicked;
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {gap, gap});
+    for (const Section& section : sections) {
+        if (section.found.empty()) continue;
+        dim_text(section.title);
+        ImGui::PushID(section.title);
+        for (std::size_t i = 0; i < section.found.size(); ++i) {
+            if (i % static_cast<std::size_t>(columns) != 0) ImGui::SameLine(0.0f, gap);
+            Cell cell{&(*section.paints)[section.found[i]], {}};
+            if (draw_cell(studio, target, cell, width, height)) clicked = cell.paint->name;
+            cells.push_back(cell);
+        }
+        ImGui::PopID();
+        ImGui::Dummy({0.0f, gap});
+    }
+    ImGui::PopStyleVar();
+    follow_keys(studio, target, cells);
+    if (clicked) {
+        studio.panels.library.cursor.reset();
+        if (!target.part.empty()) {
+            commit(studio, SetPaint{studio.shown_look, target.part, *clicked});
+        } else {
+            notify(studio,
+                   {Notice::Level::info,
+                    fmt::format("Nothing was painted {}.", *clicked),
+                    "No part is chosen.",
+                    "Click a part of the product, or choose one in the list of parts."});
+        }
+    }
+}
+
+void draw_nothing_found(LibraryPanelState& state) {
+    std::string text = "No paint";
+    if (!state.family.empty()) text += fmt::format(" of family {}", state.family);
+    if (!state.search.empty()) text += fmt::format(" answers \"{}\"", state.search);
+    dim_text(text + ".");
+    if (!state.search.empty()) {
+        const auto near = state.library.nearest(state.search, 1);
+        if (!near.empty()) {
+            ImGui::AlignTextToFramePadding();
+            ImGui::TextUnformatted("Nearest:");
+            ImGui::SameLine();
+            if (ImGui::SmallButton(near.front().c_str())) {
+                state.search = near.front();
+                state.family.clear();
+            }
+            name_last_item("paint-nearest");
+        }
+    }
+    if (ImGui::Button("Show all paints")) {
+        state.search.clear();
+        state.family.clear();
+    }
+    name_last_item("paint-show-all");
+}
+
+}  // namespace
+
+void draw_library_panel(Studio& studio) {
+    LibraryPanelState& state = studio.panels.library;
+    current_library(studio);
+    take_swatches(studio);
+    if (!state.problem.empty()) {
+        warning_text("The paint library cannot be read. " + state.problem);
+        return;
+    }
+    const std::vector<Material>& own = studio.session.document().paints;
+    std::vector<Section> sections{{"This session's own", &own, {}},
+                                  {"Saved by you", &state.library.users, {}},
+                                  {"Library", &state.library.shipped, {}}};
+    bool found_any = false;
+    draw_search(state);
+    draw_families(state, sections);
+    for (Section& section : sections) {
+        section.found = search_paints(*section.paints, state.search, state.family);
+        found_any = found_any || !section.found.empty();
+    }
+    const Target target = target_of(studio);
+    draw_target(studio, target);
+    for (const std::string& problem : state.library.problems) warning_text("Left out: " + problem);
+
+    const float height = std::max(ImGui::GetContentRegionAvail().y, em(12.0f));
+    state.pointer_on_swatch_now = false;
+    ImGui::BeginChild("swatches", {0.0f, height}, false, ImGuiWindowFlags_NoNavInputs);
+    if (found_any) {
+        draw_grid(studio, target, sections);
+    } else {
+        draw_nothing_found(state);
+    }
+    ImGui::EndChild();
+    state.pointer_on_swatch = state.pointer_on_swatch_now;
+}
+
+}  // namespace livery

@@ -1,0 +1,335 @@
+// The parameters of the chosen part's paint: live on the mock-up while they are dragged.
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <string>
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include "core/error.h"
+#include "studio/paint_parameters.h"
+#include "studio/studio.h"
+#include "studio/theme.h"
+#include "studio/users_library.h"
+#include "studio/widgets.h"
+
+namespace livery {
+
+namespace {
+
+constexpr const char* kSavePopup = "Save as new paint";
+
+std::string worn_by(const Look& look, const std::string& part) {
+    auto found = look.parts.find(part);
+    if (found == look.parts.end()) found = look.parts.find("*");
+    return found == look.parts.end() ? "" : found->second;
+}
+
+/// The name that the part's paint has after an edit.
+std::string name_after_edit(const Document& document, const EditPaint& edit) {
+    try {
+        const Document after = applied(document, edit);
+        const SessionLook* look = find_look(after, edit.look);
+        return look ? worn_by(look->look, edit.part) : "";
+    } catch (const std::invalid_argument&) {
+        return "";
+    }
+}
+
+/// Looks the paint up again when the document or the choice has changed.
+void refresh(Studio& studio) {
+    PaintPanelState& state = studio.panels.paint;
+    const int part = studio.selected_part.value_or(-1);
+    const bool same = state.read && state.revision == studio.session.revision() &&
+                      state.look == studio.shown_look && state.part == part;
+    if (same) return;
+    if (state.part != part || state.look != studio.shown_look) state.brushed = false;
+    state.read = true;
+    state.revision = studio.session.revision();
+    state.look = studio.shown_look;
+    state.part = part;
+    state.material.reset();
+    state.part_name.clear();
+    state.problem.clear();
+    const Document& document = studio.session.document();
+    const SessionLook* look = find_look(document, studio.shown_look);
+    if (!look || !studio.product || part < 0) return;
+    if (static_cast<std::size_t>(part) >= studio.product->mesh.parts.size()) return;
+    state.part_name = studio.product->mesh.parts[static_cast<std::size_t>(part)].name;
+    const std::string paint = worn_by(look->look, state.part_name);
+    if (paint.empty()) return;
+    try {
+        state.material = find_paint(document, paint);
+        state.becomes =
+            name_after_edit(document, EditPaint{state.look, state.part_name, *state.material});
+    } catch (const FileError& error) {
+        state.problem = error.what();
+    }
+}
+
+bool is_own(const Document& document, const std::string& name) {
+    return std::any_of(document.paints.begin(), document.paints.end(), [&](const Material& paint) {
+        return paint.name == name;
+    });
+}
+
+/// One control's row; the edit is tried and committed by what was just drawn.
+class Rows {
+  public:
+    Rows(Studio& studio, Material& edited) : studio_(studio), edited_(edited) {}
+
+    void label(const char* text, const std::string& meaning) {
+        row_label(text);
+        meaning_ = meaning;
+    }
+    void parameter(const char* name, const char* how = "Drag, or Ctrl+click to type.") {
+        const ParameterText& text = parameter_text(name);
+        label(text.label, fmt::format("{}\n{}: {}. {}", text.meaning, text.name, text.range, how));
+    }
+    void after_item(const std::string& name) {
+        PaintPanelState& state = studio_.panels.paint;
+        name_last_item("param:" + name);
+        tooltip(meaning_);
+        state.held.after_item();
+        const bool touched = last_item_is_held() || ImGui::IsItemDeactivatedAfterEdit();
+        if (!touched) return;
+        state.problem = paint_problem(edited_).value_or("");
+        if (state.problem.empty()) {
+            edit_with_last_item(studio_, EditPaint{state.look, state.part_name, edited_});
+        }
+    }
+
+  private:
+    Studio& studio_;
+    Material& edited_;
+    std::string meaning_;
+};
+
+void commit_edit(Studio& studio, const Material& material) {
+    const PaintPanelState& state = studio.panels.paint;
+    commit(studio, EditPaint{state.look, state.part_name, material});
+}
+
+void draw_title(Studio& studio) {
+    const PaintPanelState& state = studio.panels.paint;
+    const Material& material = *state.material;
+    const bool own = is_own(studio.session.document(), material.name);
+    heading(material.name.c_str());
+    name_last_item("paint-name");
+    std::string origin = own ? "This session's own paint" : "From the library";
+    if (!own && !material.file.empty() && current_library(studio).find(material.name) == nullptr) {
+        origin = "From " + material.file.string();
+    }
+    dim_text(fmt::format("On {}. {}.", state.part_name, origin));
+    if (!state.becomes.empty() && state.becomes != material.name) {
+        dim_text(
+            own ? fmt::format("Other parts or looks wear it as well: a change here makes \"{}\" "
+                              "for this part alone.",
+                              state.becomes)
+                : fmt::format("A change makes \"{}\", this session's own; the library stays as "
+                              "it is.",
+                              state.becomes));
+    }
+    if (!material.provenance.empty()) dim_text("Source: " + material.provenance);
+}
+
+void draw_model(Studio& studio, const Material& material) {
+    PaintPanelState& state = studio.panels.paint;
+    row_label("Model");
+    const ModelText& chosen = model_text(material.model);
+    if (ImGui::BeginCombo("##model", chosen.label)) {
+        for (const auto model :
+             {ReflectanceModel::lambert, ReflectanceModel::ggx, ReflectanceModel::clearcoat}) {
+            Material changed = material;
+            changed.model = model;
+            const bool picked = ImGui::Selectable(model_text(model).label, model == material.model);
+            name_last_item(std::string("model:") + model_text(model).name);
+            tooltip(model_text(model).meaning);
+            if (model == material.model) continue;
+            if (ImGui::IsItemHovered()) {
+                try_out(studio, EditPaint{state.look, state.part_name, changed});
+            }
+            if (picked) commit_edit(studio, changed);
+        }
+        ImGui::EndCombo();
+    }
+    name_last_item("param:model");
+    tooltip(chosen.meaning);
+}
+
+void draw_alpha(Studio& studio, Rows& rows, Material& edited) {
+    PaintPanelState& state = studio.panels.paint;
+    const bool differs = edited.alpha.x != edited.alpha.y;
+    const bool brushed = differs || state.brushed;
+    rows.parameter("alpha");
+    ratio_slider("##alpha", edited.alpha.x, 1e-4, 1.0, "%.4g");
+    if (!brushed) edited.alpha.y = edited.alpha.x;
+    rows.after_item("alpha");
+    if (brushed) {
+        rows.label("  across", "Roughness across the brushing; the one above is along it.");
+        ratio_slider("##across", edited.alpha.y, 1e-4, 1.0, "%.4g");
+        rows.after_item("alpha-across");
+    }
+    row_label("");
+    bool wanted = brushed;
+    if (ImGui::Checkbox("Brushed", &wanted)) {
+        state.brushed = wanted;
+        if (!wanted && differs) {
+            edited.alpha.y = edited.alpha.x;
+            commit_edit(studio, edited);
+        }
+    }
+    name_last_item("param:brushed");
+    tooltip("Different roughness along and across the surface's tangent.");
+}
+
+void draw_parameters(Studio& studio) {
+    PaintPanelState& state = studio.panels.paint;
+    Material& edited = state.held.start(*state.material);
+    Rows rows(studio, edited);
+    const auto colour = [&](const char* name, glm::dvec3& value) {
+        rows.parameter(name, "The three numbers are linear Rec.709: drag, or Ctrl+click to type.");
+        colour_control(std::string("param:") + name, value);
+        rows.after_item(name);
+    };
+    for (const std::string& name : parameters_of_model(edited.model)) {
+        if (name == "diffuse") colour("diffuse", edited.diffuse);
+        if (name == "f0") colour("f0", edited.f0);
+        if (name == "alpha") draw_alpha(studio, rows, edited);
+        if (name == "coat_alpha") {
+            rows.parameter("coat_alpha");
+            ratio_slider("##coat_alpha", edited.coat_alpha, 1e-4, 1.0, "%.4g");
+            rows.after_item("coat_alpha");
+        }
+        if (name == "coat_f0") {
+            rows.parameter("coat_f0");
+            number_slider("##coat_f0", edited.coat_f0, 0.0, 0.2, "%.3f");
+            rows.after_item("coat_f0");
+        }
+        if (name == "coat_transmittance") colour("coat_transmittance", edited.coat_transmittance);
+    }
+    state.held.finish();
+}
+
+void save_paint(Studio& studio) {
+    PaintPanelState& state = studio.panels.paint;
+    Material paint = *state.material;
+    paint.name = state.new_name;
+    paint.family = state.new_family;
+    if (is_own(studio.session.document(), paint.name)) {
+        // It would come before the library's wherever it is looked up by name.
+        state.save_problem = fmt::format(
+            "This session has a paint \"{}\" of its own already. Choose another name.", paint.name);
+        return;
+    }
+    try {
+        const auto file = save_to_library(paint);
+        studio.panels.library.read_at_s = -1.0;
+        ImGui::CloseCurrentPopup();
+        commit(studio, SetPaint{state.look, state.part_name, paint.name});
+        notify(studio,
+               {Notice::Level::info,
+                fmt::format("Saved \"{}\" to your library.", paint.name),
+                "",
+                "It lies in " + file.string() + "."});
+    } catch (const Refused& refused) {
+        state.save_problem = fmt::format("Not saved: {}; {}.", refused.why(), refused.fix());
+    } catch (const std::exception& error) {
+        state.save_problem = fmt::format("Not saved: {}.", error.what());
+    }
+}
+
+void draw_save_popup(Studio& studio) {
+    PaintPanelState& state = studio.panels.paint;
+    ImGui::SetNextWindowSize({em(24.0f), 0.0f});
+    if (!ImGui::BeginPopupModal(
+            kSavePopup, nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove)) {
+        return;
+    }
+    dim_text("Keeps the paint in your own library, for every session.");
+    row_label("Name", 0.3f);
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    const bool entered =
+        ImGui::InputText("##name",
+                         &state.new_name,
+                         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+    name_last_item("save-paint:name");
+    row_label("Family", 0.3f);
+    ImGui::InputText("##family", &state.new_family);
+    name_last_item("save-paint:family");
+    tooltip("Groups the library: solid, metallic, matte, glass, rubber, metal, lamp.");
+    if (!state.save_problem.empty()) warning_text(state.save_problem);
+    const bool named = state.new_name.find_first_not_of(' ') != std::string::npos;
+    begin_disabled(!named);
+    if (ImGui::Button("Save") || (entered && named)) save_paint(studio);
+    name_last_item("save-paint:save");
+    end_disabled();
+    ImGui::SameLine();
+    if (ImGui::Button("Cancel") || was_pressed(ImGuiKey_Escape)) ImGui::CloseCurrentPopup();
+    name_last_item("save-paint:cancel");
+    ImGui::EndPopup();
+}
+
+void draw_actions(Studio& studio) {
+    PaintPanelState& state = studio.panels.paint;
+    const Material& material = *state.material;
+    const Material* origin = is_own(studio.session.document(), material.name)
+                                 ? library_origin(material.name, current_library(studio))
+                                 : nullptr;
+    begin_disabled(origin == nullptr);
+    const bool reset = ImGui::Button("Reset to library");
+    name_last_item("reset-paint");
+    const bool over = ImGui::IsItemHovered();
+    tooltip(origin ? fmt::format("Gives the part the library's \"{}\" again.", origin->name)
+                   : "This is the library's paint, or none of the library's lies under it.");
+    end_disabled();
+    if (origin) {
+        const SetPaint command{state.look, state.part_name, origin->name};
+        if (over) try_out(studio, command);
+        if (reset) commit(studio, command);
+    }
+    const char* save = "Save as new paint…";
+    place_in_row(button_width(save));
+    if (ImGui::Button(save)) {
+        state.new_name = material.name;
+        state.new_family = material.family;
+        state.save_problem.clear();
+        ImGui::OpenPopup(kSavePopup);
+    }
+    name_last_item("save-paint");
+    tooltip("Writes a material file into your own library.");
+    draw_save_popup(studio);
+}
+
+}  // namespace
+
+void draw_paint_panel(Studio& studio) {
+    PaintPanelState& state = studio.panels.paint;
+    refresh(studio);
+    if (state.part_name.empty()) {
+        dim_text("Choose a part, on the product or in the list, to see its paint.");
+        return;
+    }
+    if (!state.material) {
+        if (!state.problem.empty()) {
+            warning_text(state.problem);
+        } else {
+            dim_text(
+                fmt::format("{} wears the colour that the product's file gives it. Choose a "
+                            "paint from the library to change it.",
+                            state.part_name));
+        }
+        return;
+    }
+    draw_title(studio);
+    ImGui::Spacing();
+    draw_model(studio, *state.material);
+    draw_parameters(studio);
+    if (!state.problem.empty()) warning_text("Not taken: " + state.problem);
+    ImGui::Spacing();
+    draw_actions(studio);
+}
+
+}  // namespace livery

@@ -1,0 +1,21 @@
+// Which paints a typed text means, best first.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "appearance/material.h"
+
+namespace livery {
+
+/// How well a paint's name and family answer what was typed: every word of the query must be found
+/// (a name's word before the inside of one, a name before a family, one typing mistake in four or
+/// more letters allowed). 0: not at all. An empty query is answered equally by all.
+double search_score(const std::string& query, const std::string& name, const std::string& family);
+
+/// Indices of the paints that answer, best first; equals keep their order. `family` empty: any.
+std::vector<std::size_t> search_paints(const std::vector<Material>& paints,
+                                       const std::string& query,
+                                       const std::string& family);
+
+}  // namespace livery

@@ -1,0 +1,165 @@
+// What the frame on the mock-up cost, pass by pass, and what was not run and why.
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "studio/quality_costs.h"
+#include "studio/studio.h"
+#include "studio/theme.h"
+#include "studio/widgets.h"
+
+namespace livery {
+
+namespace {
+
+enum class Kind { every_frame, solved_once, prepared };
+
+Kind kind_of(const PlannedPass& pass) {
+    if (pass.name.starts_with("prepare")) return Kind::prepared;
+    return runs_every_frame(pass.name) ? Kind::every_frame : Kind::solved_once;
+}
+
+void right_aligned(const std::string& text, const ImVec4& colour) {
+    const float width = ImGui::CalcTextSize(text.c_str()).x;
+    ImGui::SameLine();
+    ImGui::SetCursorPosX(
+        std::max(ImGui::GetCursorPosX(), ImGui::GetWindowContentRegionMax().x - width));
+    ImGui::TextColored(colour, "%s", text.c_str());
+}
+
+void draw_totals(const Studio& studio, const FinishedFrame& frame) {
+    double predicted = 0.0;
+    bool complete = true;
+    for (const PlannedPass& pass : frame.plan.passes) {
+        if (kind_of(pass) != Kind::every_frame) continue;
+        complete = complete && pass.predicted_ms.has_value();
+        predicted += pass.predicted_ms.value_or(0.0);
+    }
+    ImGui::PushFont(large_font());
+    ImGui::TextUnformatted(milliseconds(frame.ms_total).c_str());
+    ImGui::PopFont();
+    name_last_item("frame-total");
+    tooltip("From the frame's description to its finished projector picture.");
+    dim_text(fmt::format("{} quality. Shading {}, correction {}.",
+                         to_string(frame.plan.quality),
+                         milliseconds(frame.shade_ms),
+                         milliseconds(frame.compensate_ms)));
+    if (complete) {
+        dim_text(fmt::format("Predicted from the last bench: {}.", milliseconds(predicted)));
+    } else if (studio.panels.plan.costs) {
+        dim_text("Not predicted: the last bench did not time every pass of this frame.");
+    } else {
+        dim_text("Not predicted: no bench has run here (livery bench --suite speed).");
+    }
+    if (!studio.panels.plan.problem.empty()) warning_text(studio.panels.plan.problem);
+    if (!frame.unfinished.empty()) warning_text("Not final yet: " + frame.unfinished);
+    if (!frame.problem.empty()) warning_text("Not drawn: " + frame.problem);
+}
+
+void draw_reach(const FinishedFrame& frame) {
+    const CompensationStats& stats = frame.compensation;
+    heading("What the projector cannot show");
+    const auto row = [](const char* label, double fraction, const char* meaning) {
+        ImGui::TextUnformatted(label);
+        right_aligned(fmt::format("{:.2f} %", 100.0 * fraction),
+                      fraction > 0.01 ? colours::warning : colours::text);
+        tooltip(meaning);
+    };
+    row("Out of reach",
+        stats.out_of_gamut_fraction,
+        "Pixels that show another colour than wanted.");
+    row("  too bright", stats.clipped_high_fraction, "Lower the exposure, or the design white.");
+    row("  too dark",
+        stats.clipped_low_fraction,
+        "Darker than the projector's black and the room.");
+    row("Left black", stats.invalid_fraction, "Pixels without a correction, or not finite.");
+}
+
+void draw_pass(const PlannedPass& pass, double longest_ms) {
+    ImGui::PushID(pass.name.c_str());
+    ImGui::TextUnformatted(pass.name.c_str());
+    name_last_item("pass:" + pass.name);
+    tooltip(pass.predicted_ms ? fmt::format("Predicted {}.", milliseconds(*pass.predicted_ms))
+                              : "Not predicted: " + pass.unpredicted_because + ".");
+    right_aligned(pass.ms ? milliseconds(*pass.ms) : "–", colours::text);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x, height = std::max(2.0f, em(0.16f));
+    const float top = at.y - 0.5f * ImGui::GetStyle().ItemSpacing.y;
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    draw->AddRectFilled(
+        {at.x, top}, {at.x + width, top + height}, ImGui::GetColorU32(colours::raised));
+    if (pass.ms && longest_ms > 0.0) {
+        const auto share = static_cast<float>(std::clamp(*pass.ms / longest_ms, 0.0, 1.0));
+        draw->AddRectFilled({at.x, top},
+                            {at.x + share * width, top + height},
+                            ImGui::GetColorU32(ImGuiCol_PlotHistogram));
+    }
+    ImGui::PushFont(small_font());
+    dim_text(pass.why);
+    ImGui::PopFont();
+    ImGui::PopID();
+}
+
+void draw_passes(const FramePlan& plan, Kind kind, const char* title) {
+    double longest_ms = 0.0;
+    bool any = false;
+    for (const PlannedPass& pass : plan.passes) {
+        if (kind_of(pass) != kind) continue;
+        any = true;
+        longest_ms = std::max(longest_ms, pass.ms.value_or(0.0));
+    }
+    if (!any) return;
+    ImGui::Spacing();
+    heading(title);
+    for (const PlannedPass& pass : plan.passes) {
+        if (kind_of(pass) == kind) draw_pass(pass, longest_ms);
+    }
+}
+
+void draw_skipped(const FramePlan& plan) {
+    ImGui::Spacing();
+    const std::string title = fmt::format("Not run ({})###skipped", plan.skipped.size());
+    const bool open = ImGui::CollapsingHeader(title.c_str());
+    name_last_item("skipped-passes");
+    if (!open) return;
+    for (const SkippedPass& pass : plan.skipped) {
+        ImGui::TextUnformatted(pass.name.c_str());
+        name_last_item("skipped:" + pass.name);
+        ImGui::PushFont(small_font());
+        dim_text(pass.why);
+        ImGui::PopFont();
+    }
+}
+
+}  // namespace
+
+void draw_plan_panel(Studio& studio) {
+    if (!studio.frame) {
+        dim_text("No frame has been drawn yet.");
+        return;
+    }
+    FinishedFrame frame = *studio.frame;
+    if (const auto* costs = bench_costs(studio)) {
+        predict_drawn(frame.plan, *costs);
+    } else {
+        for (PlannedPass& pass : frame.plan.passes) {
+            pass.unpredicted_because = "no bench has run on this machine";
+        }
+    }
+    draw_totals(studio, frame);
+    draw_passes(frame.plan, Kind::every_frame, "With every paint");
+    draw_passes(frame.plan, Kind::solved_once, "Once for light, eye and pose");
+    draw_passes(frame.plan, Kind::prepared, "Prepared while idle");
+    draw_skipped(frame.plan);
+    ImGui::Spacing();
+    if (studio.setup && studio.setup->table) {
+        draw_reach(frame);
+    } else {
+        dim_text("The picture goes out uncorrected: what the projector cannot show is not known.");
+    }
+}
+
+}  // namespace livery

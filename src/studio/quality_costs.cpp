@@ -1,0 +1,90 @@
+#include "studio/quality_costs.h"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "studio/widgets.h"
+
+namespace livery {
+
+namespace {
+
+const char* what_it_does(Quality quality) {
+    switch (quality) {
+        case Quality::draft:
+            return "Sharp shadows; the environment reaches every point.";
+        case Quality::normal:
+            return "Soft shadows; parts hide the environment from one another.";
+        case Quality::high:
+            return "As normal, with more samples of shadows and mirrored light.";
+        case Quality::reference:
+            return "The ground truth, path traced.";
+    }
+    throw std::invalid_argument("unknown quality");
+}
+
+}  // namespace
+
+bool runs_every_frame(const std::string& pass_name) {
+    static const std::array every{kDiffuseLightPass, kResolvePass, kCompensationPass};
+    return pass_name.starts_with("shade:") ||
+           std::find(every.begin(), every.end(), pass_name) != every.end();
+}
+
+std::optional<QualityCost> quality_cost(const std::vector<PassCost>& costs,
+                                        Quality quality,
+                                        double pixels) {
+    const auto resolve = std::find_if(costs.begin(), costs.end(), [&](const PassCost& cost) {
+        return cost.quality == quality && cost.pass == kResolvePass;
+    });
+    if (resolve == costs.end() || !(resolve->work_items > 0.0) || !(pixels > 0.0)) {
+        return std::nullopt;
+    }
+    QualityCost sum;
+    sum.error = resolve->error;
+    for (const PassCost& cost : costs) {
+        if (cost.quality != quality) continue;
+        const double ms = cost.work_items > 0.0 ? cost.ms * pixels / resolve->work_items : cost.ms;
+        // A cost's shading goes by model: "shade:ggx".
+        (runs_every_frame(cost.pass) ? sum.frame_ms : sum.solve_ms) += ms;
+    }
+    return sum;
+}
+
+const std::vector<PassCost>* bench_costs(Studio& studio) {
+    PlanPanelState& state = studio.panels.plan;
+    if (!std::exchange(state.costs_read, true)) {
+        try {
+            state.costs = read_pass_costs(bench_file());
+        } catch (const FileError& error) {
+            state.problem = error.what();
+        }
+    }
+    return state.costs ? &*state.costs : nullptr;
+}
+
+std::string quality_text(Studio& studio, Quality quality) {
+    std::string text = what_it_does(quality);
+    const std::vector<PassCost>* costs = bench_costs(studio);
+    const PlannedPass* resolve =
+        studio.frame ? find_pass(studio.frame->plan, kResolvePass) : nullptr;
+    const auto cost =
+        costs && resolve ? quality_cost(*costs, quality, resolve->work_items) : std::nullopt;
+    if (cost) {
+        text += fmt::format(" By the last bench here: {} for new light, then {} a paint.",
+                            milliseconds(cost->solve_ms),
+                            milliseconds(cost->frame_ms));
+        if (cost->error)
+            text += fmt::format(" Median error {:.2g} % of white.", 100.0 * *cost->error);
+    } else if (!costs) {
+        text += " What it costs here is not known: run livery bench --suite speed.";
+    }
+    return text;
+}
+
+}  // namespace livery

@@ -1,0 +1,34 @@
+// What a quality level costs and how far it is from the ground truth, where that was measured.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/frame_plan.h"
+#include "session/predictions.h"
+#include "studio/studio.h"
+
+namespace livery {
+
+/// Runs with every paint swap; all others are solved once for a light, an eye and a pose.
+bool runs_every_frame(const std::string& pass_name);
+
+struct QualityCost {
+    double solve_ms = 0.0;        ///< light, once
+    double frame_ms = 0.0;        ///< each paint swap
+    std::optional<double> error;  ///< the frame's median, of design white
+};
+/// From the last bench, for as many pixels as `pixels` (of the mock-up). Nothing when it did not
+/// time that quality.
+std::optional<QualityCost> quality_cost(const std::vector<PassCost>& costs,
+                                        Quality quality,
+                                        double pixels);
+
+/// The costs of the last bench on this machine, read once; null: none, and `problem` may say why.
+const std::vector<PassCost>* bench_costs(Studio& studio);
+
+/// For the operator: what the quality does, what it costs here.
+std::string quality_text(Studio& studio, Quality quality);
+
+}  // namespace livery

@@ -1,0 +1,17 @@
+// Pictures of paints on a sphere, drawn by the preview's thread when it has time.
+#pragma once
+
+#include "studio/studio.h"
+
+struct ImVec2;
+
+namespace livery {
+
+/// Once a frame of the window: turns what has arrived into textures.
+void take_swatches(Studio& studio);
+
+/// Draws the sphere into the current window; asks for it, and draws a plain disc of its colour,
+/// while there is none.
+void draw_swatch(Studio& studio, const Material& material, const ImVec2& corner, float side_px);
+
+}  // namespace livery

@@ -1,0 +1,202 @@
+#include "studio/widgets.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_internal.h>
+
+#include "core/colour.h"
+#include "studio/held.h"
+#include "studio/paint_parameters.h"
+#include "studio/studio.h"
+#include "studio/theme.h"
+
+namespace livery {
+
+namespace {
+
+constexpr ImGuiColorEditFlags kPicker =
+    ImGuiColorEditFlags_NoSidePreview | ImGuiColorEditFlags_NoSmallPreview |
+    ImGuiColorEditFlags_DisplayRGB | ImGuiColorEditFlags_DisplayHSV |
+    ImGuiColorEditFlags_PickerHueWheel;
+
+ImVec4 shown_colour(const glm::dvec3& linear) {
+    const auto channel = [](double value) {
+        return static_cast<float>(srgb_encode(std::clamp(value, 0.0, 1.0)));
+    };
+    return {channel(linear.x), channel(linear.y), channel(linear.z), 1.0f};
+}
+
+void picker_popup(const std::string& name, glm::dvec3& linear) {
+    if (!ImGui::BeginPopup("picker")) return;
+    const ImVec4 shown = shown_colour(linear);
+    std::array<float, 3> encoded{shown.x, shown.y, shown.z};
+    ImGui::SetNextItemWidth(em(14.0f));
+    if (ImGui::ColorPicker3("##picker", encoded.data(), kPicker)) {
+        for (int c = 0; c < 3; ++c) {
+            linear[c] = srgb_decode(static_cast<double>(encoded[static_cast<std::size_t>(c)]));
+        }
+    }
+    name_last_item(name + ":picker");
+    ImGui::EndPopup();
+}
+
+void hex_field(const std::string& name, glm::dvec3& linear, float width) {
+    std::array<char, 16> text{};
+    const std::string shown = hex_of(linear);
+    std::copy(shown.begin(), shown.end(), text.begin());
+    ImGui::SetNextItemWidth(width);
+    if (ImGui::InputText("##hex", text.data(), text.size(), ImGuiInputTextFlags_AutoSelectAll)) {
+        const auto typed = colour_of_hex(text.data());
+        // While "#a0" is being typed nothing is meant yet.
+        if (typed && hex_of(*typed) != shown) linear = *typed;
+    }
+    name_last_item(name + ":hex");
+}
+
+}  // namespace
+
+bool last_item_is_held() { return ImGui::IsItemActive(); }
+
+void place_in_row(float width) {
+    const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+    const float gap = ImGui::GetStyle().ItemSpacing.x;
+    if (ImGui::GetItemRectMax().x + gap + width <= right) ImGui::SameLine();
+}
+
+float button_width(const char* label) {
+    return ImGui::CalcTextSize(label, nullptr, true).x + 2.0f * ImGui::GetStyle().FramePadding.x;
+}
+
+bool chip(const char* label, bool on) { return toggle_button(label, on, button_width(label)); }
+
+std::vector<std::string> fitted_lines(const std::string& text, float width, std::size_t most) {
+    const auto fits = [&](const std::string& line) {
+        return ImGui::CalcTextSize(line.c_str()).x <= width;
+    };
+    std::vector<std::string> lines;
+    std::size_t at = 0;
+    while (at < text.size()) {
+        const auto end = std::min(text.find(' ', at), text.size());
+        const std::string word = text.substr(at, end - at);
+        if (!lines.empty() && fits(lines.back() + " " + word)) {
+            lines.back() += " " + word;
+        } else {
+            lines.push_back(word);
+        }
+        at = end + 1;
+    }
+    const bool too_many = lines.size() > most;
+    if (too_many) lines.resize(most);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        std::string& line = lines[i];
+        const bool more_follows = too_many && i + 1 == lines.size();
+        if (fits(line) && !more_follows) continue;
+        while (!line.empty() && !fits(line + "…")) {
+            // Whole UTF-8 sequences.
+            while (line.size() > 1 && (static_cast<unsigned char>(line.back()) & 0xc0u) == 0x80u) {
+                line.pop_back();
+            }
+            line.pop_back();
+        }
+        line += "…";
+    }
+    return lines;
+}
+
+void centred_lines(const std::vector<std::string>& lines,
+                   const ImVec2& top_left,
+                   float width,
+                   const ImVec4& colour) {
+    float y = top_left.y;
+    for (const std::string& line : lines) {
+        const float line_width = ImGui::CalcTextSize(line.c_str()).x;
+        ImGui::GetWindowDrawList()->AddText(
+            {std::floor(top_left.x + 0.5f * (width - line_width)), y},
+            ImGui::GetColorU32(colour),
+            line.c_str());
+        y += ImGui::GetFontSize() * 1.15f;
+    }
+}
+
+void colour_control(const std::string& name, glm::dvec3& linear_rec709) {
+    const float width = ImGui::CalcItemWidth();
+    const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
+    ImGui::PushID(name.c_str());
+    ImGui::BeginGroup();
+    const float side = ImGui::GetFrameHeight();
+    if (ImGui::ColorButton("##swatch",
+                           shown_colour(linear_rec709),
+                           ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoDragDrop,
+                           {1.6f * side, side})) {
+        ImGui::OpenPopup("picker");
+    }
+    name_last_item(name + ":swatch");
+    ImGui::SameLine(0.0f, gap);
+    hex_field(name, linear_rec709, width - 1.6f * side - gap);
+    const float number = std::floor((width - 2.0f * gap) / 3.0f);
+    constexpr std::array channels{"r", "g", "b"};
+    for (int c = 0; c < 3; ++c) {
+        if (c > 0) ImGui::SameLine(0.0f, gap);
+        const std::string channel = channels[static_cast<std::size_t>(c)];
+        ImGui::SetNextItemWidth(number);
+        // Signed: paints leave the gamut of Rec.709.
+        ImGui::DragScalar(("##" + channel).c_str(),
+                          ImGuiDataType_Double,
+                          &linear_rec709[c],
+                          0.002f,
+                          nullptr,
+                          nullptr,
+                          "%.4g");
+        name_last_item(name + ":" + channel);
+    }
+    if (!in_srgb(linear_rec709)) {
+        ImGui::PushFont(small_font());
+        ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + width);
+        ImGui::TextColored(colours::dim_text, "Outside sRGB: swatch and hex are clipped.");
+        ImGui::PopTextWrapPos();
+        ImGui::PopFont();
+    }
+    picker_popup(name, linear_rec709);
+    ImGui::EndGroup();
+    name_last_item(name);
+    ImGui::PopID();
+}
+
+void ratio_slider(const char* id, double& value, double low, double high, const char* format) {
+    ImGui::SliderScalar(id,
+                        ImGuiDataType_Double,
+                        &value,
+                        &low,
+                        &high,
+                        format,
+                        ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp |
+                            ImGuiSliderFlags_NoRoundToFormat);
+}
+
+void number_slider(const char* id, double& value, double low, double high, const char* format) {
+    ImGui::SliderScalar(id,
+                        ImGuiDataType_Double,
+                        &value,
+                        &low,
+                        &high,
+                        format,
+                        ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat);
+}
+
+void progress_bar(double fraction, const std::string& text) {
+    ImGui::ProgressBar(
+        static_cast<float>(std::clamp(fraction, 0.0, 1.0)), {-FLT_MIN, 0.0f}, text.c_str());
+}
+
+std::string milliseconds(double ms) {
+    if (ms >= 1000.0) return fmt::format("{:.2f} s", 1e-3 * ms);
+    return ms >= 100.0 ? fmt::format("{:.0f} ms", ms) : fmt::format("{:.1f} ms", ms);
+}
+
+bool was_pressed(int imgui_key) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(imgui_key)); }
+
+}  // namespace livery

@@ -1,0 +1,46 @@
+// Controls that several panels share.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+struct ImVec2;
+struct ImVec4;
+
+namespace livery {
+
+/// Before an item of this width: on the same line if it fits, else on a new one.
+void place_in_row(float width);
+float button_width(const char* label);
+/// A small toggle in a row that wraps.
+bool chip(const char* label, bool on);
+
+/// At most `most` lines of the current font, broken at spaces; a text that needs more ends in an
+/// ellipsis, and so does a word that is wider than a line.
+std::vector<std::string> fitted_lines(const std::string& text, float width, std::size_t most);
+void centred_lines(const std::vector<std::string>& lines,
+                   const ImVec2& top_left,
+                   float width,
+                   const ImVec4& colour);
+
+/// Fills the row: linear Rec.709 as a swatch that opens a picker, a hexadecimal sRGB field and
+/// three numbers. One item for edit_with_last_item(). Values outside sRGB stay as they are until
+/// they are changed, and are marked. Names its parts "NAME:swatch", "NAME:hex" and "NAME:r", ":g",
+/// ":b".
+void colour_control(const std::string& name, glm::dvec3& linear_rec709);
+
+/// A slider in equal ratios; Ctrl+click types.
+void ratio_slider(const char* id, double& value, double low, double high, const char* format);
+void number_slider(const char* id, double& value, double low, double high, const char* format);
+
+/// A bar with its fraction in words on top.
+void progress_bar(double fraction, const std::string& text);
+
+/// "12.3 ms", "4.87 s".
+std::string milliseconds(double ms);
+
+bool was_pressed(int imgui_key);  ///< ImGuiKey_..., with key repeat
+
+}  // namespace livery
