@@ -1,12 +1,16 @@
 #include "core/parallel.h"
 
+#include <atomic>
 #include <memory>
 #include <mutex>
+#include <thread>
 
+#include <sys/resource.h>
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <unistd.h>
 
 #include "core/error.h"
 
@@ -17,6 +21,17 @@ namespace {
 // The limit lives as long as the program: TBB's control is an object, not a setting.
 std::mutex control_mutex;
 std::unique_ptr<tbb::global_control> control;
+
+std::atomic<bool> helpers_give_way = false;
+
+/// Once a thread, from inside of it: the scheduler starts its threads when it likes.
+void lower_helper() {
+    thread_local bool lowered = false;
+    if (lowered || !helpers_give_way.load(std::memory_order_relaxed)) return;
+    lowered = true;
+    // On Linux a "process" here is a thread; 0 is the calling one.
+    ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 15);
+}
 
 }  // namespace
 
@@ -34,11 +49,17 @@ int thread_count() {
         tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
 }
 
+void let_helpers_give_way() { helpers_give_way = true; }
+
 void parallel_for(std::size_t count,
                   std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body) {
+    const auto caller = std::this_thread::get_id();
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain == 0 ? 1 : grain),
-                      [&](const auto& range) { body(range.begin(), range.end()); });
+                      [&](const auto& range) {
+                          if (std::this_thread::get_id() != caller) lower_helper();
+                          body(range.begin(), range.end());
+                      });
 }
 
 }  // namespace livery

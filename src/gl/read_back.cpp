@@ -49,6 +49,15 @@ ImageF read_floats(const Texture2D& texture, int level, int layer) {
     return image;
 }
 
+void read_floats_into(const Texture2D& texture, ImageF* picture) {
+    const int channels = channel_count(texture.format());
+    if (picture->width != texture.width() || picture->height != texture.height() ||
+        picture->channels != channels) {
+        *picture = ImageF(texture.width(), texture.height(), channels);
+    }
+    read(texture.name(), 0, 0, external_format(channels), GL_FLOAT, picture);
+}
+
 Image8 read_bytes(const Texture2D& texture, int channels) {
     Image8 image(texture.width(), texture.height(), channels);
     read(texture.name(), 0, 0, external_format(channels), GL_UNSIGNED_BYTE, &image);

@@ -9,6 +9,9 @@ namespace livery {
 /// A level and layer as floats, with the format's channels (bytes come as 0 to 1).
 ImageF read_floats(const Texture2D& texture, int level = 0, int layer = 0);
 
+/// Level 0 into a picture that is kept from frame to frame: no page of it is new.
+void read_floats_into(const Texture2D& texture, ImageF* picture);
+
 /// Level 0 of an 8-bit texture. `channels` may be fewer than the format's: 3 drops alpha.
 Image8 read_bytes(const Texture2D& texture, int channels);
 

@@ -28,13 +28,16 @@ QualityRays rays_of(Quality quality);
 /// Runs one stage where the plan lists it and its result does not stand; times it.
 class StageClock {
   public:
-    explicit StageClock(FramePlan& plan) : plan_(&plan) {}
+    /// `progress` hears of each stage that runs, as its place in the plan.
+    explicit StageClock(FramePlan& plan, const Progress* progress = nullptr)
+        : plan_(&plan), progress_(progress) {}
     template <typename Work>
     bool run(const std::string& pass, bool stale, const Work& work) {
         PlannedPass* planned = find_pass(*plan_, pass);
         if (!planned) return false;
         planned->ms = 0.0;
         if (!stale) return false;
+        if (progress_) progress_->update(place_of(*planned), pass);
         const double begin = now_ms();
         work();
         planned->ms = now_ms() - begin;
@@ -54,7 +57,13 @@ class StageClock {
     static double now_ms();
 
   private:
+    double place_of(const PlannedPass& pass) const {
+        return static_cast<double>(&pass - plan_->passes.data()) /
+               static_cast<double>(plan_->passes.size());
+    }
+
     FramePlan* plan_;
+    const Progress* progress_;
     int passes_run_ = 0;
 };
 

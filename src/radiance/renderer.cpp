@@ -174,8 +174,9 @@ RadianceRenderer::RadianceRenderer(std::shared_ptr<const FrameGeometry> geometry
 RadianceRenderer::~RadianceRenderer() = default;
 
 void RadianceRenderer::solve(const Scene& scene, FramePlan& plan, const Progress& progress) {
-    StageClock clock(plan);
-    state_->solve(scene, plan, clock, progress);
+    StageClock clock(plan, &progress);
+    const Progress silent{{}, progress.stop};
+    state_->solve(scene, plan, clock, silent);
 }
 
 void RadianceRenderer::prepare(const Scene& scene, FramePlan& plan, const Progress& progress) {
@@ -233,6 +234,10 @@ void RadianceRenderer::count_work(const Scene& scene, FramePlan& plan) const {
 }
 
 ImageF RadianceRenderer::read_back() const { return read_floats(state_->target); }
+
+void RadianceRenderer::read_back_into(ImageF* picture) const {
+    read_floats_into(state_->target, picture);
+}
 
 unsigned RadianceRenderer::texture() const { return state_->target.name(); }
 

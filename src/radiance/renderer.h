@@ -64,6 +64,7 @@ class RadianceRenderer {
     /// The last frame in the working space: R, G, B, coverage. Colour is the mean over the covered
     /// part of a pixel, 0 where nothing is covered.
     ImageF read_back() const;
+    void read_back_into(ImageF* picture) const;  ///< kept from frame to frame
 
     /// OpenGL name of the RGBA16F texture that holds the last frame, for the compensation pass.
     unsigned texture() const;

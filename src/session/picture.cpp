@@ -15,19 +15,59 @@ std::uint8_t byte_of(double value) {
     return static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(value, 0.0, 1.0)));
 }
 
-/// Any linear picture through `rec709_from_source` into sRGB bytes.
-Image8 encode_srgb(const ImageF& source, const glm::dmat3& rec709_from_source) {
-    check_argument(source.channels >= 3, "srgb pictures need three channels");
-    Image8 result(source.width, source.height, 3);
-    for (std::size_t i = 0; i < source.pixel_count(); ++i) {
-        const float* v = source.values.data() + i * static_cast<std::size_t>(source.channels);
-        const glm::dvec3 rgb = rec709_from_source * glm::dvec3(v[0], v[1], v[2]);
-        for (int c = 0; c < 3; ++c) {
-            result.values[3 * i + static_cast<std::size_t>(c)] =
-                byte_of(srgb_encode(std::clamp(rgb[c], 0.0, 1.0)));
+/// byte_of(srgb_encode(value)) by table: the byte of each of kSteps equal steps of [0, 1], and
+/// where the bytes change. A step holds at most one change: the curve rises by 12.92 x 255 a unit
+/// at most.
+class SrgbBytes {
+  public:
+    SrgbBytes() {
+        for (int k = 0; k < 256; ++k) from_[static_cast<std::size_t>(k)] = first_of(k);
+        int byte = 0;
+        for (int step = 0; step <= kSteps; ++step) {
+            while (byte < 255 && from_[static_cast<std::size_t>(byte) + 1] * kSteps <= step) ++byte;
+            bytes_[static_cast<std::size_t>(step)] = static_cast<std::uint8_t>(byte);
         }
     }
-    return result;
+    std::uint8_t operator()(double value) const {
+        const double clipped = value > 0.0 ? std::min(value, 1.0) : 0.0;
+        const std::size_t byte = bytes_[static_cast<std::size_t>(clipped * kSteps)];
+        const bool next = byte < 255 && clipped >= from_[byte + 1];
+        return static_cast<std::uint8_t>(byte + (next ? 1 : 0));
+    }
+
+  private:
+    static constexpr int kSteps = 4096;
+    /// The smallest value that becomes byte k, by halving.
+    static double first_of(int k) {
+        if (k == 0) return 0.0;
+        double below = 0.0, above = 1.0;
+        for (int i = 0; i < 60; ++i) {
+            const double middle = 0.5 * (below + above);
+            (byte_of(srgb_encode(middle)) >= k ? above : below) = middle;
+        }
+        return above;
+    }
+    std::array<double, 256> from_{};
+    std::array<std::uint8_t, kSteps + 1> bytes_{};
+};
+
+/// Any linear picture through `rec709_from_source` into sRGB bytes.
+void encode_srgb(const ImageF& source, const glm::dmat3& rec709_from_source, Image8* result) {
+    static const SrgbBytes bytes;
+    check_argument(source.channels >= 3, "srgb pictures need three channels");
+    if (result->width != source.width || result->height != source.height || result->channels != 3) {
+        *result = Image8(source.width, source.height, 3);
+    }
+    for (std::size_t i = 0; i < source.pixel_count(); ++i) {
+        const float* v = source.values.data() + i * static_cast<std::size_t>(source.channels);
+        std::uint8_t* out = result->values.data() + 3 * i;
+        if (v[0] == 0.0f && v[1] == 0.0f && v[2] == 0.0f) {
+            std::fill(out, out + 3, std::uint8_t{0});
+            continue;
+        }
+        const glm::dvec3 rgb = rec709_from_source * glm::dvec3(v[0], v[1], v[2]);
+        for (int c = 0; c < 3; ++c) out[c] = bytes(rgb[c]);
+    }
 }
 
 /// Dark violet over red and orange to pale yellow, lightness rising evenly: its stops are Oklab
@@ -89,11 +129,19 @@ ImageF developed(const Photograph& photograph, const glm::dmat3& xyz_from_camera
 }
 
 Image8 srgb_from_xyz(const ImageF& xyz, double white_y) {
-    return encode_srgb(xyz, rec709_from_xyz() * (1.0 / white_y));
+    Image8 result;
+    encode_srgb(xyz, rec709_from_xyz() * (1.0 / white_y), &result);
+    return result;
 }
 
 Image8 srgb_from_working(const ImageF& working) {
-    return encode_srgb(working, rec709_from_working());
+    Image8 result;
+    srgb_from_working_into(working, &result);
+    return result;
+}
+
+void srgb_from_working_into(const ImageF& working, Image8* srgb) {
+    encode_srgb(working, rec709_from_working(), srgb);
 }
 
 Image8 difference_map(const ImageF& de00, double full_scale) {

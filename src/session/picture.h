@@ -39,6 +39,8 @@ Image8 srgb_from_xyz(const ImageF& xyz, double white_y);
 /// Working-space colour (1 = white; alpha ignored) -> 8-bit sRGB, clipped: what an uncorrected
 /// program would send to the projector.
 Image8 srgb_from_working(const ImageF& working);
+/// The same into a picture that is kept from frame to frame.
+void srgb_from_working_into(const ImageF& working, Image8* srgb);
 
 /// CIEDE2000 from 0 (dark) to `full_scale` (bright) in a perceptually even ramp; NaN is mid grey.
 Image8 difference_map(const ImageF& de00, double full_scale);
