@@ -37,21 +37,21 @@ float part_at(ivec2 at) {
     return part.r * part.a;
 }
 
-// Light at the part's edge and dark inside of it: one of the two stands out from any paint.
+// Light at the part's edge and dark inside of it: one of the two stands out from any paint. By how
+// much of the neighbourhood is not the part, so that its thin gaps (shut lines) get no outline.
 vec4 outline_here(float here) {
     ivec2 at = ivec2(gl_FragCoord.xy);
-    float near = here, far = here;
+    float other = 0.0, all = 0.0;
     for (int y = -4; y <= 4; ++y) {
         for (int x = -4; x <= 4; ++x) {
-            float d2 = float(x * x + y * y);
-            if (d2 > 16.5) continue;
-            float there = part_at(at + ivec2(x, y));
-            far = min(far, there);
-            if (d2 < 5.5) near = min(near, there);
+            if (x * x + y * y > 16) continue;
+            other += 1.0 - part_at(at + ivec2(x, y));
+            all += 1.0;
         }
     }
-    float light = here - near, dark = near - far;
-    return vec4(vec3(light / max(light + dark, 1e-6)), light + 0.6 * dark);
+    float share = other / all;
+    float light = smoothstep(0.20, 0.28, share), dark = smoothstep(0.08, 0.14, share);
+    return vec4(vec3(light), here * mix(0.6 * dark, 1.0, light));
 }
 #endif
 

@@ -172,8 +172,9 @@ bool PreviewThread::Implementation::draw(Drawing& drawing, int supersampling) {
     picture->ready = std::shared_ptr<const Fence>(slot, &slot->ready);
     picture->ms = milliseconds_since(start);
     picture->supersampling = supersampling;
-    picture->light_is_old =
-        !is_solved_for(*drawing.light, shown->scene.lights, shown->scene.environment.get());
+    const bool lit =
+        is_solved_for(*drawing.light, shown->scene.lights, shown->scene.environment.get());
+    picture->unfinished = !lit || (shown->ground && !drawing.ground);
     picture->owner = slot;
     last_good = picture;
     on_finished(std::move(picture));

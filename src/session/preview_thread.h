@@ -32,9 +32,9 @@ struct PreviewPicture {
     glm::ivec2 size_px{0};
     std::shared_ptr<const Fence> ready;
     double ms = 0.0;
-    int supersampling = 1;      ///< samples a pixel are its square
-    bool light_is_old = false;  ///< drawn before the scene's light was solved: another one follows
-    std::string problem;        ///< why it could not be drawn; the last good picture stays
+    int supersampling = 1;    ///< samples a pixel are its square
+    bool unfinished = false;  ///< another follows when the scene's light, or ground, is solved
+    std::string problem;      ///< why it could not be drawn; the last good picture stays
     std::shared_ptr<const void> owner;
 };
 
