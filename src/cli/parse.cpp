@@ -10,31 +10,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "cli/man_page.h"
+#include "cli/version.h"
+
 namespace livery {
 
 namespace {
 
 const std::vector<std::string> kGlNames = {"software", "hardware", "auto"};
-
-std::vector<Option> common_options(CommonOptions& common) {
-    return {
-        {"--json",
-         "",
-         "print one JSON document on stdout, text on stderr",
-         &common.json,
-         false,
-         {}},
-        {"--seed", "N", "fixes every random choice (default 1)", &common.seed, false, {}},
-        {"--threads",
-         "N",
-         "how many threads to use (default: all cores)",
-         &common.threads,
-         false,
-         {}},
-        {"--data", "DIR", "where the shipped data lie", &common.data, false, {}},
-        {"--gl", "KIND", "software, hardware or auto (default auto)", &common.gl, false, kGlNames},
-    };
-}
 
 std::string found_expected(const std::string& found, const std::string& expected) {
     return "found \"" + found + "\", expected " + expected;
@@ -109,6 +92,26 @@ bool names_command(const std::vector<std::string>& words, const std::vector<Comm
 
 }  // namespace
 
+std::vector<Option> common_options(CommonOptions& common) {
+    return {
+        {"--json",
+         "",
+         "print one JSON document on stdout, text on stderr",
+         &common.json,
+         false,
+         {}},
+        {"--seed", "N", "fixes every random choice (default 1)", &common.seed, false, {}},
+        {"--threads",
+         "N",
+         "how many threads to use (default: all cores)",
+         &common.threads,
+         false,
+         {}},
+        {"--data", "DIR", "where the shipped data lie", &common.data, false, {}},
+        {"--gl", "KIND", "software, hardware or auto (default auto)", &common.gl, false, kGlNames},
+    };
+}
+
 std::string help_text(const std::vector<Command>& commands, const std::string& name) {
     CommonOptions common;
     if (name.empty()) {
@@ -145,6 +148,11 @@ ParsedCommandLine parse_command_line(const std::vector<std::string>& arguments,
                                      std::vector<Command>& commands) {
     ParsedCommandLine parsed;
 
+    // For the build alone: users find the page with man.
+    if (arguments == std::vector<std::string>{"help", "--man"}) {
+        parsed.text = man_page(commands);
+        return parsed;
+    }
     // `help` and `--help` anywhere are ours: CLI11's pages do not carry the examples.
     const auto wants_help = std::find_if(arguments.begin(), arguments.end(), [](const auto& word) {
         return word == "--help" || word == "-h" || word == "help";
@@ -169,7 +177,7 @@ ParsedCommandLine parse_command_line(const std::vector<std::string>& arguments,
         return parsed;
     }
     if (arguments.size() == 1 && arguments[0] == "--version") {
-        parsed.text = "livery " LIVERY_VERSION "\n";
+        parsed.text = version_text();
         return parsed;
     }
 

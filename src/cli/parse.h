@@ -22,4 +22,7 @@ ParsedCommandLine parse_command_line(const std::vector<std::string>& arguments,
 /// The text of `livery help` (`name` empty) or `livery help NAME`; empty when there is no NAME.
 std::string help_text(const std::vector<Command>& commands, const std::string& name);
 
+/// What every command takes, bound to `common`.
+std::vector<Option> common_options(CommonOptions& common);
+
 }  // namespace livery

@@ -22,12 +22,11 @@ namespace {
 constexpr const char* kModuleName = "livery_image_io.so";
 constexpr const char* kReadable = "a complete EXR, HDR, PNG, TIFF, JPEG or RAW picture";
 
-/// Found in an installation, beside a build, or in the build folder. Stays open until the end.
+/// Found beside the program: in an installation, or in a build. Stays open until the end.
 const ImageIoTable& module_table() {
     static const ImageIoTable& table = []() -> const ImageIoTable& {
         const std::filesystem::path places[] = {executable_folder() / "../lib/livery",
-                                                executable_folder() / "../lib",
-                                                LIVERY_MODULE_FOLDER};
+                                                executable_folder() / "../lib"};
         std::string tried;
         for (const auto& place : places) {
             const auto file = (place / kModuleName).lexically_normal();

@@ -31,25 +31,17 @@ std::filesystem::path executable_folder() {
 }
 
 std::filesystem::path shipped_path(const std::filesystem::path& relative) {
-    std::vector<std::filesystem::path> roots;
     const char* from_environment = std::getenv("LIVERY_DATA");
-    if (!chosen_data_folder.empty()) {
-        roots = {chosen_data_folder};
-    } else if (from_environment && *from_environment) {
-        roots = {from_environment};
-    } else {
-        roots = {
-            executable_folder() / "../share/livery", LIVERY_GENERATED_DATA, LIVERY_SOURCE_DATA};
-    }
-    std::string looked;
-    for (const auto& root : roots) {
-        const auto candidate = root / relative;
-        std::error_code error;
-        if (std::filesystem::exists(candidate, error)) return candidate.lexically_normal();
-        looked += (looked.empty() ? "" : ", ") + root.lexically_normal().string();
-    }
-    throw FileError(
-        relative, "", "nothing in " + looked, "a file shipped with Livery (see --data)");
+    std::filesystem::path root = executable_folder() / "../share/livery";
+    if (from_environment && *from_environment) root = from_environment;
+    if (!chosen_data_folder.empty()) root = chosen_data_folder;
+    const auto file = (root / relative).lexically_normal();
+    std::error_code error;
+    if (std::filesystem::exists(file, error)) return file;
+    throw FileError(relative,
+                    "",
+                    "nothing in " + root.lexically_normal().string(),
+                    "a file shipped with Livery (see --data)");
 }
 
 std::vector<std::string> shipped_names(const std::filesystem::path& folder) {

@@ -13,8 +13,8 @@ namespace livery {
 void set_data_folder(const std::filesystem::path& folder);
 
 /// A file or folder of the shipped data ("materials", "shaders/bsdf/ggx.glsl", "assets/car.glb"):
-/// `--data`, then LIVERY_DATA, then ../share/livery beside the program, then the build's source and
-/// generated folders. Throws FileError that lists the places looked at.
+/// below `--data`, else LIVERY_DATA, else ../share/livery beside the program (an installation and a
+/// build are laid out alike). Throws FileError that says where it looked.
 std::filesystem::path shipped_path(const std::filesystem::path& relative);
 
 /// Names of the JSON files in a folder of the shipped data, without ".json", sorted: what people

@@ -125,9 +125,12 @@ TEST(ShippedData, IsLookedUpInOrder) {
         set_data_folder({});
         EXPECT_TRUE(fails_with([&] { shipped_path("b.txt"); }, {(folder / "variable").string()}));
     }
-    // Neither: the build's source folder holds what is shipped.
+    // Neither: beside the program, as in an installation.
     const Environment none("LIVERY_DATA", "");
-    EXPECT_TRUE(std::filesystem::exists(shipped_path("CMakeLists.txt")));
+    for (const char* shipped : {"materials", "shaders", "calibration", "assets/looks"}) {
+        EXPECT_EQ(shipped_path(shipped),
+                  (executable_folder() / "../share/livery" / shipped).lexically_normal());
+    }
 }
 
 TEST(UserFolder, IsLookedUpInOrder) {

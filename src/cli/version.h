@@ -1,0 +1,17 @@
+// Which Livery this is.
+#pragma once
+
+#include <string>
+
+namespace livery {
+
+/// "livery 0.1.0 (3f2a9c1)" and lines that say what built it and under which licence it is.
+std::string version_text();
+
+/// "0.1.0".
+std::string version_number();
+
+/// The day of this version's last change as its change log has it, "2026-11-21".
+std::string version_date();
+
+}  // namespace livery
