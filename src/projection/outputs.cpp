@@ -29,6 +29,17 @@ std::string identity(const std::string& output, const std::vector<std::uint8_t>&
     return output + ":" + hasher.hex().substr(0, 16);
 }
 
+bool is_transformed(const XConnection& x, std::uint32_t crtc) {
+    const XReply<xcb_randr_get_crtc_transform_reply_t> reply(xcb_randr_get_crtc_transform_reply(
+        x.get(), xcb_randr_get_crtc_transform(x.get(), crtc), nullptr));
+    if (!reply) return false;  // older than RandR 1.3: there are none
+    constexpr xcb_render_fixed_t kOne = 1 << 16;
+    const auto& t = reply->current_transform;
+    return t.matrix11 != kOne || t.matrix22 != kOne || t.matrix33 != kOne || t.matrix12 != 0 ||
+           t.matrix13 != 0 || t.matrix21 != 0 || t.matrix23 != 0 || t.matrix31 != 0 ||
+           t.matrix32 != 0;
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> output_property(const XConnection& x,
@@ -73,8 +84,12 @@ bool overlap(const Monitor& a, const Monitor& b) {
            b.y < a.y + a.height;
 }
 
-std::vector<Output> read_outputs(const XConnection& x) {
+namespace {
+
+/// `lit_unplugged`: whether one shows something, and yet the server last saw no monitor there.
+std::vector<Output> known_outputs(const XConnection& x, bool& lit_unplugged) {
     auto* c = x.get();
+    lit_unplugged = false;
     const XReply<xcb_randr_get_screen_resources_current_reply_t> resources(
         xcb_randr_get_screen_resources_current_reply(
             c, xcb_randr_get_screen_resources_current(c, x.root()), nullptr));
@@ -91,12 +106,14 @@ std::vector<Output> read_outputs(const XConnection& x) {
         const auto time = resources->config_timestamp;
         const XReply<xcb_randr_get_output_info_reply_t> info(xcb_randr_get_output_info_reply(
             c, xcb_randr_get_output_info(c, ids[i], time), nullptr));
-        if (!info || info->connection == XCB_RANDR_CONNECTION_DISCONNECTED || info->crtc == 0) {
-            continue;
-        }
+        if (!info || info->crtc == 0) continue;
         const XReply<xcb_randr_get_crtc_info_reply_t> crtc(xcb_randr_get_crtc_info_reply(
             c, xcb_randr_get_crtc_info(c, info->crtc, time), nullptr));
         if (!crtc || crtc->mode == 0) continue;
+        if (info->connection == XCB_RANDR_CONNECTION_DISCONNECTED) {
+            lit_unplugged = true;
+            continue;
+        }
         const auto edid = output_property(x, ids[i], "EDID");
         const auto* name =
             reinterpret_cast<const char*>(xcb_randr_get_output_info_name(info.get()));
@@ -106,6 +123,10 @@ std::vector<Output> read_outputs(const XConnection& x) {
         Output output;
         output.output = ids[i];
         output.crtc = info->crtc;
+        output.socket = socket;
+        output.turned =
+            (crtc->rotation & (XCB_RANDR_ROTATION_ROTATE_90 | XCB_RANDR_ROTATION_ROTATE_270)) != 0;
+        output.transformed = is_transformed(x, info->crtc);
         output.monitor.id = identity(socket, edid);
         output.monitor.name = model.empty() ? socket : socket + ", " + model;
         output.monitor.x = crtc->x;
@@ -132,6 +153,20 @@ std::vector<Output> read_outputs(const XConnection& x) {
     int number = 0;
     for (auto& output : list) output.monitor.number = ++number;
     return list;
+}
+
+}  // namespace
+
+std::vector<Output> read_outputs(const XConnection& x) {
+    bool lit_unplugged = false;
+    auto list = known_outputs(x, lit_unplugged);
+    if (!lit_unplugged) return list;
+    // A cable was pulled, or plugged in without a word from the driver: the full question makes the
+    // server look.
+    const XReply<xcb_randr_get_screen_resources_reply_t> looked(
+        xcb_randr_get_screen_resources_reply(
+            x.get(), xcb_randr_get_screen_resources(x.get(), x.root()), nullptr));
+    return known_outputs(x, lit_unplugged);
 }
 
 }  // namespace livery

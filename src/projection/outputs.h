@@ -15,13 +15,16 @@ namespace livery {
 
 struct Output {
     Monitor monitor;
+    std::string socket;                  ///< "HDMI-1"
     std::uint32_t output = 0, crtc = 0;  ///< RandR's
     glm::ivec2 mode_px{0};               ///< what goes down the cable
     glm::ivec2 preferred_px{0};          ///< what the monitor asks for; 0: it does not say
+    bool turned = false;                 ///< by a quarter
+    bool transformed = false;            ///< scaled or warped by the server
 };
 
-/// Connected and lit, ordered and numbered by position: left to right, then top to bottom. Asks
-/// what the server knows, not the hardware, so it takes well under a millisecond.
+/// Connected and lit, ordered and numbered by position: left to right, then top to bottom. What
+/// the server knows, well under a millisecond; it looks at the hardware only where that cannot be.
 std::vector<Output> read_outputs(const XConnection& x);
 
 /// A property of an output as bytes; empty where there is none.

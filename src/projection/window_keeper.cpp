@@ -1,5 +1,6 @@
 #include "projection/window_keeper.h"
 
+#include <algorithm>
 #include <array>
 #include <condition_variable>
 #include <mutex>
@@ -15,6 +16,7 @@
 #include <xcb/xtest.h>
 
 #include "core/log.h"
+#include "projection/awake.h"
 #include "projection/outputs.h"
 #include "projection/x_connection.h"
 
@@ -52,6 +54,10 @@ class Doorbell {
     std::array<int, 2> ends_{-1, -1};
 };
 
+/// How often a shown window comes to the top again; enough for whatever a person opens.
+constexpr int kRaises = 50;
+constexpr const char* kOverlayProperty = "_LIVERY_OVERLAY";
+
 bool same_place(const Monitor& a, const Monitor& b) {
     return a.x == b.x && a.y == b.y && a.width == b.width && a.height == b.height;
 }
@@ -63,10 +69,13 @@ struct WindowKeeper::Implementation {
     const xcb_window_t window;
     const Listener listener;
     const bool passes_grabs, has_screensaver;
+    const xcb_atom_t overlay_atom;
     std::uint8_t randr_event = 0;
 
     // Of the keeper's thread.
     std::optional<Output> shown_on;
+    std::optional<Awake> awake;
+    int raises_left = 0;
 
     mutable std::mutex mutex;
     std::condition_variable caught_up;
@@ -82,7 +91,8 @@ struct WindowKeeper::Implementation {
         : window(window_id),
           listener(std::move(listens)),
           passes_grabs(x.has(xcb_test_id)),
-          has_screensaver(x.has(xcb_screensaver_id)) {
+          has_screensaver(x.has(xcb_screensaver_id)),
+          overlay_atom(x.atom(kOverlayProperty)) {
         if (!x.has(xcb_randr_id)) {
             throw std::runtime_error("the X server has no RandR, so nothing tells its monitors");
         }
@@ -141,6 +151,7 @@ struct WindowKeeper::Implementation {
         xcb_flush(x.get());
         shown_on.reset();
         if (has_screensaver) xcb_screensaver_suspend(x.get(), false);
+        awake.reset();
     }
 
     void show(const Output& output) {
@@ -156,10 +167,57 @@ struct WindowKeeper::Implementation {
                                  XCB_CONFIG_WINDOW_HEIGHT | XCB_CONFIG_WINDOW_STACK_MODE,
                              values.data());
         xcb_map_window(x.get(), window);
-        // Blank screens come from the server; its connection's end takes this back, too.
+        // The end of the connection would take this back, too.
         if (has_screensaver) xcb_screensaver_suspend(x.get(), true);
         x.synchronise();
         shown_on = output;
+        awake.emplace();
+        raises_left = kRaises;
+    }
+
+    bool is_foreign_cover(xcb_window_t other) const {
+        auto* c = x.get();
+        const XReply<xcb_get_window_attributes_reply_t> attributes(
+            xcb_get_window_attributes_reply(c, xcb_get_window_attributes(c, other), nullptr));
+        const XReply<xcb_get_geometry_reply_t> geometry(
+            xcb_get_geometry_reply(c, xcb_get_geometry(c, other), nullptr));
+        if (!attributes || !geometry || attributes->map_state != XCB_MAP_STATE_VIEWABLE ||
+            attributes->_class != XCB_WINDOW_CLASS_INPUT_OUTPUT) {
+            return false;
+        }
+        Monitor area;
+        area.x = geometry->x;
+        area.y = geometry->y;
+        area.width = geometry->width + 2 * geometry->border_width;
+        area.height = geometry->height + 2 * geometry->border_width;
+        if (!overlap(area, shown_on->monitor)) return false;
+        const auto cookie =
+            xcb_get_property(c, false, other, overlay_atom, XCB_ATOM_CARDINAL, 0, 1);
+        const XReply<xcb_get_property_reply_t> mark(xcb_get_property_reply(c, cookie, nullptr));
+        return !mark || mark->type == XCB_ATOM_NONE;
+    }
+
+    /// Another program's window came to lie on the picture: no window manager keeps it away, since
+    /// none knows of ours.
+    void raise_above_foreign_windows() {
+        const XReply<xcb_query_tree_reply_t> tree(
+            xcb_query_tree_reply(x.get(), xcb_query_tree(x.get(), x.root()), nullptr));
+        if (!tree) return;
+        const auto* children = xcb_query_tree_children(tree.get());
+        const auto* end = children + xcb_query_tree_children_length(tree.get());
+        const auto* own = std::find(children, end, window);
+        if (own == end || std::none_of(own + 1, end, [&](xcb_window_t other) {
+                return is_foreign_cover(other);
+            })) {
+            return;
+        }
+        // A screen locker does the same: whoever insists may have the projector.
+        if (raises_left == 0) return;
+        if (--raises_left == 0) {
+            log_line(LogLevel::warning, "another program keeps covering the projector's picture");
+        }
+        const std::uint32_t above = XCB_STACK_MODE_ABOVE;
+        xcb_configure_window(x.get(), window, XCB_CONFIG_WINDOW_STACK_MODE, &above);
     }
 
     /// Where the window belongs now, or why nowhere.
@@ -229,6 +287,11 @@ struct WindowKeeper::Implementation {
         if (type == XCB_EXPOSE) {
             const auto& expose = reinterpret_cast<const xcb_expose_event_t&>(event);
             if (expose.count == 0 && shown_on) listener.exposed();
+            return false;
+        }
+        if (type == XCB_VISIBILITY_NOTIFY) {
+            const auto& seen = reinterpret_cast<const xcb_visibility_notify_event_t&>(event);
+            if (seen.state != XCB_VISIBILITY_UNOBSCURED && shown_on) raise_above_foreign_windows();
             return false;
         }
         if (type == randr_event + XCB_RANDR_SCREEN_CHANGE_NOTIFY) return true;
@@ -306,6 +369,18 @@ struct WindowKeeper::Implementation {
         caught_up.wait(lock, [&] { return answered >= mine || ended; });
     }
 };
+
+void mark_as_overlay(const XConnection& x, std::uint32_t window) {
+    const std::uint32_t yes = 1;
+    xcb_change_property(x.get(),
+                        XCB_PROP_MODE_REPLACE,
+                        window,
+                        x.atom(kOverlayProperty),
+                        XCB_ATOM_CARDINAL,
+                        32,
+                        1,
+                        &yes);
+}
 
 WindowKeeper::WindowKeeper(std::uint32_t window, Listener listener)
     : implementation_(std::make_unique<Implementation>(window, std::move(listener))) {}

@@ -11,6 +11,8 @@
 
 namespace livery {
 
+class XConnection;
+
 /// Listens to RandR on a connection and a thread of its own, so that a window is hidden before a
 /// busy program could have read that its monitor went. Its requests are served even while another
 /// program holds the server, which is when xrandr and desktops move the monitors about; to show
@@ -44,5 +46,8 @@ class WindowKeeper {
     struct Implementation;
     std::unique_ptr<Implementation> implementation_;
 };
+
+/// Lets a window of ours lie above a kept one, which otherwise comes to the top again.
+void mark_as_overlay(const XConnection& x, std::uint32_t window);
 
 }  // namespace livery

@@ -29,6 +29,14 @@ xcb_atom_t XConnection::atom(std::string_view name) const {
     return reply ? reply->atom : xcb_atom_t{XCB_ATOM_NONE};
 }
 
+std::string XConnection::atom_name(xcb_atom_t atom) const {
+    const XReply<xcb_get_atom_name_reply_t> reply(
+        xcb_get_atom_name_reply(connection_, xcb_get_atom_name(connection_, atom), nullptr));
+    if (!reply) return {};
+    return {xcb_get_atom_name_name(reply.get()),
+            static_cast<std::size_t>(xcb_get_atom_name_name_length(reply.get()))};
+}
+
 bool XConnection::has(xcb_extension_t& extension) const {
     const auto* data = xcb_get_extension_data(connection_, &extension);
     return data != nullptr && data->present != 0;

@@ -34,6 +34,7 @@ class XConnection {
     bool is_alive() const { return xcb_connection_has_error(connection_) == 0; }
 
     xcb_atom_t atom(std::string_view name) const;
+    std::string atom_name(xcb_atom_t atom) const;  ///< empty: no such atom
     bool has(xcb_extension_t& extension) const;
     /// Returns when the server has done everything asked so far; what failed is not told.
     void synchronise() const;

@@ -1,0 +1,209 @@
+// Pictures on the projector's monitor: which, where, when, and how often.
+#include "projection/projector_screen.h"
+
+#include <atomic>
+#include <optional>
+
+#include <GLFW/glfw3.h>
+#include <gtest/gtest.h>
+
+#include "stage.h"
+
+namespace livery {
+namespace {
+
+using State = ProjectorScreen::State;
+
+struct ProjectorScreenTest : testing::TestWithParam<bool> {
+    Stage stage{{{1280, 800}, {1280, 800}, GetParam()}};
+    std::string projector = Desktop::projector_output;
+};
+
+Image8 unlike_anywhere(int width, int height) {
+    Image8 picture(width, height, 3);
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            auto* pixel = picture.pixel(x, y);
+            pixel[0] = static_cast<std::uint8_t>(x % 251);
+            pixel[1] = static_cast<std::uint8_t>(y % 241);
+            pixel[2] = static_cast<std::uint8_t>((7 * x + 3 * y) % 256);
+        }
+    }
+    return picture;
+}
+
+TEST_P(ProjectorScreenTest, ShowsEveryPixelOfThePictureAsItIs) {
+    const auto operator_before = stage.desktop.read(stage.desktop.operator_area());
+    ProjectorScreen screen(stage.share);
+    EXPECT_EQ(screen.state(), State::off);
+    const auto expected = unlike_anywhere(1280, 800);
+    screen.present(stage.picture(7, expected));
+    screen.use_monitor(projector);
+    EXPECT_EQ(screen.state(), State::showing);
+    EXPECT_EQ(screen.why_waiting(), "");
+    EXPECT_TRUE(wait_until([&] {
+        return stage.desktop.read(stage.desktop.projector_area()).values == expected.values;
+    }));
+    EXPECT_EQ(screen.shown().number, 7u);
+    EXPECT_EQ(stage.desktop.read(stage.desktop.operator_area()).values, operator_before.values);
+    screen.use_monitor(std::nullopt);
+    EXPECT_EQ(screen.state(), State::off);
+    EXPECT_NE(stage.on_projector(), colour_at(expected, 640, 400));
+}
+
+TEST_P(ProjectorScreenTest, FollowsTheProjectorToEitherSideOfTheOperator) {
+    ProjectorScreen screen(stage.share);
+    screen.present(stage.plain(1, kMagenta));
+    screen.use_monitor(projector);
+    for (const auto side : {Desktop::Side::left, Desktop::Side::below, Desktop::Side::right}) {
+        stage.desktop.plug_projector(side);
+        EXPECT_TRUE(stage.projector_becomes(kMagenta)) << static_cast<int>(side);
+        const Rectangle area = stage.desktop.projector_area();
+        const auto picture = stage.desktop.read(area);
+        EXPECT_EQ(colour_at(picture, 0, 0), kMagenta);
+        EXPECT_EQ(colour_at(picture, area.width - 1, area.height - 1), kMagenta);
+        const auto others = stage.desktop.read(stage.desktop.operator_area());
+        EXPECT_NE(colour_at(others, 0, 0), kMagenta);
+        EXPECT_NE(colour_at(others, others.width - 1, others.height - 1), kMagenta);
+    }
+}
+
+TEST_P(ProjectorScreenTest, BlackComesBeforeEverythingElse) {
+    ProjectorScreen screen(stage.share);
+    screen.use_monitor(projector);
+    screen.present(stage.plain(1, kMagenta));
+    ASSERT_TRUE(stage.projector_becomes(kMagenta));
+    screen.set_black(true);
+    EXPECT_TRUE(screen.is_black());
+    ASSERT_TRUE(stage.projector_becomes(kBlack));
+    EXPECT_TRUE(wait_until([&] { return screen.shown().number == 0; }));
+    const auto frames = screen.shown().frames;
+    screen.present(stage.plain(2, kGreen));  // under the black
+    sleep_ms(100);
+    EXPECT_EQ(stage.on_projector(), kBlack);
+    EXPECT_EQ(screen.shown().frames, frames);
+    screen.set_black(false);
+    EXPECT_TRUE(stage.projector_becomes(kGreen));
+    EXPECT_TRUE(wait_until([&] { return screen.shown().number == 2; }));
+}
+
+TEST_P(ProjectorScreenTest, FrozenKeepsAndThawedShowsTheNewest) {
+    ProjectorScreen screen(stage.share);
+    screen.use_monitor(projector);
+    screen.present(stage.plain(1, kMagenta));
+    ASSERT_TRUE(stage.projector_becomes(kMagenta));
+    screen.set_frozen(true);
+    EXPECT_TRUE(screen.is_frozen());
+    screen.present(stage.plain(2, kBlue));
+    screen.present(stage.plain(3, kGreen));
+    sleep_ms(100);
+    EXPECT_EQ(stage.on_projector(), kMagenta);
+    screen.set_black(true);
+    EXPECT_TRUE(stage.projector_becomes(kBlack));
+    screen.set_black(false);
+    EXPECT_TRUE(stage.projector_becomes(kMagenta));
+    screen.set_frozen(false);
+    EXPECT_TRUE(stage.projector_becomes(kGreen));
+    EXPECT_TRUE(wait_until([&] { return screen.shown().number == 3; }));
+}
+
+TEST_P(ProjectorScreenTest, DrawsNothingWhileNothingChanges) {
+    std::atomic<std::uint64_t> told{0};
+    ProjectorScreen screen(stage.share, [&](const ShownPicture& shown) { told = shown.frames; });
+    screen.use_monitor(projector);
+    ASSERT_TRUE(wait_until([&] { return screen.shown().frames == 1; }));
+    for (std::uint64_t i = 1; i <= 5; ++i) {
+        screen.present(stage.plain(i, {static_cast<int>(i), 0, 0}));
+        ASSERT_TRUE(wait_until([&] { return screen.shown().number == i; }));
+        EXPECT_EQ(screen.shown().frames, i + 1);
+    }
+    stage.desktop.move_pointer(100, 100);
+    stage.desktop.move_pointer(1800, 300);
+    sleep_ms(200);
+    EXPECT_EQ(screen.shown().frames, 6u);
+    EXPECT_EQ(told, 6u);
+}
+
+TEST_P(ProjectorScreenTest, ComesBackAboveWindowsThatCoverIt) {
+    ProjectorScreen screen(stage.share);
+    screen.present(stage.plain(1, kMagenta));
+    screen.use_monitor(projector);
+    ASSERT_TRUE(stage.projector_becomes(kMagenta));
+    WindowOptions options;
+    options.title = "covers";
+    options.size_px = {300, 300};
+    options.visible = false;
+    Window other(options);
+    glfwSetWindowPos(other.native(), 1780, 300);
+    glfwShowWindow(other.native());
+    EXPECT_TRUE(wait_until([&] {
+        glfwPollEvents();
+        return stage.desktop.windows().size() >= 2;
+    }));
+    EXPECT_TRUE(wait_until([&] { return stage.desktop.pixel(1900, 450) == kMagenta; }));
+    EXPECT_EQ(stage.desktop.windows().back().title, "Livery projector");
+}
+
+TEST_P(ProjectorScreenTest, HasNoPointerAndTakesNoKeys) {
+    ProjectorScreen screen(stage.share);
+    screen.present(stage.plain(1, kMagenta));
+    screen.use_monitor(projector);
+    ASSERT_TRUE(stage.projector_becomes(kMagenta));
+    stage.desktop.move_pointer(1920, 400);
+    stage.desktop.press_button();
+    stage.desktop.release_button();
+    EXPECT_TRUE(wait_until([&] { return stage.on_projector() == kMagenta; }));
+    EXPECT_EQ(screen.state(), State::showing);
+}
+
+TEST_P(ProjectorScreenTest, OtherSizesFillOrStandInTheMiddle) {
+    ProjectorScreen screen(stage.share);
+    screen.use_monitor(projector);
+    screen.present(stage.plain(1, kMagenta, {640, 400}));  // same shape: fills
+    ASSERT_TRUE(stage.projector_becomes(kMagenta));
+    EXPECT_EQ(stage.desktop.pixel(1280, 0), kMagenta);
+    EXPECT_EQ(stage.desktop.pixel(2559, 799), kMagenta);
+    screen.present(stage.plain(2, kGreen, {400, 400}));  // pixel for pixel
+    ASSERT_TRUE(stage.projector_becomes(kGreen));
+    EXPECT_EQ(stage.desktop.pixel(1280 + 440, 200), kGreen);
+    EXPECT_EQ(stage.desktop.pixel(1280 + 439, 200), kBlack);
+    EXPECT_EQ(stage.desktop.pixel(1280 + 839, 599), kGreen);
+    EXPECT_EQ(stage.desktop.pixel(1280 + 840, 599), kBlack);
+    screen.present(stage.plain(3, kBlue, {1600, 1600}));  // as large as fits
+    ASSERT_TRUE(stage.projector_becomes(kBlue));
+    EXPECT_EQ(stage.desktop.pixel(1280 + 240, 0), kBlue);
+    EXPECT_EQ(stage.desktop.pixel(1280 + 239, 0), kBlack);
+    EXPECT_EQ(stage.desktop.pixel(1280 + 1039, 799), kBlue);
+    EXPECT_EQ(stage.desktop.pixel(1280 + 1040, 799), kBlack);
+}
+
+TEST_P(ProjectorScreenTest, LetsPicturesGoWhileHidden) {
+    ProjectorScreen screen(stage.share);
+    std::weak_ptr<const void> first;
+    {
+        const auto picture = stage.plain(1, kMagenta);
+        first = picture->owner;
+        screen.present(picture);
+    }
+    screen.present(stage.plain(2, kGreen));
+    EXPECT_TRUE(wait_until([&] { return first.expired(); }));
+    EXPECT_EQ(screen.shown().frames, 0u);
+}
+
+TEST_P(ProjectorScreenTest, EndsWithAPictureThatIsNeverFinished) {
+    // What no fence reaches: black and the end must not wait for it.
+    auto stuck = std::make_shared<ProjectorPicture>(*stage.plain(9, kGreen));
+    ProjectorScreen screen(stage.share);
+    screen.use_monitor(projector);
+    screen.present(stage.plain(1, kMagenta));
+    ASSERT_TRUE(stage.projector_becomes(kMagenta));
+    screen.present(nullptr);
+    EXPECT_TRUE(stage.projector_becomes(kBlack));
+}
+
+INSTANTIATE_TEST_SUITE_P(Desktops, ProjectorScreenTest, testing::Bool(), [](const auto& parameter) {
+    return parameter.param ? "openbox" : "bare";
+});
+
+}  // namespace
+}  // namespace livery
