@@ -1,7 +1,9 @@
 #include "core/database.h"
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
+#include <thread>
 
 #include <fcntl.h>
 #include <sqlite3.h>
@@ -271,7 +273,17 @@ std::vector<std::vector<DatabaseValue>> Database::run(std::string_view sql,
     }
     std::vector<std::vector<DatabaseValue>> rows;
     errno = 0;
-    while ((code = sqlite3_step(prepared)) == SQLITE_ROW) {
+    // Where waiting could deadlock, as when two programs make one file, SQLite does not wait but
+    // says that it is busy. Outside a transaction nothing of ours is held: try again.
+    const auto give_up =
+        std::chrono::steady_clock::now() + std::chrono::milliseconds(kBusyTimeout_ms);
+    while (((code = sqlite3_step(prepared)) & 0xff) == SQLITE_BUSY &&
+           sqlite3_get_autocommit(state_->handle.get()) != 0 &&
+           std::chrono::steady_clock::now() < give_up) {
+        sqlite3_reset(prepared);
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    for (; code == SQLITE_ROW; code = sqlite3_step(prepared)) {
         auto& row = rows.emplace_back();
         for (int column = 0; column < sqlite3_column_count(prepared); ++column) {
             row.push_back(value_of(prepared, column));

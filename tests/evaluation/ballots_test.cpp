@@ -206,8 +206,7 @@ TEST(Ballots, OfManyStoresOnOneFileAreAllCounted) {
     const auto file = folder / "votes";
     const int stores = 4, each = 15;
     std::vector<std::thread> voters;
-    const BallotStore made(file);
-    // Who comes first opens the round.
+    // Who comes first makes the file and opens the round.
     for (int who = 0; who < stores; ++who) {
         voters.emplace_back([&, who] {
             try {
