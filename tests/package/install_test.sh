@@ -1,0 +1,158 @@
+#!/bin/bash
+# Installs into a folder with spaces and umlauts, and uses the program from elsewhere: with a comma
+# locale, as somebody who may write next to nothing, with a full disk, and without the build.
+#
+#   install_test.sh CMAKE BUILD_FOLDER SOURCE_FOLDER
+set -euo pipefail
+
+cmake=$1 build=$(realpath "$2") source=$(realpath "$3")
+work=$(mktemp -d "${TMPDIR:-/tmp}/livery Prüfung.XXXXXX")
+small="$work/kleine Platte"
+clean_up() {
+    ! mountpoint -q "$small" || umount "$small"
+    rm -rf "$work"
+}
+trap clean_up EXIT
+failures=0
+
+fail() {
+    echo "FAILED: $*" >&2
+    failures=$((failures + 1))
+}
+skip() { echo "[  SKIPPED ] package: $*"; }
+
+prefix="$work/Über All/usr"
+"$cmake" --install "$build" --prefix "$prefix" --strip >"$work/install.log"
+chmod 755 "$work"
+
+# --- what lies there ---------------------------------------------------------------------------
+for file in bin/livery lib/livery/livery_image_io.so share/livery/materials/solid-red.json \
+    share/livery/assets/car.glb share/livery/assets/looks/solid-red.json \
+    share/livery/shaders/compensation.frag share/livery/calibration/default.json \
+    share/man/man1/livery.1 share/applications/livery.desktop share/mime/packages/livery.xml \
+    share/icons/hicolor/scalable/apps/livery.svg share/icons/hicolor/48x48/apps/livery.png \
+    share/doc/livery/README.md share/doc/livery/LICENSE share/doc/livery/docs/commands.md; do
+    [ -s "$prefix/$file" ] || fail "not installed: $file"
+done
+links=$(find "$prefix" -type l)
+[ -z "$links" ] || fail "links that lead out of the installation: $links"
+for file in bin/livery lib/livery/livery_image_io.so; do
+    for folder in "$source" "$build"; do
+        ! grep -qaF "$folder/" "$prefix/$file" || fail "$file names $folder"
+    done
+    if command -v readelf >/dev/null; then
+        ! readelf -d "$prefix/$file" | grep -E 'RPATH|RUNPATH' || fail "$file has a run path"
+    fi
+done
+if command -v desktop-file-validate >/dev/null; then
+    desktop-file-validate "$prefix/share/applications/livery.desktop" || fail "the desktop entry"
+else
+    skip "desktop-file-validate is not there"
+fi
+if command -v mandoc >/dev/null; then
+    mandoc -Tlint "$prefix/share/man/man1/livery.1" || fail "the manual page"
+else
+    skip "mandoc is not there"
+fi
+
+# --- surroundings --------------------------------------------------------------------------------
+# A locale with a decimal comma, made here, so that none need be installed.
+locale=C.UTF-8
+if command -v localedef >/dev/null && mkdir "$work/locales" &&
+    localedef -i de_DE -f UTF-8 "$work/locales/de_DE.UTF-8" 2>/dev/null; then
+    locale=de_DE.UTF-8
+    chmod -R a+rX "$work/locales"
+else
+    skip "no decimal comma: localedef or its sources are not there"
+fi
+home="$work/Heimat" read_only="$work/nur lesen" outputs="$work/Ausgaben für heute"
+mkdir "$home" "$read_only" "$outputs"
+chmod 777 "$home" "$outputs"
+chmod 555 "$read_only"
+# Root may write everywhere, so it becomes nobody.
+user=()
+if [ "$(id -u)" -eq 0 ]; then user=(setpriv --reuid=65534 --regid=65534 --clear-groups); fi
+
+# livery HOME ARGUMENTS: from a foreign folder, with an environment of our own; sets $code, and
+# leaves what it said in $work/out and $work/err.
+run() {
+    local home=$1
+    shift
+    code=0
+    (cd / && "${user[@]}" env -i PATH="$PATH" HOME="$home" LC_ALL="$locale" \
+        LOCPATH="$work/locales" MESA_SHADER_CACHE_DIR="$outputs/cache" \
+        "$prefix/bin/livery" "$@") >"$work/out" 2>"$work/err" </dev/null || code=$?
+}
+# expect CODE WHAT: of the last run.
+expect() {
+    [ "$code" -eq "$1" ] || {
+        fail "$2: exit status $code, expected $1"
+        cat "$work/out" "$work/err" >&2
+    }
+}
+says() {
+    grep -qF -- "$1" "$work/out" "$work/err" || {
+        fail "nobody said \"$1\""
+        cat "$work/out" "$work/err" >&2
+    }
+}
+
+# --- what a user does ----------------------------------------------------------------------------
+run "$read_only" --version
+expect 0 "--version"
+says "livery "
+run "$read_only" help
+expect 0 "help"
+run "$read_only" plan --look solid-red
+expect 0 "plan"
+run "$read_only" render --look blue-metallic --quality draft --out "$outputs/Überall blau.png"
+expect 0 "render, home read-only"
+[ "$(head -c 4 "$outputs/Überall blau.png" | tail -c 3)" = PNG ] || fail "render wrote no PNG"
+run "$home" render --look solid-red --quality draft --out "$outputs/rot.exr"
+expect 0 "render to EXR"
+run "$home" check "$outputs/rot.exr" "$prefix/share/livery/materials/solid-red.json"
+expect 0 "check"
+# A number in a file reads and writes the same under a decimal comma.
+run "$home" patterns --projector 64x48 --out "$outputs/Muster"
+expect 0 "patterns"
+grep -qE '[0-9]' "$outputs/Muster/manifest.json" || fail "patterns wrote no manifest"
+! grep -qE '[0-9],[0-9]' "$outputs/Muster/manifest.json" || fail "a decimal comma in the manifest"
+run "$home" demo --size 160x100 --product sphere --out "$outputs/Vorführung mit Ümläuten"
+expect 0 "demo"
+[ -s "$outputs/Vorführung mit Ümläuten/report.html" ] || fail "demo wrote no report"
+
+# --- places that cannot be written ---------------------------------------------------------------
+run "$read_only" render --look solid-red --quality draft --out "$read_only/rot.png"
+expect 2 "render into a read-only folder"
+says "cannot create: "
+run "$read_only" demo --size 64x40 --product sphere --out "$read_only/demo"
+expect 2 "demo into a read-only folder"
+says "$read_only/demo"
+ln -s /dev/full "$outputs/voll.png"
+run "$home" render --look solid-red --quality draft --out "$outputs/voll.png"
+expect 2 "render onto a full disk"
+says "cannot write: No space left on device"
+mkdir "$small"
+if [ "$(id -u)" -eq 0 ] && mount -t tmpfs -o size=64k,mode=777 tmpfs "$small" 2>/dev/null; then
+    run "$home" render --look solid-red --quality draft --out "$small/rot.exr"
+    left=$(ls -A "$small")
+    umount "$small"
+    expect 2 "render onto a small disk"
+    says "cannot write: No space left on device"
+    [ -z "$left" ] || fail "left on a full disk: $left"
+else
+    skip "no small disk: it takes root and mount"
+fi
+run "$home" --data "$work" plan
+expect 2 "an option before the command"
+run "$home" plan --data "$work/Heimat"
+expect 2 "shipped data that are not there"
+says "nothing in $work/Heimat"
+mv "$prefix/lib/livery" "$prefix/lib/gone"
+run "$home" render --look solid-red --quality draft --out "$outputs/ohne.exr"
+expect 2 "without the picture reader"
+says "livery_image_io.so"
+mv "$prefix/lib/gone" "$prefix/lib/livery"
+
+[ "$failures" -eq 0 ] || { echo "$failures failures" >&2; exit 1; }
+echo "installed and used in $prefix"
