@@ -6,8 +6,6 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "appearance/bsdf.h"
-#include "appearance/material_library.h"
 #include "core/error.h"
 #include "session/library.h"
 #include "session/naming.h"

@@ -9,7 +9,7 @@ namespace {
 
 std::string name_of(const Document& document, int id) {
     const SessionLook* look = find_look(document, id);
-    return look ? look->look.name : fmt::format("look {}", id);
+    return look ? look->look.name : std::to_string(id);
 }
 
 std::string part_name(const std::string& part) { return part == "*" ? "the rest" : part; }

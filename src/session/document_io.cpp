@@ -2,9 +2,11 @@
 #include <limits>
 
 #include "appearance/material_json.h"
+#include "core/error.h"
 #include "scene/look_json.h"
 #include "session/document_json.h"
 #include "session/naming.h"
+#include "session/paint_edit.h"
 
 namespace livery {
 
@@ -13,12 +15,11 @@ namespace {
 constexpr int kFormatVersion = 1;
 constexpr int kLargestId = std::numeric_limits<int>::max() - 1;
 
-/// A text that `check` accepts; a mistake is told of its field.
-std::string checked_text(const JsonReader& field,
-                         void (*check)(const std::string&, const std::string&)) {
+/// A text that can be shown; a mistake is told of its field.
+std::string checked_text(const JsonReader& field) {
     const std::string text = field.text();
     try {
-        check(text, "the text");
+        check_text(text, "the text");
     } catch (const std::invalid_argument& mistake) {
         field.fail(mistake.what(), "a text that can be shown");
     }
@@ -30,7 +31,7 @@ SessionLook read_session_look(const JsonReader& object) {
     SessionLook look;
     look.id = object["id"].integer(1, kLargestId);
     look.look = read_look(object);
-    look.look.name = checked_text(object["name"], check_name);
+    look.look.name = checked_text(object["name"]);
     return look;
 }
 
@@ -64,7 +65,7 @@ void read_paints(const JsonReader& list, Document& document) {
         const JsonReader field = list.at(k);
         field.allow_only({"name", "family", "model", "parameters", "provenance"});
         Material paint = read_material(field);
-        paint.name = checked_text(field["name"], check_name);
+        paint.name = checked_text(field["name"]);
         for (const Material& other : document.paints) {
             if (other.name == paint.name) {
                 field["name"].fail(field["name"].found() + " for a second time", "each name once");
@@ -108,7 +109,7 @@ Document read_document(const JsonReader& root) {
                      "calibration",
                      "design_white_percentile"});
     Document document;
-    document.product = checked_text(root["product"], check_text);
+    document.product = checked_text(root["product"]);
     read_looks(root["looks"], document);
     document.next_look_id = root["next_look_id"].integer(1, kLargestId);
     for (const SessionLook& look : document.looks) {
@@ -127,10 +128,24 @@ Document read_document(const JsonReader& root) {
     } catch (const std::invalid_argument&) {
         root["quality"].fail(root["quality"].found(), "draft, normal, high or reference");
     }
-    document.bench = checked_text(root["bench"], check_text);
-    document.calibration = checked_text(root["calibration"], check_text);
+    document.bench = checked_text(root["bench"]);
+    document.calibration = checked_text(root["calibration"]);
     document.design_white_percentile = root["design_white_percentile"].number_between(0.0, 100.0);
     return document;
+}
+
+Material kept_paint(const Material& paint) {
+    try {
+        const Json json = json_of(paint);
+        Material kept = read_material(JsonReader("", json));
+        kept.file = paint.file;
+        return kept;
+    } catch (const FileError& mistake) {
+        throw std::invalid_argument(mistake.field() + " is " + mistake.found() + "; expected " +
+                                    mistake.expected());
+    } catch (const Json::exception&) {
+        throw std::invalid_argument("the paint has a text that is not UTF-8");
+    }
 }
 
 std::string text_of(const Document& document) { return json_of(document).dump(); }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <set>
 
 #include "appearance/material.h"
 #include "capture/captures_folder.h"
@@ -102,9 +103,11 @@ void read_session(const Path& file, FileCheck& check) {
     const Document document = session.document(session.position());
     check.notes.push_back(std::to_string(document.looks.size()) + " looks, " +
                           std::to_string(steps) + (steps == 1 ? " step" : " steps"));
+    std::set<std::string> environments;
     for (const SessionLook& look : document.looks) {
         for (const auto& [part, paint] : look.look.parts) find_paint(document, paint);
-        load_environment(look.look.environment, {});
+        const EnvironmentReference& environment = look.look.environment;
+        if (environments.insert(environment.file).second) load_environment(environment, {});
     }
 }
 

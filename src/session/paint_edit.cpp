@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "appearance/bsdf.h"
 #include "appearance/material_library.h"
 #include "core/error.h"
 #include "session/naming.h"
@@ -51,11 +50,10 @@ std::string known_paint(const Document& document, const std::string& name) {
 }
 
 void edit_paint(Document& document, const EditPaint& command) {
-    Material edited = command.material;
-    check_name(edited.name, "the paint's name");
-    check_text(edited.family, "the paint's family");
-    check_text(edited.provenance, "the paint's provenance");
-    parameters_of_f64(edited);  // throws what is out of range
+    check_name(command.material.name, "the paint's name");
+    check_text(command.material.family, "the paint's family");
+    check_text(command.material.provenance, "the paint's provenance");
+    Material edited = kept_paint(command.material);
     edited.file.clear();
 
     const auto look = std::find_if(document.looks.begin(),

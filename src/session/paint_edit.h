@@ -14,4 +14,8 @@ std::string known_paint(const Document& document, const std::string& name);
 /// EditPaint on a look and a part that there are. Throws std::invalid_argument.
 void edit_paint(Document& document, const EditPaint& command);
 
+/// The paint as it comes back from a file: only what its model reads. Throws std::invalid_argument
+/// for what a file cannot hold, by name.
+Material kept_paint(const Material& paint);
+
 }  // namespace livery

@@ -1,5 +1,6 @@
 #include "session/session_file.h"
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 
@@ -170,11 +171,13 @@ void SessionFile::save(std::int64_t kept,
 
 void SessionFile::check_pages() {
     const auto rows = database_.run("PRAGMA quick_check(1)");
-    const auto* found = rows.empty() ? nullptr : std::get_if<std::string>(&rows[0].at(0));
-    if (!found || *found != "ok") {
+    const auto* answer = rows.empty() ? nullptr : std::get_if<std::string>(&rows[0].at(0));
+    std::string found = answer ? *answer : "no answer";
+    if (found != "ok") {
+        std::replace(found.begin(), found.end(), '\n', ' ');
         throw FileError(database_.file(),
                         "",
-                        "a damaged database (" + (found ? *found : "no answer") + ")",
+                        "a damaged database (" + found + ")",
                         "a whole one; `livery session export` may still read its looks");
     }
 }

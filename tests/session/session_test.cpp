@@ -1,24 +1,25 @@
-// The session: its commands, its history, its file.
+// The session: its document, its history without end, and that all of it comes back.
 
 #include "session/session.h"
 
-#include <cmath>
-#include <fstream>
-#include <limits>
+#include <clocale>
+#include <cstdlib>
+#include <iostream>
 
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "support/file_error.h"
+#include "session/library.h"
+#include "session/session_script.h"
+#include "support/memory_folder.h"
 #include "support/temporary_folder.h"
 
 namespace livery {
 namespace {
 
-const Document& car() {
-    static const Document document = new_document("car");
-    return document;
-}
+using testing::car;
+using testing::random_command;
+using testing::state_of;
 
 TEST(NewDocument, HoldsTheShippedLooksAsTheDefaultBenchSeesThem) {
     const Document& document = car();
@@ -31,6 +32,30 @@ TEST(NewDocument, HoldsTheShippedLooksAsTheDefaultBenchSeesThem) {
     EXPECT_EQ(document.next_look_id, 5);
     EXPECT_EQ(document.exposure_ev, -0.15);
     EXPECT_EQ(document.eye_mm, glm::dvec3(281, 425, 696));
+}
+
+TEST(NewDocument, PaintsAllOfAProductThatIsNoCar) {
+    const Document document = new_document("sphere");
+    EXPECT_EQ(document.bench, "sphere");
+    const auto product = find_product("sphere");
+    const Scene scene = scene_of(document, 4, product);
+    for (const Material& material : scene.part_materials) EXPECT_EQ(material.name, "solid red");
+    EXPECT_THROW(new_document("boat"), FileError);
+}
+
+TEST(SceneOf, WearsTheSessionsOwnPaints) {
+    const auto product = find_product("car");
+    Document document = applied(car(), EditPaint{4, "body", testing::some_paint()});
+    document = applied(document, SetExposure{1.5});
+    const Scene first = scene_of(document, 4, product);
+    const auto body = static_cast<std::size_t>(part_index(*product, "body"));
+    EXPECT_EQ(first.part_materials[body].name, "solid red 2");
+    EXPECT_EQ(first.part_materials[body].diffuse, testing::some_paint().diffuse);
+    EXPECT_EQ(first.exposure_ev, 1.5);
+    EXPECT_EQ(first.eye_in_world_mm, document.eye_mm);
+    const Scene second = scene_of(document, 1, product, first.environment);
+    EXPECT_EQ(second.environment, first.environment);
+    EXPECT_THROW(scene_of(document, 99, product), std::invalid_argument);
 }
 
 TEST(Session, KeepsEverythingOverAReopening) {
@@ -46,17 +71,166 @@ TEST(Session, KeepsEverythingOverAReopening) {
         EXPECT_EQ(session.undo(), 2);
         EXPECT_EQ(session.redo_label(), "Delete look silver metallic");
         session.set_workspace("look", "3");
+        session.set_workspace("fenster", "größer, 1 1/2");
         EXPECT_EQ(session.save_problem(), std::nullopt);
+        EXPECT_EQ(session.file(), file);
         last = text_of(session.document());
     }
     Session session = Session::open(file);
     EXPECT_EQ(text_of(session.document()), last);
     EXPECT_EQ(session.undo_label(), "Paint body solid red");
     EXPECT_EQ(session.redo_label(), "Delete look silver metallic");
-    EXPECT_EQ(session.workspace().at("look"), "3");
+    EXPECT_EQ(session.workspace(), (Workspace{{"look", "3"}, {"fenster", "größer, 1 1/2"}}));
     EXPECT_EQ(session.undo(), 1);
     EXPECT_EQ(text_of(session.document()), text_of(car()));
     EXPECT_FALSE(session.can_undo());
+    EXPECT_EQ(session.undo(), std::nullopt);
+    EXPECT_EQ(session.undo_label(), "");
+}
+
+TEST(Session, LeavesOneFileBehind) {
+    const TemporaryFolder folder;
+    { Session::open(folder / "a.livery").execute(SetExposure{1.0}); }
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+        names.push_back(entry.path().filename().string());
+    }
+    EXPECT_EQ(names, std::vector<std::string>{"a.livery"});
+}
+
+TEST(Session, ShowsTheLookThatAStepWasAbout) {
+    Session session = Session::unsaved(car(), "a test");
+    session.execute(DuplicateLook{2});
+    EXPECT_EQ(session.undo(), std::nullopt) << "it is gone";
+    EXPECT_EQ(session.redo(), 5);
+    session.execute(SetPaint{3, "body", "solid blue"});
+    EXPECT_EQ(session.undo(), 3);
+    EXPECT_EQ(session.redo(), 3);
+    session.execute(SetExposure{2.0});
+    EXPECT_EQ(session.undo(), std::nullopt);
+}
+
+TEST(Session, RevisionGrowsWithChangesOnly) {
+    Session session = Session::unsaved(car(), "a test");
+    const auto first = session.revision();
+    session.execute(SetPaint{4, "body", "solid red"});
+    EXPECT_EQ(session.revision(), first) << "it wore that already";
+    EXPECT_FALSE(session.can_undo());
+    EXPECT_THROW(session.execute(SetPaint{4, "body", "?"}), std::invalid_argument);
+    EXPECT_THROW(session.execute(DeleteLook{9}), std::invalid_argument);
+    EXPECT_EQ(session.revision(), first);
+    EXPECT_EQ(text_of(session.document()), text_of(car()));
+    session.execute(SetPaint{4, "body", "solid blue"});
+    session.undo();
+    session.redo();
+    EXPECT_EQ(session.revision(), first + 3);
+}
+
+TEST(Session, NewCommandDropsWhatCouldBeRedone) {
+    const TemporaryFolder folder;
+    Session session = Session::open(folder / "a.livery");
+    session.execute(SetExposure{1.0});
+    session.execute(SetExposure{2.0});
+    session.undo();
+    session.execute(SetExposure{3.0});
+    EXPECT_FALSE(session.can_redo());
+    EXPECT_EQ(session.redo(), std::nullopt);
+    session.undo();
+    EXPECT_EQ(session.document().exposure_ev, 1.0);
+    EXPECT_EQ(session.redo_label(), "Set exposure to 3 EV");
+}
+
+TEST(Session, UnsavedSaysWhyAndWorks) {
+    Session session = Session::unsaved(car(), "the folder is read-only");
+    session.execute(SetExposure{1.0});
+    session.set_workspace("look", "1");
+    EXPECT_EQ(session.save_problem(), "the folder is read-only");
+    EXPECT_EQ(session.file(), std::nullopt);
+    Session moved = std::move(session);
+    moved.undo();
+    EXPECT_EQ(text_of(moved.document()), text_of(car()));
+    EXPECT_EQ(moved.workspace().at("look"), "1");
+}
+
+TEST(Session, DefaultOneLiesInTheUsersFolderAndMakesIt) {
+    const TemporaryFolder folder;
+    const char* home = std::getenv("LIVERY_HOME");
+    const std::string before = home ? home : "";
+    ::setenv("LIVERY_HOME", (folder / "a home").c_str(), 1);
+    EXPECT_EQ(default_session_file(), folder / "a home" / "sessions" / "default.livery");
+    { Session::open(default_session_file()); }
+    EXPECT_TRUE(std::filesystem::exists(folder / "a home" / "sessions" / "default.livery"));
+    if (home) {
+        ::setenv("LIVERY_HOME", before.c_str(), 1);
+    } else {
+        ::unsetenv("LIVERY_HOME");
+    }
+}
+
+/// 2,000 random commands with undo, redo and reopening in between, against the list of all
+/// documents; then all the way back and all the way forth.
+TEST(Session, UndoesAndRedoesTwoThousandRandomCommandsExactly) {
+    constexpr std::uint64_t kSeed = 1;
+    constexpr int kCommands = 2000;
+    const TemporaryFolder folder(memory_folder());
+    const auto file = folder / "long.livery";
+    Session session = Session::open(file);
+    std::vector<std::string> states = {text_of(session.document())};
+    std::size_t at = 0;
+    Random random(kSeed);
+    int refused = 0, reopened = 0, deleted = 0;
+    for (int k = 0; k < kCommands; ++k) {
+        SCOPED_TRACE("seed " + std::to_string(kSeed) + ", command " + std::to_string(k));
+        const SessionCommand command = random_command(random, session.document());
+        try {
+            session.execute(command);
+            deleted += std::holds_alternative<DeleteLook>(command) ? 1 : 0;
+            if (const std::string now = text_of(session.document()); now != states[at]) {
+                states.resize(++at);
+                states.push_back(now);
+            }
+        } catch (const std::invalid_argument&) {
+            ++refused;
+        }
+        if (random.below(20) == 0) {
+            for (auto steps = random.below(6); steps > 0 && at > 0; --steps, --at) session.undo();
+        }
+        if (random.below(20) == 0) {
+            for (auto steps = random.below(6); steps > 0 && at + 1 < states.size(); --steps, ++at) {
+                session.redo();
+            }
+        }
+        if (random.below(200) == 0) {
+            session = Session::unsaved(car(), "closed");
+            session = Session::open(file);
+            ++reopened;
+        }
+        ASSERT_EQ(session.save_problem(), std::nullopt);
+        ASSERT_EQ(text_of(session.document()), states[at]);
+        ASSERT_EQ(session.can_undo(), at > 0);
+        ASSERT_EQ(session.can_redo(), at + 1 < states.size());
+    }
+    while (session.can_redo()) session.redo();
+    at = states.size() - 1;
+    ASSERT_EQ(text_of(session.document()), states[at]);
+    while (session.can_undo()) {
+        session.undo();
+        ASSERT_EQ(text_of(session.document()), states[--at]);
+    }
+    EXPECT_EQ(at, 0u);
+    EXPECT_EQ(states[0], text_of(car()));
+    while (session.can_redo()) {
+        session.redo();
+        ASSERT_EQ(text_of(session.document()), states[++at]);
+    }
+    EXPECT_EQ(at + 1, states.size());
+    EXPECT_GT(states.size(), 500u);
+    EXPECT_GT(refused, 20);
+    EXPECT_GT(deleted, 50);
+    session = Session::unsaved(car(), "closed");
+    std::cout << "    seed " << kSeed << ": " << states.size() - 1 << " steps kept, " << refused
+              << " refused, " << deleted << " looks deleted, " << reopened << " times reopened, "
+              << std::filesystem::file_size(file) / (states.size() - 1) << " bytes a step\n";
 }
 
 }  // namespace

@@ -12,9 +12,10 @@ namespace livery {
 
 class TemporaryFolder {
   public:
-    TemporaryFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "livery test XXXXXX").string();
-        if (!::mkdtemp(name.data())) throw std::runtime_error("cannot make a folder in TMPDIR");
+    explicit TemporaryFolder(
+        const std::filesystem::path& parent = std::filesystem::temp_directory_path()) {
+        std::string name = (parent / "livery test XXXXXX").string();
+        if (!::mkdtemp(name.data())) throw std::runtime_error("cannot make a folder in " + name);
         path_ = name;
     }
     ~TemporaryFolder() {
