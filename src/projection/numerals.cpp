@@ -16,8 +16,7 @@ namespace {
 
 // A digit is one unit tall, rows down; a stroke is what a round pen of this radius leaves.
 constexpr double kPen = 0.07;
-constexpr double kWidth = 0.62;
-constexpr double kGap = 0.1;
+constexpr double kGap = 0.11;
 
 using Stroke = std::vector<glm::dvec2>;
 using Digit = std::vector<Stroke>;
@@ -86,7 +85,7 @@ Digit eight() {
 Digit nine() {
     Digit turned = six();
     for (auto& stroke : turned) {
-        for (auto& point : stroke) point = glm::dvec2(kWidth, 1.0) - point;
+        for (auto& point : stroke) point = glm::dvec2(1.0) - point;
     }
     return turned;
 }
@@ -107,6 +106,23 @@ const Digit& digit(char name) {
     return kDigits[static_cast<std::size_t>(name - '0')];
 }
 
+/// From the left edge of the ink to the right one.
+struct Extent {
+    double left = 1e9, right = -1e9;
+    double width() const { return right - left; }
+};
+
+Extent extent(const Digit& digit_strokes) {
+    Extent ink;
+    for (const auto& stroke : digit_strokes) {
+        for (const auto& point : stroke) {
+            ink.left = std::min(ink.left, point.x - kPen);
+            ink.right = std::max(ink.right, point.x + kPen);
+        }
+    }
+    return ink;
+}
+
 double distance_to(const Stroke& stroke, const glm::dvec2& point) {
     double nearest = 1e9;
     for (std::size_t i = 1; i < stroke.size(); ++i) {
@@ -123,8 +139,9 @@ double distance_to(const Stroke& stroke, const glm::dvec2& point) {
 
 double number_width_px(int number, double height_px) {
     check_argument(number >= 0, "a number to draw is negative: " + std::to_string(number));
-    const auto digits = static_cast<double>(std::to_string(number).size());
-    return height_px * (digits * kWidth + (digits - 1.0) * kGap);
+    double width = -kGap;
+    for (const char name : std::to_string(number)) width += extent(digit(name)).width() + kGap;
+    return height_px * width;
 }
 
 void draw_number(Image8& picture,
@@ -137,14 +154,16 @@ void draw_number(Image8& picture,
         centre_px - 0.5 * glm::dvec2(number_width_px(number, height_px), height_px);
     double left = 0.0;
     for (const char name : std::to_string(number)) {
+        const Extent ink = extent(digit(name));
         const glm::dvec2 from = corner + height_px * glm::dvec2(left, 0.0);
-        const glm::dvec2 to = from + height_px * glm::dvec2(kWidth, 1.0);
-        left += kWidth + kGap;
+        const glm::dvec2 to = from + height_px * glm::dvec2(ink.width(), 1.0);
+        left += ink.width() + kGap;
         const int x_end = std::min(picture.width, static_cast<int>(std::ceil(to.x)) + 1);
         const int y_end = std::min(picture.height, static_cast<int>(std::ceil(to.y)) + 1);
         for (int y = std::max(0, static_cast<int>(from.y) - 1); y < y_end; ++y) {
             for (int x = std::max(0, static_cast<int>(from.x) - 1); x < x_end; ++x) {
-                const glm::dvec2 point = (glm::dvec2(x + 0.5, y + 0.5) - from) / height_px;
+                const glm::dvec2 point =
+                    (glm::dvec2(x + 0.5, y + 0.5) - from) / height_px + glm::dvec2(ink.left, 0.0);
                 double nearest = 1e9;
                 for (const auto& stroke : digit(name)) {
                     nearest = std::min(nearest, distance_to(stroke, point));

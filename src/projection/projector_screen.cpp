@@ -21,8 +21,7 @@ namespace {
 
 using Picture = std::shared_ptr<const ProjectorPicture>;
 
-/// How long an unfinished picture may keep black, a newer picture or the end of the program
-/// waiting.
+/// How long an unfinished picture may keep a newer picture or the end of the program waiting.
 constexpr double kPatience_s = 0.004;
 
 /// Where a picture goes in the window: pixel for pixel, or as large as fits when the shape is the
@@ -63,6 +62,7 @@ struct ProjectorScreen::Implementation {
     std::vector<Picture> let_go;        ///< OpenGL objects: dropped where a context is current
     std::optional<glm::ivec2> size_px;  ///< of the window; none: hidden
     bool black = false, frozen = false, exposed = false, quit = false;
+    std::optional<std::chrono::steady_clock::time_point> black_since;  ///< not told yet
     ShownPicture shown;
 
     bool following = false;   ///< main thread
@@ -75,7 +75,8 @@ struct ProjectorScreen::Implementation {
         keeper = std::make_unique<WindowKeeper>(
             static_cast<std::uint32_t>(glfwGetX11Window(window->native())),
             WindowKeeper::Listener{[this](const WindowKeeper::Place& place) { moved(place); },
-                                   [this] { was_exposed(); }});
+                                   [this] { was_exposed(); },
+                                   [this] { was_covered(); }});
         thread = std::thread([this] { run(); });
     }
 
@@ -102,6 +103,14 @@ struct ProjectorScreen::Implementation {
         {
             const std::lock_guard lock(mutex);
             exposed = true;
+        }
+        changed.notify_one();
+    }
+
+    void was_covered() {
+        {
+            const std::lock_guard lock(mutex);
+            black_since = std::chrono::steady_clock::now();
         }
         changed.notify_one();
     }
@@ -150,8 +159,7 @@ struct ProjectorScreen::Implementation {
     /// What the projector's thread knows about its window's content.
     struct Canvas {
         WindowBlit blit;
-        Picture drawn;  ///< in the window, or under the black
-        bool is_black = false;
+        Picture drawn;
         Fence read;  ///< reached when the device has read `drawn`
     };
 
@@ -163,7 +171,6 @@ struct ProjectorScreen::Implementation {
             } catch (const std::exception& error) {
                 log_line(LogLevel::error, std::string("the projector's picture: ") + error.what());
                 canvas.drawn = next->picture;  // not again and again
-                canvas.is_black = next->black;
             }
         }
         canvas.read.wait_for(1.0);
@@ -172,70 +179,66 @@ struct ProjectorScreen::Implementation {
     struct Work {
         glm::ivec2 window_px{0};
         Picture picture;
-        bool black = false;
-        bool at_once = false;  ///< even if the picture is not finished yet
-        std::vector<Picture> finished_with;
+        bool exposed = false;  ///< draw something, even if the picture is not finished yet
     };
 
-    /// Nothing: the end.
+    /// Nothing: the end. Under the black nothing is drawn; its end exposes the window.
     std::optional<Work> wait_for_work(const Canvas& canvas) {
         for (;;) {
-            Work work;
+            std::vector<Picture>
+                finished_with;  // dropped after the lock: a driver may take a while
             std::unique_lock lock(mutex);
-            const auto must_draw = [&] { return exposed || canvas.is_black != black; };
-            const auto has_new = [&] { return !black && canvas.drawn != wanted; };
-            changed.wait(lock, [&] {
-                return quit || !let_go.empty() || (size_px && (must_draw() || has_new()));
-            });
+            const auto must_draw = [&] {
+                return size_px && !black && (exposed || canvas.drawn != wanted);
+            };
+            changed.wait(lock,
+                         [&] { return quit || !let_go.empty() || black_since || must_draw(); });
             if (quit) return std::nullopt;
-            work.finished_with.swap(let_go);
-            if (size_px && (must_draw() || has_new())) {
-                work.window_px = *size_px;
-                work.picture = wanted;
-                work.black = black;
-                work.at_once = must_draw();
-                exposed = false;
-                return work;
+            finished_with.swap(let_go);
+            if (const auto since = std::exchange(black_since, std::nullopt)) {
+                shown.number = 0;
+                shown.at = *since;
+                tell_shown(lock);
+            } else if (must_draw()) {
+                return Work{*size_px, wanted, std::exchange(exposed, false)};
             }
-            // Only to let go, which may take a driver a while.
-            lock.unlock();
+            if (lock.owns_lock()) lock.unlock();
         }
+    }
+
+    void tell_shown(std::unique_lock<std::mutex>& lock) const {
+        const ShownPicture now = shown;
+        lock.unlock();
+        if (on_shown) on_shown(now);
     }
 
     void draw(const Work& work, Canvas& canvas) {
         Picture next = work.picture;
-        if (!work.black && next && next != canvas.drawn && next->ready &&
-            !next->ready->wait_for(kPatience_s)) {
-            if (!work.at_once) return;
+        if (next && next != canvas.drawn && next->ready && !next->ready->wait_for(kPatience_s)) {
+            if (!work.exposed) return;
             next = canvas.drawn;
         }
-        const bool draws_black = work.black || !next;
-        if (draws_black) {
-            canvas.blit.black(work.window_px);
-        } else {
+        if (next) {
             canvas.blit.show(next->texture,
                              next->size_px,
                              placed(next->size_px, work.window_px),
                              work.window_px);
+        } else {
+            canvas.blit.black(work.window_px);
         }
         window->swap();
         const auto at = std::chrono::steady_clock::now();
-        if (!work.black) {
-            // Whoever made the old picture may draw into it again once it is let go.
-            canvas.read.wait_for(1.0);
-            canvas.read = Fence::after_everything_so_far();
-            canvas.drawn = std::move(next);
-        }
-        canvas.is_black = work.black;
-        ShownPicture now;
-        {
-            const std::lock_guard lock(mutex);
-            shown.number = draws_black ? 0 : canvas.drawn->number;
-            shown.at = at;
-            ++shown.frames;
-            now = shown;
-        }
-        if (on_shown) on_shown(now);
+        // Whoever made the old picture may draw into it again once it is let go.
+        canvas.read.wait_for(1.0);
+        canvas.read = Fence::after_everything_so_far();
+        canvas.drawn = std::move(next);
+
+        std::unique_lock lock(mutex);
+        ++shown.frames;
+        if (black) return;  // it went under
+        shown.number = canvas.drawn ? canvas.drawn->number : 0;
+        shown.at = at;
+        tell_shown(lock);
     }
 };
 
@@ -269,11 +272,13 @@ void ProjectorScreen::present(std::shared_ptr<const ProjectorPicture> picture) {
 }
 
 void ProjectorScreen::set_black(bool black) {
+    auto& self = *implementation_;
     {
-        const std::lock_guard lock(implementation_->mutex);
-        implementation_->black = black;
+        const std::lock_guard lock(self.mutex);
+        self.black = black;
     }
-    implementation_->changed.notify_one();
+    self.keeper->cover(black);
+    self.changed.notify_one();
 }
 
 void ProjectorScreen::set_frozen(bool frozen) { implementation_->set_frozen(frozen); }

@@ -31,7 +31,7 @@ struct ProjectorPicture {
 /// What is on the projector now, for the operator's window and for the trace.
 struct ShownPicture {
     std::uint64_t number = 0;                    ///< the picture's; 0: black
-    std::chrono::steady_clock::time_point at{};  ///< when the swap returned
+    std::chrono::steady_clock::time_point at{};  ///< when the swap returned, or black was there
     std::uint64_t frames = 0;                    ///< drawn since the start: idle adds none
 };
 
@@ -43,7 +43,7 @@ struct ShownPicture {
 class ProjectorScreen {
   public:
     /// Main thread. `share` is the share group of the pictures. `on_shown` is called on the
-    /// projector's thread after every swap.
+    /// projector's thread after every swap, and when black came.
     ProjectorScreen(const Window& share, std::function<void(const ShownPicture&)> on_shown = {});
     ~ProjectorScreen();
     ProjectorScreen(const ProjectorScreen&) = delete;
@@ -61,7 +61,8 @@ class ProjectorScreen {
 
     // Any thread. The newest picture wins; none: black.
     void present(std::shared_ptr<const ProjectorPicture> picture);
-    void set_black(bool black);    ///< before anything else, within one refresh
+    /// Comes from the X server, before anything else: it waits for no picture and no drawing.
+    void set_black(bool black);
     void set_frozen(bool frozen);  ///< keeps the newest so far; thawing shows the newest then
     bool is_black() const;
     bool is_frozen() const;

@@ -67,6 +67,7 @@ bool same_place(const Monitor& a, const Monitor& b) {
 struct WindowKeeper::Implementation {
     const XConnection x;
     const xcb_window_t window;
+    const xcb_window_t black_cover;  ///< a child of the window
     const Listener listener;
     const bool passes_grabs, has_screensaver;
     const xcb_atom_t overlay_atom;
@@ -76,12 +77,13 @@ struct WindowKeeper::Implementation {
     std::optional<Output> shown_on;
     std::optional<Awake> awake;
     int raises_left = 0;
+    bool is_covered = false;
 
     mutable std::mutex mutex;
     std::condition_variable caught_up;
     std::optional<std::string> monitor_id;
     std::uint64_t asked = 0, answered = 0;
-    bool quit = false, ended = false;
+    bool quit = false, ended = false, cover_wanted = false;
     Place place;
 
     const Doorbell doorbell;
@@ -89,6 +91,7 @@ struct WindowKeeper::Implementation {
 
     Implementation(xcb_window_t window_id, Listener listens)
         : window(window_id),
+          black_cover(xcb_generate_id(x.get())),
           listener(std::move(listens)),
           passes_grabs(x.has(xcb_test_id)),
           has_screensaver(x.has(xcb_screensaver_id)),
@@ -113,6 +116,20 @@ struct WindowKeeper::Implementation {
             throw std::runtime_error("the projector's window cannot be kept: X error " +
                                      std::to_string(error->error_code));
         }
+        constexpr std::uint16_t kLargest = 32767;  // of any window
+        xcb_create_window(c,
+                          XCB_COPY_FROM_PARENT,
+                          black_cover,
+                          window,
+                          0,
+                          0,
+                          kLargest,
+                          kLargest,
+                          0,
+                          XCB_WINDOW_CLASS_INPUT_OUTPUT,
+                          XCB_COPY_FROM_PARENT,
+                          XCB_CW_BACK_PIXEL,
+                          values.data());
         const std::uint32_t yes = 1;
         xcb_change_property(c,
                             XCB_PROP_MODE_REPLACE,
@@ -173,6 +190,17 @@ struct WindowKeeper::Implementation {
         shown_on = output;
         awake.emplace();
         raises_left = kRaises;
+    }
+
+    void set_cover(bool cover) {
+        if (cover) {
+            xcb_map_window(x.get(), black_cover);
+        } else {
+            xcb_unmap_window(x.get(), black_cover);
+        }
+        x.synchronise();
+        is_covered = cover;
+        if (cover) listener.covered();
     }
 
     bool is_foreign_cover(xcb_window_t other) const {
@@ -328,11 +356,14 @@ struct WindowKeeper::Implementation {
         try {
             for (;;) {
                 std::uint64_t answering = 0;
+                bool cover = false;
                 {
                     const std::lock_guard lock(mutex);
                     if (quit) break;
                     answering = asked;
+                    cover = cover_wanted;
                 }
+                if (cover != is_covered) set_cover(cover);
                 bool look = answering != answered;
                 while (const XReply<xcb_generic_event_t> event{xcb_poll_for_event(x.get())}) {
                     look = handle(*event) || look;
@@ -396,6 +427,14 @@ void WindowKeeper::follow(std::optional<std::string> monitor_id) {
 }
 
 void WindowKeeper::catch_up() { implementation_->ask_and_wait(); }
+
+void WindowKeeper::cover(bool covered) {
+    {
+        const std::lock_guard lock(implementation_->mutex);
+        implementation_->cover_wanted = covered;
+    }
+    implementation_->doorbell.ring();
+}
 
 WindowKeeper::Place WindowKeeper::place() const { return implementation_->place_now(); }
 

@@ -28,6 +28,7 @@ class WindowKeeper {
     struct Listener {
         std::function<void(const Place&)> moved;  ///< shown or hidden
         std::function<void()> exposed;            ///< shown, and black where it was not drawn since
+        std::function<void()> covered;            ///< black now, wherever it is shown
     };
 
     /// `window` is unmapped; it becomes override-redirect, and black until drawn into. Throws
@@ -37,10 +38,14 @@ class WindowKeeper {
     WindowKeeper(const WindowKeeper&) = delete;
     WindowKeeper& operator=(const WindowKeeper&) = delete;
 
-    // Any thread; both return when the window is where it should be.
+    // Any thread. These two return when the window is where it should be.
     void follow(std::optional<std::string> monitor_id);  ///< none: hidden
     void catch_up();  ///< with everything that the server knows now
+
     Place place() const;
+    /// Black over whatever is in the window, from the X server itself: it waits for no drawing.
+    /// Returns at once.
+    void cover(bool covered);
 
   private:
     struct Implementation;

@@ -63,7 +63,7 @@ TEST_P(UnplugTest, IsNotSeenWhenTheOperatorsMonitorTakesItsPlace) {
     ProjectorScreen screen(stage.share);
     screen.present(stage.plain(1, kMagenta));
     screen.use_monitor(projector);
-    for (int round = 0; round < 10; ++round) {
+    for (int round = 0; round < 5; ++round) {
         stage.desktop.plug_projector(Desktop::Side::left);
         ASSERT_TRUE(stage.projector_becomes(kMagenta)) << round;
         const OperatorWatch watch(Desktop::operator_output, kMagenta);
