@@ -64,7 +64,8 @@ TEST(Program, HelpNamesEveryCommandAndEachHasAnExample) {
                              "calibrate color",
                              "compensate",
                              "check",
-                             "bench"}) {
+                             "bench",
+                             "session apply"}) {
         EXPECT_NE(all.out.find(name), std::string::npos) << name;
         const ProgramRun one = livery_run({"help", name});
         EXPECT_EQ(one.exit_code, 0) << name;
