@@ -97,7 +97,13 @@ Scene scene_of(const Document& document,
     check_argument(found != nullptr, "scene_of: there is no look " + std::to_string(look_id));
     Look look = found->look;
     look.exposure_ev = document.exposure_ev;
-    return make_scene(std::move(product), look, document.eye_mm, loaded, document.paints);
+    // The library is read once for all parts: a scene is made whenever the pointer moves.
+    std::vector<Material> paints = document.paints;
+    const PaintLibrary library = read_paint_library();
+    for (const auto* more : {&library.shipped, &library.users}) {
+        paints.insert(paints.end(), more->begin(), more->end());
+    }
+    return make_scene(std::move(product), look, document.eye_mm, loaded, paints);
 }
 
 }  // namespace livery
