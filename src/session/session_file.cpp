@@ -84,12 +84,19 @@ void SessionFile::create(const std::filesystem::path& file, const SessionStep& f
     remove_unfinished();
     try {
         Database database(unfinished, Database::Mode::create, kApplicationId, kVersion);
-        Transaction transaction(database);
-        for (const char* statement : kSchema) database.run(statement);
-        database.run("INSERT INTO step VALUES (0, ?1, ?2, ?3)",
-                     {first.command, first.label, first.document});
-        database.set_version(kVersion);
-        transaction.commit();
+        {
+            Transaction transaction(database);
+            for (const char* statement : kSchema) database.run(statement);
+            database.run("INSERT INTO step VALUES (0, ?1, ?2, ?3)",
+                         {first.command, first.label, first.document});
+            database.set_version(kVersion);
+            transaction.commit();
+        }
+        // All of it into the file itself, which alone is renamed.
+        const auto taken_up = database.run("PRAGMA wal_checkpoint(TRUNCATE)");
+        if (taken_up.at(0).at(0) != DatabaseValue(std::int64_t{0})) {
+            throw FileError(file, "", "a database that another program reads", "a new one");
+        }
     } catch (const FileError& failure) {
         remove_unfinished();
         throw FileError(file, failure.field(), failure.found(), failure.expected());

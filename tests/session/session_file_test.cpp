@@ -15,6 +15,7 @@
 #include "session/some_commands.h"
 #include "support/bad_disk.h"
 #include "support/file_error.h"
+#include "support/memory_folder.h"
 #include "support/temporary_folder.h"
 
 namespace livery {
@@ -233,6 +234,31 @@ TEST(SessionFile, FullDiskKeepsChangesUntilTheyCanBeSaved) {
     for (; session.can_undo(); ++steps) session.undo();
     EXPECT_EQ(steps, 1 + 55 + 2);
     EXPECT_EQ(text_of(session.document()), text_of(car()));
+}
+
+TEST(SessionFile, IsWholeOrNotThereWhenTheDiskIsFull) {
+    const TemporaryFolder folder(memory_folder());
+    const std::string document = text_of(car());
+    int made = 0, failed = 0;
+    for (rlim_t room = 0; room < 60'000; room += 1000) {
+        const auto file = folder / "a.livery";
+        try {
+            const FullDisk full(room);
+            SessionFile::create(file, {"", "", document});
+            ++made;
+        } catch (const FileError& error) {
+            EXPECT_NE(std::string(error.what()).find("a.livery: found a full disk"),
+                      std::string::npos)
+                << error.what();
+            EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << room;
+            ++failed;
+            continue;
+        }
+        EXPECT_EQ(text_of(Session::open(file).document()), document) << room;
+        std::filesystem::remove(file);
+    }
+    EXPECT_GT(made, 0);
+    EXPECT_GT(failed, 0);
 }
 
 TEST(SessionFile, TriesOnceMoreWhenItIsClosed) {
