@@ -1,39 +1,126 @@
-// Inputs of a fragment from the rasterised mesh: interpolated vertices, light directions as they
-// are, openness and shadows solved at the vertices.
-in vec3 v_position_mm;
-in vec3 v_normal;
-in vec4 v_tangent;
-in vec4 v_sky;  // radiance of a white diffuser under the environment; openness
+// Inputs of a sample from the triangle that was rasterised there: its vertices interpolated, light
+// directions as they are, openness and shadows solved at the vertices. Comes after lens.glsl; the
+// program calls prepare_sample() first.
+uniform sampler2D u_triangles;
+uniform float u_samples_a_pixel;  // along a side
 uniform vec3 u_eye_mm;
 uniform vec3 u_view_centre_mm;
 
+uniform sampler2D u_vertices;  // three texels a vertex: position in mm, normal, tangent
+uniform usampler2D u_corners;  // one a triangle: its vertices, its part
+uniform sampler2D u_sky;       // one a vertex: radiance of a white diffuser; openness
 #if LIGHTS > 0
-in float v_visibility[LIGHTS];
+uniform sampler2D u_visibility;  // texels of four lights, (LIGHTS + 3) / 4 a vertex
 uniform vec3 u_light_direction[LIGHTS];
 uniform vec3 u_light_radiance[LIGHTS];  // irradiance, facing the light
 uniform float u_light_radius2[LIGHTS];  // half of the disc's angle, squared
 #endif
 
-// The seen side is the shaded side.
-vec3 normal_here() {
-    vec3 flat_normal = cross(dFdx(v_position_mm), dFdy(v_position_mm));
-    float seen = dot(flat_normal, u_view_centre_mm - v_position_mm) * dot(flat_normal, v_normal);
-    return normalize(v_normal) * (seen < 0.0 ? -1.0 : 1.0);
+// The sample, from prepare_sample()
+uvec4 s_corner;
+vec3 s_weight;  // of the corners
+vec3 s_position_mm, s_normal;
+#ifndef LAMBERT
+vec3 s_tangent, s_bitangent, s_eye;
+float s_slope_variance;
+#endif
+
+vec4 of_vertex(uint k, uint texel) {
+    return texelFetch(u_vertices, place_of(3u * k + texel), 0);
+}
+float cross_2d(vec2 a, vec2 b) {
+    return a.x * b.y - a.y * b.x;
+}
+// Weights on the picture -> weights on the triangle in space.
+vec3 in_perspective(vec3 on_picture, vec3 depth) {
+    vec3 weight = on_picture / depth;
+    return weight / (weight.x + weight.y + weight.z);
+}
+
+void prepare_sample() {
+    float triangle = texelFetch(u_triangles, ivec2(gl_FragCoord.xy), 0).r;
+    s_corner = texelFetch(u_corners, place_of(uint(triangle) - 1u), 0);
+    vec3 xa = of_vertex(s_corner.x, 0u).xyz;
+    vec3 xb = of_vertex(s_corner.y, 0u).xyz;
+    vec3 xc = of_vertex(s_corner.z, 0u).xyz;
+    vec3 a = project(xa), b = project(xb), c = project(xc);
+    vec3 depth = vec3(a.z, b.z, c.z);
+    vec2 at = gl_FragCoord.xy / u_samples_a_pixel;
+    float area = cross_2d(b.xy - a.xy, c.xy - a.xy);
+    float scale = abs(area) > 1e-8 ? 1.0 / area : 0.0;
+    vec3 on_picture;
+    on_picture.y = cross_2d(at - a.xy, c.xy - a.xy) * scale;
+    on_picture.z = cross_2d(b.xy - a.xy, at - a.xy) * scale;
+    on_picture.x = 1.0 - on_picture.y - on_picture.z;
+    // Rounding on a sliver must not leave it
+    s_weight = clamp(in_perspective(on_picture, depth), 0.0, 1.0);
+    s_weight /= s_weight.x + s_weight.y + s_weight.z;
+
+    s_position_mm = s_weight.x * xa + s_weight.y * xb + s_weight.z * xc;
+    mat3 normals = mat3(of_vertex(s_corner.x, 1u).xyz,
+                        of_vertex(s_corner.y, 1u).xyz,
+                        of_vertex(s_corner.z, 1u).xyz);
+    vec3 outside = normalize(normals * s_weight);
+    // The seen side is the shaded side.
+    vec3 flat_normal = cross(xb - xa, xc - xa);
+    bool from_inside =
+        dot(flat_normal, u_view_centre_mm - s_position_mm) * dot(flat_normal, outside) < 0.0;
+    s_normal = from_inside ? -outside : outside;
+
+#ifndef LAMBERT
+    vec4 tangent = s_weight.x * of_vertex(s_corner.x, 2u) +
+                   s_weight.y * of_vertex(s_corner.y, 2u) +
+                   s_weight.z * of_vertex(s_corner.z, 2u);
+    s_tangent = normalize(tangent.xyz - dot(tangent.xyz, s_normal) * s_normal);
+    s_bitangent = sign(tangent.w) * cross(s_normal, s_tangent);
+
+    // Toward the eye, kept above the horizon.
+    vec3 wo = normalize(u_eye_mm - s_position_mm);
+    float cosine = dot(s_normal, wo);
+    s_eye = cosine < 1e-4 ? normalize(wo + (1e-4 - cosine) * s_normal) : wo;
+
+    // Mean squared slope from one sample to the next, as a square footprint has it.
+    vec2 step_x = vec2(-(c.y - a.y), b.y - a.y) * -scale / u_samples_a_pixel;
+    vec2 step_y = vec2(-(c.x - a.x), b.x - a.x) * scale / u_samples_a_pixel;
+    vec3 dx = normalize(normals * in_perspective(
+                            on_picture + vec3(-step_x.x - step_x.y, step_x), depth)) - outside;
+    vec3 dy = normalize(normals * in_perspective(
+                            on_picture + vec3(-step_y.x - step_y.y, step_y), depth)) - outside;
+    s_slope_variance = (dot(dx, dx) + dot(dy, dy)) * (1.0 / 12.0);
+#endif
+}
+
+vec4 sky_and_openness() {
+    return s_weight.x * texelFetch(u_sky, place_of(s_corner.x), 0) +
+           s_weight.y * texelFetch(u_sky, place_of(s_corner.y), 0) +
+           s_weight.z * texelFetch(u_sky, place_of(s_corner.z), 0);
 }
 
 vec3 sky_here() {
-    return v_sky.rgb;
+    return sky_and_openness().rgb;
 }
+
+#if LIGHTS > 0
+vec4 visibility_of(uint vertex, int k) {
+    uint texels = uint(LIGHTS + 3) / 4u;
+    return texelFetch(u_visibility, place_of(vertex * texels + uint(k) / 4u), 0);
+}
+float visibility_here(int k) {
+    vec4 visibility = s_weight.x * visibility_of(s_corner.x, k) +
+                      s_weight.y * visibility_of(s_corner.y, k) +
+                      s_weight.z * visibility_of(s_corner.z, k);
+    return visibility[k % 4];
+}
+#endif
 
 #ifdef LAMBERT
 
 vec3 diffuse_light_here() {
-    vec3 n = normal_here();
     vec3 sum = sky_here();
 #if LIGHTS > 0
     for (int k = 0; k < LIGHTS; ++k) {
-        sum += u_light_radiance[k] *
-               (0.3183098861837907 * v_visibility[k] * max(dot(n, u_light_direction[k]), 0.0));
+        sum += u_light_radiance[k] * (0.3183098861837907 * visibility_here(k) *
+                                      max(dot(s_normal, u_light_direction[k]), 0.0));
     }
 #endif
     return sum;
@@ -46,51 +133,32 @@ uniform float u_layers_unit;
 uniform float u_rotation;  // of the environment about +y
 
 vec3 to_local(vec3 direction) {
-    vec3 n = normal_here();
-    vec3 s = normalize(v_tangent.xyz - dot(v_tangent.xyz, n) * n);
-    vec3 t = sign(v_tangent.w) * cross(n, s);
-    return vec3(dot(direction, s), dot(direction, t), dot(direction, n));
-}
-
-// Toward the eye, kept above the horizon.
-vec3 eye_in_world() {
-    vec3 n = normal_here();
-    vec3 wo = normalize(u_eye_mm - v_position_mm);
-    float cosine = dot(n, wo);
-    return cosine < 1e-4 ? normalize(wo + (1e-4 - cosine) * n) : wo;
-}
-
-// Mean squared slope from the neighbouring pixels, as a square footprint has it.
-float slope_variance() {
-    vec3 n = normal_here();
-    vec3 dx = dFdx(n), dy = dFdy(n);
-    return (dot(dx, dx) + dot(dy, dy)) * (1.0 / 12.0);
+    return vec3(dot(direction, s_tangent), dot(direction, s_bitangent), dot(direction, s_normal));
 }
 
 vec4 eye_here() {
-    vec3 wo = to_local(eye_in_world());
-    return vec4(wo.xy, max(wo.z, 0.5e-4), slope_variance());
+    vec3 wo = to_local(s_eye);
+    return vec4(wo.xy, max(wo.z, 0.5e-4), s_slope_variance);
 }
 
 vec4 light_here(int k) {
 #if LIGHTS > 0
-    return vec4(to_local(u_light_direction[k]), v_visibility[k]);
+    return vec4(to_local(u_light_direction[k]), visibility_here(k));
 #else
     return vec4(0.0);
 #endif
 }
 
 vec3 mirrored_here(vec2 unused_layer, float alpha) {
-    vec3 n = normal_here();
-    vec3 d = reflect(-eye_in_world(), n);
+    vec3 d = reflect(-s_eye, s_normal);
     vec2 at = vec2((atan(d.x, -d.z) + u_rotation) * 0.15915494309189535 + 0.5,
                    atan(length(d.xz), d.y) * 0.3183098861837907);
-    float wide = sqrt(alpha * alpha + slope_variance());
+    float wide = sqrt(alpha * alpha + s_slope_variance);
     float layer = min(wide < FIRST_ALPHA ? wide / FIRST_ALPHA
                                          : 1.0 + 2.0 * log2(wide / FIRST_ALPHA),
                       float(LAYERS) - 1.001);
     float below = floor(layer);
-    return u_layers_unit * v_sky.a *
+    return u_layers_unit * sky_and_openness().a *
            mix(textureLod(u_layers, vec3(at, below), 0.0).rgb,
                textureLod(u_layers, vec3(at, below + 1.0), 0.0).rgb,
                layer - below);

@@ -15,10 +15,10 @@ void apply(const DrawState& state) {
         glBlendEquation(GL_FUNC_ADD);
         glBlendFunc(GL_ONE, state.blend == Blend::add ? GL_ONE : GL_ONE_MINUS_SRC_ALPHA);
     }
-    if (state.depth_test) {
+    if (state.depth_test || state.depth_equal) {
         glEnable(GL_DEPTH_TEST);
-        glDepthFunc(GL_LESS);
-        glDepthMask(GL_TRUE);
+        glDepthFunc(state.depth_equal ? GL_EQUAL : GL_LESS);
+        glDepthMask(state.depth_equal ? GL_FALSE : GL_TRUE);
     } else {
         glDisable(GL_DEPTH_TEST);
     }

@@ -13,8 +13,9 @@ enum class Primitive { points, triangles, triangle_strip, lines };
 
 struct DrawState {
     Blend blend = Blend::none;
-    bool depth_test = false;  ///< nearer passes; and is written
-    bool cull_back = false;   ///< front faces are counter-clockwise on the picture (rows down)
+    bool depth_test = false;   ///< nearer passes; and is written
+    bool depth_equal = false;  ///< only what lies at the very depth that is there; none is written
+    bool cull_back = false;    ///< front faces are counter-clockwise on the picture (rows down)
     std::optional<PixelRect> scissor;  ///< only these pixels
 };
 

@@ -20,42 +20,129 @@ namespace livery {
 namespace {
 
 constexpr float kHalfLargest = 65000.0f;
+constexpr std::size_t kMostTriangles = 1u << 24u;  // that floats count exactly
+constexpr int kMostRows = 16384;                   // of a texture
 
-constexpr const char* kFlatFragment = R"(#version 450 core
-uniform float u_value;
-layout(location = 0) out vec4 value;
-void main() { value = vec4(u_value, 0.0, 0.0, 1.0); }
-)";
+/// Depth that stands for a part: exact in every float.
+float depth_of_part(std::size_t part) { return static_cast<float>(part) / 65536.0f; }
 
-struct Vertex {
-    glm::vec3 position_mm, normal;
-    glm::vec4 tangent;
-};
+/// Values as texels of a texture that has kMeshRow in a row.
+template <typename T, typename Component>
+Texture2D texels_of(const std::vector<T>& values, TexelFormat format) {
+    constexpr auto kComponents = sizeof(T) / sizeof(Component);
+    const int rows = static_cast<int>(values.size() / kMeshRow) + 1;
+    check_argument(rows <= kMostRows,
+                   fmt::format("a preview of a mesh of {} values, {} are possible",
+                               values.size(),
+                               kMostRows * kMeshRow - 1));
+    std::vector<Component> padded(kComponents * static_cast<std::size_t>(rows * kMeshRow));
+    const auto* from = reinterpret_cast<const Component*>(values.data());
+    std::copy(from, from + kComponents * values.size(), padded.begin());
+    Texture2D texture(kMeshRow, rows, format);
+    texture.upload(std::span<const Component>(padded));
+    return texture;
+}
+Texture2D float_texels(const std::vector<glm::vec4>& values) {
+    return texels_of<glm::vec4, float>(values, TexelFormat::rgba32f);
+}
+
+/// Four lights a texel, (lights + 3) / 4 texels a vertex; none without lights.
+Texture2D visibility_texels(const VertexLight& light) {
+    const std::size_t lights = light.lights.size(), texels = (lights + 3) / 4;
+    if (lights == 0) return {};
+    std::vector<glm::vec4> packed(texels * light.sky.size(), glm::vec4(0.0f));
+    for (std::size_t i = 0; i < light.visibility.size(); ++i) {
+        const std::size_t vertex = i / lights, k = i % lights;
+        packed[vertex * texels + k / 4][static_cast<int>(k % 4)] = light.visibility[i];
+    }
+    return float_texels(packed);
+}
 
 /// Vertices and triangles sorted by part, so that a part is one range of indices.
 struct PartRange {
     int first = 0, count = 0;
+    Bounds bounds;
+    PixelRect covered;  ///< pixels beyond it show nothing of the part
 };
 
-/// What a picture is drawn into: samples, and pixels that are their mean.
-struct Target {
-    Texture2D samples, depth, pixels;
-    Framebuffer samples_framebuffer, pixels_framebuffer;
+Bounds bounds_of(const Mesh& mesh, std::span<const glm::uvec3> triangles) {
+    Bounds bounds{glm::dvec3(1e300), glm::dvec3(-1e300)};
+    for (const glm::uvec3& triangle : triangles) {
+        for (int k = 0; k < 3; ++k) {
+            const glm::dvec3 position(mesh.positions_mm[triangle[k]]);
+            bounds.low = glm::min(bounds.low, position);
+            bounds.high = glm::max(bounds.high, position);
+        }
+    }
+    return bounds;
+}
 
-    void resize(int width, int height, int factor, TexelFormat format) {
+/// The pixels in which something inside of bounds may be seen; all of them when in doubt.
+PixelRect covered_by(const Bounds& bounds, const View& view) {
+    const glm::dvec2 size(view.width, view.height);
+    glm::dvec2 low(size), high(0.0);
+    for (unsigned k = 0; k < 8; ++k) {
+        const glm::dvec3 corner((k & 1u) ? bounds.high.x : bounds.low.x,
+                                (k & 2u) ? bounds.high.y : bounds.low.y,
+                                (k & 4u) ? bounds.high.z : bounds.low.z);
+        const auto pixel = project(view, corner);
+        if (!pixel) return {0, 0, view.width, view.height};
+        low = glm::min(low, *pixel);
+        high = glm::max(high, *pixel);
+    }
+    // A lens bends the edges between the corners a little outward
+    const glm::dvec2 margin = 2.0 + 0.1 * (high - low);
+    low = glm::clamp(glm::floor(low - margin), glm::dvec2(0.0), size);
+    high = glm::clamp(glm::ceil(high + margin), low, size);
+    return {static_cast<int>(low.x),
+            static_cast<int>(low.y),
+            static_cast<int>(high.x - low.x),
+            static_cast<int>(high.y - low.y)};
+}
+
+PixelRect scaled(const PixelRect& rect, int factor) {
+    return {factor * rect.x, factor * rect.y, factor * rect.width, factor * rect.height};
+}
+
+bool same_view(const View& a, const View& b) {
+    return a.width == b.width && a.height == b.height && a.focal_px == b.focal_px &&
+           a.principal_px == b.principal_px && a.distortion == b.distortion &&
+           a.view_from_world.rotation == b.view_from_world.rotation &&
+           a.view_from_world.translation == b.view_from_world.translation;
+}
+
+/// What a picture is drawn into: the triangle that each sample shows, its part as a depth, its
+/// radiance; and pixels that are the mean of their samples.
+struct Targets {
+    int factor = 0;
+    Texture2D triangles, depth, part_depth, samples, pixels, coverage_samples, coverage;
+    Framebuffer to_triangles, to_part_depth, to_samples, to_pixels, to_coverage_samples,
+        to_coverage;
+
+    void resize(int width, int height, int samples_a_side) {
         if (pixels && pixels.width() == width && pixels.height() == height &&
-            samples.width() == factor * width) {
+            factor == samples_a_side) {
             return;
         }
-        samples = Texture2D(factor * width, factor * height, format);
-        depth = Texture2D(factor * width, factor * height, TexelFormat::depth32f);
-        pixels = Texture2D(width, height, format);
-        samples_framebuffer = Framebuffer({&samples}, &depth);
-        pixels_framebuffer = Framebuffer({&pixels});
+        factor = samples_a_side;
+        const int across = factor * width, down = factor * height;
+        triangles = Texture2D(across, down, TexelFormat::r32f);
+        depth = Texture2D(across, down, TexelFormat::depth32f);
+        part_depth = Texture2D(across, down, TexelFormat::depth32f);
+        samples = Texture2D(across, down, TexelFormat::rgba16f);
+        pixels = Texture2D(width, height, TexelFormat::rgba16f);
+        to_triangles = Framebuffer({&triangles}, &depth);
+        to_part_depth = Framebuffer({}, &part_depth);
+        to_samples = Framebuffer({&samples}, &part_depth);
+        to_pixels = Framebuffer({&pixels});
+        coverage = Texture2D();  // made when asked for
     }
-    void clear() const {
-        samples_framebuffer.clear_colour(0, 0.0f, 0.0f, 0.0f, 0.0f);
-        samples_framebuffer.clear_depth();
+    void make_coverage() {
+        if (coverage) return;
+        coverage_samples = Texture2D(triangles.width(), triangles.height(), TexelFormat::rgba8);
+        coverage = Texture2D(pixels.width(), pixels.height(), TexelFormat::rgba8);
+        to_coverage_samples = Framebuffer({&coverage_samples});
+        to_coverage = Framebuffer({&coverage});
     }
 };
 
@@ -72,7 +159,8 @@ struct RasterPreview::State {
     std::unique_ptr<VertexLightSolver> solver;  ///< made when light is first solved here
 
     std::shared_ptr<const VertexLight> light;
-    Buffer vertex_buffer, sky_buffer, index_buffer, visibility;
+    Buffer position_buffer, index_buffer;
+    Texture2D vertices, corners, sky, visibility;  ///< as inputs_raster.glsl has them
     VertexArray vertex_array;
     std::vector<PartRange> parts;
     std::shared_ptr<const FilteredEnvironment> uploaded;  ///< that `layers` holds
@@ -80,16 +168,19 @@ struct RasterPreview::State {
     float layers_unit = 1.0f;  ///< radiance of a value of 1, before the environment's scale
     std::map<ShadingKey, Program> programs;
     std::map<int, Program> downsamples;  ///< by factor
-    Program flat;
+    Program find_triangles, find_parts, find_coverage;
     ScreenPass screen;
-    Target target, coverage;
-    View view;  ///< of the last picture
+    Targets target;
+    View view;                   ///< of the last picture
+    bool samples_found = false;  ///< `target` has its triangles
+    Bounds bounds;
+    PixelRect covered;  ///< pixels beyond it show nothing of the product
 
     State(std::shared_ptr<const Product> its_product, int supersampling);
     void upload_layers(const FilteredEnvironment& filtered);
-    void draw_part(const Scene& scene, std::size_t part);
-    void draw_range(const Program& program, const Target& into, std::size_t part);
-    void downsample(const Target& from);
+    void find_samples(const View& new_view);
+    void shade_part(const Scene& scene, std::size_t part);
+    void downsample(const Texture2D& from, const Framebuffer& to);
     void set_view(Program& program) const;
     Program& shading_program(const ShadingKey& key);
 };
@@ -97,29 +188,43 @@ struct RasterPreview::State {
 RasterPreview::State::State(std::shared_ptr<const Product> its_product, int supersampling)
     : product(std::move(its_product)), factor(supersampling) {
     const Mesh& mesh = product->mesh;
-    std::vector<Vertex> vertices;
+    position_buffer = Buffer(mesh.positions_mm);
+    vertex_array.floats(0, position_buffer, 3, sizeof(glm::vec3));
+    std::vector<glm::vec4> attributes;
     for (std::size_t i = 0; i < mesh.positions_mm.size(); ++i) {
-        vertices.push_back({mesh.positions_mm[i], mesh.normals[i], mesh.tangents[i]});
+        attributes.emplace_back(mesh.positions_mm[i], 0.0f);
+        attributes.emplace_back(mesh.normals[i], 0.0f);
+        attributes.push_back(mesh.tangents[i]);
     }
-    vertex_buffer = Buffer(vertices);
-    sky_buffer = Buffer(vertices.size() * sizeof(glm::vec4));
-    const int stride = sizeof(Vertex);
-    vertex_array.floats(0, vertex_buffer, 3, stride, offsetof(Vertex, position_mm));
-    vertex_array.floats(1, vertex_buffer, 3, stride, offsetof(Vertex, normal));
-    vertex_array.floats(2, vertex_buffer, 4, stride, offsetof(Vertex, tangent));
-    vertex_array.floats(3, sky_buffer, 4, sizeof(glm::vec4));
+    vertices = float_texels(attributes);
 
+    bounds = livery::bounds_of(mesh);
     parts.resize(mesh.parts.size());
     std::vector<glm::uvec3> sorted;
+    std::vector<glm::uvec4> corners_and_part;
     for (std::size_t p = 0; p < parts.size(); ++p) {
         parts[p].first = static_cast<int>(3 * sorted.size());
         for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-            if (mesh.triangle_part[t] == p) sorted.push_back(mesh.triangles[t]);
+            if (mesh.triangle_part[t] != p) continue;
+            sorted.push_back(mesh.triangles[t]);
+            corners_and_part.emplace_back(mesh.triangles[t], p);
         }
         parts[p].count = static_cast<int>(3 * sorted.size()) - parts[p].first;
+        parts[p].bounds = bounds_of(
+            mesh, std::span(sorted).subspan(static_cast<std::size_t>(parts[p].first / 3)));
     }
+    check_argument(
+        sorted.size() < kMostTriangles,
+        fmt::format(
+            "a preview of {} triangles, {} are possible", sorted.size(), kMostTriangles - 1));
     index_buffer = Buffer(sorted);
+    corners = texels_of<glm::uvec4, std::uint32_t>(corners_and_part, TexelFormat::rgba32ui);
     vertex_array.indices(index_buffer);
+    find_triangles = Program(load_shader("radiance/raster.vert", {}),
+                             load_shader("radiance/raster_triangle.frag", {}));
+    find_parts = Program::screen_pass(
+        load_shader("radiance/raster_part.frag", {fmt::format("MESH_ROW {}", kMeshRow)}));
+    find_coverage = Program::screen_pass(load_shader("radiance/raster_coverage.frag", {}));
 }
 
 void RasterPreview::State::upload_layers(const FilteredEnvironment& filtered) {
@@ -160,7 +265,6 @@ void RasterPreview::State::set_view(Program& program) const {
     const glm::dvec3 centre = centre_in_world(view);
     program.set("u_view_centre_mm", glm::vec3(centre));
     // Depths of the mesh's bounding sphere
-    const Bounds bounds = bounds_of(product->mesh);
     const double middle = (view.view_from_world * (0.5 * (bounds.low + bounds.high))).z;
     const double radius = 0.5 * glm::distance(bounds.low, bounds.high) + 1.0;
     const double nearest = std::max(middle - radius, 1e-3 * (middle + radius));
@@ -175,21 +279,41 @@ Program& RasterPreview::State::shading_program(const ShadingKey& key) {
     return found->second;
 }
 
-void RasterPreview::State::draw_range(const Program& program,
-                                      const Target& into,
-                                      std::size_t part) {
+/// Which triangle and which part each sample shows: nothing is shaded that is not seen, and no
+/// sample twice.
+void RasterPreview::State::find_samples(const View& new_view) {
+    if (samples_found && target.factor == factor && same_view(view, new_view)) return;
+    samples_found = false;
+    view = new_view;
+    target.resize(view.width, view.height, factor);
+    covered = covered_by(bounds, view);
+    for (PartRange& part : parts) part.covered = covered_by(part.bounds, view);
+    target.to_triangles.clear_colour(0, 0.0f, 0.0f, 0.0f, 0.0f);
+    target.to_triangles.clear_depth();
+    set_view(find_triangles);
     DrawState state;
     state.depth_test = true;
-    draw_indexed(program,
-                 vertex_array,
-                 into.samples_framebuffer,
-                 Primitive::triangles,
-                 parts[part].first,
-                 parts[part].count,
-                 state);
+    const int indices = parts.empty() ? 0 : parts.back().first + parts.back().count;
+    if (indices > 0) {
+        draw_indexed(find_triangles,
+                     vertex_array,
+                     target.to_triangles,
+                     Primitive::triangles,
+                     0,
+                     indices,
+                     state);
+    }
+    target.to_part_depth.clear_depth();
+    find_parts.set("u_triangles", 0);
+    target.triangles.bind(0);
+    find_parts.set("u_corners", 1);
+    corners.bind(1);
+    state.scissor = scaled(covered, factor);
+    screen.run(find_parts, target.to_part_depth, state);
+    samples_found = true;
 }
 
-void RasterPreview::State::draw_part(const Scene& scene, std::size_t part) {
+void RasterPreview::State::shade_part(const Scene& scene, std::size_t part) {
     if (parts[part].count == 0) return;
     const Material& material = scene.part_materials[part];
     const std::vector<DirectionalLight>& lights =
@@ -212,18 +336,32 @@ void RasterPreview::State::draw_part(const Scene& scene, std::size_t part) {
         program.set("u_light_direction", std::span<const glm::vec3>(directions));
         program.set("u_light_radiance", std::span<const glm::vec3>(irradiance));
         program.set("u_light_radius2", std::span<const float>(radius2));
-        visibility.bind_storage_block(0);
+        program.set("u_visibility", 5);
+        visibility.bind(5);
     }
     if (light->environment) {
-        program.set("u_layers", 0);
+        program.set("u_layers", 1);
         program.set("u_layers_unit", layers_unit * static_cast<float>(light->environment->scale));
         program.set("u_rotation", static_cast<float>(light->environment->rotation_rad));
-        layers.bind(0);
+        layers.bind(1);
     }
-    draw_range(program, target, part);
+    program.set("u_part_depth", depth_of_part(part));
+    program.set("u_samples_a_pixel", static_cast<float>(factor));
+    program.set("u_triangles", 0);
+    target.triangles.bind(0);
+    program.set("u_vertices", 2);
+    vertices.bind(2);
+    program.set("u_corners", 3);
+    corners.bind(3);
+    program.set("u_sky", 4);
+    sky.bind(4);
+    DrawState state;
+    state.depth_equal = true;
+    state.scissor = scaled(parts[part].covered, factor);
+    screen.run(program, target.to_samples, state);
 }
 
-void RasterPreview::State::downsample(const Target& from) {
+void RasterPreview::State::downsample(const Texture2D& from, const Framebuffer& to) {
     auto found = downsamples.find(factor);
     if (found == downsamples.end()) {
         found = downsamples
@@ -233,8 +371,11 @@ void RasterPreview::State::downsample(const Target& from) {
                     .first;
     }
     found->second.set("u_samples", 0);
-    from.samples.bind(0);
-    screen.run(found->second, from.pixels_framebuffer);
+    from.bind(0);
+    to.clear_colour(0, 0.0f, 0.0f, 0.0f, 0.0f);
+    DrawState state;
+    state.scissor = covered;
+    screen.run(found->second, to, state);
 }
 
 RasterPreview::RasterPreview(std::shared_ptr<const Product> product, int supersampling) {
@@ -266,8 +407,8 @@ void RasterPreview::take(std::shared_ptr<const VertexLight> light) {
                    fmt::format("light at {} vertices for {}", light->sky.size(), vertices));
     if (light == s.light) return;
     s.light = std::move(light);
-    s.sky_buffer.update(std::span<const glm::vec4>(s.light->sky));
-    s.visibility = s.light->lights.empty() ? Buffer() : Buffer(s.light->visibility);
+    s.sky = float_texels(s.light->sky);
+    s.visibility = visibility_texels(*s.light);
     if (s.light->filtered && s.light->filtered != s.uploaded) s.upload_layers(*s.light->filtered);
     s.uploaded = s.light->filtered;
     if (!s.uploaded) s.layers = Texture2D();
@@ -280,11 +421,10 @@ void RasterPreview::draw(const Scene& scene, const View& view) {
         scene.part_materials.size() == s.parts.size(),
         fmt::format("{} materials for {} parts", scene.part_materials.size(), s.parts.size()));
     check_argument(s.light != nullptr, "a preview is drawn without light");
-    s.view = view;
-    s.target.resize(view.width, view.height, s.factor, TexelFormat::rgba16f);
-    s.target.clear();
-    for (std::size_t p = 0; p < s.parts.size(); ++p) s.draw_part(scene, p);
-    s.downsample(s.target);
+    s.find_samples(view);
+    s.target.to_samples.clear_colour(0, 0.0f, 0.0f, 0.0f, 0.0f);
+    for (std::size_t p = 0; p < s.parts.size(); ++p) s.shade_part(scene, p);
+    s.downsample(s.target.samples, s.target.to_pixels);
 }
 
 unsigned RasterPreview::draw_part_coverage(std::size_t part) {
@@ -292,19 +432,17 @@ unsigned RasterPreview::draw_part_coverage(std::size_t part) {
     check_argument(part < s.parts.size(),
                    fmt::format("part {} of {}, counted from 0", part, s.parts.size()));
     check_argument(s.view.width > 0, "a part's coverage is of a picture, and there is none yet");
-    if (!s.flat)
-        s.flat = Program(load_shader("radiance/raster.vert", {"LIGHTS 0"}),
-                         ShaderSource{"part coverage", kFlatFragment});
-    s.coverage.resize(s.view.width, s.view.height, s.factor, TexelFormat::rgba8);
-    s.coverage.clear();
-    s.set_view(s.flat);
-    for (std::size_t p = 0; p < s.parts.size(); ++p) {
-        if (s.parts[p].count == 0) continue;
-        s.flat.set("u_value", p == part ? 1.0f : 0.0f);
-        s.draw_range(s.flat, s.coverage, p);
-    }
-    s.downsample(s.coverage);
-    return s.coverage.pixels.name();
+    const PartRange& range = s.parts[part];
+    s.target.make_coverage();
+    s.find_coverage.set("u_triangles", 0);
+    s.find_coverage.set("u_first_last",
+                        glm::vec2(range.first / 3 + 1, (range.first + range.count) / 3));
+    s.target.triangles.bind(0);
+    DrawState state;
+    state.scissor = scaled(s.covered, s.factor);
+    s.screen.run(s.find_coverage, s.target.to_coverage_samples, state);
+    s.downsample(s.target.coverage_samples, s.target.to_coverage);
+    return s.target.coverage.name();
 }
 
 ImageF RasterPreview::read_back() const { return read_floats(state_->target.pixels); }

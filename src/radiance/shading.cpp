@@ -82,20 +82,23 @@ Program make_shading_program(const ShadingKey& key, ShadingSource source) {
     const bool raster = source == ShadingSource::raster;
     const std::string defines = fmt::format(
         "#define {} 1\n#define LIGHTS {}\n#define ENVIRONMENT {}\n"
-        "#define LAYERS {}\n#define FIRST_ALPHA {:.8f}\n",
+        "#define LAYERS {}\n#define FIRST_ALPHA {:.8f}\n#define MESH_ROW {}\n",
         define_of(model),
         lights,
         environment ? 1 : 0,
         kLayerAlphas.size(),
-        kLayerAlphas[1]);
+        kLayerAlphas[1],
+        kMeshRow);
     std::string text = "#version 450 core\n" + bsdf_glsl(model) + defines;
     if (model != ReflectanceModel::lambert) text += shipped_text("disc.glsl");
+    if (raster) text += shipped_text("mesh_texels.glsl") + shipped_text("lens.glsl");
     text += shipped_text(raster ? "inputs_raster.glsl" : "inputs_packed.glsl");
+    if (raster) text += "#define main shade\n";
     text += shipped_text("shade.glsl");
+    if (raster) text += "#undef main\nvoid main() {\n    prepare_sample();\n    shade();\n}\n";
     const ShaderSource fragment{fmt::format("shade {}", define_of(model)), text};
     if (!raster) return Program::screen_pass(fragment);
-    return Program(load_shader("radiance/raster.vert", {fmt::format("LIGHTS {}", lights)}),
-                   fragment);
+    return Program(load_shader("radiance/raster_part.vert", {}), fragment);
 }
 
 Program& ShadingPrograms::program_for(const ShadingKey& key) {

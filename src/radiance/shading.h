@@ -32,9 +32,12 @@ struct ShadingInputs {
 /// Where a shading program finds its fragments' inputs.
 enum class ShadingSource {
     packed,  ///< the surface map's textures
-    raster   ///< the mesh's vertices
+    raster   ///< the triangle that was rasterised there
 };
 using ShadingKey = std::tuple<ReflectanceModel, int, bool>;  ///< model, lights, environment
+
+/// Texels in a row of the textures that hold a mesh's arrays for ShadingSource::raster.
+inline constexpr int kMeshRow = 2048;
 
 Program make_shading_program(const ShadingKey& key, ShadingSource source);
 

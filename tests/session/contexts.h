@@ -35,14 +35,14 @@ class Finished {
     auto callback() {
         return [this](T value) { add(std::move(value)); };
     }
-    /// The first that `fits`, of those that came and those that come within a minute.
+    /// The first that `fits`, of those that came and those that come within five minutes.
     template <typename Fits>
     T wait_for(const Fits& fits) {
         std::unique_lock lock(mutex_);
         T found{};
         bool done = false;
         std::size_t seen = 0;
-        wake_.wait_for(lock, std::chrono::minutes(1), [&] {
+        wake_.wait_for(lock, std::chrono::minutes(5), [&] {
             for (; !done && seen < values_.size(); ++seen) {
                 if (!fits(values_[seen])) continue;
                 found = values_[seen];
@@ -55,7 +55,7 @@ class Finished {
     bool wait_for_count(std::size_t count) {
         std::unique_lock lock(mutex_);
         return wake_.wait_for(
-            lock, std::chrono::minutes(1), [&] { return values_.size() >= count; });
+            lock, std::chrono::minutes(5), [&] { return values_.size() >= count; });
     }
     std::vector<T> all() {
         const std::scoped_lock lock(mutex_);
