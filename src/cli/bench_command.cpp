@@ -17,13 +17,16 @@ Json json_of(const SpeedBenchResult& result) {
     for (const BenchEffect& effect : result.effects) {
         Json levels = Json::array();
         for (const BenchLevel& level : effect.levels) {
-            levels.push_back({{"name", level.name},
-                              {"ms", level.ms},
-                              {"fastest_ms", level.fastest_ms},
-                              {"repeats", level.repeats},
-                              {"work_items", level.work_items},
-                              {"error", level.error ? Json(*level.error) : Json(nullptr)},
-                              {"unit", level.error ? Json(level.unit) : Json(nullptr)}});
+            levels.push_back(
+                {{"name", level.name},
+                 {"ms", level.ms},
+                 {"fastest_ms", level.fastest_ms},
+                 {"repeats", level.repeats},
+                 {"p95_ms", level.p95_ms ? Json(*level.p95_ms) : Json(nullptr)},
+                 {"longest_ms", level.longest_ms ? Json(*level.longest_ms) : Json(nullptr)},
+                 {"work_items", level.work_items},
+                 {"error", level.error ? Json(*level.error) : Json(nullptr)},
+                 {"unit", level.error ? Json(level.unit) : Json(nullptr)}});
         }
         effects.push_back({{"name", effect.name}, {"levels", levels}});
     }
@@ -48,6 +51,12 @@ std::string text_of(const SpeedBenchResult& result) {
                                 level.ms,
                                 level.fastest_ms,
                                 level.repeats);
+            if (level.p95_ms && level.longest_ms) {
+                text += fmt::format("  {:<22}{:10.2f} 95th percentile, {:.2f} longest\n",
+                                    "",
+                                    *level.p95_ms,
+                                    *level.longest_ms);
+            }
             if (level.error) {
                 text += fmt::format("  {:<22}{:10.4f} {}\n", "", *level.error, level.unit);
             }

@@ -30,7 +30,7 @@ void lower_helper() {
     if (lowered || !helpers_give_way.load(std::memory_order_relaxed)) return;
     lowered = true;
     // On Linux a "process" here is a thread; 0 is the calling one.
-    ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 15);
+    ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 10);
 }
 
 }  // namespace

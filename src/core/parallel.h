@@ -11,7 +11,7 @@ void set_thread_count(int threads);
 int thread_count();
 
 /// From now on the threads that help parallel_for() anywhere in the program give way to all others
-/// (nice 15), so that long work in the background takes nothing from a thread that people wait for.
+/// (nice 10), so that long work in the background takes nothing from a thread that people wait for.
 /// Whoever calls parallel_for() takes part in its own loop at its own priority.
 void let_helpers_give_way();
 

@@ -145,7 +145,7 @@ void FragmentInputs::solve_mirror(const Scene& scene,
     // A scene whose paints do not mirror keeps what the next one may; one without environment not.
     if (!find_pass(plan, kMirrorPass)) {
         if (find_pass(plan, kIrradiancePass)) return;
-        if (mirror_made_.of) shading_stale_ = true;
+        if (mirror_made_.of) changed_.glossy = true;
         mirror_made_ = {};
         layered_ = nullptr;
         filtered_.mirrored.clear();
@@ -205,12 +205,12 @@ void FragmentInputs::fill_mirror(const Scene& scene, bool occluded, const Progre
     mirror_unit_ = unit;
 }
 
-bool FragmentInputs::upload(const Scene& scene, StageClock& clock) {
+FragmentInputs::Changed FragmentInputs::upload(const Scene& scene, StageClock& clock) {
     if (!mirror_made_.of) shading_.mirror = Texture2D();
     if (!mirror_texels_.empty()) {
         clock.add(kMirrorPass, [&] {
             upload_mirror();
-            shading_stale_ = true;
+            changed_.glossy = true;
         });
     }
     const bool other_eye = eye_ != scene.eye_in_world_mm;
@@ -218,14 +218,14 @@ bool FragmentInputs::upload(const Scene& scene, StageClock& clock) {
         upload_directions(scene);
         eye_ = scene.eye_in_world_mm;
         directions_stale_ = false;
-        shading_stale_ = true;
+        changed_.glossy = true;
     });
     clock.run(kDiffuseLightPass, diffuse_light_stale_, [&] {
         upload_diffuse_light();
         diffuse_light_stale_ = false;
-        shading_stale_ = true;
+        changed_.diffuse = true;
     });
-    return std::exchange(shading_stale_, false);
+    return std::exchange(changed_, {});
 }
 
 void FragmentInputs::upload_mirror() {

@@ -82,8 +82,13 @@ class FragmentInputs {
                const FramePlan& plan,
                StageClock& clock,
                const Progress& progress);
-    /// Hands what solve() changed to OpenGL; true when shading must follow.
-    bool upload(const Scene& scene, StageClock& clock);
+    /// Which paints must be shaded again.
+    struct Changed {
+        bool diffuse = false;  ///< the plain diffuse ones
+        bool glossy = false;
+    };
+    /// Hands what solve() changed to OpenGL.
+    Changed upload(const Scene& scene, StageClock& clock);
     const ShadingInputs& shading() const { return shading_; }
     int textures_made() const { return textures_made_; }
 
@@ -133,7 +138,8 @@ class FragmentInputs {
     Made sky_made_, mirror_made_;
     std::optional<glm::dvec3> eye_;  ///< that shading_.eye is for
     /// Sticky, so that a stop between two passes loses nothing.
-    bool directions_stale_ = true, diffuse_light_stale_ = true, shading_stale_ = false;
+    bool directions_stale_ = true, diffuse_light_stale_ = true;
+    Changed changed_;
     ShadingInputs shading_;
     int textures_made_ = 0;
 };

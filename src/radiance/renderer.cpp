@@ -79,7 +79,8 @@ struct RadianceRenderer::State {
     void solve(const Scene& scene, FramePlan& plan, StageClock& clock, const Progress& progress);
     void make_shaded();
     /// Shades the parts that need it; their timers are read when all is drawn.
-    void shade(const Scene& scene, FramePlan& plan, bool inputs_changed);
+    void shade(const Scene& scene, FramePlan& plan);
+    void upload(const Scene& scene, StageClock& clock);
     void run_resolve(FramePlan& plan, bool any_shaded);
     void read_timers();
 
@@ -116,9 +117,18 @@ void RadianceRenderer::State::make_shaded() {
     ++own_textures;
 }
 
-void RadianceRenderer::State::shade(const Scene& scene, FramePlan& plan, bool inputs_changed) {
+/// What is shaded in another light now does not stand.
+void RadianceRenderer::State::upload(const Scene& scene, StageClock& clock) {
+    const FragmentInputs::Changed changed = inputs.upload(scene, clock);
+    for (std::optional<Shaded>& part : parts) {
+        if (!part) continue;
+        const bool diffuse = part->material.model == ReflectanceModel::lambert;
+        if (diffuse ? changed.diffuse : changed.glossy) part.reset();
+    }
+}
+
+void RadianceRenderer::State::shade(const Scene& scene, FramePlan& plan) {
     make_shaded();
-    if (inputs_changed) std::fill(parts.begin(), parts.end(), std::nullopt);
     for (std::size_t p = 0; p < parts.size(); ++p) {
         PlannedPass* pass = find_pass(plan, shade_pass(scene, p));
         pass->ms = 0.0;
@@ -183,10 +193,7 @@ void RadianceRenderer::prepare(const Scene& scene, FramePlan& plan, const Progre
     State& s = *state_;
     StageClock clock(plan);
     s.solve(scene, plan, clock, progress);
-    // The picture is not drawn again here, and so must be when it is next asked for.
-    if (s.inputs.upload(scene, clock)) {
-        std::fill(s.parts.begin(), s.parts.end(), std::nullopt);
-    }
+    s.upload(scene, clock);
     for (const Material& material : scene.part_materials) {
         progress.check_stop();
         s.programs.compile(material, s.inputs.shading());
@@ -199,10 +206,10 @@ void RadianceRenderer::render(const Scene& scene, FramePlan& plan, const Progres
     s.solve(scene, plan, clock, progress);
     count_work(scene, plan);
     const int before = clock.passes_run();
-    const bool inputs_changed = s.inputs.upload(scene, clock);
+    s.upload(scene, clock);
     s.counters.passes_run += clock.passes_run() - before;
     s.running.clear();
-    s.shade(scene, plan, inputs_changed);
+    s.shade(scene, plan);
     s.run_resolve(plan, !s.running.empty());
     s.read_timers();
 }

@@ -13,7 +13,6 @@
 
 #include "core/error.h"
 #include "radiance/shading.h"
-#include "session/low_priority.h"
 #include "session/picture.h"
 
 namespace livery {
@@ -28,10 +27,11 @@ double milliseconds_since(Clock::time_point start) {
 
 /// On a thread of its own that gives way, waited for: a thread's priority only goes down, and this
 /// one has frames to draw afterwards.
-void run_giving_way(const std::function<void()>& work) {
+void run_giving_way(std::optional<Urgency> urgency, const std::function<void()>& work) {
+    if (!urgency) return work();
     std::exception_ptr error;
     std::thread thread([&] {
-        lower_priority_of_this_thread(Urgency::background);
+        lower_priority_of_this_thread(*urgency);
         try {
             work();
         } catch (...) {
@@ -144,16 +144,17 @@ FrameLane::FrameLane(std::shared_ptr<GeometryCache> geometries)
 
 void FrameLane::solve(const FrameDescription& description,
                       Quality quality,
+                      std::optional<Urgency> urgency,
                       const Progress& progress) {
     SolveKeys keys = with_quality(keys_of(description), quality);
     if (keys[1] && same_light(*keys[0], *keys[1])) keys[1].reset();
     solved_ = {};
     prepared_ = mirrors_solved_ = false;
     sides_ = {};
-    solve_light(0, description.scene, *keys[0], progress);
+    solve_light(0, description.scene, *keys[0], urgency, progress);
     bool mirroring = mirrors(description.scene.part_materials);
     if (keys[1]) {
-        solve_light(1, *description.wipe_to, *keys[1], progress);
+        solve_light(1, *description.wipe_to, *keys[1], urgency, progress);
         mirroring = mirroring && mirrors(description.wipe_to->part_materials);
     } else {
         lights_[1] = {};
@@ -165,6 +166,7 @@ void FrameLane::solve(const FrameDescription& description,
 void FrameLane::solve_light(std::size_t index,
                             const Scene& scene,
                             const SolveKey& key,
+                            std::optional<Urgency> urgency,
                             const Progress& progress) {
     Solved& light = lights_[index];
     FramePlan plan = plan_frame(scene, key.quality, FrameStage::projector);
@@ -172,10 +174,10 @@ void FrameLane::solve_light(std::size_t index,
         !same_pose({key.product, light.renderer->geometry()->view, {}, {}, {}, {}}, key)) {
         light = {};
         std::shared_ptr<const FrameGeometry> geometry;
-        run_giving_way([&] { geometry = geometries_->get(key, progress); });
+        run_giving_way(urgency, [&] { geometry = geometries_->get(key, progress); });
         light.renderer = std::make_unique<RadianceRenderer>(std::move(geometry), true);
     }
-    run_giving_way([&] { light.renderer->solve(scene, plan, progress); });
+    run_giving_way(urgency, [&] { light.renderer->solve(scene, plan, progress); });
     if (light.untold) add_milliseconds(plan, *light.untold, false);
     light.untold = std::move(plan);
 }
@@ -195,7 +197,7 @@ void FrameLane::prepare(const FrameDescription& description, const Progress& pro
             const std::size_t index = nearest_of(solved_, keys_of(description), side);
             RadianceRenderer& renderer = *lights_[index].renderer;
             FramePlan plan = plan_frame(scene, solved_[index]->quality, FrameStage::projector);
-            run_giving_way([&] { renderer.solve(scene, plan, progress); });
+            run_giving_way(Urgency::background, [&] { renderer.solve(scene, plan, progress); });
             renderer.prepare(scene, plan, progress);
         }
         if (used) continue;
@@ -234,14 +236,21 @@ Scene FrameLane::scene_of(const FrameDescription& description, std::size_t side)
     return scene;
 }
 
+void FrameLane::draw_ahead(const FrameDescription& description) {
+    draw(description);
+    for (Side& side : sides_) side.told = false;
+}
+
 std::shared_ptr<FinishedFrame> FrameLane::draw(const FrameDescription& description) try {
     const auto start = Clock::now();
     check_argument(can_draw(description), "this frame's light was not solved");
     auto frame = std::make_shared<FinishedFrame>();
     for (std::size_t side = 0; side < side_count(description); ++side) {
+        const bool ahead = !sides_[side].told;
         draw_side(description, side);
         frame->shade_ms += sides_[side].shade_ms;
         frame->compensate_ms += sides_[side].compensate_ms;
+        if (ahead) frame->ms_total += sides_[side].shade_ms + sides_[side].compensate_ms;
     }
     compose(description);
     frame->number = description.number;
@@ -253,7 +262,7 @@ std::shared_ptr<FinishedFrame> FrameLane::draw(const FrameDescription& descripti
     frame->plan = told_plan(description.wipe_to.has_value());
     frame->compensation = sides_[0].compensation;
     frame->asked_at = description.asked_at;
-    frame->ms_total = milliseconds_since(start);
+    frame->ms_total += milliseconds_since(start);
     frame->done_at = Clock::now();
     return frame;
 } catch (const std::invalid_argument&) {
@@ -272,11 +281,13 @@ void FrameLane::draw_side(const FrameDescription& description, std::size_t index
     Side& side = sides_[index];
     const Scene scene = scene_of(description, index);
     const std::size_t light = nearest_of(solved_, keys_of(description), index);
+    const bool painted = side.radiance_working && same_paints(side.paints, scene.part_materials) &&
+                         side.exposure_ev == scene.exposure_ev && side.light == light;
+    const bool ahead = !std::exchange(side.told, true);
+    if (ahead && painted && side.setup == description.setup) return;
     side.plan = plan_frame(scene, solved_[light]->quality, FrameStage::projector);
     side.shade_ms = side.compensate_ms = 0.0;
     for (PlannedPass& pass : side.plan.passes) pass.ms = 0.0;
-    const bool painted = side.radiance_working && same_paints(side.paints, scene.part_materials) &&
-                         side.exposure_ev == scene.exposure_ev && side.light == light;
     if (!painted) {
         side.radiance_working = nullptr;
         const auto start = Clock::now();

@@ -11,6 +11,7 @@
 #include "core/progress.h"
 #include "radiance/renderer.h"
 #include "session/frame_thread.h"
+#include "session/low_priority.h"
 #include "session/recycler.h"
 #include "session/solve_key.h"
 #include "session/texture_pool.h"
@@ -38,9 +39,13 @@ class FrameLane {
   public:
     explicit FrameLane(std::shared_ptr<GeometryCache> geometries);
 
-    /// Solves the description's light at this quality; rays are traced on threads that give way.
-    /// After a stop nothing can be drawn until a solve went through, which takes up what is there.
-    void solve(const FrameDescription& description, Quality quality, const Progress& progress);
+    /// Solves the description's light at this quality; rays are traced on threads that give way as
+    /// `urgency` says (none: on this thread, at its own priority). After a stop nothing can be
+    /// drawn until a solve went through, which takes up what is there.
+    void solve(const FrameDescription& description,
+               Quality quality,
+               std::optional<Urgency> urgency,
+               const Progress& progress);
     /// What any other paint may need in the light that is solved, so that none has to wait.
     void prepare(const FrameDescription& description, const Progress& progress);
 
@@ -53,6 +58,8 @@ class FrameLane {
     /// is drawn. Throws what goes wrong; after anything but std::invalid_argument the lane starts
     /// anew.
     std::shared_ptr<FinishedFrame> draw(const FrameDescription& description);
+    /// The same ahead of draw(), which then tells what it cost.
+    void draw_ahead(const FrameDescription& description);
 
   private:
     /// One scene as last drawn.
@@ -66,6 +73,7 @@ class FrameLane {
         FramePlan plan;
         CompensationStats compensation;
         double shade_ms = 0.0, compensate_ms = 0.0;
+        bool told = true;  ///< false: drawn ahead, no frame's plan has said so
     };
     /// The picture of all sides.
     struct Composed {
@@ -79,6 +87,7 @@ class FrameLane {
     void solve_light(std::size_t index,
                      const Scene& scene,
                      const SolveKey& key,
+                     std::optional<Urgency> urgency,
                      const Progress& progress);
     Scene scene_of(const FrameDescription& description, std::size_t side) const;
     void draw_side(const FrameDescription& description, std::size_t side);

@@ -159,6 +159,7 @@ void FrameThread::Implementation::finish(FrameLane& lane, const Newest& descript
         last_good = frame;
         shown = description;
     }
+    let_helpers_give_way();
     on_finished(std::move(frame));
 }
 
@@ -193,6 +194,9 @@ void FrameThread::Implementation::work_behind(std::size_t index,
                                               std::unique_lock<std::mutex>& lock) {
     const Task its_task = *task;
     const bool told = !missing_of(lanes[front].solved, its_task.wanted).empty();
+    // The first picture waits for nothing else; what only gets better gives way to everything.
+    std::optional<Urgency> urgency;
+    if (last_good) urgency = its_task.whole ? Urgency::background : Urgency::watched;
     stop = false;
     if (told) solving = Solving{0.0, "starting"};
     lock.unlock();
@@ -205,9 +209,9 @@ void FrameThread::Implementation::work_behind(std::size_t index,
     }
     std::exception_ptr error;
     try {
-        lane.solve(*its_task.description, its_task.wanted[0]->quality, progress);
+        lane.solve(*its_task.description, its_task.wanted[0]->quality, urgency, progress);
         // Everything that drawing makes once, before the front is held.
-        lane.draw(*its_task.description);
+        lane.draw_ahead(*its_task.description);
         if (its_task.whole) lane.prepare(*its_task.description, progress);
     } catch (const Cancelled&) {
     } catch (...) {
@@ -291,7 +295,6 @@ FrameThread::FrameThread(GlContext& front,
     Implementation& all = *implementation_;
     all.contexts = {&front, &back};
     all.on_finished = std::move(on_finished);
-    let_helpers_give_way();
     for (std::size_t lane = 0; lane < 2; ++lane) {
         all.threads[lane] = std::thread([&all, lane] { all.run(lane); });
     }
@@ -320,6 +323,13 @@ void FrameThread::show(FrameDescription description) {
 std::optional<FrameThread::Solving> FrameThread::solving() const {
     const std::scoped_lock lock(implementation_->mutex);
     return implementation_->solving;
+}
+
+bool FrameThread::is_idle() const {
+    const Implementation& all = *implementation_;
+    const std::scoped_lock lock(all.mutex);
+    const bool drawn = all.newest == all.shown && !all.front_draws && !all.front_held;
+    return drawn && !all.task && !all.next_task(1 - all.front);
 }
 
 }  // namespace livery

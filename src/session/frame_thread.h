@@ -76,6 +76,8 @@ class FrameThread {
         std::string stage;
     };
     std::optional<Solving> solving() const;
+    /// Nothing is drawn, solved or prepared until something is shown.
+    bool is_idle() const;
 
   private:
     struct Implementation;

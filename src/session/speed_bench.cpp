@@ -12,6 +12,7 @@
 #include "radiance/accuracy.h"
 #include "radiance/renderer.h"
 #include "reference/path_tracer.h"
+#include "session/desktop_bench.h"
 #include "session/library.h"
 #include "session/synthetic_calibration.h"
 #include "twin/description.h"
@@ -28,13 +29,13 @@ double milliseconds_since(Clock::time_point start) {
 
 BenchLevel level_of(const std::string& name, std::vector<double> ms, double work_items) {
     std::sort(ms.begin(), ms.end());
-    return {name,
-            ms[ms.size() / 2],
-            ms.front(),
-            static_cast<int>(ms.size()),
-            work_items,
-            std::nullopt,
-            ""};
+    BenchLevel level;
+    level.name = name;
+    level.ms = ms[ms.size() / 2];
+    level.fastest_ms = ms.front();
+    level.repeats = static_cast<int>(ms.size());
+    level.work_items = work_items;
+    return level;
 }
 
 template <typename Work>
@@ -232,6 +233,10 @@ SpeedBenchResult run_speed_bench(GlDevice device, const Progress& progress) {
         }
     }
     bench_accuracy(result, scene, progress);
+    // Last: it lowers the priority of helping threads for good.
+    for (BenchEffect& desktop : run_desktop_bench(device, progress)) {
+        result.effects.push_back(std::move(desktop));
+    }
     return result;
 }
 

@@ -17,8 +17,9 @@ struct BenchLevel {
     double fastest_ms = 0.0;
     int repeats = 0;
     double work_items = 0.0;
-    std::optional<double> error;  ///< where the bench has a truth to compare with
-    std::string unit;             ///< of the error
+    std::optional<double> p95_ms, longest_ms;  ///< where a person waits for each one
+    std::optional<double> error;               ///< where the bench has a truth to compare with
+    std::string unit;                          ///< of the error
 };
 
 struct BenchEffect {
