@@ -56,6 +56,7 @@ Command calibrate_color_command();
 Command check_command();
 Command compensate_command();
 Command demo_command();
+Command desktop_command();
 Command patterns_command();
 Command photograph_command();
 Command plan_command();

@@ -33,7 +33,8 @@ int print(const std::string& text, int exit_code) {
 }
 
 int run(const std::vector<std::string>& arguments) {
-    std::vector<Command> commands = {demo_command(),
+    std::vector<Command> commands = {desktop_command(),
+                                     demo_command(),
                                      render_command(),
                                      plan_command(),
                                      patterns_command(),

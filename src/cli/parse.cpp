@@ -116,7 +116,7 @@ std::string help_text(const std::vector<Command>& commands, const std::string& n
     CommonOptions common;
     if (name.empty()) {
         std::string text =
-            "Usage: livery COMMAND [OPTIONS]\n\n"
+            "Usage: livery [COMMAND [OPTIONS]]\n\n"
             "Judges product paint by projection onto a grey mock-up.\n\nCommands:\n";
         for (const Command& command : commands) {
             text += fmt::format("  {:<16} {}\n", command.name, command.summary);
@@ -146,6 +146,7 @@ std::string help_text(const std::vector<Command>& commands, const std::string& n
 
 ParsedCommandLine parse_command_line(const std::vector<std::string>& arguments,
                                      std::vector<Command>& commands) {
+    if (arguments.empty()) return parse_command_line({"desktop"}, commands);
     ParsedCommandLine parsed;
 
     // For the build alone: users find the page with man.
@@ -157,7 +158,7 @@ ParsedCommandLine parse_command_line(const std::vector<std::string>& arguments,
     const auto wants_help = std::find_if(arguments.begin(), arguments.end(), [](const auto& word) {
         return word == "--help" || word == "-h" || word == "help";
     });
-    if (arguments.empty() || wants_help != arguments.end()) {
+    if (wants_help != arguments.end()) {
         std::string name;
         for (const auto& word : arguments) {
             if (word == "help" || word.starts_with("-")) continue;
@@ -167,11 +168,6 @@ ParsedCommandLine parse_command_line(const std::vector<std::string>& arguments,
         if (parsed.text.empty()) parsed.text = help_text(commands, name.substr(0, name.find(' ')));
         if (parsed.text.empty()) {
             parsed.text = unknown_command(name);
-            parsed.exit_code = 2;
-        }
-        if (arguments.empty()) {
-            parsed.text =
-                "livery: this build has no desktop program; give a command (see livery help)";
             parsed.exit_code = 2;
         }
         return parsed;

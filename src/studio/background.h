@@ -1,6 +1,7 @@
 // One thread for what must not hold up the window: loading, saving, listing.
 #pragma once
 
+#include <exception>
 #include <functional>
 #include <memory>
 

@@ -39,6 +39,8 @@ struct Notice {
 };
 
 struct Studio {
+    explicit Studio(Session opened) : session(std::move(opened)) {}
+
     Session session;
     std::shared_ptr<const Product> product;
     std::shared_ptr<const ProjectorSetup> setup;
@@ -58,7 +60,9 @@ struct Studio {
 
     // What is shown; saved as the session's workspace.
     int shown_look = 0;
+    std::size_t shown_place = 0;       ///< its place in the list
     std::optional<int> compared_look;  ///< B of A/B
+    bool chose_compared_look = false;  ///< else: the look shown before
     bool showing_b = false;            ///< the key is held
     bool wiping = false;
     double wipe_at = 0.5;
@@ -70,12 +74,15 @@ struct Studio {
     /// until the pointer is on something else.
     std::optional<SessionCommand> tried;
     std::optional<SessionCommand> trying;   ///< given to try_out() in this frame
+    unsigned trying_item = 0;               ///< which item gave it
     std::optional<unsigned> untried_item;   ///< the item whose trial was taken back
     bool untried_item_still_there = false;  ///< in this frame
     bool gave_up = false;                   ///< Esc was pressed: no drag commits in this frame
     std::optional<int> hovered_part;        ///< in a list: shows in the preview
     std::optional<int> glowing_part;        ///< clicked: glows on the mock-up
     double glowing_until_s = 0.0;
+    std::optional<int> renaming_look;  ///< its name is being typed
+    double now_s = 0.0;                ///< steady clock, at the start of this frame of the window
 
     std::vector<Notice> notices;
     float ui_scale = 1.0f;
@@ -101,6 +108,13 @@ void stop_trying(Studio& studio);
 /// Shows a look of the document; the one shown before becomes B of A/B unless B was chosen.
 void show_look(Studio& studio, int look);
 
+/// After anything that may have deleted looks: shows a neighbour of one that is gone.
+void keep_shown_looks_valid(Studio& studio);
+
+/// Around everything that may try something out, once a frame of the window.
+void begin_trials(Studio& studio);
+void end_trials(Studio& studio);
+
 /// Selects a part and lets it glow on the mock-up for a moment.
 void select_part(Studio& studio, int part);
 
@@ -122,7 +136,6 @@ void draw_paint_panel(Studio& studio);
 void draw_lighting_panel(Studio& studio);
 void draw_plan_panel(Studio& studio);
 void draw_calibration_panel(Studio& studio);
-void draw_stage(Studio& studio);  ///< the middle, with its view buttons and the wipe
 /// The dialog; `open` is the caller's flag.
 void draw_ballot_dialog(Studio& studio, bool& open);
 

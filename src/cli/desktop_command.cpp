@@ -1,0 +1,80 @@
+// livery desktop
+
+#include <cmath>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "cli/command.h"
+#include "studio/app.h"
+
+namespace livery {
+
+Command desktop_command() {
+    struct Arguments {
+        std::string session, product, size, ui_map, trace;
+        double ui_scale = 0.0;
+    };
+    const auto arguments = std::make_shared<Arguments>();
+    Command command;
+    command.name = "desktop";
+    command.summary = "open the desktop program; so does livery alone";
+    command.example = "livery desktop --session roadster.livery";
+    command.options = {
+        {"--session",
+         "FILE",
+         "the session, made when it is not there (default: in your folder)",
+         &arguments->session,
+         false,
+         {}},
+        {"--product",
+         "NAME",
+         "what a new session shows: a file, car or sphere (default car)",
+         &arguments->product,
+         false,
+         {}},
+        {"--ui-scale",
+         "X",
+         "size of letters and controls, 0.5 to 4 (default: the screen's)",
+         &arguments->ui_scale,
+         false,
+         {}},
+        {"--size", "WxH", "size of the window (default: as it was)", &arguments->size, false, {}},
+        {"--ui-map",
+         "FILE",
+         "keep a JSON file of where everything in the window is",
+         &arguments->ui_map,
+         false,
+         {}},
+        {"--trace",
+         "FILE",
+         "write when inputs, frames and pictures happened, a JSON line each",
+         &arguments->trace,
+         false,
+         {}},
+    };
+    command.run = [arguments](const CommonOptions&, const Progress&) {
+        DesktopOptions options;
+        options.session = arguments->session;
+        options.product = arguments->product;
+        options.ui_map = arguments->ui_map;
+        options.trace = arguments->trace;
+        if (arguments->ui_scale != 0.0) {
+            if (arguments->ui_scale < 0.5 || arguments->ui_scale > 4.0) {
+                throw std::invalid_argument(
+                    fmt::format("--ui-scale: found {}, expected 0.5 to 4", arguments->ui_scale));
+            }
+            options.ui_scale = arguments->ui_scale;
+        }
+        if (!arguments->size.empty()) {
+            const PixelSize size = parse_size("--size", arguments->size);
+            options.size_px = glm::ivec2(size.width, size.height);
+        }
+        Outcome outcome;
+        outcome.exit_code = run_desktop(options);
+        return outcome;
+    };
+    return command;
+}
+
+}  // namespace livery

@@ -1,0 +1,343 @@
+#include "studio/app.h"
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_internal.h>
+
+#include "core/log.h"
+#include "core/paths.h"
+#include "session/library.h"
+#include "studio/actions.h"
+#include "studio/imgui_window.h"
+#include "studio/projector_control.h"
+#include "studio/save_picture.h"
+#include "studio/shell.h"
+#include "studio/shell_state.h"
+#include "studio/theme.h"
+#include "studio/ui_map.h"
+#include "studio/window_place.h"
+#include "studio/wiring.h"
+
+namespace livery {
+
+namespace {
+
+// Dear ImGui settles within this many frames after an input.
+constexpr int kFramesAfterInput = 3;
+constexpr double kShortestFrame_s = 1.0 / 60.0;
+
+bool monitors_have_changed = false;  // Set by GLFW's callback, which carries no pointer.
+
+double now_s() { return seconds_of(std::chrono::steady_clock::now()); }
+
+Session open_session(const DesktopOptions& options) {
+    const auto file = options.session.empty() ? default_session_file() : options.session;
+    const std::string product = options.product.empty() ? "car" : options.product;
+    try {
+        Session session = Session::open(file, product);
+        if (!options.product.empty() && session.document().product != options.product) {
+            throw Refused(fmt::format("the session {} shows the product {}, not {}",
+                                      file.string(),
+                                      session.document().product,
+                                      options.product),
+                          "name another file with --session, which will be made");
+        }
+        return session;
+    } catch (const FileError& error) {
+        log_line(LogLevel::error, std::string("session: ") + error.what());
+        return Session::unsaved(new_document(product), error.what());
+    }
+}
+
+/// A monitor's part of the desktop that the window lies on, and its scale.
+float screen_scale(GLFWwindow* window, const std::vector<Monitor>& monitors) {
+    float content_scale = 1.0f;
+    glfwGetWindowContentScale(window, &content_scale, nullptr);
+    int x = 0, y = 0;
+    glfwGetWindowPos(window, &x, &y);
+    glm::ivec2 size{0};
+    for (const Monitor& m : monitors) {
+        if (x >= m.x && y >= m.y && x < m.x + m.width && y < m.y + m.height)
+            size = {m.width, m.height};
+    }
+    return static_cast<float>(default_scale(content_scale, size));
+}
+
+WindowPlace place_of(GLFWwindow* window) {
+    WindowPlace place;
+    glfwGetWindowPos(window, &place.position.x, &place.position.y);
+    glfwGetWindowSize(window, &place.size_px.x, &place.size_px.y);
+    place.maximised = glfwGetWindowAttrib(window, GLFW_MAXIMIZED) != 0;
+    return place;
+}
+
+/// Where the window was left, or in the middle of the main monitor.
+WindowPlace first_place(const Shell& shell, const DesktopOptions& options) {
+    const auto& monitors = shell.studio.monitors;
+    const auto remembered = shell.studio.session.workspace().find(kWindowKey);
+    std::optional<WindowPlace> place;
+    if (remembered != shell.studio.session.workspace().end()) {
+        place = parse_window_place(remembered->second);
+    }
+    if (!place) {
+        place = WindowPlace{};
+        const auto main = std::find_if(
+            monitors.begin(), monitors.end(), [](const Monitor& m) { return m.primary; });
+        if (main != monitors.end()) {
+            const double scale = default_scale(1.0f, {main->width, main->height});
+            place->size_px = {std::min(main->width, static_cast<int>(1280 * scale)),
+                              std::min(main->height, static_cast<int>(800 * scale))};
+            place->position = {main->x + (main->width - place->size_px.x) / 2,
+                               main->y + (main->height - place->size_px.y) / 2};
+        }
+    }
+    if (options.size_px) {
+        place->size_px = *options.size_px;
+        place->maximised = false;
+    }
+    return place_beside_projector(*place, monitors, shell.projector_monitor).value_or(*place);
+}
+
+void put_window(GLFWwindow* window, const WindowPlace& place) {
+    glfwSetWindowSize(window, place.size_px.x, place.size_px.y);
+    glfwSetWindowPos(window, place.position.x, place.position.y);
+    if (place.maximised) glfwMaximizeWindow(window);
+}
+
+/// Off the projector, when the projector was chosen or monitors came and went.
+void move_off_projector(Shell& shell, GLFWwindow* window) {
+    shell.window_must_move = false;
+    const WindowPlace now = place_of(window);
+    const auto place = place_beside_projector(now, shell.studio.monitors, shell.projector_monitor);
+    if (!place || *place == now) return;
+    if (now.maximised) glfwRestoreWindow(window);
+    put_window(window, *place);
+}
+
+KeyboardOwner keyboard_owner() {
+    const ImGuiContext& g = *ImGui::GetCurrentContext();
+    KeyboardOwner owner;
+    owner.text_field = g.IO.WantTextInput;
+    owner.dialog = ImGui::GetTopMostPopupModal() != nullptr;
+    owner.keyboard_navigation = g.IO.NavVisible || g.OpenPopupStack.Size > 0;
+    return owner;
+}
+
+/// Runs what a key means; true when it meant something.
+bool handle_key(Shell& shell, const InputEvent& event) {
+    const KeyChord chord{event.code,
+                         (event.modifiers & GLFW_MOD_CONTROL) != 0,
+                         (event.modifiers & GLFW_MOD_SHIFT) != 0};
+    if (!event.down) {
+        // Whatever the modifiers are by now: what was held is let go.
+        for (const Action& action : all_actions()) {
+            const bool its_key =
+                std::any_of(action.chords.begin(), action.chords.end(), [&](const KeyChord& c) {
+                    return c.key == event.code;
+                });
+            if (action.released && its_key) action.released(shell);
+        }
+        return false;
+    }
+    if ((event.modifiers & (GLFW_MOD_ALT | GLFW_MOD_SUPER)) != 0) return false;
+    const KeyboardOwner owner = keyboard_owner();
+    const Action* action = action_for(chord, owner);
+    if (!action) return chord.key == GLFW_KEY_SPACE && !owner.text_field && !owner.dialog;
+    // Esc also closes an open menu, and that is all it does then.
+    const bool menu_open = owner.keyboard_navigation && !owner.dialog &&
+                           ImGui::GetCurrentContext()->OpenPopupStack.Size > 0;
+    if (action->id == "give-up" && menu_open) return false;
+    const bool repeats = action->id == "undo" || action->id == "redo" || action->id == "larger" ||
+                         action->id == "smaller" || action->id == "next-look" ||
+                         action->id == "previous-look";
+    if (event.repeated && !repeats) return true;
+    run_action(*action, shell);
+    if (action->id == "give-up" && ImGui::IsAnyItemActive()) ImGui::ClearActiveID();
+    return true;
+}
+
+/// The earliest moment at which something on the window changes by itself.
+std::optional<double> next_change_s(const Shell& shell) {
+    std::optional<double> next;
+    const auto consider = [&](double when_s) {
+        if (when_s > 0.0 && (!next || when_s < *next)) next = when_s;
+    };
+    for (const Notice& notice : shell.studio.notices) consider(notice.shown_until_s);
+    if (shell.studio.glowing_part) consider(shell.studio.glowing_until_s);
+    if (shell.monitor_numbers) consider(shell.monitor_numbers_until_s);
+    // A blinking text cursor.
+    if (ImGui::GetIO().WantTextInput) consider(shell.studio.now_s + 0.4);
+    // Progress is read, not told.
+    if (shell.studio.frames->solving() || shell.studio.bench->calibrating().running) {
+        consider(shell.studio.now_s + 0.25);
+    }
+    return next;
+}
+
+class Desktop {
+  public:
+    Desktop(const DesktopOptions& options, Session session)
+        : options_(options), shell_(std::move(session)) {}
+
+    int run() {
+        prepare();
+        while (!shell_.quit && !glfwWindowShouldClose(window_->native())) {
+            wait_for_something();
+            draw_frame();
+        }
+        finish();
+        return 0;
+    }
+
+  private:
+    void prepare() {
+        Studio& studio = shell_.studio;
+        if (!options_.trace.empty()) shell_.trace = std::make_shared<Trace>(options_.trace);
+        if (!options_.ui_map.empty()) ui_map_.emplace(options_.ui_map);
+        shell_.fixed_scale = options_.ui_scale;
+        restore_workspace(shell_);
+        studio.monitors = list_monitors();
+        const WindowPlace place = first_place(shell_, options_);
+        WindowOptions window_options;
+        window_options.size_px = place.size_px;
+        window_options.visible = false;
+        window_ = std::make_unique<Window>(window_options);
+        put_window(window_->native(), place);
+        window_->make_current();
+        glfwSwapInterval(0);
+        log_line(LogLevel::info, "drawing with " + window_->renderer());
+        imgui_ = std::make_unique<ImGuiWindow>(*window_);
+        glfwSetWindowSizeLimits(window_->native(), 640, 400, GLFW_DONT_CARE, GLFW_DONT_CARE);
+        glfwSetMonitorCallback([](GLFWmonitor*, int) { monitors_have_changed = true; });
+        studio.product = find_product(studio.session.document().product);
+        shell_.product_bounds = bounds_of(studio.product->mesh);
+        studio.picker = std::make_unique<PartPicker>(studio.product);
+        studio.file_dialog = std::make_unique<FileDialog>();
+        open_ballots(shell_);
+        keep_shown_looks_valid(studio);
+        contexts_ = start_threads(shell_, *window_);
+        tell_unsaved(shell_);
+        monitors_changed(shell_);
+        glfwShowWindow(window_->native());
+        frames_to_draw_ = kFramesAfterInput;
+    }
+
+    void wait_for_something() {
+        if (frames_to_draw_ > 0 || imgui_->has_input()) {
+            // Not faster than a screen can show; input comes in while waiting.
+            const double rest = last_drawn_s_ + kShortestFrame_s - now_s();
+            if (rest > 0.0 && !imgui_->has_input()) {
+                glfwWaitEventsTimeout(rest);
+            } else {
+                glfwPollEvents();
+            }
+        } else if (const auto next = next_change_s(shell_)) {
+            glfwWaitEventsTimeout(std::max(0.001, *next - now_s()));
+            frames_to_draw_ = 1;
+        } else {
+            glfwWaitEvents();
+            frames_to_draw_ = 1;  // A thread's result; input adds its own below.
+        }
+        if (imgui_->has_input()) frames_to_draw_ = kFramesAfterInput;
+        if (std::exchange(monitors_have_changed, false)) {
+            monitors_changed(shell_);
+            frames_to_draw_ = kFramesAfterInput;
+        }
+    }
+
+    void draw_frame() {
+        Studio& studio = shell_.studio;
+        const double start_s = now_s();
+        studio.now_s = start_s;
+        GLFWwindow* native = window_->native();
+        studio.ui_scale = static_cast<float>(
+            shell_.fixed_scale.value_or(screen_scale(native, studio.monitors) * shell_.user_scale));
+        imgui_->use_scale(studio.ui_scale);
+        const auto frame_before = studio.frame;  // Until this frame is drawn: textures are read.
+        const auto preview_before = studio.preview;
+        take_results(shell_);
+        if (shell_.monitor_numbers && studio.now_s >= shell_.monitor_numbers_until_s) {
+            shell_.monitor_numbers.reset();
+        }
+        const std::uint64_t revision_before = studio.session.revision();
+        begin_trials(studio);
+        start_naming_items(ui_map_.has_value());
+        bool had_input = imgui_->has_input();
+        shell_.input_at = imgui_->begin_frame(
+            [this](const InputEvent& event) { return handle_key(shell_, event); });
+        if (had_input) shell_.trace->write("input", 0, {}, shell_.input_at);
+        if (!glfwGetWindowAttrib(native, GLFW_FOCUSED)) studio.showing_b = false;
+        draw_everything();
+        end_trials(studio);
+        imgui_->end_frame();
+        if (studio.session.revision() != revision_before) {
+            shell_.trace->write("commit", studio.session.revision());
+            frames_to_draw_ = std::max(frames_to_draw_, 2);
+        }
+        // Before anything is drawn here: the mock-up comes first.
+        ask_for_changes(shell_);
+        imgui_->draw();
+        --frames_to_draw_;
+        last_drawn_s_ = now_s();
+        shell_.frame_ms = 1000.0 * (last_drawn_s_ - start_s);
+        if (shell_.window_must_move) move_off_projector(shell_, native);
+        remember_workspace(shell_, text_of(place_of(native)));
+        write_ui_map();
+    }
+
+    void draw_everything() {
+        draw_layout(shell_);
+        draw_notices(shell_);
+        draw_help(shell_);
+        draw_save_picture(shell_);
+        if (shell_.ballots_open) draw_ballot_dialog(shell_.studio, shell_.ballots_open);
+        shell_.studio.file_dialog->draw();
+    }
+
+    void write_ui_map() {
+        if (!ui_map_) return;
+        const WindowPlace place = place_of(window_->native());
+        ui_map_->update(take_named_items(),
+                        state_of_shell(shell_),
+                        {place.position.x, place.position.y, place.size_px.x, place.size_px.y});
+    }
+
+    void finish() {
+        log_line(LogLevel::info, "closing");
+        glfwSetMonitorCallback(nullptr);
+        glfwHideWindow(window_->native());
+        window_->make_current();
+        shell_.monitor_numbers.reset();
+        stop_threads(shell_);
+        shell_.stage.photograph_texture = {};
+        shell_.studio.panels = {};
+        imgui_.reset();
+    }
+
+    DesktopOptions options_;
+    std::unique_ptr<Window> window_;
+    Contexts contexts_;
+    std::unique_ptr<ImGuiWindow> imgui_;
+    Shell shell_;
+    std::optional<UiMapFile> ui_map_;
+    int frames_to_draw_ = 0;
+    double last_drawn_s_ = 0.0;
+};
+
+}  // namespace
+
+int run_desktop(const DesktopOptions& options) {
+    // Everything is saved as it happens, so Ctrl-C in the terminal may end the program at once.
+    std::signal(SIGINT, SIG_DFL);
+    const WindowSystem window_system;
+    open_log(user_folder() / "log" / "livery.log");
+    log_line(LogLevel::info, "Livery " LIVERY_VERSION " opens");
+    return Desktop(options, open_session(options)).run();
+}
+
+}  // namespace livery

@@ -1,0 +1,38 @@
+// Dear ImGui in a window: its input, its drawing, its scale.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+
+#include "gl/window.h"
+#include "studio/input_queue.h"
+
+namespace livery {
+
+/// One a program, main thread.
+class ImGuiWindow {
+  public:
+    /// The window's context is current and stays so.
+    explicit ImGuiWindow(Window& window);
+    ~ImGuiWindow();
+    ImGuiWindow(const ImGuiWindow&) = delete;
+    ImGuiWindow& operator=(const ImGuiWindow&) = delete;
+
+    void use_scale(float scale);  ///< between frames; cheap when it is the same
+
+    /// True when the event is used up; Dear ImGui does not hear of it then.
+    using KeyFilter = std::function<bool(const InputEvent& key)>;
+    /// Hands the next portion of input to Dear ImGui and starts a frame. The newest input's time.
+    std::chrono::steady_clock::time_point begin_frame(const KeyFilter& filter);
+    void end_frame();  ///< ends the frame; nothing is drawn yet
+    void draw();       ///< and swaps
+
+    bool has_input() const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace livery

@@ -1,0 +1,103 @@
+#include "studio/look_files.h"
+
+#include <cctype>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "scene/look.h"
+#include "session/look_exchange.h"
+#include "studio/shell.h"
+#include "studio/user_folders.h"
+
+namespace livery {
+
+namespace {
+
+void tell(Shell& shell, const std::string& what, const std::exception& error) {
+    notify(shell.studio, {Notice::Level::error, what, error.what(), ""});
+}
+
+/// What lies beside the look's file is named in full, because the session lies elsewhere.
+void name_neighbours_in_full(Look& look) {
+    const auto folder = std::filesystem::absolute(look.file).parent_path();
+    const auto in_full = [&](std::string& name) {
+        std::error_code error;
+        if (!name.empty() && std::filesystem::is_regular_file(folder / name, error)) {
+            name = (folder / name).string();
+        }
+    };
+    for (auto& [part, paint] : look.parts) in_full(paint);
+    in_full(look.environment.file);
+}
+
+void import_look(Shell& shell, const std::filesystem::path& file) {
+    Look look;
+    try {
+        look = read_look_file(file);
+        name_neighbours_in_full(look);
+        // Whatever it names must be there before the session names it too.
+        make_scene(shell.studio.product, look, shell.studio.session.document().eye_mm);
+    } catch (const std::exception& error) {
+        tell(shell, "The look was not imported.", error);
+        return;
+    }
+    look.file.clear();
+    commit(shell.studio, AddLook{look, -1});
+}
+
+}  // namespace
+
+std::string file_name_of(const std::string& name) {
+    std::string result;
+    for (const char c : name) {
+        const bool plain = static_cast<unsigned char>(c) >= 0x80 ||
+                           std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-';
+        if (plain) {
+            result += c;
+        } else if (!result.empty() && result.back() != '-') {
+            result += '-';
+        }
+    }
+    while (!result.empty() && result.back() == '-') result.pop_back();
+    return result.empty() ? "look" : result;
+}
+
+void ask_for_look(Shell& shell) {
+    shell.studio.file_dialog->ask({FileQuestion::Kind::open,
+                                   "Import look",
+                                   "Import",
+                                   {".json"},
+                                   documents_folder(),
+                                   [&shell](const auto& file) { import_look(shell, file); }});
+}
+
+void ask_where_to_export_look(Shell& shell) {
+    const int id = shell.studio.shown_look;
+    const std::string name = find_look(shell.studio.session.document(), id)->look.name;
+    shell.studio.file_dialog->ask(
+        {FileQuestion::Kind::save,
+         "Export look",
+         "Export",
+         {".json"},
+         documents_folder() / (file_name_of(name) + ".json"),
+         [&shell, id, name](const auto& file) {
+             try {
+                 const auto written = export_look(shell.studio.session.document(), id, file);
+                 std::string more;
+                 if (written.size() > 1) {
+                     more = fmt::format("{} paints of this session lie beside it.",
+                                        written.size() - 1);
+                 }
+                 notify(shell.studio,
+                        {Notice::Level::info,
+                         "Exported " + name + " to " + file.string() + ".",
+                         more,
+                         ""});
+             } catch (const std::exception& error) {
+                 tell(shell, "The look was not exported.", error);
+             }
+         }});
+}
+
+}  // namespace livery

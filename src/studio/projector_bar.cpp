@@ -1,0 +1,171 @@
+// Below the picture: which monitor is the projector, its state, black and freeze.
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "studio/actions.h"
+#include "studio/projector_control.h"
+#include "studio/shell.h"
+#include "studio/theme.h"
+
+namespace livery {
+
+namespace {
+
+void draw_monitor_choice(Shell& shell) {
+    const auto& monitors = shell.studio.monitors;
+    const auto chosen = find_monitor(monitors, shell.projector_monitor);
+    const auto label = [](const Monitor& m) { return fmt::format("{}   {}", m.number, m.name); };
+    const std::string shown = chosen                            ? label(*chosen)
+                              : shell.projector_monitor.empty() ? "no projector"
+                                                                : "not plugged in";
+    ImGui::SetNextItemWidth(em(14.0f));
+    const bool open = ImGui::BeginCombo("##projector", shown.c_str());
+    name_last_item("projector-monitor");
+    if (open) {
+        if (ImGui::Selectable("no projector", shell.projector_monitor.empty())) {
+            use_projector_monitor(shell, "");
+        }
+        name_last_item("monitor:none");
+        for (const Monitor& monitor : monitors) {
+            const std::string text = fmt::format("{}   {} × {}{}",
+                                                 label(monitor),
+                                                 monitor.width,
+                                                 monitor.height,
+                                                 monitor.primary ? "   (main)" : "");
+            if (ImGui::Selectable(text.c_str(), monitor.id == shell.projector_monitor)) {
+                use_projector_monitor(shell, monitor.id);
+            }
+            name_last_item(fmt::format("monitor:{}", monitor.number));
+        }
+        ImGui::EndCombo();
+    }
+    ImGui::SameLine();
+    if (ImGui::Button("Show numbers")) show_monitor_numbers(shell);
+    name_last_item("show-numbers");
+    tooltip("Shows each monitor's number, large, on every monitor for a moment.");
+}
+
+struct StateText {
+    std::string text;
+    ImVec4 colour;
+    std::string help;
+};
+
+StateText state_of(const Shell& shell) {
+    if (shell.only_screen_is_projector) {
+        return {"dark: it is the only screen now",
+                colours::warning,
+                "The projector's picture never covers the only screen that you have."};
+    }
+    switch (shell.studio.projector->state()) {
+        case ProjectorScreen::State::off:
+            return {"Works without a projector: look at Photograph.", colours::dim_text, ""};
+        case ProjectorScreen::State::waiting_for_monitor:
+            return {"dark, comes back by itself",
+                    colours::warning,
+                    shell.studio.projector->why_waiting() +
+                        " Until then its picture is shown nowhere."};
+        case ProjectorScreen::State::showing:
+            return {"showing", colours::good, ""};
+    }
+    return {};
+}
+
+void draw_warnings(const Shell& shell) {
+    if (shell.signal_warnings.empty()) return;
+    ImGui::SameLine(0.0f, em(1.0f));
+    ImGui::AlignTextToFramePadding();
+    const auto count = shell.signal_warnings.size();
+    ImGui::TextColored(colours::warning,
+                       "%s",
+                       count == 1 ? shell.signal_warnings.front().what.c_str()
+                                  : fmt::format("{} signal warnings", count).c_str());
+    name_last_item("signal-warnings");
+    std::string all;
+    for (const SignalWarning& warning : shell.signal_warnings) {
+        all +=
+            (all.empty() ? "" : "\n\n") + warning.what + "\n" + warning.cause + "\n" + warning.fix;
+    }
+    tooltip(all);
+}
+
+/// A key's state that must be read from the other end of the room.
+void draw_state_button(
+    Shell& shell, const char* id, const char* label, bool on, float width, float height) {
+    ImGui::PushFont(large_font());
+    const ImVec4 lit = colours::warning;
+    if (on) {
+        ImGui::PushStyleColor(ImGuiCol_Button, lit);
+        ImGui::PushStyleColor(ImGuiCol_ButtonHovered, lit);
+        ImGui::PushStyleColor(ImGuiCol_ButtonActive, lit);
+        ImGui::PushStyleColor(ImGuiCol_Text, {0.05f, 0.05f, 0.05f, 1.0f});
+    }
+    if (ImGui::Button(label, {width, height})) run_action(action_named(id), shell);
+    if (on) ImGui::PopStyleColor(4);
+    ImGui::PopFont();
+    name_last_item(id);
+}
+
+}  // namespace
+
+void draw_projector_bar(Shell& shell) {
+    const float width = em(8.5f), height = ImGui::GetContentRegionAvail().y;
+    const float right = ImGui::GetWindowContentRegionMax().x;
+    const float top = ImGui::GetCursorPosY();
+    ImGui::SetCursorPosY(top + 0.5f * (height - ImGui::GetFrameHeight()));
+    ImGui::AlignTextToFramePadding();
+    heading("Projector");
+    ImGui::SameLine();
+    draw_monitor_choice(shell);
+    const StateText state = state_of(shell);
+    ImGui::SameLine(0.0f, em(1.0f));
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextColored(state.colour, "%s", state.text.c_str());
+    if (!state.help.empty()) tooltip(state.help);
+    draw_warnings(shell);
+    ImGui::SameLine(right - 2.0f * width - ImGui::GetStyle().ItemSpacing.x);
+    ImGui::SetCursorPosY(top);
+    draw_state_button(
+        shell, "black", shell.black ? "BLACK" : "Black  B", shell.black, width, height);
+    tooltip(shell.black ? "The projector is dark. B shows the picture again."
+                        : "Makes the projector dark at once (B, and Ctrl+B while typing).");
+    ImGui::SameLine();
+    ImGui::SetCursorPosY(top);
+    draw_state_button(
+        shell, "freeze", shell.frozen ? "FROZEN" : "Freeze  F", shell.frozen, width, height);
+    tooltip(shell.frozen
+                ? "The projector keeps its picture. F shows the newest again."
+                : "Keeps the projector's picture while you work on (F, and Ctrl+F while typing).");
+}
+
+void draw_status_line(Shell& shell) {
+    const Studio& studio = shell.studio;
+    ImGui::PushFont(small_font());
+    const auto problem = studio.session.save_problem();
+    if (problem) {
+        ImGui::TextColored(colours::error, "NOT SAVED: %s", problem->c_str());
+    } else if (const auto file = studio.session.file()) {
+        ImGui::TextColored(colours::dim_text, "Saved in %s", file->c_str());
+    }
+    name_last_item("save-state");
+    std::string right;
+    const auto calibrating = studio.bench->calibrating();
+    if (calibrating.running) {
+        right +=
+            fmt::format("Calibrating {:.0f}%: {}", 100.0 * calibrating.fraction, calibrating.stage);
+    } else if (const auto solving = studio.frames->solving()) {
+        right += fmt::format("Solving {:.0f}%: {}", 100.0 * solving->fraction, solving->stage);
+    } else if (studio.background->is_busy()) {
+        right += "Loading or saving…";
+    }
+    if (studio.frame) {
+        right += fmt::format(
+            "{}paint to picture {:.0f} ms", right.empty() ? "" : "     ", studio.frame->ms_total);
+    }
+    ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(right.c_str()).x);
+    ImGui::TextColored(colours::dim_text, "%s", right.c_str());
+    name_last_item("progress");
+    ImGui::PopFont();
+}
+
+}  // namespace livery

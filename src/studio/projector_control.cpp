@@ -1,0 +1,148 @@
+#include "studio/projector_control.h"
+
+#include <algorithm>
+
+#include "core/log.h"
+#include "gl/handles.h"
+#include "studio/results.h"
+#include "studio/shell.h"
+
+namespace livery {
+
+namespace {
+
+constexpr double kNumbersShown_s = 4.0;
+constexpr const char* kMonitorKey = "projector-monitor";
+
+/// Two outputs that show the same part of the desktop: what is on one is on both.
+const Monitor* twin_of(const std::vector<Monitor>& monitors, const Monitor& monitor) {
+    const auto twin = std::find_if(monitors.begin(), monitors.end(), [&](const Monitor& other) {
+        return other.id != monitor.id && other.x < monitor.x + monitor.width &&
+               monitor.x < other.x + other.width && other.y < monitor.y + monitor.height &&
+               monitor.y < other.y + other.height;
+    });
+    return twin == monitors.end() ? nullptr : &*twin;
+}
+
+/// The chosen monitor unless that would take the operator's only screen.
+std::optional<std::string> usable_monitor(const Shell& shell) {
+    if (shell.projector_monitor.empty()) return {};
+    const auto& monitors = shell.studio.monitors;
+    const auto chosen = find_monitor(monitors, shell.projector_monitor);
+    if (chosen && (monitors.size() < 2 || twin_of(monitors, *chosen))) return {};
+    return shell.projector_monitor;
+}
+
+void apply(Shell& shell) {
+    const auto usable = usable_monitor(shell);
+    shell.only_screen_is_projector = !shell.projector_monitor.empty() && !usable;
+    if (shell.studio.projector) shell.studio.projector->use_monitor(usable);
+    check_projector_signal(shell);
+}
+
+}  // namespace
+
+void use_projector_monitor(Shell& shell, const std::string& id) {
+    Studio& studio = shell.studio;
+    const auto monitor = find_monitor(studio.monitors, id);
+    if (monitor && studio.monitors.size() < 2) {
+        notify(studio,
+               {Notice::Level::warning,
+                monitor->name + " is the only monitor, so it does not become the projector.",
+                "The projector's picture would cover this window.",
+                "Plug the projector in as a second monitor, or look at its picture in the "
+                "Projector view."});
+        return;
+    }
+    if (const Monitor* twin = monitor ? twin_of(studio.monitors, *monitor) : nullptr) {
+        notify(studio,
+               {Notice::Level::warning,
+                monitor->name + " does not become the projector.",
+                "It shows the same part of the desktop as " + twin->name + ".",
+                "Extend the desktop to the projector instead of mirroring it."});
+        return;
+    }
+    shell.projector_monitor = id;
+    studio.session.set_workspace(kMonitorKey, id);
+    log_line(LogLevel::info, "projector: " + (monitor ? monitor->name : "none"));
+    apply(shell);
+    shell.window_must_move = true;
+}
+
+void monitors_changed(Shell& shell) {
+    Studio& studio = shell.studio;
+    studio.monitors = list_monitors();
+    for (const Monitor& m : studio.monitors) {
+        log_line(LogLevel::info,
+                 "monitor " + std::to_string(m.number) + ": " + m.name + " " +
+                     std::to_string(m.width) + "x" + std::to_string(m.height) + " at " +
+                     std::to_string(m.x) + "," + std::to_string(m.y));
+    }
+    shell.monitor_numbers.reset();
+    if (studio.projector) studio.projector->monitors_changed();
+    apply(shell);
+    shell.window_must_move = true;
+}
+
+void check_projector_signal(Shell& shell) {
+    const Studio& studio = shell.studio;
+    shell.signal_warnings.clear();
+    const auto usable = usable_monitor(shell);
+    const auto monitor = usable ? find_monitor(studio.monitors, *usable) : std::nullopt;
+    if (!monitor) return;
+    glm::ivec2 calibrated_px{0};
+    if (studio.setup && studio.setup->calibration) {
+        calibrated_px = {studio.setup->view.width, studio.setup->view.height};
+    }
+    shell.signal_warnings = check_signal(*monitor, calibrated_px);
+    for (const SignalWarning& warning : shell.signal_warnings) {
+        log_line(LogLevel::warning, warning.what + " " + warning.cause + " " + warning.fix);
+    }
+}
+
+void show_monitor_numbers(Shell& shell) {
+    shell.monitor_numbers.reset();
+    shell.monitor_numbers = std::make_unique<MonitorNumbers>(shell.studio.monitors);
+    shell.monitor_numbers_until_s = shell.studio.now_s + kNumbersShown_s;
+}
+
+void show_signal_test(Shell& shell, bool shown) {
+    shell.signal_test_open = shown;
+    if (!shell.results) return;
+    if (!shown) {
+        shell.results->show_instead(nullptr);
+        return;
+    }
+    const auto monitor = find_monitor(shell.studio.monitors, shell.projector_monitor);
+    const Image8 rgb =
+        signal_test_picture(monitor ? monitor->width : 1280, monitor ? monitor->height : 800);
+    Image8 rgba(rgb.width, rgb.height, 4, 255);
+    for (std::size_t i = 0; i < rgb.pixel_count(); ++i) {
+        std::copy_n(&rgb.values[3 * i], 3, &rgba.values[4 * i]);
+    }
+    const auto texture = std::make_shared<Texture2D>(rgb.width, rgb.height, TexelFormat::rgba8);
+    texture->upload(std::span<const std::uint8_t>(rgba.values));
+    auto picture = std::make_shared<ProjectorPicture>();
+    picture->texture = texture->name();
+    picture->size_px = {rgb.width, rgb.height};
+    picture->ready = std::make_shared<const Fence>(Fence::after_everything_so_far());
+    picture->owner = texture;
+    shell.results->show_instead(std::move(picture));
+}
+
+void set_black(Shell& shell, bool black) {
+    shell.black = black;
+    if (shell.studio.projector) shell.studio.projector->set_black(black);
+    log_line(LogLevel::info, black ? "projector: black" : "projector: not black");
+}
+
+void set_frozen(Shell& shell, bool frozen) {
+    shell.frozen = frozen;
+    if (shell.studio.projector) shell.studio.projector->set_frozen(frozen);
+    log_line(LogLevel::info, frozen ? "projector: frozen" : "projector: not frozen");
+}
+
+bool is_black(const Shell& shell) { return shell.black; }
+bool is_frozen(const Shell& shell) { return shell.frozen; }
+
+}  // namespace livery

@@ -1,0 +1,25 @@
+// What of the window is remembered in the session's workspace, and told in the `--ui-map`.
+#pragma once
+
+#include <string>
+
+#include "studio/ui_map.h"
+
+namespace livery {
+
+struct Shell;
+
+inline constexpr const char* kWindowKey = "window";
+
+void restore_workspace(Shell& shell);
+/// Writes what differs from what is remembered.
+void remember_workspace(Shell& shell, const std::string& window_place);
+
+MapState state_of_shell(const Shell& shell);
+
+/// The ballots' database beside the session's; a notice when it cannot be opened.
+void open_ballots(Shell& shell);
+/// Says loudly when nothing is being saved.
+void tell_unsaved(Shell& shell);
+
+}  // namespace livery

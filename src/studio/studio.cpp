@@ -1,0 +1,146 @@
+#include "studio/studio.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <imgui.h>
+#include <imgui_internal.h>
+
+#include "core/log.h"
+#include "studio/theme.h"
+
+namespace livery {
+
+namespace {
+
+constexpr double kGlow_s = 0.8;
+constexpr double kInfoShown_s = 8.0;
+
+std::string text_of(const Notice& notice) {
+    std::string text = notice.what;
+    if (!notice.cause.empty()) text += " " + notice.cause;
+    if (!notice.fix.empty()) text += " " + notice.fix;
+    return text;
+}
+
+}  // namespace
+
+void commit(Studio& studio, const SessionCommand& command) {
+    const std::string label = label_of(studio.session.document(), command);
+    try {
+        studio.session.execute(command);
+    } catch (const std::exception& error) {
+        notify(studio, {Notice::Level::error, label + " was not done.", error.what(), ""});
+        return;
+    }
+    log_line(LogLevel::info, "command: " + text_of(command));
+    studio.tried.reset();
+    studio.trying.reset();
+    if (const auto look = look_of(studio.session.document(), command)) show_look(studio, *look);
+    keep_shown_looks_valid(studio);
+}
+
+void try_out(Studio& studio, const SessionCommand& command) {
+    const unsigned item = ImGui::GetItemID();
+    if (studio.untried_item == item) {
+        studio.untried_item_still_there = true;
+        return;
+    }
+    studio.trying = command;
+    studio.trying_item = item;
+}
+
+void edit_with_last_item(Studio& studio, const SessionCommand& command) {
+    if (ImGui::IsItemDeactivatedAfterEdit()) {
+        if (!studio.gave_up) commit(studio, command);
+    } else if (ImGui::IsItemActive() && !studio.gave_up) {
+        try_out(studio, command);
+    }
+}
+
+void stop_trying(Studio& studio) {
+    if (studio.tried || studio.trying) {
+        studio.untried_item = studio.trying_item;
+        studio.untried_item_still_there = true;
+    }
+    studio.tried.reset();
+    studio.trying.reset();
+}
+
+void begin_trials(Studio& studio) {
+    studio.trying.reset();
+    studio.untried_item_still_there = false;
+}
+
+void end_trials(Studio& studio) {
+    studio.tried = studio.trying;
+    if (!studio.untried_item_still_there) studio.untried_item.reset();
+    studio.gave_up = false;
+}
+
+Document shown_document(const Studio& studio) {
+    const Document& document = studio.session.document();
+    if (!studio.tried) return document;
+    try {
+        return applied(document, *studio.tried);
+    } catch (const std::invalid_argument&) {
+        return document;  // The document changed under the pointer: the look is gone.
+    }
+}
+
+void show_look(Studio& studio, int look) {
+    if (look == studio.shown_look || !find_look(studio.session.document(), look)) return;
+    if (!studio.chose_compared_look) studio.compared_look = studio.shown_look;
+    studio.shown_look = look;
+    keep_shown_looks_valid(studio);
+}
+
+void keep_shown_looks_valid(Studio& studio) {
+    const Document& document = studio.session.document();
+    if (document.looks.empty()) return;
+    // The place in the list stays when the look that stood there is gone.
+    const auto place = std::find_if(document.looks.begin(),
+                                    document.looks.end(),
+                                    [&](const auto& l) { return l.id == studio.shown_look; });
+    if (place != document.looks.end()) {
+        studio.shown_place = static_cast<std::size_t>(place - document.looks.begin());
+    } else {
+        studio.shown_place = std::min(studio.shown_place, document.looks.size() - 1);
+        studio.shown_look = document.looks[studio.shown_place].id;
+    }
+    if (studio.compared_look && (*studio.compared_look == studio.shown_look ||
+                                 !find_look(document, *studio.compared_look))) {
+        studio.compared_look.reset();
+        studio.chose_compared_look = false;
+    }
+    if (!studio.compared_look) {
+        for (const SessionLook& look : document.looks) {
+            if (look.id != studio.shown_look) {
+                studio.compared_look = look.id;
+                break;
+            }
+        }
+    }
+    if (!studio.compared_look) studio.wiping = studio.showing_b = false;
+}
+
+void select_part(Studio& studio, int part) {
+    studio.selected_part = part;
+    studio.glowing_part = part;
+    studio.glowing_until_s = studio.now_s + kGlow_s;
+}
+
+void notify(Studio& studio, Notice notice) {
+    const auto level = notice.level == Notice::Level::error     ? LogLevel::error
+                       : notice.level == Notice::Level::warning ? LogLevel::warning
+                                                                : LogLevel::info;
+    log_line(level, text_of(notice));
+    if (notice.level == Notice::Level::info && notice.shown_until_s == 0.0) {
+        notice.shown_until_s = studio.now_s + kInfoShown_s;
+    }
+    // The same thing again replaces itself rather than filling the window.
+    std::erase_if(studio.notices, [&](const Notice& n) { return n.what == notice.what; });
+    studio.notices.push_back(std::move(notice));
+}
+
+}  // namespace livery

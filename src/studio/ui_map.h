@@ -1,0 +1,44 @@
+// `--ui-map FILE`: where everything of the window is, and what it shows, for other programs.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace livery {
+
+/// Pixels of the window; what is scrolled out of sight is not in the map.
+struct ItemPlace {
+    int x = 0, y = 0, width = 0, height = 0;
+    bool operator==(const ItemPlace&) const = default;
+};
+using ItemPlaces = std::map<std::string, ItemPlace>;
+
+/// name_last_item() (studio.h) adds to these between the two; main thread.
+void start_naming_items(bool wanted);
+ItemPlaces take_named_items();
+/// For what is not one item: a rectangle of the screen.
+void name_rectangle(const std::string& name, float x, float y, float width, float height);
+
+/// What the window shows, as names and JSON values ("true", "3", "\"preview\"").
+using MapState = std::map<std::string, std::string>;
+std::string ui_map_text(const ItemPlaces& items,
+                        const MapState& state,
+                        const ItemPlace& window_on_desktop);
+
+/// Writes when something changed: to a file beside it, then renamed, so that a reader never sees
+/// half of it.
+class UiMapFile {
+  public:
+    explicit UiMapFile(std::filesystem::path file) : file_(std::move(file)) {}
+    /// Throws FileError.
+    void update(const ItemPlaces& items, const MapState& state, const ItemPlace& window_on_desktop);
+
+  private:
+    std::filesystem::path file_;
+    std::string written_;
+};
+
+}  // namespace livery

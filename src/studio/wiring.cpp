@@ -1,0 +1,293 @@
+#include "studio/wiring.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/log.h"
+#include "scene/view.h"
+#include "session/library.h"
+#include "studio/results.h"
+#include "studio/shell.h"
+
+namespace livery {
+
+namespace {
+
+constexpr const char* kCalibratedKey = "calibrated-once";
+
+std::string text_of_trial(const Studio& studio) {
+    return studio.tried ? text_of(*studio.tried) : std::string();
+}
+
+/// Keeps maps that were read; a scene that names one of them shares it.
+Scene scene_for(Shell& shell, const Document& document, int look) {
+    const auto& reference = find_look(document, look)->look.environment;
+    auto& kept = shell.environments[{reference.file, reference.rotation_rad, reference.scale}];
+    Scene scene = scene_of(document, look, shell.studio.product, kept);
+    kept = scene.environment;
+    constexpr std::size_t most_kept = 16;
+    if (shell.environments.size() > most_kept) shell.environments.clear();
+    return scene;
+}
+
+int look_on_show(const Studio& studio) {
+    return studio.showing_b && studio.compared_look ? *studio.compared_look : studio.shown_look;
+}
+
+/// Where the mock-up lies in the projector's picture: what a wipe goes across.
+std::optional<std::pair<double, double>> columns_of(const Product& product, const View& view) {
+    double low = view.width, high = 0.0;
+    for (const glm::vec3& x : product.mesh.positions_mm) {
+        const auto pixel = project(view, glm::dvec3(x));
+        if (!pixel) continue;
+        low = std::min(low, pixel->x);
+        high = std::max(high, pixel->x);
+    }
+    if (high <= low) return {};
+    return std::pair{std::max(low, 0.0), std::min(high, static_cast<double>(view.width))};
+}
+
+void tell_failure(Shell& shell, const std::string& what, std::exception_ptr why) {
+    try {
+        std::rethrow_exception(why);
+    } catch (const Cancelled&) {
+        return;
+    } catch (const Refused& refused) {
+        notify(shell.studio, {Notice::Level::error, what, refused.why(), refused.fix()});
+    } catch (const std::exception& error) {
+        notify(shell.studio, {Notice::Level::error, what, error.what(), ""});
+    }
+}
+
+void take_setup(Shell& shell, std::shared_ptr<const ProjectorSetup> setup) {
+    shell.studio.setup = std::move(setup);
+    shell.mock_up_columns = columns_of(*shell.studio.product, shell.studio.setup->view);
+    shell.photographed_number = 0;
+}
+
+/// A new calibration, bench or design white is loaded beside the frames, which go on as they were.
+void ask_for_setup(Shell& shell) {
+    const Document document = shown_document(shell.studio);
+    const SetupKey key{document.calibration, document.bench, document.design_white_percentile};
+    if (shell.asked_setup == key) return;
+    if (!shell.asked_setup || shell.asked_setup->bench != key.bench) {
+        shell.studio.bench->use(key.bench, shell.studio.product);
+    }
+    shell.asked_setup = key;
+    const auto still_wanted = [&shell, key] { return shell.asked_setup == key; };
+    shell.studio.background->run(
+        [&shell, key, still_wanted](const Progress&) -> Background::Then {
+            const auto setup = key.calibration.empty()
+                                   ? uncorrected_setup(key.bench)
+                                   : load_setup(key.calibration, key.design_white_percentile);
+            return [&shell, setup, still_wanted] {
+                if (still_wanted()) take_setup(shell, setup);
+            };
+        },
+        [&shell, key, still_wanted](std::exception_ptr why) {
+            if (!still_wanted()) return;
+            tell_failure(shell,
+                         key.calibration.empty() ? "There is no projector to draw for."
+                                                 : "The calibration could not be loaded.",
+                         why);
+            // Something must be shown: the same projector, uncorrected, and the panel says so.
+            if (key.calibration.empty() || shell.studio.setup) return;
+            shell.studio.background->run(
+                [&shell, key](const Progress&) -> Background::Then {
+                    return [&shell, setup = uncorrected_setup(key.bench)] {
+                        take_setup(shell, setup);
+                    };
+                },
+                [&shell](std::exception_ptr again) {
+                    tell_failure(shell, "There is no projector to draw for.", again);
+                });
+        });
+}
+
+void ask_for_frame(Shell& shell) {
+    Studio& studio = shell.studio;
+    if (!studio.setup) return;
+    FrameKey key;
+    key.revision = studio.session.revision();
+    key.tried = text_of_trial(studio);
+    key.look = look_on_show(studio);
+    if (studio.wiping && !studio.showing_b) key.wipe_to = studio.compared_look;
+    if (key.wipe_to) key.wipe_at = studio.wipe_at;
+    key.glowing_part = studio.glowing_part;
+    key.setup = studio.setup;
+    if (shell.asked_frame == key) return;
+    const Document document = shown_document(studio);
+    FrameDescription description;
+    try {
+        description.scene = scene_for(shell, document, key.look);
+        if (key.wipe_to) description.wipe_to = scene_for(shell, document, *key.wipe_to);
+    } catch (const std::exception& error) {
+        shell.asked_frame = key;
+        notify(studio, {Notice::Level::error, "The look cannot be drawn.", error.what(), ""});
+        return;
+    }
+    shell.asked_frame = key;
+    description.number = ++shell.frame_number;
+    description.wipe_at = key.wipe_at;
+    description.glowing_part = key.glowing_part;
+    description.quality = document.quality;
+    description.setup = studio.setup;
+    description.asked_at = shell.input_at;
+    shell.trace->write("frame-asked", description.number, key.tried);
+    studio.frames->show(std::move(description));
+}
+
+bool is_frame_under_way(const Shell& shell) {
+    return shell.studio.setup && (!shell.results->newest_frame() ||
+                                  shell.results->newest_frame()->number < shell.frame_number);
+}
+
+void ask_for_preview(Shell& shell) {
+    Studio& studio = shell.studio;
+    const StageState& stage = shell.stage;
+    const bool seen = studio.view == StageView::preview || studio.view == StageView::eye;
+    if (!seen || stage.width <= 0 || stage.height <= 0) return;
+    PreviewKey key;
+    key.revision = studio.session.revision();
+    key.tried = text_of_trial(studio);
+    key.look = look_on_show(studio);
+    key.view = studio.view;
+    const Orbit orbit = stage_orbit(shell);
+    key.camera = {orbit.azimuth_rad,
+                  orbit.elevation_rad,
+                  orbit.distance_mm,
+                  orbit.target_mm.x,
+                  orbit.target_mm.y,
+                  orbit.target_mm.z,
+                  stage.eye_zoom};
+    key.width = stage.width;
+    key.height = stage.height;
+    key.highlighted_part = studio.hovered_part ? studio.hovered_part : studio.glowing_part;
+    if (shell.asked_preview == key) return;
+    // The mock-up goes first where both are drawn by the same processor.
+    if (shell.draws_in_software && is_frame_under_way(shell)) return;
+    const Document document = shown_document(studio);
+    PreviewDescription description;
+    try {
+        description.scene = scene_for(shell, document, key.look);
+    } catch (const std::exception&) {
+        return;  // Told when the frame was asked for.
+    }
+    shell.asked_preview = key;
+    description.number = ++shell.preview_number;
+    description.view = stage_view(shell, document.eye_mm);
+    description.highlighted_part = key.highlighted_part;
+    studio.previews->show(std::move(description));
+}
+
+void ask_for_photograph(Shell& shell) {
+    const Studio& studio = shell.studio;
+    if (studio.view != StageView::photograph || !studio.frame || !studio.setup) return;
+    if (studio.frame->number == shell.photographed_number || !studio.frame->drive) return;
+    shell.photographed_number = studio.frame->number;
+    studio.bench->photograph(
+        studio.frame->number, studio.frame->drive, studio.setup->design_white_y);
+}
+
+/// A newcomer has no calibration: the simulated bench is measured at once, while everything works
+/// uncorrected.
+void start_first_calibration(Shell& shell) {
+    Studio& studio = shell.studio;
+    if (!studio.session.document().calibration.empty() ||
+        studio.session.workspace().contains(kCalibratedKey)) {
+        return;
+    }
+    studio.bench->start_calibration();
+    notify(studio,
+           {Notice::Level::info,
+            "Calibrating the simulated bench.",
+            "There is no calibration yet. This takes a minute or two and happens beside your work.",
+            "Until it is done, pictures go to the projector uncorrected."});
+}
+
+void take_calibration(Shell& shell) {
+    Studio& studio = shell.studio;
+    const auto calibrating = studio.bench->calibrating();
+    if (!calibrating.finished || *calibrating.finished == studio.panels.calibration.taken) return;
+    studio.panels.calibration.taken = *calibrating.finished;
+    studio.session.set_workspace(kCalibratedKey, "yes");
+    stop_trying(studio);
+    commit(studio, SetCalibration{calibrating.finished->string()});
+    Notice notice{Notice::Level::info, "The bench is calibrated.", "", ""};
+    if (studio.view != StageView::photograph) {
+        notice.fix = "Choose Photograph above the picture to see what an audience would see.";
+        notice.shown_until_s = studio.now_s + 30.0;
+    }
+    notify(studio, notice);
+}
+
+}  // namespace
+
+Contexts start_threads(Shell& shell, const Window& window) {
+    Studio& studio = shell.studio;
+    shell.draws_in_software = window.is_software();
+    Contexts contexts;
+    WindowOptions hidden;
+    hidden.title = "Livery (drawing)";
+    hidden.size_px = {16, 16};
+    hidden.visible = false;
+    for (int i = 0; i < 3; ++i) contexts.push_back(std::make_unique<Window>(hidden, &window));
+    shell.results = std::make_shared<Results>(shell.trace);
+    Results* results = shell.results.get();
+    studio.background = std::make_unique<Background>(wake_main_thread);
+    studio.bench = std::make_unique<BenchThread>(wake_main_thread);
+    studio.previews = std::make_unique<PreviewThread>(
+        *contexts[2], [results](auto picture) { results->take(std::move(picture)); });
+    studio.frames = std::make_unique<FrameThread>(
+        *contexts[0], *contexts[1], [results](auto frame) { results->take(std::move(frame)); });
+    studio.projector = std::make_unique<ProjectorScreen>(
+        window, [results](const ShownPicture& picture) { results->shown(picture); });
+    results->use(studio.projector.get());
+    studio.bench->use(studio.session.document().bench, studio.product);
+    start_first_calibration(shell);
+    return contexts;
+}
+
+void stop_threads(Shell& shell) {
+    Studio& studio = shell.studio;
+    studio.background.reset();
+    studio.frames.reset();
+    studio.previews.reset();
+    studio.bench.reset();
+    if (shell.results) shell.results->use(nullptr);
+    studio.projector.reset();
+    studio.frame.reset();
+    studio.preview.reset();
+    studio.photograph.reset();
+    if (shell.results) shell.results->clear();
+}
+
+void take_results(Shell& shell) {
+    Studio& studio = shell.studio;
+    studio.background->take_results();
+    studio.frame = shell.results->newest_drawn();
+    studio.preview = shell.results->newest_preview();
+    studio.photograph = studio.bench->newest_photograph();
+    take_calibration(shell);
+    if (studio.glowing_part && studio.now_s >= studio.glowing_until_s) studio.glowing_part.reset();
+    const auto newest = shell.results->newest_frame();
+    if (newest && !newest->problem.empty() && newest->number > shell.problem_number) {
+        shell.problem_number = newest->number;
+        notify(studio,
+               {Notice::Level::error,
+                "The picture could not be drawn; the last good one stays.",
+                newest->problem,
+                ""});
+    }
+}
+
+void ask_for_changes(Shell& shell) {
+    ask_for_setup(shell);
+    ask_for_frame(shell);
+    ask_for_preview(shell);
+    ask_for_photograph(shell);
+}
+
+}  // namespace livery

@@ -1,0 +1,26 @@
+// Session and stage in, results out: what runs between the window and the threads behind it.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "gl/window.h"
+
+namespace livery {
+
+struct Shell;
+
+/// The contexts of the threads, one share group with the window's: they outlive the threads.
+using Contexts = std::vector<std::unique_ptr<Window>>;
+
+/// Starts the threads; the session, the product and the window's context are there.
+Contexts start_threads(Shell& shell, const Window& window);
+/// In the order in which one needs the other; with the window's context current.
+void stop_threads(Shell& shell);
+
+/// At the start of each frame of the window: takes over what is new.
+void take_results(Shell& shell);
+/// At its end: asks for what the changes call for. True when something was asked for.
+void ask_for_changes(Shell& shell);
+
+}  // namespace livery
