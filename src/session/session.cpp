@@ -43,9 +43,15 @@ struct Session::State {
         return parse_document(step(number).document, "unsaved session");
     }
 
-    void read_labels() {
-        undo_label = position > 0 ? step(position).label : "";
-        redo_label = position < last() ? step(position + 1).label : "";
+    /// Goes to that step; when it cannot be read nothing changes.
+    void stand_at(std::int64_t number) {
+        Document there = document_at(number);
+        std::string undo = number > 0 ? step(number).label : "";
+        std::string redo = number < last() ? step(number + 1).label : "";
+        document = std::move(there);
+        undo_label = std::move(undo);
+        redo_label = std::move(redo);
+        position = number;
     }
 
     /// What cannot be saved now goes along with the next that can.
@@ -87,17 +93,7 @@ struct Session::State {
     std::optional<int> go(std::int64_t by) {
         const std::int64_t about = by < 0 ? position : position + 1;
         const SessionCommand command = parse_session_command(step(about).command, path.string());
-        const Document before = document;
-        const std::int64_t from = position;
-        document = document_at(position + by);
-        position += by;
-        try {
-            read_labels();
-        } catch (...) {
-            document = before;
-            position = from;
-            throw;
-        }
+        stand_at(position + by);
         ++revision;
         save();
         const bool made_one = std::holds_alternative<AddLook>(command) ||
@@ -139,11 +135,9 @@ Session Session::open(const std::filesystem::path& file, const std::string& prod
     }
     state->store = std::make_unique<SessionFile>(file, SessionFile::Access::change);
     state->store->check_pages();
-    state->position = state->store->position();
     state->saved_last = state->store->last_step();
-    state->document = state->store->document(state->position);
     state->workspace = state->store->workspace();
-    state->read_labels();
+    state->stand_at(state->store->position());
     return Session(std::move(state));
 }
 

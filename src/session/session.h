@@ -33,8 +33,9 @@ class Session {
     std::uint64_t revision() const;  ///< grows with every change, undo and redo included
 
     /// Applies and saves; it is on disk when this returns. When saving fails the change stands, and
-    /// save_problem() says why until a later one succeeds. Throws what applied() throws, and then
-    /// nothing changed.
+    /// save_problem() says why until a later one succeeds, which then saves all that was not.
+    /// Throws what applied() throws, and then nothing changed. A command that changes nothing is no
+    /// step.
     void execute(const SessionCommand& command);
 
     bool can_undo() const;
@@ -42,7 +43,8 @@ class Session {
     std::string undo_label() const;  ///< "Paint body solid red"; empty when there is nothing
     std::string redo_label() const;
     /// The look that the undone or redone command was about, to show it. Without limit; a new
-    /// command drops what could be redone.
+    /// command drops what could be redone. Throws FileError when that step is damaged, and then
+    /// nothing changed.
     std::optional<int> undo();
     std::optional<int> redo();
 
