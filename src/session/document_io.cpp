@@ -3,8 +3,9 @@
 
 #include "appearance/material_json.h"
 #include "core/error.h"
+#include "core/json.h"
 #include "scene/look_json.h"
-#include "session/document_json.h"
+#include "session/document.h"
 #include "session/naming.h"
 #include "session/paint_edit.h"
 
@@ -75,8 +76,6 @@ void read_paints(const JsonReader& list, Document& document) {
     }
 }
 
-}  // namespace
-
 Json json_of(const Document& document) {
     Json json = Json::object();
     json["format_version"] = kFormatVersion;
@@ -133,6 +132,8 @@ Document read_document(const JsonReader& root) {
     document.design_white_percentile = root["design_white_percentile"].number_between(0.0, 100.0);
     return document;
 }
+
+}  // namespace
 
 Material kept_paint(const Material& paint) {
     try {
