@@ -37,7 +37,8 @@ struct SignalWarning {
 std::vector<SignalWarning> check_signal(const Monitor& monitor, glm::ivec2 calibrated_px);
 
 /// The picture by which people see a limited-range signal, which no driver need tell: steps near
-/// black and near white that merge when levels are cut. 3 channels, device values.
+/// black and near white that merge when levels are cut, and a line around it that overscan cuts
+/// off. 3 channels, device values; at least 64x64.
 Image8 signal_test_picture(int width, int height);
 
 }  // namespace livery

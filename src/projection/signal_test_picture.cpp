@@ -24,10 +24,18 @@ void fill(Image8& picture, int x0, int y0, int x1, int y1, std::uint8_t level) {
 
 /// One row of patches on the row's first level, each with its level above it.
 void draw_row(Image8& picture, int top, int bottom, const std::array<std::uint8_t, 7>& levels) {
-    fill(picture, 0, top, picture.width, bottom, levels.front());
     const int height = bottom - top;
     const int label_px = height / 12;
-    const int label = levels.front() == 0 ? kLabelDistance : 255 - kLabelDistance;
+    const auto label =
+        static_cast<std::uint8_t>(levels.front() == 0 ? kLabelDistance : 255 - kLabelDistance);
+    // What is left of this is the line around the picture, which overscan cuts off.
+    fill(picture, 0, top, picture.width, bottom, label);
+    fill(picture,
+         1,
+         std::max(top, 1),
+         picture.width - 1,
+         std::min(bottom, picture.height - 1),
+         levels.front());
     const int count = static_cast<int>(levels.size());
     for (int i = 0; i < count; ++i) {
         const auto level = levels[static_cast<std::size_t>(i)];
@@ -35,11 +43,8 @@ void draw_row(Image8& picture, int top, int bottom, const std::array<std::uint8_
         const int x0 = picture.width * i / count + gap;
         const int x1 = picture.width * (i + 1) / count - gap;
         fill(picture, x0, top + height * 3 / 10, x1, bottom - height / 10, level);
-        draw_number(picture,
-                    level,
-                    {0.5 * (x0 + x1), top + 0.18 * height},
-                    label_px,
-                    glm::u8vec3(static_cast<std::uint8_t>(label)));
+        draw_number(
+            picture, level, {0.5 * (x0 + x1), top + 0.18 * height}, label_px, glm::u8vec3(label));
     }
 }
 

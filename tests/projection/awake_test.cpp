@@ -30,6 +30,9 @@ TEST(AwakeTest, TheServerDoesNotBlankWhileTheProjectorShows) {
     EXPECT_FALSE(is_blanked(x));
     screen.use_monitor(std::nullopt);
     EXPECT_TRUE(wait_until([&] { return is_blanked(x); }));
+    xcb_force_screen_saver(x.get(), XCB_SCREEN_SAVER_RESET);
+    xcb_set_screen_saver(x.get(), -1, -1, XCB_BLANKING_DEFAULT, XCB_EXPOSURES_DEFAULT);
+    x.synchronise();
 }
 
 TEST(AwakeTest, TheDesktopIsAskedAndToldWhenItIsOver) {

@@ -170,8 +170,16 @@ TEST(SignalTestPicture, HasEveryStepNearBlackAndNearWhite) {
             EXPECT_EQ(colour_at(picture, x, size.y * 3 / 8), (Rgb{dark, dark, dark}));
             EXPECT_EQ(colour_at(picture, x, size.y * 7 / 8), (Rgb{bright, bright, bright}));
         }
-        EXPECT_EQ(colour_at(picture, 0, 0), (Rgb{0, 0, 0}));
-        EXPECT_EQ(colour_at(picture, 0, size.y - 1), (Rgb{255, 255, 255}));
+        EXPECT_EQ(colour_at(picture, 1, 1), (Rgb{0, 0, 0}));
+        EXPECT_EQ(colour_at(picture, size.x - 2, size.y - 2), (Rgb{255, 255, 255}));
+        for (const int x : {0, size.x / 3, size.x - 1}) {
+            EXPECT_EQ(colour_at(picture, x, 0), (Rgb{48, 48, 48}));
+            EXPECT_EQ(colour_at(picture, x, size.y - 1), (Rgb{207, 207, 207}));
+        }
+        for (const int x : {0, size.x - 1}) {
+            EXPECT_EQ(colour_at(picture, x, size.y / 3), (Rgb{48, 48, 48}));
+            EXPECT_EQ(colour_at(picture, x, size.y * 2 / 3), (Rgb{207, 207, 207}));
+        }
     }
     EXPECT_THROW(signal_test_picture(63, 800), std::invalid_argument);
     EXPECT_THROW(signal_test_picture(800, -1), std::invalid_argument);

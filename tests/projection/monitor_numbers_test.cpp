@@ -39,7 +39,7 @@ TEST(Numerals, ScaleAndStayInside) {
 }
 
 struct MonitorNumbersTest : testing::TestWithParam<bool> {
-    Stage stage{{{1280, 800}, {1280, 800}, GetParam()}};
+    Stage stage{GetParam()};
 
     bool is_tile(const Rectangle& monitor) const {
         const auto picture = stage.desktop.read(monitor);

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdlib>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -13,13 +15,29 @@
 
 namespace livery {
 
+/// Two monitors of 1280x800, the projector on the right. Starting a server costs more than most
+/// tests, so it serves the next one, too.
+inline Desktop& shared_desktop(bool window_manager) {
+    static std::map<bool, std::unique_ptr<Desktop>> desktops;
+    auto& desktop = desktops[window_manager];
+    if (!desktop) {
+        desktop =
+            std::make_unique<Desktop>(DesktopOptions{{1280, 800}, {1280, 800}, window_manager});
+    }
+    ::setenv("DISPLAY", desktop->display().c_str(), 1);
+    desktop->plug_projector();
+    desktop->move_pointer(640, 400);
+    return *desktop;
+}
+
 /// Declared in the order in which a program makes them.
 struct Stage {
-    Desktop desktop;
+    Desktop& desktop;
     WindowSystem window_system;
     Window share;
 
-    explicit Stage(const DesktopOptions& options = {}) : desktop(options), share(invisible()) {
+    explicit Stage(bool window_manager = false)
+        : desktop(shared_desktop(window_manager)), share(invisible()) {
         share.make_current();
         set_gl_checks(true);
     }

@@ -18,7 +18,7 @@ namespace {
 using State = ProjectorScreen::State;
 
 struct UnplugTest : testing::TestWithParam<bool> {
-    Stage stage{{{1280, 800}, {1280, 800}, GetParam()}};
+    Stage stage{GetParam()};
     std::string projector = Desktop::projector_output;
 
     std::vector<std::string> window_titles() const {
@@ -90,9 +90,12 @@ TEST_P(UnplugTest, IsHiddenWhileTheMonitorsShowTheSame) {
     ASSERT_TRUE(stage.projector_becomes(kMagenta));
     stage.desktop.xrandr(
         {"--output", Desktop::projector_output, "--same-as", Desktop::operator_output});
-    EXPECT_TRUE(wait_until([&] { return screen.state() == State::waiting_for_monitor; }));
-    EXPECT_EQ(screen.why_waiting(),
-              "The projector mirrors DUMMY0; set the displays to extend the desktop.");
+    // The outputs change one after the other.
+    EXPECT_TRUE(wait_until([&] {
+        return screen.why_waiting() ==
+               "The projector mirrors DUMMY0; set the displays to extend the desktop.";
+    })) << screen.why_waiting();
+    EXPECT_EQ(screen.state(), State::waiting_for_monitor);
     EXPECT_FALSE(is_up());
     stage.desktop.plug_projector();
     EXPECT_TRUE(stage.projector_becomes(kMagenta));
