@@ -18,6 +18,7 @@
 #include "studio/studio.h"
 #include "studio/theme.h"
 #include "studio/widgets.h"
+#include "studio/words.h"
 
 namespace livery {
 
@@ -110,7 +111,7 @@ void draw_earlier_rounds(Studio& studio) {
         if (!round->closed) continue;
         const std::string label = fmt::format("Round {} · {} · {} looks · {}",
                                               round->id,
-                                              round->created,
+                                              readable_time(round->created),
                                               round->designs.size(),
                                               count_of(round->ballots));
         if (ImGui::Selectable(label.c_str())) {
@@ -309,26 +310,32 @@ void draw_thanks(Studio& studio, const Round& round) {
 // --- the result ---
 
 void draw_table(const Tally& tally) {
-    const int columns = static_cast<int>(tally.designs.size()) + 1;
-    const ImGuiTableFlags flags = ImGuiTableFlags_Borders | ImGuiTableFlags_RowBg |
-                                  ImGuiTableFlags_ScrollX | ImGuiTableFlags_SizingFixedFit;
+    // As many columns as fit share the width; more are scrolled to.
+    constexpr std::size_t shared = 10, most = 62;
+    const std::size_t designs = std::min(tally.designs.size(), most);
+    const bool scrolls = designs > shared;
+    const float row_height = ImGui::GetTextLineHeight() + 2.0f * ImGui::GetStyle().CellPadding.y;
     const float height =
-        3.0f * (ImGui::GetTextLineHeight() + 2.0f * ImGui::GetStyle().CellPadding.y) +
-        ImGui::GetStyle().ScrollbarSize + em(0.4f);
-    if (!ImGui::BeginTable("result", std::min(columns, 64), flags, {0.0f, height})) return;
-    ImGui::TableSetupScrollFreeze(1, 1);
+        scrolls ? 3.0f * row_height + ImGui::GetStyle().ScrollbarSize + em(0.4f) : 0.0f;
+    const ImGuiTableFlags flags =
+        ImGuiTableFlags_Borders | ImGuiTableFlags_RowBg |
+        (scrolls ? ImGuiTableFlags_ScrollX | ImGuiTableFlags_SizingFixedFit
+                 : ImGuiTableFlags_SizingStretchSame);
+    if (!ImGui::BeginTable("result", static_cast<int>(designs) + 1, flags, {0.0f, height})) return;
+    ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, em(6.0f));
+    if (scrolls) ImGui::TableSetupScrollFreeze(1, 1);
     const auto row = [&](const char* label, auto&& cell) {
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
         ImGui::TextUnformatted(label);
-        for (std::size_t i = 0; i < tally.designs.size(); ++i) {
+        for (std::size_t i = 0; i < designs; ++i) {
             if (!ImGui::TableNextColumn()) continue;
             ImGui::TextUnformatted(cell(i).c_str());
         }
     };
-    row("", [](std::size_t i) { return "  " + letter(i) + "  "; });
-    row("Best", [&](std::size_t i) { return fmt::format("  {}", tally.best[i]); });
-    row("Second best", [&](std::size_t i) { return fmt::format("  {}", tally.second[i]); });
+    row("", [](std::size_t i) { return letter(i); });
+    row("Best", [&](std::size_t i) { return fmt::format("{}", tally.best[i]); });
+    row("Second best", [&](std::size_t i) { return fmt::format("{}", tally.second[i]); });
     ImGui::EndTable();
     for (std::size_t i = 0; i < tally.designs.size(); ++i) {
         ImGui::TextWrapped("%s %s", letter(i).c_str(), tally.designs[i].c_str());
@@ -361,10 +368,10 @@ void draw_result(Studio& studio, const Round& round) {
     heading(fmt::format("Round {}: {}", round.id, count_of(round.ballots)).c_str());
     name_last_item("ballot:result");
     dim_text(fmt::format("Started {}, {}.",
-                         round.created,
+                         readable_time(round.created),
                          round.calibration_id.empty()
                              ? std::string("shown uncorrected")
-                             : "shown under calibration " + round.calibration_id));
+                             : "shown under calibration " + round.calibration_id.substr(0, 8)));
     Tally tally;
     if (!attempted(state, [&] { tally = studio.ballots->tally(round.id); })) return;
     draw_table(tally);

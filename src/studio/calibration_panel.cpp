@@ -1,5 +1,7 @@
 // Which calibration corrects the picture, how good it is, and how to get another.
 #include <algorithm>
+#include <cfloat>
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <system_error>
@@ -14,6 +16,7 @@
 #include "studio/studio.h"
 #include "studio/theme.h"
 #include "studio/widgets.h"
+#include "studio/words.h"
 
 namespace livery {
 
@@ -64,12 +67,15 @@ bool same_folder(const std::filesystem::path& a, const std::filesystem::path& b)
     return a.lexically_normal() == b.lexically_normal();
 }
 
-void fact(const char* label, const std::string& value) {
-    row_label(label, 0.3f);
+void fact(const char* label, const std::string& value, const std::string& whole = "") {
+    const float left = ImGui::GetCursorPosX();
+    dim_text(label);
+    ImGui::SameLine();
+    ImGui::SetCursorPosX(left + std::floor(0.28f * ImGui::GetWindowContentRegionMax().x));
     ImGui::PushTextWrapPos(0.0f);
     ImGui::TextUnformatted(value.c_str());
     ImGui::PopTextWrapPos();
-    tooltip(value);
+    if (!whole.empty()) tooltip(whole);
 }
 
 void draw_figures(const std::vector<GradedFigure>& figures) {
@@ -103,14 +109,14 @@ void draw_calibration_in_use(const ColourCalibration& calibration) {
     name_last_item("calibration-grade");
     dim_text(grade.grade == Grade::good ? "Every figure is within its good range."
                                         : fmt::format("{}. {}", grade.reason, grade.fix));
-    fact("Made", calibration.created);
-    fact("Id", calibration.id);
+    fact("Made", readable_time(calibration.created));
+    fact("Id", calibration.id.substr(0, 8), calibration.id);
     fact("With", calibration.made_with);
     fact("Mode", calibration.mode);
     fact("Colours", calibration.xyz_origin);
     ImGui::Spacing();
     draw_figures(figures);
-    for (const std::string& warning : calibration.warnings) warning_text(warning);
+    for (const std::string& warning : calibration.warnings) warning_text(sentence(warning));
 }
 
 void draw_in_use(const Studio& studio) {
@@ -129,7 +135,7 @@ void draw_in_use(const Studio& studio) {
     name_last_item("uncorrected");
     dim_text(studio.setup->why_uncorrected.empty()
                  ? "The picture goes out as plain sRGB: colours on the mock-up are not right."
-                 : studio.setup->why_uncorrected);
+                 : sentence(studio.setup->why_uncorrected));
     dim_text("Calibrate below, or load a calibration.");
 }
 
@@ -212,9 +218,10 @@ void draw_calibrating(Studio& studio) {
         "mock-up stays; the calibrations before are kept.");
     end_disabled();
     if (!calibrating.refused_why.empty() && !state.dismissed) {
-        warning_text("Refused: " + calibrating.refused_why);
+        warning_text(sentence("refused: " + calibrating.refused_why));
         name_last_item("calibration-refused");
-        if (!calibrating.refused_fix.empty()) dim_text("What helps: " + calibrating.refused_fix);
+        if (!calibrating.refused_fix.empty())
+            dim_text(sentence("what helps: " + calibrating.refused_fix));
         dim_text("The calibration before stays in use.");
         if (ImGui::Button("Dismiss")) state.dismissed = true;
         name_last_item("dismiss-refusal");
@@ -239,10 +246,10 @@ void draw_kept(Studio& studio) {
     };
     bool listed = in_use.empty();
     for (const auto& folder : state.kept) {
-        offer(short_name(folder), folder, folder.string());
+        offer(readable_calibration(short_name(folder)), folder, folder.string());
         listed = listed || same_folder(folder, in_use);
     }
-    if (!listed) offer(short_name(in_use), in_use, in_use.string());
+    if (!listed) offer(readable_calibration(short_name(in_use)), in_use, in_use.string());
     offer("None: uncorrected", {}, "The picture goes out as plain sRGB.");
     if (ImGui::Button("Load calibration folder…") && studio.file_dialog) {
         FileQuestion question;

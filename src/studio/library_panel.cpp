@@ -75,6 +75,14 @@ bool has_rest(const Studio& studio) {
     });
 }
 
+/// The arrows up and down leave the text alone and walk through what was found.
+int on_arrow_in_search(ImGuiInputTextCallbackData* data) {
+    auto& state = *static_cast<LibraryPanelState*>(data->UserData);
+    if (data->EventKey == ImGuiKey_DownArrow) ++state.cursor_rows;
+    if (data->EventKey == ImGuiKey_UpArrow) --state.cursor_rows;
+    return 0;
+}
+
 void draw_search(LibraryPanelState& state) {
     const float clear_width = button_width("×");
     const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
@@ -82,11 +90,18 @@ void draw_search(LibraryPanelState& state) {
                             (state.search.empty() ? 0.0f : clear_width + gap));
     if (state.focus_search) ImGui::SetKeyboardFocusHere();
     state.focus_search = false;
-    if (ImGui::InputTextWithHint("##search", "Search by name or family  ( / )", &state.search)) {
+    state.cursor_rows = 0;
+    if (ImGui::InputTextWithHint("##search",
+                                 "Search by name or family  ( / )",
+                                 &state.search,
+                                 ImGuiInputTextFlags_CallbackHistory,
+                                 on_arrow_in_search,
+                                 &state)) {
         state.cursor.reset();
     }
     name_last_item("paint-search");
-    state.searching = ImGui::IsItemActive();
+    // Enter lets the text go in the frame in which it is pressed.
+    state.searching = ImGui::IsItemActive() || ImGui::IsItemDeactivated();
     if (state.search.empty()) return;
     ImGui::SameLine(0.0f, gap);
     if (ImGui::Button("×##clear", {clear_width, 0.0f})) state.search.clear();
@@ -175,18 +190,20 @@ bool draw_cell(Studio& studio, const Target& target, Cell& cell, float width, fl
     const bool clicked = ImGui::InvisibleButton(paint.name.c_str(), {width, height});
     name_last_item("paint:" + paint.name);
     const bool hovered = ImGui::IsItemHovered();
+    // Whatever moved last says what is meant: the arrow keys, or the pointer.
+    const ImVec2 moved = ImGui::GetIO().MouseDelta;
+    if (hovered && (moved.x != 0.0f || moved.y != 0.0f)) state.cursor.reset();
     const bool on_cursor = state.cursor == paint.name;
+    const bool meant = on_cursor || (hovered && !state.cursor);
     const bool worn = !target.paint.empty() && same_paint_name(target.paint, paint.name);
-    // The pointer says what is meant when both point at something.
-    if (!target.part.empty() && (hovered || (on_cursor && !state.pointer_on_swatch))) {
+    if (meant && !worn && !target.part.empty()) {
         try_out(studio, SetPaint{studio.shown_look, target.part, paint.name});
     }
-    state.pointer_on_swatch_now = state.pointer_on_swatch_now || hovered;
     if (on_cursor && std::exchange(state.cursor_moved, false)) ImGui::SetScrollHereY();
     if (ImGui::IsItemVisible()) {
-        draw_cell_picture(studio, paint, corner, width, worn, hovered || on_cursor);
+        draw_cell_picture(studio, paint, corner, width, worn, meant);
     }
-    if (hovered) paint_tooltip(paint);
+    if (hovered && meant) paint_tooltip(paint);
     return clicked;
 }
 
@@ -221,19 +238,23 @@ std::optional<std::size_t> neighbour(const std::vector<Cell>& cells,
 
 void follow_keys(Studio& studio, const Target& target, const std::vector<Cell>& cells) {
     LibraryPanelState& state = studio.panels.library;
-    const bool here = ImGui::IsWindowFocused(ImGuiFocusedFlags_ChildWindows) || state.searching;
-    if (!here) return;
+    state.owns_arrows = ImGui::IsWindowFocused() && !state.searching;
+    if (!state.owns_arrows && !state.searching) return;
     std::optional<std::size_t> at;
     for (std::size_t i = 0; i < cells.size(); ++i) {
         if (state.cursor == cells[i].paint->name) at = i;
     }
     // While a text is being typed the sideways arrows move in it.
-    int across = 0, down = 0;
-    if (!state.searching) {
+    int across = 0, down = state.cursor_rows;
+    if (state.owns_arrows) {
         across = int{was_pressed(ImGuiKey_RightArrow)} - int{was_pressed(ImGuiKey_LeftArrow)};
+        down = int{was_pressed(ImGuiKey_DownArrow)} - int{was_pressed(ImGuiKey_UpArrow)};
     }
-    down = int{was_pressed(ImGuiKey_DownArrow)} - int{was_pressed(ImGuiKey_UpArrow)};
     if (across != 0 || down != 0) {
+        // From the paint that the part wears, when nothing was tried before.
+        for (std::size_t i = 0; i < cells.size() && !at && state.owns_arrows; ++i) {
+            if (same_paint_name(cells[i].paint->name, target.paint)) at = i;
+        }
         const auto to = neighbour(cells, at, across, down);
         if (to && to != at) {
             state.cursor = cells[*to].paint->name;
@@ -278,7 +299,7 @@ void draw_grid(Studio& studio, const Target& target, const std::vector<Section>&
     ImGui::PopStyleVar();
     follow_keys(studio, target, cells);
     if (clicked) {
-        studio.panels.library.cursor.reset();
+        studio.panels.library.cursor = clicked;
         if (!target.part.empty()) {
             commit(studio, SetPaint{studio.shown_look, target.part, *clicked});
         } else {
@@ -342,7 +363,7 @@ void draw_library_panel(Studio& studio) {
     for (const std::string& problem : state.library.problems) warning_text("Left out: " + problem);
 
     const float height = std::max(ImGui::GetContentRegionAvail().y, em(12.0f));
-    state.pointer_on_swatch_now = false;
+    state.owns_arrows = false;
     ImGui::BeginChild("swatches", {0.0f, height}, false, ImGuiWindowFlags_NoNavInputs);
     if (found_any) {
         draw_grid(studio, target, sections);
@@ -350,7 +371,6 @@ void draw_library_panel(Studio& studio) {
         draw_nothing_found(state);
     }
     ImGui::EndChild();
-    state.pointer_on_swatch = state.pointer_on_swatch_now;
 }
 
 }  // namespace livery

@@ -85,7 +85,8 @@ void draw_direction(LightRows& rows, DirectionalLight& light) {
     if (last_item_is_held()) light.direction = direction_of(angles);
     rows.after_item("azimuth", "0° is behind the product (-z), 90° on its right (+x).");
     row_label("Elevation");
-    number_slider("##elevation", angles.elevation_deg, -90.0, 90.0, "%.1f°");
+    // Straight above and below the azimuth would be lost.
+    number_slider("##elevation", angles.elevation_deg, -89.9, 89.9, "%.1f°");
     if (last_item_is_held()) light.direction = direction_of(angles);
     rows.after_item("elevation", "0° is the horizon, 90° straight above.");
 }
@@ -99,9 +100,10 @@ void draw_strength(LightRows& rows, DirectionalLight& light, const DirectionalLi
     row_label("Strength");
     number_slider("##strength", ev, kOffEv, 6.0, ev <= kOffEv ? "off" : "%+.2f EV");
     if (last_item_is_held()) light.radiance_rec709 = strength_of(ev) * now.colour_rec709;
-    rows.after_item("intensity",
-                    fmt::format("0 EV: a white card facing the light has radiance 1; now {:.3g}.",
-                                now.strength));
+    rows.after_item(
+        "intensity",
+        fmt::format("A white card that faces this light has radiance {:.3g}; at 0 EV it has 1.",
+                    now.strength));
     row_label("Colour");
     glm::dvec3 colour = now.colour_rec709;
     colour_control("light-colour", colour);
@@ -127,7 +129,7 @@ void draw_light(Studio& studio, Look& edited, const Look& before, std::size_t i)
     const std::string title = fmt::format("{}  {}###light", i + 1, light_name(i));
     bool keep = true;
     ImGui::SetNextItemOpen(i < 2, ImGuiCond_Once);
-    const bool open = ImGui::CollapsingHeader(title.c_str(), &keep);
+    const bool open = section_header(title.c_str(), &keep);
     name_last_item(fmt::format("light:{}", i));
     if (!keep) {
         auto lights = before.lights;
@@ -210,8 +212,7 @@ void draw_eye_angles(Studio& studio, glm::dvec3& eye_mm) {
             number_slider("##azimuth", polar.angles.azimuth_deg, -180.0, 180.0, "%.1f°");
         });
     row("Elevation", "eye:elevation", "0° is level with the mock-up's middle.", [](Polar& polar) {
-        // Straight above and below the azimuth would be lost.
-        number_slider("##elevation", polar.angles.elevation_deg, -89.0, 89.0, "%.1f°");
+        number_slider("##elevation", polar.angles.elevation_deg, -89.9, 89.9, "%.1f°");
     });
     row_label("x, y, z (mm)");
     const float gap = ImGui::GetStyle().ItemInnerSpacing.x;

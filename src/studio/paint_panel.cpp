@@ -9,6 +9,7 @@
 #include <imgui_stdlib.h>
 
 #include "core/error.h"
+#include "session/naming.h"
 #include "studio/paint_parameters.h"
 #include "studio/studio.h"
 #include "studio/theme.h"
@@ -75,6 +76,12 @@ bool is_own(const Document& document, const std::string& name) {
     });
 }
 
+bool same_parameters(const Material& a, const Material& b) {
+    return a.model == b.model && a.diffuse == b.diffuse && a.f0 == b.f0 && a.alpha == b.alpha &&
+           a.coat_alpha == b.coat_alpha && a.coat_f0 == b.coat_f0 &&
+           a.coat_transmittance == b.coat_transmittance;
+}
+
 /// One control's row; the edit is tried and committed by what was just drawn.
 class Rows {
   public:
@@ -96,7 +103,8 @@ class Rows {
         const bool touched = last_item_is_held() || ImGui::IsItemDeactivatedAfterEdit();
         if (!touched) return;
         state.problem = paint_problem(edited_).value_or("");
-        if (state.problem.empty()) {
+        // What was put back where it was, or typed in part, is no edit.
+        if (state.problem.empty() && !same_parameters(edited_, *state.material)) {
             edit_with_last_item(studio_, EditPaint{state.look, state.part_name, edited_});
         }
     }
@@ -218,7 +226,11 @@ void save_paint(Studio& studio) {
     Material paint = *state.material;
     paint.name = state.new_name;
     paint.family = state.new_family;
-    if (is_own(studio.session.document(), paint.name)) {
+    const auto& own = studio.session.document().paints;
+    const bool taken = std::any_of(own.begin(), own.end(), [&](const Material& other) {
+        return same_paint_name(other.name, paint.name);
+    });
+    if (taken) {
         // It would come before the library's wherever it is looked up by name.
         state.save_problem = fmt::format(
             "This session has a paint \"{}\" of its own already. Choose another name.", paint.name);
@@ -293,7 +305,13 @@ void draw_actions(Studio& studio) {
     const char* save = "Save as new paint…";
     place_in_row(button_width(save));
     if (ImGui::Button(save)) {
-        state.new_name = material.name;
+        const auto& own = studio.session.document().paints;
+        state.new_name = free_name(material.name, [&](const std::string& name) {
+            return current_library(studio).find(name) != nullptr ||
+                   std::any_of(own.begin(), own.end(), [&](const Material& paint) {
+                       return same_paint_name(paint.name, name);
+                   });
+        });
         state.new_family = material.family;
         state.save_problem.clear();
         ImGui::OpenPopup(kSavePopup);

@@ -43,7 +43,8 @@ struct LibraryPanelState {
     bool whole_product = false;
     std::optional<std::string> cursor;  ///< the paint that the arrow keys are on
     bool cursor_moved = false;          ///< it must be scrolled to
-    bool pointer_on_swatch = false, pointer_on_swatch_now = false;  ///< last frame, this frame
+    int cursor_rows = 0;                ///< up or down, pressed in the search in this frame
+    bool owns_arrows = false;           ///< the swatches have the keyboard
     std::shared_ptr<SwatchInbox> inbox = std::make_shared<SwatchInbox>();
     std::map<std::string, Texture2D> swatches;
     std::set<std::string> asked;

@@ -10,6 +10,7 @@
 #include "studio/studio.h"
 #include "studio/theme.h"
 #include "studio/widgets.h"
+#include "studio/words.h"
 
 namespace livery {
 
@@ -43,7 +44,7 @@ void draw_totals(const Studio& studio, const FinishedFrame& frame) {
     ImGui::PopFont();
     name_last_item("frame-total");
     tooltip("From the frame's description to its finished projector picture.");
-    dim_text(fmt::format("{} quality. Shading {}, correction {}.",
+    dim_text(fmt::format("Quality {}. Shading {}, correction {}.",
                          to_string(frame.plan.quality),
                          milliseconds(frame.shade_ms),
                          milliseconds(frame.compensate_ms)));
@@ -55,8 +56,8 @@ void draw_totals(const Studio& studio, const FinishedFrame& frame) {
         dim_text("Not predicted: no bench has run here (livery bench --suite speed).");
     }
     if (!studio.panels.plan.problem.empty()) warning_text(studio.panels.plan.problem);
-    if (!frame.unfinished.empty()) warning_text("Not final yet: " + frame.unfinished);
-    if (!frame.problem.empty()) warning_text("Not drawn: " + frame.problem);
+    if (!frame.unfinished.empty()) warning_text(sentence("not final yet: " + frame.unfinished));
+    if (!frame.problem.empty()) warning_text(sentence("not drawn: " + frame.problem));
 }
 
 void draw_reach(const FinishedFrame& frame) {
@@ -122,7 +123,7 @@ void draw_passes(const FramePlan& plan, Kind kind, const char* title) {
 void draw_skipped(const FramePlan& plan) {
     ImGui::Spacing();
     const std::string title = fmt::format("Not run ({})###skipped", plan.skipped.size());
-    const bool open = ImGui::CollapsingHeader(title.c_str());
+    const bool open = section_header(title.c_str());
     name_last_item("skipped-passes");
     if (!open) return;
     for (const SkippedPass& pass : plan.skipped) {

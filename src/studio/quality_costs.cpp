@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "studio/widgets.h"
+#include "studio/words.h"
 
 namespace livery {
 

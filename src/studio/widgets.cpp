@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_internal.h>
 
@@ -55,6 +54,48 @@ void hex_field(const std::string& name, glm::dvec3& linear, float width) {
         if (typed && hex_of(*typed) != shown) linear = *typed;
     }
     name_last_item(name + ":hex");
+}
+
+/// The smallest value that a slider in equal ratios tells from 0.
+constexpr double kSmallestRatio = 0.1;
+
+/// Where between its ends a slider stands, 0 to 1.
+double share_of(double value, double low, double high, bool in_ratios) {
+    if (in_ratios) {
+        const double floor = low > 0.0 ? low : kSmallestRatio;
+        return std::log(std::max(value, floor) / floor) / std::log(high / floor);
+    }
+    return (value - low) / (high - low);
+}
+
+/// A line along the bottom shows where it stands, so that the number stays legible.
+void slider(
+    const char* id, double& value, double low, double high, const char* format, bool in_ratios) {
+    ImGui::PushStyleColor(ImGuiCol_SliderGrab, 0);
+    ImGui::PushStyleColor(ImGuiCol_SliderGrabActive, 0);
+    ImGui::PushStyleVar(ImGuiStyleVar_GrabMinSize, 1.0f);
+    ImGui::SliderScalar(id,
+                        ImGuiDataType_Double,
+                        &value,
+                        &low,
+                        &high,
+                        format,
+                        (in_ratios ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None) |
+                            ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat);
+    ImGui::PopStyleVar();
+    ImGui::PopStyleColor(2);
+    const ImVec2 corner = ImGui::GetItemRectMin(), end = ImGui::GetItemRectMax();
+    const auto share =
+        static_cast<float>(std::clamp(share_of(value, low, high, in_ratios), 0.0, 1.0));
+    const float line = std::max(2.0f, em(0.16f)), rounding = ImGui::GetStyle().FrameRounding;
+    const float left = corner.x + rounding, right = end.x - rounding;
+    const float at = left + share * (right - left);
+    const bool lit = ImGui::IsItemActive() || ImGui::IsItemHovered();
+    const ImU32 colour = ImGui::GetColorU32(lit ? colours::text : colours::dim_text);
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    draw->AddRectFilled(
+        {left, end.y - line}, {at, end.y}, ImGui::GetColorU32(ImGuiCol_PlotHistogram));
+    draw->AddRectFilled({at - 0.8f * line, end.y - 2.2f * line}, {at + 0.8f * line, end.y}, colour);
 }
 
 }  // namespace
@@ -167,34 +208,23 @@ void colour_control(const std::string& name, glm::dvec3& linear_rec709) {
 }
 
 void ratio_slider(const char* id, double& value, double low, double high, const char* format) {
-    ImGui::SliderScalar(id,
-                        ImGuiDataType_Double,
-                        &value,
-                        &low,
-                        &high,
-                        format,
-                        ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp |
-                            ImGuiSliderFlags_NoRoundToFormat);
+    slider(id, value, low, high, format, true);
 }
 
 void number_slider(const char* id, double& value, double low, double high, const char* format) {
-    ImGui::SliderScalar(id,
-                        ImGuiDataType_Double,
-                        &value,
-                        &low,
-                        &high,
-                        format,
-                        ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat);
+    slider(id, value, low, high, format, false);
+}
+
+bool section_header(const char* label, bool* keep) {
+    ImGui::PushStyleColor(ImGuiCol_Header, colours::raised);
+    const bool open = ImGui::CollapsingHeader(label, keep);
+    ImGui::PopStyleColor();
+    return open;
 }
 
 void progress_bar(double fraction, const std::string& text) {
     ImGui::ProgressBar(
         static_cast<float>(std::clamp(fraction, 0.0, 1.0)), {-FLT_MIN, 0.0f}, text.c_str());
-}
-
-std::string milliseconds(double ms) {
-    if (ms >= 1000.0) return fmt::format("{:.2f} s", 1e-3 * ms);
-    return ms >= 100.0 ? fmt::format("{:.0f} ms", ms) : fmt::format("{:.1f} ms", ms);
 }
 
 bool was_pressed(int imgui_key) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(imgui_key)); }

@@ -35,11 +35,11 @@ void colour_control(const std::string& name, glm::dvec3& linear_rec709);
 void ratio_slider(const char* id, double& value, double low, double high, const char* format);
 void number_slider(const char* id, double& value, double low, double high, const char* format);
 
+/// A collapsing header in the panel's grey; `keep` (may be null) is set to false by its cross.
+bool section_header(const char* label, bool* keep = nullptr);
+
 /// A bar with its fraction in words on top.
 void progress_bar(double fraction, const std::string& text);
-
-/// "12.3 ms", "4.87 s".
-std::string milliseconds(double ms);
 
 bool was_pressed(int imgui_key);  ///< ImGuiKey_..., with key repeat
 

@@ -1,0 +1,21 @@
+// Values as the panels say them.
+#pragma once
+
+#include <string>
+
+namespace livery {
+
+/// "12.3 ms", "4.87 s".
+std::string milliseconds(double ms);
+
+/// Begins with a capital and ends with a full stop.
+std::string sentence(std::string text);
+
+/// "2026-11-21T09:16:05Z" -> "2026-11-21 09:16 UTC". Other texts stay as they are.
+std::string readable_time(const std::string& iso_8601);
+
+/// A kept calibration's folder, "2026-11-21T09-16-13Z-397cfee1" -> "2026-11-21 09:16 · 397cfee1".
+/// Other names stay as they are.
+std::string readable_calibration(const std::string& folder_name);
+
+}  // namespace livery

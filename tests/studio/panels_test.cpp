@@ -1,0 +1,252 @@
+// The panels drawn without a window: everything fits in the narrowest column, and pointer and keys
+// do to the session what they say.
+#include <cstdlib>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <imgui.h>
+#include <imgui_internal.h>
+
+#include "core/error.h"
+#include "session/library.h"
+#include "studio/studio.h"
+#include "studio/theme.h"
+#include "studio/ui_map.h"
+#include "support/temporary_folder.h"
+
+namespace livery {
+namespace {
+
+using DrawPanel = void (*)(Studio&);
+
+constexpr float kColumn = 320.0f;
+
+Document two_looks() {
+    Document document;
+    document.product = "sphere";
+    for (const char* paint : {"solid red", "blue metallic"}) {
+        SessionLook look;
+        look.id = document.next_look_id++;
+        look.look.name = std::string("look of ") + paint;
+        look.look.parts["*"] = paint;
+        look.look.lights.resize(2);
+        look.look.lights[1].direction = {1.0, 0.0, 0.0};
+        look.look.lights[1].radiance_rec709 = glm::dvec3(0.25);
+        document.looks.push_back(look);
+    }
+    document.eye_mm = {0.0, 200.0, 600.0};
+    return document;
+}
+
+/// A studio without threads, projector and window, and an ImGui that draws nowhere.
+class Panels : public testing::TestWithParam<float> {
+  protected:
+    Panels() {
+        setenv("LIVERY_HOME", home_.path().c_str(), 1);
+        ImGui::CreateContext();
+        ImGui::GetIO().IniFilename = nullptr;
+        ImGui::GetIO().DisplaySize = {2000.0f, 4000.0f};
+        ImGui::GetIO().BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
+        // As the window's backend has them.
+        for (int key = 0; key < ImGuiKey_COUNT; ++key) ImGui::GetIO().KeyMap[key] = key;
+    }
+    ~Panels() override { ImGui::DestroyContext(); }
+
+    Studio make_studio() {
+        Studio studio{Session::unsaved(two_looks(), "a test")};
+        studio.product = find_product("sphere");
+        studio.shown_look = studio.session.document().looks.front().id;
+        studio.selected_part = 0;
+        return studio;
+    }
+
+    void use_scale(float scale) {
+        scale_ = scale;
+        apply_theme(scale);
+        unsigned char* pixels = nullptr;
+        int width = 0, height = 0;
+        ImGui::GetIO().Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+    }
+
+    /// One frame of the window; what the panel named.
+    ItemPlaces frame(Studio& studio, DrawPanel draw) {
+        ImGui::GetIO().DeltaTime = 0.1f;
+        studio.now_s += 0.1;
+        start_naming_items(true);
+        ImGui::NewFrame();
+        begin_trials(studio);
+        ImGui::SetNextWindowPos({0.0f, 0.0f});
+        ImGui::SetNextWindowSize({kColumn * scale_, 4000.0f});
+        ImGui::Begin("panel", nullptr, ImGuiWindowFlags_NoDecoration);
+        draw(studio);
+        ImGui::End();
+        end_trials(studio);
+        ImGui::Render();
+        return take_named_items();
+    }
+    ItemPlaces frames(Studio& studio, DrawPanel draw, int count) {
+        ItemPlaces places;
+        for (int i = 0; i < count; ++i) places = frame(studio, draw);
+        return places;
+    }
+    void point_at(const ItemPlaces& places, const std::string& name) {
+        const auto found = places.find(name);
+        ASSERT_NE(found, places.end()) << name;
+        ImGui::GetIO().MousePos = {
+            static_cast<float>(found->second.x) + 0.5f * static_cast<float>(found->second.width),
+            static_cast<float>(found->second.y) + 0.5f * static_cast<float>(found->second.height)};
+    }
+    void click(Studio& studio, DrawPanel draw, const std::string& name) {
+        point_at(frames(studio, draw, 2), name);
+        frames(studio, draw, 2);
+        ImGui::GetIO().MouseDown[0] = true;
+        frame(studio, draw);
+        ImGui::GetIO().MouseDown[0] = false;
+        frames(studio, draw, 2);
+    }
+    void press(Studio& studio, DrawPanel draw, ImGuiKey key) {
+        ImGui::GetIO().KeysDown[key] = true;
+        frame(studio, draw);
+        ImGui::GetIO().KeysDown[key] = false;
+        frame(studio, draw);
+    }
+
+    float scale_ = 1.0f;
+    TemporaryFolder home_;
+};
+
+std::string worn(const Document& document, std::size_t look = 0) {
+    const auto& parts = document.looks.at(look).look.parts;
+    const auto own = parts.find("sphere");
+    return own != parts.end() ? own->second : parts.at("*");
+}
+
+TEST_P(Panels, FitIntoTheNarrowestColumn) {
+    use_scale(GetParam());
+    Studio studio = make_studio();
+    studio.ballots = std::make_unique<BallotStore>(home_ / "ballots.sqlite");
+    auto frame_shown = std::make_shared<FinishedFrame>();
+    frame_shown->plan.passes.resize(2);
+    frame_shown->plan.passes[0].name = "shade:a-part-with-a-long-name:clearcoat";
+    frame_shown->plan.passes[0].why = "a reason that takes more than one line in a narrow column";
+    frame_shown->plan.passes[0].ms = 12345.6;
+    frame_shown->plan.passes[1].name = "prepare:clearcoat";
+    studio.frame = frame_shown;
+    const std::vector<std::pair<DrawPanel, std::vector<std::string>>> panels{
+        {draw_library_panel, {"paint:solid red", "paint-search", "family:all"}},
+        {draw_paint_panel, {"param:diffuse", "param:alpha", "reset-paint", "save-paint"}},
+        {draw_lighting_panel,
+         {"light:0:intensity", "light-pad:1", "eye:distance", "exposure", "quality:draft"}},
+        {draw_plan_panel, {"frame-total", "skipped-passes", "pass:prepare:clearcoat"}},
+        {draw_calibration_panel, {"calibrate", "design-white", "calibration:none"}}};
+    for (const auto& [draw, expected] : panels) {
+        const ItemPlaces places = frames(studio, draw, 3);
+        for (const std::string& name : expected) EXPECT_TRUE(places.contains(name)) << name;
+        // Neither the panel nor what scrolls inside it is wider than what one sees of it.
+        for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows) {
+            if (!window->Active || window->Hidden) continue;
+            EXPECT_LE(window->ContentSize.x, window->InnerRect.GetWidth() + 1.0f)
+                << window->Name << " with " << expected.front();
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scales, Panels, testing::Values(1.0f, 2.0f));
+
+TEST_F(Panels, PointingTriesAPaintAndClickingPaints) {
+    use_scale(1.0f);
+    Studio studio = make_studio();
+    const std::uint64_t before = studio.session.revision();
+    point_at(frames(studio, draw_library_panel, 2), "paint:solid blue");
+    frames(studio, draw_library_panel, 2);
+    ASSERT_TRUE(studio.tried);
+    EXPECT_EQ(worn(shown_document(studio)), "solid blue");
+    EXPECT_EQ(worn(studio.session.document()), "solid red");
+    EXPECT_EQ(studio.session.revision(), before);
+
+    click(studio, draw_library_panel, "paint:solid blue");
+    EXPECT_EQ(worn(studio.session.document()), "solid blue");
+    EXPECT_EQ(studio.session.revision(), before + 1);
+    EXPECT_EQ(worn(studio.session.document(), 1), "blue metallic");
+}
+
+TEST_F(Panels, ArrowsTryPaintsAndEnterPaints) {
+    use_scale(1.0f);
+    Studio studio = make_studio();
+    studio.panels.library.focus_search = true;
+    studio.panels.library.search = "blue";
+    frames(studio, draw_library_panel, 3);
+    press(studio, draw_library_panel, ImGuiKey_DownArrow);
+    EXPECT_EQ(studio.panels.library.cursor, "blue metallic");
+    EXPECT_EQ(worn(shown_document(studio)), "blue metallic");
+    press(studio, draw_library_panel, ImGuiKey_Enter);
+    EXPECT_EQ(worn(studio.session.document()), "blue metallic");
+}
+
+TEST_F(Panels, SayWhenNothingIsFound) {
+    use_scale(1.0f);
+    Studio studio = make_studio();
+    studio.panels.library.search = "solid rad";
+    ItemPlaces places = frames(studio, draw_library_panel, 2);
+    EXPECT_FALSE(places.contains("paint:solid red"));
+    click(studio, draw_library_panel, "paint-nearest");
+    places = frames(studio, draw_library_panel, 2);
+    EXPECT_EQ(studio.panels.library.search, "solid red");
+    EXPECT_TRUE(places.contains("paint:solid red"));
+}
+
+TEST_F(Panels, DraggingAParameterMakesOneStep) {
+    use_scale(1.0f);
+    Studio studio = make_studio();
+    const std::uint64_t before = studio.session.revision();
+    point_at(frames(studio, draw_paint_panel, 2), "param:coat_alpha");
+    frames(studio, draw_paint_panel, 2);
+    ImGui::GetIO().MouseDown[0] = true;
+    for (int i = 0; i < 5; ++i) {
+        ImGui::GetIO().MousePos.x += 4.0f;
+        frame(studio, draw_paint_panel);
+    }
+    EXPECT_EQ(studio.session.revision(), before);
+    ASSERT_TRUE(studio.tried);
+    const Material tried = find_paint(shown_document(studio), "solid red 2");
+    ImGui::GetIO().MouseDown[0] = false;
+    frames(studio, draw_paint_panel, 2);
+    EXPECT_EQ(studio.session.revision(), before + 1);
+    EXPECT_EQ(worn(studio.session.document()), "solid red 2");
+    EXPECT_EQ(find_paint(studio.session.document(), "solid red 2").coat_alpha, tried.coat_alpha);
+    // The library's own is as it was.
+    EXPECT_NE(find_paint(studio.session.document(), "solid red").coat_alpha, tried.coat_alpha);
+}
+
+TEST_F(Panels, APressWithoutAChangeIsNoEdit) {
+    use_scale(1.0f);
+    Studio studio = make_studio();
+    const std::uint64_t before = studio.session.revision();
+    click(studio, draw_paint_panel, "param:diffuse:swatch");
+    click(studio, draw_paint_panel, "param:diffuse:r");
+    EXPECT_EQ(studio.session.revision(), before);
+}
+
+TEST_F(Panels, ALightIsAddedPulledAndRemoved) {
+    use_scale(1.0f);
+    Studio studio = make_studio();
+    const auto lights = [&] { return studio.session.document().looks[0].look.lights; };
+    click(studio, draw_lighting_panel, "add-light");
+    ASSERT_EQ(lights().size(), 3u);
+    const glm::dvec3 direction = lights()[2].direction;
+    point_at(frames(studio, draw_lighting_panel, 2), "light-pad:2");
+    frames(studio, draw_lighting_panel, 2);
+    ImGui::GetIO().MouseDown[0] = true;
+    for (int i = 0; i < 5; ++i) {
+        ImGui::GetIO().MousePos.x += 5.0f;
+        frame(studio, draw_lighting_panel);
+    }
+    EXPECT_EQ(lights()[2].direction, direction);
+    ImGui::GetIO().MouseDown[0] = false;
+    frames(studio, draw_lighting_panel, 2);
+    EXPECT_GT(lights()[2].direction.x, direction.x);
+    EXPECT_EQ(lights()[0].direction, two_looks().looks[0].look.lights[0].direction);
+}
+
+}  // namespace
+}  // namespace livery
