@@ -9,7 +9,7 @@
 
 #include "projection/numerals.h"
 #include "projection/projector_screen.h"
-#include "projection/window_keeper.h"
+#include "projection/stacking.h"
 #include "projection/x_connection.h"
 
 namespace livery {

@@ -1,6 +1,5 @@
 #include "projection/window_keeper.h"
 
-#include <algorithm>
 #include <array>
 #include <condition_variable>
 #include <mutex>
@@ -8,55 +7,23 @@
 #include <thread>
 #include <utility>
 
-#include <fcntl.h>
 #include <poll.h>
-#include <unistd.h>
 #include <xcb/randr.h>
 #include <xcb/screensaver.h>
 #include <xcb/xtest.h>
 
 #include "core/log.h"
 #include "projection/awake.h"
+#include "projection/doorbell.h"
 #include "projection/outputs.h"
+#include "projection/stacking.h"
 #include "projection/x_connection.h"
 
 namespace livery {
 namespace {
 
-/// Wakes a thread that polls.
-class Doorbell {
-  public:
-    Doorbell() {
-        if (::pipe2(ends_.data(), O_CLOEXEC | O_NONBLOCK) != 0) {
-            throw std::runtime_error("no pipe: too many files are open");
-        }
-    }
-    ~Doorbell() {
-        ::close(ends_[0]);
-        ::close(ends_[1]);
-    }
-    Doorbell(const Doorbell&) = delete;
-    Doorbell& operator=(const Doorbell&) = delete;
-
-    void ring() const {
-        const char byte = 0;
-        // A full pipe has rung already.
-        [[maybe_unused]] const auto written = ::write(ends_[1], &byte, 1);
-    }
-    void silence() const {
-        std::array<char, 64> bytes{};
-        while (::read(ends_[0], bytes.data(), bytes.size()) > 0) {
-        }
-    }
-    int descriptor() const { return ends_[0]; }
-
-  private:
-    std::array<int, 2> ends_{-1, -1};
-};
-
 /// How often a shown window comes to the top again; enough for whatever a person opens.
 constexpr int kRaises = 50;
-constexpr const char* kOverlayProperty = "_LIVERY_OVERLAY";
 
 bool same_place(const Monitor& a, const Monitor& b) {
     return a.x == b.x && a.y == b.y && a.width == b.width && a.height == b.height;
@@ -70,7 +37,6 @@ struct WindowKeeper::Implementation {
     const xcb_window_t black_cover;  ///< a child of the window
     const Listener listener;
     const bool passes_grabs, has_screensaver;
-    const xcb_atom_t overlay_atom;
     std::uint8_t randr_event = 0;
 
     // Of the keeper's thread.
@@ -94,8 +60,7 @@ struct WindowKeeper::Implementation {
           black_cover(xcb_generate_id(x.get())),
           listener(std::move(listens)),
           passes_grabs(x.has(xcb_test_id)),
-          has_screensaver(x.has(xcb_screensaver_id)),
-          overlay_atom(x.atom(kOverlayProperty)) {
+          has_screensaver(x.has(xcb_screensaver_id)) {
         if (!x.has(xcb_randr_id)) {
             throw std::runtime_error("the X server has no RandR, so nothing tells its monitors");
         }
@@ -203,42 +168,10 @@ struct WindowKeeper::Implementation {
         if (cover) listener.covered();
     }
 
-    bool is_foreign_cover(xcb_window_t other) const {
-        auto* c = x.get();
-        const XReply<xcb_get_window_attributes_reply_t> attributes(
-            xcb_get_window_attributes_reply(c, xcb_get_window_attributes(c, other), nullptr));
-        const XReply<xcb_get_geometry_reply_t> geometry(
-            xcb_get_geometry_reply(c, xcb_get_geometry(c, other), nullptr));
-        if (!attributes || !geometry || attributes->map_state != XCB_MAP_STATE_VIEWABLE ||
-            attributes->_class != XCB_WINDOW_CLASS_INPUT_OUTPUT) {
-            return false;
-        }
-        Monitor area;
-        area.x = geometry->x;
-        area.y = geometry->y;
-        area.width = geometry->width + 2 * geometry->border_width;
-        area.height = geometry->height + 2 * geometry->border_width;
-        if (!overlap(area, shown_on->monitor)) return false;
-        const auto cookie =
-            xcb_get_property(c, false, other, overlay_atom, XCB_ATOM_CARDINAL, 0, 1);
-        const XReply<xcb_get_property_reply_t> mark(xcb_get_property_reply(c, cookie, nullptr));
-        return !mark || mark->type == XCB_ATOM_NONE;
-    }
-
     /// Another program's window came to lie on the picture: no window manager keeps it away, since
     /// none knows of ours.
     void raise_above_foreign_windows() {
-        const XReply<xcb_query_tree_reply_t> tree(
-            xcb_query_tree_reply(x.get(), xcb_query_tree(x.get(), x.root()), nullptr));
-        if (!tree) return;
-        const auto* children = xcb_query_tree_children(tree.get());
-        const auto* end = children + xcb_query_tree_children_length(tree.get());
-        const auto* own = std::find(children, end, window);
-        if (own == end || std::none_of(own + 1, end, [&](xcb_window_t other) {
-                return is_foreign_cover(other);
-            })) {
-            return;
-        }
+        if (!is_covered_by_others(x, window, shown_on->monitor)) return;
         // A screen locker does the same: whoever insists may have the projector.
         if (raises_left == 0) return;
         if (--raises_left == 0) {
@@ -400,18 +333,6 @@ struct WindowKeeper::Implementation {
         caught_up.wait(lock, [&] { return answered >= mine || ended; });
     }
 };
-
-void mark_as_overlay(const XConnection& x, std::uint32_t window) {
-    const std::uint32_t yes = 1;
-    xcb_change_property(x.get(),
-                        XCB_PROP_MODE_REPLACE,
-                        window,
-                        x.atom(kOverlayProperty),
-                        XCB_ATOM_CARDINAL,
-                        32,
-                        1,
-                        &yes);
-}
 
 WindowKeeper::WindowKeeper(std::uint32_t window, Listener listener)
     : implementation_(std::make_unique<Implementation>(window, std::move(listener))) {}

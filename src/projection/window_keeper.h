@@ -11,8 +11,6 @@
 
 namespace livery {
 
-class XConnection;
-
 /// Listens to RandR on a connection and a thread of its own, so that a window is hidden before a
 /// busy program could have read that its monitor went. Its requests are served even while another
 /// program holds the server, which is when xrandr and desktops move the monitors about; to show
@@ -51,8 +49,5 @@ class WindowKeeper {
     struct Implementation;
     std::unique_ptr<Implementation> implementation_;
 };
-
-/// Lets a window of ours lie above a kept one, which otherwise comes to the top again.
-void mark_as_overlay(const XConnection& x, std::uint32_t window);
 
 }  // namespace livery

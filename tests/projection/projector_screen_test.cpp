@@ -230,7 +230,7 @@ TEST_P(ProjectorScreenTest, BlackDoesNotWaitForAPictureThatIsNotFinished) {
 
     auto program = Program::screen_pass(long_work());
     program.use();
-    program.set("turns", 600);
+    program.set("turns", 200);
     auto texture = std::make_shared<Texture2D>(1280, 800, TexelFormat::rgba8);
     const Framebuffer framebuffer({texture.get()});
     ScreenPass().run(program, framebuffer);
@@ -247,7 +247,7 @@ TEST_P(ProjectorScreenTest, BlackDoesNotWaitForAPictureThatIsNotFinished) {
     EXPECT_FALSE(ready->is_reached()) << "too quick a machine for this test's work";
     EXPECT_TRUE(wait_until([&] { return screen.shown().number == 0; }));
     screen.set_black(false);
-    EXPECT_TRUE(wait_until([&] { return screen.shown().number == 2; }));
+    EXPECT_TRUE(wait_until([&] { return screen.shown().number == 2; }, std::chrono::seconds(60)));
     EXPECT_TRUE(ready->is_reached());
     EXPECT_TRUE(stage.projector_becomes({0, 255, 0}));
 }
