@@ -29,6 +29,14 @@ glm::vec3 to_local(const Fragment& f, const glm::vec3& direction) {
     return {glm::dot(direction, s), glm::dot(direction, t), glm::dot(direction, f.normal)};
 }
 
+/// Whether what was filtered of one serves the other: filters know neither rotation nor scale.
+bool same_map(const std::shared_ptr<const Environment>& a,
+              const std::shared_ptr<const Environment>& b) {
+    if (a == b) return true;
+    return a && b && a->radiance_working.width == b->radiance_working.width &&
+           a->radiance_working.values == b->radiance_working.values;
+}
+
 glm::vec3 radiance_working(const DirectionalLight& light) {
     return glm::vec3(working_from_rec709() * light.radiance_rec709);
 }
@@ -124,13 +132,13 @@ void FragmentInputs::solve_sky(const Scene& scene,
         sky_visibility_ = solve_sky_visibility(mesh_, tracer_, map_, rays, progress);
     });
     clock.run(kIrradiancePass, !stands, [&] {
-        if (diffused_ != scene.environment) {
+        if (!same_map(diffused_, scene.environment)) {
             FilteredEnvironment filtered =
                 filter_environment(*scene.environment, {false, true, true}, progress);
             filtered_.diffuse = std::move(filtered.diffuse);
             filtered_.blurred = std::move(filtered.blurred);
-            diffused_ = scene.environment;
         }
+        diffused_ = scene.environment;
         sky_ = sky_at_fragments(
             map_, *scene.environment, filtered_, occluded ? &*sky_visibility_ : nullptr);
         sky_made_ = {scene.environment, occluded ? sky_visibility_->directions : 0, {}};
@@ -153,11 +161,11 @@ void FragmentInputs::solve_mirror(const Scene& scene,
         mirror_texels_ = {};
         return;
     }
-    clock.run(kFilterPass, layered_ != scene.environment, [&] {
+    clock.run(kFilterPass, !same_map(layered_, scene.environment), [&] {
         filtered_.mirrored =
             filter_environment(*scene.environment, {true, false, false}, progress).mirrored;
-        layered_ = scene.environment;
     });
+    layered_ = scene.environment;
     const glm::dvec3 eye = scene.eye_in_world_mm;
     const bool occluded = find_pass(plan, kReflectionPass) != nullptr;
     const int rays = occluded ? rays_of(plan.quality).mirror : 0;

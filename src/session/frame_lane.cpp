@@ -237,11 +237,17 @@ Scene FrameLane::scene_of(const FrameDescription& description, std::size_t side)
 }
 
 void FrameLane::draw_ahead(const FrameDescription& description) {
-    draw(description);
+    draw_picture(description);
     for (Side& side : sides_) side.told = false;
 }
 
-std::shared_ptr<FinishedFrame> FrameLane::draw(const FrameDescription& description) try {
+std::shared_ptr<FinishedFrame> FrameLane::draw(const FrameDescription& description) {
+    std::shared_ptr<FinishedFrame> frame = draw_picture(description);
+    frame->plan = told_plan(description.wipe_to.has_value());
+    return frame;
+}
+
+std::shared_ptr<FinishedFrame> FrameLane::draw_picture(const FrameDescription& description) try {
     const auto start = Clock::now();
     check_argument(can_draw(description), "this frame's light was not solved");
     auto frame = std::make_shared<FinishedFrame>();
@@ -259,7 +265,6 @@ std::shared_ptr<FinishedFrame> FrameLane::draw(const FrameDescription& descripti
     frame->owner = composed_.slot;
     frame->drive = composed_.drive;
     frame->radiance_working = composed_.radiance_working;
-    frame->plan = told_plan(description.wipe_to.has_value());
     frame->compensation = sides_[0].compensation;
     frame->asked_at = description.asked_at;
     frame->ms_total += milliseconds_since(start);
@@ -285,17 +290,25 @@ void FrameLane::draw_side(const FrameDescription& description, std::size_t index
                          side.exposure_ev == scene.exposure_ev && side.light == light;
     const bool ahead = !std::exchange(side.told, true);
     if (ahead && painted && side.setup == description.setup) return;
-    side.plan = plan_frame(scene, solved_[light]->quality, FrameStage::projector);
-    side.shade_ms = side.compensate_ms = 0.0;
-    for (PlannedPass& pass : side.plan.passes) pass.ms = 0.0;
+    FramePlan plan = plan_frame(scene, solved_[light]->quality, FrameStage::projector);
+    for (PlannedPass& pass : plan.passes) pass.ms = 0.0;
+    if (ahead) {
+        add_milliseconds(plan, side.plan, false);
+    } else {
+        side.shade_ms = side.compensate_ms = 0.0;
+    }
+    side.plan = std::move(plan);
     if (!painted) {
         side.radiance_working = nullptr;
         const auto start = Clock::now();
         RadianceRenderer& renderer = *lights_[light].renderer;
-        renderer.render(scene, side.plan);
+        FramePlan drawn = plan_frame(scene, solved_[light]->quality, FrameStage::projector);
+        renderer.render(scene, drawn);
         auto radiance = radiances_.take();
         renderer.read_back_into(radiance.get());
-        side.shade_ms = milliseconds_since(start);
+        side.shade_ms += milliseconds_since(start);
+        add_milliseconds(drawn, side.plan, false);
+        side.plan = std::move(drawn);
         side.radiance_working = std::move(radiance);
         side.paints = scene.part_materials;
         side.exposure_ev = scene.exposure_ev;
@@ -306,29 +319,30 @@ void FrameLane::draw_side(const FrameDescription& description, std::size_t index
         }
     }
     if (painted && side.setup == description.setup) return;
+    side.setup = nullptr;  // until it worked
+    compensate_side(*description.setup, side);
     side.setup = description.setup;
-    compensate_side(side);
 }
 
-void FrameLane::compensate_side(Side& side) {
+void FrameLane::compensate_side(const ProjectorSetup& setup, Side& side) {
     const auto start = Clock::now();
     auto drive = drives_.take();
     PlannedPass& pass = *find_pass(side.plan, kCompensationPass);
     side.compensation = {};
-    if (side.setup->table) {
+    if (setup.table) {
         // On one processor thread: quicker than OpenGL in software, and it counts what is out of
         // the gamut, which the OpenGL pass does not.
-        compensate_into(
-            *side.setup->table, *side.radiance_working, drive.get(), &side.compensation);
-        pass.work_items = static_cast<double>(side.setup->table->pixels.size());
+        compensate_into(*setup.table, *side.radiance_working, drive.get(), &side.compensation);
+        pass.work_items = static_cast<double>(setup.table->pixels.size());
     } else {
         srgb_from_working_into(*side.radiance_working, drive.get());
         pass.why = "without a calibration the frame goes out as sRGB";
         pass.work_items = static_cast<double>(drive->pixel_count());
     }
     side.drive = std::move(drive);
-    side.compensate_ms = milliseconds_since(start);
-    pass.ms = side.compensate_ms;
+    const double ms = milliseconds_since(start);
+    side.compensate_ms += ms;
+    pass.ms = pass.ms.value_or(0.0) + ms;
 }
 
 void FrameLane::compose(const FrameDescription& description) {

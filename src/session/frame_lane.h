@@ -89,9 +89,10 @@ class FrameLane {
                      const SolveKey& key,
                      std::optional<Urgency> urgency,
                      const Progress& progress);
+    std::shared_ptr<FinishedFrame> draw_picture(const FrameDescription& description);
     Scene scene_of(const FrameDescription& description, std::size_t side) const;
     void draw_side(const FrameDescription& description, std::size_t side);
-    void compensate_side(Side& side);
+    void compensate_side(const ProjectorSetup& setup, Side& side);
     void compose(const FrameDescription& description);
     std::shared_ptr<const TexturePool::Slot> upload(const Image8& drive);
     FramePlan told_plan(bool wiped);

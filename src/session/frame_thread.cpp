@@ -243,9 +243,23 @@ void FrameThread::Implementation::hold_front(std::unique_lock<std::mutex>& lock)
 void FrameThread::Implementation::hand_over(std::size_t index,
                                             FrameLane& lane,
                                             std::unique_lock<std::mutex>& lock) {
+    const auto drawable = [&] { return wanted_of(*newest) && lane.can_draw(*newest); };
+    // Paints that came meanwhile are drawn before the front is held, or they would wait for two
+    // frames; whoever swaps faster than that waits once.
+    Newest drawn;
+    for (int k = 0; k < 3 && newest != drawn && drawable(); ++k) {
+        drawn = newest;
+        lock.unlock();
+        try {
+            lane.draw_ahead(*drawn);
+        } catch (...) {
+            // Told when it is drawn for showing, if it fails then, too.
+        }
+        lock.lock();
+    }
     hold_front(lock);
-    const Newest description = newest;
-    if (wanted_of(*description) && lane.can_draw(*description)) {
+    if (drawable()) {
+        const Newest description = newest;
         lock.unlock();
         finish(lane, description);
         lock.lock();

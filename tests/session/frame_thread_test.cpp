@@ -26,7 +26,7 @@ namespace livery {
 namespace {
 
 using FramePointer = std::shared_ptr<const FinishedFrame>;
-constexpr auto kPatience = std::chrono::seconds(60);
+constexpr auto kPatience = std::chrono::minutes(5);  // other programs may be busy
 
 /// What the frame thread tells, to be waited for.
 class Gallery {
@@ -39,7 +39,7 @@ class Gallery {
     auto adder() {
         return [this](FramePointer frame) { add(std::move(frame)); };
     }
-    /// The first frame, from now on or told before, that is as wanted; null after a minute.
+    /// The first frame, from now on or told before, that is as wanted; null after a long time.
     FramePointer wait_for(const std::function<bool(const FinishedFrame&)>& wanted) {
         std::unique_lock lock(mutex_);
         FramePointer found;

@@ -1,0 +1,116 @@
+#include "session/projector_setup.h"
+
+#include <atomic>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "core/paths.h"
+#include "session/bench_calibration.h"
+#include "session/small_session.h"
+#include "session/synthetic_calibration.h"
+#include "support/file_error.h"
+#include "support/temporary_folder.h"
+#include "twin/bench.h"
+
+namespace livery {
+namespace {
+
+/// A user's folder of the test's own.
+class ProjectorSetupTest : public ::testing::Test {
+  protected:
+    ProjectorSetupTest() { ::setenv("LIVERY_HOME", (folder_ / "home").c_str(), 1); }
+    ~ProjectorSetupTest() override { ::unsetenv("LIVERY_HOME"); }
+
+    std::filesystem::path write_small(int width = 32) {
+        const View view = look_at({0, 0, 500}, {0, 0, 0}, 0.3, 32, 20);
+        ColourCalibration calibration = synthetic_calibration(ImageF(32, 20, 1, 1.0f));
+        seal(calibration);
+        const auto folder = folder_ / "calibration";
+        write_setup(folder, calibration, resized(view, width, 20));
+        return folder;
+    }
+
+    TemporaryFolder folder_;
+};
+
+TEST_F(ProjectorSetupTest, IsTheCalibrationBakedForItsDesignWhite) {
+    const auto folder = write_small();
+    const auto setup = load_setup(folder, 20.0);
+    const ColourCalibration calibration = read_calibration(folder);
+    EXPECT_EQ(setup->design_white_y, design_white_luminance(calibration, 20.0));
+    ASSERT_TRUE(setup->table && setup->calibration);
+    EXPECT_EQ(setup->table->coefficients, bake(calibration, setup->design_white_y).coefficients);
+    EXPECT_EQ(setup->calibration->id, calibration.id);
+    EXPECT_TRUE(setup->calibration->unmixing.empty());
+    EXPECT_EQ(setup->calibration->status.values, calibration.status.values);
+    EXPECT_EQ(setup->view.width, 32);
+    EXPECT_EQ(setup->why_uncorrected, "");
+    EXPECT_LT(load_setup(folder, 5.0)->design_white_y, setup->design_white_y);
+}
+
+TEST_F(ProjectorSetupTest, RefusesFoldersThatAreNone) {
+    EXPECT_TRUE(fails_with([&] { load_setup(folder_ / "missing", 20.0); },
+                           {"missing", "nothing", "a calibration's folder"}));
+    const auto folder = write_small();
+    std::filesystem::remove(folder / "projector.json");
+    EXPECT_TRUE(fails_with([&] { load_setup(folder, 20.0); }, {"projector.json", "no such file"}));
+    std::ofstream(folder / "projector.json") << "{";
+    EXPECT_TRUE(fails_with([&] { load_setup(folder, 20.0); }, {"projector.json"}));
+    write_small(64);
+    EXPECT_TRUE(fails_with([&] { load_setup(folder, 20.0); },
+                           {"projector.json", "64 x 20", "32 x 20, as the calibration"}));
+}
+
+TEST_F(ProjectorSetupTest, WithoutCalibrationItIsTheBenchsProjectorAndSaysWhy) {
+    const auto setup = uncorrected_setup("default");
+    EXPECT_EQ(setup->view.width, read_bench_file("default").projector.view.width);
+    EXPECT_FALSE(setup->table);
+    EXPECT_NE(setup->why_uncorrected, "");
+    EXPECT_TRUE(fails_with([] { uncorrected_setup("nowhere"); }, {"nowhere"}));
+}
+
+TEST_F(ProjectorSetupTest, CalibrationsOfTheBenchAreKeptNewestFirst) {
+    EXPECT_TRUE(kept_calibrations().empty());
+    const auto product = testing::small_bench_product();
+    Bench bench(testing::small_bench_description(), product);
+    const auto made = calibrate_on_bench(bench, *product, {});
+    const auto setup = load_setup(made, 20.0);
+    EXPECT_GT(setup->calibration->valid_fraction, 0.9);
+    EXPECT_GT(setup->calibration->predicted_fraction, 0.0);
+    EXPECT_EQ(setup->view.width, 320);
+    EXPECT_EQ(made.parent_path(), user_folder() / "calibrations");
+    EXPECT_TRUE(made.filename().string().ends_with(setup->calibration->id.substr(0, 8)));
+
+    const auto older = user_folder() / "calibrations/2020-01-01T00-00-00Z-0123abcd";
+    std::filesystem::copy(made, older);
+    std::filesystem::create_directories(user_folder() / "calibrations/notes");
+    EXPECT_EQ(kept_calibrations(), (std::vector{made, older}));
+}
+
+TEST_F(ProjectorSetupTest, AStoppedCalibrationLeavesNothingBehind) {
+    const auto product = testing::small_bench_product();
+    Bench bench(testing::small_bench_description(), product);
+    std::atomic<bool> stop{false};
+    Progress progress;
+    progress.stop = &stop;
+    progress.report = [&](double fraction, std::string_view) { stop = fraction > 0.5; };
+    EXPECT_THROW(calibrate_on_bench(bench, *product, progress), Cancelled);
+    EXPECT_TRUE(std::filesystem::is_empty(user_folder() / "calibrations"));
+}
+
+TEST_F(ProjectorSetupTest, AFolderThatCannotBeMadeIsSaidBeforeTheWork) {
+    std::filesystem::create_directories(user_folder());
+    std::ofstream(user_folder() / "calibrations") << "a file";
+    const auto product = testing::small_bench_product();
+    Bench bench(testing::small_bench_description(), product);
+    Progress progress;
+    progress.report = [](double, std::string_view) { FAIL() << "work began"; };
+    EXPECT_TRUE(fails_with([&] { calibrate_on_bench(bench, *product, progress); },
+                           {"calibrations", "a folder that can be made"}));
+}
+
+}  // namespace
+}  // namespace livery
