@@ -21,6 +21,8 @@ Command desktop_command() {
     command.summary = "open the desktop program; so does livery alone";
     command.example = "livery desktop --session roadster.livery";
     command.options = {
+        // File managers give a file without an option.
+        {"file", "FILE", "a session, as --session", &arguments->session, false, {}},
         {"--session",
          "FILE",
          "the session, made when it is not there (default: in your folder)",

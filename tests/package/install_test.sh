@@ -5,25 +5,7 @@
 #   install_test.sh CMAKE BUILD_FOLDER SOURCE_FOLDER
 set -euo pipefail
 
-cmake=$1 build=$(realpath "$2") source=$(realpath "$3")
-work=$(mktemp -d "${TMPDIR:-/tmp}/livery Prüfung.XXXXXX")
-small="$work/kleine Platte"
-clean_up() {
-    ! mountpoint -q "$small" || umount "$small"
-    rm -rf "$work"
-}
-trap clean_up EXIT
-failures=0
-
-fail() {
-    echo "FAILED: $*" >&2
-    failures=$((failures + 1))
-}
-skip() { echo "[  SKIPPED ] package: $*"; }
-
-prefix="$work/Über All/usr"
-"$cmake" --install "$build" --prefix "$prefix" --strip >"$work/install.log"
-chmod 755 "$work"
+. "$(dirname "$0")/installed.sh"
 
 # --- what lies there ---------------------------------------------------------------------------
 for file in bin/livery lib/livery/livery_image_io.so share/livery/materials/solid-red.json \
@@ -55,33 +37,14 @@ else
     skip "mandoc is not there"
 fi
 
-# --- surroundings --------------------------------------------------------------------------------
-# A locale with a decimal comma, made here, so that none need be installed.
-locale=C.UTF-8
-if command -v localedef >/dev/null && mkdir "$work/locales" &&
-    localedef -i de_DE -f UTF-8 "$work/locales/de_DE.UTF-8" 2>/dev/null; then
-    locale=de_DE.UTF-8
-    chmod -R a+rX "$work/locales"
-else
-    skip "no decimal comma: localedef or its sources are not there"
-fi
-home="$work/Heimat" read_only="$work/nur lesen" outputs="$work/Ausgaben für heute"
-mkdir "$home" "$read_only" "$outputs"
-chmod 777 "$home" "$outputs"
-chmod 555 "$read_only"
-# Root may write everywhere, so it becomes nobody.
-user=()
-if [ "$(id -u)" -eq 0 ]; then user=(setpriv --reuid=65534 --regid=65534 --clear-groups); fi
-
+# --- using it -------------------------------------------------------------------------------------
 # livery HOME ARGUMENTS: from a foreign folder, with an environment of our own; sets $code, and
 # leaves what it said in $work/out and $work/err.
 run() {
     local home=$1
     shift
     code=0
-    (cd / && "${user[@]}" env -i PATH="$PATH" HOME="$home" LC_ALL="$locale" \
-        LOCPATH="$work/locales" MESA_SHADER_CACHE_DIR="$outputs/cache" \
-        "$prefix/bin/livery" "$@") >"$work/out" 2>"$work/err" </dev/null || code=$?
+    (cd / && "${user[@]}" env -i "${surroundings[@]}" HOME="$home" "$prefix/bin/livery" "$@") >"$work/out" 2>"$work/err" </dev/null || code=$?
 }
 # expect CODE WHAT: of the last run.
 expect() {
@@ -154,5 +117,4 @@ expect 2 "without the picture reader"
 says "livery_image_io.so"
 mv "$prefix/lib/gone" "$prefix/lib/livery"
 
-[ "$failures" -eq 0 ] || { echo "$failures failures" >&2; exit 1; }
-echo "installed and used in $prefix"
+finish
