@@ -135,6 +135,14 @@ void add_edit_actions(std::vector<Action>& list) {
     list.push_back(action(
         "give-up", "Edit", "Take back what is being tried", {key(GLFW_KEY_ESCAPE)}, give_up));
     list.back().starts_group = true;
+    list.push_back(action("find-paint",
+                          "Edit",
+                          "Find a paint",
+                          {key(GLFW_KEY_SLASH), ctrl(GLFW_KEY_K)},
+                          [](Shell& s) {
+                              s.tab_to_open = 0;
+                              s.studio.panels.library.focus_search = true;
+                          }));
 }
 
 void add_look_actions(std::vector<Action>& list) {
@@ -301,6 +309,7 @@ std::string name_of(int code) {
 }  // namespace
 
 std::string text_of(const KeyChord& chord) {
+    if (chord == KeyChord{GLFW_KEY_SLASH, false, false}) return "/";
     const bool shift_is_said = chord.shift && chord.key != GLFW_KEY_SLASH;
     return (chord.ctrl ? "Ctrl+" : "") + std::string(shift_is_said ? "Shift+" : "") +
            name_of(chord.key);

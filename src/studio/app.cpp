@@ -119,12 +119,13 @@ void move_off_projector(Shell& shell, GLFWwindow* window) {
     put_window(window, *place);
 }
 
-KeyboardOwner keyboard_owner() {
+KeyboardOwner keyboard_owner(const Shell& shell) {
     const ImGuiContext& g = *ImGui::GetCurrentContext();
     KeyboardOwner owner;
     owner.text_field = g.IO.WantTextInput;
     owner.dialog = ImGui::GetTopMostPopupModal() != nullptr;
-    owner.keyboard_navigation = g.IO.NavVisible || g.OpenPopupStack.Size > 0;
+    owner.keyboard_navigation =
+        g.IO.NavVisible || g.OpenPopupStack.Size > 0 || shell.studio.panels.library.owns_arrows;
     return owner;
 }
 
@@ -145,7 +146,7 @@ bool handle_key(Shell& shell, const InputEvent& event) {
         return false;
     }
     if ((event.modifiers & (GLFW_MOD_ALT | GLFW_MOD_SUPER)) != 0) return false;
-    const KeyboardOwner owner = keyboard_owner();
+    const KeyboardOwner owner = keyboard_owner(shell);
     const Action* action = action_for(chord, owner);
     if (!action) return chord.key == GLFW_KEY_SPACE && !owner.text_field && !owner.dialog;
     // Esc also closes an open menu, and that is all it does then.

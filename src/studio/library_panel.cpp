@@ -11,6 +11,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "studio/chosen_part.h"
 #include "studio/paint_parameters.h"
 #include "studio/paint_search.h"
 #include "studio/studio.h"
@@ -37,7 +38,7 @@ struct Section {
 
 /// What a click paints.
 struct Target {
-    std::string part;   ///< empty: nothing is chosen
+    std::string part;   ///< "*": every part without a paint of its own
     std::string label;  ///< "body"
     std::string paint;  ///< that it wears
 };
@@ -52,9 +53,8 @@ Target target_of(const Studio& studio) {
     if (studio.panels.library.whole_product) {
         target = {"*", "every part without a paint of its own", ""};
         if (rest != painted.end()) target.paint = rest->second;
-    } else if (studio.selected_part &&
-               static_cast<std::size_t>(*studio.selected_part) < parts.size()) {
-        target.part = target.label = parts[static_cast<std::size_t>(*studio.selected_part)].name;
+    } else if (const auto part = chosen_part(studio)) {
+        target.part = target.label = parts[*part].name;
         const auto own = painted.find(target.part);
         if (own != painted.end()) {
             target.paint = own->second;
@@ -131,20 +131,17 @@ void draw_families(LibraryPanelState& state, const std::vector<Section>& section
 
 void draw_target(Studio& studio, const Target& target) {
     LibraryPanelState& state = studio.panels.library;
-    if (target.part.empty()) {
-        dim_text("Choose a part, on the product or in the list, to paint it.");
-    } else {
-        ImGui::AlignTextToFramePadding();
-        ImGui::PushTextWrapPos(0.0f);
-        ImGui::Text("Painting: %s", target.label.c_str());
-        ImGui::PopTextWrapPos();
-    }
+    ImGui::AlignTextToFramePadding();
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::Text("Painting: %s", target.label.c_str());
+    ImGui::PopTextWrapPos();
+    tooltip("What a click paints. Choose another part on the product or in the list.");
     if (!has_rest(studio)) {
         state.whole_product = false;
         return;
     }
     const char* label = "All other parts";
-    if (!target.part.empty()) place_in_row(button_width(label));
+    place_in_row(button_width(label));
     if (chip(label, state.whole_product)) state.whole_product = !state.whole_product;
     name_last_item("paint-target:rest");
     tooltip("Paints every part of this look that has no paint of its own.");
@@ -196,7 +193,7 @@ bool draw_cell(Studio& studio, const Target& target, Cell& cell, float width, fl
     const bool on_cursor = state.cursor == paint.name;
     const bool meant = on_cursor || (hovered && !state.cursor);
     const bool worn = !target.paint.empty() && same_paint_name(target.paint, paint.name);
-    if (meant && !worn && !target.part.empty()) {
+    if (meant && !worn) {
         try_out(studio, SetPaint{studio.shown_look, target.part, paint.name});
     }
     if (on_cursor && std::exchange(state.cursor_moved, false)) ImGui::SetScrollHereY();
@@ -262,7 +259,7 @@ void follow_keys(Studio& studio, const Target& target, const std::vector<Cell>& 
         }
     }
     const bool enter = was_pressed(ImGuiKey_Enter) || was_pressed(ImGuiKey_KeyPadEnter);
-    if (enter && !target.part.empty()) {
+    if (enter) {
         // Enter in the search takes the first that was found.
         if (!at && state.searching && !cells.empty() && !state.search.empty()) at = 0;
         if (at) {
@@ -300,15 +297,7 @@ void draw_grid(Studio& studio, const Target& target, const std::vector<Section>&
     follow_keys(studio, target, cells);
     if (clicked) {
         studio.panels.library.cursor = clicked;
-        if (!target.part.empty()) {
-            commit(studio, SetPaint{studio.shown_look, target.part, *clicked});
-        } else {
-            notify(studio,
-                   {Notice::Level::info,
-                    fmt::format("Nothing was painted {}.", *clicked),
-                    "No part is chosen.",
-                    "Click a part of the product, or choose one in the list of parts."});
-        }
+        commit(studio, SetPaint{studio.shown_look, target.part, *clicked});
     }
 }
 
@@ -359,6 +348,10 @@ void draw_library_panel(Studio& studio) {
         found_any = found_any || !section.found.empty();
     }
     const Target target = target_of(studio);
+    if (target.part.empty()) {
+        dim_text("There is no part to paint.");
+        return;
+    }
     draw_target(studio, target);
     for (const std::string& problem : state.library.problems) warning_text("Left out: " + problem);
 

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "session/naming.h"
+#include "studio/chosen_part.h"
 #include "studio/paint_parameters.h"
 #include "studio/studio.h"
 #include "studio/theme.h"
@@ -42,7 +43,8 @@ std::string name_after_edit(const Document& document, const EditPaint& edit) {
 /// Looks the paint up again when the document or the choice has changed.
 void refresh(Studio& studio) {
     PaintPanelState& state = studio.panels.paint;
-    const int part = studio.selected_part.value_or(-1);
+    const auto chosen = chosen_part(studio);
+    const int part = chosen ? static_cast<int>(*chosen) : -1;
     const bool same = state.read && state.revision == studio.session.revision() &&
                       state.look == studio.shown_look && state.part == part;
     if (same) return;
@@ -56,9 +58,8 @@ void refresh(Studio& studio) {
     state.problem.clear();
     const Document& document = studio.session.document();
     const SessionLook* look = find_look(document, studio.shown_look);
-    if (!look || !studio.product || part < 0) return;
-    if (static_cast<std::size_t>(part) >= studio.product->mesh.parts.size()) return;
-    state.part_name = studio.product->mesh.parts[static_cast<std::size_t>(part)].name;
+    if (!look || !chosen) return;
+    state.part_name = studio.product->mesh.parts[*chosen].name;
     const std::string paint = worn_by(look->look, state.part_name);
     if (paint.empty()) return;
     try {
@@ -327,7 +328,7 @@ void draw_paint_panel(Studio& studio) {
     PaintPanelState& state = studio.panels.paint;
     refresh(studio);
     if (state.part_name.empty()) {
-        dim_text("Choose a part, on the product or in the list, to see its paint.");
+        dim_text("There is no part whose paint could be shown.");
         return;
     }
     if (!state.material) {

@@ -1,0 +1,15 @@
+// Which part the panels are about.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "studio/studio.h"
+
+namespace livery {
+
+/// The chosen part; before one is chosen the body, or the first part of a product that has none.
+/// Nothing without a product.
+std::optional<std::size_t> chosen_part(const Studio& studio);
+
+}  // namespace livery
