@@ -96,6 +96,7 @@ struct Shell {
     std::map<std::tuple<std::string, double, double>, std::shared_ptr<const Environment>>
         environments;
     std::chrono::steady_clock::time_point input_at{};  ///< of the newest input in this frame
+    bool calibrates_by_itself = false;                 ///< nobody asked for the one under way
     std::uint64_t problem_number = 0;                  ///< of the frame whose problem was told
 
     // The projector.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -200,6 +201,7 @@ void start_first_calibration(Shell& shell) {
         return;
     }
     studio.bench->start_calibration();
+    shell.calibrates_by_itself = true;
     notify(studio,
            {Notice::Level::info,
             "Calibrating the simulated bench.",
@@ -210,6 +212,14 @@ void start_first_calibration(Shell& shell) {
 void take_calibration(Shell& shell) {
     Studio& studio = shell.studio;
     const auto calibrating = studio.bench->calibrating();
+    // The panel tells the person who asked; nobody asked for this one.
+    if (!calibrating.refused_why.empty() && std::exchange(shell.calibrates_by_itself, false)) {
+        notify(studio,
+               {Notice::Level::error,
+                "The simulated bench could not be calibrated; pictures stay uncorrected.",
+                calibrating.refused_why,
+                calibrating.refused_fix});
+    }
     if (!calibrating.finished || *calibrating.finished == studio.panels.calibration.taken) return;
     studio.panels.calibration.taken = *calibrating.finished;
     studio.session.set_workspace(kCalibratedKey, "yes");

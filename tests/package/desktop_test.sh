@@ -93,6 +93,7 @@ close() {
 
 session="$outputs/Größe für Müller.livery"
 open "$home" --session "$session"
+wait_for "word of the calibration" reports "Calibrating the simulated bench."
 wait_for "a session that is saved" reports '"saved": true'
 takes_a_change
 close
@@ -106,6 +107,7 @@ close
 open "$read_only"
 wait_for "word of what is not saved" reports "Nothing that you do is being saved."
 wait_for "word of the ballots" reports "Ballots cannot be kept."
+wait_for "word of the calibration" reports "The simulated bench could not be calibrated"
 reports '"saved": false' || fail "it says that it saves"
 takes_a_change
 close
