@@ -219,8 +219,8 @@ class Desktop {
         shell_.product_bounds = bounds_of(studio.product->mesh);
         studio.picker = std::make_unique<PartPicker>(studio.product);
         studio.file_dialog = std::make_unique<FileDialog>();
-        studio.now_s =
-            now_s();  // What is told before the first frame is shown as long as the rest.
+        // What is told before the first frame is shown for as long as the rest.
+        studio.now_s = now_s();
         open_ballots(shell_);
         keep_shown_looks_valid(studio);
         contexts_ = start_threads(shell_, *window_);
