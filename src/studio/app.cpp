@@ -15,6 +15,7 @@
 #include "studio/actions.h"
 #include "studio/imgui_window.h"
 #include "studio/projector_control.h"
+#include "studio/quality_costs.h"
 #include "studio/save_picture.h"
 #include "studio/shell.h"
 #include "studio/shell_state.h"
@@ -264,6 +265,7 @@ class Desktop {
         const auto frame_before = studio.frame;  // Until this frame is drawn: textures are read.
         const auto preview_before = studio.preview;
         take_results(shell_);
+        if (studio.frame) remember_costs(studio.panels.plan.measured, *studio.frame);
         if (shell_.monitor_numbers && studio.now_s >= shell_.monitor_numbers_until_s) {
             shell_.monitor_numbers.reset();
         }

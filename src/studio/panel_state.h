@@ -10,6 +10,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "appearance/material_library.h"
@@ -79,7 +80,16 @@ struct LightingPanelState {
     bool listed = false;
 };
 
+/// What passes took when they last ran: a frame that changes nothing runs none.
+struct MeasuredCosts {
+    std::uint64_t frame = 0;  ///< the newest that was looked at
+    std::map<std::pair<Quality, std::string>, double> pass_ms;
+    double total_ms = 0.0, shade_ms = 0.0, compensate_ms = 0.0;  ///< of the last that was drawn
+    bool newest_was_drawn = false;
+};
+
 struct PlanPanelState {
+    MeasuredCosts measured;
     bool costs_read = false;
     std::optional<std::vector<PassCost>> costs;
     std::string problem;

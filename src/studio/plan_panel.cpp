@@ -32,6 +32,7 @@ void right_aligned(const std::string& text, const ImVec4& colour) {
 }
 
 void draw_totals(const Studio& studio, const FinishedFrame& frame) {
+    const MeasuredCosts& measured = studio.panels.plan.measured;
     double predicted = 0.0;
     bool complete = true;
     for (const PlannedPass& pass : frame.plan.passes) {
@@ -40,14 +41,17 @@ void draw_totals(const Studio& studio, const FinishedFrame& frame) {
         predicted += pass.predicted_ms.value_or(0.0);
     }
     ImGui::PushFont(large_font());
-    ImGui::TextUnformatted(milliseconds(frame.ms_total).c_str());
+    ImGui::TextUnformatted(milliseconds(measured.total_ms).c_str());
     ImGui::PopFont();
     name_last_item("frame-total");
     tooltip("From the frame's description to its finished projector picture.");
     dim_text(fmt::format("Quality {}. Shading {}, correction {}.",
                          to_string(frame.plan.quality),
-                         milliseconds(frame.shade_ms),
-                         milliseconds(frame.compensate_ms)));
+                         milliseconds(measured.shade_ms),
+                         milliseconds(measured.compensate_ms)));
+    if (!measured.newest_was_drawn) {
+        dim_text("The newest picture was there already: these are the last measured.");
+    }
     if (complete) {
         dim_text(fmt::format("Predicted from the last bench: {}.", milliseconds(predicted)));
     } else if (studio.panels.plan.costs) {
@@ -143,6 +147,7 @@ void draw_plan_panel(Studio& studio) {
         return;
     }
     FinishedFrame frame = *studio.frame;
+    show_last_measured(studio.panels.plan.measured, frame.plan);
     if (const auto* costs = bench_costs(studio)) {
         predict_drawn(frame.plan, *costs);
     } else {

@@ -68,6 +68,29 @@ const std::vector<PassCost>* bench_costs(Studio& studio) {
     return state.costs ? &*state.costs : nullptr;
 }
 
+void remember_costs(MeasuredCosts& measured, const FinishedFrame& frame) {
+    if (frame.number == measured.frame) return;
+    measured.frame = frame.number;
+    measured.newest_was_drawn = false;
+    for (const PlannedPass& pass : frame.plan.passes) {
+        if (pass.ms.value_or(0.0) <= 0.0) continue;
+        measured.pass_ms[{frame.plan.quality, pass.name}] = *pass.ms;
+        measured.newest_was_drawn = measured.newest_was_drawn || runs_every_frame(pass.name);
+    }
+    if (!measured.newest_was_drawn) return;
+    measured.total_ms = frame.ms_total;
+    measured.shade_ms = frame.shade_ms;
+    measured.compensate_ms = frame.compensate_ms;
+}
+
+void show_last_measured(const MeasuredCosts& measured, FramePlan& plan) {
+    for (PlannedPass& pass : plan.passes) {
+        const auto last = measured.pass_ms.find({plan.quality, pass.name});
+        pass.ms.reset();
+        if (last != measured.pass_ms.end()) pass.ms = last->second;
+    }
+}
+
 std::string quality_text(Studio& studio, Quality quality) {
     std::string text = what_it_does(quality);
     const std::vector<PassCost>* costs = bench_costs(studio);

@@ -28,6 +28,12 @@ std::optional<QualityCost> quality_cost(const std::vector<PassCost>& costs,
 /// The costs of the last bench on this machine, read once; null: none, and `problem` may say why.
 const std::vector<PassCost>* bench_costs(Studio& studio);
 
+/// Once a frame of the window: keeps what the newest frame's passes took.
+void remember_costs(MeasuredCosts& measured, const FinishedFrame& frame);
+/// Puts the last measured milliseconds in place of those of passes that did not run anew; passes
+/// that never ran have none.
+void show_last_measured(const MeasuredCosts& measured, FramePlan& plan);
+
 /// For the operator: what the quality does, what it costs here.
 std::string quality_text(Studio& studio, Quality quality);
 

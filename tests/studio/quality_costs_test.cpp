@@ -33,6 +33,37 @@ TEST(QualityCost, PartsWhatIsSolvedFromWhatRunsEveryFrame) {
     EXPECT_FALSE(quality_cost(costs, Quality::normal, 0.0));
 }
 
+TEST(MeasuredCosts, OutliveFramesThatChangeNothing) {
+    FinishedFrame drawn;
+    drawn.number = 1;
+    drawn.ms_total = 30.0;
+    drawn.plan.quality = Quality::normal;
+    drawn.plan.passes.resize(3);
+    drawn.plan.passes[0].name = "shade:body:ggx";
+    drawn.plan.passes[0].ms = 20.0;
+    drawn.plan.passes[1].name = kSurfaceMapPass;
+    drawn.plan.passes[1].ms = 900.0;
+    drawn.plan.passes[2].name = kFilterPass;
+    MeasuredCosts measured;
+    remember_costs(measured, drawn);
+    EXPECT_TRUE(measured.newest_was_drawn);
+
+    FinishedFrame same = drawn;
+    same.number = 2;
+    same.ms_total = 0.1;
+    for (PlannedPass& pass : same.plan.passes) pass.ms = 0.0;
+    remember_costs(measured, same);
+    EXPECT_FALSE(measured.newest_was_drawn);
+    EXPECT_EQ(measured.total_ms, 30.0);
+    show_last_measured(measured, same.plan);
+    EXPECT_EQ(same.plan.passes[0].ms, 20.0);
+    EXPECT_EQ(same.plan.passes[1].ms, 900.0);
+    EXPECT_FALSE(same.plan.passes[2].ms) << "never ran";
+    same.plan.quality = Quality::high;
+    show_last_measured(measured, same.plan);
+    EXPECT_FALSE(same.plan.passes[0].ms) << "not at that quality";
+}
+
 TEST(PredictDrawn, ScalesByTheFramesOwnWork) {
     FramePlan plan;
     plan.quality = Quality::normal;
