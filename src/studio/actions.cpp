@@ -297,7 +297,7 @@ std::string name_of(int code) {
                                                         {GLFW_KEY_EQUAL, "+"},
                                                         {GLFW_KEY_MINUS, "−"},
                                                         {GLFW_KEY_GRAVE_ACCENT, "`"},
-                                                        {GLFW_KEY_SLASH, "?"}};
+                                                        {GLFW_KEY_SLASH, "/"}};
     for (const auto& [named, name] : names) {
         if (named == code) return name;
     }
@@ -309,9 +309,8 @@ std::string name_of(int code) {
 }  // namespace
 
 std::string text_of(const KeyChord& chord) {
-    if (chord == KeyChord{GLFW_KEY_SLASH, false, false}) return "/";
-    const bool shift_is_said = chord.shift && chord.key != GLFW_KEY_SLASH;
-    return (chord.ctrl ? "Ctrl+" : "") + std::string(shift_is_said ? "Shift+" : "") +
+    if (chord == KeyChord{GLFW_KEY_SLASH, false, true}) return "?";
+    return (chord.ctrl ? "Ctrl+" : "") + std::string(chord.shift ? "Shift+" : "") +
            name_of(chord.key);
 }
 

@@ -6,6 +6,7 @@
 
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
+#include <glm/common.hpp>
 #include <imgui.h>
 #include <imgui_internal.h>
 
@@ -31,6 +32,7 @@ namespace {
 // Dear ImGui settles within this many frames after an input.
 constexpr int kFramesAfterInput = 3;
 constexpr double kShortestFrame_s = 1.0 / 60.0;
+constexpr double kLongestFrame_s = 0.1;  // While input comes in faster than it can be drawn.
 
 bool monitors_have_changed = false;  // Set by GLFW's callback, which carries no pointer.
 
@@ -77,6 +79,20 @@ WindowPlace place_of(GLFWwindow* window) {
     return place;
 }
 
+glm::ivec2 least_size(const Shell& shell,
+                      const std::vector<Monitor>& monitors,
+                      const glm::ivec2& position) {
+    double scale = 1.0;
+    for (const Monitor& m : monitors) {
+        if (position.x >= m.x && position.y >= m.y && position.x < m.x + m.width &&
+            position.y < m.y + m.height) {
+            scale = default_scale(1.0f, {m.width, m.height});
+        }
+    }
+    scale = shell.fixed_scale.value_or(scale * shell.user_scale);
+    return glm::ivec2(glm::dvec2(kLeastSize_px) * scale);
+}
+
 /// Where the window was left, or in the middle of the main monitor.
 WindowPlace first_place(const Shell& shell, const DesktopOptions& options) {
     const auto& monitors = shell.studio.monitors;
@@ -97,6 +113,8 @@ WindowPlace first_place(const Shell& shell, const DesktopOptions& options) {
                                main->y + (main->height - place->size_px.y) / 2};
         }
     }
+    // It may have been left on a screen with larger pixels.
+    place->size_px = glm::max(place->size_px, least_size(shell, monitors, place->position));
     if (options.size_px) {
         place->size_px = *options.size_px;
         place->maximised = false;
@@ -114,6 +132,7 @@ void put_window(GLFWwindow* window, const WindowPlace& place) {
 void move_off_projector(Shell& shell, GLFWwindow* window) {
     shell.window_must_move = false;
     const WindowPlace now = place_of(window);
+    if (!must_move(now, shell.studio.monitors, shell.projector_monitor)) return;
     const auto place = place_beside_projector(now, shell.studio.monitors, shell.projector_monitor);
     if (!place || *place == now) return;
     if (now.maximised) glfwRestoreWindow(window);
@@ -132,6 +151,10 @@ KeyboardOwner keyboard_owner(const Shell& shell) {
 
 /// Runs what a key means; true when it meant something.
 bool handle_key(Shell& shell, const InputEvent& event) {
+    if (event.kind == InputEvent::Kind::focus) {
+        if (!event.down) shell.studio.showing_b = false;
+        return false;
+    }
     const KeyChord chord{event.code,
                          (event.modifiers & GLFW_MOD_CONTROL) != 0,
                          (event.modifiers & GLFW_MOD_SHIFT) != 0};
@@ -150,17 +173,22 @@ bool handle_key(Shell& shell, const InputEvent& event) {
     const KeyboardOwner owner = keyboard_owner(shell);
     const Action* action = action_for(chord, owner);
     if (!action) return chord.key == GLFW_KEY_SPACE && !owner.text_field && !owner.dialog;
-    // Esc also closes an open menu, and that is all it does then.
-    const bool menu_open = owner.keyboard_navigation && !owner.dialog &&
-                           ImGui::GetCurrentContext()->OpenPopupStack.Size > 0;
-    if (action->id == "give-up" && menu_open) return false;
+    // Esc closes an open menu, and that is all it does then.
+    ImGuiContext& g = *ImGui::GetCurrentContext();
+    if (action->id == "give-up" && !owner.dialog && g.OpenPopupStack.Size > 0) {
+        ImGui::ClosePopupToLevel(0, false);
+        g.NavDisableHighlight = true;
+        g.NavLayer = ImGuiNavLayer_Main;
+        return true;
+    }
     const bool repeats = action->id == "undo" || action->id == "redo" || action->id == "larger" ||
                          action->id == "smaller" || action->id == "next-look" ||
                          action->id == "previous-look";
     if (event.repeated && !repeats) return true;
     run_action(*action, shell);
-    if (action->id == "give-up" && ImGui::IsAnyItemActive()) ImGui::ClearActiveID();
-    return true;
+    if (action->id != "give-up") return true;
+    if (ImGui::IsAnyItemActive()) ImGui::ClearActiveID();
+    return false;  // Panels may have something of their own to give up.
 }
 
 /// The earliest moment at which something on the window changes by itself.
@@ -170,8 +198,15 @@ std::optional<double> next_change_s(const Shell& shell) {
         if (when_s > 0.0 && (!next || when_s < *next)) next = when_s;
     };
     for (const Notice& notice : shell.studio.notices) consider(notice.shown_until_s);
+    consider(shell.layout_rests_at_s);
     if (shell.studio.glowing_part) consider(shell.studio.glowing_until_s);
     if (shell.monitor_numbers) consider(shell.monitor_numbers_until_s);
+    const ImGuiContext& g = *ImGui::GetCurrentContext();
+    if (g.HoveredId != 0 && g.HoveredIdTimer < kTooltipAfter_s) {
+        consider(shell.studio.now_s + static_cast<double>(kTooltipAfter_s - g.HoveredIdTimer) +
+                 0.02);
+    }
+    if (shell.preview_waits_until_s > 0.0) consider(shell.preview_waits_until_s);
     // A blinking text cursor.
     if (ImGui::GetIO().WantTextInput) consider(shell.studio.now_s + 0.4);
     // Progress is read, not told.
@@ -272,11 +307,10 @@ class Desktop {
         const std::uint64_t revision_before = studio.session.revision();
         begin_trials(studio);
         start_naming_items(ui_map_.has_value());
-        bool had_input = imgui_->has_input();
+        const bool had_input = imgui_->has_input();
         shell_.input_at = imgui_->begin_frame(
             [this](const InputEvent& event) { return handle_key(shell_, event); });
         if (had_input) shell_.trace->write("input", 0, {}, shell_.input_at);
-        if (!glfwGetWindowAttrib(native, GLFW_FOCUSED)) studio.showing_b = false;
         draw_everything();
         end_trials(studio);
         imgui_->end_frame();
@@ -286,12 +320,16 @@ class Desktop {
         }
         // Before anything is drawn here: the mock-up comes first.
         ask_for_changes(shell_);
+        // Input that waits is taken first, so that it does not wait for pictures of what was
+        // before.
+        const bool waits = imgui_->has_input() && start_s - last_drawn_s_ < kLongestFrame_s;
+        if (waits) return;
         imgui_->draw();
         --frames_to_draw_;
         last_drawn_s_ = now_s();
         shell_.frame_ms = 1000.0 * (last_drawn_s_ - start_s);
         if (shell_.window_must_move) move_off_projector(shell_, native);
-        remember_workspace(shell_, text_of(place_of(native)));
+        remember_workspace(shell_, text_of(place_of(native)), false);
         write_ui_map();
     }
 
@@ -314,6 +352,7 @@ class Desktop {
 
     void finish() {
         log_line(LogLevel::info, "closing");
+        remember_workspace(shell_, text_of(place_of(window_->native())), true);
         glfwSetMonitorCallback(nullptr);
         glfwHideWindow(window_->native());
         window_->make_current();

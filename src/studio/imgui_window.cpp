@@ -119,6 +119,7 @@ struct ImGuiWindow::State {
                 io.AddInputCharacter(static_cast<unsigned>(event.code));
                 break;
             case Kind::focus:
+                filter(event);
                 io.AddFocusEvent(event.down);
                 if (!event.down) std::fill(std::begin(io.KeysDown), std::end(io.KeysDown), false);
                 break;

@@ -21,7 +21,7 @@ class ImGuiWindow {
 
     void use_scale(float scale);  ///< between frames; cheap when it is the same
 
-    /// True when the event is used up; Dear ImGui does not hear of it then.
+    /// Hears of keys and of focus first. True when a key is used up: Dear ImGui does not get it.
     using KeyFilter = std::function<bool(const InputEvent& key)>;
     /// Hands the next portion of input to Dear ImGui and starts a frame. The newest input's time.
     std::chrono::steady_clock::time_point begin_frame(const KeyFilter& filter);

@@ -104,7 +104,7 @@ void draw_row(Studio& studio, const SessionLook& look, int place, int count) {
 
 void draw_looks_panel(Studio& studio) {
     heading("Looks");
-    ImGui::SameLine(ImGui::GetContentRegionAvail().x - 2.0f * ImGui::GetFrameHeight() -
+    ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - 2.0f * ImGui::GetFrameHeight() -
                     ImGui::GetStyle().ItemInnerSpacing.x);
     const int shown = studio.shown_look;
     if (ImGui::Button("+", {ImGui::GetFrameHeight(), 0.0f})) commit(studio, DuplicateLook{shown});

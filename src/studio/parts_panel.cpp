@@ -47,14 +47,15 @@ void draw_parts_panel(Studio& studio) {
                      0.0f,
                      &clip);
         const std::string paint = paint_of(look->look, name);
-        list.AddText(small_font(),
-                     small_font()->FontSize,
-                     {at.x, at.y + ImGui::GetTextLineHeight() + em(0.1f)},
-                     ImGui::GetColorU32(colours::dim_text),
-                     paint.c_str(),
-                     nullptr,
-                     0.0f,
-                     &clip);
+        list.AddText(
+            small_font(),
+            small_font()->FontSize,
+            {at.x, at.y + ImGui::GetTextLineHeight() + em(0.1f)},
+            ImGui::GetColorU32(studio.selected_part == i ? colours::text : colours::dim_text),
+            paint.c_str(),
+            nullptr,
+            0.0f,
+            &clip);
         ImGui::PopID();
     }
 }

@@ -93,6 +93,8 @@ struct Shell {
     std::optional<SetupKey> asked_setup;
     std::uint64_t frame_number = 0, preview_number = 0, photographed_number = 0;
     bool draws_in_software = false;
+    double frame_asked_s = 0.0, preview_waits_until_s = 0.0;
+    bool calibrates_after_first_frame = false;
     std::map<std::tuple<std::string, double, double>, std::shared_ptr<const Environment>>
         environments;
     std::chrono::steady_clock::time_point input_at{};  ///< of the newest input in this frame
@@ -112,6 +114,8 @@ struct Shell {
     bool window_must_move = false;  ///< it may lie on the projector
     StageState stage;
     float left_width_em = 15.5f, right_width_em = 23.0f;
+    std::string layout_seen;         ///< as text; remembered when it rests
+    double layout_rests_at_s = 0.0;  ///< 0: it is remembered
     double user_scale = 1.0;
     std::optional<double> fixed_scale;  ///< --ui-scale
     std::optional<int> tab_to_open;

@@ -13,6 +13,8 @@ namespace livery {
 
 namespace {
 
+constexpr double kLayoutRest_s = 1.0;
+
 const char* name_of(StageView view) {
     switch (view) {
         case StageView::preview:
@@ -83,16 +85,22 @@ void restore_workspace(Shell& shell) {
             if (*view == name_of(v)) studio.view = v;
         }
     }
-    if (int part = -1; studio.product) {
-        restore(workspace, "selected-part", part, 0, 1 << 16);
-        if (part >= 0) studio.selected_part = part;
-    }
 }
 
-void remember_workspace(Shell& shell, const std::string& window_place) {
+void remember_workspace(Shell& shell, const std::string& window_place, bool now) {
     Session& session = shell.studio.session;
     remember(session, "shown-look", std::to_string(shell.studio.shown_look));
     remember(session, "view", name_of(shell.studio.view));
+    const std::string layout =
+        fmt::format("{} {:.2f} {:.2f}", window_place, shell.left_width_em, shell.right_width_em);
+    if (layout != shell.layout_seen) {
+        shell.layout_seen = layout;
+        shell.layout_rests_at_s = shell.studio.now_s + kLayoutRest_s;
+    }
+    const bool rests =
+        shell.layout_rests_at_s > 0.0 && shell.studio.now_s >= shell.layout_rests_at_s;
+    if (!rests && !now) return;
+    shell.layout_rests_at_s = 0.0;
     remember(session, "left-width", fmt::format("{:.2f}", shell.left_width_em));
     remember(session, "right-width", fmt::format("{:.2f}", shell.right_width_em));
     remember(session, kWindowKey, window_place);

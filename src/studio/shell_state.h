@@ -12,8 +12,9 @@ struct Shell;
 inline constexpr const char* kWindowKey = "window";
 
 void restore_workspace(Shell& shell);
-/// Writes what differs from what is remembered.
-void remember_workspace(Shell& shell, const std::string& window_place);
+/// Writes what differs from what is remembered; sizes and places only when they rest for a moment,
+/// or `now`.
+void remember_workspace(Shell& shell, const std::string& window_place, bool now);
 
 MapState state_of_shell(const Shell& shell);
 

@@ -1,5 +1,6 @@
 // The middle of the window: one of four pictures of the product, and the wipe.
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -117,19 +118,32 @@ void draw_message(const Frame& stage, const std::string& text) {
     ImGui::PopTextWrapPos();
 }
 
-/// A line of words over the picture's lower left corner.
-void draw_caption(const Frame& stage, const std::string& text) {
-    if (text.empty()) return;
+/// Words over the picture's lower left corner; what is not as it will be comes last.
+void draw_caption(const Shell& shell, const Frame& stage, std::string text) {
+    const auto& frame = shell.studio.frame;
+    const std::string unfinished =
+        frame && !frame->unfinished.empty() ? "Not all there yet: " + frame->unfinished : "";
+    if (text.empty() && unfinished.empty()) return;
     ImDrawList& list = *ImGui::GetWindowDrawList();
     ImFont* font = small_font();
-    const ImVec2 size = font->CalcTextSizeA(font->FontSize, stage.width, 0.0f, text.c_str());
-    const float pad = em(0.4f);
-    const ImVec2 at(stage.x + 2.0f * pad, stage.y + stage.height - size.y - 2.0f * pad);
-    list.AddRectFilled({at.x - pad, at.y - 0.5f * pad},
-                       {at.x + size.x + pad, at.y + size.y + 0.5f * pad},
-                       IM_COL32(0, 0, 0, 150),
-                       em(0.25f));
-    list.AddText(font, font->FontSize, at, ImGui::GetColorU32(colours::text), text.c_str());
+    const float pad = em(0.4f), wrap = stage.width - 6.0f * pad;
+    const auto size_of = [&](const std::string& line) {
+        return line.empty() ? ImVec2(0.0f, 0.0f)
+                            : font->CalcTextSizeA(font->FontSize, FLT_MAX, wrap, line.c_str());
+    };
+    const ImVec2 above = size_of(text), below = size_of(unfinished);
+    const ImVec2 at(stage.x + 2.0f * pad, stage.y + stage.height - above.y - below.y - 2.0f * pad);
+    list.AddRectFilled(
+        {at.x - pad, at.y - 0.5f * pad},
+        {at.x + std::max(above.x, below.x) + pad, at.y + above.y + below.y + 0.5f * pad},
+        IM_COL32(0, 0, 0, 150),
+        em(0.25f));
+    const auto add = [&](const ImVec2& where, const ImVec4& colour, const std::string& line) {
+        list.AddText(
+            font, font->FontSize, where, ImGui::GetColorU32(colour), line.c_str(), nullptr, wrap);
+    };
+    add(at, colours::text, text);
+    add({at.x, at.y + above.y}, colours::warning, unfinished);
 }
 
 /// The point under the pointer stays there.
@@ -297,6 +311,7 @@ void draw_drawn_view(Shell& shell, const Frame& stage) {
         picture = place_picture(stage, preview->size_px.x, preview->size_px.y, {});
     }
     draw_texture(preview->texture, picture);
+    draw_caption(shell, stage, "");
 }
 
 void draw_projector_view(Shell& shell, const Frame& stage) {
@@ -317,17 +332,21 @@ void draw_projector_view(Shell& shell, const Frame& stage) {
         caption += fmt::format(", {:.0f}%",
                                100.0f * picture.width / static_cast<float>(frame.drive->width));
     }
-    draw_caption(stage, caption);
+    draw_caption(shell, stage, caption);
 }
 
 void draw_photograph(Shell& shell, const Frame& stage) {
     const auto& photograph = shell.studio.photograph;
     if (!photograph || photograph->srgb.empty()) {
-        draw_message(stage,
-                     photograph && !photograph->problem.empty()
-                         ? photograph->problem
-                         : "Photographing the mock-up on the simulated bench…\nThe first one takes "
-                           "a few seconds.");
+        std::string text =
+            "Photographing the mock-up on the simulated bench…\nThe first one takes a few seconds.";
+        if (photograph && !photograph->problem.empty()) {
+            text = photograph->problem;
+        } else if (shell.studio.bench->calibrating().running) {
+            text =
+                "The simulated bench is being calibrated.\nIt photographs again when that is done.";
+        }
+        draw_message(stage, text);
         return;
     }
     StageState& state = shell.stage;
@@ -349,23 +368,13 @@ void draw_photograph(Shell& shell, const Frame& stage) {
     draw_texture(state.photograph_texture.name(), picture);
     const bool behind = shell.studio.frame && photograph->number < shell.studio.frame->number;
     std::string caption = "The mock-up on the simulated bench";
-    if (behind) caption += ", a moment ago…";
+    if (behind) {
+        caption += shell.studio.bench->calibrating().running
+                       ? ", as it was before the calibration that is running"
+                       : ", a moment ago…";
+    }
     if (!photograph->problem.empty()) caption += ": " + photograph->problem;
-    draw_caption(stage, caption);
-}
-
-void draw_unfinished(const Shell& shell, const Frame& stage) {
-    const auto& frame = shell.studio.frame;
-    if (!frame || frame->unfinished.empty()) return;
-    const std::string text = "still being solved: " + frame->unfinished;
-    ImFont* font = small_font();
-    const ImVec2 size = font->CalcTextSizeA(font->FontSize, stage.width, 0.0f, text.c_str());
-    ImGui::GetWindowDrawList()->AddText(
-        font,
-        font->FontSize,
-        {stage.x + stage.width - size.x - em(0.8f), stage.y + stage.height - size.y - em(0.8f)},
-        ImGui::GetColorU32(colours::warning),
-        text.c_str());
+    draw_caption(shell, stage, caption);
 }
 
 }  // namespace
@@ -426,7 +435,6 @@ void draw_stage(Shell& shell) {
         draw_drawn_view(shell, stage);
     }
     draw_wipe(shell, stage);
-    draw_unfinished(shell, stage);
     ImGui::PopClipRect();
 }
 

@@ -6,6 +6,7 @@
 
 #include <imgui.h>
 #include <imgui_freetype.h>
+#include <imgui_internal.h>
 
 #include "core/paths.h"
 
@@ -92,9 +93,9 @@ void set_colours(ImGuiStyle& style) {
     set(ImGuiCol_ChildBg, grey(0.0f, 0.0f));
     set(ImGuiCol_PopupBg, grey(0.155f));
     set(ImGuiCol_Border, colours::line);
-    set(ImGuiCol_FrameBg, grey(0.19f));
-    set(ImGuiCol_FrameBgHovered, grey(0.24f));
-    set(ImGuiCol_FrameBgActive, grey(0.27f));
+    set(ImGuiCol_FrameBg, grey(0.225f));
+    set(ImGuiCol_FrameBgHovered, grey(0.27f));
+    set(ImGuiCol_FrameBgActive, grey(0.30f));
     set(ImGuiCol_TitleBg, grey(0.155f));
     set(ImGuiCol_TitleBgActive, grey(0.155f));
     set(ImGuiCol_TitleBgCollapsed, grey(0.155f));
@@ -106,8 +107,8 @@ void set_colours(ImGuiStyle& style) {
     set(ImGuiCol_CheckMark, grey(0.85f));
     set(ImGuiCol_SliderGrab, grey(0.50f));
     set(ImGuiCol_SliderGrabActive, grey(0.68f));
-    set(ImGuiCol_Button, grey(0.22f));
-    set(ImGuiCol_ButtonHovered, grey(0.28f));
+    set(ImGuiCol_Button, grey(0.235f));
+    set(ImGuiCol_ButtonHovered, grey(0.29f));
     set(ImGuiCol_ButtonActive, grey(0.33f));
     set(ImGuiCol_Header, colours::accent);
     set(ImGuiCol_HeaderHovered, grey(0.26f));
@@ -211,6 +212,7 @@ void row_label(const char* text, float share) {
 
 void tooltip(const std::string& text) {
     if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+    if (ImGui::GetCurrentContext()->HoveredIdTimer < kTooltipAfter_s) return;
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(em(24.0f));
     ImGui::TextUnformatted(text.c_str(), text.c_str() + text.size());

@@ -28,6 +28,7 @@ void warning_text(const std::string& text);  ///< wrapped
 /// "Eye distance" left, the next item right of it, `width` of the row's share for the label.
 void row_label(const char* text, float share = 0.42f);
 /// An explanation that shows when the pointer rests on the last item.
+inline constexpr float kTooltipAfter_s = 0.5f;
 void tooltip(const std::string& text);
 /// Draws what a button cannot do yet in grey; pair with end_disabled().
 void begin_disabled(bool disabled);

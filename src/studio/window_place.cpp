@@ -50,6 +50,18 @@ double default_scale(float content_scale, glm::ivec2 monitor_px) {
     return says_nothing && very_fine ? 2.0 : std::max(1.0, static_cast<double>(content_scale));
 }
 
+bool must_move(const WindowPlace& place,
+               const std::vector<Monitor>& monitors,
+               const std::string& projector_id) {
+    bool seen = false;
+    for (const Monitor& monitor : monitors) {
+        const bool overlaps = shared_area(place, monitor) > 0;
+        if (overlaps && monitor.id == projector_id) return true;
+        seen = seen || overlaps;
+    }
+    return !seen;
+}
+
 std::optional<WindowPlace> place_beside_projector(const WindowPlace& wanted,
                                                   const std::vector<Monitor>& monitors,
                                                   const std::string& projector_id) {

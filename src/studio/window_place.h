@@ -24,6 +24,14 @@ std::optional<WindowPlace> parse_window_place(const std::string& text);
 /// The monitors' scale: what the system says; where it says nothing of a very fine screen, 2.
 double default_scale(float content_scale, glm::ivec2 monitor_px);
 
+/// The least in which everything can be read and nothing is cut off, at scale 1.
+inline constexpr glm::ivec2 kLeastSize_px{1080, 600};
+
+/// Whether a window there covers something of the projector, or lies where no other monitor is.
+bool must_move(const WindowPlace& place,
+               const std::vector<Monitor>& monitors,
+               const std::string& projector_id);
+
 /// Moves and shrinks `wanted` so that it lies on one monitor that is not the projector: the one
 /// that it overlaps most, else the main one. Nothing when there is no other monitor.
 std::optional<WindowPlace> place_beside_projector(const WindowPlace& wanted,

@@ -16,6 +16,8 @@ namespace livery {
 
 namespace {
 
+constexpr double kPreviewPatience_s = 0.3;
+constexpr const char* kCalibrating = "Calibrating the simulated bench.";
 constexpr const char* kCalibratedKey = "calibrated-once";
 
 std::string text_of_trial(const Studio& studio) {
@@ -130,6 +132,7 @@ void ask_for_frame(Shell& shell) {
         return;
     }
     shell.asked_frame = key;
+    shell.frame_asked_s = studio.now_s;
     description.number = ++shell.frame_number;
     description.wipe_at = key.wipe_at;
     description.glowing_part = key.glowing_part;
@@ -167,8 +170,17 @@ void ask_for_preview(Shell& shell) {
     key.height = stage.height;
     key.highlighted_part = studio.hovered_part ? studio.hovered_part : studio.glowing_part;
     if (shell.asked_preview == key) return;
-    // The mock-up goes first where both are drawn by the same processor.
-    if (shell.draws_in_software && is_frame_under_way(shell)) return;
+    // The mock-up goes first where both are drawn by the same processor, but not for long.
+    shell.preview_waits_until_s = 0.0;
+    const bool same_scene = shell.asked_preview && shell.asked_preview->revision == key.revision &&
+                            shell.asked_preview->tried == key.tried &&
+                            shell.asked_preview->look == key.look;
+    const double patience_until_s = shell.frame_asked_s + kPreviewPatience_s;
+    if (shell.draws_in_software && !same_scene && is_frame_under_way(shell) &&
+        studio.now_s < patience_until_s) {
+        shell.preview_waits_until_s = patience_until_s;
+        return;
+    }
     const Document document = shown_document(studio);
     PreviewDescription description;
     try {
@@ -192,21 +204,25 @@ void ask_for_photograph(Shell& shell) {
         studio.frame->number, studio.frame->drive, studio.setup->design_white_y);
 }
 
-/// A newcomer has no calibration: the simulated bench is measured at once, while everything works
-/// uncorrected.
+bool needs_first_calibration(const Session& session) {
+    return session.document().calibration.empty() && !session.workspace().contains(kCalibratedKey);
+}
+
+/// A newcomer has no calibration: the simulated bench is measured as soon as there is a first
+/// picture, while everything works uncorrected.
 void start_first_calibration(Shell& shell) {
     Studio& studio = shell.studio;
-    if (!studio.session.document().calibration.empty() ||
-        studio.session.workspace().contains(kCalibratedKey)) {
-        return;
-    }
+    if (!shell.calibrates_after_first_frame || !studio.frame) return;
+    shell.calibrates_after_first_frame = false;
+    if (!needs_first_calibration(studio.session)) return;
     studio.bench->start_calibration();
     shell.calibrates_by_itself = true;
     notify(studio,
            {Notice::Level::info,
-            "Calibrating the simulated bench.",
+            kCalibrating,
             "There is no calibration yet. This takes a minute or two and happens beside your work.",
-            "Until it is done, pictures go to the projector uncorrected."});
+            "Until it is done, pictures go to the projector uncorrected.",
+            studio.now_s + 3600.0});
 }
 
 void take_calibration(Shell& shell) {
@@ -224,6 +240,7 @@ void take_calibration(Shell& shell) {
     studio.panels.calibration.taken = *calibrating.finished;
     studio.session.set_workspace(kCalibratedKey, "yes");
     stop_trying(studio);
+    std::erase_if(studio.notices, [](const Notice& n) { return n.what == kCalibrating; });
     commit(studio, SetCalibration{calibrating.finished->string()});
     Notice notice{Notice::Level::info, "The bench is calibrated.", "", ""};
     if (studio.view != StageView::photograph) {
@@ -256,7 +273,7 @@ Contexts start_threads(Shell& shell, const Window& window) {
         window, [results](const ShownPicture& picture) { results->shown(picture); });
     results->use(studio.projector.get());
     studio.bench->use(studio.session.document().bench, studio.product);
-    start_first_calibration(shell);
+    shell.calibrates_after_first_frame = needs_first_calibration(studio.session);
     return contexts;
 }
 
@@ -280,6 +297,7 @@ void take_results(Shell& shell) {
     studio.frame = shell.results->newest_drawn();
     studio.preview = shell.results->newest_preview();
     studio.photograph = studio.bench->newest_photograph();
+    start_first_calibration(shell);
     take_calibration(shell);
     if (studio.glowing_part && studio.now_s >= studio.glowing_until_s) studio.glowing_part.reset();
     const auto newest = shell.results->newest_frame();

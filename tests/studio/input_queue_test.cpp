@@ -1,0 +1,78 @@
+#include "studio/input_queue.h"
+
+#include <gtest/gtest.h>
+
+namespace livery {
+namespace {
+
+using Kind = InputEvent::Kind;
+
+InputEvent pointer(double x) {
+    InputEvent event;
+    event.x = x;
+    return event;
+}
+InputEvent of(Kind kind, int code, bool down = true) {
+    InputEvent event;
+    event.kind = kind;
+    event.code = code;
+    event.down = down;
+    return event;
+}
+
+/// How many events each frame takes.
+std::vector<std::size_t> portions(InputQueue& queue) {
+    std::vector<std::size_t> sizes;
+    while (!queue.empty()) sizes.push_back(queue.take().size());
+    return sizes;
+}
+
+TEST(InputQueue, MovesMergeIntoOneFrame) {
+    InputQueue queue;
+    for (int i = 0; i < 50; ++i) queue.push(pointer(i));
+    EXPECT_EQ(portions(queue), (std::vector<std::size_t>{50}));
+}
+
+TEST(InputQueue, AClickStaysWhereItWas) {
+    InputQueue queue;
+    queue.push(pointer(10));
+    queue.push(of(Kind::button, 0, true));
+    queue.push(of(Kind::button, 0, false));
+    queue.push(pointer(500));
+    EXPECT_EQ(portions(queue), (std::vector<std::size_t>{2, 1, 1}));
+}
+
+TEST(InputQueue, AQuickKeyIsDownInOneFrame) {
+    InputQueue queue;
+    queue.push(of(Kind::key, 'B', true));
+    queue.push(of(Kind::key, 'B', false));
+    EXPECT_EQ(portions(queue), (std::vector<std::size_t>{1, 1}));
+}
+
+TEST(InputQueue, TypingIsNotSlowedDown) {
+    InputQueue queue;
+    for (const char c : std::string("red")) {
+        queue.push(of(Kind::key, c - 'a' + 'A', true));
+        queue.push(of(Kind::character, c));
+    }
+    EXPECT_EQ(portions(queue), (std::vector<std::size_t>{6}));
+}
+
+TEST(InputQueue, TextAndEditingKeysKeepTheirOrder) {
+    constexpr int enter = 257;
+    InputQueue queue;
+    queue.push(of(Kind::character, 'a'));
+    queue.push(of(Kind::key, enter, true));
+    queue.push(of(Kind::character, 'b'));
+    EXPECT_EQ(portions(queue), (std::vector<std::size_t>{1, 1, 1}));
+}
+
+TEST(InputQueue, TheWheelTurnsWhereThePointerWas) {
+    InputQueue queue;
+    queue.push(of(Kind::wheel, 0));
+    queue.push(pointer(10));
+    EXPECT_EQ(portions(queue), (std::vector<std::size_t>{1, 1}));
+}
+
+}  // namespace
+}  // namespace livery
