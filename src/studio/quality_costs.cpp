@@ -14,6 +14,9 @@ namespace livery {
 
 namespace {
 
+/// Passes that find everything done before still take some microseconds.
+constexpr double kNothingToDo_ms = 0.05;
+
 const char* what_it_does(Quality quality) {
     switch (quality) {
         case Quality::draft:
@@ -73,7 +76,7 @@ void remember_costs(MeasuredCosts& measured, const FinishedFrame& frame) {
     measured.frame = frame.number;
     measured.newest_was_drawn = false;
     for (const PlannedPass& pass : frame.plan.passes) {
-        if (pass.ms.value_or(0.0) <= 0.0) continue;
+        if (pass.ms.value_or(0.0) < kNothingToDo_ms) continue;
         measured.pass_ms[{frame.plan.quality, pass.name}] = *pass.ms;
         measured.newest_was_drawn = measured.newest_was_drawn || runs_every_frame(pass.name);
     }
