@@ -22,6 +22,7 @@
 #include "studio/shell_state.h"
 #include "studio/theme.h"
 #include "studio/ui_map.h"
+#include "studio/window_icon.h"
 #include "studio/window_place.h"
 #include "studio/wiring.h"
 
@@ -262,6 +263,7 @@ class Desktop {
         contexts_ = start_threads(shell_, *window_);
         tell_unsaved(shell_);
         monitors_changed(shell_);
+        give_icon(studio, window_->native());
         glfwShowWindow(window_->native());
         frames_to_draw_ = kFramesAfterInput;
     }

@@ -148,6 +148,10 @@ void draw_target(Studio& studio, const Target& target) {
 }
 
 void paint_tooltip(const Material& paint) {
+    // Beside the column, so that it hides neither the swatches nor their names.
+    const ImVec2 pointer = ImGui::GetIO().MousePos;
+    ImGui::SetNextWindowPos(
+        {ImGui::GetWindowPos().x - em(1.0f), pointer.y}, ImGuiCond_Always, {1.0f, 0.5f});
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(em(22.0f));
     heading(paint.name.c_str());

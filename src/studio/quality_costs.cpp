@@ -72,8 +72,9 @@ const std::vector<PassCost>* bench_costs(Studio& studio) {
 }
 
 void remember_costs(MeasuredCosts& measured, const FinishedFrame& frame) {
-    if (frame.number == measured.frame) return;
-    measured.frame = frame.number;
+    // Not by its number: a frame comes again when more of it is there.
+    if (frame.done_at == measured.frame_done_at) return;
+    measured.frame_done_at = frame.done_at;
     measured.newest_was_drawn = false;
     for (const PlannedPass& pass : frame.plan.passes) {
         if (pass.ms.value_or(0.0) < kNothingToDo_ms) continue;

@@ -91,7 +91,8 @@ struct Shell {
     std::optional<FrameKey> asked_frame;
     std::optional<PreviewKey> asked_preview;
     std::optional<SetupKey> asked_setup;
-    std::uint64_t frame_number = 0, preview_number = 0, photographed_number = 0;
+    std::uint64_t frame_number = 0, preview_number = 0;
+    std::shared_ptr<const Image8> photographed;  ///< the newest that the bench was asked to show
     bool draws_in_software = false;
     double frame_asked_s = 0.0, preview_waits_until_s = 0.0;
     bool calibrates_after_first_frame = false;

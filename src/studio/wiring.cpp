@@ -67,7 +67,7 @@ void tell_failure(Shell& shell, const std::string& what, std::exception_ptr why)
 void take_setup(Shell& shell, std::shared_ptr<const ProjectorSetup> setup) {
     shell.studio.setup = std::move(setup);
     shell.mock_up_columns = columns_of(*shell.studio.product, shell.studio.setup->view);
-    shell.photographed_number = 0;
+    shell.photographed.reset();
 }
 
 /// A new calibration, bench or design white is loaded beside the frames, which go on as they were.
@@ -198,8 +198,9 @@ void ask_for_preview(Shell& shell) {
 void ask_for_photograph(Shell& shell) {
     const Studio& studio = shell.studio;
     if (studio.view != StageView::photograph || !studio.frame || !studio.setup) return;
-    if (studio.frame->number == shell.photographed_number || !studio.frame->drive) return;
-    shell.photographed_number = studio.frame->number;
+    // Not by its number: a frame comes again when more of it is there.
+    if (studio.frame->drive == shell.photographed || !studio.frame->drive) return;
+    shell.photographed = studio.frame->drive;
     studio.bench->photograph(
         studio.frame->number, studio.frame->drive, studio.setup->design_white_y);
 }

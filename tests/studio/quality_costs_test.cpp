@@ -36,6 +36,7 @@ TEST(QualityCost, PartsWhatIsSolvedFromWhatRunsEveryFrame) {
 TEST(MeasuredCosts, OutliveFramesThatChangeNothing) {
     FinishedFrame drawn;
     drawn.number = 1;
+    drawn.done_at = std::chrono::steady_clock::time_point(std::chrono::seconds(1));
     drawn.ms_total = 30.0;
     drawn.plan.quality = Quality::normal;
     drawn.plan.passes.resize(3);
@@ -49,7 +50,7 @@ TEST(MeasuredCosts, OutliveFramesThatChangeNothing) {
     EXPECT_TRUE(measured.newest_was_drawn);
 
     FinishedFrame same = drawn;
-    same.number = 2;
+    same.done_at += std::chrono::seconds(1);  // the same frame once more
     same.ms_total = 0.1;
     for (PlannedPass& pass : same.plan.passes) pass.ms = 0.004;
     remember_costs(measured, same);
