@@ -31,7 +31,8 @@ void PreviewEncoder::encode(RasterPreview& preview,
                             const View& view,
                             std::optional<int> highlighted_part,
                             bool with_ground,
-                            const Framebuffer& into) {
+                            const Framebuffer& into,
+                            const std::optional<PixelRect>& only) {
     const bool ground = with_ground && ground_;
     Program& program = program_for(ground, highlighted_part.has_value());
     program.set("u_radiance", 0);
@@ -62,7 +63,9 @@ void PreviewEncoder::encode(RasterPreview& preview,
         bind_texture(2, part);
     }
     bind_texture(0, preview.texture());
-    screen_.run(program, into);
+    DrawState state;
+    state.scissor = only;
+    screen_.run(program, into, state);
 }
 
 }  // namespace livery

@@ -20,12 +20,13 @@ class PreviewEncoder {
     void set_ground(const GroundShadow* ground);  ///< null: none
 
     /// What `preview` drew last, seen through `view`, into an RGBA8 framebuffer of the same size.
-    /// The ground is left out where none was set.
+    /// The ground is left out where none was set. `only` these pixels; none: all.
     void encode(RasterPreview& preview,
                 const View& view,
                 std::optional<int> highlighted_part,
                 bool with_ground,
-                const Framebuffer& into);
+                const Framebuffer& into,
+                const std::optional<PixelRect>& only = std::nullopt);
 
   private:
     Program& program_for(bool ground, bool highlight);

@@ -1,6 +1,8 @@
 #include "session/preview_thread.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <deque>
 #include <exception>
@@ -157,10 +159,29 @@ bool PreviewThread::Implementation::draw(Drawing& drawing, int supersampling) {
     ask_for_light(drawing);
     if (!drawing.light) return false;
     drawing.preview->set_supersampling(supersampling);
-    drawing.preview->draw(shown->scene, shown->view);
-    const auto slot = drawing.pool.lend(shown->view.width, shown->view.height);
-    drawing.encoder.encode(
-        *drawing.preview, shown->view, shown->highlighted_part, shown->ground, slot->framebuffer);
+    const View& view = shown->view;
+    const auto slot = drawing.pool.lend(view.width, view.height);
+    const auto draw_columns = [&](const Scene& scene, int begin, int end) {
+        if (begin >= end) return;
+        drawing.preview->draw(scene, view);
+        drawing.encoder.encode(*drawing.preview,
+                               view,
+                               shown->highlighted_part,
+                               shown->ground,
+                               slot->framebuffer,
+                               PixelRect{begin, 0, end - begin, view.height});
+    };
+    const int column =
+        shown->wipe_to
+            ? static_cast<int>(std::lround(std::clamp(shown->wipe_at, 0.0, 1.0) * view.width))
+            : view.width;
+    draw_columns(shown->scene, 0, column);
+    if (shown->wipe_to) {
+        Scene other = *shown->wipe_to;
+        other.lights = shown->scene.lights;
+        other.environment = shown->scene.environment;
+        draw_columns(other, column, view.width);
+    }
     // Waited for here, so that the time is the drawing's own and no reader ever waits.
     finish_gl();
     slot->ready = Fence::after_everything_so_far();

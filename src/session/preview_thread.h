@@ -20,6 +20,9 @@ namespace livery {
 struct PreviewDescription {
     std::uint64_t number = 0;
     Scene scene;
+    /// Shown right of `wipe_at`, a fraction of the view's width, in the light of `scene`.
+    std::optional<Scene> wipe_to;
+    double wipe_at = 0.5;
     View view;
     std::optional<int> highlighted_part;  ///< outlined, on the part itself
     bool ground = true;                   ///< the product darkens the ground that it stands on

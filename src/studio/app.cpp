@@ -44,7 +44,9 @@ Session open_session(const DesktopOptions& options) {
     const std::string product = options.product.empty() ? "car" : options.product;
     try {
         Session session = Session::open(file, product);
-        if (!options.product.empty() && session.document().product != options.product) {
+        // A session names a product's file by its whole path, as a new one made here would.
+        if (!options.product.empty() &&
+            session.document().product != new_document(product).product) {
             throw Refused(fmt::format("the session {} shows the product {}, not {}",
                                       file.string(),
                                       session.document().product,

@@ -60,6 +60,8 @@ struct PreviewKey {
     std::array<double, 7> camera{};  ///< of the orbit, and the eye's zoom
     int width = 0, height = 0;
     std::optional<int> highlighted_part;
+    std::optional<int> wipe_to;
+    double wipe_at = 0.5;
     bool operator==(const PreviewKey&) const = default;
 };
 

@@ -231,6 +231,11 @@ Frame photograph_picture(const Shell& shell, const Frame& stage) {
         stage, photograph->srgb.width, photograph->srgb.height, shell.stage.photograph);
 }
 
+/// The photograph shows the wipe on the mock-up, where no straight line of ours would lie.
+bool has_wipe_line(const Studio& studio) {
+    return studio.wiping && studio.compared_look && studio.view != StageView::photograph;
+}
+
 /// Where the wipe's line lies: across the mock-up in the projector's picture, across the stage in
 /// the others, which have no columns of the projector.
 std::pair<float, float> wipe_range(const Shell& shell, const Frame& stage) {
@@ -256,7 +261,7 @@ bool handle_wipe(Shell& shell, const Frame& stage, const Pointer& pointer) {
     Studio& studio = shell.studio;
     StageState& state = shell.stage;
     if (!pointer.held) state.dragging_wipe = false;
-    if (!studio.wiping || !studio.compared_look) return false;
+    if (!has_wipe_line(studio)) return false;
     const float mouse_x = ImGui::GetIO().MousePos.x;
     const bool near = pointer.hovered && std::abs(mouse_x - wipe_line(shell, stage)) < em(0.6f);
     if (pointer.pressed) state.dragging_wipe = near;
@@ -273,7 +278,7 @@ bool handle_wipe(Shell& shell, const Frame& stage, const Pointer& pointer) {
 
 void draw_wipe(const Shell& shell, const Frame& stage) {
     const Studio& studio = shell.studio;
-    if (!studio.wiping || !studio.compared_look) return;
+    if (!has_wipe_line(studio)) return;
     const float x = wipe_line(shell, stage);
     const float bottom = stage.y + stage.height, grip = stage.y + 0.5f * stage.height;
     ImDrawList& list = *ImGui::GetWindowDrawList();

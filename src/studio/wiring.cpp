@@ -109,6 +109,10 @@ void ask_for_setup(Shell& shell) {
         });
 }
 
+std::optional<int> look_to_wipe_to(const Studio& studio) {
+    return studio.wiping && !studio.showing_b ? studio.compared_look : std::nullopt;
+}
+
 void ask_for_frame(Shell& shell) {
     Studio& studio = shell.studio;
     if (!studio.setup) return;
@@ -116,7 +120,7 @@ void ask_for_frame(Shell& shell) {
     key.revision = studio.session.revision();
     key.tried = text_of_trial(studio);
     key.look = look_on_show(studio);
-    if (studio.wiping && !studio.showing_b) key.wipe_to = studio.compared_look;
+    key.wipe_to = look_to_wipe_to(studio);
     if (key.wipe_to) key.wipe_at = studio.wipe_at;
     key.glowing_part = studio.glowing_part;
     key.setup = studio.setup;
@@ -169,12 +173,15 @@ void ask_for_preview(Shell& shell) {
     key.width = stage.width;
     key.height = stage.height;
     key.highlighted_part = studio.hovered_part ? studio.hovered_part : studio.glowing_part;
+    key.wipe_to = look_to_wipe_to(studio);
+    if (key.wipe_to) key.wipe_at = studio.wipe_at;
     if (shell.asked_preview == key) return;
     // The mock-up goes first where both are drawn by the same processor, but not for long.
     shell.preview_waits_until_s = 0.0;
-    const bool same_scene = shell.asked_preview && shell.asked_preview->revision == key.revision &&
-                            shell.asked_preview->tried == key.tried &&
-                            shell.asked_preview->look == key.look;
+    const bool same_scene =
+        shell.asked_preview && shell.asked_preview->revision == key.revision &&
+        shell.asked_preview->tried == key.tried && shell.asked_preview->look == key.look &&
+        shell.asked_preview->wipe_to == key.wipe_to && shell.asked_preview->wipe_at == key.wipe_at;
     const double patience_until_s = shell.frame_asked_s + kPreviewPatience_s;
     if (shell.draws_in_software && !same_scene && is_frame_under_way(shell) &&
         studio.now_s < patience_until_s) {
@@ -185,6 +192,7 @@ void ask_for_preview(Shell& shell) {
     PreviewDescription description;
     try {
         description.scene = scene_for(shell, document, key.look);
+        if (key.wipe_to) description.wipe_to = scene_for(shell, document, *key.wipe_to);
     } catch (const std::exception&) {
         return;  // Told when the frame was asked for.
     }
@@ -192,6 +200,7 @@ void ask_for_preview(Shell& shell) {
     description.number = ++shell.preview_number;
     description.view = stage_view(shell, document.eye_mm);
     description.highlighted_part = key.highlighted_part;
+    description.wipe_at = key.wipe_at;
     studio.previews->show(std::move(description));
 }
 

@@ -132,6 +132,32 @@ TEST(PreviewThread, DrawsTheNewestOfMany) {
     EXPECT_LT(finished.all().size(), kLast);
 }
 
+TEST(PreviewThread, WipesBetweenTwoLooks) {
+    SharedContexts contexts;
+    FinishedPictures finished;
+    PreviewThread thread(contexts.theirs, finished.callback());
+    const auto picture_of = [&](const PreviewDescription& description) {
+        thread.show(description);
+        const auto picture = final_picture(finished, description.number);
+        return picture ? read(*picture) : Image8();
+    };
+    const Image8 light = picture_of(description_of(1, 0.8));
+    const Image8 dark = picture_of(description_of(2, 0.2));
+    PreviewDescription wiped = description_of(3, 0.8);
+    wiped.wipe_to = description_of(3, 0.2).scene;
+    wiped.wipe_at = 0.25;
+    const Image8 both = picture_of(wiped);
+    ASSERT_EQ(both.values.size(), light.values.size());
+    EXPECT_NE(light.values, dark.values);
+    const int column = 40;  // a quarter of 160
+    for (int y = 0; y < both.height; ++y) {
+        for (int x = 0; x < both.width; ++x) {
+            const Image8& expected = x < column ? light : dark;
+            for (int c = 0; c < 4; ++c) ASSERT_EQ(both.at(x, y, c), expected.at(x, y, c)) << x;
+        }
+    }
+}
+
 TEST(PreviewThread, OutlinesOnePartAndNothingElse) {
     SharedContexts contexts;
     FinishedPictures finished;
