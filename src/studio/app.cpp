@@ -1,8 +1,11 @@
 #include "studio/app.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <csignal>
+#include <utility>
+#include <vector>
 
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
@@ -36,6 +39,22 @@ constexpr double kShortestFrame_s = 1.0 / 60.0;
 constexpr double kLongestFrame_s = 0.1;  // While input comes in faster than it can be drawn.
 
 bool monitors_have_changed = false;  // Set by GLFW's callback, which carries no pointer.
+
+/// GLFW tells of monitors that come and go, not of those that move.
+std::vector<std::array<int, 4>> places_of_monitors() {
+    std::vector<std::array<int, 4>> places;
+    int count = 0;
+    GLFWmonitor** const monitors = glfwGetMonitors(&count);
+    for (int i = 0; i < count; ++i) {
+        auto& place = places.emplace_back();
+        glfwGetMonitorPos(monitors[i], &place[0], &place[1]);
+        if (const GLFWvidmode* mode = glfwGetVideoMode(monitors[i])) {
+            place[2] = mode->width;
+            place[3] = mode->height;
+        }
+    }
+    return places;
+}
 
 double now_s() { return seconds_of(std::chrono::steady_clock::now()); }
 
@@ -287,6 +306,11 @@ class Desktop {
             frames_to_draw_ = 1;  // A thread's result; input adds its own below.
         }
         if (imgui_->has_input()) frames_to_draw_ = kFramesAfterInput;
+        if (!imgui_->has_input()) {
+            auto places = places_of_monitors();
+            if (places != monitor_places_) monitors_have_changed = true;
+            monitor_places_ = std::move(places);
+        }
         if (std::exchange(monitors_have_changed, false)) {
             monitors_changed(shell_);
             frames_to_draw_ = kFramesAfterInput;
@@ -374,6 +398,7 @@ class Desktop {
     Shell shell_;
     std::optional<UiMapFile> ui_map_;
     int frames_to_draw_ = 0;
+    std::vector<std::array<int, 4>> monitor_places_;
     double last_drawn_s_ = 0.0;
 };
 

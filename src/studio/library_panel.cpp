@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
 #include "studio/chosen_part.h"
@@ -199,6 +200,10 @@ bool draw_cell(Studio& studio, const Target& target, Cell& cell, float width, fl
     const bool worn = !target.paint.empty() && same_paint_name(target.paint, paint.name);
     if (meant && !worn) {
         try_out(studio, SetPaint{studio.shown_look, target.part, paint.name});
+    } else if (meant) {
+        // Undo takes it off: not to be tried out again while pointer and keys rest on it.
+        studio.untried_item = ImGui::GetItemID();
+        studio.untried_item_still_there = true;
     }
     if (on_cursor && std::exchange(state.cursor_moved, false)) ImGui::SetScrollHereY();
     if (ImGui::IsItemVisible()) {
