@@ -100,6 +100,7 @@ struct Desktop::State {
     std::unique_ptr<ChildProcess> window_manager;
     std::optional<std::string> display_before;
     DesktopOptions options;
+    glm::ivec2 screen_px{0};
 
     Window root() const { return XDefaultRootWindow(connection); }
 };
@@ -143,6 +144,7 @@ double fraction_different(const Image8& a, const Image8& b, int tolerance) {
 Desktop::Desktop(const DesktopOptions& options)
     : state_(std::make_unique<State>(options.operator_px + options.projector_px)) {
     state_->options = options;
+    state_->screen_px = options.operator_px + options.projector_px;
     if (const char* before = std::getenv("DISPLAY")) state_->display_before = before;
     ::setenv("DISPLAY", display().c_str(), 1);
     ::unsetenv("WAYLAND_DISPLAY");
@@ -225,14 +227,20 @@ void Desktop::xrandr(const std::vector<std::string>& arguments) {
     }
 }
 
-void Desktop::unplug_projector() { xrandr({"--output", projector_output, "--off"}); }
+// The screen behind the monitors keeps its size: while it changes, this server shows old pixels
+// in rows of the new length, which no program can help.
+void Desktop::unplug_projector() {
+    xrandr({"--fb", mode_name(state_->screen_px), "--output", projector_output, "--off"});
+}
 
 void Desktop::plug_projector(Side side) {
     const char* where = side == Side::right   ? "--right-of"
                         : side == Side::left  ? "--left-of"
                         : side == Side::above ? "--above"
                                               : "--below";
-    xrandr({"--output",
+    xrandr({"--fb",
+            mode_name(state_->screen_px),
+            "--output",
             projector_output,
             "--mode",
             mode_name(state_->options.projector_px),

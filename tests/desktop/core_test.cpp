@@ -1,0 +1,87 @@
+// The desktop program on two monitors, as a designer uses it: every action is checked by the pixels
+// of both screens, before and after.
+
+#include <atomic>
+
+#include <gtest/gtest.h>
+
+#include "desktop/two_monitors.h"
+#include "support/screen_watch.h"
+
+namespace livery {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Swap paints by mouse and keyboard, hover, Esc, undo: what must work everywhere.
+class Core : public TwoMonitors {
+  protected:
+    void swap_hover_and_undo();
+};
+
+void Core::swap_hover_and_undo() {
+    const Image8 first = drive_of_place(0);
+    const Image8 red = drive_with_body("solid red"), blue = drive_with_body("solid blue"),
+                 green = drive_with_body("green metallic");
+    ASSERT_TRUE(projector_shows(first));
+    program->click("part:body");
+
+    // By mouse: what is pointed at shows, and leaving takes it back.
+    program->hover("paint:solid blue");
+    EXPECT_TRUE(projector_shows(blue));
+    EXPECT_TRUE(operator_sees("blue"));
+    program->move_away();
+    EXPECT_TRUE(projector_shows(first));
+
+    // Esc takes it back under the pointer.
+    program->hover("paint:solid blue");
+    EXPECT_TRUE(projector_shows(blue));
+    desktop->press_key("Escape");
+    EXPECT_TRUE(projector_shows(first));
+    program->move_away();
+
+    program->click("paint:green metallic");
+    program->move_away();
+    EXPECT_TRUE(projector_shows(green));
+    EXPECT_TRUE(operator_sees("green"));
+    program->click("paint:solid blue");
+    program->move_away();
+    EXPECT_TRUE(projector_shows(blue));
+    EXPECT_TRUE(operator_sees("blue"));
+
+    // By keyboard.
+    desktop->press_key("ctrl+z");
+    EXPECT_TRUE(projector_shows(green));
+    EXPECT_TRUE(operator_sees("green"));
+    desktop->press_key("ctrl+y");
+    EXPECT_TRUE(projector_shows(blue));
+    EXPECT_TRUE(operator_sees("blue"));
+    program->click("paint-search");
+    desktop->type("solid red");
+    desktop->press_key("Down");
+    EXPECT_TRUE(projector_shows(red));
+    desktop->press_key("Return");
+    EXPECT_TRUE(projector_shows(red));
+    EXPECT_TRUE(operator_sees("red"));
+}
+
+TEST_F(Core, SwapsPaintsOnTwoMonitors) {
+    use_shared();
+    swap_hover_and_undo();
+}
+
+TEST_F(Core, DoesTheSameUnderAWindowManager) {
+    DesktopOptions options;
+    options.window_manager = true;
+    start(options);
+    pick_projector();
+    swap_hover_and_undo();
+    desktop->unplug_projector();
+    EXPECT_TRUE(operator_sees("red"));
+    desktop->plug_projector();
+    EXPECT_TRUE(projector_shows(drive_with_body("solid red")));
+    EXPECT_EQ(program->quit(), 0);
+}
+
+}  // namespace
+}  // namespace livery

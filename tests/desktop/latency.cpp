@@ -1,0 +1,222 @@
+// Prints how long an input takes to reach the projector's picture, as a table for
+// docs/performance.md. Not a test: figures depend on the machine and what else it does.
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <iostream>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "desktop/prepared.h"
+#include "desktop/studio_program.h"
+#include "session/session.h"
+
+namespace livery {
+namespace {
+
+constexpr int swaps = 100;
+constexpr int between_swaps_ms = 150;
+
+double now_s() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+/// From each moment in `inputs_s` to the first picture on the projector that was asked for after
+/// it; nothing where no picture came before the next input.
+std::vector<std::optional<double>> to_projector_ms(const std::vector<TraceLine>& trace,
+                                                   const std::vector<double>& inputs_s) {
+    std::vector<std::optional<double>> answers;
+    for (std::size_t i = 0; i < inputs_s.size(); ++i) {
+        const double from = inputs_s[i], to = i + 1 < inputs_s.size() ? inputs_s[i + 1] : 1e300;
+        std::optional<std::uint64_t> asked;
+        std::optional<double> shown_s;
+        for (const TraceLine& line : trace) {
+            if (line.t_s < from || line.t_s >= to) continue;
+            if (line.event == "frame-asked" && !asked) asked = line.number;
+            if (line.event == "shown" && asked && line.number >= *asked) {
+                shown_s = shown_s ? std::min(*shown_s, line.t_s) : line.t_s;
+            }
+        }
+        answers.push_back(shown_s ? std::optional(1e3 * (*shown_s - from)) : std::nullopt);
+    }
+    return answers;
+}
+
+double percentile(std::vector<double> values, double fraction) {
+    std::ranges::sort(values);
+    const auto last = static_cast<double>(values.size() - 1);
+    return values[static_cast<std::size_t>(std::lround(fraction * last))];
+}
+
+void print_row(const std::string& what, const std::vector<std::optional<double>>& answers) {
+    std::vector<double> ms;
+    for (const auto& answer : answers) {
+        if (answer) ms.push_back(*answer);
+    }
+    if (ms.empty()) {
+        std::cout << fmt::format("| {} | none of {} was shown | | | |\n", what, answers.size());
+        return;
+    }
+    std::cout << fmt::format("| {} | {} of {} | {:.0f} | {:.0f} | {:.0f} |\n",
+                             what,
+                             ms.size(),
+                             answers.size(),
+                             percentile(ms, 0.5),
+                             percentile(ms, 0.95),
+                             percentile(ms, 1.0))
+              << std::flush;
+}
+
+class Bench {
+  public:
+    Bench(Desktop& desktop, const std::filesystem::path& session) : desktop_(desktop) {
+        start_s_ = now_s();
+        program_ =
+            std::make_unique<StudioProgram>(desktop, StudioStart{session, {1280, 800}, 1.0, {}});
+    }
+
+    StudioProgram& program() { return *program_; }
+
+    /// From the start of the program to its first picture on the projector.
+    double first_picture_s() {
+        std::optional<double> shown;
+        const bool there = wait_until(
+            [&] {
+                for (const auto& line : program_->trace()) {
+                    if (line.event == "shown" && line.number > 0 && !shown) shown = line.t_s;
+                }
+                return shown.has_value();
+            },
+            std::chrono::seconds(120));
+        if (!there) throw std::runtime_error("no picture came to the projector");
+        return *shown - start_s_;
+    }
+
+    /// The pointer goes from swatch to swatch; each shows its paint on the mock-up.
+    std::vector<double> swap_paints(int count, const std::function<void(int)>& before_each = {}) {
+        std::vector<glm::ivec2> swatches;
+        for (const auto& name : program_->items_starting_with("paint:")) {
+            const Rectangle place = program_->item(name);
+            if (place.height > 20) swatches.push_back(middle(place));
+        }
+        if (swatches.size() < 2) throw std::runtime_error("the paints are not in sight");
+        std::vector<double> moments;
+        for (int i = 0; i < count; ++i) {
+            if (before_each) before_each(i);
+            const auto& at = swatches[static_cast<std::size_t>(i) % swatches.size()];
+            moments.push_back(now_s());
+            desktop_.move_pointer(at.x, at.y);
+            sleep_ms(between_swaps_ms);
+        }
+        return moments;
+    }
+
+    std::vector<double> swap_looks(int count) {
+        std::vector<double> moments;
+        for (int i = 0; i < count; ++i) {
+            const std::string key = std::to_string(1 + (i + 1) % 4);
+            moments.push_back(now_s());
+            desktop_.hold_key(key);
+            sleep_ms(between_swaps_ms / 3);
+            desktop_.release_key(key);
+            sleep_ms(between_swaps_ms - between_swaps_ms / 3);
+        }
+        return moments;
+    }
+
+    void save_picture(const std::string& file) {
+        desktop_.press_key("ctrl+s");
+        program_->click("save-picture:what-1");
+        program_->click("save-picture:path");
+        desktop_.press_key("ctrl+a");
+        desktop_.type(file);
+        program_->click("save-picture:ok");
+    }
+
+    void report(const std::string& what, const std::vector<double>& moments) {
+        // The last one's answer may still be on its way.
+        sleep_ms(500);
+        print_row(what, to_projector_ms(program_->trace(), moments));
+    }
+
+    /// Nothing is drawn, solved or prepared any more.
+    void wait_until_idle() {
+        std::size_t lines = 0;
+        for (int quiet = 0; quiet < 20; ++quiet) {
+            sleep_ms(100);
+            const auto count = program_->trace().size();
+            if (count != lines) quiet = 0;
+            lines = count;
+        }
+    }
+
+  private:
+    Desktop& desktop_;
+    std::unique_ptr<StudioProgram> program_;
+    double start_s_ = 0.0;
+};
+
+void run() {
+    const TemporaryFolder folder;
+    const auto session = folder / "session.livery";
+    prepare_session(session, Quality::normal);
+    Desktop desktop;
+    {
+        // A designer's second day: the projector is known, shaders are compiled.
+        Bench first(desktop, session);
+        first.program().click("projector-monitor");
+        first.program().click("monitor:2");
+        first.program().move_away();
+        first.first_picture_s();
+        first.wait_until_idle();
+        first.program().quit();
+    }
+    Bench bench(desktop, session);
+    std::cout << fmt::format("start to first picture on the projector: {:.1f} s\n\n",
+                             bench.first_picture_s());
+    std::cout << "| input to projector, ms | shown | median | 95% | longest |\n"
+                 "| --- | --- | --- | --- | --- |\n";
+    StudioProgram& program = bench.program();
+    program.click("part:body");
+    program.move_away();
+    bench.wait_until_idle();
+
+    bench.report("paint, idle", bench.swap_paints(swaps));
+    program.move_away();
+    bench.report("look, idle", bench.swap_looks(swaps));
+
+    program.click("tab:Calibrate");
+    program.click("calibrate");
+    program.click("tab:Paints");
+    bench.report("paint, bench calibrating", bench.swap_paints(swaps));
+    program.wait_for_state("calibrating", false);
+
+    const auto pictures = folder / "picture";
+    bench.report("paint, a picture saved every tenth", bench.swap_paints(swaps, [&](int i) {
+        if (i % 10 == 0) bench.save_picture(pictures.string() + std::to_string(i) + ".exr");
+    }));
+
+    program.click("tab:Light");
+    program.click("quality:high");
+    program.click("tab:Paints");
+    bench.report("paint, light being solved", bench.swap_paints(swaps));
+    std::cout << "\nlight was still being solved at the end: " << program.state("solving") << "\n";
+}
+
+}  // namespace
+}  // namespace livery
+
+int main() {
+    try {
+        livery::run();
+        return 0;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        return 1;
+    }
+}

@@ -1,0 +1,157 @@
+#include "desktop/prepared.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <stdexcept>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include "core/hash.h"
+#include "core/image_io.h"
+#include "core/paths.h"
+#include "session/commands.h"
+#include "session/projector_setup.h"
+#include "session/session.h"
+#include "support/run_program.h"
+
+namespace livery {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Several test programs may run at once: what they share is made by one of them.
+class CacheLock {
+  public:
+    CacheLock() {
+        fs::create_directories(LIVERY_TEST_CACHE);
+        file_ = ::open(LIVERY_TEST_CACHE "/lock", O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+        if (file_ < 0 || ::flock(file_, LOCK_EX) != 0) {
+            throw std::runtime_error("cannot lock " LIVERY_TEST_CACHE);
+        }
+    }
+    ~CacheLock() { ::close(file_); }
+    CacheLock(const CacheLock&) = delete;
+    CacheLock& operator=(const CacheLock&) = delete;
+
+  private:
+    int file_ = -1;
+};
+
+/// Results of this build of the program; those of others are swept away. Under the lock.
+fs::path cache_folder() {
+    const auto built = fs::last_write_time(LIVERY_PROGRAM).time_since_epoch().count();
+    const fs::path all = LIVERY_TEST_CACHE, folder = all / std::to_string(built);
+    if (!fs::exists(folder)) {
+        for (const auto& entry : fs::directory_iterator(all)) {
+            if (entry.is_directory()) fs::remove_all(entry);
+        }
+        fs::create_directories(folder);
+    }
+    // Calibrations and swatches are kept there as well.
+    ::setenv("LIVERY_HOME", (folder / "home").c_str(), 1);
+    return folder;
+}
+
+const char* name_of(Quality quality) {
+    switch (quality) {
+        case Quality::draft:
+            return "draft";
+        case Quality::normal:
+            return "normal";
+        case Quality::high:
+            return "high";
+        case Quality::reference:
+            return "reference";
+    }
+    throw std::invalid_argument("quality");
+}
+
+std::string hash_of(const std::string& text) {
+    Hasher hasher;
+    hasher.add(text);
+    return hasher.hex();
+}
+
+/// Values of an 8-bit file.
+Image8 read_png(const fs::path& file) {
+    const ImageF image = read_image(file).image;
+    Image8 picture(image.width, image.height, 3);
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            for (int c = 0; c < 3; ++c) {
+                picture.at(x, y, c) = static_cast<std::uint8_t>(std::lround(image.at(x, y, c)));
+            }
+        }
+    }
+    return picture;
+}
+
+}  // namespace
+
+fs::path prepared_calibration() {
+    const CacheLock lock;
+    // The folder's name is in this file once the calibration is complete.
+    const fs::path done = cache_folder() / "calibration";
+    if (!fs::exists(done)) {
+        const auto product =
+            std::make_shared<const Product>(load_product(shipped_path("assets/car.json")));
+        const fs::path folder = calibrate_on_bench("default", product, {});
+        write_text_file(done, folder.string());
+    }
+    return read_text_file(done);
+}
+
+Document prepare_session(const fs::path& file, Quality quality) {
+    Session session = Session::open(file);
+    session.execute(SetQuality{quality});
+    session.execute(SetCalibration{prepared_calibration().string()});
+    return session.document();
+}
+
+Image8 expected_drive(const Document& document, int look_id) {
+    const SessionLook* found = find_look(document, look_id);
+    if (!found) throw std::invalid_argument("no such look");
+    Look look = found->look;
+    look.exposure_ev = document.exposure_ev;
+    const TemporaryFolder folder;
+    const fs::path look_file = folder / "look.json";
+    write_look_file(look_file, look);
+    const std::vector<std::string> options = {
+        "--calibration",
+        document.calibration,
+        "--quality",
+        name_of(document.quality),
+        "--eye",
+        fmt::format("{},{},{}", document.eye_mm.x, document.eye_mm.y, document.eye_mm.z),
+        "--design-white",
+        fmt::format("{}", document.design_white_percentile)};
+    std::string key = read_text_file(look_file);
+    for (const auto& option : options) key += option;
+    const CacheLock lock;
+    const fs::path picture = cache_folder() / (hash_of(key) + ".png");
+    if (!fs::exists(picture)) {
+        std::vector<std::string> arguments = {"render",
+                                              "--stage",
+                                              "projector",
+                                              "--look",
+                                              look_file.string(),
+                                              "--out",
+                                              picture.string()};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        const ProgramRun run = run_program(LIVERY_PROGRAM, arguments);
+        if (run.exit_code != 0) throw std::runtime_error("livery render: " + run.err);
+    }
+    return read_png(picture);
+}
+
+Image8 expected_drive(Document document,
+                      int look_id,
+                      const std::string& part,
+                      const std::string& paint) {
+    return expected_drive(applied(document, SetPaint{look_id, part, paint}), look_id);
+}
+
+}  // namespace livery

@@ -1,0 +1,206 @@
+// Photographs every part of the operator's window, for the documentation and for looking at it:
+//     desktop_screenshots FOLDER
+// writes NAME-1280.png at 1280x800 and NAME-3840.png at 3840x2160.
+
+#include <cctype>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "core/image_io.h"
+#include "desktop/prepared.h"
+#include "desktop/studio_program.h"
+
+namespace livery {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+class Photographer {
+  public:
+    Photographer(const fs::path& folder, glm::ivec2 size_px, double ui_scale)
+        : folder_(folder), size_px_(size_px), desktop_({size_px, {1280, 800}, false}) {
+        document_ = prepare_session(home_ / "session.livery", Quality::normal);
+        program_ = std::make_unique<StudioProgram>(
+            desktop_, StudioStart{home_ / "session.livery", size_px, ui_scale, {}});
+    }
+
+    void take_all() {
+        program().click("projector-monitor");
+        settle();
+        take("projector-choice");
+        program().click("monitor:2");
+        program().click("part:body");
+        program().move_away();
+        wait_for_rest();
+        take("window");
+
+        program().hover("paint:solid green");
+        settle();
+        take("hover");
+        program().move_away();
+        program().click("paint-search");
+        desktop_.type("met");
+        settle();
+        take("search");
+        desktop_.press_key("Escape");
+        desktop_.press_key("Escape");
+
+        for (const char* tab : {"Paint", "Light", "Calibrate", "Frame"}) {
+            program().click(std::string("tab:") + tab);
+            program().move_away();
+            wait_for_rest();
+            take(fmt::format("tab-{}", lower(tab)));
+        }
+        program().click("tab:Paints");
+        for (const char* view : {"eye", "projector", "photograph"}) {
+            program().click(std::string("view:") + view);
+            program().move_away();
+            wait_for_rest();
+            if (view == std::string("photograph")) wait_for_photograph();
+            take(fmt::format("view-{}", view));
+        }
+        program().click("view:preview");
+        desktop_.press_key("4");
+        desktop_.press_key("1");
+        desktop_.press_key("w");
+        program().move_away();
+        wait_for_rest();
+        take("wipe");
+        write_png(folder_ / fmt::format("projector-wipe-{}.png", size_px_.x),
+                  desktop_.read(desktop_.projector_area()));
+        desktop_.press_key("w");
+        wait_for_rest();
+        desktop_.press_key("b");
+        settle();
+        take("black");
+        desktop_.press_key("b");
+        for (const char* menu : {"File", "Edit", "View", "Look", "Projector", "Help"}) {
+            program().click(std::string("menu:") + menu);
+            settle();
+            take(fmt::format("menu-{}", lower(menu)));
+            desktop_.press_key("Escape");
+        }
+        desktop_.press_key("F1");
+        settle();
+        take("keys");
+        desktop_.press_key("Escape");
+        desktop_.press_key("ctrl+s");
+        settle();
+        take("save-picture");
+        program().click("save-picture:cancel");
+        settle();
+        desktop_.press_key("ctrl+i");
+        settle();
+        take("import-look");
+        program().click("file-dialog:cancel");
+        take_ballot();
+        take_calibrating();
+        program().click("show-numbers");
+        settle();
+        take("monitor-numbers");
+        write_png(folder_ / fmt::format("projector-number-{}.png", size_px_.x),
+                  desktop_.read(desktop_.projector_area()));
+        sleep_ms(5000);
+        desktop_.unplug_projector();
+        wait_for_rest();
+        take("unplugged");
+    }
+
+  private:
+    StudioProgram& program() { return *program_; }
+
+    void take_ballot() {
+        program().click("menu:File");
+        program().click("menu:ballot");
+        settle();
+        take("ballot-start");
+        program().click("ballot:start");
+        settle();
+        program().click("ballot:name");
+        desktop_.type("Ada");
+        for (const char* choice : {"ballot:best:0", "ballot:second:1"}) program().click(choice);
+        settle();
+        take("ballot");
+        desktop_.press_key("Escape");
+    }
+
+    void take_calibrating() {
+        program().click("tab:Calibrate");
+        program().click("calibrate");
+        program().move_away();
+        sleep_ms(2500);
+        take("calibrating");
+        program().click("cancel-calibration");
+        wait_for_rest();
+        program().click("tab:Paints");
+    }
+
+    static std::string lower(std::string word) {
+        for (char& c : word) c = static_cast<char>(std::tolower(c));
+        return word;
+    }
+
+    void settle() { sleep_ms(600); }
+
+    /// Until nothing is solved or drawn any more.
+    void wait_for_rest() {
+        settle();
+        const bool rested = wait_until(
+            [&] {
+                return program().state("finished_number") == program().state("asked_number") &&
+                       program().state("unfinished") == "" && program().state("solving") == false &&
+                       program().state("busy") == false;
+            },
+            120s);
+        if (!rested) throw std::runtime_error("the program does not come to rest");
+        sleep_ms(1500);
+    }
+
+    void wait_for_photograph() {
+        const bool taken = wait_until(
+            [&] {
+                return program().state("photograph_number") == program().state("finished_number");
+            },
+            120s);
+        if (!taken) throw std::runtime_error("no photograph was taken");
+        settle();
+    }
+
+    void take(const std::string& name) {
+        const Image8 picture = desktop_.read(desktop_.operator_area());
+        write_png(folder_ / fmt::format("{}-{}.png", name, size_px_.x), picture);
+        std::cout << name << " " << size_px_.x << std::endl;
+    }
+
+    TemporaryFolder home_;
+    fs::path folder_;
+    glm::ivec2 size_px_;
+    Desktop desktop_;
+    Document document_;
+    std::unique_ptr<StudioProgram> program_;
+};
+
+}  // namespace
+}  // namespace livery
+
+int main(int argc, char** argv) {
+    if (argc != 2) {
+        std::fputs("desktop_screenshots FOLDER\n", stderr);
+        return 2;
+    }
+    try {
+        const std::filesystem::path folder = argv[1];
+        std::filesystem::create_directories(folder);
+        livery::Photographer(folder, {1280, 800}, 1.0).take_all();
+        livery::Photographer(folder, {3840, 2160}, 2.0).take_all();
+        return 0;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        return 1;
+    }
+}

@@ -1,0 +1,147 @@
+#include "desktop/studio_program.h"
+
+#include <csignal>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace livery {
+namespace {
+
+using Json = nlohmann::json;
+using namespace std::chrono_literals;
+
+/// On two cores that others use as well.
+constexpr auto patience = 60s;
+
+std::string text_of(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+}  // namespace
+
+StudioProgram::StudioProgram(Desktop& desktop, const StudioStart& start) : desktop_(desktop) {
+    ChildOptions options;
+    options.arguments = {LIVERY_PROGRAM,
+                         "desktop",
+                         "--session",
+                         start.session.string(),
+                         "--ui-map",
+                         (folder_ / "map").string(),
+                         "--trace",
+                         (folder_ / "trace").string(),
+                         "--size",
+                         fmt::format("{}x{}", start.size_px.x, start.size_px.y),
+                         "--ui-scale",
+                         fmt::format("{}", start.ui_scale)};
+    options.arguments.insert(
+        options.arguments.end(), start.more_arguments.begin(), start.more_arguments.end());
+    options.output = folder_ / "output";
+    process_ = std::make_unique<ChildProcess>(options);
+    const bool up = wait_until(
+        [&] { return std::filesystem::exists(folder_ / "map") || !process_->running(); }, patience);
+    if (!up || !process_->running()) {
+        throw std::runtime_error("the desktop program showed no window:\n" + words());
+    }
+}
+
+StudioProgram::~StudioProgram() = default;
+
+int StudioProgram::quit() {
+    desktop_.press_key("ctrl+q");
+    const auto code = process_->wait(patience);
+    if (!code) throw std::runtime_error("the desktop program did not quit:\n" + words());
+    return *code;
+}
+
+Json StudioProgram::map() const { return Json::parse(text_of(folder_ / "map")); }
+
+Rectangle StudioProgram::item(const std::string& name) {
+    const auto look = [&]() -> Rectangle {
+        const Json map = this->map();
+        const auto& items = map["items"];
+        if (!items.contains(name)) return {};
+        const auto at = items[name].get<std::vector<int>>();
+        const auto window = map["window"].get<std::vector<int>>();
+        return {window[0] + at[0], window[1] + at[1], at[2], at[3]};
+    };
+    Rectangle found;
+    const auto steady = [&] {
+        const Rectangle before = look();
+        sleep_ms(30);
+        found = look();
+        return found.width > 0 && found == before;
+    };
+    if (!wait_until(steady, 15s)) {
+        throw std::runtime_error(fmt::format("no \"{}\" in the window, only: {}\n{}",
+                                             name,
+                                             fmt::join(items_starting_with(""), ", "),
+                                             words()));
+    }
+    return found;
+}
+
+bool StudioProgram::has_item(const std::string& name) { return map()["items"].contains(name); }
+
+std::vector<std::string> StudioProgram::items_starting_with(const std::string& prefix) {
+    std::vector<std::string> names;
+    const Json map = this->map();
+    for (const auto& [name, place] : map["items"].items()) {
+        if (name.starts_with(prefix)) names.push_back(name);
+    }
+    return names;
+}
+
+Json StudioProgram::state(const std::string& name) {
+    const Json map = this->map();
+    return map.contains("state") && map["state"].contains(name) ? map["state"][name] : Json();
+}
+
+void StudioProgram::wait_for_state(const std::string& name, const Json& value) {
+    if (wait_until([&] { return state(name) == value; }, patience)) return;
+    throw std::runtime_error(
+        fmt::format("{} is {} instead of {}\n{}", name, state(name).dump(), value.dump(), words()));
+}
+
+void StudioProgram::hover(const std::string& name) {
+    const glm::ivec2 at = middle(item(name));
+    // From one pixel away, so that there is a motion even when the pointer was there already.
+    desktop_.move_pointer(at.x - 1, at.y);
+    desktop_.move_pointer(at.x, at.y);
+}
+
+void StudioProgram::click(const std::string& name) {
+    const glm::ivec2 at = middle(item(name));
+    desktop_.click(at.x, at.y);
+}
+
+void StudioProgram::double_click(const std::string& name) {
+    const glm::ivec2 at = middle(item(name));
+    desktop_.double_click(at.x, at.y);
+}
+
+void StudioProgram::move_away() {
+    // The last row of the window belongs to the status line.
+    const auto window = map()["window"].get<std::vector<int>>();
+    desktop_.move_pointer(window[0] + window[2] / 2, window[1] + window[3] - 2);
+}
+
+std::vector<TraceLine> StudioProgram::trace() const {
+    std::vector<TraceLine> lines;
+    std::ifstream stream(folder_ / "trace");
+    for (std::string text; std::getline(stream, text);) {
+        const Json line = Json::parse(text, nullptr, false);
+        if (line.is_discarded()) break;  // being written, or cut off by a kill
+        lines.push_back({line["t_s"], line["event"], line["number"], line.value("what", "")});
+    }
+    return lines;
+}
+
+glm::ivec2 middle(const Rectangle& area) {
+    return {area.x + area.width / 2, area.y + area.height / 2};
+}
+
+}  // namespace livery

@@ -1,0 +1,75 @@
+// Drives the desktop program as a person does: by what stands in its window, with mouse and keys.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <nlohmann/json.hpp>
+
+#include "support/child_process.h"
+#include "support/desktop.h"
+#include "support/temporary_folder.h"
+
+namespace livery {
+
+/// A line of the program's `--trace`.
+struct TraceLine {
+    double t_s = 0.0;
+    std::string event;
+    std::uint64_t number = 0;
+    std::string what;
+};
+
+struct StudioStart {
+    std::filesystem::path session;
+    glm::ivec2 size_px{1280, 800};
+    double ui_scale = 1.0;
+    std::vector<std::string> more_arguments;
+};
+
+/// Everything that waits throws std::runtime_error after its timeout, with what there was instead.
+class StudioProgram {
+  public:
+    /// Starts it and waits for its window.
+    StudioProgram(Desktop& desktop, const StudioStart& start);
+    ~StudioProgram();
+
+    ChildProcess& process() { return *process_; }
+    /// Asks it to quit as a person does; its exit code.
+    int quit();
+
+    /// The place on the desktop of an item, once it is there and has stopped moving.
+    Rectangle item(const std::string& name);
+    bool has_item(const std::string& name);
+    std::vector<std::string> items_starting_with(const std::string& prefix);
+    /// What the window says about itself; null for what it does not say.
+    nlohmann::json state(const std::string& name);
+    void wait_for_state(const std::string& name, const nlohmann::json& value);
+
+    void hover(const std::string& name);
+    void click(const std::string& name);
+    void double_click(const std::string& name);
+    /// The pointer to where nothing reacts to it.
+    void move_away();
+
+    std::vector<TraceLine> trace() const;
+    /// What the program and its driver said, for a failure's message.
+    std::string words() const { return tail_of(folder_ / "output", 40); }
+
+  private:
+    nlohmann::json map() const;
+
+    Desktop& desktop_;
+    TemporaryFolder folder_;
+    std::unique_ptr<ChildProcess> process_;
+};
+
+/// Middle of a rectangle.
+glm::ivec2 middle(const Rectangle& area);
+
+}  // namespace livery
