@@ -27,7 +27,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kWhileMoving = 1, kAtRest = 2;  // supersampling
 /// Descriptions closer than this are a movement; after such a pause it has ended.
-constexpr auto kPause = std::chrono::milliseconds(120);
+constexpr auto kPause = std::chrono::milliseconds(250);
 
 struct SwatchRequest {
     Material material;

@@ -350,7 +350,10 @@ class Desktop {
         ask_for_changes(shell_);
         // Input that waits is taken first, so that it does not wait for pictures of what was
         // before.
-        const bool waits = imgui_->has_input() && start_s - last_drawn_s_ < kLongestFrame_s;
+        // Where one processor draws everything, the mock-up has it first.
+        const bool mock_up_first = shell_.draws_in_software && is_frame_under_way(shell_);
+        const bool waits =
+            (imgui_->has_input() || mock_up_first) && start_s - last_drawn_s_ < kLongestFrame_s;
         if (waits) return;
         imgui_->draw();
         --frames_to_draw_;
@@ -407,6 +410,7 @@ class Desktop {
 int run_desktop(const DesktopOptions& options) {
     // Everything is saved as it happens, so Ctrl-C in the terminal may end the program at once.
     std::signal(SIGINT, SIG_DFL);
+    std::signal(SIGTERM, SIG_DFL);
     const WindowSystem window_system;
     open_log(user_folder() / "log" / "livery.log");
     log_line(LogLevel::info, "Livery " LIVERY_VERSION " opens");

@@ -147,11 +147,6 @@ void ask_for_frame(Shell& shell) {
     studio.frames->show(std::move(description));
 }
 
-bool is_frame_under_way(const Shell& shell) {
-    return shell.studio.setup && (!shell.results->newest_frame() ||
-                                  shell.results->newest_frame()->number < shell.frame_number);
-}
-
 void ask_for_preview(Shell& shell) {
     Studio& studio = shell.studio;
     const StageState& stage = shell.stage;
@@ -261,6 +256,11 @@ void take_calibration(Shell& shell) {
 }
 
 }  // namespace
+
+bool is_frame_under_way(const Shell& shell) {
+    return shell.studio.setup && (!shell.results->newest_frame() ||
+                                  shell.results->newest_frame()->number < shell.frame_number);
+}
 
 Contexts start_threads(Shell& shell, const Window& window) {
     Studio& studio = shell.studio;

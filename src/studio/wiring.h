@@ -18,6 +18,9 @@ Contexts start_threads(Shell& shell, const Window& window);
 /// In the order in which one needs the other; with the window's context current.
 void stop_threads(Shell& shell);
 
+/// A picture for the mock-up was asked for and is not there yet.
+bool is_frame_under_way(const Shell& shell);
+
 /// At the start of each frame of the window: takes over what is new.
 void take_results(Shell& shell);
 /// At its end: asks for what the changes call for. True when something was asked for.

@@ -18,8 +18,9 @@
 namespace livery {
 namespace {
 
-constexpr int swaps = 100;
-constexpr int between_swaps_ms = 150;
+constexpr int swaps = 60;
+/// As somebody goes who looks at each paint, and as somebody who sweeps over them.
+constexpr int looking_ms = 600, sweeping_ms = 150;
 
 double now_s() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
@@ -98,11 +99,16 @@ class Bench {
     }
 
     /// The pointer goes from swatch to swatch; each shows its paint on the mock-up.
-    std::vector<double> swap_paints(int count, const std::function<void(int)>& before_each = {}) {
+    std::vector<double> swap_paints(int count,
+                                    int between_ms,
+                                    const std::function<void(int)>& before_each = {}) {
         std::vector<glm::ivec2> swatches;
-        for (const auto& name : program_->items_starting_with("paint:")) {
-            const Rectangle place = program_->item(name);
-            if (place.height > 20) swatches.push_back(middle(place));
+        for (int tries = 0; tries < 50 && swatches.size() < 2; ++tries) {
+            sleep_ms(100);  // a tab was just opened
+            for (const auto& name : program_->items_starting_with("paint:")) {
+                const Rectangle place = program_->item(name);
+                if (place.height > 20) swatches.push_back(middle(place));
+            }
         }
         if (swatches.size() < 2) throw std::runtime_error("the paints are not in sight");
         std::vector<double> moments;
@@ -111,7 +117,7 @@ class Bench {
             const auto& at = swatches[static_cast<std::size_t>(i) % swatches.size()];
             moments.push_back(now_s());
             desktop_.move_pointer(at.x, at.y);
-            sleep_ms(between_swaps_ms);
+            sleep_ms(between_ms);
         }
         return moments;
     }
@@ -122,9 +128,9 @@ class Bench {
             const std::string key = std::to_string(1 + (i + 1) % 4);
             moments.push_back(now_s());
             desktop_.hold_key(key);
-            sleep_ms(between_swaps_ms / 3);
+            sleep_ms(looking_ms / 3);
             desktop_.release_key(key);
-            sleep_ms(between_swaps_ms - between_swaps_ms / 3);
+            sleep_ms(looking_ms - looking_ms / 3);
         }
         return moments;
     }
@@ -186,25 +192,28 @@ void run() {
     program.move_away();
     bench.wait_until_idle();
 
-    bench.report("paint, idle", bench.swap_paints(swaps));
+    bench.report("paint", bench.swap_paints(swaps, looking_ms));
+    bench.report("paint, swept over", bench.swap_paints(swaps, sweeping_ms));
     program.move_away();
-    bench.report("look, idle", bench.swap_looks(swaps));
+    bench.report("look", bench.swap_looks(swaps / 2));
 
     program.click("tab:Calibrate");
     program.click("calibrate");
     program.click("tab:Paints");
-    bench.report("paint, bench calibrating", bench.swap_paints(swaps));
+    bench.report("paint, bench calibrating", bench.swap_paints(swaps / 2, looking_ms));
     program.wait_for_state("calibrating", false);
 
     const auto pictures = folder / "picture";
-    bench.report("paint, a picture saved every tenth", bench.swap_paints(swaps, [&](int i) {
-        if (i % 10 == 0) bench.save_picture(pictures.string() + std::to_string(i) + ".exr");
-    }));
+    bench.report("paint, a picture saved every tenth",
+                 bench.swap_paints(swaps / 2, looking_ms, [&](int i) {
+                     if (i % 10 == 0)
+                         bench.save_picture(pictures.string() + std::to_string(i) + ".exr");
+                 }));
 
     program.click("tab:Light");
     program.click("quality:high");
     program.click("tab:Paints");
-    bench.report("paint, light being solved", bench.swap_paints(swaps));
+    bench.report("paint, light being solved", bench.swap_paints(swaps / 2, looking_ms));
     std::cout << "\nlight was still being solved at the end: " << program.state("solving") << "\n";
 }
 
