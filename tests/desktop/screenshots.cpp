@@ -121,16 +121,30 @@ class Photographer {
         take("ballot-start");
         program().click("ballot:start");
         settle();
-        program().click("ballot:name");
-        desktop_.type("Ada");
-        for (const char* choice : {"ballot:best:0", "ballot:second:1"}) program().click(choice);
+        for (int seat = 0; seat < 3; ++seat) {
+            program().click("ballot:name");
+            desktop_.type(fmt::format("Seat {}", seat + 1));
+            program().click(fmt::format("ballot:best:{}", seat == 2 ? 3 : 1));
+            program().click(fmt::format("ballot:second:{}", seat == 0 ? 3 : 2));
+            settle();
+            if (seat == 0) take("ballot");
+            program().click("ballot:confirm");
+            settle();
+            if (seat == 0) take("ballot-thanks");
+            program().click("ballot:next");
+            settle();
+        }
+        program().click("ballot:close");
         settle();
-        take("ballot");
+        program().click("ballot:close-confirmed");
+        settle();
+        take("ballot-result");
         desktop_.press_key("Escape");
     }
 
     void take_calibrating() {
         program().click("tab:Calibrate");
+        settle();
         program().click("calibrate");
         program().move_away();
         sleep_ms(2500);
