@@ -7,12 +7,17 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 taken=${1:-$(mktemp -d)}
 [ $# -gt 0 ] || trap 'rm -rf "$taken"' EXIT
 "$root/build/release/bin/desktop_screenshots" "$taken"
-for name in window hover search wipe tab-paint tab-light tab-calibrate tab-frame view-eye \
-    view-projector view-photograph save-picture keys ballot ballot-result calibrating; do
-    convert "$taken/$name-1280.png" +dither -colors 128 -define png:compression-level=9 \
-        "$root/docs/images/desktop-$name.png"
+small=(+dither -colors 128 -define png:compression-level=9)
+for name in window hover search wipe view-eye view-projector view-photograph save-picture import-look keys \
+    ballot ballot-result calibrating monitor-numbers unplugged; do
+    convert "$taken/$name-1280.png" "${small[@]}" "$root/docs/images/desktop-$name.png"
 done
-for name in window tab-light; do
-    convert "$taken/$name-3840.png" -filter Lanczos -resize 50% +dither -colors 128 \
-        -define png:compression-level=9 "$root/docs/images/desktop-$name-3840.png"
+# The column at the right, tab by tab.
+for pair in window:paints tab-paint:paint tab-light:light tab-calibrate:calibrate tab-frame:frame; do
+    convert "$taken/${pair%%:*}-1280.png" -crop 346x694+934+24 +repage "${small[@]}" \
+        "$root/docs/images/desktop-${pair##*:}.png"
+done
+for name in window tab-light ballot; do
+    convert "$taken/$name-3840.png" -filter Lanczos -resize 50% "${small[@]}" \
+        "$root/docs/images/desktop-$name-3840.png"
 done
