@@ -12,6 +12,7 @@
 #include "core/hash.h"
 #include "core/image_io.h"
 #include "core/paths.h"
+#include "scene/frame_plan.h"
 #include "session/commands.h"
 #include "session/projector_setup.h"
 #include "session/session.h"
@@ -53,20 +54,6 @@ fs::path cache_folder() {
     // Calibrations and swatches are kept there as well.
     ::setenv("LIVERY_HOME", (folder / "home").c_str(), 1);
     return folder;
-}
-
-const char* name_of(Quality quality) {
-    switch (quality) {
-        case Quality::draft:
-            return "draft";
-        case Quality::normal:
-            return "normal";
-        case Quality::high:
-            return "high";
-        case Quality::reference:
-            return "reference";
-    }
-    throw std::invalid_argument("quality");
 }
 
 std::string hash_of(const std::string& text) {
@@ -123,7 +110,7 @@ Image8 expected_drive(const Document& document, int look_id) {
         "--calibration",
         document.calibration,
         "--quality",
-        name_of(document.quality),
+        to_string(document.quality),
         "--eye",
         fmt::format("{},{},{}", document.eye_mm.x, document.eye_mm.y, document.eye_mm.z),
         "--design-white",
