@@ -21,7 +21,8 @@ namespace {
 constexpr double kLength_mm = 180.0, kWidth_mm = 75.0, kHeight_mm = 60.0;
 constexpr double kWellDepth_mm = 25.5;  ///< z of the wheel wells' inner wall
 constexpr double kFloor_mm = 6.6;
-constexpr int kLevels = 3, kFitSteps = 4;
+constexpr double kWheelFace_mm = 36.6;  ///< z of the tyres' outermost ring
+constexpr int kLevels = 3, kFitSteps = 2;
 
 /// Scales the skin so that the finished car has its size exactly.
 void fit_to_size(LimitMesh& skin) {
@@ -50,23 +51,44 @@ void add_flares(LimitMesh& skin) {
     }
 }
 
+/// Distance along a line of the lattice, from its first point, at a fractional index.
+double arc_mm(const std::vector<double>& steps_mm, double index) {
+    const double at = std::clamp(index, 0.0, static_cast<double>(steps_mm.size()) - 1e-9);
+    double sum = 0.0;
+    for (std::size_t k = 0; k < steps_mm.size() && at > static_cast<double>(k); ++k) {
+        sum += steps_mm[k] * std::min(1.0, at - static_cast<double>(k));
+    }
+    return sum;
+}
+
 /// Distance along the section from the centre line to each row, averaged over the cabin: the v
 /// coordinate of the skin's chart.
 double girth_mm(double row) {
-    static const auto table = [] {
-        std::array<double, kSillRow + 1> sum{};
-        for (int r = 1; r <= kSillRow; ++r) {
-            double step = 0.0;
-            for (int s = 4; s <= 16; ++s) {
-                step += glm::distance(feature_point(s, r), feature_point(s, r - 1)) / 13.0;
+    static const auto steps = [] {
+        constexpr int kFrom = 5, kTo = 19;
+        std::vector<double> table(kSillRow, 0.0);
+        for (int r = 0; r < kSillRow; ++r) {
+            for (int s = kFrom; s <= kTo; ++s) {
+                table[static_cast<std::size_t>(r)] +=
+                    glm::distance(feature_point(s, r), feature_point(s, r + 1)) / (kTo - kFrom + 1);
             }
-            sum[static_cast<std::size_t>(r)] = sum[static_cast<std::size_t>(r - 1)] + step;
         }
-        return sum;
+        return table;
     }();
-    const double r = std::clamp(row, 0.0, static_cast<double>(kSillRow) - 1e-9);
-    const auto k = static_cast<std::size_t>(r);
-    return table[k] + (table[k + 1] - table[k]) * (r - static_cast<double>(k));
+    return arc_mm(steps, row);
+}
+
+/// Distance along the shoulder from the middle of the car: its u coordinate.
+double length_mm(double station) {
+    static const auto steps = [] {
+        std::vector<double> table;
+        for (int s = 0; s < kStations; ++s) {
+            table.push_back(
+                glm::distance(feature_point(s, kShoulderRow), feature_point(s + 1, kShoulderRow)));
+        }
+        return table;
+    }();
+    return arc_mm(steps, station) - arc_mm(steps, kStations / 2);
 }
 
 glm::dvec2 chart(const LimitVertex& v, int region) {
@@ -78,7 +100,7 @@ glm::dvec2 chart(const LimitVertex& v, int region) {
         case kFloor:
             return {v.position.x, v.position.z + kUvUnit_mm};
         default:
-            return {v.position.x, girth_mm(v.parameters.y)};
+            return {length_mm(v.parameters.x), girth_mm(v.parameters.y)};
     }
 }
 
@@ -209,7 +231,7 @@ std::vector<PartMesh> make_car() {
     add_mirror(half);
     add_floor(half[kTrim]);
     for (const double axle : {kFrontAxle_mm, kRearAxle_mm}) {
-        const glm::dvec3 place(axle, kAxleHeight_mm, 36.6 - kTyreHalfWidth_mm);
+        const glm::dvec3 place(axle, kAxleHeight_mm, kWheelFace_mm - kTyreHalfWidth_mm);
         append(half[kTyres], make_tyre(), place);
         append(half[kRims], make_rim(), place);
         append(half[kTrim], make_brake(), place);

@@ -27,7 +27,9 @@ struct Lattice {
             point = end_point(i != 0, column, k);
         } else {
             const auto edge = feature_point(i, kSillRow);
-            point = {edge.x, edge.y, edge.z * end_column(column)};
+            // Farther in beside the ends, whose corners are drawn back.
+            const double inset = i == 1 || i == kStations - 1 ? 2.6 : 1.0;
+            point = {edge.x, edge.y, edge.z * std::pow(end_column(column), inset)};
             parameters.y = kSillRow + kShoulderRow - column;
         }
         if (j < 0) {
@@ -90,21 +92,30 @@ Cage make_car_cage() {
         }
     }
 
-    // The shoulder, softening toward the ends; the belt's valley; the tail's spoiler edge.
+    // Creases fade in and out: `from` and `to` are the stations where they have gone.
+    const auto fade = [](int station, double from, double to, double run) {
+        const double middle = station + 0.5;
+        return std::clamp(std::min(middle - from, to - middle) / run, 0.0, 1.0);
+    };
     for (int side : {-1, 1}) {
+        const auto along = [&](int i, int column, int level, double sharpness) {
+            if (sharpness <= 0.0) return;
+            box.crease({i, side * column, level}, {i + 1, side * column, level}, sharpness);
+        };
         for (int i = 0; i < n; ++i) {
-            const double fade = std::clamp((19.0 - i) / 5.0, 0.0, 1.0);
-            if (fade > 0.0) {
-                box.crease({i, side * m, 0}, {i + 1, side * m, 0}, 1.2 * fade);
-            }
-            if (i >= 4 && i < 14) box.crease({i, side * 6, 0}, {i + 1, side * 6, 0}, 1.3);
-            if (i >= 14 && i < 19) {
-                box.crease({i, side * 3, 0}, {i + 1, side * 3, 0}, i == 14 || i == 18 ? 0.5 : 1.0);
-            }
-            box.crease({i, side * m, depth}, {i + 1, side * m, depth}, 1.0);
+            along(i, m, 0, 2.2 * fade(i, 0.0, 20.5, 5.0));
+            along(i, kBeltRow, 0, 1.6 * fade(i, 2.5, kCowlStation + 3.0, 3.0));
+            along(i, kBonnetRow, 0, 1.0 * fade(i, kCowlStation, n - 1.0, 3.0));
+            along(i, m, kCatcherRow - m, 1.8 * fade(i, 6.0, 18.5, 4.0));
+            along(i, m, depth, 1.0);
         }
         for (int j = 0; j < m; ++j) {
             box.crease({0, side * j, 0}, {0, side * (j + 1), 0}, j + 1 < m ? 2.0 : 1.0);
+            if (j < kBeltRow) {
+                box.crease({kCowlStation, side * j, 0},
+                           {kCowlStation, side * (j + 1), 0},
+                           j + 1 < kBeltRow ? 2.5 : 1.2);
+            }
         }
     }
     return box.cage;

@@ -35,27 +35,20 @@ std::vector<PanelStyle> cut_car_panels(Sheet& sheet) {
     const auto style = [&](Panel panel, CarPart part, double inset_mm, double gap_mm) {
         styles[panel] = {part, inset_mm, gap_mm, 0.7};
     };
-    for (const auto glass : {kWindscreen, kRearScreen, kFrontSideGlass, kRearSideGlass}) {
-        style(glass, kGlass, 0.10, 0.06);
+    for (const auto glass :
+         {kWindscreen, kRearScreen, kFrontSideGlass, kRearSideGlass, kQuarterGlass}) {
+        style(glass, kGlass, 0.2, 0.1);
     }
-    style(kWindowFrame, kTrim, 0.04, 0.06);
-    style(kHeadLamp, kLights, 0.08, 0.12);
-    style(kTailLamp, kLights, 0.0, 0.12);
-    style(kLampFrame, kTrim, 0.1, 0.12);
-    style(kGrille, kTrim, 0.9, 0.0);
-    style(kGrilleBar, kTrim, 0.25, 0.0);
-    styles[kGrille].wall_mm = 0.0;
-    style(kIntake, kTrim, 0.9, 0.0);
-    styles[kIntake].wall_mm = 0.0;
+    style(kWindowFrame, kTrim, 0.08, 0.1);
     style(kLowerTrim, kTrim, 0.15, 0.0);
-    style(kPlateRecess, kBody, 0.55, 0.0);
     styles[kFenders].wall_mm = styles[kHatch].wall_mm = 1.0;
     style(kDoorHandle, kBody, -0.12, 0.14);
+    style_ends(styles);
     return styles;
 }
 
 Flare arch_flare(const glm::dvec2& side) {
-    constexpr double kHeight_mm = 0.9, kWidth_mm = 9.0;
+    constexpr double kHeight_mm = 0.35, kWidth_mm = 3.5;
     Flare flare;
     for (const double axle : {kFrontAxle_mm, kRearAxle_mm}) {
         const auto from_axle = side - glm::dvec2(axle, kAxleHeight_mm);

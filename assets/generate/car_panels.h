@@ -11,10 +11,10 @@ namespace livery::assets {
 
 enum CarPart { kBody, kGlass, kRims, kTyres, kLights, kTrim, kCarParts };
 
-inline constexpr double kFrontAxle_mm = 56.0;
-inline constexpr double kRearAxle_mm = -54.0;
-inline constexpr double kAxleHeight_mm = 13.5;
-inline constexpr double kArchRadius_mm = 15.0;
+inline constexpr double kFrontAxle_mm = 57.5;
+inline constexpr double kRearAxle_mm = -54.5;
+inline constexpr double kAxleHeight_mm = 14.5;
+inline constexpr double kArchRadius_mm = 15.7;
 
 /// Cuts a fresh sheet of the car's skin into panels; returns the style of each.
 std::vector<PanelStyle> cut_car_panels(Sheet& sheet);

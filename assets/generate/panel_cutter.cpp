@@ -9,8 +9,9 @@ namespace livery::assets {
 
 namespace {
 
-constexpr double kDegrees = 57.29577951308232;
 constexpr double kDevelopedAbout_mm = 48.0;  ///< |x| of the upright axes
+constexpr double kDevelopedAt_mm = 40.0;     ///< radius whose arcs are true
+constexpr double kStation_mm = 7.5, kRow_mm = 4.0;
 
 }  // namespace
 
@@ -20,24 +21,26 @@ glm::dvec2 top_view(const LimitVertex& v) { return {v.position.x, v.position.z};
 glm::dvec2 end_view(const LimitVertex& v) { return {v.position.z, v.position.y}; }
 
 glm::dvec2 nose_view(const LimitVertex& v) {
-    return {std::atan2(v.position.z, v.position.x - kDevelopedAbout_mm) * kDegrees, v.position.y};
+    return {std::atan2(v.position.z, v.position.x - kDevelopedAbout_mm) * kDevelopedAt_mm,
+            v.position.y};
 }
 glm::dvec2 tail_view(const LimitVertex& v) {
-    return {std::atan2(v.position.z, -kDevelopedAbout_mm - v.position.x) * kDegrees, v.position.y};
+    return {std::atan2(v.position.z, -kDevelopedAbout_mm - v.position.x) * kDevelopedAt_mm,
+            v.position.y};
+}
+glm::dvec2 line_view(const LimitVertex& v) { return along_lines(v.parameters.x, v.parameters.y); }
+
+glm::dvec2 along_lines(double station, double row) {
+    return {station * kStation_mm, row * kRow_mm};
 }
 
 glm::dvec2 side_of(double station, double row) {
     const auto p = feature_point(station, row);
     return {p.x, p.y};
 }
-glm::dvec2 top_of(double station, double row) {
-    const auto p = feature_point(station, row);
-    return {p.x, p.z};
-}
-
 double behind_pillar_mm(const LimitVertex& v) {
     const double above = v.position.y - 39.5;
-    return -(v.position.x + 8.6 + (above > 0.0 ? 0.10 : 0.09) * above);
+    return -(v.position.x + 9.0 + (above > 0.0 ? 0.10 : 0.09) * above);
 }
 
 Points mirrored(const Points& half) {

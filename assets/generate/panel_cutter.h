@@ -6,6 +6,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "car_panels.h"
 #include "outline.h"
 #include "sheet.h"
 
@@ -17,6 +18,7 @@ enum Panel {
     kRearScreen,
     kFrontSideGlass,
     kRearSideGlass,
+    kQuarterGlass,
     kWindowFrame,
     kBonnet,
     kHatch,
@@ -24,31 +26,39 @@ enum Panel {
     kRearDoor,
     kFrontBumper,
     kRearBumper,
-    kHeadLamp,
+    kHeadLamp,  // what shines in the lamps' bowls
     kTailLamp,
-    kGrille,
+    kHeadBowl,
+    kTailBowl,
     kIntake,
+    kIntakeBlade,
+    kAirCurtain,
+    kDiffuser,
+    kDiffuserFin,
+    kPlateRecess,
     kLowerTrim,
     kDoorHandle,
-    kLampFrame,
-    kGrilleBar,
-    kPlateRecess,
     kPanels,
 };
 
 using Points = std::vector<glm::dvec2>;
 
-// Views of a vertex: from the side (x, y), from above (x, z), from an end (z, y), and developed
-// around an upright axis in the nose or the tail (degrees from straight ahead or back, y).
+// Views of a vertex: from the side (x, y), from above (x, z), from an end (z, y), developed around
+// an upright axis in the nose or the tail (arc at 40 mm, y), and along the feature lines (stations
+// and rows as nominal millimetres, see along_lines).
 glm::dvec2 side_view(const LimitVertex& v);
 glm::dvec2 top_view(const LimitVertex& v);
 glm::dvec2 end_view(const LimitVertex& v);
 glm::dvec2 nose_view(const LimitVertex& v);
 glm::dvec2 tail_view(const LimitVertex& v);
+glm::dvec2 line_view(const LimitVertex& v);
 
-/// A point of the feature lines in a view.
+/// A station and a row as coordinates of line_view: an outline between two rows keeps its distance
+/// from both.
+glm::dvec2 along_lines(double station, double row);
+
+/// A point of the feature lines from the side.
 glm::dvec2 side_of(double station, double row);
-glm::dvec2 top_of(double station, double row);
 
 /// Both halves of an outline that crosses the centre line, from its points with z >= 0.
 Points mirrored(const Points& half);
@@ -82,6 +92,7 @@ struct Cutter {
 void cut_windows(const Cutter& cutter);
 /// Lamps, grille, intakes, diffuser.
 void cut_ends(const Cutter& cutter);
+void style_ends(std::vector<PanelStyle>& styles);
 /// Doors and their handles, bonnet, hatch, bumpers.
 void cut_lids(const Cutter& cutter);
 

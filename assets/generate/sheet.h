@@ -47,6 +47,9 @@ struct PanelStyle {
     double inset_mm = 0.0;  ///< below the skin
     double gap_mm = 0.0;    ///< width of the joint around it, shared with the neighbour
     double wall_mm = 0.7;   ///< how far its turned-in edge reaches below the skin
+    /// Further depth below the skin that varies over the panel (bowls of lamps and intakes); 0
+    /// along its border with a neighbour that has none.
+    std::function<double(const LimitVertex&)> relief_mm = nullptr;
 };
 
 /// A border edge of a panel toward kNoPanel or the sheet's open end, for what joins there.

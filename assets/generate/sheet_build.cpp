@@ -80,6 +80,7 @@ class PanelBuilder {
     }
     glm::dvec3 place(std::uint32_t v, int panel, double depth_mm) const {
         const auto& vertex = sheet_.vertices[v];
+        if (style_of(panel).relief_mm) depth_mm += style_of(panel).relief_mm(vertex);
         return vertex.position - vertex.normal * depth_mm + mitre(v, panel) * step(v, panel);
     }
     glm::dvec2 uv(std::uint32_t v, int region) const {
@@ -151,6 +152,7 @@ void PanelBuilder::find_steps() {
 
 void PanelBuilder::add_faces() {
     std::map<std::array<std::uint32_t, 3>, std::uint32_t> emitted;  // vertex, panel, region
+    std::map<VertexOfPanel, glm::dvec3> relief_normals;
     for (const auto& t : sheet_.triangles) {
         if (t.panel == kNoPanel) continue;
         const auto& style = style_of(t.panel);
@@ -167,6 +169,21 @@ void PanelBuilder::add_faces() {
             corner[k] = entry->second;
         }
         part.add_triangle(corner.x, corner.y, corner.z);
+        if (style.relief_mm) {
+            const auto at = [&](int k) { return part.positions_mm[corner[k]]; };
+            const auto area = glm::cross(at(1) - at(0), at(2) - at(0));
+            for (int k = 0; k < 3; ++k) {
+                relief_normals[{t.corners[k], t.panel}] += area;
+            }
+        }
+    }
+    for (const auto& [key, vertex] : emitted) {
+        const auto found = relief_normals.find({key[0], static_cast<int>(key[1])});
+        if (found == relief_normals.end() || !(glm::length(found->second) > 0.0)) continue;
+        auto& part = parts_[static_cast<std::size_t>(style_of(found->first.second).part)];
+        auto normal = found->second;
+        if (on_centre(sheet_.vertices[key[0]])) normal.z = 0.0;
+        part.normals[vertex] = glm::normalize(normal);
     }
 }
 

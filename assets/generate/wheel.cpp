@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "solids.h"
@@ -15,31 +16,50 @@ namespace livery::assets {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
+constexpr int kSpokes = 5, kNuts = 5;
 
-/// One of a pair of spokes that spread from the hub out to the barrel; `side` is -1 or 1.
-PartMesh make_spoke(double angle_rad, double side) {
-    constexpr int kSections = 7, kAround = 12;
-    std::vector<std::vector<glm::dvec3>> loops;
+/// Height of the spokes' face over the wheel's middle: concave, steepening toward the rim.
+double face_mm(double radius_mm) {
+    const double f = std::clamp((radius_mm - 1.8) / 8.9, 0.0, 1.0);
+    return 0.9 + 3.3 * f * f * (1.3 - 0.3 * f);
+}
+
+/// A loop around a spoke's section: a flat face with bevelled edges, narrower behind.
+std::vector<glm::dvec3> spoke_section(
+    double radius_mm, double across_mm, double half_width_mm, double depth_mm, double angle_rad) {
+    constexpr double kBevel = 0.16;
+    const double bevel = kBevel * half_width_mm * 1.6;
+    const double top = face_mm(radius_mm), bottom = top - depth_mm;
+    const std::array<glm::dvec2, 10> section{{{half_width_mm - 2.0 * bevel, top + 0.02},
+                                              {half_width_mm - bevel, top},
+                                              {half_width_mm, top - bevel},
+                                              {half_width_mm * 0.95, 0.5 * (top + bottom)},
+                                              {half_width_mm * 0.75, bottom},
+                                              {-half_width_mm * 0.75, bottom},
+                                              {-half_width_mm * 0.95, 0.5 * (top + bottom)},
+                                              {-half_width_mm, top - bevel},
+                                              {-half_width_mm + bevel, top},
+                                              {-half_width_mm + 2.0 * bevel, top + 0.02}}};
+    std::vector<glm::dvec3> loop;
     const double c = std::cos(angle_rad), s = std::sin(angle_rad);
+    for (auto p = section.rbegin(); p != section.rend(); ++p) {
+        const double y = across_mm + p->x;
+        loop.emplace_back(radius_mm * c - y * s, radius_mm * s + y * c, p->y);
+    }
+    return loop;
+}
+
+/// One arm of a spoke that forks on its way to the rim; `side` is -1 or 1.
+PartMesh make_arm(double angle_rad, double side) {
+    constexpr int kSections = 13;
+    std::vector<std::vector<glm::dvec3>> loops;
     for (int k = 0; k < kSections; ++k) {
         const double f = static_cast<double>(k) / (kSections - 1);
-        const double r = 1.5 + f * 7.5;
-        const double across = side * (0.55 + 1.35 * f * f * (1.5 - 0.5 * f));
-        const double half_width = 0.78 - 0.26 * std::sin(kPi * std::min(1.0, f * 1.1)) + 0.08 * f;
-        const double face_z = 2.2 + 1.35 * f * f;
-        const double depth = 2.0 - 0.5 * f;
-        std::vector<glm::dvec3> loop;
-        for (int a = 0; a < kAround; ++a) {
-            const double turn = 2.0 * kPi * a / kAround;
-            // A superellipse: flat face, rounded edges.
-            const auto round = [](double v) {
-                return std::copysign(std::pow(std::abs(v), 0.55), v);
-            };
-            const double y = across + half_width * round(std::cos(turn));
-            const double z = face_z + 0.5 * depth * (round(std::sin(turn)) - 1.0);
-            loop.emplace_back(r * c - y * s, r * s + y * c, z);
-        }
-        loops.push_back(loop);
+        const double r = 1.6 + f * 9.1;
+        const double across = side * (0.62 + 1.75 * f * f);
+        const double half_width = 0.60 - 0.20 * f + 0.16 * std::pow(f, 6.0);
+        const double depth = 1.7 - 0.5 * f;
+        loops.push_back(spoke_section(r, across, half_width, depth, angle_rad));
     }
     return loft(loops);
 }
@@ -48,58 +68,77 @@ PartMesh make_spoke(double angle_rad, double side) {
 
 PartMesh make_tyre() {
     // Half of the section, from the outer bead over the sidewall to the middle of the tread.
-    const std::vector<glm::dvec2> half{{9.55, 4.05},
-                                       {9.8, 4.3},
-                                       {10.4, 4.58},
-                                       {11.2, 4.7},
-                                       {12.0, 4.62},
-                                       {12.7, 4.35},
-                                       {13.2, 3.85},
-                                       {13.42, 2.9},
-                                       {13.46, 2.0},
-                                       {13.1, 1.95},
-                                       {13.1, 1.45},
-                                       {13.5, 1.4}};
+    const std::vector<glm::dvec2> half{{11.05, 4.3},
+                                       {11.2, 4.62},
+                                       {11.55, 4.86},
+                                       {11.75, 4.86},
+                                       {12.2, 5.02},
+                                       {12.9, 5.08},
+                                       {13.5, 4.98},
+                                       {13.95, 4.74},
+                                       {14.25, 4.36},
+                                       {14.41, 3.8},
+                                       {14.47, 2.75},
+                                       {14.15, 2.7},
+                                       {14.15, 2.3},
+                                       {14.48, 2.25},
+                                       {14.49, 0.85},
+                                       {14.15, 0.8},
+                                       {14.15, 0.4},
+                                       {14.5, 0.35}};
     std::vector<glm::dvec2> profile;
     for (const auto& p : half) profile.emplace_back(p.x, -p.y);
     for (auto p = half.rbegin(); p != half.rend(); ++p) profile.push_back(*p);
-    return revolve(profile, true, 60);
+    return revolve(profile, true, 72);
 }
 
 PartMesh make_rim() {
-    const std::vector<glm::dvec2> barrel{{9.75, -4.2},
-                                         {9.75, 4.05},
-                                         {9.85, 4.25},
-                                         {9.75, 4.42},
-                                         {9.5, 4.45},
-                                         {9.25, 4.2},
-                                         {9.05, 3.7},
-                                         {8.9, 3.0},
-                                         {8.7, 0.0},
-                                         {8.9, -4.2}};
-    const std::vector<glm::dvec2> hub{{0.0, -1.0},
-                                      {2.4, -1.0},
-                                      {2.5, 1.9},
-                                      {2.3, 2.25},
-                                      {1.5, 2.4},
-                                      {1.35, 2.6},
-                                      {0.9, 2.72},
-                                      {0.0, 2.75}};
-    PartMesh rim = revolve(barrel, true, 60);
-    append(rim, revolve(hub, false, 30), {0, 0, 0});
-    for (int k = 0; k < 5; ++k) {
-        const double angle = kPi / 2 + 2.0 * kPi * k / 5;
-        for (double side : {-1.0, 1.0}) append(rim, make_spoke(angle, side), {0, 0, 0});
+    const std::vector<glm::dvec2> barrel{{11.0, -4.4},
+                                         {11.0, 4.2},
+                                         {11.12, 4.55},
+                                         {11.1, 4.68},
+                                         {10.98, 4.74},
+                                         {10.82, 4.7},
+                                         {10.74, 4.55},
+                                         {10.66, 4.1},
+                                         {10.45, 3.3},
+                                         {10.3, 2.0},
+                                         {10.2, 0.0},
+                                         {10.3, -4.4}};
+    const std::vector<glm::dvec2> hub{{0.0, -1.6},
+                                      {2.3, -1.6},
+                                      {2.45, 0.35},
+                                      {2.3, 0.8},
+                                      {1.95, 0.98},
+                                      {1.1, 1.02},
+                                      {1.02, 1.32},
+                                      {0.88, 1.42},
+                                      {0.0, 1.46}};
+    PartMesh rim = revolve(barrel, true, 72);
+    append(rim, revolve(hub, false, 36), {0, 0, 0});
+    for (int k = 0; k < kSpokes; ++k) {
+        const double angle = kPi / 2 + 2.0 * kPi * k / kSpokes;
+        for (double side : {-1.0, 1.0}) append(rim, make_arm(angle, side), {0, 0, 0});
     }
+    const std::vector<glm::dvec2> disc{{3.0, -2.6}, {8.1, -2.6}, {8.1, -1.9}, {3.0, -1.9}};
+    append(rim, revolve(disc, true, 60), {0, 0, 0});
     return rim;
 }
 
 PartMesh make_brake() {
-    const std::vector<glm::dvec2> disc{{2.4, -0.9}, {7.3, -0.9}, {7.3, -0.3}, {2.4, -0.3}};
-    PartMesh brake = revolve(disc, true, 48);
+    const std::vector<glm::dvec2> hat{
+        {0.0, -3.0}, {3.3, -3.0}, {3.3, -1.8}, {2.9, -1.7}, {0.0, -1.7}};
+    PartMesh brake = revolve(hat, false, 36);
+    const std::vector<glm::dvec2> nut{
+        {0.0, 0.6}, {0.26, 0.6}, {0.26, 1.14}, {0.2, 1.2}, {0.0, 1.2}};
+    for (int k = 0; k < kNuts; ++k) {
+        const double angle = kPi / 2 + 2.0 * kPi * (k + 0.5) / kNuts;
+        append(brake, revolve(nut, false, 8), {1.6 * std::cos(angle), 1.6 * std::sin(angle), 0});
+    }
     // The caliper, a sector around the disc at its rear.
-    const std::vector<glm::dvec2> caliper{{5.0, -1.4}, {7.9, -1.4}, {7.9, 0.4}, {5.0, 0.4}};
-    append(brake, revolve(caliper, true, 10, 2.7, 3.6), {0, 0, 0});
+    const std::vector<glm::dvec2> caliper{
+        {5.6, -3.1}, {9.0, -3.1}, {9.0, -1.3}, {8.6, -1.0}, {6.0, -1.0}, {5.6, -1.3}};
+    append(brake, revolve(caliper, true, 14, 2.65, 3.65), {0, 0, 0});
     return brake;
 }
 
