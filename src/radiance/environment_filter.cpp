@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include <glm/common.hpp>
 
@@ -76,7 +77,10 @@ std::vector<double> ggx_lobe_kernel(double alpha, int degree) {
     // The lobe seen along the normal, K ~ D(theta / 2) G2: equal steps of the half vector's own
     // distribution, tan^2 = alpha^2 u / (1 - u), each weighted by G2.
     constexpr int kSteps = 4096;
-    std::vector<double> kernel(static_cast<std::size_t>(degree + 1), 0.0);
+    struct Step {
+        double cosine, previous, current;  ///< the last two Legendre polynomials, times the weight
+    };
+    std::vector<Step> steps;
     for (int step = 0; step < kSteps; ++step) {
         const double u = (step + 0.5) / kSteps;
         const double tan2 = alpha * alpha * u / (1.0 - u);
@@ -85,13 +89,19 @@ std::vector<double> ggx_lobe_kernel(double alpha, int degree) {
         const double weight =
             2.0 * cosine /
             (cosine + std::sqrt(alpha * alpha + (1.0 - alpha * alpha) * cosine * cosine));
-        double previous = 0.0, current = 1.0;
-        for (int l = 0; l <= degree; ++l) {
-            kernel[static_cast<std::size_t>(l)] += weight * current;
-            const double next = ((2.0 * l + 1.0) * cosine * current - l * previous) / (l + 1.0);
-            previous = current;
-            current = next;
+        steps.push_back({cosine, 0.0, weight});
+    }
+    std::vector<double> kernel(static_cast<std::size_t>(degree + 1), 0.0);
+    for (int l = 0; l <= degree; ++l) {
+        const double ahead = (2.0 * l + 1.0) / (l + 1.0), back = l / (l + 1.0);
+        double sum = 0.0;
+        for (Step& step : steps) {
+            sum += step.current;
+            const double next = ahead * step.cosine * step.current - back * step.previous;
+            step.previous = step.current;
+            step.current = next;
         }
+        kernel[static_cast<std::size_t>(l)] = sum;
     }
     const double total = kernel[0];
     for (double& value : kernel) value /= total;
@@ -119,18 +129,22 @@ FilteredEnvironment filter_environment(const Environment& environment,
     if (parts.mirrored) {
         // Lobes of alpha .11 and more are smooth on 128 columns, which stay in a core's cache
         constexpr float kWide = 0.11f;
-        std::vector<std::vector<double>> narrow, wide;
-        for (std::size_t k = 1; k < kLayerAlphas.size(); ++k) {
-            const float alpha = kLayerAlphas[k];
-            (alpha < kWide ? narrow : wide)
-                .push_back(
-                    ggx_lobe_kernel(static_cast<double>(alpha), alpha < kWide ? kDegree : 63));
-        }
+        const std::size_t wide_from = static_cast<std::size_t>(
+            std::lower_bound(kLayerAlphas.begin() + 1, kLayerAlphas.end(), kWide) -
+            (kLayerAlphas.begin() + 1));
+        std::vector<std::vector<double>> kernels(kLayerAlphas.size() - 1);
+        parallel_for(kernels.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k) {
+                kernels[k] = ggx_lobe_kernel(static_cast<double>(kLayerAlphas[k + 1]),
+                                             k < wide_from ? kDegree : 63);
+            }
+        });
+        const std::span<const std::vector<double>> all(kernels);
         result.mirrored.push_back(resample(source, 512, 256));
-        for (ImageF& picture : synthesise_sphere(harmonics, narrow, 512, 256)) {
+        for (ImageF& picture : synthesise_sphere(harmonics, all.first(wide_from), 512, 256)) {
             result.mirrored.push_back(std::move(picture));
         }
-        for (ImageF& picture : synthesise_sphere(harmonics, wide, 128, 64)) {
+        for (ImageF& picture : synthesise_sphere(harmonics, all.subspan(wide_from), 128, 64)) {
             result.mirrored.push_back(std::move(picture));
         }
         for (ImageF& picture : result.mirrored) clamp_to_positive(picture);
@@ -160,15 +174,19 @@ glm::vec3 sample_sphere(const ImageF& picture, const glm::dvec2& uv) {
         fy);
 }
 
-glm::vec3 sample_layers(const FilteredEnvironment& filtered, const glm::dvec2& uv, float alpha) {
+LayerShare layer_of(float alpha) {
     constexpr float kFirst = kLayerAlphas[1];
     const float last = static_cast<float>(kLayerAlphas.size() - 1);
     const float layer = alpha < kFirst ? alpha / kFirst : 1.0f + 2.0f * std::log2(alpha / kFirst);
     const float below = std::floor(std::min(layer, last - 1e-3f));
-    const auto index = static_cast<std::size_t>(below);
-    return glm::mix(sample_sphere(filtered.mirrored[index], uv),
-                    sample_sphere(filtered.mirrored[index + 1], uv),
-                    std::min(layer - below, 1.0f));
+    return {static_cast<std::size_t>(below), std::min(layer - below, 1.0f)};
+}
+
+glm::vec3 sample_layers(const FilteredEnvironment& filtered, const glm::dvec2& uv, float alpha) {
+    const auto [below, share] = layer_of(alpha);
+    return glm::mix(sample_sphere(filtered.mirrored[below], uv),
+                    sample_sphere(filtered.mirrored[below + 1], uv),
+                    share);
 }
 
 }  // namespace livery

@@ -49,6 +49,13 @@ FilteredEnvironment filter_environment(const Environment& environment,
                                        const FilterParts& parts,
                                        const Progress& progress = {});
 
+/// The layer under alpha and the weight of the one after it.
+struct LayerShare {
+    std::size_t below = 0;
+    float share = 0.0f;
+};
+LayerShare layer_of(float alpha);
+
 /// Bilinear, wrapped in azimuth.
 glm::vec3 sample_sphere(const ImageF& picture, const glm::dvec2& uv);
 

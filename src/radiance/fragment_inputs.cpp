@@ -194,13 +194,14 @@ void FragmentInputs::fill_mirror(const Scene& scene, bool occluded, const Progre
     const float largest = *std::max_element(sharpest.values.begin(), sharpest.values.end()) *
                           static_cast<float>(scene.environment->scale);
     const float unit = std::max(1.0f, largest / kHalfLargest);
+    const MirroredEnvironment environment(*scene.environment, filtered_);
     const std::size_t layer_size = static_cast<std::size_t>(layout_.rows) * kPackedWidth * 4;
     std::vector<float> texels(layer_size * kMirrorAlphas.size(), 0.0f);
     parallel_for(map_.fragments.size(), 1024, [&](std::size_t begin, std::size_t end) {
         progress.check_stop();
         for (std::size_t i = begin; i < end; ++i) {
-            const auto lobes = mirrored_at_fragment(
-                mesh_, map_, i, *scene.environment, filtered_, scene.eye_in_world_mm, visibility);
+            const auto lobes =
+                environment.at_fragment(mesh_, map_, i, scene.eye_in_world_mm, visibility);
             const std::size_t at = 4 * layout_.address(i, map_.fragments[i].part);
             for (std::size_t k = 0; k < lobes.size(); ++k) {
                 for (std::size_t c = 0; c < 3; ++c) {

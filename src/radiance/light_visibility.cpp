@@ -1,8 +1,10 @@
 #include "radiance/light_visibility.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -14,24 +16,38 @@
 namespace livery {
 namespace {
 
-/// Unit directions to points of the light's disc, equal solid angles (Vogel's spiral on the cap),
-/// turned by `turn_rad`.
-void sample_disc(const glm::vec3& centre,
-                 const Basis& basis,
-                 double one_minus_cos,
-                 double turn_rad,
-                 std::vector<glm::vec3>& directions) {
-    const double count = static_cast<double>(directions.size());
-    constexpr double kGoldenAngle = std::numbers::pi * 0.76393202250021030;
-    for (std::size_t k = 0; k < directions.size(); ++k) {
-        const double down = one_minus_cos * (static_cast<double>(k) + 0.5) / count;
-        const auto height = static_cast<float>(1.0 - down);
-        const auto radius = static_cast<float>(std::sqrt(down * (2.0 - down)));
-        const double angle = turn_rad + kGoldenAngle * static_cast<double>(k);
-        directions[k] = height * centre + radius * (static_cast<float>(std::cos(angle)) * basis.s +
-                                                    static_cast<float>(std::sin(angle)) * basis.t);
+/// Unit directions to points of a light's disc, equal solid angles (Vogel's spiral on the cap).
+class DiscDirections {
+  public:
+    DiscDirections(const glm::vec3& centre, double one_minus_cos, std::size_t count)
+        : centre_(centre), basis_(basis_around(centre)) {
+        constexpr double kGoldenAngle = std::numbers::pi * 0.76393202250021030;
+        for (std::size_t k = 0; k < count; ++k) {
+            const double down =
+                one_minus_cos * (static_cast<double>(k) + 0.5) / static_cast<double>(count);
+            const double radius = std::sqrt(down * (2.0 - down));
+            const double angle = kGoldenAngle * static_cast<double>(k);
+            points_.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 1.0 - down);
+        }
     }
-}
+
+    std::size_t count() const { return points_.size(); }
+
+    /// The spiral turned around the disc's centre.
+    void turned(double turn_rad, std::span<glm::vec3> directions) const {
+        const auto c = static_cast<float>(std::cos(turn_rad));
+        const auto s = static_cast<float>(std::sin(turn_rad));
+        const glm::vec3 x = c * basis_.s + s * basis_.t, y = c * basis_.t - s * basis_.s;
+        for (std::size_t k = 0; k < points_.size(); ++k) {
+            directions[k] = points_[k].x * x + points_[k].y * y + points_[k].z * centre_;
+        }
+    }
+
+  private:
+    glm::vec3 centre_;
+    Basis basis_;
+    std::vector<glm::vec3> points_;  ///< around the z axis
+};
 
 /// 1 - cos of the disc's half-angle.
 double cap_of(const DirectionalLight& light) {
@@ -45,8 +61,8 @@ double turn_of(std::size_t seed) {
 /// Sums up what is seen of the light from one fragment.
 LightAtFragment summarise(const glm::vec3& normal,
                           const glm::vec3& centre,
-                          const std::vector<glm::vec3>& directions,
-                          const std::vector<std::uint8_t>& blocked) {
+                          std::span<const glm::vec3> directions,
+                          std::span<const std::uint8_t> blocked) {
     glm::vec3 sum(0.0f);
     float cosines = 0.0f;
     bool all = true;
@@ -78,7 +94,7 @@ float disc_openness(const Tracer& tracer,
     std::vector<glm::vec3> directions(
         static_cast<std::size_t>(light.angle_rad > 0.0 ? ray_count : 1), centre);
     if (light.angle_rad > 0.0) {
-        sample_disc(centre, basis_around(centre), cap_of(light), turn_of(seed), directions);
+        DiscDirections(centre, cap_of(light), directions.size()).turned(turn_of(seed), directions);
     }
     int open = 0;
     for (const glm::vec3& direction : directions) {
@@ -97,15 +113,21 @@ Basis basis_around(const glm::vec3& n) {
     return {{1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}};
 }
 
-glm::vec3 ray_origin(const Mesh& mesh, const SurfaceMap& map, std::size_t fragment, std::size_t k) {
-    const SurfaceSample& s = map.samples[fragment * kSamplesAFragment + k];
-    const glm::uvec3 corners = mesh.triangles[s.triangle];
-    const glm::vec3 a = mesh.positions_mm[corners.x];
-    const glm::vec3 ab = mesh.positions_mm[corners.y] - a;
-    const glm::vec3 ac = mesh.positions_mm[corners.z] - a;
-    glm::vec3 outward = glm::normalize(glm::cross(ab, ac));
-    if (glm::dot(outward, map.fragments[fragment].normal) < 0.0f) outward = -outward;
-    return offset_origin(a + s.barycentric.x * ab + s.barycentric.y * ac, outward);
+void ray_origins(const Mesh& mesh,
+                 const SurfaceMap& map,
+                 std::size_t fragment,
+                 std::span<glm::vec3> origins) {
+    const SurfaceSample* sample = &map.samples[fragment * kSamplesAFragment];
+    for (std::size_t k = 0; k < origins.size(); ++k, ++sample) {
+        const glm::uvec3 corners = mesh.triangles[sample->triangle];
+        const glm::vec3 a = mesh.positions_mm[corners.x];
+        const glm::vec3 ab = mesh.positions_mm[corners.y] - a;
+        const glm::vec3 ac = mesh.positions_mm[corners.z] - a;
+        glm::vec3 outward = glm::normalize(glm::cross(ab, ac));
+        if (glm::dot(outward, map.fragments[fragment].normal) < 0.0f) outward = -outward;
+        origins[k] =
+            offset_origin(a + sample->barycentric.x * ab + sample->barycentric.y * ac, outward);
+    }
 }
 
 std::vector<LightAtFragment> light_at_fragments(const Mesh& mesh,
@@ -117,33 +139,51 @@ std::vector<LightAtFragment> light_at_fragments(const Mesh& mesh,
     check_argument(rays_per_fragment > 0,
                    fmt::format("{} shadow rays a fragment", rays_per_fragment));
     const glm::vec3 centre(glm::normalize(light.direction));
-    const Basis basis = basis_around(centre);
     const bool point = light.angle_rad <= 0.0 || rays_per_fragment == 1;
     const std::size_t ray_count =
         point ? std::min(kSamplesAFragment, static_cast<std::size_t>(rays_per_fragment))
               : static_cast<std::size_t>(rays_per_fragment);
+    const DiscDirections disc(centre, cap_of(light), ray_count);
     const auto lowest = static_cast<float>(point ? 0.0 : -std::sin(0.5 * light.angle_rad));
 
+    // Rays of several fragments at a time, so that none of a packet's lanes stays empty
+    constexpr std::size_t kAtATime = 512;
+    const std::size_t together = std::max<std::size_t>(kAtATime / ray_count, 1);
     std::vector<LightAtFragment> result(map.fragments.size());
     parallel_for(result.size(), 1024, [&](std::size_t begin, std::size_t end) {
         progress.check_stop();
-        std::vector<glm::vec3> directions(ray_count, centre);
-        std::vector<TraceRay> rays(ray_count);
-        std::vector<std::uint8_t> blocked(ray_count);
+        std::vector<glm::vec3> directions(together * ray_count, centre);
+        std::vector<TraceRay> rays(directions.size());
+        std::vector<std::uint8_t> blocked(rays.size());
+        std::vector<std::size_t> waiting;
+        std::array<glm::vec3, kSamplesAFragment> origins;
+        const auto answer = [&] {
+            const std::size_t count = waiting.size() * ray_count;
+            tracer.occluded(std::span(rays).first(count), std::span(blocked).first(count));
+            for (std::size_t w = 0; w < waiting.size(); ++w) {
+                const std::size_t at = w * ray_count;
+                result[waiting[w]] = summarise(map.fragments[waiting[w]].normal,
+                                               centre,
+                                               std::span(directions).subspan(at, ray_count),
+                                               std::span(blocked).subspan(at, ray_count));
+            }
+            waiting.clear();
+        };
         for (std::size_t i = begin; i < end; ++i) {
-            const glm::vec3 normal = map.fragments[i].normal;
             result[i].direction = centre;
-            if (glm::dot(normal, centre) <= lowest) continue;
-            if (!point) {
-                sample_disc(centre, basis, cap_of(light), turn_of(i), directions);
-            }
+            if (glm::dot(map.fragments[i].normal, centre) <= lowest) continue;
+            const std::size_t at = waiting.size() * ray_count;
+            if (!point) disc.turned(turn_of(i), std::span(directions).subspan(at, ray_count));
+            const std::size_t own = std::min(ray_count, kSamplesAFragment);
+            ray_origins(mesh, map, i, std::span(origins).first(own));
             for (std::size_t k = 0; k < ray_count; ++k) {
-                rays[k].origin = ray_origin(mesh, map, i, k % kSamplesAFragment);
-                rays[k].direction = directions[k];
+                rays[at + k].origin = origins[k % kSamplesAFragment];
+                rays[at + k].direction = directions[at + k];
             }
-            tracer.occluded(rays, blocked);
-            result[i] = summarise(normal, centre, directions, blocked);
+            waiting.push_back(i);
+            if (waiting.size() == together) answer();
         }
+        answer();
     });
     return result;
 }

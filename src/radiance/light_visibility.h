@@ -1,6 +1,7 @@
 // How much of each light reaches each fragment: solved when the pose or the light changes.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -37,8 +38,11 @@ float disc_openness(const Tracer& tracer,
                     int ray_count,
                     std::size_t seed);
 
-/// Where rays from a fragment start: its k-th sub-sample, moved off the surface on the seen side.
-glm::vec3 ray_origin(const Mesh& mesh, const SurfaceMap& map, std::size_t fragment, std::size_t k);
+/// Where rays from a fragment start: its first sub-samples, moved off the surface on the seen side.
+void ray_origins(const Mesh& mesh,
+                 const SurfaceMap& map,
+                 std::size_t fragment,
+                 std::span<glm::vec3> origins);
 
 /// Two unit vectors that make a right-handed frame with unit `n` (Duff et al. 2017).
 struct Basis {

@@ -7,6 +7,8 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "core/parallel.h"
+
 namespace livery {
 namespace {
 
@@ -109,10 +111,12 @@ std::optional<glm::dvec3> direction_at(const View& view, glm::dvec2 pixel) {
 
 std::vector<glm::ivec2> tiles_that_see(const Mesh& mesh, const View& view) {
     std::vector<Corner> corners(mesh.positions_mm.size());
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-        const glm::dvec3 world(mesh.positions_mm[i]);
-        corners[i] = {world, project(view, world)};
-    }
+    parallel_for(corners.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const glm::dvec3 world(mesh.positions_mm[i]);
+            corners[i] = {world, project(view, world)};
+        }
+    });
     TileMask mask(view);
     for (const glm::uvec3& t : mesh.triangles) {
         mask.add(corners[t.x], corners[t.y], corners[t.z], 0);
@@ -138,16 +142,33 @@ TileRays::TileRays(const View& view, glm::ivec2 tile)
     }
 }
 
+namespace {
+
+/// Quadratic Lagrange weights on nodes 0, 1/2, 1.
+glm::dvec3 weights(double u) {
+    return {(2.0 * u - 1.0) * (u - 1.0), 4.0 * u * (1.0 - u), u * (2.0 * u - 1.0)};
+}
+
+}  // namespace
+
+std::optional<TileRays::Row> TileRays::row(double y_px) const {
+    if (exact_) return std::nullopt;
+    const glm::dvec3 w = weights((y_px - corner_px_.y) / static_cast<double>(kTile_px));
+    std::array<glm::dvec3, 3> node;
+    for (std::size_t i = 0; i < 3; ++i) {
+        node[i] = w[0] * node_[i] + w[1] * node_[3 + i] + w[2] * node_[6 + i];
+    }
+    return Row{node[0],
+               -3.0 * node[0] + 4.0 * node[1] - node[2],
+               2.0 * (node[0] - 2.0 * node[1] + node[2])};
+}
+
 std::optional<glm::vec3> TileRays::direction(glm::dvec2 pixel) const {
     if (exact_) {
         const auto direction = direction_at(*view_, pixel);
         if (!direction) return std::nullopt;
         return glm::vec3(*direction);
     }
-    // Quadratic Lagrange weights on nodes 0, 1/2, 1.
-    const auto weights = [](double u) {
-        return glm::dvec3((2.0 * u - 1.0) * (u - 1.0), 4.0 * u * (1.0 - u), u * (2.0 * u - 1.0));
-    };
     const glm::dvec2 u = (pixel - corner_px_) / static_cast<double>(kTile_px);
     const glm::dvec3 wx = weights(u.x), wy = weights(u.y);
     glm::dvec3 sum(0.0);

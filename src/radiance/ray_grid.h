@@ -28,6 +28,16 @@ class TileRays {
     /// Unit direction in the world; nothing where the lens model reaches no direction.
     std::optional<glm::vec3> direction(glm::dvec2 pixel) const;
 
+    /// Along one row of the tile, for many rays: as far as a view depth of 1, not unit.
+    struct Row {
+        glm::dvec3 start, slope, bend;
+        glm::vec3 direction(double tiles_from_corner) const {
+            return glm::vec3(start + tiles_from_corner * (slope + tiles_from_corner * bend));
+        }
+    };
+    /// Nothing where direction() has to solve each ray by itself.
+    std::optional<Row> row(double y_px) const;
+
   private:
     const View* view_;
     glm::dvec2 corner_px_;

@@ -24,14 +24,34 @@ double turn_of(std::size_t fragment, std::uint32_t purpose) {
            (hash_3d(static_cast<std::uint32_t>(fragment), purpose, 11u) * 0x1p-32);
 }
 
-/// k-th of `count` cosine-weighted directions around `n` (Vogel's spiral on the projected disc).
-glm::vec3 sky_direction(const glm::vec3& n, const Basis& basis, int k, int count, double turn) {
-    const double u = (k + 0.5) / count;
-    const double angle = turn + kGoldenAngle * k;
-    const auto x = static_cast<float>(std::sqrt(u) * std::cos(angle));
-    const auto y = static_cast<float>(std::sqrt(u) * std::sin(angle));
-    return x * basis.s + y * basis.t + static_cast<float>(std::sqrt(1.0 - u)) * n;
-}
+/// Cosine-weighted directions around a normal (Vogel's spiral on the projected disc).
+class SkyDirections {
+  public:
+    explicit SkyDirections(int count) {
+        for (int k = 0; k < count; ++k) {
+            const double u = (k + 0.5) / count;
+            const double angle = kGoldenAngle * k;
+            points_.emplace_back(
+                std::sqrt(u) * std::cos(angle), std::sqrt(u) * std::sin(angle), std::sqrt(1.0 - u));
+        }
+    }
+
+    std::size_t count() const { return points_.size(); }
+
+    /// The spiral turned around the normal.
+    void around(const glm::vec3& n, double turn_rad, std::span<glm::vec3> directions) const {
+        const Basis basis = basis_around(n);
+        const auto c = static_cast<float>(std::cos(turn_rad));
+        const auto s = static_cast<float>(std::sin(turn_rad));
+        const glm::vec3 x = c * basis.s + s * basis.t, y = c * basis.t - s * basis.s;
+        for (std::size_t k = 0; k < points_.size(); ++k) {
+            directions[k] = points_[k].x * x + points_[k].y * y + points_[k].z * n;
+        }
+    }
+
+  private:
+    std::vector<glm::vec3> points_;  ///< around the z axis
+};
 
 /// One sample of a mirror lobe: its share of the lobe's albedo, and of the sphere's solid angle in
 /// the slope parameter of the lobe that would fill it.
@@ -154,18 +174,20 @@ SkyVisibility solve_sky_visibility(const Mesh& mesh,
     SkyVisibility result;
     result.directions = directions;
     result.blocked.assign(map.fragments.size(), 0);
+    const SkyDirections sky(directions);
     parallel_for(map.fragments.size(), 1024, [&](std::size_t begin, std::size_t end) {
         progress.check_stop();
-        const auto count = static_cast<std::size_t>(directions);
+        const std::size_t count = sky.count();
+        std::vector<glm::vec3> toward(count);
         std::vector<TraceRay> rays(count);
         std::vector<std::uint8_t> blocked(count);
+        std::array<glm::vec3, kSamplesAFragment> origins;
         for (std::size_t i = begin; i < end; ++i) {
-            const glm::vec3 n = map.fragments[i].normal;
-            const Basis basis = basis_around(n);
-            const double turn = turn_of(i, 5u);
+            sky.around(map.fragments[i].normal, turn_of(i, 5u), toward);
+            ray_origins(mesh, map, i, origins);
             for (std::size_t k = 0; k < count; ++k) {
-                rays[k].origin = ray_origin(mesh, map, i, k % kSamplesAFragment);
-                rays[k].direction = sky_direction(n, basis, static_cast<int>(k), directions, turn);
+                rays[k].origin = origins[k % kSamplesAFragment];
+                rays[k].direction = toward[k];
             }
             tracer.occluded(rays, blocked);
             for (std::size_t k = 0; k < count; ++k) {
@@ -181,26 +203,25 @@ std::vector<glm::vec3> sky_at_fragments(const SurfaceMap& map,
                                         const FilteredEnvironment& filtered,
                                         const SkyVisibility* visibility) {
     const auto scale = static_cast<float>(environment.scale);
+    const SpherePlaces places(environment);
+    const SphereStack diffuse({&filtered.diffuse, 1});
+    const SphereStack blurred = visibility ? SphereStack({&filtered.blurred, 1}) : SphereStack();
+    const SkyDirections sky(visibility ? visibility->directions : 0);
     std::vector<glm::vec3> result(map.fragments.size());
     parallel_for(result.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        std::vector<glm::vec3> directions(sky.count());
         for (std::size_t i = begin; i < end; ++i) {
             const glm::vec3 n = map.fragments[i].normal;
-            const auto at = [&](const ImageF& picture, const glm::vec3& direction) {
-                return sample_sphere(picture,
-                                     uv_from_direction(environment, glm::dvec3(direction)));
-            };
-            glm::vec3 light = at(filtered.diffuse, n);
+            glm::vec3 light = rgb_of(diffuse.at(places.of(n)).in(0));
             if (visibility && visibility->blocked[i]) {
-                const Basis basis = basis_around(n);
-                const double turn = turn_of(i, 5u);
-                glm::vec3 hidden(0.0f), seen(0.0f);
-                for (int k = 0; k < visibility->directions; ++k) {
-                    const glm::vec3 radiance = at(
-                        filtered.blurred, sky_direction(n, basis, k, visibility->directions, turn));
-                    ((visibility->blocked[i] >> k) & 1u ? hidden : seen) += radiance;
+                sky.around(n, turn_of(i, 5u), directions);
+                Texel hidden{}, seen{};
+                for (std::size_t k = 0; k < directions.size(); ++k) {
+                    const bool blocked = ((visibility->blocked[i] >> k) & 1u) != 0;
+                    (blocked ? hidden : seen) += blurred.at(places.of(directions[k])).in(0);
                 }
                 // The same directions estimate the whole: the ratio is kinder to bright lamps
-                light *= seen / glm::max(hidden + seen, glm::vec3(1e-20f));
+                light *= rgb_of(seen) / glm::max(rgb_of(hidden + seen), glm::vec3(1e-20f));
             }
             result[i] = scale * light;
         }
@@ -233,9 +254,11 @@ MirrorVisibility solve_mirror_visibility(const Mesh& mesh,
         progress.check_stop();
         std::vector<TraceRay> rays;
         std::vector<std::uint8_t> blocked;
+        std::array<glm::vec3, kSamplesAFragment> origins;
         for (std::size_t i = begin; i < end; ++i) {
             if (sky && sky->blocked[i] == 0) continue;
             const MirrorLobe mirror(mesh, map, i, eye_mm);
+            ray_origins(mesh, map, i, origins);
             std::uint16_t* words = &result.blocked[i * kLobes];
             for (std::size_t lobe = 0; lobe < kLobes; ++lobe) {
                 const float alpha = kMirrorAlphas[lobe];
@@ -247,7 +270,7 @@ MirrorVisibility solve_mirror_visibility(const Mesh& mesh,
                 rays.resize(static_cast<std::size_t>(count));
                 blocked.resize(rays.size());
                 for (std::size_t k = 0; k < rays.size(); ++k) {
-                    rays[k].origin = ray_origin(mesh, map, i, k % kSamplesAFragment);
+                    rays[k].origin = origins[k % kSamplesAFragment];
                     rays[k].direction = mirror.sample(alpha, static_cast<int>(k), count).direction;
                 }
                 tracer.occluded(rays, blocked);
@@ -260,50 +283,53 @@ MirrorVisibility solve_mirror_visibility(const Mesh& mesh,
     return result;
 }
 
-std::array<glm::vec3, kMirrorAlphas.size()> mirrored_at_fragment(
+MirroredEnvironment::MirroredEnvironment(const Environment& environment,
+                                         const FilteredEnvironment& filtered)
+    : scale_(static_cast<float>(environment.scale)), places_(environment), layers_(filtered) {}
+
+std::array<glm::vec3, kMirrorAlphas.size()> MirroredEnvironment::at_fragment(
     const Mesh& mesh,
     const SurfaceMap& map,
     std::size_t fragment,
-    const Environment& environment,
-    const FilteredEnvironment& filtered,
     glm::dvec3 eye_mm,
-    const MirrorVisibility* visibility) {
-    std::array<glm::vec3, kMirrorAlphas.size()> result{};
-    const auto scale = static_cast<float>(environment.scale);
-    const auto place = [&](const glm::vec3& direction) {
-        return uv_from_direction(environment, glm::dvec3(direction));
-    };
+    const MirrorVisibility* visibility) const {
+    using Place = MirroredLayers::Place;
+    std::array<glm::vec3, kMirrorAlphas.size()> result;
     if (!visibility) {
         const Fragment& f = map.fragments[fragment];
         const glm::vec3 wo = toward_eye(f, eye_mm);
-        const glm::dvec2 uv = place(2.0f * glm::dot(wo, f.normal) * f.normal - wo);
+        const Place place(layers_, places_.of(2.0f * glm::dot(wo, f.normal) * f.normal - wo));
         for (std::size_t lobe = 0; lobe < result.size(); ++lobe) {
             const float alpha = kMirrorAlphas[lobe];
             result[lobe] =
-                scale * sample_layers(filtered, uv, std::sqrt(alpha * alpha + f.normal_variance));
+                scale_ * rgb_of(place.with(std::sqrt(alpha * alpha + f.normal_variance)));
         }
         return result;
     }
     const MirrorLobe mirror(mesh, map, fragment, eye_mm);
-    std::array<glm::dvec2, kSamplesAFragment> straight;
-    for (std::size_t k = 0; k < straight.size(); ++k) {
+    const auto straight = [&](int k) {
         const int each = static_cast<int>(kSamplesAFragment);
-        straight[k] = place(mirror.sample(kMirrorAlphas[0], static_cast<int>(k), each).direction);
-    }
+        return Place(layers_, places_.of(mirror.sample(kMirrorAlphas[0], k, each).direction));
+    };
+    const std::array<Place, kSamplesAFragment> straights{
+        straight(0), straight(1), straight(2), straight(3)};
     for (std::size_t lobe = 0; lobe < result.size(); ++lobe) {
         const float alpha = kMirrorAlphas[lobe];
         const std::uint16_t blocked = visibility->blocked[fragment * result.size() + lobe];
         const int count = samples_of(alpha, visibility->rays);
         float whole = 0.0f;
+        Texel sum{};
         for (int k = 0; k < count; ++k) {
             const LobeSample sample = mirror.sample(alpha, k, count);
             whole += sample.weight;
             if (sample.weight <= 0.0f || ((blocked >> k) & 1u)) continue;
-            const glm::dvec2 uv =
-                is_narrow(alpha) ? straight[static_cast<std::size_t>(k)] : place(sample.direction);
-            result[lobe] += sample.weight * sample_layers(filtered, uv, sample.alpha);
+            const float w = sample.weight;
+            sum += Texel{w, w, w, w} *
+                   (is_narrow(alpha)
+                        ? straights[static_cast<std::size_t>(k)].with(sample.alpha)
+                        : Place(layers_, places_.of(sample.direction)).with(sample.alpha));
         }
-        result[lobe] *= whole > 0.0f ? scale / whole : 0.0f;
+        result[lobe] = whole > 0.0f ? scale_ / whole * rgb_of(sum) : glm::vec3(0.0f);
     }
     return result;
 }

@@ -10,6 +10,7 @@
 
 #include "core/progress.h"
 #include "radiance/environment_filter.h"
+#include "radiance/sphere_lookup.h"
 #include "radiance/surface_map.h"
 #include "tracing/tracer.h"
 
@@ -56,14 +57,22 @@ MirrorVisibility solve_mirror_visibility(const Mesh& mesh,
 /// Mean radiance of the environment over a fragment's mirror lobes, one for each of kMirrorAlphas:
 /// over the visibility's own samples; without `visibility`, unoccluded, as round lobes widened by
 /// the fragment's normals.
-std::array<glm::vec3, kMirrorAlphas.size()> mirrored_at_fragment(
-    const Mesh& mesh,
-    const SurfaceMap& map,
-    std::size_t fragment,
-    const Environment& environment,
-    const FilteredEnvironment& filtered,
-    glm::dvec3 eye_mm,
-    const MirrorVisibility* visibility);
+class MirroredEnvironment {
+  public:
+    MirroredEnvironment(const Environment& environment, const FilteredEnvironment& filtered);
+
+    std::array<glm::vec3, kMirrorAlphas.size()> at_fragment(
+        const Mesh& mesh,
+        const SurfaceMap& map,
+        std::size_t fragment,
+        glm::dvec3 eye_mm,
+        const MirrorVisibility* visibility) const;
+
+  private:
+    float scale_;
+    SpherePlaces places_;
+    MirroredLayers layers_;
+};
 
 /// The shading normal of a fragment's k-th sub-sample, on the seen side.
 glm::vec3 sample_normal(const Mesh& mesh,

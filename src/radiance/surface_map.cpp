@@ -1,10 +1,9 @@
 #include "radiance/surface_map.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
-#include <optional>
+#include <span>
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -19,15 +18,28 @@ namespace {
 
 /// One sub-sample that met the product.
 struct Sample {
-    SurfacePoint point;
+    glm::vec3 position_mm;
+    glm::vec3 normal;
+    glm::vec3 face_normal;  ///< of its triangle, unit
+    glm::vec4 tangent;      ///< as interpolated: neither unit nor at right angles to the normal
     SurfaceSample place;
-    int group = 0;
+    std::uint16_t part = 0;
+    std::uint16_t group = 0;
 };
 
-/// A fragment before it is sorted into the map.
-struct Solved {
-    Fragment fragment;
-    std::array<SurfaceSample, kSamplesAFragment> samples;
+/// What one tile shows: by part, then by pixel.
+struct Tile {
+    std::vector<Fragment> fragments;
+    std::vector<SurfaceSample> samples;  ///< kSamplesAFragment each
+};
+
+/// Fragments of one part in one row of a tile: they stay together in the map.
+struct Run {
+    std::uint16_t part = 0;
+    std::uint32_t first_pixel = 0;
+    const Tile* tile = nullptr;
+    std::size_t begin = 0, end = 0;  ///< in the tile
+    std::size_t place = 0;           ///< in the map
 };
 
 /// Places of the sub-samples in a pixel: one in each cell of a side x side grid and, at the same
@@ -53,144 +65,254 @@ std::vector<glm::dvec2> sample_places(int side) {
 
 /// Whether a mean over both points would be a point of neither surface: another part, normals
 /// over 60 degrees apart, or apart by more than two footprints across the tangent plane.
-bool breaks_from(const SurfacePoint& a, const SurfacePoint& b, float footprint_mm) {
+bool breaks_from(const Sample& a, const Sample& b, float footprint_mm) {
     if (a.part != b.part) return true;
     if (glm::dot(a.normal, b.normal) < 0.5f) return true;
     const glm::vec3 apart = b.position_mm - a.position_mm;
-    const float off_plane = std::min(std::abs(glm::dot(apart, a.geometric_normal)),
-                                     std::abs(glm::dot(apart, b.geometric_normal)));
+    const float off_plane = std::min(std::abs(glm::dot(apart, a.face_normal)),
+                                     std::abs(glm::dot(apart, b.face_normal)));
     return off_plane > 2.0f * footprint_mm;
 }
 
-Solved mean_of(const std::vector<Sample>& samples, int group, std::uint32_t pixel, int per_pixel) {
-    Solved solved;
-    Fragment& fragment = solved.fragment;
-    std::size_t kept = 0;
+/// Unit normals of the triangles themselves, as their corners turn.
+std::vector<glm::vec3> face_normals(const Mesh& mesh) {
+    std::vector<glm::vec3> normals(mesh.triangles.size());
+    parallel_for(normals.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const glm::uvec3 corner = mesh.triangles[i];
+            const glm::vec3 a = mesh.positions_mm[corner.x];
+            const glm::dvec3 across = glm::cross(glm::dvec3(mesh.positions_mm[corner.y] - a),
+                                                 glm::dvec3(mesh.positions_mm[corner.z] - a));
+            const double twice_area = glm::length(across);
+            normals[i] = twice_area > 0.0 ? glm::vec3(across / twice_area) : glm::vec3(0.0f);
+        }
+    });
+    return normals;
+}
+
+/// surface_point() less what a mean over many samples makes up for.
+Sample sample_of(const Mesh& mesh,
+                 const std::vector<glm::vec3>& faces,
+                 const Hit& hit,
+                 const glm::vec3& direction) {
+    const glm::uvec3 corner = mesh.triangles[hit.triangle];
+    const float v = hit.barycentric.x, w = hit.barycentric.y, u = 1.0f - v - w;
+    const auto blend = [&](const auto& values) {
+        return u * values[corner.x] + v * values[corner.y] + w * values[corner.z];
+    };
+    Sample sample;
+    sample.part = mesh.triangle_part[hit.triangle];
+    sample.place = {hit.triangle, hit.barycentric};
+    sample.face_normal = faces[hit.triangle];
+    // From a corner and two edges: exact on the plane of a far-away triangle to its own size.
+    const glm::vec3 a = mesh.positions_mm[corner.x];
+    sample.position_mm =
+        a + v * (mesh.positions_mm[corner.y] - a) + w * (mesh.positions_mm[corner.z] - a);
+    // Opposite vertex normals cancel halfway: the triangle's own normal is the answer there.
+    const glm::vec3 normal = blend(mesh.normals);
+    const float length = glm::length(normal);
+    sample.normal = length > 1e-6f ? normal / length : sample.face_normal;
+    sample.tangent = blend(mesh.tangents);
+    // An open surface shows its inside: the side that is lit is the side that is shaded
+    if (glm::dot(sample.face_normal, direction) > 0.0f) {
+        sample.face_normal = -sample.face_normal;
+        sample.normal = -sample.normal;
+    }
+    return sample;
+}
+
+void append_mean(std::span<const Sample> samples,
+                 int group,
+                 std::uint32_t pixel,
+                 std::size_t per_pixel,
+                 Tile& tile) {
+    Fragment fragment;
     fragment.pixel = pixel;
-    int count = 0;
-    float handedness = 0.0f;
-    glm::dvec3 position(0.0);
-    glm::vec3 normal(0.0f), tangent(0.0f);
+    std::size_t count = 0;
+    const Sample* first = nullptr;
+    glm::vec3 apart(0.0f), normal(0.0f);
+    glm::vec4 tangents(0.0f);
+    const std::size_t kept_from = tile.samples.size();
     for (const Sample& s : samples) {
         if (s.group != group) continue;
-        fragment.part = s.point.part;
-        position += glm::dvec3(s.point.position_mm);
-        normal += s.point.normal;
-        tangent += glm::vec3(s.point.tangent);
-        handedness += s.point.tangent.w;
-        if (kept < kSamplesAFragment) solved.samples[kept++] = s.place;
+        if (!first) first = &s;
+        apart += s.position_mm - first->position_mm;
+        normal += s.normal;
+        tangents += s.tangent;
+        if (count < kSamplesAFragment) tile.samples.push_back(s.place);
         ++count;
     }
-    fragment.position_mm = glm::vec3(position / static_cast<double>(count));
+    fragment.part = first->part;
+    fragment.position_mm = first->position_mm + apart / static_cast<float>(count);
     fragment.normal = glm::normalize(normal);
     fragment.coverage = static_cast<float>(count) / static_cast<float>(per_pixel);
 
     // Mean squared slope around the mean normal
     for (const Sample& s : samples) {
         if (s.group != group) continue;
-        const float c = glm::dot(s.point.normal, fragment.normal);
-        const glm::vec3 across = s.point.normal - c * fragment.normal;
+        const float c = glm::dot(s.normal, fragment.normal);
+        const glm::vec3 across = s.normal - c * fragment.normal;
         fragment.normal_variance += glm::dot(across, across) / (c * c);
     }
     fragment.normal_variance /= static_cast<float>(count);
 
     // Tangent in the plane of the mean normal; any one where the samples' tangents cancel
+    glm::vec3 tangent(tangents);
     tangent -= glm::dot(tangent, fragment.normal) * fragment.normal;
     if (glm::dot(tangent, tangent) < 1e-12f) {
         const glm::vec3 n = fragment.normal;
         const glm::vec3 axis = std::abs(n.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
         tangent = glm::cross(axis, n);
     }
-    fragment.tangent = glm::vec4(glm::normalize(tangent), handedness < 0.0f ? -1.0f : 1.0f);
-    for (std::size_t k = kept; k < kSamplesAFragment; ++k) {
-        solved.samples[k] = solved.samples[k - kept];
+    fragment.tangent = glm::vec4(glm::normalize(tangent), tangents.w < 0.0f ? -1.0f : 1.0f);
+    for (std::size_t k = count; k < kSamplesAFragment; ++k) {
+        tile.samples.push_back(tile.samples[kept_from + k - count]);
     }
-    return solved;
+    tile.fragments.push_back(fragment);
 }
 
 /// Sorts a pixel's samples into groups that a mean can stand for and appends their fragments.
-void append_fragments(std::vector<Sample>& samples,
+void append_fragments(std::span<Sample> samples,
                       std::uint32_t pixel,
-                      int per_pixel,
+                      std::size_t per_pixel,
                       float footprint_mm,
-                      std::vector<Solved>& fragments) {
-    std::vector<const Sample*> first;  // of each group
+                      std::vector<const Sample*>& first_of_groups,
+                      Tile& tile) {
+    first_of_groups.clear();
     for (Sample& s : samples) {
-        const auto found = std::find_if(first.begin(), first.end(), [&](const Sample* f) {
-            return !breaks_from(f->point, s.point, footprint_mm);
-        });
-        s.group = static_cast<int>(found - first.begin());
-        if (found == first.end()) first.push_back(&s);
+        const auto found =
+            std::find_if(first_of_groups.begin(), first_of_groups.end(), [&](const Sample* f) {
+                return !breaks_from(*f, s, footprint_mm);
+            });
+        s.group = static_cast<std::uint16_t>(found - first_of_groups.begin());
+        if (found == first_of_groups.end()) first_of_groups.push_back(&s);
     }
-    for (int group = 0; group < static_cast<int>(first.size()); ++group) {
-        fragments.push_back(mean_of(samples, group, pixel, per_pixel));
+    for (int group = 0; group < static_cast<int>(first_of_groups.size()); ++group) {
+        append_mean(samples, group, pixel, per_pixel, tile);
     }
 }
 
-/// Traces one tile; fragments come pixel by pixel.
-std::vector<Solved> solve_tile(const Mesh& mesh,
-                               const Tracer& tracer,
-                               const View& view,
-                               glm::ivec2 tile,
-                               const std::vector<glm::dvec2>& places) {
-    const TileRays lens(view, tile);
-    const glm::vec3 origin(centre_in_world(view));
-    const int x_end = std::min((tile.x + 1) * kTile_px, view.width);
-    const int y_end = std::min((tile.y + 1) * kTile_px, view.height);
-    const int per_pixel = static_cast<int>(places.size());
+/// From pixel by pixel to part by part.
+void sort_by_part(Tile& tile) {
+    const auto by_part = [](const Fragment& a, const Fragment& b) { return a.part < b.part; };
+    if (std::is_sorted(tile.fragments.begin(), tile.fragments.end(), by_part)) return;
+    std::vector<std::size_t> order(tile.fragments.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return by_part(tile.fragments[a], tile.fragments[b]);
+    });
+    Tile sorted;
+    for (const std::size_t i : order) {
+        sorted.fragments.push_back(tile.fragments[i]);
+        const auto kept = tile.samples.begin() + static_cast<std::ptrdiff_t>(i * kSamplesAFragment);
+        sorted.samples.insert(sorted.samples.end(), kept, kept + kSamplesAFragment);
+    }
+    tile = std::move(sorted);
+}
 
-    std::vector<TraceRay> rays;
-    std::vector<Hit> hits;
-    std::vector<Sample> samples;
-    std::vector<Solved> fragments;
-    for (int y = tile.y * kTile_px; y < y_end; ++y) {
-        // Rays of one row of the tile at a time stay in the cache
-        rays.clear();
-        for (int x = tile.x * kTile_px; x < x_end; ++x) {
-            for (const glm::dvec2& place : places) {
-                const auto direction = lens.direction(glm::dvec2(x, y) + place);
-                TraceRay ray;
-                ray.origin = origin;
-                // A ray of no length where the lens model reaches no direction
-                if (direction) {
-                    ray.direction = *direction;
-                } else {
-                    ray.t_max = 0.0f;
-                }
-                rays.push_back(ray);
-            }
-        }
-        hits.assign(rays.size(), Hit{});
-        tracer.closest(rays, hits);
+class TileSolver {
+  public:
+    TileSolver(const Mesh& mesh, const Tracer& tracer, const View& view, int side)
+        : mesh_(mesh),
+          tracer_(tracer),
+          view_(view),
+          origin_(centre_in_world(view)),
+          places_(sample_places(side)),
+          faces_(face_normals(mesh)) {}
 
-        for (int x = tile.x * kTile_px; x < x_end; ++x) {
-            const auto begin = static_cast<std::size_t>((x - tile.x * kTile_px) * per_pixel);
-            samples.clear();
-            float farthest = 0.0f;
-            for (std::size_t i = begin; i < begin + static_cast<std::size_t>(per_pixel); ++i) {
-                if (!hits[i].valid()) continue;
-                Sample sample;
-                sample.point = surface_point(mesh, hits[i]);
-                sample.place = {hits[i].triangle, hits[i].barycentric};
-                farthest = std::max(farthest, hits[i].t);
-                // An open surface shows its inside: the side that is lit is the side that is shaded
-                if (glm::dot(sample.point.geometric_normal, rays[i].direction) > 0.0f) {
-                    sample.point.geometric_normal = -sample.point.geometric_normal;
-                    sample.point.normal = -sample.point.normal;
-                }
-                samples.push_back(sample);
+    Tile solve(glm::ivec2 tile) const;
+
+  private:
+    void aim(const TileRays& lens, int x_begin, int x_end, int y, std::span<glm::vec3> to) const;
+
+    const Mesh& mesh_;
+    const Tracer& tracer_;
+    const View& view_;
+    const glm::vec3 origin_;
+    const std::vector<glm::dvec2> places_;
+    const std::vector<glm::vec3> faces_;
+};
+
+/// Directions through the samples of a row of pixels; of no length where the lens model reaches
+/// none.
+void TileSolver::aim(
+    const TileRays& lens, int x_begin, int x_end, int y, std::span<glm::vec3> to) const {
+    for (std::size_t k = 0; k < places_.size(); ++k) {
+        const glm::dvec2 place = places_[k];
+        const auto row = lens.row(y + place.y);
+        std::size_t at = k;
+        for (int x = x_begin; x < x_end; ++x, at += places_.size()) {
+            if (row) {
+                to[at] = row->direction((x - x_begin + place.x) / kTile_px);
+            } else {
+                to[at] = lens.direction(glm::dvec2(x, y) + place).value_or(glm::vec3(0.0f));
             }
-            if (samples.empty()) continue;
-            const auto footprint =
-                farthest / static_cast<float>(std::min(view.focal_px.x, view.focal_px.y));
-            append_fragments(samples,
-                             static_cast<std::uint32_t>(y * view.width + x),
-                             per_pixel,
-                             footprint,
-                             fragments);
         }
     }
-    return fragments;
+}
+
+Tile TileSolver::solve(glm::ivec2 tile) const {
+    const TileRays lens(view_, tile);
+    const int x_begin = tile.x * kTile_px;
+    const int x_end = std::min(x_begin + kTile_px, view_.width);
+    const int y_end = std::min((tile.y + 1) * kTile_px, view_.height);
+    const auto focal_px = static_cast<float>(std::min(view_.focal_px.x, view_.focal_px.y));
+    const std::size_t per_pixel = places_.size();
+
+    // Rays of one row of the tile at a time stay in the cache
+    std::vector<glm::vec3> directions(static_cast<std::size_t>(x_end - x_begin) * per_pixel);
+    std::vector<Hit> hits(directions.size());
+    std::vector<Sample> samples(per_pixel);
+    std::vector<const Sample*> groups;
+    Tile result;
+    for (int y = tile.y * kTile_px; y < y_end; ++y) {
+        aim(lens, x_begin, x_end, y, directions);
+        tracer_.closest_from(origin_, directions, hits);
+        for (int x = x_begin; x < x_end; ++x) {
+            const std::size_t begin = static_cast<std::size_t>(x - x_begin) * per_pixel;
+            std::size_t count = 0;
+            float farthest = 0.0f;
+            for (std::size_t i = begin; i < begin + per_pixel; ++i) {
+                if (!hits[i].valid()) continue;
+                farthest = std::max(farthest, hits[i].t);
+                samples[count++] = sample_of(mesh_, faces_, hits[i], directions[i]);
+            }
+            if (count == 0) continue;
+            append_fragments(std::span(samples).first(count),
+                             static_cast<std::uint32_t>(y * view_.width + x),
+                             per_pixel,
+                             farthest * glm::length(directions[begin]) / focal_px,
+                             groups,
+                             result);
+        }
+    }
+    sort_by_part(result);
+    return result;
+}
+
+/// All tiles' runs in the order of the map.
+std::vector<Run> runs_of(const std::vector<Tile>& tiles, int width) {
+    const auto row_width = static_cast<std::uint32_t>(width);
+    std::vector<Run> runs;
+    for (const Tile& tile : tiles) {
+        const std::vector<Fragment>& all = tile.fragments;
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            if (i == 0 || all[i].part != all[i - 1].part ||
+                all[i].pixel / row_width != all[i - 1].pixel / row_width) {
+                runs.push_back({all[i].part, all[i].pixel, &tile, i, i, 0});
+            }
+            runs.back().end = i + 1;
+        }
+    }
+    std::sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) {
+        return a.part != b.part ? a.part < b.part : a.first_pixel < b.first_pixel;
+    });
+    std::size_t place = 0;
+    for (Run& run : runs) {
+        run.place = place;
+        place += run.end - run.begin;
+    }
+    return runs;
 }
 
 }  // namespace
@@ -207,54 +329,49 @@ SurfaceMap build_surface_map(const Mesh& mesh,
                    fmt::format("view is {} x {} pixels", view.width, view.height));
     progress.update(0.0, "seeing the product");
 
-    const std::vector<glm::dvec2> places = sample_places(side);
+    const TileSolver solver(mesh, tracer, view, side);
     const std::vector<glm::ivec2> tiles = tiles_that_see(mesh, view);
-    std::vector<std::vector<Solved>> solved(tiles.size());
+    std::vector<Tile> solved(tiles.size());
     parallel_for(tiles.size(), 8, [&](std::size_t begin, std::size_t end) {
         progress.check_stop();
-        for (std::size_t i = begin; i < end; ++i) {
-            solved[i] = solve_tile(mesh, tracer, view, tiles[i], places);
-        }
+        for (std::size_t i = begin; i < end; ++i) solved[i] = solver.solve(tiles[i]);
     });
     progress.update(0.9, "seeing the product");
 
-    // Order by part, then by pixel; fragments of one pixel and part keep their order
-    struct Key {
-        std::uint64_t part_and_pixel;
-        const Solved* solved;
-    };
-    std::vector<Key> keys;
-    for (const auto& tile : solved) {
-        for (const Solved& s : tile) {
-            keys.push_back(
-                {(static_cast<std::uint64_t>(s.fragment.part) << 32u) | s.fragment.pixel, &s});
-        }
-    }
-    std::stable_sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
-        return a.part_and_pixel < b.part_and_pixel;
-    });
-
+    const std::vector<Run> runs = runs_of(solved, view.width);
+    const std::size_t count =
+        runs.empty() ? 0 : runs.back().place + runs.back().end - runs.back().begin;
     SurfaceMap map;
     map.width = view.width;
     map.height = view.height;
     map.samples_per_pixel = samples_per_pixel;
     map.coverage = ImageF(view.width, view.height, 1);
     map.part_begin.assign(mesh.parts.size() + 1, 0);
-    map.fragments.reserve(keys.size());
-    map.samples.reserve(keys.size() * kSamplesAFragment);
-    for (const Key& key : keys) {
-        const Fragment& f = key.solved->fragment;
-        map.fragments.push_back(f);
-        map.samples.insert(
-            map.samples.end(), key.solved->samples.begin(), key.solved->samples.end());
-        map.part_begin[f.part + 1u] += 1;
-        float& covered = map.coverage.values[f.pixel];
-        if (covered == 0.0f) ++map.covered_pixels;
-        covered += f.coverage;
+    for (const Run& run : runs) {
+        map.part_begin[run.part + 1u] += static_cast<std::uint32_t>(run.end - run.begin);
+        for (std::size_t i = run.begin; i < run.end; ++i) {
+            const Fragment& f = run.tile->fragments[i];
+            float& covered = map.coverage.values[f.pixel];
+            if (covered == 0.0f) ++map.covered_pixels;
+            covered += f.coverage;
+        }
     }
     for (std::size_t p = 1; p < map.part_begin.size(); ++p) {
         map.part_begin[p] += map.part_begin[p - 1];
     }
+    map.fragments.resize(count);
+    map.samples.resize(count * kSamplesAFragment);
+    parallel_for(runs.size(), 256, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t r = begin; r < end; ++r) {
+            const Run& run = runs[r];
+            std::copy(run.tile->fragments.data() + run.begin,
+                      run.tile->fragments.data() + run.end,
+                      map.fragments.data() + run.place);
+            std::copy(run.tile->samples.data() + run.begin * kSamplesAFragment,
+                      run.tile->samples.data() + run.end * kSamplesAFragment,
+                      map.samples.data() + run.place * kSamplesAFragment);
+        }
+    });
     progress.update(1.0, "seeing the product");
     return map;
 }

@@ -195,6 +195,44 @@ void Tracer::closest(std::span<const TraceRay> rays, std::span<Hit> hits) const 
     });
 }
 
+void Tracer::closest_from(const glm::vec3& origin,
+                          std::span<const glm::vec3> directions,
+                          std::span<Hit> hits) const {
+    check_argument(directions.size() == hits.size(),
+                   "closest_from: as many hits as directions are needed");
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    RTCRayHit8 packet{};
+    for (std::size_t lane = 0; lane < kPacket; ++lane) {
+        TraceRay ray;
+        ray.origin = origin;
+        set_lane(packet.ray, lane, ray);
+    }
+    for_each_packet(directions.size(), [&](std::size_t first, std::size_t count, int* valid) {
+        for (std::size_t lane = 0; lane < kPacket; ++lane) {
+            const glm::vec3 direction = directions[first + std::min(lane, count - 1)];
+            if (direction == glm::vec3(0.0f)) valid[lane] = 0;
+            packet.ray.dir_x[lane] = direction.x;
+            packet.ray.dir_y[lane] = direction.y;
+            packet.ray.dir_z[lane] = direction.z;
+            packet.ray.tfar[lane] = TraceRay{}.t_max;
+            packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+            packet.hit.primID[lane] = RTC_INVALID_GEOMETRY_ID;
+            packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+        }
+        rtcIntersect8(valid, state_->scene, &context, &packet);
+        for (std::size_t lane = 0; lane < count; ++lane) {
+            Hit& hit = hits[first + lane];
+            hit = {};
+            if (packet.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) continue;
+            hit = {packet.hit.primID[lane],
+                   packet.ray.tfar[lane],
+                   {packet.hit.u[lane], packet.hit.v[lane]}};
+        }
+    });
+}
+
 void Tracer::occluded(std::span<const TraceRay> rays, std::span<std::uint8_t> blocked) const {
     check_argument(rays.size() == blocked.size(), "occluded: as many answers as rays are needed");
     RTCIntersectContext context;

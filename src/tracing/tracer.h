@@ -53,6 +53,11 @@ class Tracer {
     /// Eight at a time inside; rays should be coherent to pay. Sizes must agree.
     void closest(std::span<const TraceRay> rays, std::span<Hit> hits) const;
     void occluded(std::span<const TraceRay> rays, std::span<std::uint8_t> blocked) const;
+    /// Neighbouring rays from one point, as of a picture; directions of any length, in which t is
+    /// counted; those of no length hit nothing.
+    void closest_from(const glm::vec3& origin,
+                      std::span<const glm::vec3> directions,
+                      std::span<Hit> hits) const;
 
   private:
     struct State;

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "radiance/sphere_lookup.h"
 #include "radiance/spherical_harmonics.h"
 
 namespace livery {
@@ -147,6 +148,49 @@ TEST(EnvironmentFilter, OtherSizesAreTakenAndRotationOnlyTurns) {
     small.rotation_rad = kPi / 2.0;
     const glm::dvec3 where = direction_from_uv(small, {0.75, 0.5});
     EXPECT_NEAR(towards(small, filtered.diffuse, where).x, 1.0 + 2.0 / 3.0, 3e-3);
+}
+
+TEST(SphereLookup, PlacesAreThoseOfTheExactFunction) {
+    Environment environment;
+    for (const double rotation_rad : {0.0, 1.0, -4.0}) {
+        environment.rotation_rad = rotation_rad;
+        const SpherePlaces places(environment);
+        for (int k = 0; k < 20000; ++k) {
+            // A spiral from pole to pole, and the axes themselves
+            const double y = 1.0 - 2.0 * (k + 0.5) / 20000.0, angle = 2.399963 * k;
+            glm::dvec3 d(std::sqrt(1.0 - y * y) * std::cos(angle),
+                         y,
+                         std::sqrt(1.0 - y * y) * std::sin(angle));
+            if (k < 6) d = glm::dvec3(k == 0, k == 1, k == 2) - glm::dvec3(k == 3, k == 4, k == 5);
+            const glm::dvec2 exact = uv_from_direction(environment, d);
+            const glm::vec2 found = places.of(glm::vec3(d));
+            const double around = std::abs(static_cast<double>(found.x) - exact.x);
+            // At a pole every azimuth is right
+            if (std::abs(d.y) < 1.0) EXPECT_LT(std::min(around, 1.0 - around), 3e-6);
+            EXPECT_NEAR(static_cast<double>(found.y), exact.y, 3e-6);
+            ASSERT_FALSE(HasFailure()) << d.x << " " << d.y << " " << d.z;
+        }
+    }
+}
+
+TEST(SphereLookup, LayersSideBySideAnswerAsTheLayersThemselves) {
+    const Environment environment =
+        environment_of(1024, 512, [](glm::dvec3 d) { return glm::dvec3(studio(d), 1.0, d.y + 1); });
+    const FilteredEnvironment filtered = filter_environment(environment, {true, false, false});
+    const MirroredLayers layers(filtered);
+    for (const float alpha : {0.0f, 0.01f, 0.05f, 0.1f, 0.3f, 1.0f}) {
+        for (const glm::vec2 uv : {glm::vec2(0.3f, 0.7f),
+                                   glm::vec2(0.0f, 0.4f),
+                                   glm::vec2(0.99999f, 0.5f),
+                                   glm::vec2(0.6f, 0.0f),
+                                   glm::vec2(0.6f, 0.99999f)}) {
+            const glm::vec3 expected = sample_layers(filtered, uv, alpha);
+            const glm::vec3 found = rgb_of(MirroredLayers::Place(layers, uv).with(alpha));
+            for (int c = 0; c < 3; ++c) {
+                EXPECT_NEAR(found[c], expected[c], 1e-3f * expected[c]) << alpha;
+            }
+        }
+    }
 }
 
 TEST(SphericalHarmonicsTransform, RoundTripKeepsABandLimitedPicture) {

@@ -178,6 +178,34 @@ TEST(Tracer, PacketsAnswerWhatSingleRaysAnswer) {
     EXPECT_THROW(tracer.closest(std::vector<TraceRay>(2), too_few), std::invalid_argument);
 }
 
+TEST(Tracer, RaysFromOnePointAnswerWhatSingleRaysAnswer) {
+    const Mesh sphere = make_sphere({3.0, 4.0, 5.0}, 50.0, 40, "ball");
+    const Tracer tracer(sphere);
+    const glm::vec3 origin(3.0f, 4.0f, 300.0f);
+    Random random(5);
+    // No multiple of eight, and one without a direction among them
+    std::vector<glm::vec3> directions;
+    for (int k = 0; k < 203; ++k) {
+        const glm::vec3 aim = 60.0f * random_direction(random) + glm::vec3(3.0f, 4.0f, 5.0f);
+        directions.push_back(0.01f * static_cast<float>(1 + k % 7) * (aim - origin));
+    }
+    directions[100] = glm::vec3(0.0f);
+    std::vector<Hit> hits(directions.size());
+    tracer.closest_from(origin, directions, hits);
+    int hit_count = 0;
+    for (std::size_t k = 0; k < directions.size(); ++k) {
+        const Hit single = k == 100 ? Hit{} : tracer.closest({origin, 0.0f, directions[k], 1e30f});
+        ASSERT_EQ(hits[k].triangle, single.triangle) << k;
+        if (!single.valid()) continue;
+        ++hit_count;
+        EXPECT_NEAR(hits[k].t, single.t, 1e-5f * single.t);
+        EXPECT_NEAR(hits[k].barycentric.x, single.barycentric.x, 1e-4f);
+    }
+    EXPECT_GT(hit_count, 50);
+    EXPECT_THROW(tracer.closest_from(origin, directions, std::span(hits).first(5)),
+                 std::invalid_argument);
+}
+
 TEST(Tracer, LeavesTheCallersArithmeticAlone) {
     const Mesh wall = one_triangle({-100, -100, 50}, {100, -100, 50}, {0, 100, 50});
     const Tracer tracer(wall);
