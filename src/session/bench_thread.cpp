@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "core/error.h"
+#include "core/freed_memory.h"
 #include "session/bench_picture.h"
 #include "session/low_priority.h"
 #include "session/projector_setup.h"
@@ -160,6 +161,7 @@ void BenchThread::Implementation::run() {
             lock.unlock();
             photograph(request, with);
         }
+        return_freed_memory();
         lock.lock();
     }
 }

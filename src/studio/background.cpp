@@ -7,6 +7,8 @@
 #include <thread>
 #include <vector>
 
+#include "core/freed_memory.h"
+
 namespace livery {
 
 struct Background::State {
@@ -33,6 +35,8 @@ struct Background::State {
             working = true;
             lock.unlock();
             Then then = result_of(job);
+            job = {};  // and all that it holds
+            return_freed_memory();
             lock.lock();
             working = false;
             results.push_back(std::move(then));

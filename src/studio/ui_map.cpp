@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include "core/error.h"
 #include "core/json.h"
@@ -43,6 +44,8 @@ void name_rectangle(const std::string& name, float x, float y, float width, floa
 
 void name_last_item(const std::string& name) {
     if (!naming) return;
+    // A pop-up's first frames only measure it: it is not seen, and not yet at its place.
+    if (ImGui::GetCurrentWindowRead()->Hidden) return;
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     const ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImVec2 clip_low = list.GetClipRectMin(), clip_high = list.GetClipRectMax();

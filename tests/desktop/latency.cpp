@@ -1,9 +1,7 @@
 // Prints how long an input takes to reach the projector's picture, as a table for
 // docs/performance.md. Not a test: figures depend on the machine and what else it does.
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <functional>
 #include <iostream>
@@ -13,6 +11,7 @@
 
 #include "desktop/prepared.h"
 #include "desktop/studio_program.h"
+#include "desktop/trace_latency.h"
 #include "session/session.h"
 
 namespace livery {
@@ -21,38 +20,6 @@ namespace {
 constexpr int swaps = 60;
 /// As somebody goes who looks at each paint, and as somebody who sweeps over them.
 constexpr int looking_ms = 600, sweeping_ms = 150;
-
-double now_s() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
-        .count();
-}
-
-/// From each moment in `inputs_s` to the first picture on the projector that was asked for after
-/// it; nothing where no picture came before the next input.
-std::vector<std::optional<double>> to_projector_ms(const std::vector<TraceLine>& trace,
-                                                   const std::vector<double>& inputs_s) {
-    std::vector<std::optional<double>> answers;
-    for (std::size_t i = 0; i < inputs_s.size(); ++i) {
-        const double from = inputs_s[i], to = i + 1 < inputs_s.size() ? inputs_s[i + 1] : 1e300;
-        std::optional<std::uint64_t> asked;
-        std::optional<double> shown_s;
-        for (const TraceLine& line : trace) {
-            if (line.t_s < from || line.t_s >= to) continue;
-            if (line.event == "frame-asked" && !asked) asked = line.number;
-            if (line.event == "shown" && asked && line.number >= *asked) {
-                shown_s = shown_s ? std::min(*shown_s, line.t_s) : line.t_s;
-            }
-        }
-        answers.push_back(shown_s ? std::optional(1e3 * (*shown_s - from)) : std::nullopt);
-    }
-    return answers;
-}
-
-double percentile(std::vector<double> values, double fraction) {
-    std::ranges::sort(values);
-    const auto last = static_cast<double>(values.size() - 1);
-    return values[static_cast<std::size_t>(std::lround(fraction * last))];
-}
 
 void print_row(const std::string& what, const std::vector<std::optional<double>>& answers) {
     std::vector<double> ms;
@@ -67,16 +34,16 @@ void print_row(const std::string& what, const std::vector<std::optional<double>>
                              what,
                              ms.size(),
                              answers.size(),
-                             percentile(ms, 0.5),
-                             percentile(ms, 0.95),
-                             percentile(ms, 1.0))
+                             percentile_of(ms, 0.5),
+                             percentile_of(ms, 0.95),
+                             percentile_of(ms, 1.0))
               << std::flush;
 }
 
 class Bench {
   public:
     Bench(Desktop& desktop, const std::filesystem::path& session) : desktop_(desktop) {
-        start_s_ = now_s();
+        start_s_ = trace_now_s();
         program_ =
             std::make_unique<StudioProgram>(desktop, StudioStart{session, {1280, 800}, 1.0, {}});
     }
@@ -115,7 +82,7 @@ class Bench {
         for (int i = 0; i < count; ++i) {
             if (before_each) before_each(i);
             const auto& at = swatches[static_cast<std::size_t>(i) % swatches.size()];
-            moments.push_back(now_s());
+            moments.push_back(trace_now_s());
             desktop_.move_pointer(at.x, at.y);
             sleep_ms(between_ms);
         }
@@ -126,7 +93,7 @@ class Bench {
         std::vector<double> moments;
         for (int i = 0; i < count; ++i) {
             const std::string key = std::to_string(1 + (i + 1) % 4);
-            moments.push_back(now_s());
+            moments.push_back(trace_now_s());
             desktop_.hold_key(key);
             sleep_ms(looking_ms / 3);
             desktop_.release_key(key);

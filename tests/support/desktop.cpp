@@ -216,6 +216,8 @@ Desktop::~Desktop() {
 
 const std::string& Desktop::display() const { return state_->server.display(); }
 
+pid_t Desktop::server() const { return state_->server.process(); }
+
 void Desktop::xrandr(const std::vector<std::string>& arguments) {
     const TemporaryFolder folder;
     ChildOptions options;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <glm/vec2.hpp>
+#include <sys/types.h>
 
 #include "core/image.h"
 #include "support/child_process.h"
@@ -50,6 +51,7 @@ class Desktop {
     Desktop& operator=(const Desktop&) = delete;
 
     const std::string& display() const;  ///< ":5"
+    pid_t server() const;                ///< the X server's process
     static constexpr const char* operator_output = "DUMMY0";
     static constexpr const char* projector_output = "DUMMY1";
 

@@ -23,6 +23,7 @@ class XServer {
     explicit XServer(glm::ivec2 largest_px);
 
     const std::string& display() const { return display_; }  ///< ":5"
+    pid_t process() const { return server_->id(); }
     /// The end of its log.
     std::string words() const;
 
