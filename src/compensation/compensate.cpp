@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <mutex>
 #include <string>
 
 #if defined(__SSE2__)
@@ -12,6 +13,7 @@
 #include "compensation/dither.h"
 #include "compensation/drive_table.h"
 #include "core/error.h"
+#include "core/parallel.h"
 
 namespace livery {
 namespace {
@@ -56,17 +58,17 @@ void gather(const ImageF& wanted,
 }
 
 /// Three bytes a pixel, written as four: the fourth is black and lies on a later pixel, which is
-/// either written later or black anyway. Only the picture's last pixel must not.
+/// either written later or black anyway. Only the last pixel must not: what follows it may be
+/// another thread's, or not the picture's.
 void scatter(const std::uint32_t* packed,
              const std::uint32_t* pixels,
              std::size_t count,
              Image8* drive) {
     std::uint8_t* values = drive->values.data();
-    const std::size_t end = drive->values.size();
-    for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t at = 3 * static_cast<std::size_t>(pixels[i]);
-        std::memcpy(values + at, &packed[i], at + 4 <= end ? 4 : 3);
+    for (std::size_t i = 0; i + 1 < count; ++i) {
+        std::memcpy(values + 3 * static_cast<std::size_t>(pixels[i]), &packed[i], 4);
     }
+    std::memcpy(values + 3 * static_cast<std::size_t>(pixels[count - 1]), &packed[count - 1], 3);
 }
 
 /// A non-additive projector's block: N by the fast loop, drives pixel by pixel from the table.
@@ -101,15 +103,6 @@ void block_from_table(const kernel::Functions& functions,
     }
 }
 
-std::size_t count_covered(const ImageF& wanted) {
-    if (wanted.channels == 3) return wanted.pixel_count();
-    std::size_t covered = 0;
-    for (std::size_t i = 3; i < wanted.values.size(); i += 4) {
-        covered += wanted.values[i] >= 0.5f ? 1u : 0u;
-    }
-    return covered;
-}
-
 double fraction(std::int64_t part, std::int64_t whole) {
     return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
 }
@@ -120,9 +113,72 @@ float dither_of(std::uint32_t x, std::uint32_t y) {
     return dither::threshold(x * dither::kPerColumn + y * dither::kPerRow) - 0.5f;
 }
 
+namespace {
+
+/// What blocks share.
+struct Frame {
+    const kernel::Functions& functions;
+    const CompensationTable& table;
+    const ImageF& wanted;
+    Image8* drive;
+    bool counted;
+};
+
+/// The table's pixels from `begin` to `end`.
+kernel::Counts compensate_range(const Frame& frame, std::size_t begin, std::size_t end) {
+    const CompensationTable& table = frame.table;
+    const std::size_t total = table.pixels.size();
+    const auto width = static_cast<std::uint32_t>(table.width);
+    kernel::Wanted colours;
+    alignas(64) std::array<std::uint32_t, kernel::kBlock> packed;
+    kernel::Counts counts;
+    kernel::Job job;
+    for (std::size_t k = 0; k < 3; ++k) {
+        job.curves[k] = {table.drive_from_n[k].data(),
+                         static_cast<std::int32_t>(table.drive_from_n[k].size())};
+    }
+    while (begin < end) {
+        // A block stays in one row, where the dither is linear in the pixel's index.
+        const std::uint32_t row = table.pixels[begin] / width;
+        const std::uint32_t* first = table.pixels.data() + begin;
+        const std::size_t most = std::min(kernel::kBlock, end - begin);
+        job.count = static_cast<std::size_t>(
+            std::lower_bound(first, first + most, (row + 1) * width) - first);
+        job.pixels = first;
+        for (std::size_t plane = 0; plane < 12; ++plane) {
+            job.coefficients[plane] = table.coefficients.data() + plane * total + begin;
+        }
+        job.dither_of_row = row * dither::kPerRow - row * width * dither::kPerColumn;
+        gather(frame.wanted, first, job.count, &colours);
+        kernel::Counts* const counted = frame.counted ? &counts : nullptr;
+        if (table.non_additive.grid > 0) {
+            block_from_table(frame.functions, table, job, colours, packed.data(), counted);
+        } else {
+            frame.functions.block(job, colours, packed.data(), counted);
+        }
+        scatter(packed.data(), first, job.count, frame.drive);
+        begin += job.count;
+    }
+    return counts;
+}
+
+constexpr std::size_t kPixelsAtOnce = 8192;
+
+}  // namespace
+
+std::size_t count_covered(const ImageF& wanted) {
+    if (wanted.channels != 4) return wanted.pixel_count();
+    std::size_t covered = 0;
+    for (std::size_t i = 3; i < wanted.values.size(); i += 4) {
+        covered += wanted.values[i] >= 0.5f ? 1u : 0u;
+    }
+    return covered;
+}
+
 void compensate_with(const kernel::Functions& functions,
                      const CompensationTable& table,
                      const ImageF& wanted,
+                     std::size_t covered_pixels,
                      Image8* drive,
                      CompensationStats* stats) {
     check_argument(wanted.width == table.width && wanted.height == table.height &&
@@ -135,43 +191,20 @@ void compensate_with(const kernel::Functions& functions,
                        std::to_string(table.height) + " and wants 3 or 4");
     if (drive->width != table.width || drive->height != table.height || drive->channels != 3) {
         *drive = Image8(table.width, table.height, 3);
-    } else {
-        std::fill(drive->values.begin(), drive->values.end(), std::uint8_t{0});
     }
-    const std::size_t total = table.pixels.size();
-    const auto width = static_cast<std::uint32_t>(table.width);
-    kernel::Wanted colours;
-    alignas(64) std::array<std::uint32_t, kernel::kBlock> packed;
+    const Frame frame{functions, table, wanted, drive, stats != nullptr};
+    std::mutex mutex;
     kernel::Counts counts;
-    kernel::Job job;
-    for (std::size_t k = 0; k < 3; ++k) {
-        job.curves[k] = {table.drive_from_n[k].data(),
-                         static_cast<std::int32_t>(table.drive_from_n[k].size())};
-    }
-    for (std::size_t begin = 0; begin < total;) {
-        // A block stays in one row, where the dither is linear in the pixel's index.
-        const std::uint32_t row = table.pixels[begin] / width;
-        const std::uint32_t* first = table.pixels.data() + begin;
-        const std::size_t most = std::min(kernel::kBlock, total - begin);
-        job.count = static_cast<std::size_t>(
-            std::lower_bound(first, first + most, (row + 1) * width) - first);
-        job.pixels = first;
-        for (std::size_t plane = 0; plane < 12; ++plane) {
-            job.coefficients[plane] = table.coefficients.data() + plane * total + begin;
-        }
-        job.dither_of_row = row * dither::kPerRow - row * width * dither::kPerColumn;
-        gather(wanted, first, job.count, &colours);
-        if (table.non_additive.grid > 0) {
-            block_from_table(
-                functions, table, job, colours, packed.data(), stats ? &counts : nullptr);
-        } else {
-            functions.block(job, colours, packed.data(), stats ? &counts : nullptr);
-        }
-        scatter(packed.data(), first, job.count, drive);
-        begin += job.count;
-    }
+    parallel_for(table.pixels.size(), kPixelsAtOnce, [&](std::size_t begin, std::size_t end) {
+        const kernel::Counts some = compensate_range(frame, begin, end);
+        const std::scoped_lock lock(mutex);
+        counts.finite += some.finite;
+        counts.high += some.high;
+        counts.low += some.low;
+        counts.out += some.out;
+    });
     if (stats) {
-        const auto covered = static_cast<std::int64_t>(count_covered(wanted));
+        const auto covered = static_cast<std::int64_t>(covered_pixels);
         stats->out_of_gamut_fraction = fraction(counts.out, counts.finite);
         stats->clipped_high_fraction = fraction(counts.high, counts.finite);
         stats->clipped_low_fraction = fraction(counts.low, counts.finite);
@@ -179,11 +212,21 @@ void compensate_with(const kernel::Functions& functions,
     }
 }
 
+void compensate_again(const CompensationTable& table,
+                      const ImageF& wanted_working,
+                      std::size_t covered_pixels,
+                      Image8* drive,
+                      CompensationStats* stats) {
+    compensate_with(kernel::best(), table, wanted_working, covered_pixels, drive, stats);
+}
+
 void compensate_into(const CompensationTable& table,
                      const ImageF& wanted_working,
                      Image8* drive,
                      CompensationStats* stats) {
-    compensate_with(kernel::best(), table, wanted_working, drive, stats);
+    std::fill(drive->values.begin(), drive->values.end(), std::uint8_t{0});
+    compensate_again(
+        table, wanted_working, stats ? count_covered(wanted_working) : 0, drive, stats);
 }
 
 Image8 compensate(const CompensationTable& table,

@@ -1,4 +1,4 @@
-// compensate_into() with the instruction set said, so that tests can compare them.
+// compensate_again() with the instruction set said, so that tests can compare them.
 #pragma once
 
 #include "compensation/compensation.h"
@@ -9,6 +9,7 @@ namespace livery {
 void compensate_with(const kernel::Functions& functions,
                      const CompensationTable& table,
                      const ImageF& wanted_working,
+                     std::size_t covered_pixels,
                      Image8* drive,
                      CompensationStats* stats);
 

@@ -55,10 +55,10 @@ struct CompensationStats {
     double clipped_low_fraction = 0.0;   ///< of the valid ones: under the black level in some
 };
 
-/// CPU oracle, one thread. `wanted` holds R, G, B (working space) and, if there is a fourth
-/// channel, coverage: pixels covered by less than half are black, as are invalid ones. NaN, Inf
-/// never propagate. Dither is fixed by pixel position. Throws std::invalid_argument on a wrong
-/// size or channel count.
+/// On all threads, which change no bit of it; the GPU pass's oracle. `wanted` holds R, G, B
+/// (working space) and, if there is a fourth channel, coverage: pixels covered by less than half
+/// are black, as are invalid ones. NaN, Inf never propagate. Dither is fixed by pixel position.
+/// Throws std::invalid_argument on a wrong size or channel count.
 Image8 compensate(const CompensationTable& table,
                   const ImageF& wanted_working,
                   CompensationStats* stats = nullptr);
@@ -68,6 +68,18 @@ void compensate_into(const CompensationTable& table,
                      const ImageF& wanted_working,
                      Image8* drive,
                      CompensationStats* stats = nullptr);
+
+/// Pixels that `wanted` covers by half or more, all without a coverage channel.
+std::size_t count_covered(const ImageF& wanted_working);
+
+/// compensate_into() for a show: what it costs depends on the table's pixels, not on the picture's.
+/// `drive` is empty or holds what this function made of the same table; `covered_pixels` is
+/// count_covered(), which a mock-up that stands still need not count again.
+void compensate_again(const CompensationTable& table,
+                      const ImageF& wanted_working,
+                      std::size_t covered_pixels,
+                      Image8* drive,
+                      CompensationStats* stats = nullptr);
 
 enum class GamutMapping { strict, preserve };
 

@@ -132,6 +132,8 @@ struct HeadlessContext::State {
 
 bool GlContext::is_software() const { return names_software(renderer_); }
 
+bool current_context_is_software() { return names_software(gl_text(GL_RENDERER)); }
+
 void GlContext::read_names() {
     renderer_ = gl_text(GL_RENDERER);
     version_ = gl_text(GL_VERSION);

@@ -33,6 +33,9 @@ class GlContext {
     std::string renderer_, version_;
 };
 
+/// The same of whichever context is current on this thread.
+bool current_context_is_software();
+
 /// Needs no display. `automatic` takes the first graphics card that gives a 4.5 core context, else
 /// the software renderer; the choice never touches the environment. Current on the calling thread
 /// after construction. Throws std::runtime_error that names what was tried and why each failed.

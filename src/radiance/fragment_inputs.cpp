@@ -66,8 +66,14 @@ FragmentInputs::FragmentInputs(const Mesh& mesh,
                                const Tracer& tracer,
                                const SurfaceMap& map,
                                const PackedLayout& layout,
+                               ShadingDevice device,
                                bool keep_better)
-    : mesh_(mesh), tracer_(tracer), map_(map), layout_(layout), keep_better_(keep_better) {}
+    : mesh_(mesh),
+      tracer_(tracer),
+      map_(map),
+      layout_(layout),
+      device_(device),
+      keep_better_(keep_better) {}
 
 void FragmentInputs::solve(const Scene& scene,
                            const FramePlan& plan,
@@ -215,7 +221,7 @@ void FragmentInputs::fill_mirror(const Scene& scene, bool occluded, const Progre
 }
 
 FragmentInputs::Changed FragmentInputs::upload(const Scene& scene, StageClock& clock) {
-    if (!mirror_made_.of) shading_.mirror = Texture2D();
+    if (!mirror_made_.of) shading_.mirror = InputLayers();
     if (!mirror_texels_.empty()) {
         clock.add(kMirrorPass, [&] {
             upload_mirror();
@@ -238,14 +244,11 @@ FragmentInputs::Changed FragmentInputs::upload(const Scene& scene, StageClock& c
 }
 
 void FragmentInputs::upload_mirror() {
-    make(shading_.mirror,
-         {kPackedWidth, layout_.rows, static_cast<int>(kMirrorAlphas.size())},
-         TexelFormat::rgba16f);
+    make(shading_.mirror, kMirrorAlphas.size(), InputLayers::Precision::half);
     const std::size_t layer_size = mirror_texels_.size() / kMirrorAlphas.size();
     for (std::size_t k = 0; k < kMirrorAlphas.size(); ++k) {
         shading_.mirror.upload(
             std::span<const float>(mirror_texels_).subspan(k * layer_size, layer_size),
-            0,
             static_cast<int>(k));
     }
     shading_.mirror_unit = mirror_unit_;
@@ -253,12 +256,11 @@ void FragmentInputs::upload_mirror() {
 }
 
 void FragmentInputs::upload_directions(const Scene& scene) {
-    const TextureShape shape{kPackedWidth, layout_.rows};
     const auto fragment = [&](std::size_t i) -> const Fragment& { return map_.fragments[i]; };
-    const auto upload = [&](Texture2D& texture, int layer, const auto& value) {
-        texture.upload(std::span<const float>(packed(map_, layout_, value)), 0, layer);
+    const auto upload = [&](InputLayers& input, int layer, const auto& value) {
+        input.upload(packed(map_, layout_, value), layer);
     };
-    make(shading_.eye, shape, TexelFormat::rgba32f);
+    make(shading_.eye, 0, InputLayers::Precision::full);
     upload(shading_.eye, 0, [&](std::size_t i) {
         const glm::vec3 wo = toward_eye(fragment(i), scene.eye_in_world_mm);
         return glm::vec4(to_local(fragment(i), wo), fragment(i).normal_variance);
@@ -267,9 +269,7 @@ void FragmentInputs::upload_directions(const Scene& scene) {
     shading_.light_irradiance.clear();
     shading_.light_radius2.clear();
     if (!lights_.empty()) {
-        make(shading_.lights,
-             {shape.width, shape.height, static_cast<int>(lights_.size())},
-             TexelFormat::rgba32f);
+        make(shading_.lights, lights_.size(), InputLayers::Precision::full);
     }
     for (std::size_t k = 0; k < lights_.size(); ++k) {
         const Light& light = lights_[k];
@@ -282,14 +282,14 @@ void FragmentInputs::upload_directions(const Scene& scene) {
         });
     }
     if (sky_.empty()) return;
-    make(shading_.sky, shape, TexelFormat::rgba16f);
+    make(shading_.sky, 0, InputLayers::Precision::half);
     upload(shading_.sky, 0, [&](std::size_t i) {
         return glm::vec4(glm::min(sky_[i], glm::vec3(kHalfLargest)), 1.0f);
     });
 }
 
 void FragmentInputs::upload_diffuse_light() {
-    make(shading_.lit, {kPackedWidth, layout_.rows}, TexelFormat::rgba16f);
+    make(shading_.lit, 0, InputLayers::Precision::half);
     const auto light_on = [&](std::size_t i) {
         glm::vec3 sum = sky_.empty() ? glm::vec3(0.0f) : sky_[i];
         for (const Light& light : lights_) {
@@ -299,17 +299,13 @@ void FragmentInputs::upload_diffuse_light() {
         }
         return glm::vec4(glm::min(sum, glm::vec3(kHalfLargest)), 1.0f);
     };
-    shading_.lit.upload(std::span<const float>(packed(map_, layout_, light_on)));
+    shading_.lit.upload(packed(map_, layout_, light_on), 0);
 }
 
-void FragmentInputs::make(Texture2D& texture, TextureShape shape, TexelFormat format) {
-    const TextureShape& old = texture.shape();
-    if (texture && old.width == shape.width && old.height == shape.height &&
-        old.layers == shape.layers) {
-        return;
-    }
-    texture = Texture2D(shape, format);
-    ++textures_made_;
+void FragmentInputs::make(InputLayers& input,
+                          std::size_t layers,
+                          InputLayers::Precision precision) {
+    if (input.make(device_, layout_.rows, static_cast<int>(layers), precision)) ++layers_made_;
 }
 
 }  // namespace livery

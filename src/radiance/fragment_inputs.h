@@ -74,6 +74,7 @@ class FragmentInputs {
                    const Tracer& tracer,
                    const SurfaceMap& map,
                    const PackedLayout& layout,
+                   ShadingDevice device,
                    bool keep_better);
 
     /// Solves everything that the plan lists and that does not stand, without OpenGL. A stop leaves
@@ -87,10 +88,10 @@ class FragmentInputs {
         bool diffuse = false;  ///< the plain diffuse ones
         bool glossy = false;
     };
-    /// Hands what solve() changed to OpenGL.
+    /// Hands what solve() changed to the device that shades.
     Changed upload(const Scene& scene, StageClock& clock);
     const ShadingInputs& shading() const { return shading_; }
-    int textures_made() const { return textures_made_; }
+    int layers_made() const { return layers_made_; }
 
   private:
     struct Light {
@@ -109,13 +110,14 @@ class FragmentInputs {
     bool enough(int rays, int wanted) const {
         return keep_better_ ? rays >= wanted : rays == wanted;
     }
-    void make(Texture2D& texture, TextureShape shape, TexelFormat format);
+    void make(InputLayers& input, std::size_t layers, InputLayers::Precision precision);
 
     const Mesh& mesh_;
     const Tracer& tracer_;
     const SurfaceMap& map_;
     const PackedLayout& layout_;
 
+    const ShadingDevice device_;
     const bool keep_better_;
 
     std::vector<Light> lights_;
@@ -141,7 +143,7 @@ class FragmentInputs {
     bool directions_stale_ = true, diffuse_light_stale_ = true;
     Changed changed_;
     ShadingInputs shading_;
-    int textures_made_ = 0;
+    int layers_made_ = 0;
 };
 
 }  // namespace livery

@@ -7,12 +7,15 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/recycler.h"
+#include "gl/context.h"
 #include "gl/draw.h"
 #include "gl/read_back.h"
 #include "gl/timer.h"
 #include "radiance/environment_filter.h"
 #include "radiance/fragment_inputs.h"
 #include "radiance/packed_fragments.h"
+#include "radiance/processor_shading.h"
 #include "radiance/resolve.h"
 #include "radiance/shading.h"
 
@@ -48,12 +51,19 @@ struct RadianceRenderer::State {
     const SurfaceMap& map;
     bool map_reported = false;
 
+    const ShadingDevice device;
     PackedLayout layout;
     FragmentInputs inputs;
     ShadingPrograms programs;
     std::optional<ResolvePass> resolve;
     Texture2D shaded, target;
     Framebuffer shaded_framebuffer, target_framebuffer;
+    std::optional<ProcessorShading> processor;
+
+    /// Of this view alone: where the product is not, each of them is black already.
+    Recycler<ImageF> pictures;
+    std::shared_ptr<const ImageF> picture;  ///< the last frame; null: still in OpenGL, if at all
+    bool target_stale = true;
 
     struct Shaded {
         Material material;
@@ -64,26 +74,28 @@ struct RadianceRenderer::State {
     int own_textures = 0;
     Counters counters;
 
-    State(std::shared_ptr<const FrameGeometry> its_geometry, bool keep_better)
+    State(std::shared_ptr<const FrameGeometry> its_geometry,
+          bool keep_better,
+          ShadingDevice its_device)
         : geometry(std::move(its_geometry)),
           map(geometry->map),
+          device(its_device),
           layout(layout_of(map)),
-          inputs(geometry->product->mesh, geometry->tracer, map, layout, keep_better),
-          target(map.width, map.height, TexelFormat::rgba16f),
-          target_framebuffer({&target}),
-          parts(geometry->product->mesh.parts.size()) {
-        target.clear();
-        own_textures = 1;
-    }
+          inputs(geometry->product->mesh, geometry->tracer, map, layout, device, keep_better),
+          parts(geometry->product->mesh.parts.size()) {}
 
     void solve(const Scene& scene, FramePlan& plan, StageClock& clock, const Progress& progress);
-    void make_shaded();
+    void make_shading();
+    void make_target();
+    std::shared_ptr<ImageF> blank_picture();
     /// Shades the parts that need it; their timers are read when all is drawn.
     void shade(const Scene& scene, FramePlan& plan);
     void upload(const Scene& scene, StageClock& clock);
-    void run_resolve(FramePlan& plan, bool any_shaded);
+    void shade_part(PlannedPass& pass, const Scene& scene, std::size_t part);
+    void run_resolve(FramePlan& plan);
     void read_timers();
 
+    int parts_shaded = 0;  ///< for this frame
     std::vector<std::pair<PlannedPass*, GlTimer*>> running;
     GlTimer& timer_for(PlannedPass* pass) {
         if (timers.size() <= running.size()) timers.emplace_back();
@@ -110,11 +122,29 @@ void RadianceRenderer::State::solve(const Scene& scene,
     progress.check_stop();
 }
 
-void RadianceRenderer::State::make_shaded() {
-    if (shaded) return;
-    shaded = Texture2D(kPackedWidth, layout.rows, TexelFormat::rgba16f);
-    shaded_framebuffer = Framebuffer({&shaded});
+void RadianceRenderer::State::make_shading() {
+    if (shaded || processor) return;
+    if (device == ShadingDevice::processor) {
+        processor.emplace(map, layout);
+    } else {
+        shaded = Texture2D(kPackedWidth, layout.rows, TexelFormat::rgba16f);
+        shaded_framebuffer = Framebuffer({&shaded});
+    }
     ++own_textures;
+}
+
+void RadianceRenderer::State::make_target() {
+    if (target) return;
+    target = Texture2D(map.width, map.height, TexelFormat::rgba16f);
+    target_framebuffer = Framebuffer({&target});
+    target.clear();
+    ++own_textures;
+}
+
+std::shared_ptr<ImageF> RadianceRenderer::State::blank_picture() {
+    auto blank = pictures.take();
+    if (blank->empty()) *blank = ImageF(map.width, map.height, 4);
+    return blank;
 }
 
 /// What is shaded in another light now does not stand.
@@ -128,7 +158,8 @@ void RadianceRenderer::State::upload(const Scene& scene, StageClock& clock) {
 }
 
 void RadianceRenderer::State::shade(const Scene& scene, FramePlan& plan) {
-    make_shaded();
+    make_shading();
+    parts_shaded = 0;
     for (std::size_t p = 0; p < parts.size(); ++p) {
         PlannedPass* pass = find_pass(plan, shade_pass(scene, p));
         pass->ms = 0.0;
@@ -137,32 +168,55 @@ void RadianceRenderer::State::shade(const Scene& scene, FramePlan& plan) {
                             parts[p]->exposure_ev == scene.exposure_ev;
         if (stands) continue;
         parts[p] = Shaded{material, scene.exposure_ev};
-        const PixelRect rectangle = layout.rectangle(p);
-        if (rectangle.height == 0) continue;
-        GlTimer& timer = timer_for(pass);
-        timer.start();
-        programs.shade(
-            material, inputs.shading(), scene.exposure_ev, rectangle, shaded_framebuffer);
-        timer.stop();
+        if (layout.fragments(p) == 0) continue;
+        shade_part(*pass, scene, p);
+        ++parts_shaded;
         ++counters.passes_run;
         counters.fragments_shaded += static_cast<int>(layout.fragments(p));
     }
 }
 
-void RadianceRenderer::State::run_resolve(FramePlan& plan, bool any_shaded) {
+void RadianceRenderer::State::shade_part(PlannedPass& pass, const Scene& scene, std::size_t part) {
+    const Material& material = scene.part_materials[part];
+    if (processor) {
+        const double begin = StageClock::now_ms();
+        processor->shade(material, inputs.shading(), scene.exposure_ev, part);
+        pass.ms = *pass.ms + StageClock::now_ms() - begin;
+        return;
+    }
+    GlTimer& timer = timer_for(&pass);
+    timer.start();
+    programs.shade(
+        material, inputs.shading(), scene.exposure_ev, layout.rectangle(part), shaded_framebuffer);
+    timer.stop();
+}
+
+void RadianceRenderer::State::run_resolve(FramePlan& plan) {
     PlannedPass* pass = find_pass(plan, kResolvePass);
     check_argument(pass != nullptr, "the plan has no resolve pass");
     pass->ms = 0.0;
-    if (!any_shaded) return;
+    if (parts_shaded == 0) return;
+    ++counters.passes_run;
+    if (processor) {
+        const double begin = StageClock::now_ms();
+        const auto next = blank_picture();
+        processor->resolve(next.get());
+        picture = next;
+        target_stale = true;
+        pass->ms = StageClock::now_ms() - begin;
+        return;
+    }
     if (!resolve) {
         resolve.emplace(map, layout);
         own_textures += ResolvePass::kTextures;
     }
+    make_target();
     GlTimer& timer = timer_for(pass);
     timer.start();
     resolve->run(shaded, target_framebuffer);
     timer.stop();
-    ++counters.passes_run;
+    picture = nullptr;
+    target_stale = false;
 }
 
 void RadianceRenderer::State::read_timers() {
@@ -176,9 +230,13 @@ RadianceRenderer::RadianceRenderer(std::shared_ptr<const Product> product,
     : RadianceRenderer(std::make_shared<const FrameGeometry>(std::move(product), view, progress)) {}
 
 RadianceRenderer::RadianceRenderer(std::shared_ptr<const FrameGeometry> geometry,
-                                   bool keep_better) {
+                                   bool keep_better,
+                                   ShadingDevice device) {
     check_argument(geometry != nullptr, "a renderer needs a geometry");
-    state_ = std::make_unique<State>(std::move(geometry), keep_better);
+    if (device == ShadingDevice::automatic) {
+        device = current_context_is_software() ? ShadingDevice::processor : ShadingDevice::gl;
+    }
+    state_ = std::make_unique<State>(std::move(geometry), keep_better, device);
 }
 
 RadianceRenderer::~RadianceRenderer() = default;
@@ -194,6 +252,7 @@ void RadianceRenderer::prepare(const Scene& scene, FramePlan& plan, const Progre
     StageClock clock(plan);
     s.solve(scene, plan, clock, progress);
     s.upload(scene, clock);
+    if (s.device == ShadingDevice::processor) return;
     for (const Material& material : scene.part_materials) {
         progress.check_stop();
         s.programs.compile(material, s.inputs.shading());
@@ -210,7 +269,7 @@ void RadianceRenderer::render(const Scene& scene, FramePlan& plan, const Progres
     s.counters.passes_run += clock.passes_run() - before;
     s.running.clear();
     s.shade(scene, plan);
-    s.run_resolve(plan, !s.running.empty());
+    s.run_resolve(plan);
     s.read_timers();
 }
 
@@ -240,13 +299,29 @@ void RadianceRenderer::count_work(const Scene& scene, FramePlan& plan) const {
     set(kResolvePass, static_cast<double>(s.map.covered_pixels));
 }
 
-ImageF RadianceRenderer::read_back() const { return read_floats(state_->target); }
+ImageF RadianceRenderer::read_back() const { return *picture(); }
 
-void RadianceRenderer::read_back_into(ImageF* picture) const {
-    read_floats_into(state_->target, picture);
+std::shared_ptr<const ImageF> RadianceRenderer::picture() const {
+    State& s = *state_;
+    if (!s.picture) {
+        const auto next = s.blank_picture();
+        if (s.target) read_floats_into(s.target, next.get());
+        s.picture = next;
+    }
+    return s.picture;
 }
 
-unsigned RadianceRenderer::texture() const { return state_->target.name(); }
+unsigned RadianceRenderer::texture() const {
+    State& s = *state_;
+    s.make_target();
+    if (s.picture && s.target_stale) {
+        s.target.upload(std::span<const float>(s.picture->values));
+        s.target_stale = false;
+    }
+    return s.target.name();
+}
+
+ShadingDevice RadianceRenderer::device() const { return state_->device; }
 
 const SurfaceMap& RadianceRenderer::surface_map() const { return state_->map; }
 
@@ -257,7 +332,7 @@ const std::shared_ptr<const FrameGeometry>& RadianceRenderer::geometry() const {
 RadianceRenderer::Counters RadianceRenderer::counters() const {
     Counters counters = state_->counters;
     counters.programs = state_->programs.compiled() + (state_->resolve ? 1 : 0);
-    counters.textures = state_->own_textures + state_->inputs.textures_made();
+    counters.textures = state_->own_textures + state_->inputs.layers_made();
     return counters;
 }
 

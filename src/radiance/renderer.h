@@ -1,4 +1,5 @@
-// (1) scene x projector view -> linear radiance, in OpenGL. Shaded for the eye point.
+// (1) scene x projector view -> linear radiance. Shaded for the eye point, in OpenGL, or on the
+// processor where OpenGL would be software.
 #pragma once
 
 #include <memory>
@@ -6,6 +7,7 @@
 
 #include "core/image.h"
 #include "core/progress.h"
+#include "radiance/input_layers.h"
 #include "radiance/surface_map.h"
 #include "scene/frame_plan.h"
 #include "scene/scene.h"
@@ -39,7 +41,8 @@ class RadianceRenderer {
     /// With `keep_better`, what was solved with more rays than a plan's quality asks for stands, so
     /// that a draft of a new light keeps the environment of a better level.
     explicit RadianceRenderer(std::shared_ptr<const FrameGeometry> geometry,
-                              bool keep_better = false);
+                              bool keep_better = false,
+                              ShadingDevice device = ShadingDevice::automatic);
     ~RadianceRenderer();
     RadianceRenderer(const RadianceRenderer&) = delete;
     RadianceRenderer& operator=(const RadianceRenderer&) = delete;
@@ -64,15 +67,18 @@ class RadianceRenderer {
     /// The last frame in the working space: R, G, B, coverage. Colour is the mean over the covered
     /// part of a pixel, 0 where nothing is covered.
     ImageF read_back() const;
-    void read_back_into(ImageF* picture) const;  ///< kept from frame to frame
+    /// The same without a copy, shared with the renderer until it draws the next one.
+    std::shared_ptr<const ImageF> picture() const;
 
     /// OpenGL name of the RGBA16F texture that holds the last frame, for the compensation pass.
     unsigned texture() const;
     const SurfaceMap& surface_map() const;
     const std::shared_ptr<const FrameGeometry>& geometry() const;
 
-    /// Programs compiled, textures allocated and passes run so far: a test counts that what is not
-    /// in the plan costs nothing.
+    ShadingDevice device() const;  ///< gl or processor
+
+    /// Programs compiled, textures (or arrays in their place) allocated and passes run so far: a
+    /// test counts that what is not in the plan costs nothing.
     struct Counters {
         int programs = 0, textures = 0, passes_run = 0, fragments_shaded = 0;
     };

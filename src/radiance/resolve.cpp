@@ -1,30 +1,14 @@
 #include "radiance/resolve.h"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
 
 #include <fmt/format.h>
 
-#include "core/error.h"
+#include "radiance/fragment_index.h"
 #include "radiance/ray_grid.h"
 
 namespace livery {
 namespace {
-
-/// Words of the index: [more: 1][covering samples: enough bits][address: the rest]. In a pixel's
-/// word `more` says that the address is that of a list; in a list, that another word follows.
-struct WordLayout {
-    unsigned address_bits;
-
-    explicit WordLayout(int samples_per_pixel)
-        : address_bits(31u - static_cast<unsigned>(
-                                 std::bit_width(static_cast<unsigned>(samples_per_pixel)))) {}
-    std::uint32_t word(bool more, std::uint32_t samples, std::size_t address) const {
-        return (more ? 0x80000000u : 0u) | (samples << address_bits) |
-               static_cast<std::uint32_t>(address);
-    }
-};
 
 /// Corners of rectangles that cover every tile with coverage, neighbours in a row merged.
 std::vector<float> covered_rectangles(const ImageF& coverage, std::size_t& pixels) {
@@ -58,41 +42,10 @@ std::vector<float> covered_rectangles(const ImageF& coverage, std::size_t& pixel
 }  // namespace
 
 ResolvePass::ResolvePass(const SurfaceMap& map, const PackedLayout& layout) {
-    const WordLayout words(map.samples_per_pixel);
-    check_argument(static_cast<std::size_t>(layout.rows) * kPackedWidth <
-                       (std::size_t{1} << words.address_bits),
-                   fmt::format("{} fragments are more than the resolve pass can address",
-                               map.fragments.size()));
-
-    // Fragments of each pixel, in order
-    const std::size_t pixel_count = map.coverage.pixel_count();
-    std::vector<std::uint32_t> count(pixel_count + 1, 0);
-    for (const Fragment& f : map.fragments) ++count[f.pixel + 1];
-    for (std::size_t p = 0; p < pixel_count; ++p) count[p + 1] += count[p];
-    std::vector<std::uint32_t> sorted(map.fragments.size());
-    std::vector<std::uint32_t> filled(count.begin(), count.end() - 1);
-    for (std::uint32_t i = 0; i < map.fragments.size(); ++i) {
-        sorted[filled[map.fragments[i].pixel]++] = i;
-    }
-
-    std::vector<std::uint32_t> first(pixel_count, 0), lists;
-    for (std::size_t p = 0; p < pixel_count; ++p) {
-        const std::uint32_t begin = count[p], end = count[p + 1];
-        if (begin == end) continue;
-        if (end - begin > 1) first[p] = words.word(true, 0, lists.size());
-        for (std::uint32_t i = begin; i < end; ++i) {
-            const Fragment& f = map.fragments[sorted[i]];
-            const auto samples = static_cast<std::uint32_t>(
-                std::lround(f.coverage * static_cast<float>(map.samples_per_pixel)));
-            const std::uint32_t word = words.word(
-                i + 1 < end && end - begin > 1, samples, layout.address(sorted[i], f.part));
-            if (end - begin > 1) {
-                lists.push_back(word);
-            } else {
-                first[p] = word;
-            }
-        }
-    }
+    FragmentIndex index = index_fragments(map, layout);
+    std::vector<std::uint32_t> first(map.coverage.pixel_count(), 0);
+    for (std::size_t i = 0; i < index.pixels.size(); ++i) first[index.pixels[i]] = index.words[i];
+    std::vector<std::uint32_t>& lists = index.lists;
     lists.resize((std::max<std::size_t>(lists.size(), 1) + kPackedWidth - 1) / kPackedWidth *
                  kPackedWidth);
 
@@ -110,7 +63,7 @@ ResolvePass::ResolvePass(const SurfaceMap& map, const PackedLayout& layout) {
     }
     program_ = Program(load_shader("radiance/resolve.vert"),
                        load_shader("radiance/resolve.frag",
-                                   {fmt::format("ADDRESS_BITS {}", words.address_bits),
+                                   {fmt::format("ADDRESS_BITS {}", index.address_bits),
                                     fmt::format("SAMPLES {}", map.samples_per_pixel)}));
 }
 

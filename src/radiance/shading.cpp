@@ -6,6 +6,7 @@
 #include <string>
 
 #include <fmt/format.h>
+#include <glm/gtc/type_ptr.hpp>
 
 #include "appearance/bsdf.h"
 #include "core/paths.h"
@@ -46,20 +47,24 @@ glm::vec2 mirror_layer(float alpha) {
 
 }  // namespace
 
-void set_paint(Program& program, const Material& material, double exposure_ev) {
+PaintUniforms uniforms_of(const Material& material, double exposure_ev) {
     const BsdfParameters p = parameters_of(material);
-    program.set("u_exposure", static_cast<float>(std::exp2(exposure_ev)));
-    program.set("u_f0", p.f0);
-    program.set("u_base_layer", mirror_layer(std::sqrt(p.alpha_x * p.alpha_y)));
-    program.set("u_coat_layer", mirror_layer(p.coat_alpha));
-    program.set("u_alpha", glm::vec4(p.alpha_x, p.alpha_y, p.coat_alpha, p.coat_f0));
+    PaintUniforms u{};
+    const auto set = [](auto& uniform, const auto& value) {
+        for (int c = 0; c < static_cast<int>(std::size(uniform)); ++c) uniform[c] = value[c];
+    };
+    u.exposure = static_cast<float>(std::exp2(exposure_ev));
+    set(u.f0, p.f0);
+    set(u.base_layer, mirror_layer(std::sqrt(p.alpha_x * p.alpha_y)));
+    set(u.coat_layer, mirror_layer(p.coat_alpha));
+    set(u.alpha, glm::vec4(p.alpha_x, p.alpha_y, p.coat_alpha, p.coat_f0));
     switch (material.model) {
         case ReflectanceModel::lambert:
-            program.set("u_diffuse", p.diffuse);
+            set(u.diffuse, p.diffuse);
             break;
         case ReflectanceModel::ggx:
-            program.set("u_diffuse", p.diffuse / average_through(p));
-            program.set("u_sky_diffuse", p.diffuse);
+            set(u.diffuse, p.diffuse / average_through(p));
+            set(u.sky_diffuse, p.diffuse);
             break;
         case ReflectanceModel::clearcoat: {
             const float inverse_index2 = f32::coat_inverse_index_squared(p);
@@ -67,21 +72,36 @@ void set_paint(Program& program, const Material& material, double exposure_ev) {
             const glm::vec3 share =
                 glm::min(average_through(p), glm::vec3(f32::coat_average_transmission(p)));
             const float mean_path = f32::coat_path(2.0f / 3.0f, inverse_index2);
-            program.set("u_diffuse", diffuse);
-            program.set("u_sky_diffuse", diffuse * share * f32::coat_absorption(p, mean_path));
-            program.set("u_coat_log_transmittance",
-                        glm::log2(glm::max(p.coat_transmittance, glm::vec3(1e-6f))));
-            program.set("u_coat_inverse_index_squared", inverse_index2);
+            set(u.diffuse, diffuse);
+            set(u.sky_diffuse, diffuse * share * f32::coat_absorption(p, mean_path));
+            set(u.coat_log_transmittance,
+                glm::log2(glm::max(p.coat_transmittance, glm::vec3(1e-6f))));
+            u.coat_inverse_index_squared = inverse_index2;
             break;
         }
     }
+    return u;
+}
+
+void set_paint(Program& program, const Material& material, double exposure_ev) {
+    const PaintUniforms u = uniforms_of(material, exposure_ev);
+    program.set("u_exposure", u.exposure);
+    program.set("u_diffuse", glm::make_vec3(u.diffuse));
+    program.set("u_sky_diffuse", glm::make_vec3(u.sky_diffuse));
+    program.set("u_f0", glm::make_vec3(u.f0));
+    program.set("u_alpha", glm::make_vec4(u.alpha));
+    program.set("u_base_layer", glm::make_vec2(u.base_layer));
+    program.set("u_coat_layer", glm::make_vec2(u.coat_layer));
+    program.set("u_coat_log_transmittance", glm::make_vec3(u.coat_log_transmittance));
+    program.set("u_coat_inverse_index_squared", u.coat_inverse_index_squared);
 }
 
 Program make_shading_program(const ShadingKey& key, ShadingSource source) {
     const auto [model, lights, environment] = key;
     const bool raster = source == ShadingSource::raster;
     const std::string defines = fmt::format(
-        "#define {} 1\n#define LIGHTS {}\n#define ENVIRONMENT {}\n"
+        "#define {} 1\n#define LIGHTS {}\n#define LIGHT_COUNT LIGHTS\n#define ENVIRONMENT {}\n"
+        "#define VEC4 vec4\n#define UNIFORM uniform\n"
         "#define LAYERS {}\n#define FIRST_ALPHA {:.8f}\n#define MESH_ROW {}\n",
         define_of(model),
         lights,
@@ -93,9 +113,11 @@ Program make_shading_program(const ShadingKey& key, ShadingSource source) {
     if (model != ReflectanceModel::lambert) text += shipped_text("disc.glsl");
     if (raster) text += shipped_text("mesh_texels.glsl") + shipped_text("lens.glsl");
     text += shipped_text(raster ? "inputs_raster.glsl" : "inputs_packed.glsl");
-    if (raster) text += "#define main shade\n";
     text += shipped_text("shade.glsl");
-    if (raster) text += "#undef main\nvoid main() {\n    prepare_sample();\n    shade();\n}\n";
+    text += fmt::format(
+        "layout(location = 0) out vec4 radiance;\n"
+        "void main() {{\n    {}radiance = vec4(shaded(), 1.0);\n}}\n",
+        raster ? "prepare_sample();\n    " : "");
     const ShaderSource fragment{fmt::format("shade {}", define_of(model)), text};
     if (!raster) return Program::screen_pass(fragment);
     return Program(load_shader("radiance/raster_part.vert", {}), fragment);
@@ -137,14 +159,14 @@ void ShadingPrograms::shade(const Material& material,
     set_paint(program, material, exposure_ev);
     if (model == ReflectanceModel::lambert) {
         program.set("u_lit", 0);
-        inputs.lit.bind(0);
+        inputs.lit.texture().bind(0);
     } else {
         program.set("u_eye", 0);
-        inputs.eye.bind(0);
+        inputs.eye.texture().bind(0);
     }
     if (lights > 0) {
         program.set("u_lights", 1);
-        inputs.lights.bind(1);
+        inputs.lights.texture().bind(1);
         program.set("u_light_radiance", std::span<const glm::vec3>(inputs.light_irradiance));
         program.set("u_light_radius2", std::span<const float>(inputs.light_radius2));
     }
@@ -152,8 +174,8 @@ void ShadingPrograms::shade(const Material& material,
         program.set("u_sky", 2);
         program.set("u_mirror", 3);
         program.set("u_mirror_unit", inputs.mirror_unit);
-        inputs.sky.bind(2);
-        inputs.mirror.bind(3);
+        inputs.sky.texture().bind(2);
+        inputs.mirror.texture().bind(3);
     }
     DrawState state;
     state.scissor = rectangle;

@@ -13,17 +13,19 @@
 #include "gl/draw.h"
 #include "gl/handles.h"
 #include "gl/program.h"
+#include "radiance/input_layers.h"
+#include "radiance/lane_shading.h"
 #include "scene/look.h"
 
 namespace livery {
 
-/// Textures of the packed layout; those that no program of the scene reads stay empty.
+/// In the packed layout; those that no paint of the scene reads stay empty.
 struct ShadingInputs {
-    Texture2D lit;     ///< light on a white diffuser, for plain diffuse parts
-    Texture2D eye;     ///< direction to the eye; mean squared slope
-    Texture2D lights;  ///< one layer a light: direction, visibility
-    Texture2D sky;     ///< environment on a white diffuser
-    Texture2D mirror;  ///< one layer for each of kMirrorAlphas: environment over the mirror lobe
+    InputLayers lit;     ///< light on a white diffuser, for plain diffuse parts
+    InputLayers eye;     ///< direction to the eye; mean squared slope
+    InputLayers lights;  ///< one layer a light: direction, visibility
+    InputLayers sky;     ///< environment on a white diffuser
+    InputLayers mirror;  ///< one layer for each of kMirrorAlphas: environment over the mirror lobe
     float mirror_unit = 1.0f;                 ///< radiance of a value of 1 in `mirror`
     std::vector<glm::vec3> light_irradiance;  ///< one a layer of `lights`, facing it
     std::vector<float> light_radius2;         ///< half of the disc's angle, squared
@@ -42,6 +44,7 @@ inline constexpr int kMeshRow = 2048;
 Program make_shading_program(const ShadingKey& key, ShadingSource source);
 
 /// Uniforms that depend on the paint and the exposure only.
+PaintUniforms uniforms_of(const Material& material, double exposure_ev);
 void set_paint(Program& program, const Material& material, double exposure_ev);
 
 /// Compiles on first use.

@@ -304,8 +304,7 @@ void FrameLane::draw_side(const FrameDescription& description, std::size_t index
         RadianceRenderer& renderer = *lights_[light].renderer;
         FramePlan drawn = plan_frame(scene, solved_[light]->quality, FrameStage::projector);
         renderer.render(scene, drawn);
-        auto radiance = radiances_.take();
-        renderer.read_back_into(radiance.get());
+        auto radiance = renderer.picture();
         side.shade_ms += milliseconds_since(start);
         add_milliseconds(drawn, side.plan, false);
         side.plan = std::move(drawn);
@@ -320,21 +319,27 @@ void FrameLane::draw_side(const FrameDescription& description, std::size_t index
     }
     if (painted && side.setup == description.setup) return;
     side.setup = nullptr;  // until it worked
-    compensate_side(*description.setup, side);
+    compensate_side(description.setup, side);
     side.setup = description.setup;
 }
 
-void FrameLane::compensate_side(const ProjectorSetup& setup, Side& side) {
+void FrameLane::compensate_side(const std::shared_ptr<const ProjectorSetup>& setup, Side& side) {
     const auto start = Clock::now();
-    auto drive = drives_.take();
+    std::shared_ptr<Image8> drive;
     PlannedPass& pass = *find_pass(side.plan, kCompensationPass);
     side.compensation = {};
-    if (setup.table) {
-        // On one processor thread: quicker than OpenGL in software, and it counts what is out of
-        // the gamut, which the OpenGL pass does not.
-        compensate_into(*setup.table, *side.radiance_working, drive.get(), &side.compensation);
-        pass.work_items = static_cast<double>(setup.table->pixels.size());
+    if (setup->table) {
+        // On the processor: quicker than OpenGL in software, and it counts what is out of the
+        // gamut, which the OpenGL pass does not.
+        if (corrected_.of != setup) corrected_ = {setup, std::make_unique<Recycler<Image8>>()};
+        drive = corrected_.pictures->take();
+        std::optional<std::size_t>& covered = lights_[side.light].covered_pixels;
+        if (!covered) covered = count_covered(*side.radiance_working);
+        compensate_again(
+            *setup->table, *side.radiance_working, *covered, drive.get(), &side.compensation);
+        pass.work_items = static_cast<double>(setup->table->pixels.size());
     } else {
+        drive = drives_.take();
         srgb_from_working_into(*side.radiance_working, drive.get());
         pass.why = "without a calibration the frame goes out as sRGB";
         pass.work_items = static_cast<double>(drive->pixel_count());

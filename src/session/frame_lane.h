@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "core/recycler.h"
 #include "radiance/renderer.h"
 #include "session/frame_thread.h"
 #include "session/low_priority.h"
-#include "session/recycler.h"
 #include "session/solve_key.h"
 #include "session/texture_pool.h"
 
@@ -92,7 +92,7 @@ class FrameLane {
     std::shared_ptr<FinishedFrame> draw_picture(const FrameDescription& description);
     Scene scene_of(const FrameDescription& description, std::size_t side) const;
     void draw_side(const FrameDescription& description, std::size_t side);
-    void compensate_side(const ProjectorSetup& setup, Side& side);
+    void compensate_side(const std::shared_ptr<const ProjectorSetup>& setup, Side& side);
     void compose(const FrameDescription& description);
     std::shared_ptr<const TexturePool::Slot> upload(const Image8& drive);
     FramePlan told_plan(bool wiped);
@@ -101,7 +101,8 @@ class FrameLane {
 
     struct Solved {
         std::unique_ptr<RadianceRenderer> renderer;
-        std::optional<FramePlan> untold;  ///< milliseconds that no frame's plan told yet
+        std::optional<FramePlan> untold;            ///< milliseconds that no frame's plan told yet
+        std::optional<std::size_t> covered_pixels;  ///< as compensate_again() asks
     };
     std::array<Solved, 2> lights_;
     SolveKeys solved_;
@@ -110,8 +111,14 @@ class FrameLane {
 
     std::array<Side, 2> sides_;
     Composed composed_;
-    Recycler<ImageF> radiances_;
-    Recycler<Image8> drives_;
+    /// Corrected pictures of one setup: what lies beside the mock-up stays black in them.
+    struct Corrected {
+        std::shared_ptr<const ProjectorSetup> of;
+        std::unique_ptr<Recycler<Image8>> pictures;
+    };
+    Corrected corrected_;
+    Recycler<ImageF> radiances_;  ///< of both sides of a wipe
+    Recycler<Image8> drives_;     ///< the same, and those that nothing corrects
     std::vector<std::uint8_t> rgba_;
     TexturePool textures_;
 };

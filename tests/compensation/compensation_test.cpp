@@ -13,6 +13,7 @@
 #include "compensation/compensate.h"
 #include "compensation/synthetic.h"
 #include "core/error.h"
+#include "core/parallel.h"
 
 namespace livery {
 namespace {
@@ -188,12 +189,14 @@ TEST(Compensate, EveryInstructionSetGivesTheSameBits) {
     EXPECT_STREQ(kernel::available(count - 1).instruction_set, "baseline");
     Image8 baseline;
     CompensationStats baseline_stats;
-    compensate_with(kernel::available(count - 1), table, wanted, &baseline, &baseline_stats);
+    const std::size_t covered = count_covered(wanted);
+    compensate_with(
+        kernel::available(count - 1), table, wanted, covered, &baseline, &baseline_stats);
     for (std::size_t i = 0; i + 1 < count; ++i) {
         SCOPED_TRACE(kernel::available(i).instruction_set);
         Image8 out;
         CompensationStats stats;
-        compensate_with(kernel::available(i), table, wanted, &out, &stats);
+        compensate_with(kernel::available(i), table, wanted, covered, &out, &stats);
         EXPECT_EQ(out.values, baseline.values);
         EXPECT_EQ(stats.out_of_gamut_fraction, baseline_stats.out_of_gamut_fraction);
         EXPECT_EQ(stats.invalid_fraction, baseline_stats.invalid_fraction);
@@ -291,6 +294,36 @@ TEST(Compensate, ReusedPictureForgetsTheLastFrame) {
     compensate_into(table, ImageF(33, 9, 4, 0.0f), &out);  // coverage 0
     EXPECT_EQ(out.values.data(), memory);
     EXPECT_EQ(*std::max_element(out.values.begin(), out.values.end()), 0);
+}
+
+TEST(Compensate, FramesOfAShowAreThoseFromNothingOnAnyNumberOfThreads) {
+    World world = make_world(211, 190, 58);
+    for (std::size_t i = 0; i < world.lit.size(); i += 7) world.lit[i] = false;
+    const CompensationTable table = bake(calibrate(world), 0.3);
+    Random random(5);
+    Image8 kept, kept_alone;
+    for (int frame = 0; frame < 4; ++frame) {
+        ImageF wanted =
+            picture(world, [&](std::size_t) { return glm::dvec3(random.uniform() * 1.5 - 0.2); });
+        for (std::size_t i = 3; i < wanted.values.size(); i += 4 * 5) wanted.values[i] = 0.2f;
+        for (std::size_t i = 4; i < wanted.values.size(); i += 97) wanted.values[i] = kNan;
+        CompensationStats stats, stats_again, stats_alone;
+        const Image8 fresh = compensate(table, wanted, &stats);
+        const std::size_t covered = count_covered(wanted);
+        compensate_again(table, wanted, covered, &kept, &stats_again);
+        set_thread_count(1);
+        compensate_again(table, wanted, covered, &kept_alone, &stats_alone);
+        set_thread_count(0);
+        EXPECT_EQ(kept.values, fresh.values);
+        EXPECT_EQ(kept_alone.values, fresh.values);
+        EXPECT_GT(stats.invalid_fraction, 0.0);
+        for (const CompensationStats& other : {stats_again, stats_alone}) {
+            EXPECT_EQ(other.invalid_fraction, stats.invalid_fraction);
+            EXPECT_EQ(other.out_of_gamut_fraction, stats.out_of_gamut_fraction);
+            EXPECT_EQ(other.clipped_high_fraction, stats.clipped_high_fraction);
+            EXPECT_EQ(other.clipped_low_fraction, stats.clipped_low_fraction);
+        }
+    }
 }
 
 TEST(Compensate, EmptyCalibrationShowsBlack) {

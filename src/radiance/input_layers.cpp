@@ -1,0 +1,67 @@
+#include "radiance/input_layers.h"
+
+#include <algorithm>
+
+#include <glm/gtc/packing.hpp>
+
+#include "core/parallel.h"
+#include "radiance/lane_shading.h"
+
+namespace livery {
+namespace {
+
+/// Interleaved channels into blocks; `channels` of the four that come.
+template <typename T, typename Convert>
+void to_blocks(std::span<const float> rgba,
+               std::size_t channels,
+               std::vector<T>& blocks,
+               const Convert& convert) {
+    const std::size_t count = rgba.size() / (4 * kLaneBlock);
+    blocks.resize(count * channels * kLaneBlock);
+    parallel_for(count, 1024, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t block = begin; block < end; ++block) {
+            const float* from = rgba.data() + 4 * kLaneBlock * block;
+            T* to = blocks.data() + channels * kLaneBlock * block;
+            for (std::size_t c = 0; c < channels; ++c) {
+                for (std::size_t k = 0; k < kLaneBlock; ++k) {
+                    to[c * kLaneBlock + k] = convert(from[4 * k + c]);
+                }
+            }
+        }
+    });
+}
+
+}  // namespace
+
+bool InputLayers::make(ShadingDevice device, int rows, int layers, Precision precision) {
+    if (device_ == device && rows_ == rows && layers_ == layers) return false;
+    *this = InputLayers();
+    device_ = device;
+    rows_ = rows;
+    layers_ = layers;
+    const auto count = static_cast<std::size_t>(std::max(layers, 1));
+    if (device == ShadingDevice::gl) {
+        texture_ =
+            Texture2D({kPackedWidth, rows, layers},
+                      precision == Precision::half ? TexelFormat::rgba16f : TexelFormat::rgba32f);
+    } else if (precision == Precision::half) {
+        halves_.resize(count);
+    } else {
+        floats_.resize(count);
+    }
+    return true;
+}
+
+void InputLayers::upload(std::span<const float> rgba, int layer) {
+    const auto at = static_cast<std::size_t>(layer);
+    if (device_ == ShadingDevice::gl) {
+        texture_.upload(rgba, 0, layer);
+    } else if (!halves_.empty()) {
+        to_blocks(
+            rgba, 3, halves_[at], [](float v) { return glm::packHalf1x16(std::max(v, 0.0f)); });
+    } else {
+        to_blocks(rgba, 4, floats_[at], [](float v) { return v; });
+    }
+}
+
+}  // namespace livery

@@ -1,0 +1,48 @@
+// The shading source (shaders/radiance/shade.glsl) on the processor, eight fragments at a time,
+// compiled for several instruction sets and chosen at run time. Plain arrays only: the units behind
+// this header may not share inline functions with the rest of the program.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace livery {
+
+/// Fragments that are shaded together: inputs hold, for each block, its first channel's values,
+/// then the next one's.
+inline constexpr std::size_t kLaneBlock = 8;
+
+/// The uniforms of shade.glsl.
+struct PaintUniforms {
+    float exposure, diffuse[3], sky_diffuse[3], f0[3], alpha[4], base_layer[2], coat_layer[2];
+    float coat_log_transmittance[3], coat_inverse_index_squared;
+};
+
+struct LaneJob {
+    PaintUniforms paint;
+    const float* eye = nullptr;               ///< 4 channels
+    const float* const* lights = nullptr;     ///< 4 channels each
+    const float* light_irradiance = nullptr;  ///< R, G, B of each
+    const float* light_radius2 = nullptr;
+    int light_count = 0;
+    const std::uint16_t* lit = nullptr;            ///< half floats, 3 channels
+    const std::uint16_t* sky = nullptr;            ///< the same
+    const std::uint16_t* const* mirror = nullptr;  ///< the same for each layer
+    float mirror_unit = 1.0f;
+    float* shaded = nullptr;  ///< R, G, B, 1 of each fragment
+    std::size_t first_block = 0, end_block = 0;
+};
+
+struct LaneFunctions {
+    const char* instruction_set;
+    void (*lambert)(const LaneJob&);
+    void (*ggx[2])(const LaneJob&);        ///< without and with an environment
+    void (*clearcoat[2])(const LaneJob&);  ///< the same
+};
+
+/// The best that this processor has, first; "portable" is always the last.
+const LaneFunctions& best_lanes();
+std::size_t lanes_available();
+const LaneFunctions& lanes_available(std::size_t index);
+
+}  // namespace livery

@@ -1,0 +1,134 @@
+// Eight floats at once, with the names that the shared reflectance source uses. For the
+// lane_shading units only: each compiles it for one instruction set, into a namespace of its own,
+// and includes no header whose inline functions the rest of the program shares.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
+
+#define LIVERY_LANE_FUNCTION inline __attribute__((always_inline))
+
+namespace livery::LIVERY_LANES {
+
+inline constexpr std::size_t kLanes = 8;
+
+using Lanes = float __attribute__((vector_size(4 * kLanes)));
+using LaneWords = std::int32_t __attribute__((vector_size(4 * kLanes)));
+using LaneHalves = std::uint16_t __attribute__((vector_size(2 * kLanes)));
+
+LIVERY_LANE_FUNCTION Lanes lanes_of(float value) { return Lanes{} + value; }
+
+LIVERY_LANE_FUNCTION Lanes load(const float* from) {
+    Lanes value;
+    std::memcpy(&value, from, sizeof value);
+    return value;
+}
+
+/// Half floats, not negative and finite. Small ones go through integers: a thread may flush
+/// denormals.
+LIVERY_LANE_FUNCTION Lanes load_halves(const std::uint16_t* from) {
+#if defined(__F16C__)
+    __m128i halves;
+    std::memcpy(&halves, from, sizeof halves);
+    return reinterpret_cast<Lanes>(_mm256_cvtph_ps(halves));
+#else
+    LaneHalves halves;
+    std::memcpy(&halves, from, sizeof halves);
+    const LaneWords words = __builtin_convertvector(halves, LaneWords);
+    const LaneWords bits = (words << 13) + (112 << 23);
+    Lanes normal;
+    std::memcpy(&normal, &bits, sizeof normal);
+    return words < 1024 ? __builtin_convertvector(words, Lanes) * 0x1p-24f : normal;
+#endif
+}
+
+LIVERY_LANE_FUNCTION Lanes min(Lanes a, Lanes b) { return a < b ? a : b; }
+LIVERY_LANE_FUNCTION Lanes max(Lanes a, Lanes b) { return a > b ? a : b; }
+LIVERY_LANE_FUNCTION Lanes clamp(Lanes x, Lanes low, Lanes high) { return min(max(x, low), high); }
+LIVERY_LANE_FUNCTION Lanes mix(Lanes a, Lanes b, Lanes t) { return a + t * (b - a); }
+
+LIVERY_LANE_FUNCTION Lanes sqrt(Lanes x) {
+#if defined(__AVX__)
+    return reinterpret_cast<Lanes>(_mm256_sqrt_ps(reinterpret_cast<__m256>(x)));
+#else
+    float values[kLanes];
+    std::memcpy(values, &x, sizeof x);
+    for (float& value : values) value = __builtin_sqrtf(value);
+    return load(values);
+#endif
+}
+
+/// 2^x to 2 ulp, for x in [-126, 126]; clamped there.
+LIVERY_LANE_FUNCTION Lanes exp2(Lanes x) {
+    x = clamp(x, lanes_of(-126.0f), lanes_of(126.0f));
+    const Lanes whole = (x + 0x1.8p23f) - 0x1.8p23f;  // nearest integer
+    const Lanes f = x - whole;
+    // Taylor at 0 in f ln 2, |f| <= 1/2
+    Lanes power = lanes_of(1.5403530e-4f);
+    power = power * f + 1.3333558e-3f;
+    power = power * f + 9.6181291e-3f;
+    power = power * f + 5.5504109e-2f;
+    power = power * f + 2.4022651e-1f;
+    power = power * f + 6.9314718e-1f;
+    power = power * f + 1.0f;
+    const LaneWords exponent = (__builtin_convertvector(whole, LaneWords) + 127) << 23;
+    Lanes scale;
+    std::memcpy(&scale, &exponent, sizeof scale);
+    return power * scale;
+}
+
+template <typename T>
+struct Vector2 {
+    T x, y;
+};
+
+template <typename T>
+struct Vector3 {
+    T x, y, z;
+    Vector3() = default;
+    LIVERY_LANE_FUNCTION explicit Vector3(T all) : x(all), y(all), z(all) {}
+    LIVERY_LANE_FUNCTION Vector3(T its_x, T its_y, T its_z) : x(its_x), y(its_y), z(its_z) {}
+};
+
+template <typename T>
+struct Vector4 {
+    T x, y, z, w;
+};
+
+using Lanes2 = Vector2<Lanes>;
+using Lanes3 = Vector3<Lanes>;
+using Lanes4 = Vector4<Lanes>;
+
+LIVERY_LANE_FUNCTION Lanes3 operator+(const Lanes3& a, const Lanes3& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+LIVERY_LANE_FUNCTION Lanes3 operator-(const Lanes3& a, const Lanes3& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+LIVERY_LANE_FUNCTION Lanes3 operator*(const Lanes3& a, const Lanes3& b) {
+    return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+LIVERY_LANE_FUNCTION Lanes3 operator*(const Lanes3& a, Lanes b) {
+    return {a.x * b, a.y * b, a.z * b};
+}
+LIVERY_LANE_FUNCTION Lanes3 operator*(Lanes a, const Lanes3& b) { return b * a; }
+LIVERY_LANE_FUNCTION Lanes3& operator+=(Lanes3& a, const Lanes3& b) { return a = a + b; }
+LIVERY_LANE_FUNCTION Lanes3& operator*=(Lanes3& a, const Lanes3& b) { return a = a * b; }
+
+LIVERY_LANE_FUNCTION Lanes dot(const Lanes3& a, const Lanes3& b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+LIVERY_LANE_FUNCTION Lanes3 min(const Lanes3& a, const Lanes3& b) {
+    return {min(a.x, b.x), min(a.y, b.y), min(a.z, b.z)};
+}
+LIVERY_LANE_FUNCTION Lanes3 mix(const Lanes3& a, const Lanes3& b, Lanes t) {
+    return {mix(a.x, b.x, t), mix(a.y, b.y, t), mix(a.z, b.z, t)};
+}
+LIVERY_LANE_FUNCTION Lanes3 exp2(const Lanes3& a) { return {exp2(a.x), exp2(a.y), exp2(a.z)}; }
+
+}  // namespace livery::LIVERY_LANES

@@ -1,0 +1,93 @@
+#include "radiance/processor_shading.h"
+
+#include <cstring>
+
+#include "core/parallel.h"
+#include "radiance/sky_visibility.h"
+
+namespace livery {
+namespace {
+
+/// Small enough that two threads end together, large enough that starting one is nothing.
+constexpr std::size_t kBlocksAtOnce = 256, kPixelsAtOnce = 8192;
+
+}  // namespace
+
+ProcessorShading::ProcessorShading(const SurfaceMap& map, const PackedLayout& layout)
+    : layout_(layout),
+      index_(index_fragments(map, layout)),
+      shaded_(static_cast<std::size_t>(layout.rows) * kPackedWidth * 4, 0.0f) {}
+
+void ProcessorShading::shade(const Material& material,
+                             const ShadingInputs& inputs,
+                             double exposure_ev,
+                             std::size_t part,
+                             const LaneFunctions& functions) {
+    LaneJob job;
+    job.paint = uniforms_of(material, exposure_ev);
+    std::vector<const float*> lights;
+    std::vector<const std::uint16_t*> mirror;
+    const std::size_t environment = inputs.mirror ? 1 : 0;
+    void (*shade_blocks)(const LaneJob&) = functions.lambert;
+    if (material.model == ReflectanceModel::lambert) {
+        job.lit = inputs.lit.halves(0);
+    } else {
+        shade_blocks = material.model == ReflectanceModel::ggx ? functions.ggx[environment]
+                                                               : functions.clearcoat[environment];
+        job.eye = inputs.eye.floats(0);
+        for (std::size_t k = 0; k < inputs.light_irradiance.size(); ++k) {
+            lights.push_back(inputs.lights.floats(k));
+        }
+        job.lights = lights.data();
+        job.light_count = static_cast<int>(lights.size());
+        job.light_irradiance = lights.empty() ? nullptr : &inputs.light_irradiance[0].x;
+        job.light_radius2 = inputs.light_radius2.data();
+        if (environment != 0) {
+            job.sky = inputs.sky.halves(0);
+            for (std::size_t k = 0; k < kMirrorAlphas.size(); ++k) {
+                mirror.push_back(inputs.mirror.halves(k));
+            }
+            job.mirror = mirror.data();
+            job.mirror_unit = inputs.mirror_unit;
+        }
+    }
+    job.shaded = shaded_.data();
+    const std::size_t first = layout_.address(layout_.part_begin[part], part) / kLaneBlock;
+    const std::size_t blocks = (layout_.fragments(part) + kLaneBlock - 1) / kLaneBlock;
+    parallel_for(blocks, kBlocksAtOnce, [&](std::size_t begin, std::size_t end) {
+        LaneJob some = job;
+        some.first_block = first + begin;
+        some.end_block = first + end;
+        shade_blocks(some);
+    });
+}
+
+void ProcessorShading::resolve(ImageF* picture) const {
+    const float* shaded = shaded_.data();
+    float* out = picture->values.data();
+    const float share = 1.0f / static_cast<float>(index_.samples_per_pixel);
+    parallel_for(index_.pixels.size(), kPixelsAtOnce, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            std::uint32_t word = index_.words[i];
+            float* to = out + 4 * static_cast<std::size_t>(index_.pixels[i]);
+            if (!FragmentIndex::more(word)) {
+                std::memcpy(to, shaded + 4 * std::size_t{index_.address(word)}, 4 * sizeof(float));
+                to[3] = share * static_cast<float>(index_.samples(word));
+                continue;
+            }
+            std::size_t at = index_.address(word);
+            float sum[3] = {0.0f, 0.0f, 0.0f}, covered = 0.0f;
+            do {
+                word = index_.lists[at++];
+                const auto samples = static_cast<float>(index_.samples(word));
+                const float* from = shaded + 4 * std::size_t{index_.address(word)};
+                for (std::size_t c = 0; c < 3; ++c) sum[c] += samples * from[c];
+                covered += samples;
+            } while (FragmentIndex::more(word));
+            for (std::size_t c = 0; c < 3; ++c) to[c] = sum[c] / covered;
+            to[3] = share * covered;
+        }
+    });
+}
+
+}  // namespace livery

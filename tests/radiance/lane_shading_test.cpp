@@ -1,0 +1,121 @@
+#include "radiance/lane_shading.h"
+
+#include <array>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace livery {
+namespace {
+
+constexpr std::size_t kBlocks = 300, kLayers = 3;
+
+/// Inputs as they may be: lights below the horizon, denormal half floats, no light at all.
+struct Inputs {
+    std::vector<float> eye, first_light, second_light;
+    std::vector<std::uint16_t> diffuse;
+    std::array<std::vector<std::uint16_t>, kLayers> mirror;
+
+    Inputs() {
+        std::mt19937 random(3);
+        std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
+        const auto directions = [&](std::vector<float>& values, float lowest_z, bool visibility) {
+            values.resize(kBlocks * 4 * kLaneBlock);
+            for (std::size_t i = 0; i < kBlocks * kLaneBlock; ++i) {
+                float* at = &values[i / kLaneBlock * 4 * kLaneBlock + i % kLaneBlock];
+                const float phi = 3.1f * uniform(random);
+                const float z = std::max(uniform(random), lowest_z);
+                const float sine = std::sqrt(1.0f - z * z);
+                at[0] = sine * std::cos(phi);
+                at[kLaneBlock] = sine * std::sin(phi);
+                at[2 * kLaneBlock] = z;
+                const float other = uniform(random);
+                at[3 * kLaneBlock] = visibility ? std::max(other, 0.0f) : 1e-3f * std::abs(other);
+            }
+        };
+        directions(eye, 1e-4f, false);
+        directions(first_light, -1.0f, true);
+        directions(second_light, -1.0f, true);
+        const auto halves = [&](std::vector<std::uint16_t>& values) {
+            std::uniform_int_distribution<int> finite(0, 0x7bff);
+            values.resize(kBlocks * 3 * kLaneBlock);
+            for (std::uint16_t& value : values) {
+                value = static_cast<std::uint16_t>(finite(random));
+            }
+        };
+        halves(diffuse);
+        for (auto& layer : mirror) halves(layer);
+    }
+};
+
+std::vector<float> shaded(const LaneFunctions& functions, int model, bool environment) {
+    const Inputs inputs;
+    const std::array<const float*, 2> lights{inputs.first_light.data(), inputs.second_light.data()};
+    const std::array<const std::uint16_t*, kLayers> mirror{
+        inputs.mirror[0].data(), inputs.mirror[1].data(), inputs.mirror[2].data()};
+    const std::array<float, 6> irradiance{3.0f, 2.9f, 2.8f, 0.5f, 0.6f, 0.7f};
+    const std::array<float, 2> radius2{7e-4f, 0.0f};
+    std::vector<float> colours(kBlocks * kLaneBlock * 4);
+    LaneJob job;
+    job.paint = {1.5f,
+                 {0.2f, 0.4f, 0.8f},
+                 {0.1f, 0.3f, 0.7f},
+                 {0.3f, 0.1f, 0.05f},
+                 {0.3f, 0.15f, 0.02f, 0.04f},
+                 {1.0f, 0.25f},
+                 {0.0f, 0.5f},
+                 {-0.1f, -2.0f, -19.9f},
+                 0.44f};
+    job.eye = inputs.eye.data();
+    job.lights = lights.data();
+    job.light_irradiance = irradiance.data();
+    job.light_radius2 = radius2.data();
+    job.light_count = 2;
+    job.lit = job.sky = inputs.diffuse.data();
+    job.mirror = mirror.data();
+    job.mirror_unit = 1.25f;
+    job.shaded = colours.data();
+    job.end_block = kBlocks;
+    const std::array models{functions.lambert,
+                            functions.ggx[environment ? 1 : 0],
+                            functions.clearcoat[environment ? 1 : 0]};
+    models[static_cast<std::size_t>(model)](job);
+    return colours;
+}
+
+TEST(LaneShading, EveryInstructionSetGivesTheSameBits) {
+    for (int model = 0; model < 3; ++model) {
+        for (const bool environment : {false, true}) {
+            const std::vector<float> best = shaded(best_lanes(), model, environment);
+            for (std::size_t i = 0; i < best.size(); ++i) {
+                ASSERT_TRUE(std::isfinite(best[i]) && best[i] >= 0.0f) << i;
+            }
+            for (std::size_t k = 1; k < lanes_available(); ++k) {
+                EXPECT_EQ(shaded(lanes_available(k), model, environment), best) << model;
+            }
+        }
+    }
+    EXPECT_STREQ(lanes_available(lanes_available() - 1).instruction_set, "portable");
+}
+
+TEST(LaneShading, WritesItsBlocksOnly) {
+    const Inputs inputs;
+    std::vector<float> colours(kBlocks * kLaneBlock * 4, -1.0f);
+    LaneJob job;
+    job.paint.exposure = 1.0f;
+    for (float& channel : job.paint.diffuse) channel = 0.5f;
+    job.lit = inputs.diffuse.data();
+    job.shaded = colours.data();
+    job.first_block = 3;
+    job.end_block = 5;
+    best_lanes().lambert(job);
+    for (std::size_t i = 0; i < colours.size(); ++i) {
+        const std::size_t block = i / (4 * kLaneBlock);
+        EXPECT_EQ(colours[i] < 0.0f, block < 3 || block >= 5) << i;
+    }
+}
+
+}  // namespace
+}  // namespace livery
