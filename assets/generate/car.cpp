@@ -10,6 +10,7 @@
 
 #include "car_cage.h"
 #include "car_panels.h"
+#include "refine.h"
 #include "sheet.h"
 #include "solids.h"
 #include "wheel.h"
@@ -21,33 +22,38 @@ namespace {
 constexpr double kLength_mm = 180.0, kWidth_mm = 75.0, kHeight_mm = 60.0;
 constexpr double kWellDepth_mm = 25.5;  ///< z of the wheel wells' inner wall
 constexpr double kFloor_mm = 6.6;
-constexpr double kWheelFace_mm = 36.6;  ///< z of the tyres' outermost ring
+constexpr double kWheelFace_mm = 36.1;  ///< z of the tyres' outermost ring
 constexpr int kLevels = 3, kFitSteps = 2;
 
 /// Scales the skin so that the finished car has its size exactly.
-void fit_to_size(LimitMesh& skin) {
+void fit_to_size(std::vector<LimitVertex>& vertices) {
     glm::dvec3 low(1e9), high(-1e9);
-    for (const auto& v : skin.vertices) {
+    for (const auto& v : vertices) {
         low = glm::min(low, v.position);
         high = glm::max(high, v.position);
     }
     const glm::dvec3 scale(
-        kLength_mm / (high.x - low.x), kHeight_mm / high.y, kWidth_mm / (high.z - low.z));
+        kLength_mm / (high.x - low.x), kHeight_mm / high.y, 0.5 * kWidth_mm / high.z);
     const double middle = 0.5 * (low.x + high.x);
-    for (auto& v : skin.vertices) {
+    for (auto& v : vertices) {
         v.position = (v.position - glm::dvec3(middle, 0.0, 0.0)) * scale;
         v.normal = glm::normalize(v.normal / scale);
     }
 }
 
-void add_flares(LimitMesh& skin) {
-    for (auto& v : skin.vertices) {
-        // Only where the skin faces sideways, fading smoothly toward the top.
-        const double side = v.position.z > 0.0 ? 1.0 : -1.0;
-        if (std::abs(v.position.z) < 25.0) continue;
+/// The arches' flares, on a finer sheet, since they are narrow.
+void add_flares(Sheet& half) {
+    constexpr double kSide_mm = 25.0;
+    refine(half, [&](const SheetTriangle& t) {
+        const auto& a = half.vertices[t.corners.x].position;
+        return a.z > kSide_mm && arch_flare({a.x, a.y}).height_mm > 0.01;
+    });
+    for (auto& v : half.vertices) {
+        // Only where the skin faces sideways.
+        if (v.position.z < kSide_mm) continue;
         const auto flare = arch_flare({v.position.x, v.position.y});
-        v.position.z += side * flare.height_mm;
-        v.normal = glm::normalize(v.normal - glm::dvec3(flare.gradient, 0.0) * (side * v.normal.z));
+        v.position.z += flare.height_mm;
+        v.normal = glm::normalize(v.normal - glm::dvec3(flare.gradient, 0.0) * v.normal.z);
     }
 }
 
@@ -61,11 +67,11 @@ double arc_mm(const std::vector<double>& steps_mm, double index) {
     return sum;
 }
 
-/// Distance along the section from the centre line to each row, averaged over the cabin: the v
+/// Distance along the section from the centre line to each row, averaged over the car: the v
 /// coordinate of the skin's chart.
 double girth_mm(double row) {
     static const auto steps = [] {
-        constexpr int kFrom = 5, kTo = 19;
+        constexpr int kFrom = 2, kTo = kStations - 2;
         std::vector<double> table(kSillRow, 0.0);
         for (int r = 0; r < kSillRow; ++r) {
             for (int s = kFrom; s <= kTo; ++s) {
@@ -173,29 +179,31 @@ void add_floor(PartMesh& trim) {
 
 /// A door mirror: a housing with a flat back, on a foot at the window's front corner.
 void add_mirror(std::vector<PartMesh>& parts) {
-    const glm::dvec3 centre(21.6, 42.1, 34.9), half(2.7, 1.7, 3.0);
+    const glm::dvec3 centre(22.2, 43.6, 36.2), half(2.6, 1.75, 3.3);
     auto housing = sphere(1.0, 20);
     for (auto& p : housing.positions_mm) {
         const auto round = [](double v, double power) {
             return std::copysign(std::pow(std::abs(v), power), v);
         };
-        // A superellipsoid, blunt behind, slimmer toward its outer end.
-        glm::dvec3 q(round(p.x, p.x > 0.0 ? 1.1 : 0.5), round(p.y, 0.65), round(p.z, 0.55));
-        q.x *= p.x > 0.0 ? 1.0 : 0.35;
-        q.y *= 1.0 - 0.12 * q.z;
-        p = centre + q * half + glm::dvec3(-0.5 * (q.z + 1.0), 0.0, 0.0);
+        // A superellipsoid, flat behind, pointed in front, swept back and slimmer outward.
+        glm::dvec3 q(round(p.x, p.x > 0.0 ? 1.15 : 0.45), round(p.y, 0.7), round(p.z, 0.6));
+        q.x *= p.x > 0.0 ? 1.0 - 0.25 * q.z : 0.3;
+        q.y *= 1.0 - 0.16 * q.z;
+        p = centre + q * half + glm::dvec3(-0.55 * (q.z + 1.0), 0.18 * (q.z + 1.0), 0.0);
     }
     compute_smooth_normals(housing);
+    for (auto& uv : housing.uvs) uv *= half.x;
     append(parts[kBody], housing, glm::dvec3(0.0));
 
     std::vector<std::vector<glm::dvec3>> foot;
     for (int k = 0; k < 3; ++k) {
         const double f = k / 2.0;
-        const glm::dvec3 middle = glm::mix(glm::dvec3(22.6, 38.9, 33.4), centre, f);
+        const glm::dvec3 middle =
+            glm::mix(glm::dvec3(23.8, 40.2, 33.9), centre - glm::dvec3(0.2, 0.9, 1.6), f);
         std::vector<glm::dvec3> loop;
         for (int a = 0; a < 12; ++a) {
             const double turn = 2.0 * std::numbers::pi * a / 12;
-            loop.push_back(middle + glm::dvec3(1.9 * std::sin(turn), 0.0, 0.8 * std::cos(turn)));
+            loop.push_back(middle + glm::dvec3(1.3 * std::sin(turn), 0.0, 0.55 * std::cos(turn)));
         }
         foot.push_back(loop);
     }
@@ -206,13 +214,13 @@ void add_mirror(std::vector<PartMesh>& parts) {
 
 std::vector<PartMesh> make_car() {
     auto skin = limit_surface(make_car_cage(), kLevels, kFitSteps);
-    fit_to_size(skin);
-    add_flares(skin);
-    fit_to_size(skin);
+    fit_to_size(skin.vertices);
     auto sheet = half_sheet(skin, [](int region, const glm::dvec2& parameters) {
         return region != kFloor ||
                parameters.y < kSillRow + 1;  // a flange; a plate closes the rest
     });
+    add_flares(sheet);
+    fit_to_size(sheet.vertices);
     const auto styles = cut_car_panels(sheet);
 
     std::vector<PartMesh> half(kCarParts), parts(kCarParts);

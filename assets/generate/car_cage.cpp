@@ -111,6 +111,8 @@ Cage make_car_cage() {
         }
         for (int j = 0; j < m; ++j) {
             box.crease({0, side * j, 0}, {0, side * (j + 1), 0}, j + 1 < m ? 2.0 : 1.0);
+            box.crease(
+                {n, side * j, 0}, {n, side * (j + 1), 0}, 1.2 * fade(m - j, 0.0, 2.0 * m, 4.0));
             if (j < kBeltRow) {
                 box.crease({kCowlStation, side * j, 0},
                            {kCowlStation, side * (j + 1), 0},

@@ -33,37 +33,37 @@ const Outline& head_bowl() {
     return outline;
 }
 const Outline& tail_bowl() {
-    static const Outline outline({{-43.6, 42.3},
+    static const Outline outline({{-43.2, 42.15},
                                   {-30.0, 42.9},
                                   {0.0, 43.3},
                                   {30.0, 42.9},
-                                  {43.6, 42.3},
-                                  {43.0, 40.6},
+                                  {43.2, 42.15},
+                                  {42.6, 40.5},
                                   {30.0, 38.3},
                                   {20.0, 39.0},
                                   {0.0, 40.2},
                                   {-20.0, 39.0},
                                   {-30.0, 38.3},
-                                  {-43.0, 40.6}},
+                                  {-42.6, 40.5}},
                                  0.8);
     return outline;
 }
 const Outline& intake() {
     static const Outline outline(
-        {{-15.0, 18.4}, {15.0, 18.4}, {18.4, 15.6}, {16.6, 9.6}, {-16.6, 9.6}, {-18.4, 15.6}}, 1.4);
+        {{-14.0, 18.6}, {14.0, 18.6}, {20.0, 12.4}, {19.4, 9.6}, {-19.4, 9.6}, {-20.0, 12.4}}, 1.4);
     return outline;
 }
 const Outline& air_curtain() {
-    static const Outline outline({{23.6, 20.4}, {28.6, 21.6}, {26.4, 11.2}, {21.6, 11.2}}, 1.0);
+    static const Outline outline({{23.0, 20.6}, {27.6, 22.0}, {29.4, 11.6}, {24.6, 10.8}}, 1.0);
     return outline;
 }
 const Outline& plate() {
-    static const Outline outline({{-10.2, 31.0}, {10.2, 31.0}, {11.2, 25.6}, {-11.2, 25.6}}, 1.0);
+    static const Outline outline({{-10.4, 36.2}, {10.4, 36.2}, {11.2, 30.6}, {-11.2, 30.6}}, 0.8);
     return outline;
 }
 const Outline& diffuser() {
     static const Outline outline(
-        {{-25.0, 9.8}, {-25.0, 11.4}, {-20.0, 15.4}, {20.0, 15.4}, {25.0, 11.4}, {25.0, 9.8}}, 0.9);
+        {{-27.0, 9.9}, {-27.0, 12.4}, {-21.0, 17.6}, {21.0, 17.6}, {27.0, 12.4}, {27.0, 9.9}}, 0.9);
     return outline;
 }
 
@@ -124,9 +124,9 @@ void cut_ends(const Cutter& cutter) {
                intake().signed_distance({half, y + 0.4}) < -kIntakeWall_mm - 0.1) {
             half += 0.1;
         }
-        const Outline blade({{-half, y + 0.4}, {half, y + 0.4}, {half, y - 0.4}, {-half, y - 0.4}},
-                            0.1);
-        cutter(blade, nose_view, 0.0, {kIntake}, kIntakeBlade, in_front);
+        const Outline slat({{-half, y + 0.4}, {half, y + 0.4}, {half, y - 0.4}, {-half, y - 0.4}},
+                           0.1);
+        cutter(slat, nose_view, 0.0, {kIntake}, kIntakeBlade, in_front);
     }
     bowl_in(air_curtain(), nose_view, kIntakeWall_mm, kAirCurtain, in_front, false);
 
@@ -151,7 +151,7 @@ void cut_ends(const Cutter& cutter) {
     bowl_in(plate(), tail_view, kIntakeWall_mm, kPlateRecess, behind, false);
     bowl_in(diffuser(), tail_view, kIntakeWall_mm, kDiffuser, behind, false);
     for (const double at : {3.6, 10.2, 16.4}) {
-        const Outline fin({{at - 0.5, 14.6}, {at + 0.5, 14.6}, {at + 0.5, 10.5}, {at - 0.5, 10.5}},
+        const Outline fin({{at - 0.5, 16.8}, {at + 0.5, 16.8}, {at + 0.5, 10.5}, {at - 0.5, 10.5}},
                           0.1);
         cutter(fin, tail_view, 0.0, {kDiffuser}, kDiffuserFin, behind);
     }

@@ -60,9 +60,7 @@ void cut_lids(const Cutter& cutter) {
     hatch.push_back(along_lines(-1.0, 5.2));
     hatch.push_back(along_lines(-1.0, 0.0));
     cutter(Outline(mirrored(hatch), 1.8), line_view, 0.0, {kFenders}, kHatch, on_top);
-    const Outline lower_hatch(
-        {{-24.0, 60.0}, {-24.0, 26.4}, {-21.0, 23.4}, {21.0, 23.4}, {24.0, 26.4}, {24.0, 60.0}},
-        2.0);
+    const Outline lower_hatch({{-23.6, 60.0}, {-22.6, 15.0}, {22.6, 15.0}, {23.6, 60.0}}, 2.0);
     cutter(lower_hatch, end_view, 0.0, {kFenders}, kHatch, [&](const SheetTriangle& t) {
         return t.region == kTail;
     });
@@ -77,7 +75,7 @@ void cut_lids(const Cutter& cutter) {
         return cutter.centre(t).x > 56.0;
     });
     cutter.along([](const LimitVertex& v) { return v.position.y - 23.4; },
-                 {kFenders},
+                 {kFenders, kHatch},
                  kRearBumper,
                  [&](const SheetTriangle& t) { return cutter.centre(t).x < -58.0; });
 }

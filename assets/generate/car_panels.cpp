@@ -48,7 +48,11 @@ std::vector<PanelStyle> cut_car_panels(Sheet& sheet) {
 }
 
 Flare arch_flare(const glm::dvec2& side) {
-    constexpr double kHeight_mm = 0.35, kWidth_mm = 3.5;
+    constexpr double kHeight_mm = 0.45, kWidth_mm = 4.0;
+    constexpr double kGone_mm = 8.0, kWhole_mm = 18.0;  // it runs out toward the sill
+    const double up = std::clamp((side.y - kGone_mm) / (kWhole_mm - kGone_mm), 0.0, 1.0);
+    const double fade = up * up * (3.0 - 2.0 * up);
+    const double fade_slope = 6.0 * up * (1.0 - up) / (kWhole_mm - kGone_mm);
     Flare flare;
     for (const double axle : {kFrontAxle_mm, kRearAxle_mm}) {
         const auto from_axle = side - glm::dvec2(axle, kAxleHeight_mm);
@@ -59,9 +63,10 @@ Flare arch_flare(const glm::dvec2& side) {
         // foot.
         const double inside = std::max(t, 0.0);
         const double one = 1.0 - inside * inside;
-        flare.height_mm += kHeight_mm * one * one * one;
+        const double height = kHeight_mm * one * one * one;
         const double slope = -6.0 * kHeight_mm * inside * one * one / kWidth_mm;
-        flare.gradient += from_axle * (slope / r);
+        flare.height_mm += height * fade;
+        flare.gradient += from_axle * (fade * slope / r) + glm::dvec2(0.0, height * fade_slope);
     }
     return flare;
 }

@@ -51,8 +51,11 @@ void cut_windows(const Cutter& cutter) {
         half.push_back(along_lines(top, 0.0));
         return Outline(mirrored(half), 2.2);
     };
-    cutter(across(15.93, 12.6, 3.12), line_view, 0.0, {kFenders}, kWindscreen, on_top);
-    cutter(across(2.0, 5.9, 2.86), line_view, 0.0, {kFenders}, kRearScreen, on_top);
+    // Each in a dark seal; the windscreen's is wide at the cowl.
+    cutter(across(16.14, 12.54, 3.2), line_view, 0.0, {kFenders}, kWindowFrame, on_top);
+    cutter(across(15.9, 12.6, 3.12), line_view, 0.0, {kWindowFrame}, kWindscreen, on_top);
+    cutter(across(1.94, 5.96, 2.94), line_view, 0.0, {kFenders}, kWindowFrame, on_top);
+    cutter(across(2.0, 5.9, 2.86), line_view, 0.0, {kWindowFrame}, kRearScreen, on_top);
 }
 
 }  // namespace livery::assets

@@ -21,7 +21,7 @@ constexpr int kSpokes = 5, kNuts = 5;
 /// Height of the spokes' face over the wheel's middle: concave, steepening toward the rim.
 double face_mm(double radius_mm) {
     const double f = std::clamp((radius_mm - 1.8) / 8.9, 0.0, 1.0);
-    return 0.9 + 3.3 * f * f * (1.3 - 0.3 * f);
+    return 1.5 + 2.8 * f * f * (1.3 - 0.3 * f);
 }
 
 /// A loop around a spoke's section: a flat face with bevelled edges, narrower behind.
@@ -51,13 +51,13 @@ std::vector<glm::dvec3> spoke_section(
 
 /// One arm of a spoke that forks on its way to the rim; `side` is -1 or 1.
 PartMesh make_arm(double angle_rad, double side) {
-    constexpr int kSections = 13;
+    constexpr int kSections = 10;
     std::vector<std::vector<glm::dvec3>> loops;
     for (int k = 0; k < kSections; ++k) {
         const double f = static_cast<double>(k) / (kSections - 1);
         const double r = 1.6 + f * 9.1;
-        const double across = side * (0.62 + 1.75 * f * f);
-        const double half_width = 0.60 - 0.20 * f + 0.16 * std::pow(f, 6.0);
+        const double across = side * (0.66 + 1.9 * f * f);
+        const double half_width = 0.78 - 0.20 * f + 0.25 * std::pow(f, 6.0);
         const double depth = 1.7 - 0.5 * f;
         loops.push_back(spoke_section(r, across, half_width, depth, angle_rad));
     }
@@ -78,18 +78,14 @@ PartMesh make_tyre() {
                                        {13.95, 4.74},
                                        {14.25, 4.36},
                                        {14.41, 3.8},
-                                       {14.47, 2.75},
-                                       {14.15, 2.7},
-                                       {14.15, 2.3},
-                                       {14.48, 2.25},
-                                       {14.49, 0.85},
-                                       {14.15, 0.8},
-                                       {14.15, 0.4},
-                                       {14.5, 0.35}};
+                                       {14.48, 2.2},
+                                       {14.15, 2.15},
+                                       {14.15, 1.65},
+                                       {14.5, 1.6}};
     std::vector<glm::dvec2> profile;
     for (const auto& p : half) profile.emplace_back(p.x, -p.y);
     for (auto p = half.rbegin(); p != half.rend(); ++p) profile.push_back(*p);
-    return revolve(profile, true, 72);
+    return revolve(profile, true, 56);
 }
 
 PartMesh make_rim() {
@@ -106,22 +102,22 @@ PartMesh make_rim() {
                                          {10.2, 0.0},
                                          {10.3, -4.4}};
     const std::vector<glm::dvec2> hub{{0.0, -1.6},
-                                      {2.3, -1.6},
-                                      {2.45, 0.35},
-                                      {2.3, 0.8},
-                                      {1.95, 0.98},
-                                      {1.1, 1.02},
-                                      {1.02, 1.32},
-                                      {0.88, 1.42},
-                                      {0.0, 1.46}};
-    PartMesh rim = revolve(barrel, true, 72);
+                                      {2.6, -1.6},
+                                      {2.75, 0.8},
+                                      {2.6, 1.4},
+                                      {2.2, 1.6},
+                                      {1.3, 1.62},
+                                      {1.22, 2.0},
+                                      {1.05, 2.12},
+                                      {0.0, 2.18}};
+    PartMesh rim = revolve(barrel, true, 56);
     append(rim, revolve(hub, false, 36), {0, 0, 0});
     for (int k = 0; k < kSpokes; ++k) {
         const double angle = kPi / 2 + 2.0 * kPi * k / kSpokes;
         for (double side : {-1.0, 1.0}) append(rim, make_arm(angle, side), {0, 0, 0});
     }
     const std::vector<glm::dvec2> disc{{3.0, -2.6}, {8.1, -2.6}, {8.1, -1.9}, {3.0, -1.9}};
-    append(rim, revolve(disc, true, 60), {0, 0, 0});
+    append(rim, revolve(disc, true, 48), {0, 0, 0});
     return rim;
 }
 
@@ -133,7 +129,7 @@ PartMesh make_brake() {
         {0.0, 0.6}, {0.26, 0.6}, {0.26, 1.14}, {0.2, 1.2}, {0.0, 1.2}};
     for (int k = 0; k < kNuts; ++k) {
         const double angle = kPi / 2 + 2.0 * kPi * (k + 0.5) / kNuts;
-        append(brake, revolve(nut, false, 8), {1.6 * std::cos(angle), 1.6 * std::sin(angle), 0});
+        append(brake, revolve(nut, false, 8), {1.8 * std::cos(angle), 1.8 * std::sin(angle), 0});
     }
     // The caliper, a sector around the disc at its rear.
     const std::vector<glm::dvec2> caliper{

@@ -26,6 +26,7 @@ struct Camera {
     double azimuth_deg, elevation_deg;
     glm::dvec3 target_mm{0.0};
     double distance_mm = 0.0;  ///< 0: the whole car
+    double zoom = 0.9;         ///< steps nearer than the whole with its shadow
 };
 
 View view_from(const Camera& camera, const Bounds& bounds, int width, int height) {
@@ -39,7 +40,7 @@ View view_from(const Camera& camera, const Bounds& bounds, int width, int height
         return view_of(orbit, width, height);
     }
     const double aspect = static_cast<double>(width) / height;
-    return view_of(zoomed(fitted(orbit, bounds, aspect), 0.6, bounds), width, height);
+    return view_of(zoomed(fitted(orbit, bounds, aspect), camera.zoom, bounds), width, height);
 }
 
 /// `top` over grey, into a part of a sheet.
