@@ -42,6 +42,28 @@ PixelSize parse_size(const std::string& option, const std::string& text) {
     return size;
 }
 
+std::optional<LengthUnit> parse_unit(const std::string& text) {
+    if (text.empty()) return std::nullopt;
+    const auto unit = parse_length_unit(text);
+    if (unit) return unit;
+    throw std::invalid_argument("--unit: found \"" + text + "\", expected mm, cm, m or in");
+}
+
+Option unit_option(std::string& target) {
+    return {
+        "--unit",
+        "UNIT",
+        "unit of the product file's numbers: mm, cm, m or in (default: as it says, or its size)",
+        &target,
+        false,
+        {"mm", "cm", "m", "in"}};
+}
+
+void tell_notes(const std::vector<std::string>& notes, Outcome& outcome) {
+    if (!notes.empty()) outcome.figures["notes"] = notes;
+    for (const std::string& note : notes) outcome.text += "note: " + note + "\n";
+}
+
 std::vector<double> parse_numbers(const std::string& option,
                                   const std::string& text,
                                   std::size_t count) {

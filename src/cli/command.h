@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "core/json.h"
 #include "core/progress.h"
 #include "gl/context.h"
+#include "scene/length_unit.h"
 
 namespace livery {
 
@@ -69,6 +71,13 @@ struct PixelSize {
     int width = 0, height = 0;
 };
 PixelSize parse_size(const std::string& option, const std::string& text);
+/// The unit of a mesh file's numbers; nothing for an empty text.
+std::optional<LengthUnit> parse_unit(const std::string& text);
+Option unit_option(std::string& target);
+
+/// What loading a product assumed or repaired: notes[] where there is anything, and a line each.
+void tell_notes(const std::vector<std::string>& notes, Outcome& outcome);
+
 std::vector<double> parse_numbers(const std::string& option,
                                   const std::string& text,
                                   std::size_t count);

@@ -12,7 +12,7 @@ namespace livery {
 
 Command desktop_command() {
     struct Arguments {
-        std::string session, product, size, ui_map, trace;
+        std::string session, product, unit, size, ui_map, trace;
         double ui_scale = 0.0;
     };
     const auto arguments = std::make_shared<Arguments>();
@@ -35,6 +35,7 @@ Command desktop_command() {
          &arguments->product,
          false,
          {}},
+        unit_option(arguments->unit),
         {"--ui-scale",
          "X",
          "size of letters and controls, 0.5 to 4 (default: the screen's)",
@@ -59,6 +60,7 @@ Command desktop_command() {
         DesktopOptions options;
         options.session = arguments->session;
         options.product = arguments->product;
+        options.unit = parse_unit(arguments->unit);
         options.ui_map = arguments->ui_map;
         options.trace = arguments->trace;
         if (arguments->ui_scale != 0.0) {

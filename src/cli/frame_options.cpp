@@ -24,6 +24,7 @@ std::vector<Option> frame_options(FrameArguments& arguments) {
          &arguments.product,
          false,
          {}},
+        unit_option(arguments.unit),
         {"--look",
          "FILE|NAME",
          "a look file or a shipped look's name (default solid-red)",
@@ -108,7 +109,8 @@ ResolvedFrame resolve_frame(const FrameArguments& arguments, const CommonOptions
         throw std::invalid_argument(
             "--stage projector: found no --calibration, expected the folder to correct with");
     }
-    const auto product = find_product(arguments.product);
+    const auto product = find_product(arguments.product, parse_unit(arguments.unit));
+    frame.notes = product->notes;
     glm::dvec3 eye_mm;
     if (arguments.product == "car" || arguments.product == "sphere") {
         const BenchDescription bench =
@@ -129,7 +131,8 @@ ResolvedFrame resolve_frame(const FrameArguments& arguments, const CommonOptions
         const auto numbers = parse_numbers("--eye", arguments.eye, 3);
         eye_mm = {numbers[0], numbers[1], numbers[2]};
     }
-    request.scene = make_scene(product, find_look(arguments.look), eye_mm);
+    request.scene =
+        make_scene(product, find_look_for(arguments.look, part_names(product->mesh)), eye_mm);
 
     if (arguments.budget_ms > 0.0) {
         const BudgetChoice choice =

@@ -12,7 +12,7 @@
 namespace livery {
 
 struct FrameArguments {
-    std::string product = "car", look = "solid-red", calibration, camera, eye;
+    std::string product = "car", unit, look = "solid-red", calibration, camera, eye;
     std::string quality, stage = "radiance";
     double budget_ms = 0.0;
     double design_white = 20.0;
@@ -25,7 +25,8 @@ std::vector<Option> frame_options(FrameArguments& arguments);
 struct ResolvedFrame {
     RenderRequest request;
     std::optional<CompensationTable> compensation;
-    std::string budget_note;  ///< how --budget-ms chose the quality
+    std::vector<std::string> notes;  ///< what was assumed or repaired when loading the product
+    std::string budget_note;         ///< how --budget-ms chose the quality
 };
 ResolvedFrame resolve_frame(const FrameArguments& arguments, const CommonOptions& common);
 

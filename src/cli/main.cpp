@@ -62,7 +62,9 @@ int run(const std::vector<std::string>& arguments) {
     finish_progress_line();
     if (!parsed.common.json) return print(outcome.text, outcome.exit_code);
     std::fputs(outcome.text.c_str(), stderr);
-    return print(outcome.figures.dump(2) + "\n", outcome.exit_code);
+    // A file's name need not be UTF-8.
+    return print(outcome.figures.dump(2, ' ', false, Json::error_handler_t::replace) + "\n",
+                 outcome.exit_code);
 }
 
 }  // namespace

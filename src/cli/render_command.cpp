@@ -102,6 +102,7 @@ Command render_command() {
                                    rendered.ms_total,
                                    rendered.renderer,
                                    arguments->out);
+        tell_notes(frame.notes, outcome);
         if (covered == 0.0) {
             const std::string warning = nothing_seen(request.scene.product->mesh);
             outcome.figures["warnings"] = {warning};

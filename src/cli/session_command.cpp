@@ -114,7 +114,7 @@ void step(Session& session, int steps, bool back) {
 }
 
 struct Arguments {
-    std::string file, product = "car", out, look_file, stage = "radiance";
+    std::string file, product = "car", unit, out, look_file, stage = "radiance";
     std::vector<std::string> commands;
     int steps = 1, look = 0;
 };
@@ -145,15 +145,19 @@ Command new_command() {
                                         "a mesh or product file, or car, sphere (default car)",
                                         &arguments->product,
                                         false,
-                                        {}}});
+                                        {}},
+                                       unit_option(arguments->unit)});
     command.run = [arguments](const CommonOptions&, const Progress&) {
         std::error_code error;
         if (std::filesystem::exists(arguments->file, error)) {
             throw Refused(arguments->file + " is there already",
                           "name another file, or remove that one");
         }
-        { const Session session = Session::open(arguments->file, arguments->product); }
-        return told(arguments->file, read_summary(arguments->file));
+        const auto unit = parse_unit(arguments->unit);
+        { const Session session = Session::open(arguments->file, arguments->product, unit); }
+        Outcome outcome = told(arguments->file, read_summary(arguments->file));
+        tell_notes(find_product(arguments->product, unit)->notes, outcome);
+        return outcome;
     };
     return command;
 }
@@ -279,7 +283,8 @@ Command picture_command() {
                           "livery session apply --command "
                           "'{\"set-calibration\": {\"folder\": \"DIR\"}}'");
         }
-        request.scene = scene_of(document, arguments->look, find_product(document.product));
+        request.scene = scene_of(
+            document, arguments->look, find_product(document.product, document.product_unit));
         request.view = setup->view;
         request.quality = document.quality;
         if (request.quality == Quality::reference) request.backend = RenderBackend::reference;

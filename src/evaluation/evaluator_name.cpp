@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/utf8.h"
 
 namespace livery {
 
@@ -14,25 +15,10 @@ constexpr std::size_t kMaxBytes = 200;
 /// The code points, or nothing when `text` is not well-formed UTF-8.
 std::optional<std::vector<char32_t>> decoded(std::string_view text) {
     std::vector<char32_t> points;
-    for (std::size_t at = 0; at < text.size();) {
-        const auto lead = static_cast<unsigned char>(text[at]);
-        const std::size_t length = lead < 0x80             ? 1
-                                   : (lead & 0xe0) == 0xc0 ? 2
-                                   : (lead & 0xf0) == 0xe0 ? 3
-                                   : (lead & 0xf8) == 0xf0 ? 4
-                                                           : 0;
-        if (length == 0 || at + length > text.size()) return std::nullopt;
-        char32_t point = length == 1 ? lead : lead & (0x7fu >> length);
-        for (std::size_t k = 1; k < length; ++k) {
-            const auto next = static_cast<unsigned char>(text[at + k]);
-            if ((next & 0xc0) != 0x80) return std::nullopt;
-            point = (point << 6u) | (next & 0x3fu);
-        }
-        constexpr char32_t smallest[] = {0, 0, 0x80, 0x800, 0x10000};
-        const bool surrogate = point >= 0xd800 && point <= 0xdfff;
-        if (point < smallest[length] || point > 0x10ffff || surrogate) return std::nullopt;
-        points.push_back(point);
-        at += length;
+    while (!text.empty()) {
+        const auto point = take_code_point(text);
+        if (!point) return std::nullopt;
+        points.push_back(*point);
     }
     return points;
 }

@@ -7,11 +7,13 @@
 
 #include "core/error.h"
 #include "core/paths.h"
+#include "scene/beside.h"
 
 namespace livery {
 
 namespace {
 
+/// Of a buffer beside the file.
 constexpr std::size_t kMaxFileBytes = 1u << 30u;
 constexpr int kMaxInt = std::numeric_limits<int>::max();
 
@@ -120,7 +122,7 @@ std::string decode_percent(const JsonReader& uri, std::string_view text) {
     return out;
 }
 
-std::string load_buffer(const JsonReader& buffer, const std::filesystem::path& folder) {
+std::string load_buffer(const JsonReader& buffer, const std::filesystem::path& model) {
     const auto uri = buffer["uri"];
     const std::string text = uri.text();
     if (text.starts_with("data:")) {
@@ -128,14 +130,9 @@ std::string load_buffer(const JsonReader& buffer, const std::filesystem::path& f
         if (comma == std::string::npos) uri.fail(uri.found(), "a data URI in base64");
         return decode_base64(uri, std::string_view(text).substr(comma + 8));
     }
-    // Only files of the model itself: a mesh from a stranger must not open others.
-    const std::filesystem::path name = decode_percent(uri, text);
-    const auto normal = name.lexically_normal();
-    if (text.find("://") != std::string::npos || normal.is_absolute() || normal.empty() ||
-        *normal.begin() == "..") {
-        uri.fail(uri.found(), "a file beside the model or below its folder");
-    }
-    return read_text_file(folder / normal, kMaxFileBytes);
+    const auto beside = path_beside(model, decode_percent(uri, text));
+    if (!beside) uri.fail(uri.found(), "a file beside the model or below its folder");
+    return read_text_file(*beside, kMaxFileBytes);
 }
 
 void check_header(const GltfFile& gltf) {
@@ -173,9 +170,7 @@ std::size_t index_into(const JsonReader& root, std::string_view array, const Jso
     return static_cast<std::size_t>(index.integer(0, static_cast<int>(count) - 1));
 }
 
-GltfFile open_gltf(const std::filesystem::path& file) {
-    const std::string bytes = read_text_file(file, kMaxFileBytes);
-    if (bytes.empty()) throw FileError(file, "", "an empty file", "a glTF mesh");
+GltfFile open_gltf(const std::string& bytes, const std::filesystem::path& file) {
     GltfFile gltf;
     gltf.path = file;
     Glb glb;
@@ -183,7 +178,8 @@ GltfFile open_gltf(const std::filesystem::path& file) {
         glb = split_glb(file, bytes);
         gltf.json = parse(file, glb.json);
     } else if (file.extension() != ".gltf") {
-        throw FileError(file, "header", "no \"glTF\" at the start", "a .glb file, or .gltf text");
+        throw FileError(
+            file, "header", "no \"glTF\" at the start", "a .glb file, .gltf text, .ply or .obj");
     } else {
         gltf.json = parse(file, bytes);
     }
@@ -197,7 +193,7 @@ GltfFile open_gltf(const std::filesystem::path& file) {
         if (!buffer.has("uri") && k == 0 && glb.has_binary) {
             gltf.buffers.push_back(std::move(glb.binary));
         } else {
-            gltf.buffers.push_back(load_buffer(buffer, file.parent_path()));
+            gltf.buffers.push_back(load_buffer(buffer, file));
         }
         if (gltf.buffers.back().size() < declared) {
             buffer["byteLength"].fail(std::to_string(declared),

@@ -1,4 +1,4 @@
-// glTF 2.0 containers and their numbers, checked: what load_mesh builds on. Internal to scene/.
+// glTF 2.0 containers and their numbers, checked: what read_gltf builds on. Internal to scene/.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/json.h"
+#include "scene/mesh.h"
 
 namespace livery {
 
@@ -22,9 +23,14 @@ struct GltfFile {
     JsonReader root() const { return {path, json}; }
 };
 
-/// Opens .gltf (buffers beside it or as data URIs) and .glb. Checks the container, the version and
-/// the required extensions. Throws FileError.
-GltfFile open_gltf(const std::filesystem::path& file);
+/// Opens the bytes of a .gltf (buffers beside `file` or as data URIs) or a .glb. Checks the
+/// container, the version and the required extensions. Throws FileError.
+GltfFile open_gltf(const std::string& bytes, const std::filesystem::path& file);
+
+/// The whole file as one mesh in the world's frame. Throws FileError.
+Mesh read_gltf(const std::string& bytes,
+               const std::filesystem::path& file,
+               std::vector<std::string>& notes);
 
 /// An accessor's elements, `width` numbers each (3 for VEC3), all finite.
 struct GltfNumbers {

@@ -1,4 +1,4 @@
-// load_mesh: the nodes, primitives and materials of a glTF file as one mesh in the world's frame.
+// read_gltf: the nodes, primitives and materials of a glTF file as one mesh in the world's frame.
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -145,10 +145,9 @@ bool uses_extension(const JsonReader& root, std::string_view name) {
 
 }  // namespace
 
-Mesh load_mesh(const std::filesystem::path& file, std::vector<std::string>* notes_or_null) {
-    const GltfFile gltf = open_gltf(file);
+Mesh read_gltf(const std::string& bytes, const std::filesystem::path& file, Notes& notes) {
+    const GltfFile gltf = open_gltf(bytes, file);
     const auto root = gltf.root();
-    Notes notes;
     note_unread(root, notes);
     const bool quantized = uses_extension(root, "KHR_mesh_quantization");
     std::vector<Part> materials;
@@ -194,9 +193,6 @@ Mesh load_mesh(const std::filesystem::path& file, std::vector<std::string>* note
         }
     }
     if (mesh.triangles.empty()) throw FileError(file, "", "no triangles", "at least one");
-    if (notes_or_null) {
-        notes_or_null->insert(notes_or_null->end(), notes.begin(), notes.end());
-    }
     return mesh;
 }
 

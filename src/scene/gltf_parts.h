@@ -1,4 +1,4 @@
-// The steps of load_mesh: where nodes stand, and one primitive in the world. Internal to scene/.
+// The steps of read_gltf: where nodes stand, and one primitive in the world. Internal to scene/.
 #pragma once
 
 #include <string>

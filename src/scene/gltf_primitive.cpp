@@ -6,6 +6,7 @@
 #include <glm/matrix.hpp>
 
 #include "scene/gltf_parts.h"
+#include "scene/surface.h"
 
 namespace livery {
 
@@ -95,13 +96,6 @@ Attributes read_attributes(GltfAccessors& accessors, const JsonReader& primitive
     found.tangents = optional("TANGENT", {{"VEC4"}, types({5126}, {5120, 5122})});
     found.uvs = optional("TEXCOORD_0", {{"VEC2"}, types({5126, 5121, 5123}, {5120, 5122})});
     return found;
-}
-
-bool has_area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-    const glm::dvec3 ab = b - a, ac = c - a, bc = c - b;
-    const double longest = std::max({glm::dot(ab, ab), glm::dot(ac, ac), glm::dot(bc, bc)});
-    // A needle a million times longer than wide is below the resolution of float coordinates.
-    return glm::length(glm::cross(ab, ac)) > 1e-7 * longest;
 }
 
 /// Keeps the vertices that triangles use, in rising order, and renames them.

@@ -13,16 +13,14 @@ namespace livery {
 
 namespace {
 
-glm::vec3 any_orthogonal(const glm::vec3& unit) {
-    // Crossing with the axis that the vector is least along is never ill-conditioned.
-    const glm::vec3 magnitude = glm::abs(unit);
-    glm::vec3 axis(0.0f, 0.0f, 1.0f);
-    if (magnitude.x <= magnitude.y && magnitude.x <= magnitude.z) {
-        axis = {1.0f, 0.0f, 0.0f};
-    } else if (magnitude.y <= magnitude.z) {
-        axis = {0.0f, 1.0f, 0.0f};
+/// Where +x goes when +y turns the shortest way into the normal.
+glm::vec3 level_tangent(const glm::dvec3& n) {
+    // Facing down there is no shortest way; close to it rounding decides.
+    if (n.y < -0.999999) {
+        return glm::vec3(glm::normalize(glm::dvec3(1.0, 0.0, 0.0) - n.x * n));
     }
-    return glm::normalize(glm::cross(unit, axis));
+    const double k = 1.0 / (1.0 + n.y);
+    return glm::vec3(glm::normalize(glm::dvec3(1.0 - n.x * n.x * k, -n.x, -n.x * n.z * k)));
 }
 
 /// Edges in double: products of float coordinates overflow and cancel too early.
@@ -95,7 +93,7 @@ void compute_tangents(Mesh& mesh) {
         const glm::dvec3 flat = along_u[k] - normal * glm::dot(normal, along_u[k]);
         const double length = glm::length(flat);
         if (!(length > 1e-12 * glm::length(along_u[k]))) {
-            mesh.tangents[k] = glm::vec4(any_orthogonal(mesh.normals[k]), 1.0f);
+            mesh.tangents[k] = glm::vec4(level_tangent(normal), 1.0f);
             continue;
         }
         // v runs down the picture and the bitangent up, as in glTF.

@@ -3,12 +3,15 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+
+#include "scene/length_unit.h"
 
 namespace livery {
 
@@ -35,7 +38,8 @@ struct Bounds {
 };
 Bounds bounds_of(const Mesh& mesh);
 
-/// Area-weighted normals / UV-aligned tangents (any orthogonal direction without UVs).
+/// Area-weighted normals. Tangents along u; without UVs what +x becomes when +y turns the shortest
+/// way into the normal, which changes little where the normal does, but for one facing down.
 void compute_normals(Mesh& mesh);
 void compute_tangents(Mesh& mesh);
 
@@ -45,9 +49,18 @@ void append(Mesh& mesh, const Mesh& other, const std::string& prefix);
 /// A sphere of `rings` x 2 rings quads with one part; for tests, swatches and the sphere product.
 Mesh make_sphere(glm::dvec3 centre_mm, double radius_mm, int rings, const std::string& part_name);
 
-/// Loads glTF 2.0 (.gltf, .glb), metres to millimetres, one part a material and node. Everything
-/// in the file is validated here. `notes` receives what was dropped or repaired, by name.
-/// Throws FileError.
-Mesh load_mesh(const std::filesystem::path& file, std::vector<std::string>* notes = nullptr);
+/// Loads glTF 2.0 (.gltf, .glb; metres), PLY or OBJ (in `unit`, else told from the size) and makes
+/// of it what Mesh promises. Everything in the file is validated here. `notes` receives what was
+/// dropped, repaired or assumed. Throws FileError.
+Mesh load_mesh(const std::filesystem::path& file,
+               std::vector<std::string>* notes = nullptr,
+               std::optional<LengthUnit> unit = std::nullopt);
+
+/// The same of a file's bytes; `file` names them in messages, and beside it lie the files that they
+/// name.
+Mesh read_mesh(const std::string& bytes,
+               const std::filesystem::path& file,
+               std::vector<std::string>* notes = nullptr,
+               std::optional<LengthUnit> unit = std::nullopt);
 
 }  // namespace livery

@@ -34,25 +34,30 @@ void move(Mesh& mesh, const Rigid3& world_from_mesh) {
 
 }  // namespace
 
-Product load_product(const std::filesystem::path& file) {
+Product load_product(const std::filesystem::path& file, std::optional<LengthUnit> unit) {
     Product product;
     product.file = file;
     product.name = file.stem().string();
     if (file.extension() != ".json") {
-        product.mesh = load_mesh(file, &product.notes);
+        product.mesh = load_mesh(file, &product.notes, unit);
         return product;
     }
     const Json json = read_json_file(file);
     const JsonReader root(file, json);
     root.require_format_version(1);
-    root.allow_only({"format_version", "name", "mesh", "product_scale", "pose", "parts"});
+    root.allow_only({"format_version", "name", "mesh", "unit", "product_scale", "pose", "parts"});
     if (root.has("name")) product.name = root["name"].text();
     if (root.has("product_scale")) {
         product.product_scale = root["product_scale"].number_between(1e-3, 1e6);
     }
     const auto mesh_name = root["mesh"].text();
     if (mesh_name.empty()) root["mesh"].fail("an empty name", "a mesh file");
-    product.mesh = load_mesh(file.parent_path() / mesh_name, &product.notes);
+    if (root.has("unit")) {
+        const auto said = parse_length_unit(root["unit"].text());
+        if (!said) root["unit"].fail(root["unit"].found(), "mm, cm, m or in");
+        if (!unit) unit = said;
+    }
+    product.mesh = load_mesh(file.parent_path() / mesh_name, &product.notes, unit);
     if (root.has("pose")) {
         root["pose"].allow_only({"rotation", "translation_mm"});
         move(product.mesh, read_pose(root["pose"]));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,11 +16,13 @@ struct Product {
     Mesh mesh;                   ///< in the world's frame (the product's frame)
     double product_scale = 1.0;  ///< product millimetres per mock-up millimetre (25 for the car)
     std::filesystem::path file;  ///< where it came from
-    std::vector<std::string> notes;  ///< what was dropped or repaired while loading
+    std::vector<std::string> notes;  ///< what was dropped, repaired or assumed while loading
 };
 
-/// A mesh file, or a product JSON that names one (docs/files.md). Throws FileError.
-Product load_product(const std::filesystem::path& file);
+/// A mesh file, or a product JSON that names one (docs/files.md). The unit comes before the one in
+/// the JSON. Throws FileError.
+Product load_product(const std::filesystem::path& file,
+                     std::optional<LengthUnit> unit = std::nullopt);
 
 /// Index of a part; throws std::invalid_argument that lists the names there are.
 int part_index(const Product& product, const std::string& name);

@@ -1,7 +1,5 @@
 #include "session/document.h"
 
-#include <algorithm>
-
 #include "appearance/material_library.h"
 #include "core/error.h"
 #include "session/library.h"
@@ -10,37 +8,23 @@
 
 namespace livery {
 
-namespace {
-
-bool has_part(const std::vector<std::string>& parts, const std::string& name) {
-    return std::find(parts.begin(), parts.end(), name) != parts.end();
+std::string product_reference(const std::string& name_or_file) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(name_or_file, error)) return name_or_file;
+    return std::filesystem::absolute(name_or_file).string();
 }
 
-/// A shipped look says what a car wears. Parts that another product lacks are left out, and without
-/// a body all of it wears the body's paint.
-Look fitted(Look look, const std::vector<std::string>& parts) {
-    const auto body = look.parts.find("body");
-    const std::string body_paint = body == look.parts.end() ? "" : body->second;
-    std::erase_if(look.parts, [&](const auto& entry) {
-        return entry.first != "*" && !has_part(parts, entry.first);
-    });
-    if (!body_paint.empty() && !look.parts.contains("body")) look.parts["*"] = body_paint;
-    return look;
-}
-
-}  // namespace
-
-Document new_document(const std::string& product) {
+Document new_document(const std::string& product, std::optional<LengthUnit> unit) {
     check_text(product, "the product's name");
     Document document;
-    std::error_code error;
-    document.product = std::filesystem::is_regular_file(product, error)
-                           ? std::filesystem::absolute(product).string()
-                           : product;
-    const std::vector<std::string> parts = part_names(product);
+    document.product_unit = unit;
+    document.product = product_reference(product);
+    const bool shipped = product == "car" || product == "sphere";
+    const auto own = shipped ? nullptr : find_product(product, unit);
+    const std::vector<std::string> parts = own ? part_names(own->mesh) : part_names(product);
     const PaintLibrary library = read_paint_library();
     for (const std::string& name : shipped_looks()) {
-        Look look = fitted(find_look(name), parts);
+        Look look = find_look_for(name, parts);
         for (auto& [part, paint] : look.parts) {
             const Material* known = library.find(paint);
             if (!known) throw FileError(look.file, "parts." + part, paint, "a paint's name");
@@ -51,11 +35,11 @@ Document new_document(const std::string& product) {
         look.file.clear();
         document.looks.push_back({document.next_look_id++, std::move(look)});
     }
-    if (product == "car" || product == "sphere") {
+    if (!own) {
         document.bench = product == "sphere" ? "sphere" : "default";
         document.eye_mm = read_bench_file(document.bench).eye_mm;
     } else {
-        document.eye_mm = default_eye_mm(*find_product(product));
+        document.eye_mm = default_eye_mm(*own);
     }
     return document;
 }

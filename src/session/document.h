@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,8 @@ struct SessionLook {
 };
 
 struct Document {
-    std::string product = "car";  ///< a shipped product's name, or a file
+    std::string product = "car";             ///< a shipped product's name, or a file
+    std::optional<LengthUnit> product_unit;  ///< of the file's numbers, where somebody said
     std::vector<SessionLook> looks;
     int next_look_id = 1;
     std::vector<Material> paints;  ///< the session's own; they come before the library's by name
@@ -34,8 +36,12 @@ struct Document {
     double design_white_percentile = 20.0;
 };
 
+/// How a session names a product: a shipped one as it is, a file by its whole path.
+std::string product_reference(const std::string& name_or_file);
+
 /// The shipped looks on a product, seen as the default bench has it. Throws FileError.
-Document new_document(const std::string& product = "car");
+Document new_document(const std::string& product = "car",
+                      std::optional<LengthUnit> unit = std::nullopt);
 
 const SessionLook* find_look(const Document& document, int id);
 /// The session's own paint, else the library's. Throws FileError with the nearest names.

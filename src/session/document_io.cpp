@@ -80,6 +80,7 @@ Json json_of(const Document& document) {
     Json json = Json::object();
     json["format_version"] = kFormatVersion;
     json["product"] = document.product;
+    if (document.product_unit) json["product_unit"] = to_string(*document.product_unit);
     json["looks"] = Json::array();
     for (const SessionLook& look : document.looks) json["looks"].push_back(json_of(look));
     json["next_look_id"] = document.next_look_id;
@@ -98,6 +99,7 @@ Document read_document(const JsonReader& root) {
     root.require_format_version(kFormatVersion);
     root.allow_only({"format_version",
                      "product",
+                     "product_unit",
                      "looks",
                      "next_look_id",
                      "paints",
@@ -109,6 +111,11 @@ Document read_document(const JsonReader& root) {
                      "design_white_percentile"});
     Document document;
     document.product = checked_text(root["product"]);
+    if (root.has("product_unit")) {
+        const JsonReader unit = root["product_unit"];
+        document.product_unit = parse_length_unit(unit.text());
+        if (!document.product_unit) unit.fail(unit.found(), "mm, cm, m or in");
+    }
     read_looks(root["looks"], document);
     document.next_look_id = root["next_look_id"].integer(1, kLargestId);
     for (const SessionLook& look : document.looks) {

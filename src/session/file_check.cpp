@@ -43,7 +43,7 @@ bool is_there(const Path& file) {
     return std::filesystem::exists(file, error);
 }
 
-void read_mesh(const Path& file, FileCheck& check) { load_mesh(file, &check.notes); }
+void check_mesh(const Path& file, FileCheck& check) { load_mesh(file, &check.notes); }
 
 void read_captures(const Path& folder, FileCheck& check, const Progress& progress) {
     const CapturesFolder captures = read_captures_folder(folder);
@@ -190,7 +190,9 @@ Kind kind_of(const Path& file, const Progress& progress) {
         return kind_of_json(file, progress);
     }
     if (suffix == ".livery" || is_session_file(file)) return {"session", read_session};
-    if (suffix == ".glb" || suffix == ".gltf") return {"mesh", read_mesh};
+    if (suffix == ".glb" || suffix == ".gltf" || suffix == ".ply" || suffix == ".obj") {
+        return {"mesh", check_mesh};
+    }
     if (suffix == ".exr") {
         const auto names = read_image(file).channel_names;
         if (names == std::vector<std::string>{"X", "Y"}) return {"map", read_map};
@@ -202,7 +204,8 @@ Kind kind_of(const Path& file, const Progress& progress) {
                     path,
                     "suffix",
                     path.extension().string().empty() ? "none" : path.extension().string(),
-                    ".livery, .glb, .gltf, .json, .exr, .hdr, .png, .tif, .jpg, RAW or a folder");
+                    ".livery, .glb, .gltf, .ply, .obj, .json, .exr, .hdr, .png, .tif, .jpg, RAW or "
+                    "a folder");
             }};
 }
 

@@ -49,16 +49,38 @@ Look find_look(const std::string& name_or_file) {
     return read_look_file(shipped_look_file(name_or_file));
 }
 
-std::shared_ptr<const Product> find_product(const std::string& name_or_file) {
+Look find_look_for(const std::string& name_or_file, const std::vector<std::string>& parts) {
+    Look look = find_look(name_or_file);
+    if (is_file(name_or_file) || looks_like_path(name_or_file)) return look;
+    const auto has_part = [&](const std::string& name) {
+        return std::find(parts.begin(), parts.end(), name) != parts.end();
+    };
+    const auto body = look.parts.find("body");
+    const std::string body_paint = body == look.parts.end() ? "" : body->second;
+    std::erase_if(look.parts,
+                  [&](const auto& entry) { return entry.first != "*" && !has_part(entry.first); });
+    if (!body_paint.empty() && !look.parts.contains("body")) look.parts["*"] = body_paint;
+    return look;
+}
+
+std::shared_ptr<const Product> find_product(const std::string& name_or_file,
+                                            std::optional<LengthUnit> unit) {
     if (is_file(name_or_file) || looks_like_path(name_or_file)) {
-        return std::make_shared<const Product>(load_product(name_or_file));
+        return std::make_shared<const Product>(load_product(name_or_file, unit));
     }
     const std::string stem = file_stem_of(name_or_file);
     if (stem != "car" && stem != "sphere") {
         throw FileError(
             name_or_file, "product", "no such file or shipped product", "a file, car or sphere");
     }
+    if (unit) throw FileError(name_or_file, "unit", to_string(*unit), "none for a shipped product");
     return std::make_shared<const Product>(load_product(shipped_path("assets/" + stem + ".json")));
+}
+
+std::vector<std::string> part_names(const Mesh& mesh) {
+    std::vector<std::string> names;
+    for (const Part& part : mesh.parts) names.push_back(part.name);
+    return names;
 }
 
 std::vector<std::string> part_names(const std::string& product_name_or_file) {
@@ -69,9 +91,7 @@ std::vector<std::string> part_names(const std::string& product_name_or_file) {
     auto entry = known.find(product_name_or_file);
     if (entry == known.end()) {
         const auto product = find_product(product_name_or_file);
-        std::vector<std::string> names;
-        for (const Part& part : product->mesh.parts) names.push_back(part.name);
-        entry = known.emplace(product_name_or_file, std::move(names)).first;
+        entry = known.emplace(product_name_or_file, part_names(product->mesh)).first;
     }
     return entry->second;
 }

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,15 +12,23 @@
 
 namespace livery {
 
-/// A file, or the name of a shipped product ("car", "sphere"). Throws FileError with the names
-/// there are.
-std::shared_ptr<const Product> find_product(const std::string& name_or_file);
+/// A file, or the name of a shipped product ("car", "sphere"). The unit is what a file's numbers
+/// are in, where that is known better than the file does. Throws FileError with the names there
+/// are.
+std::shared_ptr<const Product> find_product(const std::string& name_or_file,
+                                            std::optional<LengthUnit> unit = std::nullopt);
+
+std::vector<std::string> part_names(const Mesh& mesh);
 
 /// Names of a product's parts; the product is read once a run. Throws FileError.
 std::vector<std::string> part_names(const std::string& product_name_or_file);
 
 /// A file, or the name of a shipped look. Throws FileError with the names there are.
 Look find_look(const std::string& name_or_file);
+
+/// The same for a product with these parts. A shipped look says what the car wears: parts that
+/// another product lacks are left out, and without a body all of it wears the body's paint.
+Look find_look_for(const std::string& name_or_file, const std::vector<std::string>& parts);
 
 /// Names of the shipped looks, sorted.
 std::vector<std::string> shipped_looks();

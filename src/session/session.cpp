@@ -122,7 +122,9 @@ Session& Session::operator=(Session&&) noexcept = default;
 
 Session::~Session() = default;
 
-Session Session::open(const std::filesystem::path& file, const std::string& product) {
+Session Session::open(const std::filesystem::path& file,
+                      const std::string& product,
+                      std::optional<LengthUnit> unit) {
     auto state = std::make_unique<State>();
     if (is_default(file)) make_output_folder(file.parent_path());
     state->path = file;
@@ -131,7 +133,7 @@ Session Session::open(const std::filesystem::path& file, const std::string& prod
                                              "close it there, or name another session file here");
     std::error_code error;
     if (!std::filesystem::exists(file, error)) {
-        SessionFile::create(file, {"", "", text_of(new_document(product))});
+        SessionFile::create(file, {"", "", text_of(new_document(product, unit))});
     }
     state->store = std::make_unique<SessionFile>(file, SessionFile::Access::change);
     state->store->check_pages();

@@ -22,7 +22,9 @@ class Session {
   public:
     /// Opens the file or makes a new session in it. A second program on the same file is refused
     /// (Refused, names the other's process). Throws FileError (corrupt, newer, read-only folder).
-    static Session open(const std::filesystem::path& file, const std::string& product = "car");
+    static Session open(const std::filesystem::path& file,
+                        const std::string& product = "car",
+                        std::optional<LengthUnit> unit = std::nullopt);
     /// No file: for tests and for a folder that cannot be written; the reason is what to tell.
     static Session unsaved(const Document& document, std::string why);
     Session(Session&&) noexcept;

@@ -62,10 +62,8 @@ Session open_session(const DesktopOptions& options) {
     const auto file = options.session.empty() ? default_session_file() : options.session;
     const std::string product = options.product.empty() ? "car" : options.product;
     try {
-        Session session = Session::open(file, product);
-        // A session names a product's file by its whole path, as a new one made here would.
-        if (!options.product.empty() &&
-            session.document().product != new_document(product).product) {
+        Session session = Session::open(file, product, options.unit);
+        if (!options.product.empty() && session.document().product != product_reference(product)) {
             throw Refused(fmt::format("the session {} shows the product {}, not {}",
                                       file.string(),
                                       session.document().product,
@@ -75,8 +73,18 @@ Session open_session(const DesktopOptions& options) {
         return session;
     } catch (const FileError& error) {
         log_line(LogLevel::error, std::string("session: ") + error.what());
-        return Session::unsaved(new_document(product), error.what());
+        return Session::unsaved(new_document(product, options.unit), error.what());
     }
+}
+
+void tell_product_notes(Studio& studio) {
+    std::string notes;
+    for (const std::string& note : studio.product->notes) {
+        notes += (notes.empty() ? "" : "\n") + note;
+    }
+    if (notes.empty()) return;
+    notify(studio,
+           {Notice::Level::warning, "The product's file was not used as it is:", notes, ""});
 }
 
 /// A monitor's part of the desktop that the window lies on, and its scale.
@@ -273,7 +281,8 @@ class Desktop {
         imgui_ = std::make_unique<ImGuiWindow>(*window_);
         glfwSetWindowSizeLimits(window_->native(), 640, 400, GLFW_DONT_CARE, GLFW_DONT_CARE);
         glfwSetMonitorCallback([](GLFWmonitor*, int) { monitors_have_changed = true; });
-        studio.product = find_product(studio.session.document().product);
+        studio.product =
+            find_product(studio.session.document().product, studio.session.document().product_unit);
         shell_.product_bounds = bounds_of(studio.product->mesh);
         studio.picker = std::make_unique<PartPicker>(studio.product);
         studio.file_dialog = std::make_unique<FileDialog>();
@@ -282,6 +291,7 @@ class Desktop {
         open_ballots(shell_);
         keep_shown_looks_valid(studio);
         contexts_ = start_threads(shell_, *window_);
+        tell_product_notes(studio);
         tell_unsaved(shell_);
         monitors_changed(shell_);
         give_icon(studio, window_->native());

@@ -134,6 +134,36 @@ TEST(Program, CheckSaysWhatIsWrong) {
     EXPECT_NE(files[2]["problems"][0].get<std::string>().find("no such file"), std::string::npos);
 }
 
+TEST(Program, ScansAreProductsAndTellWhatWasAssumed) {
+    const TemporaryFolder folder;
+    const auto scan = folder
+                          .write("my scan.obj",
+                                 "v -60 0 0\nv 60 0 0\nv 60 60 0\nv -60 60 0\n"
+                                 "usemtl wing\nf 1 2 3 4\n")
+                          .string();
+    const auto picture = (folder / "scan.png").string();
+    const ProgramRun run =
+        livery_run({"render", "--product", scan, "--out", picture, "--json", "--threads", "1"});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const Json figures = json_of(run);
+    EXPECT_GT(figures["covered_fraction"], 0.05);
+    ASSERT_EQ(figures["notes"].size(), 2u) << run.out;
+    EXPECT_NE(run.err.find("note: the file states no unit; its longest side of 120 is taken as"),
+              std::string::npos);
+
+    const Json asked = json_of(
+        livery_run({"plan", "--product", scan, "--unit", "in", "--json", "--quality", "draft"}));
+    EXPECT_EQ(asked["notes"].size(), 1u) << asked.dump();
+    const ProgramRun unknown = livery_run({"plan", "--product", scan, "--unit", "ell"});
+    EXPECT_EQ(unknown.exit_code, 2);
+    EXPECT_NE(unknown.err.find("--unit: found \"ell\", expected mm, cm, m, in"), std::string::npos);
+
+    const ProgramRun check = livery_run({"check", scan});
+    EXPECT_EQ(check.exit_code, 0);
+    EXPECT_NE(check.out.find("ok      mesh: "), std::string::npos);
+    EXPECT_NE(check.out.find("note: no normals; computed"), std::string::npos);
+}
+
 TEST(Program, RendersBothBackendsAndPlans) {
     const TemporaryFolder folder;
     const std::string camera = small_camera(folder);

@@ -225,10 +225,10 @@ TEST(GltfBadInput, Containers) {
     EXPECT_TRUE(
         fails_with([&] { load_mesh(folder / "gone.glb"); }, {"gone.glb: found no such file"}));
     EXPECT_TRUE(fails_with([&] { load_mesh(folder.path()); }, {"found a folder"}));
-    EXPECT_TRUE(refuses("", {"found an empty file, expected a glTF mesh"}));
+    EXPECT_TRUE(refuses("", {"found an empty file, expected a mesh"}));
     EXPECT_TRUE(refuses(good.substr(0, 15), {"header: found 15 bytes"}));
     EXPECT_TRUE(refuses(good.substr(0, 200), {"header: found 200 bytes (cut off), expected"}));
-    EXPECT_TRUE(refuses("ply\n" + good, {"header: found no \"glTF\" at the start"}));
+    EXPECT_TRUE(refuses("gltf\n" + good, {"header: found no \"glTF\" at the start"}));
     std::string bytes = good;
     bytes[4] = 1;
     EXPECT_TRUE(refuses(bytes, {"header: found GLB version 1, expected version 2"}));

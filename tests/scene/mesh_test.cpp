@@ -6,18 +6,10 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "scene/mesh_checks.h"
+
 namespace livery {
 namespace {
-
-double signed_volume(const Mesh& mesh) {
-    double volume = 0.0;
-    for (const auto& t : mesh.triangles) {
-        const glm::dvec3 a(mesh.positions_mm[t.x]), b(mesh.positions_mm[t.y]),
-            c(mesh.positions_mm[t.z]);
-        volume += glm::dot(a, glm::cross(b, c)) / 6.0;
-    }
-    return volume;
-}
 
 TEST(Sphere, HasItsVolumeAndTrianglesFaceOutward) {
     const Mesh sphere = make_sphere({3.0, -2.0, 5.0}, 40.0, 64, "ball");

@@ -9,8 +9,10 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "core/json.h"
 #include "session/library.h"
 #include "session/session_script.h"
+#include "support/file_error.h"
 #include "support/memory_folder.h"
 #include "support/temporary_folder.h"
 
@@ -41,6 +43,25 @@ TEST(NewDocument, PaintsAllOfAProductThatIsNoCar) {
     const Scene scene = scene_of(document, 4, product);
     for (const Material& material : scene.part_materials) EXPECT_EQ(material.name, "solid red");
     EXPECT_THROW(new_document("boat"), FileError);
+}
+
+TEST(NewDocument, KeepsTheUnitThatSomebodySaid) {
+    const TemporaryFolder folder;
+    const auto file = folder.write("a.obj", "v 0 0 0\nv 9 0 0\nv 0 9 0\nf 1 2 3\n").string();
+    const Document document = new_document(file, LengthUnit::cm);
+    EXPECT_EQ(document.product, file);
+    EXPECT_EQ(parse_document(text_of(document), "a").product_unit, LengthUnit::cm);
+    const auto product = find_product(document.product, document.product_unit);
+    EXPECT_EQ(product->mesh.positions_mm[1], glm::vec3(90, 0, 0));
+    EXPECT_EQ(scene_of(document, 4, product).part_materials[0].name, "solid red");
+
+    EXPECT_EQ(text_of(car()).find("product_unit"), std::string::npos);
+    Json json = Json::parse(text_of(document));
+    json["product_unit"] = "ell";
+    EXPECT_TRUE(fails_with([&] { parse_document(json.dump(), "a"); },
+                           {"product_unit: found \"ell\", expected mm, cm, m or in"}));
+    EXPECT_TRUE(fails_with([] { find_product("car", LengthUnit::m); },
+                           {"car: unit: found m, expected none for a shipped product"}));
 }
 
 TEST(SceneOf, WearsTheSessionsOwnPaints) {

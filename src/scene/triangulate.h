@@ -1,0 +1,19 @@
+// A polygon in space as triangles. Internal to scene/.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+namespace livery {
+
+/// Corners above which a polygon is refused by whoever reads it: cutting ears is quadratic.
+inline constexpr std::size_t kMaxPolygonCorners = 4096;
+
+/// Cuts a simple polygon, flat or nearly so, concave or convex, into corner count - 2 triangles of
+/// indices into it, wound as it is. One that crosses itself gives as many, some of them
+/// overlapping.
+std::vector<glm::uvec3> triangulate(const std::vector<glm::dvec3>& polygon);
+
+}  // namespace livery
