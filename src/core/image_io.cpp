@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include <string_view>
 
@@ -14,6 +15,7 @@
 #include "core/error.h"
 #include "core/image_io_module.h"
 #include "core/paths.h"
+#include "core/radiance_hdr.h"
 
 namespace livery {
 
@@ -163,6 +165,12 @@ ImageFile read_image(const std::filesystem::path& file, std::size_t max_pixels) 
     const std::string start = start_of(file);
     const char* format = format_of(file, start);
     if (!format) throw FileError(file, "", "content of another kind", kReadable);
+    if (std::string_view(format) == "hdr") {
+        const std::string bytes = read_text_file(file, std::numeric_limits<std::size_t>::max());
+        if (auto picture = decode_radiance_hdr(bytes, max_pixels)) {
+            return {std::move(*picture), {"R", "G", "B"}, 1.0, true};
+        }
+    }
 
     PictureHeader header;
     PictureError error;

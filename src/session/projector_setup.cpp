@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/paths.h"
 #include "session/bench_calibration.h"
+#include "session/setup_cache.h"
 #include "twin/description.h"
 
 namespace livery {
@@ -37,9 +38,17 @@ class UnfinishedFolder {
 
 std::shared_ptr<const ProjectorSetup> load_setup(const std::filesystem::path& folder,
                                                  double design_white_percentile) {
-    auto setup = std::make_shared<ProjectorSetup>();
-    ColourCalibration calibration = read_calibration(folder);
+    std::error_code error;
+    const bool there = std::filesystem::exists(folder / "calibration.json", error);
+    const std::string kept = there ? setup_cache_name(folder, design_white_percentile) : "";
+    auto setup = there ? read_kept_setup(kept) : nullptr;
     const auto camera_file = folder / "projector.json";
+    if (setup) {
+        setup->view = read_camera_file(camera_file);
+        return setup;
+    }
+    setup = std::make_shared<ProjectorSetup>();
+    ColourCalibration calibration = read_calibration(folder);
     setup->view = read_camera_file(camera_file);
     if (setup->view.width != calibration.width || setup->view.height != calibration.height) {
         throw FileError(
@@ -55,6 +64,7 @@ std::shared_ptr<const ProjectorSetup> load_setup(const std::filesystem::path& fo
         *plane = ImageF();
     }
     setup->calibration = std::move(calibration);
+    keep_setup(kept, *setup);
     return setup;
 }
 

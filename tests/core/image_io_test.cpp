@@ -210,6 +210,37 @@ TEST(ImageIo, RefusesTruncatedPictures) {
     }
 }
 
+TEST(ImageIo, ReadsRadianceRunsAndLiteralsAsTheirFormatSays) {
+    const TemporaryFolder folder;
+    // Eight pixels: a run, then literals; exponents 128 (x 2^-8), 129, 0 (black).
+    std::string row = "\x02\x02\x00\x08"s;
+    row += "\x88\x80"s;                      // red: 128 everywhere
+    row += "\x04\x00\x40\x80\xff\x84\x10"s;  // green: 0 64 128 255, 16 four times
+    row += "\x88\x01"s;                      // blue: 1
+    row += "\x83\x80\x83\x81\x02\x00\x00"s;  // exponents
+    const std::string header = "#?RADIANCE\n# made by hand\nFORMAT=32-bit_rle_rgbe\n\n";
+    const ImageFile picture = read_image(folder.write("a.hdr", header + "-Y 2 +X 8\n" + row + row));
+    ASSERT_EQ(picture.image.width, 8);
+    ASSERT_EQ(picture.image.height, 2);
+    EXPECT_TRUE(picture.floating_point);
+    EXPECT_EQ(picture.channel_names, (std::vector<std::string>{"R", "G", "B"}));
+    for (int y = 0; y < 2; ++y) {
+        EXPECT_EQ(picture.image.at(0, y, 0), 0.5f);
+        EXPECT_EQ(picture.image.at(1, y, 1), 0.25f);
+        EXPECT_EQ(picture.image.at(3, y, 1), 255.0f / 128.0f);
+        EXPECT_EQ(picture.image.at(5, y, 2), 1.0f / 128.0f);
+        EXPECT_EQ(picture.image.at(6, y, 0), 0.0f);
+    }
+    // Flat pixels, as old writers leave them, are read as well.
+    std::string flat = header + "-Y 1 +X 2\n" + "\x80\x40\x20\x81\x80\x40\x20\x82"s;
+    EXPECT_EQ(read_image(folder.write("flat.hdr", flat)).image.at(1, 0, 0), 2.0f);
+    // A run over the row's end, and another row's width
+    for (const char* bad : {"\x02\x02\x00\x08\x89\x80", "\x02\x02\x00\x09\x88\x80"}) {
+        const auto file = folder.write("bad.hdr", header + "-Y 1 +X 8\n" + std::string(bad, 6));
+        EXPECT_TRUE(fails_with([&] { read_image(file); }, {file.string(), "expected"}));
+    }
+}
+
 TEST(ImageIo, RefusesADamagedPng) {
     const TemporaryFolder folder;
     write_png(folder / "a.png", noise<std::uint8_t>(64, 64, 3, 256));

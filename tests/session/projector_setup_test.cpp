@@ -51,6 +51,70 @@ TEST_F(ProjectorSetupTest, IsTheCalibrationBakedForItsDesignWhite) {
     EXPECT_LT(load_setup(folder, 5.0)->design_white_y, setup->design_white_y);
 }
 
+std::vector<std::filesystem::path> kept_setups() {
+    std::vector<std::filesystem::path> files;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(user_folder() / "cache", error)) {
+        files.push_back(entry.path());
+    }
+    return files;
+}
+
+void expect_same(const ProjectorSetup& a, const ProjectorSetup& b) {
+    EXPECT_EQ(a.view.focal_px, b.view.focal_px);
+    EXPECT_EQ(a.design_white_y, b.design_white_y);
+    EXPECT_EQ(a.why_uncorrected, b.why_uncorrected);
+    ASSERT_TRUE(a.calibration && b.calibration && a.table && b.table);
+    EXPECT_EQ(a.calibration->id, b.calibration->id);
+    EXPECT_EQ(a.calibration->warnings, b.calibration->warnings);
+    EXPECT_EQ(a.calibration->status.values, b.calibration->status.values);
+    EXPECT_EQ(a.calibration->xyz_from_camera, b.calibration->xyz_from_camera);
+    EXPECT_EQ(a.calibration->response[2].drive_from_n, b.calibration->response[2].drive_from_n);
+    EXPECT_EQ(a.calibration->table.n_from_drive, b.calibration->table.n_from_drive);
+    EXPECT_EQ(a.calibration->valid_fraction, b.calibration->valid_fraction);
+    EXPECT_EQ(a.table->width, b.table->width);
+    EXPECT_EQ(a.table->pixels, b.table->pixels);
+    EXPECT_EQ(a.table->coefficients, b.table->coefficients);
+    EXPECT_EQ(a.table->drive_from_n, b.table->drive_from_n);
+    EXPECT_EQ(a.table->non_additive.start, b.table->non_additive.start);
+    EXPECT_EQ(a.table->calibration_id, b.table->calibration_id);
+}
+
+TEST_F(ProjectorSetupTest, IsKeptAndTheSameAgain) {
+    const auto folder = write_small();
+    const auto first = load_setup(folder, 20.0);
+    ASSERT_EQ(kept_setups().size(), 1u);
+    expect_same(*load_setup(folder, 20.0), *first);
+    EXPECT_EQ(kept_setups().size(), 1u);
+    load_setup(folder, 5.0);
+    EXPECT_EQ(kept_setups().size(), 2u) << "another design white is baked otherwise";
+}
+
+TEST_F(ProjectorSetupTest, WhatIsKeptNeverStandsForAChangedCalibration) {
+    const auto folder = write_small();
+    load_setup(folder, 20.0);
+    std::ofstream(folder / "dark.exr") << "damaged";
+    EXPECT_TRUE(fails_with([&] { load_setup(folder, 20.0); }, {"dark.exr"}));
+}
+
+TEST_F(ProjectorSetupTest, DamagedOrUnwritableItIsWorkedOutAgain) {
+    const auto folder = write_small();
+    const auto first = load_setup(folder, 20.0);
+    for (const std::uintmax_t size :
+         {std::uintmax_t{0}, std::uintmax_t{20}, std::uintmax_t{5000}}) {
+        std::filesystem::resize_file(kept_setups().front(), size);
+        expect_same(*load_setup(folder, 20.0), *first);
+    }
+    const auto file = kept_setups().front();
+    std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
+    stream.seekp(3000).put('\x55');
+    stream.close();
+    expect_same(*load_setup(folder, 20.0), *first);
+    std::filesystem::remove_all(user_folder());
+    std::ofstream(user_folder()) << "a file where the user's folder should be";
+    expect_same(*load_setup(folder, 20.0), *first);
+}
+
 TEST_F(ProjectorSetupTest, RefusesFoldersThatAreNone) {
     EXPECT_TRUE(fails_with([&] { load_setup(folder_ / "missing", 20.0); },
                            {"missing", "nothing", "a calibration's folder"}));
