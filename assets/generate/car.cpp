@@ -179,31 +179,32 @@ void add_floor(PartMesh& trim) {
 
 /// A door mirror: a housing with a flat back, on a foot at the window's front corner.
 void add_mirror(std::vector<PartMesh>& parts) {
-    const glm::dvec3 centre(22.2, 43.6, 36.2), half(2.6, 1.75, 3.3);
-    auto housing = sphere(1.0, 20);
+    const glm::dvec3 centre(22.0, 43.6, 36.9), half(2.7, 1.8, 2.9);
+    auto housing = sphere(1.0, 24);
     for (auto& p : housing.positions_mm) {
         const auto round = [](double v, double power) {
             return std::copysign(std::pow(std::abs(v), power), v);
         };
-        // A superellipsoid, flat behind, pointed in front, swept back and slimmer outward.
-        glm::dvec3 q(round(p.x, p.x > 0.0 ? 1.15 : 0.45), round(p.y, 0.7), round(p.z, 0.6));
-        q.x *= p.x > 0.0 ? 1.0 - 0.25 * q.z : 0.3;
-        q.y *= 1.0 - 0.16 * q.z;
-        p = centre + q * half + glm::dvec3(-0.55 * (q.z + 1.0), 0.18 * (q.z + 1.0), 0.0);
+        // A superellipsoid, flat behind, a wedge in front, swept back and slimmer outward.
+        glm::dvec3 q(round(p.x, p.x > 0.0 ? 0.95 : 0.4), round(p.y, 0.55), round(p.z, 0.5));
+        const double front = std::max(q.x, 0.0);
+        q.x *= p.x > 0.0 ? 1.0 - 0.2 * q.z : 0.3;
+        q.y *= (1.0 - 0.14 * q.z) * (1.0 - 0.3 * front * front);
+        p = centre + q * half + glm::dvec3(-0.5 * (q.z + 1.0), 0.2 * (q.z + 1.0), 0.0);
     }
     compute_smooth_normals(housing);
-    for (auto& uv : housing.uvs) uv *= half.x;
+    for (auto& uv : housing.uvs) uv *= 1.3 * half.x;  // a blunt shape is longer around
     append(parts[kBody], housing, glm::dvec3(0.0));
 
     std::vector<std::vector<glm::dvec3>> foot;
     for (int k = 0; k < 3; ++k) {
         const double f = k / 2.0;
         const glm::dvec3 middle =
-            glm::mix(glm::dvec3(23.8, 40.2, 33.9), centre - glm::dvec3(0.2, 0.9, 1.6), f);
+            glm::mix(glm::dvec3(23.6, 40.2, 33.8), centre - glm::dvec3(-0.4, 1.2, 1.5), f);
         std::vector<glm::dvec3> loop;
         for (int a = 0; a < 12; ++a) {
             const double turn = 2.0 * std::numbers::pi * a / 12;
-            loop.push_back(middle + glm::dvec3(1.3 * std::sin(turn), 0.0, 0.55 * std::cos(turn)));
+            loop.push_back(middle + glm::dvec3(1.2 * std::sin(turn), 0.0, 0.35 * std::cos(turn)));
         }
         foot.push_back(loop);
     }

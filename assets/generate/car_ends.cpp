@@ -58,7 +58,7 @@ const Outline& air_curtain() {
     return outline;
 }
 const Outline& plate() {
-    static const Outline outline({{-10.4, 36.2}, {10.4, 36.2}, {11.2, 30.6}, {-11.2, 30.6}}, 0.8);
+    static const Outline outline({{-10.6, 35.6}, {10.6, 35.6}, {11.4, 29.8}, {-11.4, 29.8}}, 0.9);
     return outline;
 }
 const Outline& diffuser() {
@@ -107,7 +107,7 @@ void cut_ends(const Cutter& cutter) {
                         0.3);
     cutter(blade, nose_view, 0.0, {kHeadBowl}, kHeadLamp, in_front);
     for (const double at : {20.2, 24.4, 28.6}) {
-        const double y = 25.4 + 0.055 * (at - 20.0) + 0.004 * (at - 20.0) * (at - 20.0);
+        const double y = 25.45 + 0.055 * (at - 20.0) + 0.004 * (at - 20.0) * (at - 20.0);
         const Outline projector({{at - 1.5, y + 1.0 - 0.1},
                                  {at + 1.5, y + 1.0 + 0.25},
                                  {at + 1.3, y - 0.35 + 0.2},
@@ -148,7 +148,7 @@ void cut_ends(const Cutter& cutter) {
             {{at - 1.6, 40.35}, {at + 1.6, 40.35}, {at + 1.9, 39.3}, {at - 1.3, 39.3}}, 0.25);
         cutter(block, tail_view, 0.0, {kTailBowl}, kTailLamp, behind);
     }
-    bowl_in(plate(), tail_view, kIntakeWall_mm, kPlateRecess, behind, false);
+    bowl_in(plate(), tail_view, kIntakeWall_mm, kPlateRecess, behind, true);
     bowl_in(diffuser(), tail_view, kIntakeWall_mm, kDiffuser, behind, false);
     for (const double at : {3.6, 10.2, 16.4}) {
         const Outline fin({{at - 0.5, 16.8}, {at + 0.5, 16.8}, {at + 0.5, 10.5}, {at - 0.5, 10.5}},

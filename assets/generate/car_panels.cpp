@@ -24,7 +24,8 @@ std::vector<PanelStyle> cut_car_panels(Sheet& sheet) {
     }
     cut_windows(cutter);
     cut_ends(cutter);
-    cutter.along([](const LimitVertex& v) { return v.position.y - 10.2; },
+    // The dark sill rises toward the tail.
+    cutter.along([](const LimitVertex& v) { return v.position.y - 10.1 + 0.014 * v.position.x; },
                  {kFenders},
                  kLowerTrim,
                  [&](const SheetTriangle& t) { return t.region != kTop; });

@@ -1,6 +1,7 @@
 // Draws the documentation's pictures of the car: eight views and four details as the window shows
 // them, and the reflections of a striped room, which show a dent as a kink in a stripe:
 // livery_car_pictures FOLDER.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -43,14 +44,16 @@ View view_from(const Camera& camera, const Bounds& bounds, int width, int height
     return view_of(zoomed(fitted(orbit, bounds, aspect), camera.zoom, bounds), width, height);
 }
 
-/// `top` over grey, into a part of a sheet.
+/// `top` over grey, into a part of a sheet, rounded to steps of 5, which keeps the files small.
 void place(Image8& sheet, const Image8& top, int left, int above) {
     for (int y = 0; y < top.height; ++y) {
         for (int x = 0; x < top.width; ++x) {
+            constexpr int kStep = 5;  // divides 255
             const double alpha = top.at(x, y, 3) / 255.0;
             for (int c = 0; c < 3; ++c) {
                 const double over = alpha * top.at(x, y, c) + (1.0 - alpha) * kBackground;
-                sheet.at(left + x, above + y, c) = static_cast<std::uint8_t>(std::lround(over));
+                sheet.at(left + x, above + y, c) =
+                    static_cast<std::uint8_t>(kStep * std::lround(over / kStep));
             }
         }
     }
@@ -111,8 +114,8 @@ class CarPainter {
             return 0.18 + 0.1 * std::abs(point.normal.y);
         }
         const auto out = glm::reflect(glm::vec3(ray.direction), point.normal);
-        // Stripes around the car's long axis: planes through x, every 24 degrees.
-        const double turn = std::atan2(out.y, out.z) / (24.0 * kDegree);
+        // Level stripes, 10 degrees of elevation each: none narrows toward a pole.
+        const double turn = std::asin(std::clamp(out.y, -1.0f, 1.0f)) / (20.0 * kDegree);
         const double wave = turn - std::floor(turn);
         return wave < 0.5 ? 0.06 : 0.94;
     }
@@ -153,15 +156,15 @@ void draw_pictures(const std::filesystem::path& folder) {
     const auto in_stripes = [&](const Camera& camera, int width, int height) {
         return car.zebra(camera, width, height);
     };
-    constexpr int kWidth = 640, kHeight = 300;
+    constexpr int kWidth = 400, kHeight = 190;
     const std::array<Camera, 8> views{
         {{40, 13}, {-42, 15}, {0, 4}, {0, 89}, {90, 6}, {-90, 6}, {58, 1}, {-32, 34}}};
     write_sheet(folder / "car-views.png", views, kWidth, kHeight, in_paint("solid-red"));
-    const std::array<Camera, 4> details{{{62, 12, {78, 24, 12}, 290},
-                                         {10, 3, {56, 15, 30}, 150},
-                                         {-65, 16, {-80, 32, 10}, 300},
-                                         {18, 12, {0, 42, 20}, 420}}};
-    write_sheet(folder / "car-details.png", details, kWidth, 400, in_paint("silver-metallic"));
+    const std::array<Camera, 4> details{{{48, 10, {79, 26, 24}, 120},
+                                         {14, 4, {57.5, 15, 34}, 140},
+                                         {-58, 10, {-80, 37, 24}, 130},
+                                         {32, 14, {14, 44, 30}, 190}}};
+    write_sheet(folder / "car-details.png", details, kWidth, 240, in_paint("silver-metallic"));
     const std::array<Camera, 4> striped{{{40, 13}, {-42, 15}, {0, 4}, {20, 50}}};
     write_sheet(folder / "car-zebra.png", striped, kWidth, kHeight, in_stripes);
 }
