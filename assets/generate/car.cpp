@@ -20,8 +20,6 @@ namespace livery::assets {
 namespace {
 
 constexpr double kLength_mm = 180.0, kWidth_mm = 75.0, kHeight_mm = 60.0;
-constexpr double kWellDepth_mm = 25.5;  ///< z of the wheel wells' inner wall
-constexpr double kFloor_mm = 6.6;
 constexpr double kWheelFace_mm = 36.1;  ///< z of the tyres' outermost ring
 constexpr int kLevels = 3, kFitSteps = 2;
 
@@ -110,70 +108,19 @@ glm::dvec2 chart(const LimitVertex& v, int region) {
     }
 }
 
-/// Wheel wells: the arches' edges turned inward, and a liner around each wheel.
-void add_wells(const std::vector<OpenEdge>& open, std::vector<PartMesh>& parts) {
-    constexpr double kLip_mm = 1.2;
-    constexpr double kAxleMiddle_mm = 0.5 * (kFrontAxle_mm + kRearAxle_mm);
-    for (const auto& edge : open) {
-        const double axle = edge.from.x > kAxleMiddle_mm ? kFrontAxle_mm : kRearAxle_mm;
-        const auto near_arch = [&](const glm::dvec3& p) {
-            return std::abs(p.x - axle) < kArchRadius_mm + 0.5;
-        };
-        if (edge.region != kSide || !near_arch(edge.from) || !near_arch(edge.to)) continue;
-        auto& part = parts[static_cast<std::size_t>(edge.part)];
-        const auto vertex = [&](glm::dvec3 place, double inward_mm) {
-            const glm::dvec3 out(axle - place.x, kAxleHeight_mm - place.y, 0.0);
-            place.z -= inward_mm;
-            return part.add_vertex(
-                place,
-                glm::normalize(out),
-                glm::dvec2(place.x, place.z) / kUvUnit_mm + glm::dvec2(0.5, 1.5));
-        };
-        part.add_quad(vertex(edge.from, 0.0),
-                      vertex(edge.from, kLip_mm),
-                      vertex(edge.to, kLip_mm),
-                      vertex(edge.to, 0.0));
-    }
-    auto& trim = parts[kTrim];
+/// Wheel wells: a liner around each wheel behind the arch's edge, open below, with its inner wall.
+void add_wells(PartMesh& trim) {
+    constexpr double kThickness_mm = 0.2, kRadius_mm = kArchRadius_mm - 0.4, kEdge_mm = 34.0;
+    const std::vector<glm::dvec2> section{{0.0, kWellDepth_mm - kThickness_mm},
+                                          {kRadius_mm, kWellDepth_mm - kThickness_mm},
+                                          {kRadius_mm, kEdge_mm},
+                                          {kRadius_mm - kThickness_mm, kEdge_mm},
+                                          {kRadius_mm - kThickness_mm, kWellDepth_mm},
+                                          {0.0, kWellDepth_mm}};
     for (const double axle : {kFrontAxle_mm, kRearAxle_mm}) {
-        // A liner a little wider than the opening, open below, with its inner wall.
-        const std::vector<glm::dvec2> liner{{kArchRadius_mm + 0.3, 35.6},
-                                            {kArchRadius_mm + 0.3, kWellDepth_mm},
-                                            {0.0, kWellDepth_mm}};
         append(trim,
-               revolve(liner, false, 48, -0.55, std::numbers::pi + 0.55),
+               revolve(section, true, 48, -0.3, std::numbers::pi + 0.3),
                {axle, kAxleHeight_mm, 0.0});
-    }
-}
-
-/// The floor between the wells: a plain plate inside the sills.
-void add_floor(PartMesh& trim) {
-    struct Span {
-        double from_mm, to_mm, half_from_mm, half_to_mm;
-        double rise_from_mm = 0.0, rise_to_mm = 0.0;
-    };
-    const double r = kArchRadius_mm + 0.2;
-    const std::array<Span, 7> spans{{
-        {-82.0, -74.0, 18.0, 28.0, 1.9, 1.0},
-        {-74.0, kRearAxle_mm - r, 28.0, 31.0, 1.0, 0.0},
-        {kRearAxle_mm - r, kRearAxle_mm + r, kWellDepth_mm, kWellDepth_mm},
-        {kRearAxle_mm + r, kFrontAxle_mm - r, 33.0, 33.0},
-        {kFrontAxle_mm - r, kFrontAxle_mm + r, kWellDepth_mm, kWellDepth_mm},
-        {kFrontAxle_mm + r, 75.0, 31.0, 27.5},
-        {75.0, 84.0, 27.5, 12.0, 0.0, 0.6},
-    }};
-    const glm::dvec3 down(0, -1, 0);
-    for (const auto& span : spans) {
-        const auto vertex = [&](double x, double z) {
-            const double rise = x == span.from_mm ? span.rise_from_mm : span.rise_to_mm;
-            return trim.add_vertex({x, kFloor_mm + rise, z},
-                                   down,
-                                   glm::dvec2(x, z) / kUvUnit_mm + glm::dvec2(0.5, 1.5));
-        };
-        const auto a = vertex(span.from_mm, 0.0), b = vertex(span.to_mm, 0.0);
-        const auto c = vertex(span.to_mm, span.half_to_mm);
-        const auto d = vertex(span.from_mm, span.half_from_mm);
-        trim.add_quad(a, b, c, d);
     }
 }
 
@@ -216,10 +163,7 @@ void add_mirror(std::vector<PartMesh>& parts) {
 std::vector<PartMesh> make_car() {
     auto skin = limit_surface(make_car_cage(), kLevels, kFitSteps);
     fit_to_size(skin.vertices);
-    auto sheet = half_sheet(skin, [](int region, const glm::dvec2& parameters) {
-        return region != kFloor ||
-               parameters.y < kSillRow + 1;  // a flange; a plate closes the rest
-    });
+    auto sheet = half_sheet(skin);
     add_flares(sheet);
     fit_to_size(sheet.vertices);
     const auto styles = cut_car_panels(sheet);
@@ -235,10 +179,9 @@ std::vector<PartMesh> make_car() {
                                                     glm::dvec3(0.06)};
     const std::array<double, kCarParts> roughness{0.5, 0.15, 0.35, 0.8, 0.2, 0.6};
 
-    const auto open = build_panels(sheet, styles, chart, kTrim, half);
-    add_wells(open, half);
+    build_panels(sheet, styles, chart, kTrim, half);
+    add_wells(half[kTrim]);
     add_mirror(half);
-    add_floor(half[kTrim]);
     for (const double axle : {kFrontAxle_mm, kRearAxle_mm}) {
         const glm::dvec3 place(axle, kAxleHeight_mm, kWheelFace_mm - kTyreHalfWidth_mm);
         append(half[kTyres], make_tyre(), place);
@@ -246,11 +189,9 @@ std::vector<PartMesh> make_car() {
         append(half[kTrim], make_brake(), place);
     }
     for (std::size_t k = 0; k < parts.size(); ++k) {
-        constexpr double kSliver_mm2 = 1e-5;
         parts[k].name = names[k];
         parts[k].base_colour_rec709 = colours[k];
         parts[k].roughness = roughness[k];
-        remove_slivers(half[k], kSliver_mm2);
         append(parts[k], half[k], glm::dvec3(0.0));
         append_mirrored(parts[k], half[k]);
         compute_tangents(parts[k]);

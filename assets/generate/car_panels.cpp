@@ -12,15 +12,22 @@ namespace livery::assets {
 
 std::vector<PanelStyle> cut_car_panels(Sheet& sheet) {
     const Cutter cutter{sheet};
-    // The wheel openings first: what they take away needs no more cuts.
+    // The floor inside a flange along the sills; the wells reach into it.
+    for (auto& t : sheet.triangles) {
+        if (t.region == kFloor && cutter.row(t) > kSillRow + 1) t.panel = kUnderbody;
+    }
+    // The wheel openings first: what they take away needs no more cuts. In the floor they end in
+    // front of the wells' inner walls.
     for (const double axle : {kFrontAxle_mm, kRearAxle_mm}) {
         cutter.along(
             [&](const LimitVertex& v) {
                 return glm::distance(side_view(v), {axle, kAxleHeight_mm}) - kArchRadius_mm;
             },
-            {kFenders},
+            {kFenders, kUnderbody},
             kNoPanel,
-            [&](const SheetTriangle& t) { return cutter.centre(t).z > 20.0; });
+            [&](const SheetTriangle& t) {
+                return cutter.centre(t).z > (t.panel == kUnderbody ? kWellDepth_mm - 1.0 : 20.0);
+            });
     }
     cut_windows(cutter);
     cut_ends(cutter);
@@ -42,6 +49,8 @@ std::vector<PanelStyle> cut_car_panels(Sheet& sheet) {
     }
     style(kWindowFrame, kTrim, 0.08, 0.1);
     style(kLowerTrim, kTrim, 0.15, 0.0);
+    style(kUnderbody, kTrim, 0.0, 0.0);
+    styles[kUnderbody].is_coarse = true;
     styles[kFenders].wall_mm = styles[kHatch].wall_mm = 1.0;
     style(kDoorHandle, kBody, -0.12, 0.14);
     style_ends(styles);

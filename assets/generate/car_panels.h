@@ -15,6 +15,7 @@ inline constexpr double kFrontAxle_mm = 57.5;
 inline constexpr double kRearAxle_mm = -54.5;
 inline constexpr double kAxleHeight_mm = 14.5;
 inline constexpr double kArchRadius_mm = 15.7;
+inline constexpr double kWellDepth_mm = 25.5;  ///< z of the wheel wells' inner wall
 
 /// Cuts a fresh sheet of the car's skin into panels; returns the style of each.
 std::vector<PanelStyle> cut_car_panels(Sheet& sheet);

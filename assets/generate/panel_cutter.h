@@ -38,6 +38,7 @@ enum Panel {
     kPlateRecess,
     kLowerTrim,
     kDoorHandle,
+    kUnderbody,
     kPanels,
 };
 

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include <glm/geometric.hpp>
@@ -114,31 +113,6 @@ void compute_tangents(PartMesh& mesh) {
         const double sign = glm::dot(glm::cross(n, tangent), along_v[k]) < 0.0 ? -1.0 : 1.0;
         mesh.tangents[k] = glm::dvec4(tangent, sign);
     }
-}
-
-void remove_slivers(PartMesh& mesh, double area_mm2) {
-    std::vector<glm::uvec3> kept;
-    for (const auto& t : mesh.triangles) {
-        const auto& a = mesh.positions_mm[t.x];
-        const auto normal = glm::cross(mesh.positions_mm[t.y] - a, mesh.positions_mm[t.z] - a);
-        if (0.5 * glm::length(normal) >= area_mm2) kept.push_back(t);
-    }
-    constexpr auto kUnused = std::numeric_limits<std::uint32_t>::max();
-    std::vector<std::uint32_t> place(mesh.positions_mm.size(), kUnused);
-    PartMesh result;
-    for (auto& t : kept) {
-        for (int k = 0; k < 3; ++k) {
-            auto& p = place[t[k]];
-            if (p == kUnused) {
-                p = result.add_vertex(mesh.positions_mm[t[k]], mesh.normals[t[k]], mesh.uvs[t[k]]);
-            }
-            t[k] = p;
-        }
-    }
-    mesh.positions_mm = std::move(result.positions_mm);
-    mesh.normals = std::move(result.normals);
-    mesh.uvs = std::move(result.uvs);
-    mesh.triangles = std::move(kept);
 }
 
 }  // namespace livery::assets

@@ -48,7 +48,4 @@ void compute_smooth_normals(PartMesh& mesh);
 /// orthogonal direction where the chart is degenerate.
 void compute_tangents(PartMesh& mesh);
 
-/// Removes triangles with less than `area_mm2`, then vertices that no triangle uses.
-void remove_slivers(PartMesh& mesh, double area_mm2);
-
 }  // namespace livery::assets

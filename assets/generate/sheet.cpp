@@ -23,10 +23,12 @@ LimitVertex between(const LimitVertex& a, const LimitVertex& b, double t) {
             glm::mix(a.parameters, b.parameters, t)};
 }
 
-/// Edges that separate panels or end the sheet.
-std::set<Edge> border_edges(const Sheet& sheet) {
+/// Edges at these vertices that separate panels or end the sheet.
+std::set<Edge> border_edges(const Sheet& sheet, const std::vector<bool>& at_vertex) {
     std::map<Edge, std::pair<int, int>> sides;  // panel, count; count 3: panels differ
     for (const auto& t : sheet.triangles) {
+        const auto& c = t.corners;
+        if (!at_vertex[c.x] && !at_vertex[c.y] && !at_vertex[c.z]) continue;
         for (int k = 0; k < 3; ++k) {
             const auto edge = undirected(t.corners[k], t.corners[(k + 1) % 3]);
             auto [place, is_new] = sides.try_emplace(edge, t.panel, 1);
@@ -35,6 +37,7 @@ std::set<Edge> border_edges(const Sheet& sheet) {
     }
     std::set<Edge> borders;
     for (const auto& [edge, side] : sides) {
+        if (!at_vertex[edge.first] && !at_vertex[edge.second]) continue;
         if (side.second != 2) borders.insert(edge);
     }
     return borders;
@@ -43,7 +46,19 @@ std::set<Edge> border_edges(const Sheet& sheet) {
 /// Moves vertices that lie close to the curve onto it.
 void snap(Sheet& sheet, std::vector<double>& value, const std::vector<bool>& masked) {
     constexpr double kReach = 0.28;  // of an edge
-    const auto borders = border_edges(sheet);
+    const auto crosses = [&](std::uint32_t a, std::uint32_t b) {
+        return value[a] * value[b] < 0.0;
+    };
+    std::vector<bool> beside_curve(sheet.vertices.size(), false);
+    for (std::size_t k = 0; k < sheet.triangles.size(); ++k) {
+        if (!masked[k]) continue;
+        const auto& c = sheet.triangles[k].corners;
+        for (int e = 0; e < 3; ++e) {
+            const auto a = c[e], b = c[(e + 1) % 3];
+            if (crosses(a, b)) beside_curve[a] = beside_curve[b] = true;
+        }
+    }
+    const auto borders = border_edges(sheet, beside_curve);
     std::set<std::uint32_t> on_border;
     for (const auto& edge : borders) {
         on_border.insert(edge.first);
@@ -66,7 +81,7 @@ void snap(Sheet& sheet, std::vector<double>& value, const std::vector<bool>& mas
         const auto& c = sheet.triangles[k].corners;
         for (int e = 0; e < 3; ++e) {
             const auto a = c[e], b = c[(e + 1) % 3];
-            if (value[a] * value[b] < 0.0) {
+            if (crosses(a, b)) {
                 consider(a, b);
                 consider(b, a);
             }
@@ -81,20 +96,16 @@ void snap(Sheet& sheet, std::vector<double>& value, const std::vector<bool>& mas
 
 }  // namespace
 
-Sheet half_sheet(const LimitMesh& mesh,
-                 const std::function<bool(int region, const glm::dvec2& parameters)>& keep) {
+Sheet half_sheet(const LimitMesh& mesh) {
     constexpr double kOnPlane_mm = 1e-6;
     Sheet sheet;
     std::map<int, std::uint32_t> place;
     for (const auto& quad : mesh.quads) {
         double z = 0.0;
-        glm::dvec2 parameters(0.0);
         for (int k = 0; k < 4; ++k) {
-            const auto& vertex = mesh.vertices[static_cast<std::size_t>(quad.corners[k])];
-            z += vertex.position.z;
-            parameters += vertex.parameters * 0.25;
+            z += mesh.vertices[static_cast<std::size_t>(quad.corners[k])].position.z;
         }
-        if (z < 0.0 || !keep(quad.region, parameters)) continue;
+        if (z < 0.0) continue;
         glm::uvec4 corner(0);
         for (int k = 0; k < 4; ++k) {
             const auto [entry, is_new] =
@@ -165,10 +176,11 @@ void cut(Sheet& sheet, const CutFunction& f, const TriangleMask& mask, const Rel
             return masked[k] && v0 + v1 + v2 < 0.0;
         };
         const auto emit = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, bool is_inside) {
-            result.push_back({{a, b, c}, is_inside ? relabel(t.panel) : t.panel, t.region});
+            const bool moves = masked[k] && is_inside;
+            result.push_back({{a, b, c}, moves ? relabel(t.panel) : t.panel, t.region});
         };
         const auto val = [&](int e) { return value[t.corners[e % 3]]; };
-        const int splits = masked[k] ? split_edges(t) : 0;
+        const int splits = split_edges(t);
         if (splits == 0) {
             bool in = inside(val(0), val(1), val(2));
             if (masked[k] && val(0) == 0.0 && val(1) == 0.0 && val(2) == 0.0) {

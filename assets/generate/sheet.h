@@ -26,10 +26,8 @@ struct Sheet {
 
 inline constexpr int kNoPanel = -1;  ///< cut away
 
-/// The z >= 0 half of a symmetric limit mesh, all in panel 0; `keep` chooses quads by their region
-/// and the mean of their corners' parameters.
-Sheet half_sheet(const LimitMesh& mesh,
-                 const std::function<bool(int region, const glm::dvec2& parameters)>& keep);
+/// The z >= 0 half of a symmetric limit mesh, all in panel 0.
+Sheet half_sheet(const LimitMesh& mesh);
 
 /// The vertex, its place and what it carries -> signed value, negative inside.
 using CutFunction = std::function<double(const LimitVertex&)>;
@@ -46,28 +44,22 @@ struct PanelStyle {
     int part = 0;           ///< index into the parts
     double inset_mm = 0.0;  ///< below the skin
     double gap_mm = 0.0;    ///< width of the joint around it, shared with the neighbour
-    double wall_mm = 0.7;   ///< how far its turned-in edge reaches below the skin
-    /// Further depth below the skin that varies over the panel (bowls of lamps and intakes); 0
-    /// along its border with a neighbour that has none.
+    double wall_mm = 0.5;   ///< its thickness; its edge reaches below a deeper neighbour too
+    /// More depth below the skin, over the panel, 0 or more and 0 at its border; null: none. Such a
+    /// panel is shaded by its own faces, with corners over 40 degrees sharp.
     std::function<double(const LimitVertex&)> relief_mm = nullptr;
-};
-
-/// A border edge of a panel toward kNoPanel or the sheet's open end, for what joins there.
-struct OpenEdge {
-    glm::dvec3 from{0.0}, to{0.0};  ///< the panel on the left, seen from outside
-    int part = 0;
-    int region = 0;
+    bool is_coarse = false;  ///< its outer face need not keep all its triangles
 };
 
 /// Chart coordinates (before scaling) of a vertex in a region.
 using ChartFunction = std::function<glm::dvec2(const LimitVertex&, int region)>;
 
-/// Appends each panel with its turned-in edges to its part, and a dark strip below each joint to
-/// part `joint_part`. Returns the open edges.
-std::vector<OpenEdge> build_panels(const Sheet& sheet,
-                                   const std::vector<PanelStyle>& styles,
-                                   const ChartFunction& chart,
-                                   int joint_part,
-                                   std::vector<PartMesh>& parts);
+/// Appends each panel to its part as a closed solid, and to part `joint_part` a dark closed band
+/// that lies below all joints. Both get thinner where the skin bends tightly.
+void build_panels(const Sheet& sheet,
+                  const std::vector<PanelStyle>& styles,
+                  const ChartFunction& chart,
+                  int joint_part,
+                  std::vector<PartMesh>& parts);
 
 }  // namespace livery::assets

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <numbers>
+#include <numeric>
+#include <stdexcept>
 
 #include <glm/geometric.hpp>
 
@@ -17,6 +20,34 @@ constexpr double kPi = std::numbers::pi;
 glm::dvec2 segment_normal(const glm::dvec2& from, const glm::dvec2& to) {
     const auto along = glm::normalize(to - from);
     return {along.y, -along.x};
+}
+
+double cross(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+/// A simple counter-clockwise polygon as triangles, by clipping ears.
+std::vector<glm::uvec3> polygon_triangles(const std::vector<glm::dvec2>& polygon) {
+    std::vector<std::uint32_t> left(polygon.size());
+    std::iota(left.begin(), left.end(), 0u);
+    std::vector<glm::uvec3> triangles;
+    const auto is_ear = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+        if (cross(polygon[a], polygon[b], polygon[c]) <= 0.0) return false;
+        return std::none_of(left.begin(), left.end(), [&](std::uint32_t p) {
+            return p != a && p != b && p != c && cross(polygon[a], polygon[b], polygon[p]) >= 0.0 &&
+                   cross(polygon[b], polygon[c], polygon[p]) >= 0.0 &&
+                   cross(polygon[c], polygon[a], polygon[p]) >= 0.0;
+        });
+    };
+    while (left.size() > 2) {
+        const std::size_t n = left.size();
+        std::size_t k = 0;
+        while (k < n && !is_ear(left[(k + n - 1) % n], left[k], left[(k + 1) % n])) ++k;
+        if (k == n) throw std::invalid_argument("polygon_triangles: the outline crosses itself");
+        triangles.emplace_back(left[(k + n - 1) % n], left[k], left[(k + 1) % n]);
+        left.erase(left.begin() + static_cast<std::ptrdiff_t>(k));
+    }
+    return triangles;
 }
 
 }  // namespace
@@ -69,6 +100,22 @@ PartMesh revolve(const std::vector<glm::dvec2>& profile,
         }
         along_mm = next_mm;
     }
+    if (full_turn || !closed) return mesh;
+    const auto flat = polygon_triangles(profile);
+    for (const bool at_end : {false, true}) {
+        const double angle = at_end ? to_rad : from_rad;
+        const double c = std::cos(angle), d = std::sin(angle);
+        const auto base = static_cast<std::uint32_t>(mesh.positions_mm.size());
+        for (const auto& p : profile) {
+            mesh.add_vertex({p.x * c, p.x * d, p.y},
+                            glm::dvec3(d, -c, 0.0) * (at_end ? -1.0 : 1.0),
+                            p / kUvUnit_mm);
+        }
+        for (const auto& t : flat) {
+            const auto u = t + base;
+            at_end ? mesh.add_triangle(u.x, u.z, u.y) : mesh.add_triangle(u.x, u.y, u.z);
+        }
+    }
     return mesh;
 }
 
@@ -92,6 +139,25 @@ PartMesh loft(const std::vector<std::vector<glm::dvec3>>& loops) {
         }
     }
     compute_smooth_normals(mesh);
+    for (const bool at_end : {false, true}) {
+        const auto& loop = at_end ? loops.back() : loops.front();
+        glm::dvec3 middle(0.0), normal(0.0);
+        for (const auto& p : loop) middle += p / static_cast<double>(n);
+        for (std::uint32_t s = 0; s < n; ++s) {
+            normal += glm::cross(loop[s] - middle, loop[(s + 1) % n] - middle);
+        }
+        normal = glm::normalize(at_end ? normal : -normal);
+        const auto centre =
+            mesh.add_vertex(middle, normal, mesh.uvs[at_end ? (loops.size() - 1) * n : 0]);
+        const auto base = centre + 1;
+        for (const auto& p : loop) {
+            mesh.add_vertex(p, normal, mesh.uvs[centre] + glm::dvec2(p - middle) / kUvUnit_mm);
+        }
+        for (std::uint32_t s = 0; s < n; ++s) {
+            const auto a = base + s, b = base + (s + 1) % n;
+            at_end ? mesh.add_triangle(centre, a, b) : mesh.add_triangle(centre, b, a);
+        }
+    }
     return mesh;
 }
 

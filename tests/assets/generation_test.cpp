@@ -115,15 +115,14 @@ TEST(Panels, StandApartByTheirGap) {
     std::vector<PartMesh> parts(3);
     const std::vector<PanelStyle> styles{{0, 0.0, 0.2, 0.5}, {1, 0.0, 0.2, 0.5}};
     const auto chart = [](const LimitVertex& v, int) { return v.parameters; };
-    const auto open = build_panels(sheet, styles, chart, 2, parts);
-    EXPECT_EQ(open.size(), 34u);  // four sides of eight, two edges of them cut in two
+    build_panels(sheet, styles, chart, 2, parts);
     double left = -1e9, right = 1e9;
     for (const auto& p : parts[1].positions_mm) left = std::max(left, p.x);
     for (const auto& p : parts[0].positions_mm) right = std::min(right, p.x);
     EXPECT_NEAR(right - left, 0.2, 1e-9);
     // The joint's bottom lies below both panels.
     ASSERT_FALSE(parts[2].positions_mm.empty());
-    for (const auto& p : parts[2].positions_mm) EXPECT_LT(p.y, -0.3);
+    for (const auto& p : parts[2].positions_mm) EXPECT_LT(p.y, -0.5);
 }
 
 TEST(Solids, RevolvedRingHasItsVolume) {
