@@ -174,14 +174,6 @@ glm::vec3 sample_sphere(const ImageF& picture, const glm::dvec2& uv) {
         fy);
 }
 
-LayerShare layer_of(float alpha) {
-    constexpr float kFirst = kLayerAlphas[1];
-    const float last = static_cast<float>(kLayerAlphas.size() - 1);
-    const float layer = alpha < kFirst ? alpha / kFirst : 1.0f + 2.0f * std::log2(alpha / kFirst);
-    const float below = std::floor(std::min(layer, last - 1e-3f));
-    return {static_cast<std::size_t>(below), std::min(layer - below, 1.0f)};
-}
-
 glm::vec3 sample_layers(const FilteredEnvironment& filtered, const glm::dvec2& uv, float alpha) {
     const auto [below, share] = layer_of(alpha);
     return glm::mix(sample_sphere(filtered.mirrored[below], uv),

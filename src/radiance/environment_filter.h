@@ -1,7 +1,9 @@
 // An environment as surfaces of each roughness mirror it, and as a diffuser sees it.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -54,7 +56,13 @@ struct LayerShare {
     std::size_t below = 0;
     float share = 0.0f;
 };
-LayerShare layer_of(float alpha);
+inline LayerShare layer_of(float alpha) {
+    constexpr float kFirst = kLayerAlphas[1];
+    const float last = static_cast<float>(kLayerAlphas.size() - 1);
+    const float layer = alpha < kFirst ? alpha / kFirst : 1.0f + 2.0f * std::log2(alpha / kFirst);
+    const float below = std::floor(std::min(layer, last - 1e-3f));
+    return {static_cast<std::size_t>(below), std::min(layer - below, 1.0f)};
+}
 
 /// Bilinear, wrapped in azimuth.
 glm::vec3 sample_sphere(const ImageF& picture, const glm::dvec2& uv);

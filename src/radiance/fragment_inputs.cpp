@@ -202,7 +202,10 @@ void FragmentInputs::fill_mirror(const Scene& scene, bool occluded, const Progre
     const float unit = std::max(1.0f, largest / kHalfLargest);
     const MirroredEnvironment environment(*scene.environment, filtered_);
     const std::size_t layer_size = static_cast<std::size_t>(layout_.rows) * kPackedWidth * 4;
-    std::vector<float> texels(layer_size * kMirrorAlphas.size(), 0.0f);
+    std::vector<std::vector<float>> texels(kMirrorAlphas.size());
+    parallel_for(texels.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) texels[k].assign(layer_size, 0.0f);
+    });
     parallel_for(map_.fragments.size(), 1024, [&](std::size_t begin, std::size_t end) {
         progress.check_stop();
         for (std::size_t i = begin; i < end; ++i) {
@@ -211,7 +214,7 @@ void FragmentInputs::fill_mirror(const Scene& scene, bool occluded, const Progre
             const std::size_t at = 4 * layout_.address(i, map_.fragments[i].part);
             for (std::size_t k = 0; k < lobes.size(); ++k) {
                 for (std::size_t c = 0; c < 3; ++c) {
-                    texels[k * layer_size + at + c] = lobes[k][static_cast<int>(c)] / unit;
+                    texels[k][at + c] = lobes[k][static_cast<int>(c)] / unit;
                 }
             }
         }
@@ -245,11 +248,8 @@ FragmentInputs::Changed FragmentInputs::upload(const Scene& scene, StageClock& c
 
 void FragmentInputs::upload_mirror() {
     make(shading_.mirror, kMirrorAlphas.size(), InputLayers::Precision::half);
-    const std::size_t layer_size = mirror_texels_.size() / kMirrorAlphas.size();
-    for (std::size_t k = 0; k < kMirrorAlphas.size(); ++k) {
-        shading_.mirror.upload(
-            std::span<const float>(mirror_texels_).subspan(k * layer_size, layer_size),
-            static_cast<int>(k));
+    for (std::size_t k = 0; k < mirror_texels_.size(); ++k) {
+        shading_.mirror.upload(mirror_texels_[k], static_cast<int>(k));
     }
     shading_.mirror_unit = mirror_unit_;
     mirror_texels_ = {};

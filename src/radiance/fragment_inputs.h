@@ -128,7 +128,7 @@ class FragmentInputs {
     std::vector<glm::vec3> sky_;
     std::optional<MirrorVisibility> mirror_visibility_;
     std::optional<glm::dvec3> visibility_eye_;
-    std::vector<float> mirror_texels_;  ///< solved and not yet uploaded
+    std::vector<std::vector<float>> mirror_texels_;  ///< a layer each; solved, not yet uploaded
     float mirror_unit_ = 1.0f;
 
     /// What sky_ and the mirror were made of. No rays: unoccluded.

@@ -1,14 +1,23 @@
 #include "radiance/input_layers.h"
 
 #include <algorithm>
-
-#include <glm/gtc/packing.hpp>
+#include <bit>
 
 #include "core/parallel.h"
 #include "radiance/lane_shading.h"
 
 namespace livery {
 namespace {
+
+/// Nearest half float, ties to even; negative and NaN as 0. Without a branch, for whole rows.
+std::uint16_t half_of(float value) {
+    const float v = value > 0.0f ? std::min(value, 65504.0f) : 0.0f;
+    const auto bits = std::bit_cast<std::uint32_t>(v);
+    const std::uint32_t normal = (bits + 0xfffu + ((bits >> 13u) & 1u) - (112u << 23u)) >> 13u;
+    // Under 2^-14 a half float counts in units of 2^-24, as a float next to 0.5 does
+    const std::uint32_t small = std::bit_cast<std::uint32_t>(v + 0.5f) - 0x3f000000u;
+    return static_cast<std::uint16_t>(v < 0x1p-14f ? small : normal);
+}
 
 /// Interleaved channels into blocks; `channels` of the four that come.
 template <typename T, typename Convert>
@@ -57,8 +66,7 @@ void InputLayers::upload(std::span<const float> rgba, int layer) {
     if (device_ == ShadingDevice::gl) {
         texture_.upload(rgba, 0, layer);
     } else if (!halves_.empty()) {
-        to_blocks(
-            rgba, 3, halves_[at], [](float v) { return glm::packHalf1x16(std::max(v, 0.0f)); });
+        to_blocks(rgba, 3, halves_[at], [](float v) { return half_of(v); });
     } else {
         to_blocks(rgba, 4, floats_[at], [](float v) { return v; });
     }

@@ -22,8 +22,6 @@
 namespace livery {
 namespace {
 
-constexpr int kSubSamples = 16;
-
 void check_fits(const Scene& scene, const FramePlan& plan, const Product* product) {
     check_argument(scene.product.get() == product, "the scene shows another product");
     for (std::size_t i = 0; i < scene.part_materials.size(); ++i) {
@@ -35,14 +33,25 @@ void check_fits(const Scene& scene, const FramePlan& plan, const Product* produc
 
 }  // namespace
 
+int sub_samples_of(Quality quality) { return quality == Quality::draft ? 4 : 16; }
+
 FrameGeometry::FrameGeometry(std::shared_ptr<const Product> its_product,
                              const View& its_view,
-                             const Progress& progress)
-    : product(std::move(its_product)),
-      view(its_view),
-      tracer((check_argument(product != nullptr, "a renderer needs a product"), product->mesh)) {
+                             const Progress& progress,
+                             int sub_samples)
+    : product(std::move(its_product)), view(its_view) {
+    check_argument(product != nullptr, "a renderer needs a product");
     const double begin_ms = StageClock::now_ms();
-    map = build_surface_map(product->mesh, tracer, view, kSubSamples, progress);
+    tracer = std::make_shared<const Tracer>(product->mesh);
+    tracer_ms = StageClock::now_ms() - begin_ms;
+    map = build_surface_map(product->mesh, *tracer, view, sub_samples, progress);
+    ms = StageClock::now_ms() - begin_ms;
+}
+
+FrameGeometry::FrameGeometry(const FrameGeometry& other, int sub_samples, const Progress& progress)
+    : product(other.product), view(other.view), tracer(other.tracer) {
+    const double begin_ms = StageClock::now_ms();
+    map = build_surface_map(product->mesh, *tracer, view, sub_samples, progress);
     ms = StageClock::now_ms() - begin_ms;
 }
 
@@ -81,7 +90,7 @@ struct RadianceRenderer::State {
           map(geometry->map),
           device(its_device),
           layout(layout_of(map)),
-          inputs(geometry->product->mesh, geometry->tracer, map, layout, device, keep_better),
+          inputs(geometry->product->mesh, *geometry->tracer, map, layout, device, keep_better),
           parts(geometry->product->mesh.parts.size()) {}
 
     void solve(const Scene& scene, FramePlan& plan, StageClock& clock, const Progress& progress);

@@ -16,18 +16,25 @@
 
 namespace livery {
 
+/// Rays a pixel of the surface map that a level is worth: few for the first picture of a pose.
+int sub_samples_of(Quality quality);
+
 /// What a product and a view fix, whatever it is painted and lit with: rays through the product and
 /// its surface map. Immutable: renderers of the same product and view share it.
 struct FrameGeometry {
     FrameGeometry(std::shared_ptr<const Product> its_product,
                   const View& its_view,
-                  const Progress& progress = {});
+                  const Progress& progress = {},
+                  int sub_samples = 16);
+    /// The same product and view with another number of sub-samples.
+    FrameGeometry(const FrameGeometry& other, int sub_samples, const Progress& progress = {});
 
     std::shared_ptr<const Product> product;
     View view;
-    Tracer tracer;
+    std::shared_ptr<const Tracer> tracer;  ///< shared with maps of other numbers of sub-samples
     SurfaceMap map;
-    double ms = 0.0;  ///< that making it took
+    double ms = 0.0;         ///< that making it took
+    double tracer_ms = 0.0;  ///< of it: the tree of the product's triangles
 };
 
 /// Draws one product from one view; needs a current OpenGL context, the same for its whole life.

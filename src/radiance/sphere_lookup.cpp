@@ -56,26 +56,6 @@ SphereStack::SphereStack(std::span<const ImageF> pictures)
     });
 }
 
-SphereStack::Footprint SphereStack::at(const glm::vec2& uv) const {
-    const float x = uv.x * static_cast<float>(width_) - 0.5f;
-    const float y = uv.y * static_cast<float>(height_) - 0.5f;
-    const float x_floor = std::floor(x), y_floor = std::floor(y);
-    const float fx = x - x_floor, fy = y - y_floor;
-    const int column = static_cast<int>(x_floor), row = static_cast<int>(y_floor);
-    const auto wrapped = [&](int c) {
-        return static_cast<std::size_t>(c < 0 ? c + width_ : c >= width_ ? c - width_ : c);
-    };
-    const auto line = [&](int r) {
-        return static_cast<std::size_t>(std::clamp(r, 0, height_ - 1)) *
-               static_cast<std::size_t>(width_);
-    };
-    const auto texel = [&](std::size_t at) { return &texels_[at * count_]; };
-    const std::size_t left = wrapped(column), right = wrapped(column + 1);
-    const std::size_t upper = line(row), lower = line(row + 1);
-    return {{texel(upper + left), texel(upper + right), texel(lower + left), texel(lower + right)},
-            {(1.0f - fx) * (1.0f - fy), fx * (1.0f - fy), (1.0f - fx) * fy, fx * fy}};
-}
-
 MirroredLayers::MirroredLayers(const FilteredEnvironment& filtered) {
     const auto& all = filtered.mirrored;
     const auto other_size = std::find_if(all.begin(), all.end(), [&](const ImageF& picture) {
@@ -85,22 +65,6 @@ MirroredLayers::MirroredLayers(const FilteredEnvironment& filtered) {
     const std::span<const ImageF> pictures(all);
     sharp_ = SphereStack(pictures.first(sharp_count_));
     wide_ = SphereStack(pictures.subspan(sharp_count_));
-}
-
-Texel MirroredLayers::Place::layer(std::size_t k) const {
-    if (k < layers_.sharp_count_) {
-        if (!std::exchange(found_sharp_, true)) sharp_ = layers_.sharp_.at(uv_);
-        return sharp_.in(k);
-    }
-    if (!std::exchange(found_wide_, true)) wide_ = layers_.wide_.at(uv_);
-    return wide_.in(k - layers_.sharp_count_);
-}
-
-Texel MirroredLayers::Place::with(float alpha) const {
-    const auto [below, share] = layer_of(alpha);
-    const float rest = 1.0f - share;
-    return Texel{rest, rest, rest, rest} * layer(below) +
-           Texel{share, share, share, share} * layer(below + 1);
 }
 
 }  // namespace livery

@@ -2,7 +2,9 @@
 // library's, and all of its mirrored layers side by side.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -81,5 +83,43 @@ class MirroredLayers {
     std::size_t sharp_count_ = 0;
     SphereStack sharp_, wide_;
 };
+
+// Inline: once for each of a fragment's lobes and samples.
+
+inline SphereStack::Footprint SphereStack::at(const glm::vec2& uv) const {
+    const float x = uv.x * static_cast<float>(width_) - 0.5f;
+    const float y = uv.y * static_cast<float>(height_) - 0.5f;
+    const float x_floor = std::floor(x), y_floor = std::floor(y);
+    const float fx = x - x_floor, fy = y - y_floor;
+    const int column = static_cast<int>(x_floor), row = static_cast<int>(y_floor);
+    const auto wrapped = [&](int c) {
+        return static_cast<std::size_t>(c < 0 ? c + width_ : c >= width_ ? c - width_ : c);
+    };
+    const auto line = [&](int r) {
+        return static_cast<std::size_t>(std::clamp(r, 0, height_ - 1)) *
+               static_cast<std::size_t>(width_);
+    };
+    const auto texel = [&](std::size_t at) { return &texels_[at * count_]; };
+    const std::size_t left = wrapped(column), right = wrapped(column + 1);
+    const std::size_t upper = line(row), lower = line(row + 1);
+    return {{texel(upper + left), texel(upper + right), texel(lower + left), texel(lower + right)},
+            {(1.0f - fx) * (1.0f - fy), fx * (1.0f - fy), (1.0f - fx) * fy, fx * fy}};
+}
+
+inline Texel MirroredLayers::Place::layer(std::size_t k) const {
+    if (k < layers_.sharp_count_) {
+        if (!std::exchange(found_sharp_, true)) sharp_ = layers_.sharp_.at(uv_);
+        return sharp_.in(k);
+    }
+    if (!std::exchange(found_wide_, true)) wide_ = layers_.wide_.at(uv_);
+    return wide_.in(k - layers_.sharp_count_);
+}
+
+inline Texel MirroredLayers::Place::with(float alpha) const {
+    const auto [below, share] = layer_of(alpha);
+    const float rest = 1.0f - share;
+    return Texel{rest, rest, rest, rest} * layer(below) +
+           Texel{share, share, share, share} * layer(below + 1);
+}
 
 }  // namespace livery

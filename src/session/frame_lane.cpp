@@ -127,13 +127,18 @@ Material glow_paint() {
 
 std::shared_ptr<const FrameGeometry> GeometryCache::get(const SolveKey& key,
                                                         const Progress& progress) {
+    std::shared_ptr<const FrameGeometry> known;
     {
         const std::scoped_lock lock(mutex_);
         if (newest_ && same_pose({newest_->product, newest_->view, {}, {}, {}, {}}, key)) {
-            return newest_;
+            known = newest_;
         }
     }
-    auto made = std::make_shared<const FrameGeometry>(key.product, key.view, progress);
+    const int sub_samples = sub_samples_of(key.quality);
+    if (known && known->map.samples_per_pixel >= sub_samples) return known;
+    auto made =
+        known ? std::make_shared<const FrameGeometry>(*known, sub_samples, progress)
+              : std::make_shared<const FrameGeometry>(key.product, key.view, progress, sub_samples);
     const std::scoped_lock lock(mutex_);
     newest_ = made;
     return made;
@@ -170,8 +175,11 @@ void FrameLane::solve_light(std::size_t index,
                             const Progress& progress) {
     Solved& light = lights_[index];
     FramePlan plan = plan_frame(scene, key.quality, FrameStage::projector);
-    if (!light.renderer || light.renderer->geometry()->product != key.product ||
-        !same_pose({key.product, light.renderer->geometry()->view, {}, {}, {}, {}}, key)) {
+    const auto serves = [&](const FrameGeometry& geometry) {
+        return same_pose({geometry.product, geometry.view, {}, {}, {}, {}}, key) &&
+               geometry.map.samples_per_pixel >= sub_samples_of(key.quality);
+    };
+    if (!light.renderer || !serves(*light.renderer->geometry())) {
         light = {};
         std::shared_ptr<const FrameGeometry> geometry;
         run_giving_way(urgency, [&] { geometry = geometries_->get(key, progress); });

@@ -24,7 +24,8 @@ int wipe_column(const SurfaceMap& map, double wipe_at);
 /// What a part that was clicked in the preview is painted with for a moment.
 Material glow_paint();
 
-/// The surface map of the newest product and view, for both lanes.
+/// The surface map of the newest product and view, for both lanes: with as many sub-samples as a
+/// quality is worth, or more.
 class GeometryCache {
   public:
     std::shared_ptr<const FrameGeometry> get(const SolveKey& key, const Progress& progress);

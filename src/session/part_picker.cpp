@@ -8,15 +8,13 @@ namespace livery {
 
 struct PartPicker::State {
     std::shared_ptr<const Product> product;
-    Tracer tracer;
-
-    explicit State(std::shared_ptr<const Product> its_product)
-        : product(std::move(its_product)), tracer(product->mesh) {}
+    std::optional<Tracer> tracer;  ///< made for the first click: nobody waits for it at the start
 };
 
 PartPicker::PartPicker(std::shared_ptr<const Product> product) {
     check_argument(product != nullptr, "picking parts needs a product");
-    state_ = std::make_unique<State>(std::move(product));
+    state_ = std::make_unique<State>();
+    state_->product = std::move(product);
 }
 
 PartPicker::~PartPicker() = default;
@@ -29,7 +27,8 @@ std::optional<int> PartPicker::part_at(const View& view, const glm::dvec2& pixel
     TraceRay traced;
     traced.origin = glm::vec3(ray.origin);
     traced.direction = glm::vec3(ray.direction);
-    const Hit hit = state_->tracer.closest(traced);
+    if (!state_->tracer) state_->tracer.emplace(state_->product->mesh);
+    const Hit hit = state_->tracer->closest(traced);
     if (!hit.valid()) return std::nullopt;
     return static_cast<int>(state_->product->mesh.triangle_part[hit.triangle]);
 }

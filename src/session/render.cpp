@@ -81,7 +81,8 @@ RenderedFrame render_frame(const RenderRequest& request, const Progress& progres
         frame = render_by_reference(request, progress);
     } else {
         const HeadlessContext context(request.gl_device);
-        RadianceRenderer renderer(request.scene.product, request.view, progress);
+        RadianceRenderer renderer(std::make_shared<const FrameGeometry>(
+            request.scene.product, request.view, progress, sub_samples_of(request.quality)));
         frame.renderer = context.renderer();
         frame.plan = plan_frame(request.scene, request.quality, request.stage);
         renderer.render(request.scene, frame.plan, progress);

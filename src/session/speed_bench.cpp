@@ -112,7 +112,8 @@ void bench_frames(SpeedBenchResult& result,
                   const Progress& progress) {
     const std::string name = fmt::format("{}x{}, {}", view.width, view.height, to_string(quality));
     const auto start = Clock::now();
-    RadianceRenderer renderer(scene.product, view, progress);
+    RadianceRenderer renderer(std::make_shared<const FrameGeometry>(
+        scene.product, view, progress, sub_samples_of(quality)));
     PassTimes passes;
     FramePlan first = plan_frame(scene.looks.front(), quality, FrameStage::radiance);
     renderer.render(scene.looks.front(), first, progress);
@@ -198,7 +199,8 @@ void bench_accuracy(SpeedBenchResult& result, const BenchScene& scene, const Pro
     progress.update(0.0, "tracing the truth");
     const ReferenceResult truth = trace_reference(look, part, options, progress);
     for (const Quality quality : {Quality::draft, Quality::normal, Quality::high}) {
-        RadianceRenderer renderer(scene.product, part, progress);
+        RadianceRenderer renderer(std::make_shared<const FrameGeometry>(
+            scene.product, part, progress, sub_samples_of(quality)));
         FramePlan plan = plan_frame(look, quality, FrameStage::radiance);
         renderer.render(look, plan, progress);
         const RadianceError error = radiance_error(renderer.read_back(), truth.radiance_working);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <csignal>
+#include <future>
 #include <utility>
 #include <vector>
 
@@ -37,6 +38,10 @@ namespace {
 constexpr int kFramesAfterInput = 3;
 constexpr double kShortestFrame_s = 1.0 / 60.0;
 constexpr double kLongestFrame_s = 0.1;  // While input comes in faster than it can be drawn.
+constexpr double kLongestOpening_s = 1.2;
+// What waits for the opening's end loads libraries, which holds up every thread that draws.
+constexpr double kOnItsWayToTheScreen_s = 0.15;
+constexpr double kGiveWay_s = 0.004;
 
 bool monitors_have_changed = false;  // Set by GLFW's callback, which carries no pointer.
 
@@ -236,6 +241,7 @@ std::optional<double> next_change_s(const Shell& shell) {
         consider(shell.studio.now_s + static_cast<double>(kTooltipAfter_s - g.HoveredIdTimer) +
                  0.02);
     }
+    if (shell.studio.opening) consider(shell.studio.now_s + kOnItsWayToTheScreen_s);
     if (shell.preview_waits_until_s > 0.0) consider(shell.preview_waits_until_s);
     // A blinking text cursor.
     if (ImGui::GetIO().WantTextInput) consider(shell.studio.now_s + 0.4);
@@ -249,7 +255,14 @@ std::optional<double> next_change_s(const Shell& shell) {
 class Desktop {
   public:
     Desktop(const DesktopOptions& options, Session session)
-        : options_(options), shell_(std::move(session)) {}
+        : options_(options), shell_(std::move(session)) {
+        // Beside the making of windows, which takes as long
+        const Document& document = shell_.studio.session.document();
+        product_ =
+            std::async(std::launch::async, [name = document.product, unit = document.product_unit] {
+                return find_product(name, unit);
+            });
+    }
 
     int run() {
         prepare();
@@ -281,8 +294,7 @@ class Desktop {
         imgui_ = std::make_unique<ImGuiWindow>(*window_);
         glfwSetWindowSizeLimits(window_->native(), 640, 400, GLFW_DONT_CARE, GLFW_DONT_CARE);
         glfwSetMonitorCallback([](GLFWmonitor*, int) { monitors_have_changed = true; });
-        studio.product =
-            find_product(studio.session.document().product, studio.session.document().product_unit);
+        studio.product = product_.get();
         shell_.product_bounds = bounds_of(studio.product->mesh);
         studio.picker = std::make_unique<PartPicker>(studio.product);
         studio.file_dialog = std::make_unique<FileDialog>();
@@ -294,7 +306,6 @@ class Desktop {
         tell_product_notes(studio);
         tell_unsaved(shell_);
         monitors_changed(shell_);
-        give_icon(studio, window_->native());
         glfwShowWindow(window_->native());
         frames_to_draw_ = kFramesAfterInput;
     }
@@ -302,7 +313,9 @@ class Desktop {
     void wait_for_something() {
         if (frames_to_draw_ > 0 || imgui_->has_input()) {
             // Not faster than a screen can show; input comes in while waiting.
-            const double rest = last_drawn_s_ + kShortestFrame_s - now_s();
+            double rest = last_drawn_s_ + kShortestFrame_s - now_s();
+            // Whoever is given way to has this processor as well.
+            if (std::exchange(gave_way_, false)) rest = std::max(rest, kGiveWay_s);
             if (rest > 0.0 && !imgui_->has_input()) {
                 glfwWaitEventsTimeout(rest);
             } else {
@@ -338,6 +351,10 @@ class Desktop {
         const auto frame_before = studio.frame;  // Until this frame is drawn: textures are read.
         const auto preview_before = studio.preview;
         take_results(shell_);
+        if (studio.opening && has_opened()) {
+            studio.opening = false;
+            give_icon(studio, native);
+        }
         if (studio.frame) remember_costs(studio.panels.plan.measured, *studio.frame);
         if (shell_.monitor_numbers && studio.now_s >= shell_.monitor_numbers_until_s) {
             shell_.monitor_numbers.reset();
@@ -361,10 +378,12 @@ class Desktop {
         // Input that waits is taken first, so that it does not wait for pictures of what was
         // before.
         // Where one processor draws everything, the mock-up has it first.
-        const bool mock_up_first = shell_.draws_in_software && is_frame_under_way(shell_);
-        const bool waits =
-            (imgui_->has_input() || mock_up_first) && start_s - last_drawn_s_ < kLongestFrame_s;
-        if (waits) return;
+        const bool mock_up_first =
+            shell_.draws_in_software && (studio.opening || is_frame_under_way(shell_));
+        const bool patient = last_drawn_s_ == 0.0 ? studio.opening && !studio.frame
+                                                  : start_s - last_drawn_s_ < kLongestFrame_s;
+        gave_way_ = (imgui_->has_input() || mock_up_first) && patient;
+        if (gave_way_) return;
         imgui_->draw();
         --frames_to_draw_;
         last_drawn_s_ = now_s();
@@ -372,6 +391,15 @@ class Desktop {
         if (shell_.window_must_move) move_off_projector(shell_, native);
         remember_workspace(shell_, text_of(place_of(native)), false);
         write_ui_map();
+    }
+
+    /// The mock-up's first picture is on the projector, or takes too long.
+    bool has_opened() const {
+        const Studio& studio = shell_.studio;
+        const double limit_s = shell_.opened_s + kLongestOpening_s;
+        if (!studio.frame) return studio.now_s >= limit_s;
+        const double shown_s = seconds_of(studio.frame->done_at) + kOnItsWayToTheScreen_s;
+        return studio.now_s >= std::min(limit_s, shown_s);
     }
 
     void draw_everything() {
@@ -405,6 +433,7 @@ class Desktop {
     }
 
     DesktopOptions options_;
+    std::future<std::shared_ptr<const Product>> product_;
     std::unique_ptr<Window> window_;
     Contexts contexts_;
     std::unique_ptr<ImGuiWindow> imgui_;
@@ -413,6 +442,7 @@ class Desktop {
     int frames_to_draw_ = 0;
     std::vector<std::array<int, 4>> monitor_places_;
     double last_drawn_s_ = 0.0;
+    bool gave_way_ = false;  ///< the last frame of the window was not drawn
 };
 
 }  // namespace

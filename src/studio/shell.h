@@ -97,6 +97,7 @@ struct Shell {
     std::shared_ptr<const Image8> photographed;  ///< the newest that the bench was asked to show
     bool draws_in_software = false;
     double frame_asked_s = 0.0, preview_waits_until_s = 0.0;
+    double opened_s = 0.0;  ///< steady clock
     bool calibrates_after_first_frame = false;
     std::map<std::tuple<std::string, double, double>, std::shared_ptr<const Environment>>
         environments;

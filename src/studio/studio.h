@@ -84,6 +84,9 @@ struct Studio {
     std::optional<int> renaming_look;  ///< its name is being typed
     double now_s = 0.0;                ///< steady clock, at the start of this frame of the window
 
+    /// Until the mock-up has its first picture, but not for long: what can wait waits for that.
+    bool opening = true;
+
     std::vector<Notice> notices;
     float ui_scale = 1.0f;
     std::unique_ptr<Background> background;

@@ -88,7 +88,7 @@ void draw_swatch(Studio& studio, const Material& material, const ImVec2& corner,
         return;
     }
     draw_plain_disc(material, corner, side_px);
-    if (!studio.previews || !state.asked.insert(key).second) return;
+    if (!studio.previews || studio.opening || !state.asked.insert(key).second) return;
     studio.previews->request_swatch(
         material, size_px, [inbox = state.inbox, key](const Image8& rgba) {
             {

@@ -177,6 +177,7 @@ void ask_for_preview(Shell& shell) {
         shell.asked_preview && shell.asked_preview->revision == key.revision &&
         shell.asked_preview->tried == key.tried && shell.asked_preview->look == key.look &&
         shell.asked_preview->wipe_to == key.wipe_to && shell.asked_preview->wipe_at == key.wipe_at;
+    if (shell.draws_in_software && studio.opening) return;
     const double patience_until_s = shell.frame_asked_s + kPreviewPatience_s;
     if (shell.draws_in_software && !same_scene && is_frame_under_way(shell) &&
         studio.now_s < patience_until_s) {
@@ -265,6 +266,7 @@ bool is_frame_under_way(const Shell& shell) {
 Contexts start_threads(Shell& shell, const Window& window) {
     Studio& studio = shell.studio;
     shell.draws_in_software = window.is_software();
+    shell.opened_s = studio.now_s;
     Contexts contexts;
     WindowOptions hidden;
     hidden.title = "Livery (drawing)";
@@ -284,6 +286,7 @@ Contexts start_threads(Shell& shell, const Window& window) {
     results->use(studio.projector.get());
     studio.bench->use(studio.session.document().bench, studio.product);
     shell.calibrates_after_first_frame = needs_first_calibration(studio.session);
+    ask_for_setup(shell);
     return contexts;
 }
 
