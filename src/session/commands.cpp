@@ -109,6 +109,11 @@ void apply(Document& document, const SetPaint& command) {
     look.parts[command.part] = known_paint(document, command.paint);
 }
 
+void apply(Document& document, const PaintProduct& command) {
+    Look& look = look_with(document, command.look);
+    look.parts = {{"*", known_paint(document, command.paint)}};
+}
+
 void apply(Document& document, const EditPaint& command) {
     index_of(document, command.look);
     check_part(document, command.part);

@@ -15,6 +15,11 @@ struct SetPaint {
     std::string part;  ///< "*": every part that is not named
     std::string paint;
 };
+/// One paint on every part, as a clay model wears it; what parts wore by themselves is taken off.
+struct PaintProduct {
+    int look = 0;
+    std::string paint;
+};
 /// Changes a paint's parameters on one part. A paint of the library, or one that other parts and
 /// looks use as well, becomes the session's own under `material.name` with a number behind it.
 struct EditPaint {
@@ -72,6 +77,7 @@ struct SetDesignWhite {
 };
 
 using SessionCommand = std::variant<SetPaint,
+                                    PaintProduct,
                                     EditPaint,
                                     AddLook,
                                     DuplicateLook,

@@ -25,6 +25,12 @@ void read(const JsonReader& fields, SetPaint& c) {
     c = {look_in(fields), fields["part"].text(), fields["paint"].text()};
 }
 
+Json fields_of(const PaintProduct& c) { return {{"look", c.look}, {"paint", c.paint}}; }
+void read(const JsonReader& fields, PaintProduct& c) {
+    fields.allow_only({"look", "paint"});
+    c = {look_in(fields), fields["paint"].text()};
+}
+
 Json fields_of(const EditPaint& c) {
     return {{"look", c.look}, {"part", c.part}, {"material", json_of(c.material)}};
 }
@@ -140,6 +146,7 @@ void read(const JsonReader& fields, SetDesignWhite& c) {
 /// In the order of SessionCommand's alternatives.
 constexpr std::array<const char*, std::variant_size_v<SessionCommand>> kNames = {
     "set-paint",
+    "paint-product",
     "edit-paint",
     "add-look",
     "duplicate-look",

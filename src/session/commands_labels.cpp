@@ -32,6 +32,9 @@ std::string paint_name(const Document& document, const std::string& name) {
 std::string label(const Document& before, const SetPaint& command) {
     return fmt::format("Paint {} {}", part_name(command.part), paint_name(before, command.paint));
 }
+std::string label(const Document& before, const PaintProduct& command) {
+    return fmt::format("Paint the whole product {}", paint_name(before, command.paint));
+}
 std::string label(const Document&, const EditPaint& command) {
     return fmt::format("Edit {} on {}", command.material.name, part_name(command.part));
 }

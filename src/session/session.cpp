@@ -105,6 +105,12 @@ struct Session::State {
 
 namespace {
 
+std::unique_ptr<FileLock> lock_of(const std::filesystem::path& file) {
+    return std::make_unique<FileLock>(file,
+                                      file.string() + " is open in another Livery",
+                                      "close it there, or name another session file here");
+}
+
 /// Whether this is the session in the user's folder, whose folder may not be there yet.
 bool is_default(const std::filesystem::path& file) {
     try {
@@ -128,12 +134,10 @@ Session Session::open(const std::filesystem::path& file,
     auto state = std::make_unique<State>();
     if (is_default(file)) make_output_folder(file.parent_path());
     state->path = file;
-    state->lock = std::make_unique<FileLock>(file,
-                                             file.string() + " is open in another Livery",
-                                             "close it there, or name another session file here");
+    state->lock = lock_of(file);
     std::error_code error;
     if (!std::filesystem::exists(file, error)) {
-        SessionFile::create(file, {"", "", text_of(new_document(product, unit))});
+        SessionFile::create(file, {{"", "", text_of(new_document(product, unit))}});
     }
     state->store = std::make_unique<SessionFile>(file, SessionFile::Access::change);
     state->store->check_pages();
@@ -179,6 +183,29 @@ void Session::set_workspace(const std::string& name, const std::string& value) {
     state_->workspace[name] = value;
     state_->unsaved_workspace[name] = value;
     state_->save();
+}
+
+void Session::save_as(const std::filesystem::path& file) {
+    std::error_code error;
+    if (std::filesystem::exists(file, error)) {
+        throw Refused(file.string() + " is there already",
+                      "choose another name; a session is never written over");
+    }
+    auto lock = lock_of(file);
+    std::vector<SessionStep> steps;
+    for (std::int64_t number = 0; number <= state_->last(); ++number) {
+        steps.push_back(state_->step(number));
+    }
+    SessionFile::create(file, steps, state_->position, state_->workspace);
+    auto store = std::make_unique<SessionFile>(file, SessionFile::Access::change);
+    state_->store = std::move(store);
+    state_->lock = std::move(lock);
+    state_->path = file;
+    state_->saved_last = state_->last();
+    state_->unsaved.clear();
+    state_->unsaved_workspace.clear();
+    state_->problem.reset();
+    log_line(LogLevel::info, "the session is saved in " + file.string());
 }
 
 std::optional<std::string> Session::save_problem() const { return state_->problem; }

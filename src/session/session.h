@@ -50,6 +50,11 @@ class Session {
     std::optional<int> undo();
     std::optional<int> redo();
 
+    /// Goes on in a new file, with the whole history; the file before stays as it is, and an
+    /// unsaved session is saved from now on. Throws Refused (there is such a file, or it is open
+    /// elsewhere), FileError; then the session stays where it was.
+    void save_as(const std::filesystem::path& file);
+
     const Workspace& workspace() const;
     void set_workspace(const std::string& name, const std::string& value);
 

@@ -44,6 +44,22 @@ Value value_in(const std::filesystem::path& file,
     return *value;
 }
 
+/// Steps from a number on, the place in the history, values of the workspace.
+void write(Database& database,
+           std::int64_t number,
+           const std::vector<SessionStep>& steps,
+           std::int64_t position,
+           const std::map<std::string, std::string>& workspace) {
+    for (const SessionStep& step : steps) {
+        database.run("INSERT INTO step VALUES (?1, ?2, ?3, ?4)",
+                     {number++, step.command, step.label, step.document});
+    }
+    database.run("UPDATE place SET position = ?1", {position});
+    for (const auto& [name, value] : workspace) {
+        database.run("INSERT OR REPLACE INTO workspace VALUES (?1, ?2)", {name, value});
+    }
+}
+
 void sync_folder(const std::filesystem::path& folder) {
     const int descriptor =
         ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -72,7 +88,10 @@ SessionFile::SessionFile(const std::filesystem::path& file, Access access)
     }
 }
 
-void SessionFile::create(const std::filesystem::path& file, const SessionStep& first) {
+void SessionFile::create(const std::filesystem::path& file,
+                         const std::vector<SessionStep>& steps,
+                         std::int64_t position,
+                         const std::map<std::string, std::string>& workspace) {
     auto unfinished = file;
     unfinished += ".new";
     std::error_code error;
@@ -87,8 +106,7 @@ void SessionFile::create(const std::filesystem::path& file, const SessionStep& f
         {
             Transaction transaction(database);
             for (const char* statement : kSchema) database.run(statement);
-            database.run("INSERT INTO step VALUES (0, ?1, ?2, ?3)",
-                         {first.command, first.label, first.document});
+            write(database, 0, steps, position, workspace);
             database.set_version(kVersion);
             transaction.commit();
         }
@@ -164,15 +182,7 @@ void SessionFile::save(std::int64_t kept,
                        const std::map<std::string, std::string>& workspace) {
     Transaction transaction(database_);
     database_.run("DELETE FROM step WHERE number > ?1", {kept});
-    std::int64_t number = kept;
-    for (const SessionStep& step : added) {
-        database_.run("INSERT INTO step VALUES (?1, ?2, ?3, ?4)",
-                      {++number, step.command, step.label, step.document});
-    }
-    database_.run("UPDATE place SET position = ?1", {position});
-    for (const auto& [name, value] : workspace) {
-        database_.run("INSERT OR REPLACE INTO workspace VALUES (?1, ?2)", {name, value});
-    }
+    write(database_, kept + 1, added, position, workspace);
     transaction.commit();
 }
 

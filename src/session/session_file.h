@@ -28,8 +28,11 @@ class SessionFile {
     enum class Access { change, read };
     SessionFile(const std::filesystem::path& file, Access access);
 
-    /// A new file that holds one step; there is none before it is whole.
-    static void create(const std::filesystem::path& file, const SessionStep& first);
+    /// A new file that holds these steps, at least one; there is none before it is whole.
+    static void create(const std::filesystem::path& file,
+                       const std::vector<SessionStep>& steps,
+                       std::int64_t position = 0,
+                       const std::map<std::string, std::string>& workspace = {});
 
     std::int64_t last_step();
     std::int64_t position();  ///< the step whose document is the session's

@@ -111,6 +111,12 @@ void add_file_actions(std::vector<Action>& list) {
     list.push_back(action("import-look", "File", "Import look…", {ctrl(GLFW_KEY_I)}, ask_for_look));
     list.push_back(action(
         "export-look", "File", "Export look…", {ctrl(GLFW_KEY_E)}, ask_where_to_export_look));
+    list.push_back(action("save-session-as",
+                          "File",
+                          "Save session as…",
+                          {ctrl_shift(GLFW_KEY_S)},
+                          ask_where_to_save_session));
+    list.back().starts_group = true;
     list.push_back(
         action("save-picture", "File", "Save picture…", {ctrl(GLFW_KEY_S)}, [](Shell& s) {
             open_save_picture(s);

@@ -99,6 +99,9 @@ struct FileDialog::State {
                 if (!has_suffix_of(file, question->suffixes)) {
                     return "The file name must end in " + question->suffixes.front() + ".";
                 }
+                if (question->only_new && std::filesystem::exists(file, error)) {
+                    return "There is such a file already; choose another name.";
+                }
                 return "";
         }
         return "";

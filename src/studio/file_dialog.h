@@ -15,6 +15,7 @@ struct FileQuestion {
     std::string title;                                       ///< "Import look"
     std::string action;                                      ///< what the button says: "Import"
     std::vector<std::string> suffixes;                       ///< shown in the list; empty: all
+    bool only_new = false;                                   ///< a file that is there is refused
     std::filesystem::path suggested;                         ///< folder or file to start with
     std::function<void(const std::filesystem::path&)> then;  ///< overwriting is already agreed to
 };

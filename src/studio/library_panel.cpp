@@ -42,7 +42,13 @@ struct Target {
     std::string part;   ///< "*": every part without a paint of its own
     std::string label;  ///< "body"
     std::string paint;  ///< that it wears
+    bool is_product = false;
 };
+
+SessionCommand paint_command(const Studio& studio, const Target& target, const std::string& paint) {
+    if (target.is_product) return PaintProduct{studio.shown_look, paint};
+    return SetPaint{studio.shown_look, target.part, paint};
+}
 
 Target target_of(const Studio& studio) {
     Target target;
@@ -51,7 +57,10 @@ Target target_of(const Studio& studio) {
     const auto& parts = studio.product->mesh.parts;
     const auto& painted = look->look.parts;
     const auto rest = painted.find("*");
-    if (studio.panels.library.whole_product) {
+    if (studio.panels.library.target == LibraryPanelState::Target::product) {
+        target = {"*", "every part", "", true};
+        if (rest != painted.end() && painted.size() == 1) target.paint = rest->second;
+    } else if (studio.panels.library.target == LibraryPanelState::Target::rest) {
         target = {"*", "every part without a paint of its own", ""};
         if (rest != painted.end()) target.paint = rest->second;
     } else if (const auto part = chosen_part(studio)) {
@@ -66,14 +75,15 @@ Target target_of(const Studio& studio) {
     return target;
 }
 
-/// Whether some part has no paint of its own, so that "*" shows.
+/// Whether some parts have paints of their own and others wear "*".
 bool has_rest(const Studio& studio) {
     const SessionLook* look = find_look(studio.session.document(), studio.shown_look);
     if (!look || !studio.product) return false;
     const auto& parts = studio.product->mesh.parts;
-    return std::any_of(parts.begin(), parts.end(), [&](const Part& part) {
-        return !look->look.parts.contains(part.name);
+    const auto named = std::count_if(parts.begin(), parts.end(), [&](const Part& part) {
+        return look->look.parts.contains(part.name);
     });
+    return named > 0 && named < static_cast<std::ptrdiff_t>(parts.size());
 }
 
 /// The arrows up and down leave the text alone and walk through what was found.
@@ -137,15 +147,28 @@ void draw_target(Studio& studio, const Target& target) {
     ImGui::Text("Painting: %s", target.label.c_str());
     ImGui::PopTextWrapPos();
     tooltip("What a click paints. Choose another part on the product or in the list.");
-    if (!has_rest(studio)) {
-        state.whole_product = false;
-        return;
+    using enum LibraryPanelState::Target;
+    const auto offer = [&](const char* label,
+                           const char* name,
+                           LibraryPanelState::Target one,
+                           const char* meaning) {
+        place_in_row(button_width(label));
+        if (chip(label, state.target == one)) state.target = state.target == one ? part : one;
+        name_last_item(name);
+        tooltip(meaning);
+    };
+    offer("Whole product",
+          "paint-target:product",
+          product,
+          "Paints every part of this look alike, and takes off what parts wear by themselves.");
+    if (has_rest(studio)) {
+        offer("All other parts",
+              "paint-target:rest",
+              rest,
+              "Paints every part of this look that has no paint of its own.");
+    } else if (state.target == rest) {
+        state.target = part;
     }
-    const char* label = "All other parts";
-    place_in_row(button_width(label));
-    if (chip(label, state.whole_product)) state.whole_product = !state.whole_product;
-    name_last_item("paint-target:rest");
-    tooltip("Paints every part of this look that has no paint of its own.");
 }
 
 void paint_tooltip(const Material& paint) {
@@ -199,7 +222,7 @@ bool draw_cell(Studio& studio, const Target& target, Cell& cell, float width, fl
     const bool meant = on_cursor || (hovered && !state.cursor);
     const bool worn = !target.paint.empty() && same_paint_name(target.paint, paint.name);
     if (meant && !worn) {
-        try_out(studio, SetPaint{studio.shown_look, target.part, paint.name});
+        try_out(studio, paint_command(studio, target, paint.name));
     } else if (meant) {
         // Undo takes it off: not to be tried out again while pointer and keys rest on it.
         studio.untried_item = ImGui::GetItemID();
@@ -273,7 +296,7 @@ void follow_keys(Studio& studio, const Target& target, const std::vector<Cell>& 
         if (!at && state.searching && !cells.empty() && !state.search.empty()) at = 0;
         if (at) {
             state.cursor = cells[*at].paint->name;
-            commit(studio, SetPaint{studio.shown_look, target.part, *state.cursor});
+            commit(studio, paint_command(studio, target, *state.cursor));
         }
     }
     if (was_pressed(ImGuiKey_Escape)) state.cursor.reset();
@@ -306,7 +329,7 @@ void draw_grid(Studio& studio, const Target& target, const std::vector<Section>&
     follow_keys(studio, target, cells);
     if (clicked) {
         studio.panels.library.cursor = clicked;
-        commit(studio, SetPaint{studio.shown_look, target.part, *clicked});
+        commit(studio, paint_command(studio, target, *clicked));
     }
 }
 

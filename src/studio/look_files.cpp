@@ -68,6 +68,7 @@ void ask_for_look(Shell& shell) {
                                    "Import look",
                                    "Import",
                                    {".json"},
+                                   false,
                                    documents_folder(),
                                    [&shell](const auto& file) { import_look(shell, file); }});
 }
@@ -80,6 +81,7 @@ void ask_where_to_export_look(Shell& shell) {
          "Export look",
          "Export",
          {".json"},
+         false,
          documents_folder() / (file_name_of(name) + ".json"),
          [&shell, id, name](const auto& file) {
              try {
@@ -98,6 +100,30 @@ void ask_where_to_export_look(Shell& shell) {
                  tell(shell, "The look was not exported.", error);
              }
          }});
+}
+
+void ask_where_to_save_session(Shell& shell) {
+    FileQuestion question;
+    question.kind = FileQuestion::Kind::save;
+    question.title = "Save session as";
+    question.action = "Save";
+    question.suffixes = {".livery"};
+    question.only_new = true;
+    question.suggested = documents_folder() / "session.livery";
+    question.then = [&shell](const std::filesystem::path& file) {
+        try {
+            shell.studio.session.save_as(file);
+        } catch (const std::exception& error) {
+            tell(shell, "The session was not saved.", error);
+            return;
+        }
+        notify(shell.studio,
+               {Notice::Level::info,
+                "The session goes on in " + file.string() + ".",
+                "What was saved before stays as it is.",
+                ""});
+    };
+    shell.studio.file_dialog->ask(std::move(question));
 }
 
 }  // namespace livery

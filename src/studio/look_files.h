@@ -1,4 +1,4 @@
-// Looks from and to files, asked for in the window.
+// Looks and sessions from and to files, asked for in the window.
 #pragma once
 
 #include <string>
@@ -9,6 +9,7 @@ struct Shell;
 
 void ask_for_look(Shell& shell);
 void ask_where_to_export_look(Shell& shell);
+void ask_where_to_save_session(Shell& shell);
 
 /// "Blue metallic / 2" -> "Blue-metallic-2": for file names.
 std::string file_name_of(const std::string& name);

@@ -42,7 +42,8 @@ struct LibraryPanelState {
     bool searching = false;     ///< the text cursor is in the search
     bool focus_search = false;  ///< set by a key: the next frame puts the text cursor there
     std::string family;         ///< empty: all
-    bool whole_product = false;
+    enum class Target { part, rest, product };
+    Target target = Target::part;       ///< what a click paints
     std::optional<std::string> cursor;  ///< the paint that the arrow keys are on
     bool cursor_moved = false;          ///< it must be scrolled to
     int cursor_rows = 0;                ///< up or down, pressed in the search in this frame

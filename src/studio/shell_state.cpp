@@ -165,7 +165,7 @@ void tell_unsaved(Shell& shell) {
            {Notice::Level::error,
             "Nothing that you do is being saved.",
             shell.studio.session.save_problem().value_or(""),
-            "Put right what is in the way and start again, or name another file with --session."});
+            "File > Save session as… saves it elsewhere, with all that was done."});
 }
 
 }  // namespace livery

@@ -126,6 +126,7 @@ void keep_shown_looks_valid(Studio& studio) {
 
 void select_part(Studio& studio, int part) {
     studio.selected_part = part;
+    studio.panels.library.target = LibraryPanelState::Target::part;
     studio.glowing_part = part;
     studio.glowing_until_s = studio.now_s + kGlow_s;
 }

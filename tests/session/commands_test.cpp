@@ -77,6 +77,7 @@ TEST(Commands, LabelsSayWhatIsUndone) {
     const auto label = [](const SessionCommand& command) { return label_of(car(), command); };
     EXPECT_EQ(label(SetPaint{1, "body", "Solid-Red"}), "Paint body solid red");
     EXPECT_EQ(label(SetPaint{1, "*", "/a/b/mine.json"}), "Paint the rest /a/b/mine.json");
+    EXPECT_EQ(label(PaintProduct{1, "Solid-Red"}), "Paint the whole product solid red");
     EXPECT_EQ(label(EditPaint{1, "rims", some_paint()}), "Edit solid red on rims");
     Look dusk;
     dusk.name = "dusk";
@@ -113,6 +114,16 @@ TEST(SetPaint, TakesPaintsAsTheLibraryWritesThem) {
     const Document painted = applied(car(), SetPaint{1, "body", file.string()});
     EXPECT_EQ(worn(painted, 1, "body"), file.string());
     EXPECT_EQ(find_paint(painted, worn(painted, 1, "body")).name, "solid red");
+}
+
+TEST(PaintProduct, LeavesNoPartInItsOwnPaint) {
+    const Document painted = applied(car(), PaintProduct{1, "Solid-Red"});
+    EXPECT_EQ(find_look(painted, 1)->look.parts,
+              (std::map<std::string, std::string>{{"*", "solid red"}}));
+    EXPECT_EQ(find_look(painted, 2)->look.parts, find_look(car(), 2)->look.parts);
+    EXPECT_EQ(refusal(PaintProduct{7, "solid red"}), refusal(SetPaint{7, "body", "solid red"}));
+    EXPECT_NE(refusal(PaintProduct{1, "solid rad"}).find("nearest: 'solid red'"),
+              std::string::npos);
 }
 
 TEST(SetPaint, SaysWhatThereIsWhenSomethingIsNot) {

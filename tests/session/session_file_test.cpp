@@ -244,7 +244,7 @@ TEST(SessionFile, IsWholeOrNotThereWhenTheDiskIsFull) {
         const auto file = folder / "a.livery";
         try {
             const FullDisk full(room);
-            SessionFile::create(file, {"", "", document});
+            SessionFile::create(file, {{"", "", document}});
             ++made;
         } catch (const FileError& error) {
             EXPECT_NE(std::string(error.what()).find("a.livery: found a full disk"),

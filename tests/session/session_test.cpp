@@ -109,6 +109,48 @@ TEST(Session, KeepsEverythingOverAReopening) {
     EXPECT_EQ(session.undo_label(), "");
 }
 
+TEST(Session, GoesOnUnderAnotherName) {
+    const TemporaryFolder folder;
+    const auto before = folder / "a.livery", after = folder / "b ü.livery";
+    {
+        Session session = Session::open(before);
+        session.execute(SetExposure{1.0});
+        session.execute(SetExposure{2.0});
+        session.undo();
+        session.set_workspace("look", "3");
+        session.save_as(after);
+        EXPECT_EQ(session.file(), after);
+        EXPECT_EQ(session.redo_label(), "Set exposure to 2 EV");
+        session.redo();
+        session.execute(SetExposure{3.0});
+        // The one before is free again.
+        EXPECT_EQ(Session::open(before).document().exposure_ev, 1.0);
+        EXPECT_THROW(Session::open(after), Refused);
+    }
+    Session session = Session::open(after);
+    EXPECT_EQ(session.document().exposure_ev, 3.0);
+    EXPECT_EQ(session.workspace(), (Workspace{{"look", "3"}}));
+    for (int steps = 0; steps < 3; ++steps) session.undo();
+    EXPECT_EQ(text_of(session.document()), text_of(car()));
+    EXPECT_FALSE(session.can_undo());
+}
+
+TEST(Session, UnsavedIsSavedUnderAName) {
+    const TemporaryFolder folder;
+    Session session = Session::unsaved(car(), "no space left");
+    session.execute(SetExposure{1.0});
+    EXPECT_THROW(session.save_as(folder / "no such folder" / "a.livery"), FileError);
+    folder.write("taken.livery", "somebody's");
+    EXPECT_THROW(session.save_as(folder / "taken.livery"), Refused);
+    EXPECT_EQ(session.save_problem(), "no space left");
+    EXPECT_EQ(session.file(), std::nullopt);
+    session.save_as(folder / "a.livery");
+    EXPECT_EQ(session.save_problem(), std::nullopt);
+    session.execute(SetExposure{2.0});
+    session = Session::unsaved(car(), "closed");
+    EXPECT_EQ(Session::open(folder / "a.livery").document().exposure_ev, 2.0);
+}
+
 TEST(Session, LeavesOneFileBehind) {
     const TemporaryFolder folder;
     { Session::open(folder / "a.livery").execute(SetExposure{1.0}); }

@@ -31,6 +31,7 @@ inline std::vector<SessionCommand> one_of_each(const std::string& calibration_fo
     look.name = "Übernahme";
     const DirectionalLight light{{0.6, 0.8, 0.0}, {1.0, 0.1, 1e-300}, 0.05};
     return {SetPaint{1, "body", "solid red"},
+            PaintProduct{2, "matte grey"},
             EditPaint{1, "rims", some_paint()},
             AddLook{look, 2},
             AddLook{look},
@@ -93,8 +94,9 @@ inline SessionCommand random_command(Random& random, const Document& document) {
         case 1:
         case 2:
         case 3:
-        case 4:
             return SetPaint{id, pick(random, parts), pick(random, paints)};
+        case 4:
+            return PaintProduct{id, pick(random, paints)};
         case 5:
         case 6: {
             const std::string part = pick(random, parts);
