@@ -44,7 +44,7 @@ void add_flares(Sheet& half) {
     constexpr double kSide_mm = 25.0;
     refine(half, [&](const SheetTriangle& t) {
         const auto& a = half.vertices[t.corners.x].position;
-        return a.z > kSide_mm && arch_flare({a.x, a.y}).height_mm > 0.01;
+        return a.z > kSide_mm && arch_flare({a.x, a.y}).height_mm > 0.06;
     });
     for (auto& v : half.vertices) {
         // Only where the skin faces sideways.
@@ -127,7 +127,7 @@ void add_wells(PartMesh& trim) {
 /// A door mirror: a housing with a flat back, on a foot at the window's front corner.
 void add_mirror(std::vector<PartMesh>& parts) {
     const glm::dvec3 centre(22.0, 43.6, 36.9), half(2.7, 1.8, 2.9);
-    auto housing = sphere(1.0, 24);
+    auto housing = sphere(1.0, 18);
     for (auto& p : housing.positions_mm) {
         const auto round = [](double v, double power) {
             return std::copysign(std::pow(std::abs(v), power), v);

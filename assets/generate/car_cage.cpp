@@ -104,8 +104,8 @@ Cage make_car_cage() {
         };
         for (int i = 0; i < n; ++i) {
             along(i, m, 0, 2.2 * fade(i, 0.0, 20.5, 5.0));
-            along(i, kBeltRow, 0, 1.6 * fade(i, 2.5, kCowlStation + 3.0, 3.0));
-            along(i, kBonnetRow, 0, 1.0 * fade(i, kCowlStation, n - 1.0, 3.0));
+            along(i, kBeltRow, 0, 1.6 * fade(i, 4.0, kCowlStation + 4.0, 4.0));
+            along(i, kBonnetRow, 0, 1.8 * fade(i, kCowlStation - 0.5, n - 1.0, 3.0));
             along(i, m, kCatcherRow - m, 1.8 * fade(i, 6.0, 18.5, 4.0));
             along(i, m, depth, 1.0);
         }

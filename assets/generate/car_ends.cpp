@@ -20,16 +20,29 @@ std::function<double(const LimitVertex&)> bowl(const Outline& outline,
     };
 }
 
+/// The whole outline of something symmetric, from its right half.
+Outline both_sides(const Points& right, double radius) {
+    Points all = right;
+    for (auto p = right.rbegin(); p != right.rend(); ++p) {
+        if (p->x > 0.0) all.emplace_back(-p->x, p->y);
+    }
+    return Outline(all, radius);
+}
+
+/// Both head lamps and the band that joins them.
 const Outline& head_bowl() {
-    static const Outline outline({{14.8, 27.4},
-                                  {23.0, 28.7},
-                                  {31.0, 30.3},
-                                  {43.2, 33.2},
-                                  {42.6, 31.5},
-                                  {31.0, 26.8},
-                                  {23.0, 25.0},
-                                  {15.6, 24.9}},
-                                 0.8);
+    static const Outline outline = both_sides({{0.0, 26.7},
+                                               {14.8, 27.3},
+                                               {23.0, 28.7},
+                                               {31.0, 30.3},
+                                               {43.2, 33.2},
+                                               {42.6, 31.5},
+                                               {31.0, 26.8},
+                                               {23.0, 25.0},
+                                               {16.4, 24.8},
+                                               {14.0, 25.6},
+                                               {0.0, 25.2}},
+                                              0.8);
     return outline;
 }
 const Outline& tail_bowl() {
@@ -96,15 +109,17 @@ void cut_ends(const Cutter& cutter) {
 
     bowl_in(head_bowl(), nose_view, kLampWall_mm, kHeadBowl, in_front, true);
     // A blade of light under the bowl's upper edge, and three square projectors.
-    const Outline blade({{16.0, 26.9},
-                         {23.0, 28.0},
-                         {31.0, 29.55},
-                         {41.6, 32.0},
-                         {40.6, 31.2},
-                         {31.0, 28.65},
-                         {23.0, 27.15},
-                         {16.1, 26.1}},
-                        0.3);
+    const Outline blade = both_sides({{0.0, 26.2},
+                                      {15.0, 26.75},
+                                      {23.0, 28.0},
+                                      {31.0, 29.55},
+                                      {41.6, 32.0},
+                                      {40.6, 31.2},
+                                      {31.0, 28.65},
+                                      {23.0, 27.15},
+                                      {15.0, 26.15},
+                                      {0.0, 25.75}},
+                                     0.3);
     cutter(blade, nose_view, 0.0, {kHeadBowl}, kHeadLamp, in_front);
     for (const double at : {20.2, 24.4, 28.6}) {
         const double y = 25.45 + 0.055 * (at - 20.0) + 0.004 * (at - 20.0) * (at - 20.0);

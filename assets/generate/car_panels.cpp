@@ -58,7 +58,7 @@ std::vector<PanelStyle> cut_car_panels(Sheet& sheet) {
 }
 
 Flare arch_flare(const glm::dvec2& side) {
-    constexpr double kHeight_mm = 0.45, kWidth_mm = 4.0;
+    constexpr double kHeight_mm = 0.35, kWidth_mm = 4.6;
     constexpr double kGone_mm = 8.0, kWhole_mm = 18.0;  // it runs out toward the sill
     const double up = std::clamp((side.y - kGone_mm) / (kWhole_mm - kGone_mm), 0.0, 1.0);
     const double fade = up * up * (3.0 - 2.0 * up);

@@ -85,7 +85,7 @@ PartMesh make_tyre() {
     std::vector<glm::dvec2> profile;
     for (const auto& p : half) profile.emplace_back(p.x, -p.y);
     for (auto p = half.rbegin(); p != half.rend(); ++p) profile.push_back(*p);
-    return revolve(profile, true, 56);
+    return revolve(profile, true, 48);
 }
 
 PartMesh make_rim() {
@@ -110,7 +110,7 @@ PartMesh make_rim() {
                                       {1.22, 2.0},
                                       {1.05, 2.12},
                                       {0.0, 2.18}};
-    PartMesh rim = revolve(barrel, true, 56);
+    PartMesh rim = revolve(barrel, true, 48);
     append(rim, revolve(hub, false, 36), {0, 0, 0});
     for (int k = 0; k < kSpokes; ++k) {
         const double angle = kPi / 2 + 2.0 * kPi * k / kSpokes;
