@@ -189,7 +189,7 @@ SkyVisibility solve_sky_visibility(const Mesh& mesh,
                 rays[k].origin = origins[k % kSamplesAFragment];
                 rays[k].direction = toward[k];
             }
-            tracer.occluded(rays, blocked);
+            tracer.occluded(rays, blocked, RayOrder::scattered);
             for (std::size_t k = 0; k < count; ++k) {
                 if (blocked[k]) result.blocked[i] |= std::uint64_t{1} << k;
             }
@@ -273,7 +273,7 @@ MirrorVisibility solve_mirror_visibility(const Mesh& mesh,
                     rays[k].origin = origins[k % kSamplesAFragment];
                     rays[k].direction = mirror.sample(alpha, static_cast<int>(k), count).direction;
                 }
-                tracer.occluded(rays, blocked);
+                tracer.occluded(rays, blocked, RayOrder::scattered);
                 for (std::size_t k = 0; k < rays.size(); ++k) {
                     if (blocked[k]) words[lobe] |= static_cast<std::uint16_t>(1u << k);
                 }

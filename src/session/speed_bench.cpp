@@ -13,6 +13,7 @@
 #include "radiance/renderer.h"
 #include "reference/path_tracer.h"
 #include "session/desktop_bench.h"
+#include "session/first_frame_bench.h"
 #include "session/library.h"
 #include "session/synthetic_calibration.h"
 #include "twin/description.h"
@@ -235,6 +236,7 @@ SpeedBenchResult run_speed_bench(GlDevice device, const Progress& progress) {
         }
     }
     bench_accuracy(result, scene, progress);
+    result.effects.push_back(run_first_frame_bench(progress));
     // Last: it lowers the priority of helping threads for good.
     for (BenchEffect& desktop : run_desktop_bench(device, progress)) {
         result.effects.push_back(std::move(desktop));

@@ -58,7 +58,7 @@ std::vector<float> ambient_openness(const Tracer& tracer,
                     radius * std::cos(angle) * s + radius * std::sin(angle) * t + height * normal,
                     max_distance_mm};
             }
-            tracer.occluded(rays, blocked);
+            tracer.occluded(rays, blocked, RayOrder::scattered);
             std::size_t open = 0;
             for (const auto is_blocked : blocked) open += is_blocked ? 0 : 1;
             openness[k] = static_cast<float>(open) / static_cast<float>(ray_count);

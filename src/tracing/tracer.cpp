@@ -233,11 +233,14 @@ void Tracer::closest_from(const glm::vec3& origin,
     });
 }
 
-void Tracer::occluded(std::span<const TraceRay> rays, std::span<std::uint8_t> blocked) const {
+void Tracer::occluded(std::span<const TraceRay> rays,
+                      std::span<std::uint8_t> blocked,
+                      RayOrder order) const {
     check_argument(rays.size() == blocked.size(), "occluded: as many answers as rays are needed");
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    context.flags = order == RayOrder::neighbours ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
+                                                  : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     for_each_packet(rays.size(), [&](std::size_t first, std::size_t count, const int* valid) {
         RTCRay8 packet;
         for (std::size_t lane = 0; lane < kPacket; ++lane) {

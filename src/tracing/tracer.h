@@ -40,6 +40,12 @@ struct SurfacePoint {
     std::uint16_t part = 0;
 };
 
+/// How rays that follow one another go: told for speed, answers are the same.
+enum class RayOrder {
+    neighbours,  ///< the same way
+    scattered    ///< from near places into all directions
+};
+
 /// Owns Embree's device and scene; keeps a copy of nothing else. Safe to use from many threads.
 class Tracer {
   public:
@@ -50,9 +56,11 @@ class Tracer {
 
     Hit closest(const TraceRay& ray) const;
     bool occluded(const TraceRay& ray) const;
-    /// Eight at a time inside; rays should be coherent to pay. Sizes must agree.
+    /// Eight at a time inside. Sizes must agree.
     void closest(std::span<const TraceRay> rays, std::span<Hit> hits) const;
-    void occluded(std::span<const TraceRay> rays, std::span<std::uint8_t> blocked) const;
+    void occluded(std::span<const TraceRay> rays,
+                  std::span<std::uint8_t> blocked,
+                  RayOrder order = RayOrder::neighbours) const;
     /// Neighbouring rays from one point, as of a picture; directions of any length, in which t is
     /// counted; those of no length hit nothing.
     void closest_from(const glm::vec3& origin,

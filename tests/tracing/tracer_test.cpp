@@ -157,10 +157,13 @@ TEST(Tracer, PacketsAnswerWhatSingleRaysAnswer) {
         std::vector<std::uint8_t> blocked(count, 7);
         tracer.closest(rays, hits);
         tracer.occluded(rays, blocked);
+        std::vector<std::uint8_t> scattered(count, 7);
+        tracer.occluded(rays, scattered, RayOrder::scattered);
         std::size_t valid = 0;
         for (std::size_t k = 0; k < count; ++k) {
             const Hit single = tracer.closest(rays[k]);
             ASSERT_EQ(blocked[k], tracer.occluded(rays[k]) ? 1 : 0);
+            ASSERT_EQ(scattered[k], blocked[k]);
             ASSERT_EQ(hits[k].valid(), single.valid());
             if (!single.valid()) continue;
             ++valid;
