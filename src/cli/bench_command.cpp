@@ -6,11 +6,48 @@
 
 #include "cli/command.h"
 #include "core/paths.h"
+#include "session/bench_plot.h"
+#include "session/bench_table.h"
 #include "session/speed_bench.h"
 
 namespace livery {
 
 namespace {
+
+/// An effect for each stage and number of threads.
+Json json_of(const std::vector<SweepPoint>& sweep) {
+    Json effects = Json::array();
+    for (const SwapStage stage : kSwapStages) {
+        for (const int threads : threads_of(sweep)) {
+            Json levels = Json::array();
+            for (const SweepPoint& point : sweep) {
+                if (point.threads != threads) continue;
+                levels.push_back(
+                    {{"name",
+                      fmt::format(
+                          "{}x{}, {:.0f}%", point.width, point.height, 100.0 * point.coverage)},
+                     {"ms", point.of(stage).ms},
+                     {"fastest_ms", point.of(stage).fastest_ms},
+                     {"repeats", point.repeats},
+                     {"work_items", point.pixels},
+                     {"coverage", point.coverage},
+                     {"fragments_shaded", point.fragments_shaded},
+                     {"first_frame_ms", point.first_frame_ms},
+                     {"ns_a_pixel", 1e6 * point.of(stage).ms / point.pixels},
+                     {"error", nullptr},
+                     {"unit", nullptr}});
+            }
+            const PowerLaw law = fit_power_law(sweep, stage, threads);
+            effects.push_back({{"name", fmt::format("sweep: {}", to_string(stage))},
+                               {"threads", threads},
+                               {"slope", law.slope},
+                               {"r2", law.r2},
+                               {"dearest_over_cheapest_pixel", law.spread},
+                               {"levels", levels}});
+        }
+    }
+    return effects;
+}
 
 Json json_of(const SpeedBenchResult& result) {
     Json effects = Json::array();
@@ -30,6 +67,7 @@ Json json_of(const SpeedBenchResult& result) {
         }
         effects.push_back({{"name", effect.name}, {"levels", levels}});
     }
+    for (Json& effect : json_of(result.sweep)) effects.push_back(std::move(effect));
     return {{"suite", "speed"},
             {"renderer", result.renderer},
             {"threads", result.threads},
@@ -37,39 +75,12 @@ Json json_of(const SpeedBenchResult& result) {
             {"effects", effects}};
 }
 
-std::string text_of(const SpeedBenchResult& result) {
-    std::string text =
-        fmt::format("{}, {} threads; mock-up on {:.1f}% of 1280x800; median (fastest) ms\n",
-                    result.renderer,
-                    result.threads,
-                    100.0 * result.covered_fraction);
-    for (const BenchEffect& effect : result.effects) {
-        text += effect.name + "\n";
-        for (const BenchLevel& level : effect.levels) {
-            text += fmt::format("  {:<22}{:10.2f} ({:.2f}), {} runs\n",
-                                level.name,
-                                level.ms,
-                                level.fastest_ms,
-                                level.repeats);
-            if (level.p95_ms && level.longest_ms) {
-                text += fmt::format("  {:<22}{:10.2f} 95th percentile, {:.2f} longest\n",
-                                    "",
-                                    *level.p95_ms,
-                                    *level.longest_ms);
-            }
-            if (level.error) {
-                text += fmt::format("  {:<22}{:10.4f} {}\n", "", *level.error, level.unit);
-            }
-        }
-    }
-    return text;
-}
-
 }  // namespace
 
 Command bench_command() {
     struct Arguments {
-        std::string out, suite = "speed";
+        std::string out, markdown, suite = "speed";
+        bool quick = false;
     };
     const auto arguments = std::make_shared<Arguments>();
     Command command;
@@ -77,19 +88,44 @@ Command bench_command() {
     command.summary = "time every stage on this machine; livery plan predicts from it";
     command.example = "livery bench --suite speed --out bench";
     command.options = {
-        {"--out", "DIR", "also write bench.json there", &arguments->out, false, {}},
+        {"--out",
+         "DIR",
+         "also write bench.json and the plot speed.svg there",
+         &arguments->out,
+         false,
+         {}},
+        {"--markdown",
+         "FILE",
+         "also write its tables between the bench's marks in this file",
+         &arguments->markdown,
+         false,
+         {}},
+        {"--quick",
+         "",
+         "half a minute: the sweep of two sizes and one quality; predictions stay",
+         &arguments->quick,
+         false,
+         {}},
         {"--suite", "NAME", "speed (default speed)", &arguments->suite, false, {"speed"}},
     };
     command.run = [arguments](const CommonOptions& common, const Progress& progress) {
-        const auto kept = bench_file();  // asked for before the work: it needs a home folder
-        const SpeedBenchResult result = run_speed_bench(common.gl_device(), progress);
-        write_pass_costs(kept, result.renderer, result.pass_costs);
+        // What cannot be written is found before the work.
+        const auto kept = bench_file();
+        if (!arguments->out.empty()) make_output_folder(arguments->out);
+        if (!arguments->markdown.empty()) check_bench_block(arguments->markdown);
+        const SpeedBenchResult result =
+            run_speed_bench(common.gl_device(), arguments->quick, progress);
+        if (!arguments->quick) write_pass_costs(kept, result.renderer, result.pass_costs);
         Outcome outcome;
         outcome.figures = json_of(result);
         outcome.text = text_of(result);
         if (!arguments->out.empty()) {
-            make_output_folder(arguments->out);
-            write_json_file(std::filesystem::path(arguments->out) / "bench.json", outcome.figures);
+            const std::filesystem::path out = arguments->out;
+            write_json_file(out / "bench.json", outcome.figures);
+            write_text_file(out / "speed.svg", sweep_svg(result.sweep));
+        }
+        if (!arguments->markdown.empty()) {
+            replace_bench_block(arguments->markdown, markdown_of(result));
         }
         return outcome;
     };

@@ -162,7 +162,7 @@ kernel::Counts compensate_range(const Frame& frame, std::size_t begin, std::size
     return counts;
 }
 
-constexpr std::size_t kPixelsAtOnce = 8192;
+constexpr std::size_t kPixelsAtOnce = 1024;
 
 }  // namespace
 

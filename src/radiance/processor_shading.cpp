@@ -9,7 +9,7 @@ namespace livery {
 namespace {
 
 /// Small enough that two threads end together, large enough that starting one is nothing.
-constexpr std::size_t kBlocksAtOnce = 256, kPixelsAtOnce = 8192;
+constexpr std::size_t kBlocksAtOnce = 64, kPixelsAtOnce = 2048;
 
 }  // namespace
 

@@ -138,45 +138,45 @@ void bench_frames(SpeedBenchResult& result,
         gpu.run(renderer.texture());
         gpu.read_back();
     }
+    const std::size_t covered = count_covered(*renderer.picture());
 
     constexpr int kSwaps = 31;
     std::vector<double> shade, gpu_ms, cpu_ms, gpu_frame, cpu_frame;
+    Image8 drive;
     for (int k = 0; k < kSwaps; ++k) {
         progress.update(static_cast<double>(k) / kSwaps, "timing " + name);
         const Scene& look = scene.looks[static_cast<std::size_t>(k) % scene.looks.size()];
         FramePlan plan = plan_frame(look, quality, FrameStage::radiance);
 
-        // Swap to projector input in OpenGL; reading back waits until it is done.
         auto began = Clock::now();
         renderer.render(look, plan, progress);
+        const auto wanted = renderer.picture();
         shade.push_back(milliseconds_since(began));
+        collect(passes, plan);
+        const auto before_cpu = Clock::now();
+        CompensationStats stats;
+        compensate_again(table, *wanted, covered, &drive, &stats);
+        cpu_ms.push_back(milliseconds_since(before_cpu));
+        cpu_frame.push_back(milliseconds_since(began));
+
+        // The same with the correction in OpenGL; reading back waits until it is done.
         const auto before_gpu = Clock::now();
         gpu.run(renderer.texture());
         const Image8 from_gpu = gpu.read_back();
         gpu_ms.push_back(milliseconds_since(before_gpu));
-        gpu_frame.push_back(milliseconds_since(began));
-        collect(passes, plan);
-
-        // The same with the compensation on one processor thread.
-        const auto before_read = Clock::now();
-        const ImageF radiance = renderer.read_back();
-        const double read_ms = milliseconds_since(before_read);
-        const auto before_cpu = Clock::now();
-        const Image8 from_cpu = compensate(table, radiance);
-        cpu_ms.push_back(milliseconds_since(before_cpu));
-        cpu_frame.push_back(shade.back() + read_ms + cpu_ms.back());
+        gpu_frame.push_back(shade.back() + gpu_ms.back());
     }
     const auto pixels = static_cast<double>(table.pixels.size());
-    effect(result, "paint swap: shading").levels.push_back(level_of(name, shade, fragments));
-    effect(result, "paint swap to projector input, OpenGL")
-        .levels.push_back(level_of(name, gpu_frame, fragments));
-    effect(result, "paint swap to projector input, compensation on the processor")
+    effect(result, "paint swap: shading and mixing")
+        .levels.push_back(level_of(name, shade, fragments));
+    effect(result, "paint swap to projector input")
         .levels.push_back(level_of(name, cpu_frame, fragments));
+    effect(result, "paint swap to projector input, correction in OpenGL")
+        .levels.push_back(level_of(name, gpu_frame, fragments));
     if (quality == Quality::normal) {
         const std::string size = fmt::format("{}x{}", view.width, view.height);
-        effect(result, "compensation, one processor thread")
-            .levels.push_back(level_of(size, cpu_ms, pixels));
-        effect(result, "compensation, OpenGL with read-back")
+        effect(result, "correction").levels.push_back(level_of(size, cpu_ms, pixels));
+        effect(result, "correction in OpenGL, read back")
             .levels.push_back(level_of(size, gpu_ms, pixels));
     }
     if (view.width != 1280) return;
@@ -223,17 +223,25 @@ void bench_accuracy(SpeedBenchResult& result, const BenchScene& scene, const Pro
 
 }  // namespace
 
-SpeedBenchResult run_speed_bench(GlDevice device, const Progress& progress) {
+SpeedBenchResult run_speed_bench(GlDevice device, bool quick, const Progress& progress) {
     SpeedBenchResult result;
     const HeadlessContext context(device);
     result.renderer = context.renderer();
     result.threads = thread_count();
     const BenchScene scene = load_scene(result, progress);
+    result.sweep = run_speed_sweep(scene.product, scene.looks, scene.projector, quick, progress);
+    const std::vector<Quality> qualities =
+        quick ? std::vector{Quality::normal}
+              : std::vector{Quality::draft, Quality::normal, Quality::high};
     for (const auto& [width, height] : {std::pair(640, 400), std::pair(1280, 800)}) {
         const View view = resized(scene.projector, width, height);
-        for (const Quality quality : {Quality::draft, Quality::normal, Quality::high}) {
+        for (const Quality quality : qualities) {
             bench_frames(result, scene, view, quality, progress);
         }
+    }
+    if (quick) {
+        result.pass_costs.clear();
+        return result;
     }
     bench_accuracy(result, scene, progress);
     result.effects.push_back(run_first_frame_bench(progress));

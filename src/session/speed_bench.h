@@ -8,6 +8,7 @@
 #include "core/progress.h"
 #include "gl/context.h"
 #include "session/predictions.h"
+#include "session/speed_sweep.h"
 
 namespace livery {
 
@@ -32,10 +33,12 @@ struct SpeedBenchResult {
     int threads = 0;
     double covered_fraction = 0.0;  ///< of the 1280x800 picture
     std::vector<BenchEffect> effects;
-    std::vector<PassCost> pass_costs;  ///< for predictions
+    std::vector<SweepPoint> sweep;
+    std::vector<PassCost> pass_costs;  ///< for predictions; of a whole bench only
 };
 
-/// Uses the default bench's projector and the shipped car and looks. Medians over repeats.
-SpeedBenchResult run_speed_bench(GlDevice device, const Progress& progress = {});
+/// Uses the default bench's projector and the shipped car and looks. Medians over repeats. `quick`:
+/// the sweep of the two smaller sizes and frames of normal quality, in half a minute.
+SpeedBenchResult run_speed_bench(GlDevice device, bool quick, const Progress& progress = {});
 
 }  // namespace livery

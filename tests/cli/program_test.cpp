@@ -94,6 +94,7 @@ TEST(Program, WrongArgumentsGiveOneLineAndStatusTwo) {
         {"patterns", "--projector", "64x48", "--dark", "9", "--bright", "9", "--out", "a"},
         {"calibrate", "color", "--captures", "/nowhere", "--out", "a"},
         {"compensate", "--calibration", "/nowhere", "--target", "a.exr", "--out", "a.png"},
+        {"bench", "--markdown", "/nowhere/page.md"},
         {"bench", "--suite", "taste"}};
     for (const auto& words : wrong) {
         const ProgramRun run = livery_run(words);
