@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "radiance/shading.h"
 #include "session/picture.h"
 
@@ -385,9 +386,11 @@ std::shared_ptr<const TexturePool::Slot> FrameLane::upload(const Image8& drive) 
     rgba_.resize(4 * drive.pixel_count(), 255);
     const std::uint8_t* from = drive.values.data();
     std::uint8_t* to = rgba_.data();
-    for (std::size_t i = 0; i < drive.pixel_count(); ++i) {
-        for (std::size_t c = 0; c < 3; ++c) to[4 * i + c] = from[3 * i + c];
-    }
+    parallel_for(drive.pixel_count(), 65536, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            for (std::size_t c = 0; c < 3; ++c) to[4 * i + c] = from[3 * i + c];
+        }
+    });
     auto slot = textures_.lend(drive.width, drive.height);
     slot->texture.upload(std::span<const std::uint8_t>(rgba_));
     slot->ready = Fence::after_everything_so_far();
