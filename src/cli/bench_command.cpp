@@ -71,6 +71,7 @@ Json json_of(const SpeedBenchResult& result) {
     return {{"suite", "speed"},
             {"renderer", result.renderer},
             {"threads", result.threads},
+            {"load_before", result.load_before},
             {"covered_fraction", result.covered_fraction},
             {"effects", effects}};
 }

@@ -95,9 +95,11 @@ std::string effects_table(const std::vector<BenchEffect>& effects) {
             const auto optional = [](const std::optional<double>& ms) {
                 return ms ? milliseconds(*ms) : std::string();
             };
+            const std::string error =
+                level.error ? fmt::format(", error {:.4f}", *level.error) : std::string();
             text += fmt::format("| {} | {} | {} ({}) | {} | {} | {} |\n",
                                 effect.name,
-                                level.name,
+                                level.name + error,
                                 milliseconds(level.ms),
                                 milliseconds(level.fastest_ms),
                                 optional(level.p95_ms),
@@ -172,12 +174,12 @@ std::string text_of(const SpeedBenchResult& result) {
 
 std::string markdown_of(const SpeedBenchResult& result) {
     return fmt::format(
-        "Measured by `livery bench` on {} threads; OpenGL: {}. Times are medians in milliseconds, "
-        "the fastest in "
-        "brackets.\n\n"
+        "Measured by `livery bench` on {} threads; OpenGL: {}. Times are medians in "
+        "milliseconds, the fastest in brackets. Load of the machine when it began: {:.1f}.\n\n"
         "### Paint swap to projector input\n\n{}\n{}\n### Every stage\n\n{}",
         result.threads,
         result.renderer,
+        result.load_before,
         sweep_table(result.sweep),
         laws(result.sweep, true),
         effects_table(result.effects));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <map>
 
 #include <fmt/format.h>
@@ -225,6 +226,8 @@ void bench_accuracy(SpeedBenchResult& result, const BenchScene& scene, const Pro
 
 SpeedBenchResult run_speed_bench(GlDevice device, bool quick, const Progress& progress) {
     SpeedBenchResult result;
+    // Zero where the system does not say.
+    ::getloadavg(&result.load_before, 1);
     const HeadlessContext context(device);
     result.renderer = context.renderer();
     result.threads = thread_count();

@@ -31,6 +31,7 @@ struct BenchEffect {
 struct SpeedBenchResult {
     std::string renderer;
     int threads = 0;
+    double load_before = 0.0;       ///< of the last minute, by the system: 0 on a quiet machine
     double covered_fraction = 0.0;  ///< of the 1280x800 picture
     std::vector<BenchEffect> effects;
     std::vector<SweepPoint> sweep;

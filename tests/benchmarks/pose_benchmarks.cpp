@@ -19,7 +19,7 @@ void SurfaceMapOfThePose(benchmark::State& state) {
     const FrameGeometry& geometry = *geometry_of_width(static_cast<int>(state.range(0)));
     for (auto _ : state) {
         benchmark::DoNotOptimize(
-            build_surface_map(car().product->mesh, geometry.tracer, geometry.view, 16));
+            build_surface_map(car().product->mesh, *geometry.tracer, geometry.view, 16));
     }
     count_items(state, geometry.map.covered_pixels * 16);
 }
@@ -31,7 +31,7 @@ void LightVisibility(benchmark::State& state) {
     const DirectionalLight& light = car().looks.front().lights.front();
     for (auto _ : state) {
         benchmark::DoNotOptimize(
-            light_at_fragments(car().product->mesh, geometry.tracer, geometry.map, light, 16));
+            light_at_fragments(car().product->mesh, *geometry.tracer, geometry.map, light, 16));
     }
     count_items(state, geometry.map.fragments.size() * 16);
 }
@@ -42,7 +42,7 @@ void SkyVisibilityOfThePose(benchmark::State& state) {
     const FrameGeometry& geometry = *geometry_of_width(static_cast<int>(state.range(0)));
     for (auto _ : state) {
         benchmark::DoNotOptimize(
-            solve_sky_visibility(car().product->mesh, geometry.tracer, geometry.map, 16));
+            solve_sky_visibility(car().product->mesh, *geometry.tracer, geometry.map, 16));
     }
     count_items(state, geometry.map.fragments.size() * 16);
 }
@@ -53,7 +53,7 @@ void MirrorVisibilityOfThePose(benchmark::State& state) {
     const FrameGeometry& geometry = *geometry_of_width(static_cast<int>(state.range(0)));
     for (auto _ : state) {
         benchmark::DoNotOptimize(solve_mirror_visibility(car().product->mesh,
-                                                         geometry.tracer,
+                                                         *geometry.tracer,
                                                          geometry.map,
                                                          car().looks.front().eye_in_world_mm,
                                                          8,
