@@ -3,11 +3,13 @@
 #include <filesystem>
 #include <iostream>
 #include <string>
+#include <vector>
 
 #include "car.h"
 #include "core/paths.h"
 #include "environments.h"
 #include "glb.h"
+#include "player.h"
 #include "solids.h"
 
 int main(int argument_count, char** arguments) {
@@ -19,17 +21,21 @@ int main(int argument_count, char** arguments) {
     try {
         const std::filesystem::path folder = arguments[1];
         make_output_folder(folder / "environments");
-        const auto car = assets::make_car();
-        write_text_file(folder / "car.glb", assets::glb_bytes("car", car));
-        std::size_t triangles = 0;
-        for (const auto& part : car) triangles += part.triangles.size();
-        std::cout << "car.glb: " << triangles << " triangles\n";
+        const auto write_product = [&](const std::string& name,
+                                       const std::vector<assets::PartMesh>& parts) {
+            write_text_file(folder / (name + ".glb"), assets::glb_bytes(name, parts));
+            std::size_t triangles = 0;
+            for (const auto& part : parts) triangles += part.triangles.size();
+            std::cout << name << ".glb: " << triangles << " triangles\n";
+        };
+        write_product("car", assets::make_car());
+        write_product("player", assets::make_player());
 
         constexpr int kSphereRings = 96;
         auto sphere = assets::sphere(25.0, kSphereRings);
         sphere.name = "sphere";
         assets::compute_tangents(sphere);
-        write_text_file(folder / "sphere.glb", assets::glb_bytes("sphere", {sphere}));
+        write_product("sphere", {sphere});
 
         constexpr int kEnvironmentWidth = 1024;
         const auto write_environment = [&](const std::string& name, auto* radiance) {

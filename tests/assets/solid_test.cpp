@@ -28,7 +28,7 @@ class Products : public testing::TestWithParam<const char*> {
 };
 INSTANTIATE_TEST_SUITE_P(Shipped,
                          Products,
-                         testing::Values("car", "sphere"),
+                         testing::Values("car", "player", "sphere"),
                          [](const auto& product) { return std::string(product.param); });
 
 TEST_P(Products, AreWatertight) {
