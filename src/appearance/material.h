@@ -32,6 +32,8 @@ struct Material {
 
 /// Reads and checks one material file. Throws FileError (unknown model or parameter, out of range).
 Material read_material_file(const std::filesystem::path& file);
+/// The same of its text.
+Material parse_material(const std::string& text, const std::filesystem::path& file);
 void write_material_file(const std::filesystem::path& file, const Material& material);
 
 /// A file if there is one of that name, else a paint of the library by its name: of the shipped

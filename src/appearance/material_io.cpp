@@ -9,6 +9,7 @@
 #include "appearance/material_json.h"
 #include "core/error.h"
 #include "core/json.h"
+#include "core/paths.h"
 
 namespace livery {
 
@@ -125,7 +126,11 @@ Json json_of(const Material& material) {
 }
 
 Material read_material_file(const std::filesystem::path& file) {
-    const Json json = read_json_file(file, std::size_t{1} << 20u);
+    return parse_material(read_text_file(file, std::size_t{1} << 20u), file);
+}
+
+Material parse_material(const std::string& text, const std::filesystem::path& file) {
+    const Json json = parse_json(text, file);
     const JsonReader reader(file, json);
     reader.require_format_version(kFormatVersion);
     reader.allow_only({"format_version", "name", "family", "model", "parameters", "provenance"});

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/json.h"
+#include "core/paths.h"
 
 namespace livery {
 
@@ -81,7 +82,12 @@ double read_exposure(const JsonReader& exposure) {
 }  // namespace
 
 CapturesFolder read_captures_manifest(const std::filesystem::path& manifest) {
-    const Json json = read_json_file(manifest);
+    return parse_captures_manifest(read_text_file(manifest), manifest);
+}
+
+CapturesFolder parse_captures_manifest(const std::string& text,
+                                       const std::filesystem::path& manifest) {
+    const Json json = parse_json(text, manifest);
     const JsonReader root(manifest, json);
     check_manifest(root);
 
@@ -143,7 +149,12 @@ CapturesFolder read_captures_manifest(const std::filesystem::path& manifest) {
 }
 
 PatternsManifest read_patterns_manifest(const std::filesystem::path& manifest) {
-    const Json json = read_json_file(manifest);
+    return parse_patterns_manifest(read_text_file(manifest), manifest);
+}
+
+PatternsManifest parse_patterns_manifest(const std::string& text,
+                                         const std::filesystem::path& manifest) {
+    const Json json = parse_json(text, manifest);
     const JsonReader root(manifest, json);
     check_manifest(root);
     PatternsManifest result;
@@ -177,7 +188,11 @@ void write_patterns_manifest(const std::filesystem::path& manifest,
 }
 
 std::vector<double> read_response(const std::filesystem::path& file) {
-    const Json json = read_json_file(file);
+    return parse_response(read_text_file(file), file);
+}
+
+std::vector<double> parse_response(const std::string& text, const std::filesystem::path& file) {
+    const Json json = parse_json(text, file);
     const JsonReader root(file, json);
     root.allow_only({"format_version", "linear_from_file"});
     root.require_format_version(kNewestVersion);

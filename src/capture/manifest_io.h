@@ -20,4 +20,11 @@ void write_patterns_manifest(const std::filesystem::path& manifest,
 /// fractions of full scale; never falls. Throws FileError.
 std::vector<double> read_response(const std::filesystem::path& file);
 
+/// The same of their texts; what they name lies beside the file.
+CapturesFolder parse_captures_manifest(const std::string& text,
+                                       const std::filesystem::path& manifest);
+PatternsManifest parse_patterns_manifest(const std::string& text,
+                                         const std::filesystem::path& manifest);
+std::vector<double> parse_response(const std::string& text, const std::filesystem::path& file);
+
 }  // namespace livery

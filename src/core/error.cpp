@@ -1,5 +1,7 @@
 #include "core/error.h"
 
+#include "core/utf8.h"
+
 namespace livery {
 
 namespace {
@@ -8,9 +10,11 @@ std::string file_message(const std::filesystem::path& file,
                          const std::string& field,
                          const std::string& found,
                          const std::string& expected) {
-    std::string text = file.string();
-    if (!field.empty()) text += ": " + field;
-    text += ": found " + found + ", expected " + expected;
+    // What stands in a bad file gets into messages: in one line, and not all of it.
+    constexpr std::size_t longest = 600;
+    std::string text = printable(file.string());
+    if (!field.empty()) text += ": " + printable(field, longest);
+    text += ": found " + printable(found, longest) + ", expected " + printable(expected, longest);
     return text;
 }
 

@@ -8,8 +8,8 @@
 
 namespace livery {
 
-/// A bad file or device. The message is one line that names the file, the field, what was found
-/// and what was expected.
+/// A bad file or device. The message is one line of UTF-8 that names the file, the field, what was
+/// found and what was expected; what is long is cut off.
 class FileError : public std::runtime_error {
   public:
     FileError(std::filesystem::path file,

@@ -86,5 +86,7 @@ void seal(ColourCalibration& calibration);
 /// not match the content).
 void write_calibration(const std::filesystem::path& folder, const ColourCalibration& calibration);
 ColourCalibration read_calibration(const std::filesystem::path& folder);
+/// What the text of its calibration.json holds: all but the planes. The id is as written.
+ColourCalibration parse_calibration(const std::string& text, const std::filesystem::path& file);
 
 }  // namespace livery

@@ -15,6 +15,8 @@ namespace livery {
 
 namespace {
 
+constexpr std::size_t kMaxJsonBytes = std::size_t{256} << 20u;
+
 constexpr int kFormatVersion = 1;
 constexpr int kLargestSide = 16384;
 constexpr double kHuge = 1e300;
@@ -244,7 +246,27 @@ ColourCalibration read_calibration(const std::filesystem::path& folder) {
                         "a calibration's folder");
     }
     const auto file = folder / "calibration.json";
-    const Json json = read_json_file(file, std::size_t{256} << 20u);
+    ColourCalibration c = parse_calibration(read_text_file(file, kMaxJsonBytes), file);
+    c.status = read_status(folder / "status.png", c);
+    c.unmixing = read_plane(folder / "unmixing.exr", c, kMatrixNames);
+    c.dark = read_plane(folder / "dark.exr", c, kColourNames);
+    c.span = read_plane(folder / "span.exr", c, kColourNames);
+    c.camera_px = read_plane(folder / "camera_px.exr", c, kPlaceNames);
+    check_valid_pixels(folder / "unmixing.exr", c, c.unmixing);
+    check_valid_pixels(folder / "dark.exr", c, c.dark);
+    check_valid_pixels(folder / "span.exr", c, c.span);
+
+    const std::string written = c.id;
+    seal(c);
+    if (c.id != written) {
+        throw FileError(
+            file, "id", written, c.id + " of the content: a file was changed or is of another run");
+    }
+    return c;
+}
+
+ColourCalibration parse_calibration(const std::string& text, const std::filesystem::path& file) {
+    const Json json = parse_json(text, file);
     const JsonReader root(file, json);
     root.require_format_version(kFormatVersion);
     if (const auto kind = root["kind"]; kind.text() != "colour calibration") {
@@ -268,6 +290,7 @@ ColourCalibration read_calibration(const std::filesystem::path& folder) {
                      "residuals",
                      "warnings"});
     ColourCalibration c;
+    c.id = root["id"].text();
     c.created = root["created"].text();
     c.mode = root["mode"].text();
     if (c.mode != "paper" && c.mode != "robust") {
@@ -291,21 +314,6 @@ ColourCalibration read_calibration(const std::filesystem::path& folder) {
     read_residuals(root["residuals"], c);
     for (std::size_t k = 0; k < root["warnings"].size(); ++k) {
         c.warnings.push_back(root["warnings"].at(k).text());
-    }
-
-    c.status = read_status(folder / "status.png", c);
-    c.unmixing = read_plane(folder / "unmixing.exr", c, kMatrixNames);
-    c.dark = read_plane(folder / "dark.exr", c, kColourNames);
-    c.span = read_plane(folder / "span.exr", c, kColourNames);
-    c.camera_px = read_plane(folder / "camera_px.exr", c, kPlaceNames);
-    check_valid_pixels(folder / "unmixing.exr", c, c.unmixing);
-    check_valid_pixels(folder / "dark.exr", c, c.dark);
-    check_valid_pixels(folder / "span.exr", c, c.span);
-
-    const std::string written = root["id"].text();
-    seal(c);
-    if (c.id != written) {
-        root["id"].fail(written, c.id + " of the content: a file was changed or is of another run");
     }
     return c;
 }

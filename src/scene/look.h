@@ -43,6 +43,8 @@ struct Look {
 
 /// Look file (docs/files.md). Throws FileError; an unknown field is refused, by name.
 Look read_look_file(const std::filesystem::path& file);
+/// The same of its text.
+Look parse_look(const std::string& text, const std::filesystem::path& file);
 void write_look_file(const std::filesystem::path& file, const Look& look);
 
 /// Light from all directions: latitude-longitude, linear, in the working space. Row 0 looks up

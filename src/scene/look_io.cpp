@@ -3,6 +3,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/json.h"
+#include "core/paths.h"
 #include "scene/look.h"
 #include "scene/look_json.h"
 
@@ -107,7 +108,11 @@ Json json_of(const Look& look) {
 }
 
 Look read_look_file(const std::filesystem::path& file) {
-    const Json json = read_json_file(file);
+    return parse_look(read_text_file(file), file);
+}
+
+Look parse_look(const std::string& text, const std::filesystem::path& file) {
+    const Json json = parse_json(text, file);
     const JsonReader root(file, json);
     root.require_format_version(kFormatVersion);
     root.allow_only({"format_version", "name", "parts", "lights", "environment", "exposure_ev"});

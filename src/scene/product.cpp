@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/json.h"
+#include "core/paths.h"
 #include "scene/pose_io.h"
 
 namespace livery {
@@ -42,32 +43,45 @@ Product load_product(const std::filesystem::path& file, std::optional<LengthUnit
         product.mesh = load_mesh(file, &product.notes, unit);
         return product;
     }
-    const Json json = read_json_file(file);
+    const ProductFile said = parse_product_file(read_text_file(file), file);
+    product.name = said.name;
+    product.product_scale = said.product_scale;
+    product.mesh = load_mesh(said.mesh, &product.notes, unit ? unit : said.unit);
+    if (said.world_from_mesh) move(product.mesh, *said.world_from_mesh);
+    for (std::size_t k = 0; k < said.parts.size(); ++k) {
+        if (has_part(product.mesh, said.parts[k])) continue;
+        throw FileError(file,
+                        "parts[" + std::to_string(k) + "]",
+                        "\"" + said.parts[k] + "\"",
+                        "a part of the mesh: " + part_names(product.mesh));
+    }
+    return product;
+}
+
+ProductFile parse_product_file(const std::string& text, const std::filesystem::path& file) {
+    const Json json = parse_json(text, file);
     const JsonReader root(file, json);
+    ProductFile product;
     root.require_format_version(1);
     root.allow_only({"format_version", "name", "mesh", "unit", "product_scale", "pose", "parts"});
-    if (root.has("name")) product.name = root["name"].text();
+    product.name = root.has("name") ? root["name"].text() : file.stem().string();
     if (root.has("product_scale")) {
         product.product_scale = root["product_scale"].number_between(1e-3, 1e6);
     }
     const auto mesh_name = root["mesh"].text();
     if (mesh_name.empty()) root["mesh"].fail("an empty name", "a mesh file");
+    product.mesh = file.parent_path() / mesh_name;
     if (root.has("unit")) {
-        const auto said = parse_length_unit(root["unit"].text());
-        if (!said) root["unit"].fail(root["unit"].found(), "mm, cm, m or in");
-        if (!unit) unit = said;
+        product.unit = parse_length_unit(root["unit"].text());
+        if (!product.unit) root["unit"].fail(root["unit"].found(), "mm, cm, m or in");
     }
-    product.mesh = load_mesh(file.parent_path() / mesh_name, &product.notes, unit);
     if (root.has("pose")) {
         root["pose"].allow_only({"rotation", "translation_mm"});
-        move(product.mesh, read_pose(root["pose"]));
+        product.world_from_mesh = read_pose(root["pose"]);
     }
     if (root.has("parts")) {
         for (std::size_t k = 0; k < root["parts"].size(); ++k) {
-            const auto part = root["parts"].at(k);
-            if (!has_part(product.mesh, part.text())) {
-                part.fail(part.found(), "a part of the mesh: " + part_names(product.mesh));
-            }
+            product.parts.push_back(root["parts"].at(k).text());
         }
     }
     return product;

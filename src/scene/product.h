@@ -24,6 +24,18 @@ struct Product {
 Product load_product(const std::filesystem::path& file,
                      std::optional<LengthUnit> unit = std::nullopt);
 
+/// A product JSON's content, its mesh not yet read.
+struct ProductFile {
+    std::string name;
+    std::filesystem::path mesh;
+    std::optional<LengthUnit> unit;
+    double product_scale = 1.0;
+    std::optional<Rigid3> world_from_mesh;
+    std::vector<std::string> parts;  ///< that the mesh must have
+};
+/// Throws FileError.
+ProductFile parse_product_file(const std::string& text, const std::filesystem::path& file);
+
 /// Index of a part; throws std::invalid_argument that lists the names there are.
 int part_index(const Product& product, const std::string& name);
 

@@ -64,6 +64,8 @@ View cropped(const View& view, int left, int top, int width, int height);
 
 /// Camera file (docs/files.md). Converts OpenCV's pixel centres at integers. Throws FileError.
 View read_camera_file(const std::filesystem::path& file);
+/// The same of its text.
+View parse_camera(const std::string& text, const std::filesystem::path& file);
 void write_camera_file(const std::filesystem::path& file, const View& view);
 
 }  // namespace livery

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "core/json.h"
+#include "core/paths.h"
 #include "scene/pose_io.h"
 #include "scene/view.h"
 
@@ -14,7 +15,11 @@ constexpr int kLargestSide = 65536;
 }  // namespace
 
 View read_camera_file(const std::filesystem::path& file) {
-    const Json json = read_json_file(file);
+    return parse_camera(read_text_file(file), file);
+}
+
+View parse_camera(const std::string& text, const std::filesystem::path& file) {
+    const Json json = parse_json(text, file);
     const JsonReader root(file, json);
     // The bare OpenCV form of other programs has no version; ours always writes one.
     if (root.has("format_version")) root.require_format_version(kFormatVersion);

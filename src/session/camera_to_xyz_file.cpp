@@ -6,6 +6,7 @@
 
 #include "core/colour.h"
 #include "core/json.h"
+#include "core/paths.h"
 
 namespace livery {
 
@@ -25,7 +26,11 @@ void refuse_singular(const JsonReader& field, const glm::dmat3& matrix) {
 }  // namespace
 
 CameraToXyz read_camera_to_xyz(const std::filesystem::path& file) {
-    const Json json = read_json_file(file);
+    return parse_camera_to_xyz(read_text_file(file), file);
+}
+
+CameraToXyz parse_camera_to_xyz(const std::string& text, const std::filesystem::path& file) {
+    const Json json = parse_json(text, file);
     const JsonReader reader(file, json);
     if (reader.has("format_version")) reader.require_format_version(1);
     reader.allow_only({"format_version", "matrix", "primaries_xyz", "measured_at_px", "note"});

@@ -9,6 +9,8 @@ namespace livery {
 
 /// Throws FileError, also for a matrix or primaries that are singular.
 CameraToXyz read_camera_to_xyz(const std::filesystem::path& file);
+/// The same of its text.
+CameraToXyz parse_camera_to_xyz(const std::string& text, const std::filesystem::path& file);
 
 /// What is taken when no file was given: camera RGB as linear Rec.709, and labelled so.
 CameraToXyz assumed_rec709();

@@ -6,8 +6,6 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "core/json.h"
-#include "core/paths.h"
 #include "radiance/surface_map.h"
 #include "tracing/tracer.h"
 
@@ -60,48 +58,10 @@ std::optional<std::vector<PassCost>> known_pass_costs() {
 
 }  // namespace
 
-std::filesystem::path bench_file() { return user_folder() / "bench.json"; }
-
 std::string cost_key(const std::string& pass_name) {
     if (pass_name.starts_with("shade:")) return "shade" + pass_name.substr(pass_name.rfind(':'));
     const auto dash = pass_name.rfind("-visibility");
     return dash == std::string::npos ? pass_name : "light-visibility";
-}
-
-void write_pass_costs(const std::filesystem::path& file,
-                      const std::string& renderer,
-                      const std::vector<PassCost>& costs) {
-    make_output_folder(file.parent_path());
-    Json list = Json::array();
-    for (const PassCost& cost : costs) {
-        list.push_back({{"pass", cost.pass},
-                        {"quality", to_string(cost.quality)},
-                        {"ms", cost.ms},
-                        {"work_items", cost.work_items}});
-        if (cost.error) list.back()["error"] = *cost.error;
-    }
-    write_json_file(file, {{"format_version", 1}, {"renderer", renderer}, {"passes", list}});
-}
-
-std::optional<std::vector<PassCost>> read_pass_costs(const std::filesystem::path& file) {
-    std::error_code error;
-    if (!std::filesystem::exists(file, error)) return std::nullopt;
-    const Json json = read_json_file(file);
-    const JsonReader reader(file, json);
-    reader.require_format_version(1);
-    std::vector<PassCost> costs;
-    const JsonReader passes = reader["passes"];
-    for (std::size_t i = 0; i < passes.size(); ++i) {
-        const JsonReader entry = passes.at(i);
-        PassCost cost;
-        cost.pass = entry["pass"].text();
-        cost.quality = parse_quality(entry["quality"].text());
-        cost.ms = entry["ms"].number_between(0.0, 1e9);
-        cost.work_items = entry["work_items"].number_between(0.0, 1e12);
-        if (entry.has("error")) cost.error = entry["error"].number_between(0.0, 1e6);
-        costs.push_back(cost);
-    }
-    return costs;
 }
 
 std::string predict(FramePlan& plan,

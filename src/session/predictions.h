@@ -29,6 +29,8 @@ void write_pass_costs(const std::filesystem::path& file,
                       const std::vector<PassCost>& costs);
 /// Nothing when no bench ran on this machine. Throws FileError for a malformed file.
 std::optional<std::vector<PassCost>> read_pass_costs(const std::filesystem::path& file);
+/// The same of its text.
+std::vector<PassCost> parse_pass_costs(const std::string& text, const std::filesystem::path& file);
 
 /// "shade:body:clearcoat" -> "shade:clearcoat": what the cost of a pass depends on.
 std::string cost_key(const std::string& pass_name);

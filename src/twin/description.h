@@ -81,5 +81,7 @@ struct BenchDescription {
 
 /// A bench file, or the name of a shipped one ("default", "paper-2.75m"). Throws FileError.
 BenchDescription read_bench_file(const std::filesystem::path& file_or_name);
+/// The same of a file's text; what it names lies beside the file or among the shipped data.
+BenchDescription parse_bench(const std::string& text, const std::filesystem::path& file);
 
 }  // namespace livery

@@ -296,8 +296,8 @@ MockupDescription read_mockup(const JsonReader& json) {
 }
 
 /// The file's own fields over those of its base, which must stand on its own.
-Json with_base(const std::filesystem::path& file) {
-    Json own = read_json_file(file);
+Json with_base(const std::string& text, const std::filesystem::path& file) {
+    Json own = parse_json(text, file);
     const JsonReader json(file, own);
     json.require_format_version(kNewestVersion);
     if (!json.has("base")) return own;
@@ -327,7 +327,11 @@ BenchDescription read_bench_file(const std::filesystem::path& file_or_name) {
         }
         file = shipped_path(std::filesystem::path("calibration") / (file.string() + ".json"));
     }
-    const Json merged = with_base(file);
+    return parse_bench(read_text_file(file), file);
+}
+
+BenchDescription parse_bench(const std::string& text, const std::filesystem::path& file) {
+    const Json merged = with_base(text, file);
     const JsonReader json(file, merged);
     json.allow_only({"format_version",
                      "kind",
@@ -348,8 +352,6 @@ BenchDescription read_bench_file(const std::filesystem::path& file_or_name) {
     bench.file = file;
     bench.name = json["name"].text();
     const std::filesystem::path product = json["product"].text();
-    bench.product = file.parent_path() / product;
-    if (!std::filesystem::exists(bench.product, error)) bench.product = shipped_path(product);
     bench.projector = read_projector(json["projector"]);
     bench.camera = read_camera(json["camera"]);
     bench.mockup = read_mockup(json["mockup"]);
@@ -361,6 +363,9 @@ BenchDescription read_bench_file(const std::filesystem::path& file_or_name) {
     read_integer(json, "samples_a_side", 1, 16, bench.samples_a_side);
     if (json.has("seed"))
         bench.seed = static_cast<std::uint64_t>(json["seed"].integer(0, 2'000'000'000));
+    bench.product = file.parent_path() / product;
+    std::error_code error;
+    if (!std::filesystem::exists(bench.product, error)) bench.product = shipped_path(product);
     return bench;
 }
 

@@ -34,6 +34,8 @@ struct SpectralPaint {
 /// A paint file (docs/bench.md), or the name of a shipped one ("silver-metallic"). Throws
 /// FileError.
 SpectralPaint read_spectral_paint(const std::filesystem::path& file_or_name);
+/// The same of a file's text; its spectra lie beside the file.
+SpectralPaint parse_spectral_paint(const std::string& text, const std::filesystem::path& file);
 
 /// The names of the shipped paints, sorted.
 std::vector<std::string> spectral_paint_names();

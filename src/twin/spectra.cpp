@@ -66,7 +66,10 @@ void balance(std::array<Spectrum, 3>& primaries, double white_x, double white_y)
 }  // namespace
 
 SpectrumTable read_spectra_csv(const std::filesystem::path& file) {
-    const std::string text = read_text_file(file, 4u << 20u);
+    return parse_spectra_csv(read_text_file(file, 4u << 20u), file);
+}
+
+SpectrumTable parse_spectra_csv(const std::string& text, const std::filesystem::path& file) {
     std::string_view rest = text;
     SpectrumTable table;
     std::vector<double> wavelengths;

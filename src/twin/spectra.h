@@ -20,6 +20,8 @@ struct SpectrumTable {
 /// in nanometres, rising, from 400 nm or below to 700 nm or above; values finite and not negative.
 /// Lines that start with # are comments. Throws FileError.
 SpectrumTable read_spectra_csv(const std::filesystem::path& file);
+/// The same of its text.
+SpectrumTable parse_spectra_csv(const std::string& text, const std::filesystem::path& file);
 
 /// The light of a projector's channels at full drive, relative power.
 struct ProjectorSpectra {

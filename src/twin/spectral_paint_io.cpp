@@ -34,7 +34,11 @@ SpectralPaint read_spectral_paint(const std::filesystem::path& file_or_name) {
         file =
             shipped_path(std::filesystem::path("calibration/paints") / (file.string() + ".json"));
     }
-    const Json content = read_json_file(file);
+    return parse_spectral_paint(read_text_file(file), file);
+}
+
+SpectralPaint parse_spectral_paint(const std::string& text, const std::filesystem::path& file) {
+    const Json content = parse_json(text, file);
     const JsonReader json(file, content);
     json.require_format_version(kNewestVersion);
     json.allow_only({"format_version",
@@ -53,13 +57,13 @@ SpectralPaint read_spectral_paint(const std::filesystem::path& file_or_name) {
     paint.name = json["name"].text();
     paint.family = json["family"].text();
     const auto table_file = file.parent_path() / json["spectra"].text();
-    const SpectrumTable table = read_spectra_csv(table_file);
-    paint.diffuse = column(table_file, table, "diffuse");
-    paint.f0 = column(table_file, table, "f0");
     paint.alpha = json["alpha"].number_between(1e-3, 1.0);
     paint.coat_alpha = json["coat_alpha"].number_between(1e-3, 1.0);
     paint.coat_f0 = json["coat_f0"].number_between(0.0, 0.5);
     paint.provenance = json["provenance"].text();
+    const SpectrumTable table = read_spectra_csv(table_file);
+    paint.diffuse = column(table_file, table, "diffuse");
+    paint.f0 = column(table_file, table, "f0");
     return paint;
 }
 

@@ -248,6 +248,10 @@ TEST(ImageIo, RefusesADamagedPng) {
     png[png.size() / 2] = static_cast<char>(png[png.size() / 2] ^ 0x10);
     EXPECT_TRUE(fails_with([&] { read_image(folder.write("b.png", png)); },
                            {"b.png", "damaged at byte", "(IDAT)"}));
+    // A damaged name is shown as one line all the same.
+    png.replace(png.find("IDAT"), 4, "\n\xff\x1b!");
+    EXPECT_TRUE(fails_with([&] { read_image(folder.write("c.png", png)); },
+                           {"c.png", "damaged at byte", R"((???!))"}));
 }
 
 TEST(ImageIo, RefusesSizesBeforeAllocating) {

@@ -1,0 +1,16 @@
+#include "capture/manifest_io.h"
+#include "fuzz/fuzz.h"
+
+// The same text as a manifest of photographs, as one of patterns, and as a camera's response.
+LIVERY_FUZZ(text) {
+    using namespace livery;
+    const auto parse = [](const auto& one) {
+        try {
+            one();
+        } catch (const FileError&) {
+        }
+    };
+    parse([&] { parse_captures_manifest(text, "/no folder/manifest.json"); });
+    parse([&] { parse_patterns_manifest(text, "/no folder/manifest.json"); });
+    parse_response(text, "response.json");
+}

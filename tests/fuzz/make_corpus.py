@@ -1,0 +1,206 @@
+#!/usr/bin/env python3
+"""Writes what the fuzzers begin with, from the files that ship and small ones made here:
+tests/fuzz/corpus/TARGET/NAME. Files that a fuzzer found are kept beside them as found-*."""
+import base64
+import json
+import pathlib
+import struct
+import zlib
+
+FUZZ = pathlib.Path(__file__).resolve().parent
+ROOT = FUZZ.parent.parent
+CORPUS = FUZZ / "corpus"
+
+
+def put(target, name, content):
+    if isinstance(content, (dict, list)):
+        content = json.dumps(content, separators=(",", ":"))
+    if isinstance(content, str):
+        content = content.encode()
+    folder = CORPUS / target
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / name).write_bytes(content)
+
+
+def shipped(target, *files):
+    for file in files:
+        path = ROOT / file
+        put(target, path.name, json.loads(path.read_text()))
+
+
+# Meshes.
+POINTS = [(0, 0, 0), (90, 0, 0), (0, 90, 0), (0, 0, 90)]
+FACES = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+HEADER = (
+    "ply\nformat {} 1.0\ncomment made by hand\nelement vertex 4\n"
+    "property float x\nproperty float y\nproperty float z\n{}"
+    "element face 4\nproperty list uchar int vertex_indices\nend_header\n"
+)
+NORMALS = "property float nx\nproperty float ny\nproperty float nz\nproperty uchar red\n"
+
+
+def text_ply(normals):
+    text = HEADER.format("ascii", NORMALS if normals else "")
+    for p in POINTS:
+        text += "%g %g %g" % p + (" 0 0.6 0.8 255" if normals else "") + "\n"
+    return text + "".join("3 %d %d %d\n" % f for f in FACES)
+
+
+def binary_ply(order):
+    name = "binary_little_endian" if order == "<" else "binary_big_endian"
+    data = HEADER.format(name, NORMALS).encode()
+    for p in POINTS:
+        data += struct.pack(order + "6fB", *p, 0, 0.6, 0.8, 255)
+    return data + b"".join(struct.pack(order + "B3i", 3, *f) for f in FACES)
+
+
+put("ply", "text.ply", text_ply(False))
+put("ply", "normals.ply", text_ply(True))
+put("ply", "little.ply", binary_ply("<"))
+put("ply", "big.ply", binary_ply(">"))
+put("ply", "cloud.ply", text_ply(False).split("element face")[0] + "end_header\n0 0 0\n" * 1)
+put("ply", "strips.ply",
+    "ply\nformat ascii 1.0\nelement vertex 5\nproperty double x\nproperty int16 y\nproperty char z\n"
+    "property float s\nproperty float t\nelement edge 1\nproperty list uchar int ends\n"
+    "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+    "0 0 0 0 0\n90 0 0 1 0\n0 90 0 0 1\n90 90 0 1 1\n0 99 9 1 0\n2 0 1\n8 0 1 2 3 -1 2 3 4\n")
+put("ply", "polygon.ply",
+    "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar uint vertex_index\n"
+    "element vertex 6\nproperty int x\nproperty int y\nproperty int z\nend_header\n"
+    "6 0 1 2 3 4 5\n0 0 0\n30 0 0\n30 10 0\n10 10 0\n10 30 0\n0 30 0\n")
+put("obj", "parts.obj",
+    "# a comment\nmtllib gone.mtl\no door\nv 0 0 0\nv 90 0 0\nv 90 90 0\nv 0 90 0\nvn 0 0 1\n"
+    "vt 0 0\nusemtl red\nf 1/1/1 2/1/1 3/1/1\nusemtl blue\nf 1//1 3//1 4//1\no wheel\ns 1\n"
+    "v 0 0 9\nf -1 -2 -3\nl 1 2\n")
+put("obj", "polygon.obj",
+    "g one\nv 0 0 0 1 0 0\nv 30 0 0\nv 30 10 0\nv 10 10 0\nv 10 30 0\nv 0 30 0\nf 1 2 3 \\\n4 5 6\n")
+put("obj", "closed.obj", "".join("v %g %g %g\n" % p for p in POINTS) +
+    "".join("f %d %d %d\n" % tuple(c + 1 for c in f) for f in FACES))
+put("obj_materials", "two.mtl",
+    "newmtl red paint\nKa 0 0 0\nKd 0.8 0.1 0.05\nmap_Kd red.png\nNs 10\n# end\nnewmtl b\nKd 1 1 1\n")
+
+
+def gltf(indexed):
+    binary = b"".join(struct.pack("<3f", *(c / 100 for c in p)) for p in POINTS)
+    indices = b"".join(struct.pack("<3H", *f) for f in FACES)
+    primitive = {"attributes": {"POSITION": 0}, "material": 0}
+    accessors = [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"}]
+    views = [{"buffer": 0, "byteOffset": 0, "byteLength": len(binary)}]
+    if indexed:
+        primitive["indices"] = 1
+        accessors.append({"bufferView": 1, "componentType": 5123, "count": 12, "type": "SCALAR"})
+        views.append({"buffer": 0, "byteOffset": len(binary), "byteLength": len(indices)})
+        binary += indices
+    else:
+        primitive["mode"] = 5
+        accessors[0]["sparse"] = {
+            "count": 1, "indices": {"bufferView": 0, "componentType": 5121},
+            "values": {"bufferView": 0}}
+    return {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+            "nodes": [{"name": "a", "mesh": 0, "scale": [1, 1, 1], "rotation": [0, 0, 0, 1],
+                       "translation": [0, 1, 0], "children": [1]}, {"mesh": 0}],
+            "meshes": [{"primitives": [primitive]}],
+            "materials": [{"name": "m", "pbrMetallicRoughness": {"baseColorFactor": [1, 0, 0, 1]}}],
+            "accessors": accessors, "bufferViews": views,
+            "buffers": [{"byteLength": len(binary)}]}, binary
+
+
+def glb(indexed):
+    content, binary = gltf(indexed)
+    text = json.dumps(content, separators=(",", ":")).encode()
+    text += b" " * (-len(text) % 4)
+    binary += b"\0" * (-len(binary) % 4)
+    body = struct.pack("<I4s", len(text), b"JSON") + text
+    body += struct.pack("<I4s", len(binary), b"BIN\0") + binary
+    return b"glTF" + struct.pack("<II", 2, 12 + len(body)) + body
+
+
+put("gltf", "indexed.glb", glb(True))
+put("gltf", "strip.glb", glb(False))
+
+TEXT, BINARY = gltf(True)
+TEXT["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64.b64encode(BINARY).decode()
+put("gltf", "inside.gltf", TEXT)
+
+
+
+def chunk(name, content):
+    return struct.pack(">I", len(content)) + name + content + struct.pack(
+        ">I", zlib.crc32(name + content))
+
+
+put("png", "dot.png", b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">2I5B", 1, 1, 8, 0, 0, 0, 0)) +
+    chunk(b"IDAT", zlib.compress(b"\0\0")) + chunk(b"IEND", b""))
+
+# What ships, as it ships.
+shipped("material", "materials/solid-red.json", "materials/blue-metallic.json",
+        "materials/chrome-trim.json", "materials/dark-glass.json")
+shipped("look", "assets/looks/blue-metallic.json")
+shipped("bench", "calibration/default.json", "calibration/hard.json", "calibration/sphere.json")
+shipped("spectral_paint", "calibration/paints/solid-red.json")
+put("product", "all.json",
+    {"format_version": 1, "name": "Car", "mesh": "car.glb", "unit": "cm", "product_scale": 25,
+     "pose": {"rotation": [1, 0, 0, 0, 1, 0, 0, 0, 1], "translation_mm": [0, 0, 0]},
+     "parts": ["body", "glass"]})
+CAMERA = {"format_version": 1, "width": 1280, "height": 800,
+          "matrix": [2000, 0, 639.5, 0, 2000, 1100, 0, 0, 1], "distortion": [-0.05, 0.1, 0, 0, 0],
+          "rotation": [1, 0, 0, 0, -1, 0, 0, 0, -1], "translation_mm": [0, 0, 1500]}
+put("camera", "projector.json", CAMERA)
+put("camera", "bare.json", {k: CAMERA[k] for k in
+                            ("width", "height", "matrix", "rotation", "translation_mm")})
+put("camera_to_xyz", "matrix.json", {"matrix": [0.4, 0.3, 0.2, 0.2, 0.7, 0.1, 0, 0.1, 0.9]})
+put("camera_to_xyz", "primaries.json",
+    {"format_version": 1, "measured_at_px": [10, 20], "primaries_xyz":
+     {"red": [4, 2, 0], "green": [3, 7, 1], "blue": [2, 1, 9], "black": [0.1, 0.1, 0.1]}})
+put("captures", "photographs.json",
+    {"projector": [1280, 800], "exposure_s": 0.1, "captures": [
+        {"file": "000.exr", "pattern": "000.png", "role": "gray-column-0", "exposure_s": 0.1},
+        {"file": "044.exr", "role": "dark-gray", "drive": [80, 80, 80], "transfer": "srgb",
+         "black_level": 12, "saturates_at": 4000}]})
+put("captures", "patterns.json",
+    {"format_version": 1, "projector": [64, 32], "captures": [
+        {"file": "0.png", "pattern": "0.png", "role": "white", "drive": 255, "exposure_s": None}]})
+put("captures", "response.json",
+    {"format_version": 1, "linear_from_file": [0, 0.02, 0.07, 0.16, 0.29, 0.46, 0.69, 1]})
+CURVE = {"drive_from_n": [0, 100, 255], "largest_violation": 0}
+put("calibration", "all.json",
+    {"format_version": 1, "kind": "colour calibration", "id": "0" * 32, "created": "2026-01-01",
+     "mode": "robust", "made_with": "x", "width": 64, "height": 32, "dark_drive": 80,
+     "bright_drive": 200, "response": {"red": CURVE, "green": CURVE, "blue": CURVE},
+     "table": {"grid": 0, "n_from_drive": []}, "xyz_from_camera": [1, 0, 0, 0, 1, 0, 0, 0, 1],
+     "xyz_origin": "matrix", "camera_ambient": [0, 0, 0], "residuals":
+     {"additivity_error": 0, "condition_p99": 5, "valid_fraction": 1, "ambient_fraction": 0,
+      "mixing_spread": 0}, "warnings": ["a"]})
+put("pass_costs", "two.json",
+    {"format_version": 1, "renderer": "r", "passes": [
+        {"pass": "shade:ggx", "quality": "high", "ms": 1.5, "work_items": 1000},
+        {"pass": "dither", "quality": "draft", "ms": 2, "work_items": 0, "error": 0.1}]})
+put("spectra", "three.csv",
+    "# a comment\nnm,diffuse,f0\n" + "".join("%d,0.%d,0.04\n" % (nm, nm) for nm in (380, 500, 730)))
+PAINT = json.loads((ROOT / "materials/solid-red.json").read_text())
+del PAINT["format_version"]
+LIGHT = {"type": "directional", "direction": [0, 1, 0], "radiance": [1, 1, 1], "angle_rad": 0.1}
+put("document", "one.json",
+    {"format_version": 1, "product": "a.obj", "product_unit": "cm", "looks": [
+        {"id": 1, "name": "a", "parts": {"body": "solid red"}, "lights": [LIGHT],
+         "environment": {"file": "a.hdr", "rotation_rad": 1, "scale": 2}}],
+     "next_look_id": 2, "paints": [PAINT], "eye_mm": [1, 2, 3], "exposure_ev": -0.5,
+     "quality": "high", "bench": "default", "calibration": "", "design_white_percentile": 20})
+for name, fields in {
+        "set-paint": {"look": 1, "part": "body", "paint": "solid red"},
+        "edit-paint": {"look": 1, "part": "body", "material": PAINT},
+        "add-look": {"look": {"name": "b", "parts": {"*": "x"}, "lights": []}, "at": 0},
+        "duplicate-look": {"look": 1}, "rename-look": {"look": 1, "name": "c"},
+        "delete-look": {"look": 1}, "move-look": {"look": 1, "to": 0},
+        "set-lights": {"look": 1, "lights": [LIGHT]},
+        "set-environment": {"look": 1, "environment": {"file": "a.hdr", "rotation_rad": 1}},
+        "share-lighting": {"look": 1}, "set-eye": {"eye_mm": [1, 2, 3]},
+        "set-exposure": {"ev": 1}, "set-quality": {"quality": "draft"},
+        "set-calibration": {"folder": "c"}, "set-bench": {"bench": "hard"},
+        "set-design-white": {"percentile": 30}}.items():
+    put("commands", name + ".json", {name: fields})
+for name, text in {"size": "1280x800", "eye": "10,-20.5,3e2", "unit": "cm"}.items():
+    put("command_line", name, text)
+put("names", "plain", " Ada\u00a0 Lovelace ")
+put("names", "greek", "ΣΊΣΥΦΟΣ Straße")
+put("window_place", "place", "1280x800+10+-20 maximised")

@@ -1,0 +1,34 @@
+#include <gtest/gtest.h>
+
+#include "session/predictions.h"
+#include "support/file_error.h"
+#include "support/temporary_folder.h"
+
+namespace livery {
+namespace {
+
+TEST(PassCosts, ComeBackAsTheyWereWritten) {
+    const TemporaryFolder folder;
+    const auto file = folder / "bench.json";
+    EXPECT_EQ(read_pass_costs(file), std::nullopt);
+    write_pass_costs(file, "a renderer", {{"dither", Quality::high, 1.5, 1000.0, 0.25}});
+    const auto costs = read_pass_costs(file);
+    ASSERT_TRUE(costs && costs->size() == 1);
+    EXPECT_EQ(costs->at(0).pass, "dither");
+    EXPECT_EQ(costs->at(0).quality, Quality::high);
+    EXPECT_EQ(costs->at(0).ms, 1.5);
+    EXPECT_EQ(costs->at(0).error, 0.25);
+}
+
+TEST(PassCosts, AQualityThatIsNoneIsNamed) {
+    EXPECT_TRUE(fails_with(
+        [] {
+            parse_pass_costs(R"({"format_version": 1, "passes": [
+                                 {"pass": "a", "quality": "best", "ms": 1, "work_items": 1}]})",
+                             "bench.json");
+        },
+        {"bench.json: passes[0].quality: found \"best\", expected draft, normal, high or"}));
+}
+
+}  // namespace
+}  // namespace livery
