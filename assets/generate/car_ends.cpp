@@ -181,15 +181,15 @@ void style_ends(std::vector<PanelStyle>& styles) {
                           double wall_mm) {
         styles[panel] = {part, 0.0, 0.12, 0.4, bowl(outline, view, depth_mm, wall_mm)};
     };
-    constexpr double kLampDepth_mm = 1.5, kIntakeDepth_mm = 2.2, kDiffuserDepth_mm = 1.2;
+    constexpr double kLampDepth_mm = 1.1, kIntakeDepth_mm = 2.2, kDiffuserDepth_mm = 1.2;
     sunk(kHeadBowl, kTrim, head_bowl(), nose_view, kLampDepth_mm, kLampWall_mm);
     sunk(kTailBowl, kTrim, tail_bowl(), tail_view, kLampDepth_mm, kLampWall_mm);
     sunk(kIntake, kTrim, intake(), nose_view, kIntakeDepth_mm, kIntakeWall_mm);
     sunk(kAirCurtain, kTrim, air_curtain(), nose_view, kIntakeDepth_mm, kIntakeWall_mm);
     sunk(kPlateRecess, kBody, plate(), tail_view, 0.7, kIntakeWall_mm);
     sunk(kDiffuser, kTrim, diffuser(), tail_view, kDiffuserDepth_mm, kIntakeWall_mm);
-    styles[kHeadLamp] = {kLights, 0.7, 0.0, kLampDepth_mm - 0.9};
-    styles[kTailLamp] = {kLights, 0.6, 0.0, kLampDepth_mm - 0.8};
+    styles[kHeadLamp] = {kLights, 0.45, 0.0, 0.4};
+    styles[kTailLamp] = {kLights, 0.4, 0.0, 0.4};
     styles[kIntakeBlade] = {kTrim, 0.5, 0.0, kIntakeDepth_mm - 0.7};
     styles[kDiffuserFin] = {kTrim, 0.0, 0.0, kDiffuserDepth_mm - 0.2};
 }

@@ -273,6 +273,30 @@ void PanelBuilder::keep_clear() {
         }
         thickness_[v] = std::min(1.0, kOfRadius * radius / band_bottom(v));
     }
+    // In bowls and on what stands in them it changes slowly, or their floors would ripple.
+    constexpr double kChangePerMm = 0.1, kDeep_mm = 0.3;
+    std::vector<bool> in_bowl(styles_.size(), false);
+    for (const auto& border : panels_.borders) {
+        if (border.neighbour == kNoPanel) continue;
+        const int panel = panels_.piece[border.from];
+        if (style_of(panel).relief_mm) in_bowl[static_cast<std::size_t>(panel)] = true;
+        if (style_of(border.neighbour).relief_mm && style_of(panel).inset_mm > kDeep_mm) {
+            in_bowl[static_cast<std::size_t>(panel)] = true;
+        }
+    }
+    for (bool has_changed = true; has_changed;) {
+        has_changed = false;
+        for (const auto& t : sheet_.triangles) {
+            if (t.panel == kNoPanel || !in_bowl[static_cast<std::size_t>(t.panel)]) continue;
+            for (int k = 0; k < 6; ++k) {
+                const auto a = t.corners[k % 3], b = t.corners[(k + 1 + k / 3) % 3];
+                const double most = thickness_[b] + kChangePerMm * length_between(sheet_, a, b);
+                if (thickness_[a] <= most + 1e-9) continue;
+                thickness_[a] = most;
+                has_changed = true;
+            }
+        }
+    }
 }
 
 /// Looks for triangles that lean over or shrink to nothing on their way down, and makes them less

@@ -289,7 +289,7 @@ TEST(CarShape, NormalsAgreeWherePatchesMeet) {
         }
     }
     EXPECT_GT(shared, 100'000u);
-    EXPECT_LT(static_cast<double>(kinks), 0.004 * static_cast<double>(shared));
+    EXPECT_LT(static_cast<double>(kinks), 0.008 * static_cast<double>(shared));
 }
 
 /// How often a curve's turning changes its sense by more than `tolerance_deg`: reversals of the
