@@ -31,7 +31,7 @@ Command desktop_command() {
          {}},
         {"--product",
          "NAME",
-         "what a new session shows: a file, car or sphere (default car)",
+         "what a new session shows: a file, car, player or sphere (default car)",
          &arguments->product,
          false,
          {}},

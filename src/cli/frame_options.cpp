@@ -20,7 +20,7 @@ std::vector<Option> frame_options(FrameArguments& arguments) {
     return {
         {"--product",
          "FILE",
-         "a mesh or product file, or car, sphere (default car)",
+         "a mesh or product file, or car, player, sphere (default car)",
          &arguments.product,
          false,
          {}},
@@ -112,9 +112,8 @@ ResolvedFrame resolve_frame(const FrameArguments& arguments, const CommonOptions
     const auto product = find_product(arguments.product, parse_unit(arguments.unit));
     frame.notes = product->notes;
     glm::dvec3 eye_mm;
-    if (arguments.product == "car" || arguments.product == "sphere") {
-        const BenchDescription bench =
-            read_bench_file(arguments.product == "sphere" ? "sphere" : "default");
+    if (const auto name = bench_of_shipped_product(arguments.product)) {
+        const BenchDescription bench = read_bench_file(*name);
         if (!view) view = bench.projector.view;
         eye_mm = bench.eye_mm;
     } else {

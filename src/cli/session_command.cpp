@@ -136,17 +136,18 @@ Command session_command(const std::string& name,
 
 Command new_command() {
     const auto arguments = std::make_shared<Arguments>();
-    Command command = session_command("new",
-                                      "begin a session with the shipped looks",
-                                      "show.livery --product car",
-                                      arguments,
-                                      {{"--product",
-                                        "FILE",
-                                        "a mesh or product file, or car, sphere (default car)",
-                                        &arguments->product,
-                                        false,
-                                        {}},
-                                       unit_option(arguments->unit)});
+    Command command =
+        session_command("new",
+                        "begin a session with the shipped looks",
+                        "show.livery --product car",
+                        arguments,
+                        {{"--product",
+                          "FILE",
+                          "a mesh or product file, or car, player, sphere (default car)",
+                          &arguments->product,
+                          false,
+                          {}},
+                         unit_option(arguments->unit)});
     command.run = [arguments](const CommonOptions&, const Progress&) {
         std::error_code error;
         if (std::filesystem::exists(arguments->file, error)) {

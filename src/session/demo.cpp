@@ -30,7 +30,7 @@ void judge_looks(DemoResult& result,
     std::shared_ptr<const Environment> environment;
     for (const std::string& name : kDemoLooks) {
         progress.update(done / static_cast<double>(kDemoLooks.size()), "judging " + name);
-        const Look look = find_look(name);
+        const Look look = find_look_for(name, part_names(calibrated.product->mesh));
         const Scene scene = timed(times, "load the looks", [&] {
             return make_scene(calibrated.product, look, description.eye_mm, environment);
         });
@@ -67,8 +67,8 @@ DemoResult run_demo(const DemoOptions& options, const Progress& progress) {
     StageTimes times;
 
     const bool sphere = options.product == "sphere";
-    BenchDescription description =
-        read_bench_file(sphere && options.bench == "default" ? "sphere" : options.bench);
+    BenchDescription description = read_bench_file(
+        options.bench == "default" ? *bench_of_shipped_product(options.product) : options.bench);
     View& projector = description.projector.view;
     if (options.size_px.x > 0) projector = resized(projector, options.size_px.x, options.size_px.y);
     description.seed = options.seed;

@@ -20,7 +20,7 @@ namespace livery {
 struct DemoOptions {
     std::filesystem::path out;  ///< created
     std::string bench = "default";
-    std::string product = "car";  ///< or "sphere": the paper's Fig. 10
+    std::string product = "car";  ///< or "player", or "sphere": the paper's Fig. 10
     glm::ivec2 size_px{0};        ///< projector resolution; 0: as the bench file says
     GlDevice gl_device = GlDevice::automatic;
     std::uint64_t seed = 1;

@@ -19,8 +19,8 @@ Document new_document(const std::string& product, std::optional<LengthUnit> unit
     Document document;
     document.product_unit = unit;
     document.product = product_reference(product);
-    const bool shipped = product == "car" || product == "sphere";
-    const auto own = shipped ? nullptr : find_product(product, unit);
+    const auto bench = bench_of_shipped_product(product);
+    const auto own = bench ? nullptr : find_product(product, unit);
     const std::vector<std::string> parts = own ? part_names(own->mesh) : part_names(product);
     const PaintLibrary library = read_paint_library();
     for (const std::string& name : shipped_looks()) {
@@ -36,7 +36,7 @@ Document new_document(const std::string& product, std::optional<LengthUnit> unit
         document.looks.push_back({document.next_look_id++, std::move(look)});
     }
     if (!own) {
-        document.bench = product == "sphere" ? "sphere" : "default";
+        document.bench = *bench;
         document.eye_mm = read_bench_file(document.bench).eye_mm;
     } else {
         document.eye_mm = default_eye_mm(*own);

@@ -63,15 +63,25 @@ Look find_look_for(const std::string& name_or_file, const std::vector<std::strin
     return look;
 }
 
+std::optional<std::string> bench_of_shipped_product(const std::string& name) {
+    static const std::map<std::string, std::string> benches{
+        {"car", "default"}, {"player", "player"}, {"sphere", "sphere"}};
+    const auto bench = benches.find(name);
+    if (bench == benches.end()) return std::nullopt;
+    return bench->second;
+}
+
 std::shared_ptr<const Product> find_product(const std::string& name_or_file,
                                             std::optional<LengthUnit> unit) {
     if (is_file(name_or_file) || looks_like_path(name_or_file)) {
         return std::make_shared<const Product>(load_product(name_or_file, unit));
     }
     const std::string stem = file_stem_of(name_or_file);
-    if (stem != "car" && stem != "sphere") {
-        throw FileError(
-            name_or_file, "product", "no such file or shipped product", "a file, car or sphere");
+    if (!bench_of_shipped_product(stem)) {
+        throw FileError(name_or_file,
+                        "product",
+                        "no such file or shipped product",
+                        "a file, car, player or sphere");
     }
     if (unit) throw FileError(name_or_file, "unit", to_string(*unit), "none for a shipped product");
     return std::make_shared<const Product>(load_product(shipped_path("assets/" + stem + ".json")));

@@ -12,7 +12,11 @@
 
 namespace livery {
 
-/// A file, or the name of a shipped product ("car", "sphere"). The unit is what a file's numbers
+/// The simulated bench that a shipped product stands on ("car", "player", "sphere"); none for
+/// another name.
+std::optional<std::string> bench_of_shipped_product(const std::string& name);
+
+/// A file, or the name of a shipped product. The unit is what a file's numbers
 /// are in, where that is known better than the file does. Throws FileError with the names there
 /// are.
 std::shared_ptr<const Product> find_product(const std::string& name_or_file,

@@ -73,10 +73,13 @@ void expect_refused(const Read& read,
 }
 
 TEST_F(Files, EveryShippedBenchReadsAndStandsAsDocumented) {
-    for (const char* name : {"default", "paper-2.75m", "white-segment", "led", "hard", "sphere"}) {
+    for (const char* name :
+         {"default", "paper-2.75m", "white-segment", "led", "hard", "player", "sphere"}) {
         const BenchDescription bench = read_bench_file(name);
         EXPECT_EQ(bench.name, name);
-        const glm::dvec3 middle(0.0, name == std::string("sphere") ? 0.0 : 26.0, 0.0);
+        const std::string product(name);
+        const glm::dvec3 middle(
+            0.0, product == "sphere" ? 0.0 : (product == "player" ? 48.0 : 26.0), 0.0);
         const auto direction = [&](const glm::dvec3& from) {
             return glm::normalize(from - middle);
         };
@@ -136,10 +139,11 @@ TEST_F(Files, BrokenBenchFilesAreRefusedByName) {
             expect_refused([&] { read_bench_file(file); }, field, found, expected);
         };
     expect_refused([&] { read_bench_file(folder_ / "none.json"); }, "", "no such file", "a file");
-    expect_refused([&] { read_bench_file("no-such-bench"); },
-                   "bench",
-                   "no such file or shipped bench",
-                   "a bench file or default, hard, led, paper-2.75m, sphere, white-segment");
+    expect_refused(
+        [&] { read_bench_file("no-such-bench"); },
+        "bench",
+        "no such file or shipped bench",
+        "a bench file or default, hard, led, paper-2.75m, player, sphere, white-segment");
     refuses("", "", "an empty file", "a JSON object");
     refuses(bench_text().substr(0, 200), "line 3, column 31", "not JSON", "complete");
     refuses(with("\"bench\"", "\"captures\""), "kind", "'captures'", "'bench'");
