@@ -15,6 +15,8 @@ namespace livery {
 namespace {
 
 constexpr int kNewestVersion = 1;
+/// A thousand kilometres.
+constexpr double kFarthestMm = 1e9;
 constexpr double kDegrees = std::numbers::pi / 180.0;
 
 /// A name in a bench file: beside it, or among the shipped benches' files.
@@ -94,13 +96,21 @@ View read_view(const JsonReader& json) {
     }
     const glm::dvec3 from = json["from_mm"].vec3(), at = json["at_mm"].vec3();
     const glm::dvec3 line = at - from;
+    if (!(glm::length(line) < kFarthestMm)) {
+        json["from_mm"].fail(json["from_mm"].found(), "a place within 1e9 mm of at_mm");
+    }
     if (std::hypot(line.x, line.z) < 1e-6 * std::max(1.0, glm::length(line))) {
         json["from_mm"].fail("a place straight above, below or at at_mm", "a place beside it");
     }
     glm::dvec3 toward(0.0, 0.0, 1.0);
     if (json.has("at_px")) {
         const auto pixel = json["at_px"].numbers(2);
-        toward = ray_through(view, glm::dvec2(pixel[0], pixel[1]) + 0.5).direction;
+        try {
+            toward = ray_through(view, glm::dvec2(pixel[0], pixel[1]) + 0.5).direction;
+        } catch (const std::invalid_argument&) {
+            json["at_px"].fail(json["at_px"].found(),
+                               "a pixel that light reaches through this lens");
+        }
     }
     pose.rotation = aimed_rotation(from, at, toward);
     pose.translation = -(pose.rotation * from);

@@ -163,6 +163,16 @@ TEST_F(Files, BrokenBenchFilesAreRefusedByName) {
             "two poses",
             "either rotation");
     refuses(with("[0, 10, 500]", "[0, 10, 0]"), "projector.from_mm", "straight above", "beside");
+    refuses(with("\"at_mm\": [0, 0, 0]",
+                 "\"at_mm\": [0, 0, 0], \"at_px\": [4000, 405], "
+                 "\"distortion\": [-0.045, 0, 20, 0, 0]"),
+            "projector.at_px",
+            "[4000",
+            "a pixel that light reaches through this lens");
+    refuses(with("\"at_mm\": [0, 0, 0]", "\"at_mm\": [1e308, 0, -1e308]"),
+            "projector.from_mm",
+            "[0",
+            "a place within 1e9 mm of at_mm");
     refuses(with("[1, 0, 0, 0, -1, 0, 0, 0, -1]", "[1, 0, 0, 0, -1, 0, 0, 0, 1]"),
             "camera.rotation",
             "no rotation",
