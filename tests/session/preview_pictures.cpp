@@ -57,17 +57,18 @@ void place(Image8& sheet, const Image8& top, int left, int above) {
     }
 }
 
-class CarPainter {
+class ProductPainter {
   public:
-    CarPainter()
-        : product_(find_product("car")),
+    explicit ProductPainter(const std::string& name)
+        : product_(find_product(name)),
           preview_(product_),
           ground_(ground_shadow(*product_, Tracer(product_->mesh))) {
         encoder_.set_ground(&ground_);
     }
 
     Scene scene(const std::string& look, const View& view) const {
-        return make_scene(product_, find_look(look), centre_in_world(view));
+        return make_scene(
+            product_, find_look_for(look, part_names(product_->mesh)), centre_in_world(view));
     }
     View view(double azimuth_rad, int width, int height) const {
         Orbit orbit;
@@ -136,7 +137,7 @@ class CarPainter {
 void draw_pictures(const std::filesystem::path& folder) {
     const HeadlessContext context(GlDevice::automatic);
     {
-        CarPainter car;
+        ProductPainter car("car");
         constexpr int kWidth = 640, kHeight = 340;
         Image8 sheet(2 * kWidth, kHeight, 3, 110);
         place(sheet, car.picture("solid-red", 0.75, kWidth, kHeight), 0, 0);
@@ -144,6 +145,15 @@ void draw_pictures(const std::filesystem::path& folder) {
         write_png(folder / "car.png", sheet);
         std::printf("%s\n", context.renderer().c_str());
         car.print_costs();
+    }
+    {
+        ProductPainter player("player");
+        constexpr int kWidth = 320, kHeight = 420;
+        Image8 sheet(3 * kWidth, kHeight, 3, 110);
+        place(sheet, player.picture("solid-ivory", 0.75, kWidth, kHeight), 0, 0);
+        place(sheet, player.picture("blue-metallic", 1.15, kWidth, kHeight), kWidth, 0);
+        place(sheet, player.picture("solid-red", 0.45, kWidth, kHeight), 2 * kWidth, 0);
+        write_png(folder / "player.png", sheet);
     }
     const std::vector<Material> paints = load_library(shipped_path("materials"));
     SwatchPainter painter(make_swatch_studio());
