@@ -321,7 +321,7 @@ TEST(CommandText, SaysWhichFieldIsWrong) {
     EXPECT_TRUE(fails_with(read("[]"), {"--command: found array, expected a JSON object"}));
     EXPECT_TRUE(fails_with(read("{}"), {"found 0 members, expected one: the command's name"}));
     EXPECT_TRUE(fails_with(read(R"({"set-sail": {}})"),
-                           {"found the command \"set-sail\"", "set-paint, edit-paint"}));
+                           {"found the command \"set-sail\"", "set-paint, paint-product"}));
     EXPECT_TRUE(fails_with(read(R"({"set-eye": 3})"), {"set-eye: found 3, expected an object"}));
     EXPECT_TRUE(fails_with(read(R"({"set-paint": {"look": 1, "part": "body"}})"),
                            {"set-paint.paint: found nothing"}));
