@@ -5,6 +5,9 @@
 #include <mutex>
 #include <thread>
 
+#if defined(__SANITIZE_THREAD__)
+#include <sanitizer/tsan_interface.h>
+#endif
 #include <sys/resource.h>
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
@@ -33,6 +36,16 @@ void lower_helper() {
     ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 10);
 }
 
+// What TBB promises and the thread sanitizer cannot see, because TBB is not instrumented: all that
+// was done before a loop is seen by its bodies, and what they did is seen after it.
+#if defined(__SANITIZE_THREAD__)
+void is_done_before(char& order) { __tsan_release(&order); }
+void comes_after(char& order) { __tsan_acquire(&order); }
+#else
+void is_done_before(char&) {}
+void comes_after(char&) {}
+#endif
+
 }  // namespace
 
 void set_thread_count(int threads) {
@@ -55,11 +68,16 @@ void parallel_for(std::size_t count,
                   std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body) {
     const auto caller = std::this_thread::get_id();
+    char order = 0;
+    is_done_before(order);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain == 0 ? 1 : grain),
                       [&](const auto& range) {
+                          comes_after(order);
                           if (std::this_thread::get_id() != caller) lower_helper();
                           body(range.begin(), range.end());
+                          is_done_before(order);
                       });
+    comes_after(order);
 }
 
 }  // namespace livery
