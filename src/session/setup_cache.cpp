@@ -154,8 +154,7 @@ std::string setup_cache_name(const std::filesystem::path& calibration,
                              double design_white_percentile) {
     std::vector<std::filesystem::path> files;
     std::error_code error;
-    for (std::filesystem::directory_iterator entry(calibration, error), end;
-         !error && entry != end;
+    for (std::filesystem::directory_iterator entry(calibration, error), end; !error && entry != end;
          entry.increment(error)) {
         if (entry->is_regular_file()) files.push_back(entry->path());
     }
