@@ -17,6 +17,7 @@
 #include "studio/quality_costs.h"
 #include "studio/studio.h"
 #include "studio/theme.h"
+#include "studio/ui_map.h"
 #include "studio/widgets.h"
 #include "twin/description.h"
 
@@ -50,13 +51,21 @@ const glm::dvec3& product_centre(Studio& studio) {
     return state.centre_mm;
 }
 
+/// Along the panel's upper edge and over it: what the pointer is on stays where it is when solving
+/// begins or ends, as it does with every light and environment that is tried.
 void draw_solving(const Studio& studio) {
     if (!studio.frames) return;
     const auto solving = studio.frames->solving();
     if (!solving) return;
-    progress_bar(solving->fraction, fmt::format("{:.0f} %", 100.0 * solving->fraction));
-    name_last_item("solving");
-    dim_text(solving->stage + ": the last finished light shows until it is done.");
+    const auto done = static_cast<float>(std::clamp(solving->fraction, 0.0, 1.0));
+    const ImVec2 low = ImGui::GetWindowPos();
+    const float width = ImGui::GetWindowWidth(), height = std::max(2.0f, em(0.2f));
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddRectFilled(
+        low, {low.x + width, low.y + height}, ImGui::GetColorU32(ImGuiCol_FrameBgHovered));
+    list.AddRectFilled(
+        low, {low.x + done * width, low.y + height}, ImGui::GetColorU32(ImGuiCol_PlotHistogram));
+    name_rectangle("solving", low.x, low.y, width, height);
 }
 
 /// One control of one light, the value taken over while it is held.
@@ -186,7 +195,9 @@ void draw_sharing(Studio& studio, const Look& look) {
     name_last_item("share-lighting");
     tooltip("Gives every look these lights and this environment, so that only the paints differ.");
     end_disabled();
-    if (shared && looks.size() > 1) dim_text("All looks have this light.");
+    if (looks.size() > 1) {
+        dim_text(shared ? "All looks have this light." : "Other looks have another light.");
+    }
 }
 
 void draw_eye_angles(Studio& studio, glm::dvec3& eye_mm) {

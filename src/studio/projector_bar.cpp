@@ -165,6 +165,7 @@ void draw_status_line(Shell& shell) {
     ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(right.c_str()).x);
     ImGui::TextColored(colours::dim_text, "%s", right.c_str());
     name_last_item("progress");
+    if (studio.frames->solving()) tooltip("The last finished light shows until this one is done.");
     ImGui::PopFont();
 }
 

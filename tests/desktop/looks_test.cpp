@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "desktop/two_monitors.h"
+#include "session/commands.h"
 
 namespace livery {
 namespace {
@@ -120,6 +121,37 @@ TEST_F(Looks, BlackAndFreezeWorkAlsoInDialogs) {
     desktop->press_key("ctrl+b");
     EXPECT_TRUE(projector_shows(a));
     program->click("save-picture:cancel");
+}
+
+// What is under the pointer must not move away between looking and pressing.
+TEST_F(Looks, TheLightPanelStaysWhereItIsWhileALightIsSolved) {
+    // Of its own: a draft keeps what was solved at the normal quality.
+    start();
+    pick_projector();
+    program->click("tab:Light");
+    // To the end, where the panel would be pushed up or down by what comes and goes above.
+    const glm::ivec2 tab = middle(program->item("tab:Light"));
+    desktop->move_pointer(tab.x, tab.y + 200);
+    desktop->scroll(-40);
+    program->click("quality:normal");
+    program->wait_for_state("solving", false);
+
+    program->click("environment");
+    const Rectangle box = program->item("environment"),
+                    wanted = program->item("environment:overcast");
+    program->hover("environment:overcast");
+    program->wait_for_state("solving", true);
+    EXPECT_TRUE(program->has_item("solving"));
+    EXPECT_EQ(program->item("environment"), box);
+    EXPECT_EQ(program->item("environment:overcast"), wanted);
+    program->click("environment:overcast");
+    Document expected = applied(document, SetQuality{Quality::normal});
+    EnvironmentReference overcast = expected.looks.front().look.environment;
+    overcast.file = "assets/environments/overcast.hdr";
+    expected = applied(expected, SetEnvironment{look_at_place(0), overcast});
+    EXPECT_TRUE(projector_shows(expected_drive(expected, look_at_place(0))));
+    program->wait_for_state("solving", false);
+    EXPECT_EQ(program->item("environment"), box);
 }
 
 TEST_F(Looks, AClickedPartGlowsOnTheMockUp) {
