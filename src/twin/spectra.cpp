@@ -1,13 +1,11 @@
 #include "twin/spectra.h"
 
-#include <charconv>
 #include <cmath>
-#include <initializer_list>
-#include <string_view>
 
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
+#include "core/csv.h"
 #include "core/error.h"
 #include "core/paths.h"
 
@@ -17,22 +15,6 @@ namespace {
 
 constexpr std::size_t kMaxColumns = 64;
 constexpr std::size_t kMaxRows = 10'000;
-
-std::string_view trimmed(std::string_view text) {
-    const auto first = text.find_first_not_of(" \t\r\"");
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(" \t\r\"") - first + 1);
-}
-
-std::vector<std::string_view> cells_of(std::string_view line) {
-    std::vector<std::string_view> cells;
-    while (true) {
-        const auto comma = line.find(',');
-        cells.push_back(trimmed(line.substr(0, comma)));
-        if (comma == std::string_view::npos) return cells;
-        line.remove_prefix(comma + 1);
-    }
-}
 
 double wavelength_nm(std::size_t band) {
     return kSpectrumFirst_nm + kSpectrumStep_nm * static_cast<double>(band);
@@ -70,63 +52,32 @@ SpectrumTable read_spectra_csv(const std::filesystem::path& file) {
 }
 
 SpectrumTable parse_spectra_csv(const std::string& text, const std::filesystem::path& file) {
-    std::string_view rest = text;
+    CsvReader csv(text, file, kMaxColumns + 1);
+    const auto& names = csv.names();
+    if (names.front() != "wavelength" && names.front() != "nm") {
+        throw FileError(file,
+                        csv.place(),
+                        "a first column '" + names.front().substr(0, 40) + "'",
+                        "'wavelength' or 'nm'");
+    }
+    if (names.size() < 2) throw FileError(file, csv.place(), "no spectrum", "one or more");
     SpectrumTable table;
+    table.names.assign(names.begin() + 1, names.end());
     std::vector<double> wavelengths;
-    std::vector<std::vector<double>> columns;
-    for (std::size_t line_number = 1; !rest.empty(); ++line_number) {
-        const auto end = rest.find('\n');
-        const std::string_view line = trimmed(rest.substr(0, end));
-        rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
-        if (line.empty() || line.front() == '#') continue;
-        const auto cells = cells_of(line);
-        const std::string place = "line " + std::to_string(line_number);
-        if (columns.empty()) {
-            if (cells.front() != "wavelength" && cells.front() != "nm") {
-                throw FileError(file,
-                                place,
-                                "a first column '" + std::string(cells.front().substr(0, 40)) + "'",
-                                "'wavelength' or 'nm'");
-            }
-            if (cells.size() < 2 || cells.size() > kMaxColumns + 1) {
-                throw FileError(file,
-                                place,
-                                std::to_string(cells.size() - 1) + " spectra",
-                                "1 to " + std::to_string(kMaxColumns));
-            }
-            for (std::size_t c = 1; c < cells.size(); ++c) table.names.emplace_back(cells[c]);
-            columns.resize(cells.size() - 1);
-            continue;
-        }
-        if (cells.size() != columns.size() + 1) {
-            throw FileError(file,
-                            place,
-                            std::to_string(cells.size()) + " columns",
-                            std::to_string(columns.size() + 1) + ", as in the header");
-        }
-        for (std::size_t c = 0; c < cells.size(); ++c) {
-            double value = 0.0;
-            const auto* last = cells[c].data() + cells[c].size();
-            const auto [stop, error] = std::from_chars(cells[c].data(), last, value);
-            if (error != std::errc{} || stop != last || !std::isfinite(value) || value < 0.0) {
-                throw FileError(file,
-                                place + ", column " + std::to_string(c + 1),
-                                "'" + std::string(cells[c].substr(0, 40)) + "'",
-                                "a finite number, 0 or more");
-            }
+    std::vector<std::vector<double>> columns(table.names.size());
+    while (csv.next()) {
+        for (std::size_t c = 0; c < names.size(); ++c) {
+            const double value = csv.number(c);
+            if (value < 0.0) csv.fail(c, "a finite number, 0 or more");
             (c == 0 ? wavelengths : columns[c - 1]).push_back(value);
         }
         if (wavelengths.size() > 1 && !(wavelengths.back() > wavelengths[wavelengths.size() - 2])) {
-            throw FileError(file,
-                            place,
-                            "a wavelength of " + std::string(cells.front()) + " nm",
-                            "more than in the row before");
+            csv.fail(0, "a wavelength above that of the row before");
         }
         if (wavelengths.size() > kMaxRows) {
-            throw FileError(file, place, "more rows", "at most " + std::to_string(kMaxRows));
+            throw FileError(file, csv.place(), "more rows", "at most " + std::to_string(kMaxRows));
         }
     }
-    if (columns.empty()) throw FileError(file, "", "no header", "a table of spectra");
     if (wavelengths.size() < 2) {
         throw FileError(file, "", std::to_string(wavelengths.size()) + " rows", "2 or more");
     }
