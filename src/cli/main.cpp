@@ -37,6 +37,8 @@ int run(const std::vector<std::string>& arguments) {
                                      demo_command(),
                                      render_command(),
                                      plan_command(),
+                                     brdf_command(),
+                                     albedo_command(),
                                      patterns_command(),
                                      photograph_command(),
                                      calibrate_color_command(),

@@ -34,7 +34,7 @@ void expect_refusal(const std::vector<std::string>& arguments,
 }
 
 TEST(Messages, NameTheOptionWhatWasFoundAndWhatWasExpected) {
-    expect_refusal({"brdf"}, {"\"brdf\"", "livery help"});
+    expect_refusal({"bssrdf"}, {"\"bssrdf\"", "livery help"});
     expect_refusal({"calibrate"}, {"\"calibrate\"", "livery help"});
     expect_refusal({"calibrate", "geometry"}, {"\"calibrate geometry\"", "livery help"});
     expect_refusal({"help", "nothing"}, {"\"nothing\"", "livery help"});

@@ -59,6 +59,8 @@ TEST(Program, HelpNamesEveryCommandAndEachHasAnExample) {
     for (const char* name : {"demo",
                              "render",
                              "plan",
+                             "brdf",
+                             "albedo",
                              "patterns",
                              "photograph",
                              "calibrate color",

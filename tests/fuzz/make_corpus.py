@@ -137,6 +137,8 @@ shipped("material", "materials/solid-red.json", "materials/blue-metallic.json",
         "materials/chrome-trim.json", "materials/dark-glass.json")
 shipped("look", "assets/looks/blue-metallic.json")
 shipped("bench", "calibration/default.json", "calibration/hard.json", "calibration/sphere.json")
+put("directions", "two.csv", "theta_i,phi_i,theta_o,phi_o\n0.1,0,0.5,3.1\n1.5,6.28,1e-3,-2\n")
+put("directions", "others.csv", "# measured\r\nr,phi_o,\"theta_o\",theta_i,phi_i\r\nx,0,1.6,0,0\r\n")
 shipped("spectral_paint", "calibration/paints/solid-red.json")
 put("product", "all.json",
     {"format_version": 1, "name": "Car", "mesh": "car.glb", "unit": "cm", "product_scale": 25,

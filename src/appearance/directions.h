@@ -1,0 +1,28 @@
+// Pairs of directions in local coordinates, and the files that list them.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+namespace livery {
+
+/// Unit, toward the light and toward the eye: z is the normal, x the tangent.
+struct DirectionPair {
+    glm::dvec3 wi{0.0, 0.0, 1.0}, wo{0.0, 0.0, 1.0};
+};
+
+/// A direction from its polar angle to the normal and its azimuth from the tangent.
+glm::dvec3 direction_from_angles(double theta_rad, double phi_rad);
+
+/// Reads a CSV with the columns theta_i, phi_i, theta_o, phi_o in radians, in any order; further
+/// columns are not read. Throws FileError (a column missing, a cell that is no finite number, a
+/// negative theta, no rows, too many).
+std::vector<DirectionPair> read_directions_csv(const std::filesystem::path& file);
+/// The same of its text.
+std::vector<DirectionPair> parse_directions_csv(const std::string& text,
+                                                const std::filesystem::path& file);
+
+}  // namespace livery

@@ -1,0 +1,118 @@
+#include "session/reflectance_on_gpu.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "appearance/bsdf.h"
+#include "gl/draw.h"
+#include "gl/program.h"
+#include "gl/read_back.h"
+
+namespace livery {
+
+namespace {
+
+constexpr int kColumns = 2048;
+constexpr int kRows = 512;  ///< as many pairs at a time as fit on kColumns x kRows texels
+
+/// Exactly this number: decimals would leave the rounding to the driver's compiler.
+std::string literal(float value) {
+    return fmt::format("uintBitsToFloat({}u)", std::bit_cast<std::uint32_t>(value));
+}
+
+std::string literal(const glm::vec3& v) {
+    return fmt::format("vec3({}, {}, {})", literal(v.x), literal(v.y), literal(v.z));
+}
+
+std::string shader_text(const Material& material) {
+    const f32::BsdfParameters p = parameters_of(material);
+    std::string text = "#version 450 core\n" + bsdf_glsl(material.model);
+    text += "BsdfParameters paint() {\n    BsdfParameters p;\n";
+    const auto assign = [&](const char* name, const auto& value) {
+        text += fmt::format("    p.{} = {};\n", name, literal(value));
+    };
+    assign("diffuse", p.diffuse);
+    assign("f0", p.f0);
+    assign("alpha_x", p.alpha_x);
+    assign("alpha_y", p.alpha_y);
+    assign("coat_alpha", p.coat_alpha);
+    assign("coat_f0", p.coat_f0);
+    assign("coat_transmittance", p.coat_transmittance);
+    text += "    return p;\n}\n";
+    text += R"(
+uniform sampler2D toward_light;
+uniform sampler2D toward_eye;
+layout(location = 0) out vec4 value;
+void main() {
+    ivec2 at = ivec2(gl_FragCoord.xy);
+    value = vec4(bsdf_eval(paint(),
+                           texelFetch(toward_light, at, 0).xyz,
+                           texelFetch(toward_eye, at, 0).xyz),
+                 1.0);
+}
+)";
+    return text;
+}
+
+void append(std::vector<float>& texels, const glm::dvec3& v) {
+    texels.insert(
+        texels.end(),
+        {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), 0.0f});
+}
+
+}  // namespace
+
+std::vector<glm::dvec3> reflectance_on_gpu(const Material& material,
+                                           std::span<const DirectionPair> pairs,
+                                           GlDevice device,
+                                           const Progress& progress) {
+    std::vector<glm::dvec3> values;
+    values.reserve(pairs.size());
+    const HeadlessContext context(device);
+    Program program = Program::screen_pass({"brdf.frag", shader_text(material)});
+    Texture2D toward_light(kColumns, kRows, TexelFormat::rgba32f);
+    Texture2D toward_eye(kColumns, kRows, TexelFormat::rgba32f);
+    const Texture2D target(kColumns, kRows, TexelFormat::rgba32f);
+    const Framebuffer framebuffer({&target});
+    const ScreenPass pass;
+    constexpr auto kChunk = static_cast<std::size_t>(kColumns) * static_cast<std::size_t>(kRows);
+    std::vector<float> light, eye;
+    for (std::size_t begin = 0; begin < pairs.size(); begin += kChunk) {
+        progress.update(static_cast<double>(begin) / static_cast<double>(pairs.size()),
+                        "evaluating");
+        const std::size_t count = std::min(kChunk, pairs.size() - begin);
+        const int rows = static_cast<int>((count + kColumns - 1) / kColumns);
+        light.clear();
+        eye.clear();
+        for (const DirectionPair& pair : pairs.subspan(begin, count)) {
+            append(light, pair.wi);
+            append(eye, pair.wo);
+        }
+        const PixelRect rect{0, 0, kColumns, rows};
+        const auto texels = static_cast<std::size_t>(kColumns) * static_cast<std::size_t>(rows);
+        light.resize(4 * texels);  // below the horizon: nothing is evaluated
+        eye.resize(4 * texels);
+        toward_light.upload(light, rect);
+        toward_eye.upload(eye, rect);
+        toward_light.bind(0);
+        toward_eye.bind(1);
+        program.use();
+        program.set("toward_light", 0);
+        program.set("toward_eye", 1);
+        DrawState state;
+        state.scissor = rect;
+        pass.run(program, framebuffer, state);
+        const ImageF picture = read_floats(target);
+        for (std::size_t k = 0; k < count; ++k) {
+            const float* v = picture.values.data() + 4 * k;
+            values.emplace_back(v[0], v[1], v[2]);
+        }
+    }
+    return values;
+}
+
+}  // namespace livery

@@ -1,0 +1,20 @@
+// A paint's reflectance evaluated by its shader (shaders/bsdf) for given directions.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "appearance/material.h"
+#include "core/progress.h"
+#include "gl/context.h"
+#include "session/reflectance_values.h"
+
+namespace livery {
+
+/// In the working space, one value a pair. Makes a context of its own and leaves none current.
+std::vector<glm::dvec3> reflectance_on_gpu(const Material& material,
+                                           std::span<const DirectionPair> pairs,
+                                           GlDevice device,
+                                           const Progress& progress = {});
+
+}  // namespace livery
