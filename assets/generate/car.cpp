@@ -168,17 +168,7 @@ std::vector<PartMesh> make_car() {
     fit_to_size(sheet.vertices);
     const auto styles = cut_car_panels(sheet);
 
-    std::vector<PartMesh> half(kCarParts), parts(kCarParts);
-    const std::array<const char*, kCarParts> names{
-        "body", "glass", "rims", "tyres", "lights", "trim"};
-    const std::array<glm::dvec3, kCarParts> colours{glm::dvec3(0.46),
-                                                    glm::dvec3(0.03),
-                                                    glm::dvec3(0.55),
-                                                    glm::dvec3(0.035),
-                                                    glm::dvec3(0.62),
-                                                    glm::dvec3(0.06)};
-    const std::array<double, kCarParts> roughness{0.5, 0.15, 0.35, 0.8, 0.2, 0.6};
-
+    std::vector<PartMesh> half(kCarParts);
     build_panels(sheet, styles, chart, kTrim, half);
     add_wells(half[kTrim]);
     add_mirror(half);
@@ -188,15 +178,13 @@ std::vector<PartMesh> make_car() {
         append(half[kRims], make_rim(), place);
         append(half[kTrim], make_brake(), place);
     }
-    for (std::size_t k = 0; k < parts.size(); ++k) {
-        parts[k].name = names[k];
-        parts[k].base_colour_rec709 = colours[k];
-        parts[k].roughness = roughness[k];
-        append(parts[k], half[k], glm::dvec3(0.0));
-        append_mirrored(parts[k], half[k]);
-        compute_tangents(parts[k]);
-    }
-    return parts;
+    const std::array<PartStyle, kCarParts> looks{{{"body", glm::dvec3(0.46), 0.5},
+                                                  {"glass", glm::dvec3(0.03), 0.15},
+                                                  {"rims", glm::dvec3(0.55), 0.35},
+                                                  {"tyres", glm::dvec3(0.035), 0.8},
+                                                  {"lights", glm::dvec3(0.62), 0.2},
+                                                  {"trim", glm::dvec3(0.06), 0.6}}};
+    return mirrored_parts(looks, half);
 }
 
 }  // namespace livery::assets

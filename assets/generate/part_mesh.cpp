@@ -115,4 +115,18 @@ void compute_tangents(PartMesh& mesh) {
     }
 }
 
+std::vector<PartMesh> mirrored_parts(std::span<const PartStyle> styles,
+                                     std::span<const PartMesh> halves) {
+    std::vector<PartMesh> parts(styles.size());
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+        parts[k].name = styles[k].name;
+        parts[k].base_colour_rec709 = styles[k].base_colour_rec709;
+        parts[k].roughness = styles[k].roughness;
+        append(parts[k], halves[k], glm::dvec3(0.0));
+        append_mirrored(parts[k], halves[k]);
+        compute_tangents(parts[k]);
+    }
+    return parts;
+}
+
 }  // namespace livery::assets

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,17 @@ void append(PartMesh& target, const PartMesh& source, const glm::dvec3& offset_m
 
 /// Appends the mirror image in the plane z = 0, with the winding reversed.
 void append_mirrored(PartMesh& target, const PartMesh& source);
+
+/// What a part is called and looks like before it is painted.
+struct PartStyle {
+    const char* name;
+    glm::dvec3 base_colour_rec709;
+    double roughness;
+};
+
+/// A product's parts from their halves at z >= 0, one for each style, with tangents.
+std::vector<PartMesh> mirrored_parts(std::span<const PartStyle> styles,
+                                     std::span<const PartMesh> halves);
 
 /// Area-weighted normals from the triangles; vertices at one place (within a nanometre: the seams
 /// of charts) share theirs.

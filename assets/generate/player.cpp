@@ -190,26 +190,15 @@ std::vector<PartMesh> make_player() {
     auto sheet = pebble_sheet(kPebble, kSpacing_mm);
     const auto styles = cut_player(sheet);
 
-    std::vector<PartMesh> half(kPlayerParts), parts(kPlayerParts);
-    const std::array<const char*, kPlayerParts> names{
-        "shell", "back", "glass", "wheel", "button", "trim"};
-    const std::array<glm::dvec3, kPlayerParts> colours{glm::dvec3(0.75),
-                                                       glm::dvec3(0.75),
-                                                       glm::dvec3(0.03),
-                                                       glm::dvec3(0.6),
-                                                       glm::dvec3(0.7),
-                                                       glm::dvec3(0.06)};
-    const std::array<double, kPlayerParts> roughness{0.3, 0.3, 0.1, 0.5, 0.4, 0.4};
+    std::vector<PartMesh> half(kPlayerParts);
     build_panels(sheet, styles, chart, kTrim, half);
-    for (std::size_t k = 0; k < parts.size(); ++k) {
-        parts[k].name = names[k];
-        parts[k].base_colour_rec709 = colours[k];
-        parts[k].roughness = roughness[k];
-        append(parts[k], half[k], glm::dvec3(0.0));
-        append_mirrored(parts[k], half[k]);
-        compute_tangents(parts[k]);
-    }
-    return parts;
+    const std::array<PartStyle, kPlayerParts> looks{{{"shell", glm::dvec3(0.75), 0.3},
+                                                     {"back", glm::dvec3(0.75), 0.3},
+                                                     {"glass", glm::dvec3(0.03), 0.1},
+                                                     {"wheel", glm::dvec3(0.6), 0.5},
+                                                     {"button", glm::dvec3(0.7), 0.4},
+                                                     {"trim", glm::dvec3(0.06), 0.4}}};
+    return mirrored_parts(looks, half);
 }
 
 }  // namespace livery::assets
