@@ -68,6 +68,23 @@ void set_lane(RTCRay8& packet, std::size_t lane, const TraceRay& ray) {
     packet.flags[lane] = 0;
 }
 
+void forget_hit(RTCRayHit8& packet, std::size_t lane) {
+    packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+    packet.hit.primID[lane] = RTC_INVALID_GEOMETRY_ID;
+    packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+}
+
+/// Of the packet's first lanes, one a hit.
+void read_hits(const RTCRayHit8& packet, std::span<Hit> hits) {
+    for (std::size_t lane = 0; lane < hits.size(); ++lane) {
+        hits[lane] = {};
+        if (packet.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) continue;
+        hits[lane] = {packet.hit.primID[lane],
+                      packet.ray.tfar[lane],
+                      {packet.hit.u[lane], packet.hit.v[lane]}};
+    }
+}
+
 /// Runs work(first, count, valid) over packets of up to eight.
 template <typename Work>
 void for_each_packet(std::size_t count, const Work& work) {
@@ -179,19 +196,10 @@ void Tracer::closest(std::span<const TraceRay> rays, std::span<Hit> hits) const 
         RTCRayHit8 packet;
         for (std::size_t lane = 0; lane < kPacket; ++lane) {
             set_lane(packet.ray, lane, rays[first + std::min(lane, count - 1)]);
-            packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
-            packet.hit.primID[lane] = RTC_INVALID_GEOMETRY_ID;
-            packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+            forget_hit(packet, lane);
         }
         rtcIntersect8(valid, state_->scene, &context, &packet);
-        for (std::size_t lane = 0; lane < count; ++lane) {
-            Hit& hit = hits[first + lane];
-            hit = {};
-            if (packet.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) continue;
-            hit = {packet.hit.primID[lane],
-                   packet.ray.tfar[lane],
-                   {packet.hit.u[lane], packet.hit.v[lane]}};
-        }
+        read_hits(packet, hits.subspan(first, count));
     });
 }
 
@@ -217,19 +225,10 @@ void Tracer::closest_from(const glm::vec3& origin,
             packet.ray.dir_y[lane] = direction.y;
             packet.ray.dir_z[lane] = direction.z;
             packet.ray.tfar[lane] = TraceRay{}.t_max;
-            packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
-            packet.hit.primID[lane] = RTC_INVALID_GEOMETRY_ID;
-            packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+            forget_hit(packet, lane);
         }
         rtcIntersect8(valid, state_->scene, &context, &packet);
-        for (std::size_t lane = 0; lane < count; ++lane) {
-            Hit& hit = hits[first + lane];
-            hit = {};
-            if (packet.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) continue;
-            hit = {packet.hit.primID[lane],
-                   packet.ray.tfar[lane],
-                   {packet.hit.u[lane], packet.hit.v[lane]}};
-        }
+        read_hits(packet, hits.subspan(first, count));
     });
 }
 
