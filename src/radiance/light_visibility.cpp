@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <span>
 
 #include <fmt/format.h>
@@ -11,7 +10,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "core/random.h"
+#include "radiance/spiral.h"
 
 namespace livery {
 namespace {
@@ -21,12 +20,11 @@ class DiscDirections {
   public:
     DiscDirections(const glm::vec3& centre, double one_minus_cos, std::size_t count)
         : centre_(centre), basis_(basis_around(centre)) {
-        constexpr double kGoldenAngle = std::numbers::pi * 0.76393202250021030;
         for (std::size_t k = 0; k < count; ++k) {
             const double down =
                 one_minus_cos * (static_cast<double>(k) + 0.5) / static_cast<double>(count);
             const double radius = std::sqrt(down * (2.0 - down));
-            const double angle = kGoldenAngle * static_cast<double>(k);
+            const double angle = kGoldenAngle_rad * static_cast<double>(k);
             points_.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 1.0 - down);
         }
     }
@@ -35,12 +33,7 @@ class DiscDirections {
 
     /// The spiral turned around the disc's centre.
     void turned(double turn_rad, std::span<glm::vec3> directions) const {
-        const auto c = static_cast<float>(std::cos(turn_rad));
-        const auto s = static_cast<float>(std::sin(turn_rad));
-        const glm::vec3 x = c * basis_.s + s * basis_.t, y = c * basis_.t - s * basis_.s;
-        for (std::size_t k = 0; k < points_.size(); ++k) {
-            directions[k] = points_[k].x * x + points_[k].y * y + points_[k].z * centre_;
-        }
+        turn_around(points_, centre_, basis_, turn_rad, directions);
     }
 
   private:
@@ -54,9 +47,7 @@ double cap_of(const DirectionalLight& light) {
     return 2.0 * std::pow(std::sin(0.25 * light.angle_rad), 2.0);
 }
 
-double turn_of(std::size_t seed) {
-    return 2.0 * std::numbers::pi * (hash_3d(static_cast<std::uint32_t>(seed), 17u, 3u) * 0x1p-32);
-}
+double turn_of(std::size_t seed) { return turn_of_fragment_rad(seed, 17u, 3u); }
 
 /// Sums up what is seen of the light from one fragment.
 LightAtFragment summarise(const glm::vec3& normal,
@@ -104,13 +95,6 @@ float disc_openness(const Tracer& tracer,
         if (!tracer.occluded(ray)) ++open;
     }
     return static_cast<float>(open) / static_cast<float>(directions.size());
-}
-
-Basis basis_around(const glm::vec3& n) {
-    const float sign = std::copysign(1.0f, n.z);
-    const float a = -1.0f / (sign + n.z);
-    const float b = n.x * n.y * a;
-    return {{1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}};
 }
 
 void ray_origins(const Mesh& mesh,

@@ -44,10 +44,4 @@ void ray_origins(const Mesh& mesh,
                  std::size_t fragment,
                  std::span<glm::vec3> origins);
 
-/// Two unit vectors that make a right-handed frame with unit `n` (Duff et al. 2017).
-struct Basis {
-    glm::vec3 s, t;
-};
-Basis basis_around(const glm::vec3& n);
-
 }  // namespace livery

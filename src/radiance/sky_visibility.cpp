@@ -13,15 +13,13 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "radiance/light_visibility.h"
+#include "radiance/spiral.h"
 
 namespace livery {
 namespace {
 
-constexpr double kGoldenAngle = std::numbers::pi * 0.76393202250021030;
-
 double turn_of(std::size_t fragment, std::uint32_t purpose) {
-    return 2.0 * std::numbers::pi *
-           (hash_3d(static_cast<std::uint32_t>(fragment), purpose, 11u) * 0x1p-32);
+    return turn_of_fragment_rad(fragment, purpose, 11u);
 }
 
 /// Cosine-weighted directions around a normal (Vogel's spiral on the projected disc).
@@ -30,7 +28,7 @@ class SkyDirections {
     explicit SkyDirections(int count) {
         for (int k = 0; k < count; ++k) {
             const double u = (k + 0.5) / count;
-            const double angle = kGoldenAngle * k;
+            const double angle = kGoldenAngle_rad * k;
             points_.emplace_back(
                 std::sqrt(u) * std::cos(angle), std::sqrt(u) * std::sin(angle), std::sqrt(1.0 - u));
         }
@@ -40,13 +38,7 @@ class SkyDirections {
 
     /// The spiral turned around the normal.
     void around(const glm::vec3& n, double turn_rad, std::span<glm::vec3> directions) const {
-        const Basis basis = basis_around(n);
-        const auto c = static_cast<float>(std::cos(turn_rad));
-        const auto s = static_cast<float>(std::sin(turn_rad));
-        const glm::vec3 x = c * basis.s + s * basis.t, y = c * basis.t - s * basis.s;
-        for (std::size_t k = 0; k < points_.size(); ++k) {
-            directions[k] = points_[k].x * x + points_[k].y * y + points_[k].z * n;
-        }
+        turn_around(points_, n, basis_around(n), turn_rad, directions);
     }
 
   private:
@@ -111,7 +103,7 @@ class MirrorLobe {
 };
 
 LobeSample MirrorLobe::Facet::sample(float a, int k, int count, double turn) const {
-    const double around = turn + (kGoldenAngle / (2.0 * std::numbers::pi)) * k;
+    const double around = turn + (kGoldenAngle_rad / (2.0 * std::numbers::pi)) * k;
     const glm::vec2 u(static_cast<float>(around - std::floor(around)),
                       (static_cast<float>(k) + 0.5f) / static_cast<float>(count));
     const glm::vec3 wi = f32::ggx_sample_lobe(wo, u, a, a);
