@@ -1,6 +1,5 @@
 #include "session/desktop_bench.h"
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -202,18 +201,6 @@ struct Swaps {
     }
 };
 
-BenchLevel level_of(const std::string& name, std::vector<double> ms) {
-    std::sort(ms.begin(), ms.end());
-    BenchLevel level;
-    level.name = name;
-    level.ms = ms[ms.size() / 2];
-    level.fastest_ms = ms.front();
-    level.p95_ms = ms[ms.size() * 95 / 100];
-    level.longest_ms = ms.back();
-    level.repeats = static_cast<int>(ms.size());
-    return level;
-}
-
 /// A calibration that opens, as big as a real one.
 void write_calibration_of(const Product& product, const std::filesystem::path& folder) {
     const View view = read_bench_file("default").projector.view;
@@ -242,11 +229,12 @@ std::vector<BenchEffect> run_desktop_bench(GlDevice device, const Progress& prog
     swaps.scene = first.scene;
     desktop.thread.show(std::move(first));
     FramePointer frame = desktop.finished.wait_for(1, progress);
-    start_effect.levels.push_back(level_of("draft", {milliseconds(frame->done_at - start)}));
+    start_effect.levels.push_back(waited_level_of("draft", {milliseconds(frame->done_at - start)}));
     while (!(frame = desktop.finished.wait_for(1, progress))->unfinished.empty()) {
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
-    whole_effect.levels.push_back(level_of("normal", {milliseconds(frame->done_at - start)}));
+    whole_effect.levels.push_back(
+        waited_level_of("normal", {milliseconds(frame->done_at - start)}));
     desktop.wait_until_idle(progress);
 
     constexpr int kSwaps = 80;
@@ -255,7 +243,8 @@ std::vector<BenchEffect> run_desktop_bench(GlDevice device, const Progress& prog
                              const Background& beside,
                              const std::function<void(int, Scene&)>& change) {
         progress.update(0.0, "timing paint swaps, " + name);
-        swap_effect.levels.push_back(level_of(name, swaps.run(kSwaps, beside, change, progress)));
+        swap_effect.levels.push_back(
+            waited_level_of(name, swaps.run(kSwaps, beside, change, progress)));
         desktop.wait_until_idle(progress);
     };
     measure("alone", {0, {}}, nothing);

@@ -6,7 +6,7 @@
 
 #include "core/progress.h"
 #include "gl/context.h"
-#include "session/speed_bench.h"
+#include "session/bench_level.h"
 
 namespace livery {
 

@@ -47,15 +47,6 @@ class Parts {
     }
 
   private:
-    static BenchLevel level_of(const std::string& name, std::vector<double> ms) {
-        std::sort(ms.begin(), ms.end());
-        BenchLevel level;
-        level.name = name;
-        level.ms = ms[ms.size() / 2];
-        level.fastest_ms = ms.front();
-        level.repeats = static_cast<int>(ms.size());
-        return level;
-    }
     std::vector<std::pair<std::string, std::vector<double>>> parts_;
 };
 

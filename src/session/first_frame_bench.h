@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/progress.h"
-#include "session/speed_bench.h"
+#include "session/bench_level.h"
 
 namespace livery {
 

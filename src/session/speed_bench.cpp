@@ -29,13 +29,8 @@ double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-BenchLevel level_of(const std::string& name, std::vector<double> ms, double work_items) {
-    std::sort(ms.begin(), ms.end());
-    BenchLevel level;
-    level.name = name;
-    level.ms = ms[ms.size() / 2];
-    level.fastest_ms = ms.front();
-    level.repeats = static_cast<int>(ms.size());
+BenchLevel worked_level_of(const std::string& name, std::vector<double> ms, double work_items) {
+    BenchLevel level = level_of(name, std::move(ms));
     level.work_items = work_items;
     return level;
 }
@@ -96,7 +91,7 @@ struct BenchScene {
 BenchScene load_scene(SpeedBenchResult& result, const Progress& progress) {
     BenchScene scene;
     const auto loads = repeat(3, progress, [&](int) { scene.product = find_product("car"); });
-    effect(result, "load the car").levels.push_back(level_of("car.glb", loads, 0.0));
+    effect(result, "load the car").levels.push_back(worked_level_of("car.glb", loads, 0.0));
     const BenchDescription bench = read_bench_file("default");
     scene.projector = bench.projector.view;
     for (const std::string& name : shipped_looks()) {
@@ -121,7 +116,7 @@ void bench_frames(SpeedBenchResult& result,
     renderer.render(scene.looks.front(), first, progress);
     const auto fragments = static_cast<double>(renderer.surface_map().fragments.size());
     effect(result, "first frame")
-        .levels.push_back(level_of(name, {milliseconds_since(start)}, fragments));
+        .levels.push_back(worked_level_of(name, {milliseconds_since(start)}, fragments));
     collect(passes, first);
     const auto& map = renderer.surface_map();
     if (view.width == 1280) {
@@ -169,22 +164,22 @@ void bench_frames(SpeedBenchResult& result,
     }
     const auto pixels = static_cast<double>(table.pixels.size());
     effect(result, "paint swap: shading and mixing")
-        .levels.push_back(level_of(name, shade, fragments));
+        .levels.push_back(worked_level_of(name, shade, fragments));
     effect(result, "paint swap to projector input")
-        .levels.push_back(level_of(name, cpu_frame, fragments));
+        .levels.push_back(worked_level_of(name, cpu_frame, fragments));
     effect(result, "paint swap to projector input, correction in OpenGL")
-        .levels.push_back(level_of(name, gpu_frame, fragments));
+        .levels.push_back(worked_level_of(name, gpu_frame, fragments));
     if (quality == Quality::normal) {
         const std::string size = fmt::format("{}x{}", view.width, view.height);
-        effect(result, "correction").levels.push_back(level_of(size, cpu_ms, pixels));
+        effect(result, "correction").levels.push_back(worked_level_of(size, cpu_ms, pixels));
         effect(result, "correction in OpenGL, read back")
-            .levels.push_back(level_of(size, gpu_ms, pixels));
+            .levels.push_back(worked_level_of(size, gpu_ms, pixels));
     }
     if (view.width != 1280) return;
     passes.ms[kCompensationPass] = cpu_ms;
     passes.work_items[kCompensationPass] = pixels;
     for (const auto& [key, ms] : passes.ms) {
-        const BenchLevel level = level_of(name, ms, passes.work_items[key]);
+        const BenchLevel level = worked_level_of(name, ms, passes.work_items[key]);
         effect(result, "pass " + key).levels.push_back(level);
         result.pass_costs.push_back(
             {key, quality, level.ms, key == kFilterPass ? 0.0 : level.work_items, std::nullopt});

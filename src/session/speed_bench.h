@@ -1,32 +1,16 @@
 // `livery bench --suite speed`: every stage of the chain timed on this machine.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/progress.h"
 #include "gl/context.h"
+#include "session/bench_level.h"
 #include "session/predictions.h"
 #include "session/speed_sweep.h"
 
 namespace livery {
-
-struct BenchLevel {
-    std::string name;  ///< "1280x800, normal"
-    double ms = 0.0;   ///< median
-    double fastest_ms = 0.0;
-    int repeats = 0;
-    double work_items = 0.0;
-    std::optional<double> p95_ms, longest_ms;  ///< where a person waits for each one
-    std::optional<double> error;               ///< where the bench has a truth to compare with
-    std::string unit;                          ///< of the error
-};
-
-struct BenchEffect {
-    std::string name;
-    std::vector<BenchLevel> levels;
-};
 
 struct SpeedBenchResult {
     std::string renderer;

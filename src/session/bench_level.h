@@ -1,0 +1,31 @@
+// One row of the benches: what was timed, how often, and how long it took.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace livery {
+
+struct BenchLevel {
+    std::string name;  ///< "1280x800, normal"
+    double ms = 0.0;   ///< median
+    double fastest_ms = 0.0;
+    int repeats = 0;
+    double work_items = 0.0;
+    std::optional<double> p95_ms, longest_ms;  ///< where a person waits for each one
+    std::optional<double> error;               ///< where the bench has a truth to compare with
+    std::string unit;                          ///< of the error
+};
+
+struct BenchEffect {
+    std::string name;
+    std::vector<BenchLevel> levels;
+};
+
+/// Median and fastest of the repeats, of which there is at least one.
+BenchLevel level_of(const std::string& name, std::vector<double> ms);
+/// The same, for something that a person waits for.
+BenchLevel waited_level_of(const std::string& name, std::vector<double> ms);
+
+}  // namespace livery
