@@ -256,7 +256,7 @@ class Desktop {
   public:
     Desktop(const DesktopOptions& options, Session session)
         : options_(options), shell_(std::move(session)) {
-        // Beside the making of windows, which takes as long
+        // Beside the making of windows, which takes as long.
         const Document& document = shell_.studio.session.document();
         product_ =
             std::async(std::launch::async, [name = document.product, unit = document.product_unit] {
