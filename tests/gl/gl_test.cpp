@@ -15,6 +15,7 @@
 #include "gl/program.h"
 #include "gl/read_back.h"
 #include "gl/timer.h"
+#include "support/message_of.h"
 
 namespace livery {
 namespace {
@@ -25,16 +26,6 @@ class Gl : public testing::Test {
     ~Gl() override { set_gl_checks(false); }
     HeadlessContext context_;
 };
-
-template <typename F>
-std::string message_of(F&& call) {
-    try {
-        call();
-    } catch (const std::exception& error) {
-        return error.what();
-    }
-    return "nothing thrown";
-}
 
 TEST(HeadlessContext, WorksWithoutADisplayAndLeavesTheEnvironmentAlone) {
     unsetenv("DISPLAY");

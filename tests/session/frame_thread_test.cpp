@@ -14,142 +14,13 @@
 #include <gtest/gtest.h>
 
 #include "core/random.h"
-#include "gl/handles.h"
 #include "gl/read_back.h"
-#include "radiance/scenes.h"
 #include "session/frame_lane.h"
+#include "session/frame_thread_fixture.h"
 #include "session/picture.h"
-#include "session/render.h"
-#include "session/synthetic_calibration.h"
 
 namespace livery {
 namespace {
-
-using FramePointer = std::shared_ptr<const FinishedFrame>;
-constexpr auto kPatience = std::chrono::minutes(5);  // other programs may be busy
-
-/// What the frame thread tells, to be waited for.
-class Gallery {
-  public:
-    void add(FramePointer frame) {
-        const std::scoped_lock lock(mutex_);
-        frames_.push_back(std::move(frame));
-        changed_.notify_all();
-    }
-    auto adder() {
-        return [this](FramePointer frame) { add(std::move(frame)); };
-    }
-    /// The first frame, from now on or told before, that is as wanted; null after a long time.
-    FramePointer wait_for(const std::function<bool(const FinishedFrame&)>& wanted) {
-        std::unique_lock lock(mutex_);
-        FramePointer found;
-        changed_.wait_for(lock, kPatience, [&] {
-            for (const FramePointer& frame : frames_) {
-                if (wanted(*frame)) found = frame;
-                if (found) break;
-            }
-            return found != nullptr;
-        });
-        return found;
-    }
-    FramePointer whole(std::uint64_t number) {
-        return wait_for([&](const FinishedFrame& frame) {
-            return frame.number == number && frame.unfinished.empty();
-        });
-    }
-    std::deque<FramePointer> all() {
-        const std::scoped_lock lock(mutex_);
-        return frames_;
-    }
-    void clear() {
-        const std::scoped_lock lock(mutex_);
-        frames_.clear();
-    }
-
-  private:
-    std::mutex mutex_;
-    std::condition_variable changed_;
-    std::deque<FramePointer> frames_;
-};
-
-std::shared_ptr<const Environment> sky(double upper, int width = 64) {
-    auto environment = std::make_shared<Environment>();
-    ImageF& picture = environment->radiance_working;
-    picture = ImageF(width, width / 2, 3, 0.2f);
-    std::fill_n(picture.values.begin(), picture.values.size() / 2, static_cast<float>(upper));
-    return environment;
-}
-
-std::shared_ptr<const ProjectorSetup> setup_of(const View& view, const Scene& scene) {
-    auto setup = std::make_shared<ProjectorSetup>();
-    setup->view = view;
-    const FrameGeometry geometry(scene.product, view);
-    const ColourCalibration calibration = synthetic_calibration(geometry.map.coverage);
-    setup->design_white_y = design_white_luminance(calibration, 20.0);
-    setup->table = bake(calibration, setup->design_white_y);
-    return setup;
-}
-
-/// Two spheres under a key light, and a frame thread in two contexts that share.
-class FrameThreadTest : public testing::Test {
-  protected:
-    FrameThreadTest() {
-        for (HeadlessContext* context : {&window_, &front_, &back_}) context->release();
-        description_.scene = scene_of(two_spheres(), paint_of(ReflectanceModel::clearcoat, 0.05));
-        description_.scene.lights = {light_from({0.4, 0.8, 0.5}, 3.0 * kDegree_rad)};
-        description_.setup = setup_of(test_view(128, 96), description_.scene);
-        description_.number = 1;
-    }
-
-    void start() { thread_ = std::make_unique<FrameThread>(front_, back_, gallery_.adder()); }
-    /// The next number, shown.
-    std::uint64_t show() {
-        thread_->show(description_);
-        return description_.number++;
-    }
-    void paint(Scene& scene, std::size_t part, ReflectanceModel model, glm::dvec3 diffuse) {
-        scene.part_materials[part] = paint_of(model, 0.1);
-        scene.part_materials[part].diffuse = diffuse;
-    }
-    RenderedFrame from_scratch(const Scene& scene) const {
-        RenderRequest request;
-        request.scene = scene;
-        request.view = description_.setup->view;
-        request.quality = description_.quality;
-        request.gl_device = GlDevice::software;
-        if (description_.setup->table) {
-            request.stage = FrameStage::projector;
-            request.compensation = &*description_.setup->table;
-        }
-        return render_frame(request);
-    }
-
-    void wait_until_idle() const {
-        while (!thread_->is_idle()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    }
-    void expect_wiped(const FinishedFrame& frame, const Scene& right) const {
-        const Image8 left_drive = from_scratch(description_.scene).drive;
-        const Image8 right_drive = from_scratch(right).drive;
-        const FrameGeometry geometry(right.product, description_.setup->view);
-        const int column = wipe_column(geometry.map, description_.wipe_at);
-        int differing = 0;
-        for (int y = 0; y < left_drive.height; ++y) {
-            for (int x = 0; x < left_drive.width; ++x) {
-                for (int c = 0; c < 3; ++c) {
-                    const Image8& wanted = x < column ? left_drive : right_drive;
-                    differing += frame.drive->at(x, y, c) != wanted.at(x, y, c) ? 1 : 0;
-                }
-            }
-        }
-        EXPECT_EQ(differing, 0) << "the line at column " << column;
-    }
-
-    HeadlessContext window_{GlDevice::software}, front_{GlDevice::software, &window_},
-        back_{GlDevice::software, &window_};
-    Gallery gallery_;
-    FrameDescription description_;
-    std::unique_ptr<FrameThread> thread_;
-};
 
 TEST_F(FrameThreadTest, FramesAreRenderFramesOwn) {
     start();
@@ -359,56 +230,6 @@ TEST_F(FrameThreadTest, AGlowingPartGlowsAndStops) {
     EXPECT_EQ(after->drive->values, before->drive->values);
 }
 
-TEST_F(FrameThreadTest, AProblemKeepsTheLastGoodPicture) {
-    start();
-    const auto good = gallery_.whole(show());
-    ASSERT_TRUE(good);
-    const FrameDescription sound = description_;
-    const auto expect_problem = [&](const std::string& text) {
-        const auto number = show();
-        const auto frame = gallery_.wait_for(
-            [&](const auto& f) { return f.number == number && !f.problem.empty(); });
-        ASSERT_TRUE(frame) << text;
-        EXPECT_NE(frame->problem.find(text), std::string::npos) << frame->problem;
-        EXPECT_EQ(frame->drive, good->drive);
-        EXPECT_EQ(frame->drive_texture, good->drive_texture);
-        const auto next = description_.number;
-        description_ = sound;
-        description_.number = next;
-        const auto again = gallery_.whole(show());
-        ASSERT_TRUE(again);
-        EXPECT_EQ(again->problem, "");
-        EXPECT_EQ(again->drive->values, good->drive->values);
-    };
-    description_.scene.part_materials.pop_back();
-    expect_problem("1 materials for 2 parts");
-    description_.glowing_part = 7;
-    expect_problem("part 7 cannot glow: the product has 2");
-    description_.setup = nullptr;
-    expect_problem("the frame has no projector");
-    description_.scene.product = nullptr;
-    expect_problem("the frame has no product");
-    description_.quality = Quality::reference;
-    expect_problem("the reference level is the path tracer's");
-    description_.wipe_to = scene_of(two_spheres(), paint_of(ReflectanceModel::ggx, 0.1));
-    expect_problem("a wipe shows two looks of one product");
-}
-
-TEST_F(FrameThreadTest, AProblemBeforeTheFirstPictureHasNone) {
-    start();
-    const auto sound = description_;
-    description_.scene.part_materials.clear();
-    const auto bad = show();
-    const auto frame = gallery_.wait_for([&](const auto& f) { return f.number == bad; });
-    ASSERT_TRUE(frame);
-    EXPECT_NE(frame->problem, "");
-    EXPECT_FALSE(frame->drive);
-    EXPECT_EQ(frame->drive_texture, 0u);
-    description_ = sound;
-    description_.number = bad + 1;
-    EXPECT_TRUE(gallery_.whole(show()));
-}
-
 TEST_F(FrameThreadTest, AnotherCalibrationOfTheSameProjectorOnlyCorrectsAgain) {
     start();
     const auto before = gallery_.whole(show());
@@ -502,30 +323,6 @@ TEST_F(FrameThreadTest, EndsAtAnyMoment) {
         thread_.reset();
         gallery_.clear();
     }
-}
-
-TEST(SolveKey, SaysWhatIsMissing) {
-    FrameDescription description;
-    auto setup = std::make_shared<ProjectorSetup>();
-    setup->view = test_view(8, 8);
-    description.setup = setup;
-    description.scene.product = std::make_shared<Product>();
-    const SolveKeys wanted = keys_of(description);
-    EXPECT_EQ(missing_of(wanted, wanted), "");
-    EXPECT_EQ(missing_of({}, wanted), "picture");
-    EXPECT_FALSE(covers_light({}, wanted));
-    const auto missing = [&](const auto& change) {
-        SolveKeys solved = wanted;
-        change(*solved[0]);
-        return missing_of(solved, wanted);
-    };
-    EXPECT_EQ(missing([](SolveKey& key) { key.lights.emplace_back(); }), "light");
-    EXPECT_EQ(missing([](SolveKey& key) { key.eye_mm.x = 1.0; }), "eye");
-    EXPECT_EQ(missing([](SolveKey& key) { key.environment = sky(1.0); }), "environment");
-    EXPECT_EQ(missing([](SolveKey& key) { key.view.focal_px.x += 1.0; }), "projector");
-    EXPECT_EQ(missing([](SolveKey& key) { key.product = nullptr; }), "product");
-    EXPECT_EQ(missing([](SolveKey& key) { key.quality = Quality::draft; }), "normal quality");
-    EXPECT_TRUE(covers_light(with_quality(wanted, Quality::draft), wanted));
 }
 
 }  // namespace
