@@ -66,6 +66,13 @@ void Results::present_locked() {
     }
 }
 
+bool Results::awaits_projector() const {
+    const std::lock_guard lock(mutex_);
+    if (!projector_ || instead_ || !drawn_) return false;
+    return projector_->state() == ProjectorScreen::State::showing && !projector_->is_black() &&
+           !projector_->is_frozen() && projector_->shown().number < drawn_->number;
+}
+
 std::shared_ptr<const FinishedFrame> Results::newest_frame() const {
     const std::lock_guard lock(mutex_);
     return frame_;

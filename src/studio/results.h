@@ -25,6 +25,8 @@ struct Results {
     void use(ProjectorScreen* screen);  ///< null: none
     /// Shown instead of the frames; none: the frames again.
     void show_instead(std::shared_ptr<const ProjectorPicture> picture);
+    /// The newest frame could be on the projector, and is not yet.
+    bool awaits_projector() const;
     std::shared_ptr<const FinishedFrame> newest_frame() const;  ///< with its problem, if it has one
     std::shared_ptr<const FinishedFrame> newest_drawn() const;  ///< the last that could be drawn
     std::shared_ptr<const PreviewPicture> newest_preview() const;

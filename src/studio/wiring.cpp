@@ -259,8 +259,11 @@ void take_calibration(Shell& shell) {
 }  // namespace
 
 bool is_frame_under_way(const Shell& shell) {
-    return shell.studio.setup && (!shell.results->newest_frame() ||
-                                  shell.results->newest_frame()->number < shell.frame_number);
+    if (!shell.studio.setup) return false;
+    const auto newest = shell.results->newest_frame();
+    if (!newest || newest->number < shell.frame_number) return true;
+    // What is drawn here now would stand before the projector's swap in the driver's queue.
+    return newest->problem.empty() && shell.results->awaits_projector();
 }
 
 Contexts start_threads(Shell& shell, const Window& window) {

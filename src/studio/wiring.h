@@ -18,7 +18,7 @@ Contexts start_threads(Shell& shell, const Window& window);
 /// In the order in which one needs the other; with the window's context current.
 void stop_threads(Shell& shell);
 
-/// A picture for the mock-up was asked for and is not there yet.
+/// A picture for the mock-up was asked for and has not reached the projector, if one shows.
 bool is_frame_under_way(const Shell& shell);
 
 /// At the start of each frame of the window: takes over what is new.
