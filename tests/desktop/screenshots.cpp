@@ -40,7 +40,7 @@ class Photographer {
         take("window");
 
         program().hover("paint:solid green");
-        settle();
+        wait_for_rest();
         take("hover");
         program().move_away();
         program().click("paint-search");
