@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <glm/geometric.hpp>
+
 #include "core/csv.h"
 #include "core/error.h"
 #include "core/paths.h"
@@ -19,6 +21,27 @@ constexpr std::size_t kMaxRows = 20'000'000;
 glm::dvec3 direction_from_angles(double theta_rad, double phi_rad) {
     const double sine = std::sin(theta_rad);
     return {sine * std::cos(phi_rad), sine * std::sin(phi_rad), std::cos(theta_rad)};
+}
+
+std::vector<WeightedDirection> directions_by_half_vector(glm::dvec3 wo, int points) {
+    std::vector<WeightedDirection> directions;
+    if (!(wo.z > 0.0)) return directions;
+    const double steps = points;
+    for (int ring = 0; ring < points; ++ring) {
+        // theta_h = pi/2 u^2, so d theta_h = pi u du; and d wi = 4 (wo.h) d h.
+        const double u = (ring + 0.5) / steps;
+        const double theta_h = 0.5 * std::numbers::pi * u * u;
+        const double area =
+            std::numbers::pi * u * std::sin(theta_h) * 2.0 * std::numbers::pi / (steps * steps);
+        for (int k = 0; k < points; ++k) {
+            const glm::dvec3 h =
+                direction_from_angles(theta_h, 2.0 * std::numbers::pi * (k + 0.5) / steps);
+            const double along = glm::dot(wo, h);
+            const glm::dvec3 wi = h * (2.0 * along) - wo;
+            if (along > 0.0 && wi.z > 0.0) directions.push_back({wi, wi.z * 4.0 * along * area});
+        }
+    }
+    return directions;
 }
 
 std::vector<DirectionPair> read_directions_csv(const std::filesystem::path& file) {
