@@ -56,19 +56,21 @@ Command albedo_command() {
                                {}});
     command.run = [arguments](const CommonOptions& common, const Progress& progress) {
         const auto mus = parse_mus(arguments->mu);
-        const Material material = find_material(arguments->material);
+        const AnyReflectance reflectance = find_reflectance(arguments->material);
+        const auto settings = reflectance_settings(*arguments, common);
         std::vector<glm::dvec3> directions;
         for (const double mu : mus) {
             const double sine = std::sqrt((1.0 - mu) * (1.0 + mu));
             directions.emplace_back(
                 sine * std::cos(arguments->phi_rad), sine * std::sin(arguments->phi_rad), mu);
         }
-        const auto albedos =
-            albedo_values(material, directions, reflectance_settings(*arguments, common), progress);
+        const auto albedos = std::visit(
+            [&](const auto& any) { return albedo_values(any, directions, settings, progress); },
+            reflectance);
         Outcome outcome;
         Json rec709 = Json::array(), working = Json::array();
         double largest = 0.0;
-        outcome.text = material.name + ", linear Rec.709:\n";
+        outcome.text = name_of(reflectance) + ", linear Rec.709:\n";
         for (std::size_t k = 0; k < mus.size(); ++k) {
             const glm::dvec3 value = rec709_from_working() * albedos[k];
             rec709.push_back(numbers(value));
@@ -83,9 +85,10 @@ Command albedo_command() {
                            {"albedo_working", working},
                            {"largest_working", number(largest)},
                            {"phi", arguments->phi_rad},
-                           {"material", material.name},
+                           {"material", name_of(reflectance)},
                            {"precision", arguments->precision},
                            {"space", "linear Rec.709, D65"}};
+        tell_measurement(reflectance, settings, outcome);
         return outcome;
     };
     return command;

@@ -5,12 +5,16 @@
 #include <functional>
 #include <set>
 
+#include "appearance/directions.h"
 #include "appearance/material.h"
+#include "appearance/measured_reflectance.h"
 #include "capture/captures_folder.h"
 #include "capture/patterns_folder.h"
+#include "core/csv.h"
 #include "core/error.h"
 #include "core/image_io.h"
 #include "core/json.h"
+#include "core/paths.h"
 #include "scene/colour_calibration.h"
 #include "scene/look.h"
 #include "scene/product.h"
@@ -18,6 +22,7 @@
 #include "session/camera_to_xyz_file.h"
 #include "session/session_file.h"
 #include "twin/description.h"
+#include "twin/spectra.h"
 
 namespace livery {
 
@@ -178,6 +183,35 @@ Kind kind_of_json(const Path& file, const Progress& progress) {
             }};
 }
 
+void check_measured(const Path& file, FileCheck& check) {
+    const MeasuredCoverage coverage = coverage_of(read_measured_file(file));
+    check.notes.push_back(std::to_string(coverage.samples) + " samples");
+    if (coverage.masked > 0) {
+        check.notes.push_back(std::to_string(coverage.masked) +
+                              " left out: negative, so not measured");
+    }
+}
+
+/// By the names of its columns.
+Kind kind_of_csv(const Path& file) {
+    const std::string text = read_text_file(file, std::size_t{1} << 30u);
+    const CsvReader csv(text, file);
+    if (csv.find("wavelength") || csv.find("nm")) {
+        return {"spectra", [](const Path& path, FileCheck&) { read_spectra_csv(path); }};
+    }
+    if (csv.find("theta_i") && csv.names().size() == 4) {
+        return {"directions", [](const Path& path, FileCheck& check) {
+                    check.notes.push_back(std::to_string(read_directions_csv(path).size()) +
+                                          " pairs of directions");
+                }};
+    }
+    if (csv.find("theta_i")) return {"measured", check_measured};
+    throw FileError(file,
+                    "header",
+                    "'" + csv.names().front().substr(0, 40) + "', ...",
+                    "the columns of spectra, directions or measured reflectance");
+}
+
 Kind kind_of(const Path& file, const Progress& progress) {
     if (!is_there(file)) throw FileError(file, "", "no such file", "a file or folder");
     if (std::filesystem::is_directory(file)) return kind_of_folder(file, progress);
@@ -189,6 +223,8 @@ Kind kind_of(const Path& file, const Progress& progress) {
         }
         return kind_of_json(file, progress);
     }
+    if (suffix == ".csv") return kind_of_csv(file);
+    if (is_measured_file(file)) return {"measured", check_measured};
     if (suffix == ".livery" || is_session_file(file)) return {"session", read_session};
     if (suffix == ".glb" || suffix == ".gltf" || suffix == ".ply" || suffix == ".obj") {
         return {"mesh", check_mesh};
@@ -199,14 +235,15 @@ Kind kind_of(const Path& file, const Progress& progress) {
         return {"picture", read_picture};
     }
     if (has_picture_suffix(file)) return {"picture", read_picture};
-    return {"unknown", [](const Path& path, FileCheck&) {
-                throw FileError(
-                    path,
-                    "suffix",
-                    path.extension().string().empty() ? "none" : path.extension().string(),
-                    ".livery, .glb, .gltf, .ply, .obj, .json, .exr, .hdr, .png, .tif, .jpg, RAW or "
-                    "a folder");
-            }};
+    return {
+        "unknown", [](const Path& path, FileCheck&) {
+            throw FileError(
+                path,
+                "suffix",
+                path.extension().string().empty() ? "none" : path.extension().string(),
+                ".livery, .glb, .gltf, .ply, .obj, .json, .csv, .binary, .brdf, .exr, .hdr, .png, "
+                ".tif, .jpg, RAW or a folder");
+        }};
 }
 
 }  // namespace

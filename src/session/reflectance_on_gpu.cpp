@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "appearance/bsdf.h"
+#include "appearance/measured_grid.h"
 #include "gl/draw.h"
 #include "gl/program.h"
 #include "gl/read_back.h"
@@ -28,10 +29,13 @@ std::string literal(const glm::vec3& v) {
     return fmt::format("vec3({}, {}, {})", literal(v.x), literal(v.y), literal(v.z));
 }
 
-std::string shader_text(const Material& material) {
+// A field more must be set in paint_text(), or the shader would read what nobody wrote.
+static_assert(sizeof(f32::BsdfParameters) == 13 * sizeof(float));
+
+std::string paint_text(const Material& material) {
     const f32::BsdfParameters p = parameters_of(material);
-    std::string text = "#version 450 core\n" + bsdf_glsl(material.model);
-    text += "BsdfParameters paint() {\n    BsdfParameters p;\n";
+    std::string text =
+        bsdf_glsl(material.model) + "BsdfParameters paint() {\n    BsdfParameters p;\n";
     const auto assign = [&](const char* name, const auto& value) {
         text += fmt::format("    p.{} = {};\n", name, literal(value));
     };
@@ -42,21 +46,20 @@ std::string shader_text(const Material& material) {
     assign("coat_alpha", p.coat_alpha);
     assign("coat_f0", p.coat_f0);
     assign("coat_transmittance", p.coat_transmittance);
-    text += "    return p;\n}\n";
-    text += R"(
+    return text + "    return p;\n}\n#define VALUE(wi, wo) bsdf_eval(paint(), wi, wo)\n";
+}
+
+constexpr const char* kBody = R"(
 uniform sampler2D toward_light;
 uniform sampler2D toward_eye;
 layout(location = 0) out vec4 value;
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
-    value = vec4(bsdf_eval(paint(),
-                           texelFetch(toward_light, at, 0).xyz,
-                           texelFetch(toward_eye, at, 0).xyz),
-                 1.0);
+    vec3 wi = texelFetch(toward_light, at, 0).xyz;
+    vec3 wo = texelFetch(toward_eye, at, 0).xyz;
+    value = vec4(VALUE(wi, wo), 1.0);
 }
 )";
-    return text;
-}
 
 void append(std::vector<float>& texels, const glm::dvec3& v) {
     texels.insert(
@@ -64,16 +67,12 @@ void append(std::vector<float>& texels, const glm::dvec3& v) {
         {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), 0.0f});
 }
 
-}  // namespace
-
-std::vector<glm::dvec3> reflectance_on_gpu(const Material& material,
-                                           std::span<const DirectionPair> pairs,
-                                           GlDevice device,
-                                           const Progress& progress) {
+/// Runs a program with kBody over the pairs. The context and the program's other inputs are set.
+std::vector<glm::dvec3> evaluate_pairs(Program& program,
+                                       std::span<const DirectionPair> pairs,
+                                       const Progress& progress) {
     std::vector<glm::dvec3> values;
     values.reserve(pairs.size());
-    const HeadlessContext context(device);
-    Program program = Program::screen_pass({"brdf.frag", shader_text(material)});
     Texture2D toward_light(kColumns, kRows, TexelFormat::rgba32f);
     Texture2D toward_eye(kColumns, kRows, TexelFormat::rgba32f);
     const Texture2D target(kColumns, kRows, TexelFormat::rgba32f);
@@ -113,6 +112,44 @@ std::vector<glm::dvec3> reflectance_on_gpu(const Material& material,
         }
     }
     return values;
+}
+
+}  // namespace
+
+std::vector<glm::dvec3> reflectance_on_gpu(const Material& material,
+                                           std::span<const DirectionPair> pairs,
+                                           GlDevice device,
+                                           const Progress& progress) {
+    const HeadlessContext context(device);
+    Program program =
+        Program::screen_pass({"brdf.frag", "#version 450 core\n" + paint_text(material) + kBody});
+    return evaluate_pairs(program, pairs, progress);
+}
+
+std::vector<glm::dvec3> reflectance_on_gpu(const MeasuredGrid& grid,
+                                           std::span<const DirectionPair> pairs,
+                                           GlDevice device,
+                                           const Progress& progress) {
+    const HeadlessContext context(device);
+    const auto [rows, layers, columns] = grid.size;
+    Texture2D texture({columns, rows, layers, 1}, TexelFormat::rgba32f);
+    const std::size_t layer_floats = grid.texels.size() / static_cast<std::size_t>(layers);
+    for (int layer = 0; layer < layers; ++layer) {
+        texture.upload(std::span(grid.texels)
+                           .subspan(static_cast<std::size_t>(layer) * layer_floats, layer_floats),
+                       0,
+                       layer);
+    }
+    texture.bind(2);
+    Program program =
+        Program::screen_pass({"measured.frag",
+                              "#version 450 core\n" + measured_glsl() +
+                                  "uniform sampler2DArray measured_grid;\n"
+                                  "#define VALUE(wi, wo) measured_eval(measured_grid, wi, wo)\n" +
+                                  kBody});
+    program.use();
+    program.set("measured_grid", 2);
+    return evaluate_pairs(program, pairs, progress);
 }
 
 }  // namespace livery

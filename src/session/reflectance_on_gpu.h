@@ -1,10 +1,11 @@
-// A paint's reflectance evaluated by its shader (shaders/bsdf) for given directions.
+// Reflectance evaluated by its shader (shaders/bsdf) for given directions.
 #pragma once
 
 #include <span>
 #include <vector>
 
 #include "appearance/material.h"
+#include "appearance/measured_grid.h"
 #include "core/progress.h"
 #include "gl/context.h"
 #include "session/reflectance_values.h"
@@ -13,6 +14,11 @@ namespace livery {
 
 /// In the working space, one value a pair. Makes a context of its own and leaves none current.
 std::vector<glm::dvec3> reflectance_on_gpu(const Material& material,
+                                           std::span<const DirectionPair> pairs,
+                                           GlDevice device,
+                                           const Progress& progress = {});
+/// The same of measured reflectance, drawn from its grid.
+std::vector<glm::dvec3> reflectance_on_gpu(const MeasuredGrid& grid,
                                            std::span<const DirectionPair> pairs,
                                            GlDevice device,
                                            const Progress& progress = {});

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "appearance/bsdf.h"
+#include "appearance/measured_grid.h"
 #include "core/parallel.h"
 #include "session/reflectance_on_gpu.h"
 
@@ -13,6 +14,7 @@ namespace {
 
 constexpr std::size_t kAtOnce = 1u << 20u;  ///< pairs between two looks at Ctrl-C
 constexpr std::size_t kAlbedoSamples = 1u << 15u;
+constexpr int kMeasuredPoints = 128;  ///< a side, of an albedo's quadrature
 
 /// Steps of a sequence that fills the unit cube evenly (Roberts 2018, R3): powers of the inverse of
 /// the root of x^4 = x + 1.
@@ -116,6 +118,45 @@ std::vector<glm::dvec3> albedo_values(const Material& material,
         albedos[k / kAlbedoSamples] +=
             (values[k] - truth[k]) * (weights[k] / static_cast<double>(kAlbedoSamples));
     }
+    return albedos;
+}
+
+std::vector<glm::dvec3> reflectance_values(const MeasuredReflectance& measured,
+                                           std::span<const DirectionPair> pairs,
+                                           const ReflectanceSettings& settings,
+                                           const Progress& progress) {
+    if (settings.precision == Precision::f64) {
+        return for_each_pair(pairs, progress, [&](const DirectionPair& given) {
+            const DirectionPair pair = settings.round_inputs ? rounded_to_float(given) : given;
+            return evaluate(measured, pair.wi, pair.wo);
+        });
+    }
+    const MeasuredGrid grid = resampled(measured, {}, progress);
+    if (settings.precision == Precision::gpu) {
+        return reflectance_on_gpu(grid, pairs, settings.gl, progress);
+    }
+    return for_each_pair(pairs, progress, [&](const DirectionPair& pair) {
+        return glm::dvec3(evaluate(grid, glm::vec3(pair.wi), glm::vec3(pair.wo)));
+    });
+}
+
+std::vector<glm::dvec3> albedo_values(const MeasuredReflectance& measured,
+                                      std::span<const glm::dvec3> wo,
+                                      const ReflectanceSettings& settings,
+                                      const Progress& progress) {
+    std::vector<DirectionPair> pairs;
+    std::vector<double> weights;
+    std::vector<std::size_t> owners;
+    for (std::size_t k = 0; k < wo.size(); ++k) {
+        for (const auto& [wi, weight] : directions_by_half_vector(wo[k], kMeasuredPoints)) {
+            pairs.push_back({wi, wo[k]});
+            weights.push_back(weight);
+            owners.push_back(k);
+        }
+    }
+    const auto values = reflectance_values(measured, pairs, settings, progress);
+    std::vector<glm::dvec3> albedos(wo.size(), glm::dvec3(0.0));
+    for (std::size_t k = 0; k < pairs.size(); ++k) albedos[owners[k]] += weights[k] * values[k];
     return albedos;
 }
 

@@ -8,6 +8,7 @@
 
 #include "appearance/directions.h"
 #include "appearance/material.h"
+#include "appearance/measured_reflectance.h"
 #include "core/progress.h"
 #include "gl/context.h"
 
@@ -31,9 +32,21 @@ std::vector<glm::dvec3> reflectance_values(const Material& material,
                                            const ReflectanceSettings& settings,
                                            const Progress& progress = {});
 
+/// The same of measured reflectance: in float and on the GPU, of the grid that a GPU draws it from
+/// (appearance/measured_grid.h).
+std::vector<glm::dvec3> reflectance_values(const MeasuredReflectance& measured,
+                                           std::span<const DirectionPair> pairs,
+                                           const ReflectanceSettings& settings,
+                                           const Progress& progress = {});
+
 /// Directional albedo for each direction toward the eye, in the working space. In float: the
 /// double's, and the mean difference of the two over the model's own samples.
 std::vector<glm::dvec3> albedo_values(const Material& material,
+                                      std::span<const glm::dvec3> wo,
+                                      const ReflectanceSettings& settings,
+                                      const Progress& progress = {});
+/// Of measured reflectance, by quadrature over the half vector.
+std::vector<glm::dvec3> albedo_values(const MeasuredReflectance& measured,
                                       std::span<const glm::dvec3> wo,
                                       const ReflectanceSettings& settings,
                                       const Progress& progress = {});

@@ -231,5 +231,135 @@ TEST_F(Reflectance, AlbedoRefusesWhatIsNoCosine) {
     }
 }
 
+class Measured : public Reflectance {
+  protected:
+    /// Twice as bright at 700 nm as at 400 nm, the same in all directions.
+    std::string spectral() const {
+        std::string text = "# wavelengths\n2\n400 700\n";
+        for (int k = 0; k < 12; ++k) {
+            text += std::to_string(0.1 * k) + " 0 0.4 " + std::to_string(0.5 * k) + " 0.1 0.2\n";
+        }
+        return folder_.write("paint.brdf", text).string();
+    }
+    std::string colours() const {
+        std::string text = "theta_i,phi_i,theta_o,phi_o,r,g,b\n";
+        for (int k = 0; k < 12; ++k) {
+            text +=
+                std::to_string(0.1 * k) + ",0,0.4," + std::to_string(0.5 * k) + ",0.3,0.2,0.1\n";
+        }
+        return folder_.write("paint.csv", text).string();
+    }
+};
+
+TEST_F(Measured, ReflectanceComesFromItsFile) {
+    const std::string in = directions("0.3,0,0.5,2\n0.2,1,0.1,0\n1.6,0,0,0\n");
+    for (const char* precision : {"f64", "f32", "gpu"}) {
+        const ProgramRun run = brdf(colours(), in, {"--precision", precision});
+        ASSERT_EQ(run.exit_code, 0) << run.err;
+        const Json figures = Json::parse(run.out);
+        EXPECT_EQ(figures["material"], "paint.csv");
+        EXPECT_EQ(figures["measured"]["samples"], 12);
+        EXPECT_EQ(figures["measured"].contains("resampling"), precision != std::string("f64"));
+        const Rows rows = values();
+        for (std::size_t k = 0; k < 3; ++k) {
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double expected = k < 2 ? 0.3 - 0.1 * static_cast<double>(c) : 0.0;
+                EXPECT_NEAR(rows[k][c], expected, 1e-6) << precision << k;
+            }
+        }
+    }
+}
+
+TEST_F(Measured, TheShaderDrawsTheGridAsTheProcessorReadsIt) {
+    std::string text = "theta_i,phi_i,theta_o,phi_o,r,g,b\n", rows;
+    for (int k = 0; k < 200; ++k) {
+        const double theta = 1.5 * std::fmod(0.618033988749895 * k, 1.0);
+        const double other = 1.5 * std::fmod(0.754877666 * k, 1.0);
+        const std::string angles = std::to_string(theta) + ",0," + std::to_string(other) + "," +
+                                   std::to_string(std::fmod(0.3 * k, 6.28));
+        text += angles + "," + std::to_string(0.2 + std::exp(-3.0 * theta)) + ",0.1,0.05\n";
+        rows += angles + "\n" + angles.substr(0, angles.find(',')) + ",0,0.01,3\n";
+    }
+    const auto paint = folder_.write("varied.csv", text).string();
+    const std::string in = directions(rows);
+    ASSERT_EQ(brdf(paint, in, {"--precision", "f32"}).exit_code, 0);
+    const Rows processor = values();
+    ASSERT_EQ(brdf(paint, in, {"--precision", "gpu"}).exit_code, 0);
+    const Rows shader = values();
+    double lowest = 1e9, highest = 0.0;
+    for (std::size_t k = 0; k < processor.size(); ++k) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            EXPECT_NEAR(shader[k][c], processor[k][c], 1e-4 * processor[k][0]) << k;
+        }
+        lowest = std::min(lowest, processor[k][0]);
+        highest = std::max(highest, processor[k][0]);
+    }
+    EXPECT_GT(highest, 2.0 * lowest);
+}
+
+TEST_F(Measured, SpectraComeOneColumnAWavelength) {
+    const std::string in = directions("0.3,0,0.5,2\n1.6,0,0,0\n");
+    ASSERT_EQ(brdf(spectral(), in, {"--spectral"}).exit_code, 0);
+    const Rows rows = values("400,700");
+    ASSERT_EQ(rows.size(), 2u);
+    EXPECT_NEAR(rows[0][0], 0.1, 1e-9);
+    EXPECT_NEAR(rows[0][1], 0.2, 1e-9);
+    EXPECT_EQ(rows[1][1], 0.0);
+    std::filesystem::remove(out());
+    refuses(colours(), in, {"--spectral", "paint.csv", "no wavelengths"}, {"--spectral"});
+    refuses(lambert(), in, {"--spectral", "grey", "no wavelengths"}, {"--spectral"});
+    refuses(spectral(), in, {"--spectral", "f64"}, {"--spectral", "--precision", "gpu"});
+    ASSERT_EQ(brdf(spectral(), in).exit_code, 0);
+    EXPECT_GT(values()[0][0], values()[0][2]) << "more red than blue";
+}
+
+TEST_F(Measured, AlbedoOfADiffuserIsPiTimesItsReflectance) {
+    for (const char* precision : {"f64", "f32", "gpu"}) {
+        const ProgramRun run = run_program(LIVERY_PROGRAM,
+                                           {"albedo",
+                                            "--json",
+                                            "--material",
+                                            colours(),
+                                            "--mu",
+                                            "0.2,1",
+                                            "--precision",
+                                            precision});
+        ASSERT_EQ(run.exit_code, 0) << run.err;
+        for (const auto& albedo : Json::parse(run.out)["albedo"]) {
+            EXPECT_NEAR(albedo[0].get<double>(), 0.3 * std::numbers::pi, 2e-4);
+            EXPECT_NEAR(albedo[2].get<double>(), 0.1 * std::numbers::pi, 2e-4);
+        }
+    }
+}
+
+TEST_F(Measured, FilesAreKnownToCheckAndRefusedInOneLine) {
+    const auto broken = folder_.write("broken.brdf", "3\n400 500 nan\n");
+    const auto table = folder_.write("table.binary", std::string("\x5a\0\0\0\x5a\0\0\0", 8));
+    const auto other = folder_.write("other.csv", "a,b\n1,2\n");
+    const ProgramRun run = run_program(LIVERY_PROGRAM,
+                                       {"check",
+                                        "--json",
+                                        spectral(),
+                                        colours(),
+                                        directions("0,0,0,0\n"),
+                                        broken.string(),
+                                        table.string(),
+                                        other.string()});
+    EXPECT_EQ(run.exit_code, 1);
+    const Json files = Json::parse(run.out)["files"];
+    const std::vector<std::string> kinds = {
+        "measured", "measured", "directions", "measured", "measured", "unknown"};
+    for (std::size_t k = 0; k < kinds.size(); ++k) {
+        EXPECT_EQ(files[k]["kind"], kinds[k]);
+        EXPECT_EQ(files[k]["ok"], k < 3) << files[k].dump();
+    }
+    EXPECT_EQ(files[0]["notes"][0], "12 samples");
+    const std::string in = directions("0,0,0,0\n");
+    refuses(broken.string(), in, {"broken.brdf", "line 2: wavelengths", "'nan'", "in nm"});
+    refuses(table.string(), in, {"table.binary", "header", "8 bytes", "MERL"});
+    refuses(other.string(), in, {"other.csv", "header", "'theta_i'"});
+    refuses((folder_ / "none.binary").string(), in, {"none.binary", "no such file"});
+}
+
 }  // namespace
 }  // namespace livery

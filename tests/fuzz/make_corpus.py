@@ -137,6 +137,16 @@ shipped("material", "materials/solid-red.json", "materials/blue-metallic.json",
         "materials/chrome-trim.json", "materials/dark-glass.json")
 shipped("look", "assets/looks/blue-metallic.json")
 shipped("bench", "calibration/default.json", "calibration/hard.json", "calibration/sphere.json")
+# Measured reflectance: the fewest samples that are taken, and a table's first bytes.
+ANGLES = [(0.1 * k, 0, 0.3 + 0.1 * k, 0.7 * k) for k in range(9)]
+TEXT = "# Some Laboratory\n# A paint\n\n# num wls\n3\n# wls\n400 550\n700\n\n"
+put("measured_text", "nine.brdf", TEXT + "".join("%g %g %g %g 0.1 0.25 3\n" % a for a in ANGLES))
+put("measured_text", "holes.brdf", TEXT + "".join("%g %g %g %g %g 0 1e-6\n" % (*a, a[0] - 0.05) for a in ANGLES))
+HEAD = "theta_i,phi_i,theta_o,phi_o,"
+put("measured_csv", "colours.csv", HEAD + "r,g,b\n" + "".join("%g,%g,%g,%g,0.1,-0.01,0.3\n" % a for a in ANGLES))
+put("measured_csv", "spectra.csv", HEAD + "390,550nm,700 nm\n" + "".join("%g,%g,%g,%g,1,2,30\n" % a for a in ANGLES))
+put("measured_merl", "head.binary", struct.pack("<3i3d", 90, 90, 180, 1.0, -1.0, 30.0))
+put("measured_merl", "other.binary", struct.pack("<3i", 90, 90, 360))
 put("directions", "two.csv", "theta_i,phi_i,theta_o,phi_o\n0.1,0,0.5,3.1\n1.5,6.28,1e-3,-2\n")
 put("directions", "others.csv", "# measured\r\nr,phi_o,\"theta_o\",theta_i,phi_i\r\nx,0,1.6,0,0\r\n")
 shipped("spectral_paint", "calibration/paints/solid-red.json")
