@@ -26,6 +26,7 @@ class CsvReader {
     /// The next row; false after the last. Throws FileError when it has not as many cells as the
     /// header.
     bool next();
+    std::string_view text(std::size_t column) const { return cells_[column]; }
     /// A cell of the row as a finite number. Throws FileError.
     double number(std::size_t column) const;
     /// FileError about a cell of the row.
