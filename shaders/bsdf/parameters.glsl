@@ -8,6 +8,10 @@ struct BsdfParameters {
     REAL coat_alpha;          // slope parameter of the coat
     REAL coat_f0;             // Fresnel reflectance of the coat at normal incidence
     VEC3 coat_transmittance;  // of the coat, once through at normal incidence
+    VEC3 specular;            // scale of a lobe without a Fresnel term
+    REAL exponent_x;          // cosine exponent along the tangent
+    REAL exponent_y;          // cosine exponent across it
+    REAL diffuse_roughness;   // of a diffuse surface by itself: 0 Lambert, 1 rough as sand
 };
 
 // What a model does to light from all around, seen under the cosine mu:
@@ -22,12 +26,20 @@ struct BsdfEnvironment {
 // Widened lobes for a patch whose normals vary by `mean_squared_slope` (both axes together) around
 // its mean normal. A GGX or Beckmann slope parameter is alpha^2 = 2 sigma^2 with sigma^2 the slope
 // variance of one axis, so alpha'^2 = alpha^2 + 2 (mean_squared_slope / 2). Olano and Baker, LEAN
-// mapping (2010); Kaplanyan et al., Filtering distributions of normals (2016).
+// mapping (2010); Kaplanyan et al., Filtering distributions of normals (2016). A cosine exponent n
+// stands for alpha^2 = 2 / (n + 2).
+FN REAL widened_exponent(REAL exponent, REAL mean_squared_slope) {
+    REAL n2 = exponent + R(2.0);
+    return max(n2 / (R(1.0) + R(0.5) * mean_squared_slope * n2) - R(2.0), R(0.0));
+}
+
 FN BsdfParameters bsdf_widen(BsdfParameters p, REAL mean_squared_slope) {
     BsdfParameters q = p;
     q.alpha_x = min(sqrt(p.alpha_x * p.alpha_x + mean_squared_slope), R(1.0));
     q.alpha_y = min(sqrt(p.alpha_y * p.alpha_y + mean_squared_slope), R(1.0));
     q.coat_alpha = min(sqrt(p.coat_alpha * p.coat_alpha + mean_squared_slope), R(1.0));
+    q.exponent_x = widened_exponent(p.exponent_x, mean_squared_slope);
+    q.exponent_y = widened_exponent(p.exponent_y, mean_squared_slope);
     return q;
 }
 

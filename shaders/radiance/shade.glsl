@@ -1,7 +1,9 @@
 // Shades one fragment, in the subset of GLSL and C++ (shaders/bsdf/prelude_glsl.glsl): the same lines
 // run in OpenGL and, eight fragments at a time, on the processor (src/radiance/lane_shading.inc).
 // Comes after the model's reflectance functions, disc.glsl, these definitions
-//   LAMBERT, GGX or CLEARCOAT   the part's model
+//   LAMBERT, GGX or CLEARCOAT   the part's model, with what does not depend on the fragment taken
+//                               out of it; else ANY_MODEL, which is called as it is, with WEIGHTS,
+//                               MIRRORS and BSDF_TURN2 (src/radiance/shading.cpp)
 //   LIGHTS n                    directional lights, 0 and more; LIGHT_COUNT, the same as a number
 //   ENVIRONMENT 0 or 1
 //   VEC4, UNIFORM               as the language has them
@@ -20,6 +22,50 @@ FN VEC3 exposed(VEC3 colour) {
 
 FN VEC3 shaded() {
     return exposed(u_diffuse * diffuse_light_here());
+}
+
+#elif defined(ANY_MODEL)
+
+UNIFORM BsdfParameters u_paint;
+#if ENVIRONMENT
+// bsdf_environment under the cosines (k / (WEIGHTS - 1))^2, the base and the coat together
+UNIFORM VEC3 u_sky_weight[WEIGHTS];
+UNIFORM VEC3 u_mirror_weight[WEIGHTS];
+UNIFORM VEC2 u_base_layer;
+UNIFORM REAL u_lobe_alpha;
+#endif
+
+FN VEC3 shaded() {
+    VEC4 eye = eye_here();
+    VEC3 wo = VEC3(eye.x, eye.y, eye.z);
+    VEC3 sum = VEC3(R(0.0));
+
+#if LIGHTS > 0
+    for (int k = 0; k < LIGHT_COUNT; ++k) {
+        VEC4 light = light_here(k);
+        VEC3 wi = VEC3(light.x, light.y, light.z);
+        VEC3 h = wi + wo;
+        REAL length_h = sqrt(max(dot(h, h), R(1e-8)));
+        REAL c = max(h.z / length_h, R(0.5));
+        // The light's disc among the half vectors (disc.glsl), as a mean squared slope.
+        REAL spread = eye.w + R(0.25) * u_light_radius2[k] / (length_h * c * c * c);
+        VEC3 value = bsdf_eval(bsdf_widen(u_paint, BSDF_TURN2 * spread), wi, wo);
+        REAL lit = wi.z > R(0.0) ? light.w * wi.z : R(0.0);
+        sum += u_light_radiance[k] * value * lit;
+    }
+#endif
+
+#if ENVIRONMENT
+    REAL at = sqrt(clamp(wo.z, R(0.0), R(1.0))) * REAL(WEIGHTS - 1);
+    int below = min(int(at), WEIGHTS - 2);
+    REAL share = at - REAL(below);
+    sum += mix(u_sky_weight[below], u_sky_weight[below + 1], share) * sky_here();
+#if MIRRORS
+    sum += mix(u_mirror_weight[below], u_mirror_weight[below + 1], share) *
+           mirrored_here(u_base_layer, u_lobe_alpha);
+#endif
+#endif
+    return exposed(sum);
 }
 
 #else

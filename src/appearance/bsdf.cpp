@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "appearance/model_table.h"
 #include "core/colour.h"
 #include "core/paths.h"
 
@@ -13,62 +14,74 @@ namespace livery {
 
 namespace {
 
-glm::dvec3 working_colour(const Material& material, const char* name, glm::dvec3 rec709) {
+glm::dvec3 working_colour(const Material& material,
+                          const ParameterInfo& parameter,
+                          glm::dvec3 rec709) {
     glm::dvec3 working = working_from_rec709() * rec709;
     for (int c = 0; c < 3; ++c) {
         // The conversion itself rounds.
-        if (!(working[c] >= -1e-6 && working[c] <= 1.0 + 1e-6)) {
+        if (!(working[c] >= parameter.low - 1e-6 && working[c] <= parameter.high + 1e-6)) {
             throw std::invalid_argument(fmt::format(
                 "paint '{}': {} ({}, {}, {}) in linear Rec.709 is ({}, {}, {}) in the working "
-                "space, outside [0, 1]",
+                "space, outside [{}, {}]",
                 material.name,
-                name,
+                parameter.name,
                 rec709.x,
                 rec709.y,
                 rec709.z,
                 working.x,
                 working.y,
-                working.z));
+                working.z,
+                parameter.low,
+                parameter.high));
         }
     }
-    return glm::clamp(working, 0.0, 1.0);
+    return glm::clamp(working, parameter.low, parameter.high);
 }
 
-double in_range(const Material& material, const char* name, double value, double low, double high) {
-    if (!(value >= low && value <= high)) {
+void check_range(const Material& material,
+                 const ParameterInfo& parameter,
+                 const glm::dvec3& value) {
+    for (int k = 0; k < parameter.count(); ++k) {
+        if (value[k] >= parameter.low && value[k] <= parameter.high) continue;
         throw std::invalid_argument(fmt::format(
-            "paint '{}': {} is {}, expected {} to {}", material.name, name, value, low, high));
+            "paint '{}': {} is {}, expected {}",
+            material.name,
+            parameter.count() > 1 ? fmt::format("{}[{}]", parameter.name, k) : parameter.name,
+            value[k],
+            parameter.range_text()));
     }
-    return value;
 }
 
-template <typename To, typename Vec, typename Real, typename From>
-To converted(const From& from) {
-    To to;
-    to.diffuse = Vec(from.diffuse);
-    to.f0 = Vec(from.f0);
-    to.alpha_x = static_cast<Real>(from.alpha_x);
-    to.alpha_y = static_cast<Real>(from.alpha_y);
-    to.coat_alpha = static_cast<Real>(from.coat_alpha);
-    to.coat_f0 = static_cast<Real>(from.coat_f0);
-    to.coat_transmittance = Vec(from.coat_transmittance);
+template <typename To, typename Real, typename From, typename FromOf, typename ToOf>
+To converted(From from, FromOf from_of, ToOf to_of) {
+    To to{};
+    for (const ParameterInfo& parameter : parameter_table()) {
+        const auto in = (parameter.*from_of)(from);
+        const auto out = (parameter.*to_of)(to);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(parameter.count()); ++k) {
+            *out[k] = static_cast<Real>(*in[k]);
+        }
+    }
     return to;
 }
-
-[[noreturn]] void unknown_model() { throw std::invalid_argument("unknown reflectance model"); }
 
 }  // namespace
 
 f64::BsdfParameters parameters_of_f64(const Material& material) {
-    f64::BsdfParameters p;
-    p.diffuse = working_colour(material, "diffuse", material.diffuse);
-    p.f0 = working_colour(material, "f0", material.f0);
-    p.alpha_x = in_range(material, "alpha[0]", material.alpha.x, 1e-4, 1.0);
-    p.alpha_y = in_range(material, "alpha[1]", material.alpha.y, 1e-4, 1.0);
-    p.coat_alpha = in_range(material, "coat_alpha", material.coat_alpha, 1e-4, 1.0);
-    p.coat_f0 = in_range(material, "coat_f0", material.coat_f0, 0.0, 0.2);
-    p.coat_transmittance =
-        working_colour(material, "coat_transmittance", material.coat_transmittance);
+    f64::BsdfParameters p{};
+    for (const ParameterInfo& parameter : parameter_table()) {
+        glm::dvec3 value = value_of(parameter, material);
+        if (parameter.kind == ParameterKind::colour) {
+            value = working_colour(material, parameter, value);
+        } else {
+            check_range(material, parameter, value);
+        }
+        const Components<double> components = parameter.in_f64(p);
+        for (int k = 0; k < parameter.count(); ++k) {
+            *components[static_cast<std::size_t>(k)] = value[k];
+        }
+    }
     return p;
 }
 
@@ -77,115 +90,61 @@ f32::BsdfParameters parameters_of(const Material& material) {
 }
 
 f32::BsdfParameters rounded(const f64::BsdfParameters& parameters) {
-    return converted<f32::BsdfParameters, glm::vec3, float>(parameters);
+    return converted<f32::BsdfParameters, float>(
+        parameters, &ParameterInfo::in_f64, &ParameterInfo::in_f32);
 }
 
 f64::BsdfParameters widened(const f32::BsdfParameters& parameters) {
-    return converted<f64::BsdfParameters, glm::dvec3, double>(parameters);
+    return converted<f64::BsdfParameters, double>(
+        parameters, &ParameterInfo::in_f32, &ParameterInfo::in_f64);
 }
 
 glm::vec3 evaluate(ReflectanceModel model,
                    const f32::BsdfParameters& parameters,
                    glm::vec3 wi,
                    glm::vec3 wo) {
-    switch (model) {
-        case ReflectanceModel::lambert:
-            return f32::lambert_eval(parameters, wi, wo);
-        case ReflectanceModel::ggx:
-            return f32::ggx_eval(parameters, wi, wo);
-        case ReflectanceModel::clearcoat:
-            return f32::clearcoat_eval(parameters, wi, wo);
-    }
-    unknown_model();
+    return model_info(model).f32.eval(parameters, wi, wo);
 }
 
 glm::dvec3 evaluate(ReflectanceModel model,
                     const f64::BsdfParameters& parameters,
                     glm::dvec3 wi,
                     glm::dvec3 wo) {
-    switch (model) {
-        case ReflectanceModel::lambert:
-            return f64::lambert_eval(parameters, wi, wo);
-        case ReflectanceModel::ggx:
-            return f64::ggx_eval(parameters, wi, wo);
-        case ReflectanceModel::clearcoat:
-            return f64::clearcoat_eval(parameters, wi, wo);
-    }
-    unknown_model();
+    return model_info(model).f64.eval(parameters, wi, wo);
 }
 
 glm::vec3 sample(ReflectanceModel model,
                  const f32::BsdfParameters& parameters,
                  glm::vec3 wo,
                  glm::vec3 u) {
-    switch (model) {
-        case ReflectanceModel::lambert:
-            return f32::lambert_sample(parameters, wo, u);
-        case ReflectanceModel::ggx:
-            return f32::ggx_sample(parameters, wo, u);
-        case ReflectanceModel::clearcoat:
-            return f32::clearcoat_sample(parameters, wo, u);
-    }
-    unknown_model();
+    return model_info(model).f32.sample(parameters, wo, u);
 }
 
 glm::dvec3 sample(ReflectanceModel model,
                   const f64::BsdfParameters& parameters,
                   glm::dvec3 wo,
                   glm::dvec3 u) {
-    switch (model) {
-        case ReflectanceModel::lambert:
-            return f64::lambert_sample(parameters, wo, u);
-        case ReflectanceModel::ggx:
-            return f64::ggx_sample(parameters, wo, u);
-        case ReflectanceModel::clearcoat:
-            return f64::clearcoat_sample(parameters, wo, u);
-    }
-    unknown_model();
+    return model_info(model).f64.sample(parameters, wo, u);
 }
 
 float pdf(ReflectanceModel model,
           const f32::BsdfParameters& parameters,
           glm::vec3 wi,
           glm::vec3 wo) {
-    switch (model) {
-        case ReflectanceModel::lambert:
-            return f32::lambert_pdf(parameters, wi, wo);
-        case ReflectanceModel::ggx:
-            return f32::ggx_pdf(parameters, wi, wo);
-        case ReflectanceModel::clearcoat:
-            return f32::clearcoat_pdf(parameters, wi, wo);
-    }
-    unknown_model();
+    return model_info(model).f32.pdf(parameters, wi, wo);
 }
 
 double pdf(ReflectanceModel model,
            const f64::BsdfParameters& parameters,
            glm::dvec3 wi,
            glm::dvec3 wo) {
-    switch (model) {
-        case ReflectanceModel::lambert:
-            return f64::lambert_pdf(parameters, wi, wo);
-        case ReflectanceModel::ggx:
-            return f64::ggx_pdf(parameters, wi, wo);
-        case ReflectanceModel::clearcoat:
-            return f64::clearcoat_pdf(parameters, wi, wo);
-    }
-    unknown_model();
+    return model_info(model).f64.pdf(parameters, wi, wo);
 }
 
 f32::BsdfEnvironment environment_weights(ReflectanceModel model,
                                          const f32::BsdfParameters& parameters,
                                          float mu) {
-    switch (model) {
-        case ReflectanceModel::lambert:
-            return f32::lambert_environment(parameters, mu);
-        case ReflectanceModel::ggx:
-            return f32::ggx_environment(parameters, mu);
-        case ReflectanceModel::clearcoat:
-            return f32::clearcoat_environment(parameters, mu);
-    }
-    unknown_model();
+    return model_info(model).f32.environment(parameters, mu);
 }
 
 glm::dvec3 directional_albedo(ReflectanceModel model,
@@ -199,7 +158,7 @@ glm::dvec3 directional_albedo(ReflectanceModel model,
     no_diffuse.diffuse = glm::dvec3(0.0);
     f64::BsdfParameters only_coat = no_diffuse;
     only_coat.f0 = glm::dvec3(0.0);
-    const bool has_base = model != ReflectanceModel::lambert;
+    const bool has_base = model_info(model).mirrors();
     const bool has_coat = model == ReflectanceModel::clearcoat;
     glm::dvec3 total(0.0);
     const auto add_lobe = [&](glm::dvec2 u,
@@ -236,24 +195,11 @@ std::string bsdf_glsl(ReflectanceModel model) {
     const auto source = [](const char* name) {
         return read_text_file(shipped_path(std::filesystem::path("shaders/bsdf") / name)) + "\n";
     };
+    const ModelInfo& info = model_info(model);
     std::string text = source("prelude_glsl.glsl") + source("parameters.glsl");
-    std::string prefix;
-    switch (model) {
-        case ReflectanceModel::lambert:
-            text += source("lambert.glsl");
-            prefix = "lambert";
-            break;
-        case ReflectanceModel::ggx:
-            text += source("microfacet.glsl") + source("ggx.glsl");
-            prefix = "ggx";
-            break;
-        case ReflectanceModel::clearcoat:
-            text += source("microfacet.glsl") + source("ggx.glsl") + source("clearcoat.glsl");
-            prefix = "clearcoat";
-            break;
-    }
+    for (const char* file : info.shaders) text += source(file);
     for (const char* what : {"eval", "sample", "pdf", "environment"}) {
-        text += fmt::format("#define bsdf_{} {}_{}\n", what, prefix, what);
+        text += fmt::format("#define bsdf_{} {}_{}\n", what, info.prefix, what);
     }
     return text;
 }

@@ -24,12 +24,13 @@ namespace livery::f32 {
 using Real = float;
 using Vec2 = glm::vec2;
 using Vec3 = glm::vec3;
-using glm::clamp, glm::cos, glm::dot, glm::max, glm::min, glm::normalize, glm::pow, glm::sin,
-    glm::sqrt;
+using glm::abs, glm::acos, glm::atan, glm::clamp, glm::cos, glm::dot, glm::exp, glm::log, glm::max,
+    glm::min, glm::normalize, glm::pow, glm::sin, glm::sqrt;
 // Each needs the ones before it.
 // clang-format off
 #include "shaders/bsdf/parameters.glsl"
 #include "shaders/bsdf/lambert.glsl"
+#include "shaders/bsdf/eon.glsl"
 #include "shaders/bsdf/microfacet.glsl"
 #include "shaders/bsdf/ggx.glsl"
 #include "shaders/bsdf/clearcoat.glsl"
@@ -40,12 +41,13 @@ namespace livery::f64 {
 using Real = double;
 using Vec2 = glm::dvec2;
 using Vec3 = glm::dvec3;
-using glm::clamp, glm::cos, glm::dot, glm::max, glm::min, glm::normalize, glm::pow, glm::sin,
-    glm::sqrt;
+using glm::abs, glm::acos, glm::atan, glm::clamp, glm::cos, glm::dot, glm::exp, glm::log, glm::max,
+    glm::min, glm::normalize, glm::pow, glm::sin, glm::sqrt;
 // Each needs the ones before it.
 // clang-format off
 #include "shaders/bsdf/parameters.glsl"
 #include "shaders/bsdf/lambert.glsl"
+#include "shaders/bsdf/eon.glsl"
 #include "shaders/bsdf/microfacet.glsl"
 #include "shaders/bsdf/ggx.glsl"
 #include "shaders/bsdf/clearcoat.glsl"

@@ -10,10 +10,11 @@
 
 namespace livery {
 
-enum class ReflectanceModel { lambert, ggx, clearcoat };
+/// In the order of model_table.h, which says what each is.
+enum class ReflectanceModel { lambert, eon, ggx, clearcoat };
 
-/// Parameters of every model; a model reads its own (docs/materials.md has the table). Colours are
-/// linear Rec.709 under D65 and may be signed.
+/// Parameters of every model; a model reads its own (parameter_table.h, docs/materials.md). Colours
+/// are linear Rec.709 under D65 and may be signed.
 struct Material {
     std::string name;
     std::string family;  ///< solid, metallic, matte, chrome, ...
@@ -25,6 +26,9 @@ struct Material {
     double coat_alpha = 0.02;            ///< clearcoat: slope parameter of the coat
     double coat_f0 = 0.04;               ///< clearcoat: its Fresnel reflectance at normal incidence
     glm::dvec3 coat_transmittance{1.0};  ///< of the coat, once through at normal incidence
+    glm::dvec3 specular{0.2};            ///< scale of a lobe without a Fresnel term
+    glm::dvec2 exponent{100.0, 100.0};   ///< cosine exponent along and across the tangent
+    double diffuse_roughness = 0.5;      ///< of a diffuse surface by itself
 
     std::string provenance;
     std::filesystem::path file;

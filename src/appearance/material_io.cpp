@@ -1,12 +1,10 @@
-#include <cmath>
-#include <iterator>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "appearance/bsdf.h"
 #include "appearance/material.h"
 #include "appearance/material_json.h"
+#include "appearance/model_table.h"
 #include "core/error.h"
 #include "core/json.h"
 #include "core/paths.h"
@@ -17,62 +15,62 @@ namespace {
 
 constexpr int kFormatVersion = 1;
 
-struct ModelDescription {
-    ReflectanceModel model;
-    std::string name;
-    std::vector<std::string> parameters;
-};
-
-const std::vector<ModelDescription>& models() {
-    static const std::vector<ModelDescription> list = {
-        {ReflectanceModel::lambert, "lambert", {"diffuse"}},
-        {ReflectanceModel::ggx, "ggx", {"diffuse", "f0", "alpha"}},
-        {ReflectanceModel::clearcoat,
-         "clearcoat",
-         {"diffuse", "f0", "alpha", "coat_alpha", "coat_f0", "coat_transmittance"}}};
-    return list;
+const ModelInfo& read_model(const JsonReader& reader) {
+    const std::string name = reader.text();
+    if (const ModelInfo* model = find_model(name)) return *model;
+    reader.fail(fmt::format("'{}'", name), "one of " + model_names());
 }
 
-const ModelDescription& read_model(const JsonReader& reader) {
-    const std::string name = reader.text();
-    std::vector<std::string> names;
-    for (const ModelDescription& description : models()) {
-        if (description.name == name) return description;
-        names.push_back(description.name);
+void read_value(const JsonReader& reader,
+                const ModelInfo& model,
+                const ParameterInfo& parameter,
+                Material& material) {
+    const Components<double> to = parameter.in_material(material);
+    const auto number = [&](const JsonReader& value) {
+        return value.number_between(parameter.low, parameter.high);
+    };
+    switch (parameter.kind) {
+        case ParameterKind::colour: {
+            const glm::dvec3 colour = reader.vec3();
+            for (int c = 0; c < 3; ++c) *to[static_cast<std::size_t>(c)] = colour[c];
+            break;
+        }
+        case ParameterKind::number:
+            *to[0] = number(reader);
+            break;
+        case ParameterKind::pair:
+            if (reader.is_array() && !model.anisotropic) {
+                reader.fail(reader.found(), fmt::format("one number: {} has no grain", model.name));
+            }
+            if (reader.is_array() && reader.size() != 2) {
+                reader.fail(reader.found(), "one number or two");
+            }
+            *to[0] = number(reader.is_array() ? reader.at(0) : reader);
+            *to[1] = number(reader.is_array() ? reader.at(1) : reader);
+            break;
     }
-    reader.fail(fmt::format("'{}'", name), fmt::format("one of {}", fmt::join(names, ", ")));
+}
+
+Json json_of_value(const ParameterInfo& parameter, const Material& material) {
+    const glm::dvec3 value = value_of(parameter, material);
+    if (parameter.kind == ParameterKind::colour) return json_from(value);
+    const bool two = parameter.kind == ParameterKind::pair && value.x != value.y;
+    if (two && model_info(material.model).anisotropic) return {value.x, value.y};
+    return value.x;
 }
 
 /// A model's parameters, all of them and no others.
-void read_parameters(const JsonReader& reader,
-                     const ModelDescription& description,
-                     Material& material) {
+void read_parameters(const JsonReader& reader, const ModelInfo& model, Material& material) {
     if (!reader.is_object()) reader.fail(reader.found(), "an object");
-    const auto& known = description.parameters;
+    const auto& known = model.parameters;
     for (const std::string& key : reader.keys()) {
-        if (std::find(known.begin(), known.end(), key) == known.end()) {
+        if (!model.has(key)) {
             reader.fail(
                 fmt::format("parameter '{}'", key),
-                fmt::format("the parameters of {}: {}", description.name, fmt::join(known, ", ")));
+                fmt::format("the parameters of {}: {}", model.name, fmt::join(known, ", ")));
         }
     }
-    for (const std::string& key : known) {
-        const JsonReader value = reader[key];
-        if (key == "diffuse") material.diffuse = value.vec3();
-        if (key == "f0") material.f0 = value.vec3();
-        if (key == "alpha") {
-            if (value.is_array()) {
-                if (value.size() != 2) value.fail(value.found(), "one number or two");
-                material.alpha = {value.at(0).number_between(1e-4, 1.0),
-                                  value.at(1).number_between(1e-4, 1.0)};
-            } else {
-                material.alpha = glm::dvec2(value.number_between(1e-4, 1.0));
-            }
-        }
-        if (key == "coat_alpha") material.coat_alpha = value.number_between(1e-4, 1.0);
-        if (key == "coat_f0") material.coat_f0 = value.number_between(0.0, 0.2);
-        if (key == "coat_transmittance") material.coat_transmittance = value.vec3();
-    }
+    for (const char* key : known) read_value(reader[key], model, parameter_info(key), material);
 }
 
 }  // namespace
@@ -83,10 +81,10 @@ Material read_material(const JsonReader& reader) {
     if (material.name.empty()) reader["name"].fail("empty text", "a name");
     if (reader.has("family")) material.family = reader["family"].text();
     if (reader.has("provenance")) material.provenance = reader["provenance"].text();
-    const ModelDescription& description = read_model(reader["model"]);
-    material.model = description.model;
+    const ModelInfo& model = read_model(reader["model"]);
+    material.model = model.model;
     const JsonReader parameters = reader["parameters"];
-    read_parameters(parameters, description, material);
+    read_parameters(parameters, model, material);
     try {
         parameters_of_f64(material);
     } catch (const std::invalid_argument& mistake) {
@@ -99,27 +97,14 @@ Material read_material(const JsonReader& reader) {
 Json json_of(const Material& material) {
     parameters_of_f64(material);
     Json parameters = Json::object();
-    const ModelDescription& description = models()[static_cast<std::size_t>(material.model)];
-    for (const std::string& key : description.parameters) {
-        if (key == "diffuse") parameters[key] = json_from(material.diffuse);
-        if (key == "f0") parameters[key] = json_from(material.f0);
-        if (key == "alpha") {
-            if (material.alpha.x == material.alpha.y) {
-                parameters[key] = material.alpha.x;
-            } else {
-                parameters[key] = {material.alpha.x, material.alpha.y};
-            }
-        }
-        if (key == "coat_alpha") parameters[key] = material.coat_alpha;
-        if (key == "coat_f0") parameters[key] = material.coat_f0;
-        if (key == "coat_transmittance") {
-            parameters[key] = json_from(material.coat_transmittance);
-        }
+    const ModelInfo& model = model_info(material.model);
+    for (const char* key : model.parameters) {
+        parameters[key] = json_of_value(parameter_info(key), material);
     }
     Json json = Json::object();
     json["name"] = material.name;
     json["family"] = material.family;
-    json["model"] = description.name;
+    json["model"] = model.name;
     json["parameters"] = parameters;
     json["provenance"] = material.provenance;
     return json;

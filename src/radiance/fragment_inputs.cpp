@@ -281,7 +281,10 @@ void FragmentInputs::upload_directions(const Scene& scene) {
             return glm::vec4(to_local(fragment(i), light.at[i].direction), light.at[i].visibility);
         });
     }
-    if (sky_.empty()) return;
+    if (sky_.empty()) {
+        shading_.sky = InputLayers();
+        return;
+    }
     make(shading_.sky, 0, InputLayers::Precision::half);
     upload(shading_.sky, 0, [&](std::size_t i) {
         return glm::vec4(glm::min(sky_[i], glm::vec3(kHalfLargest)), 1.0f);

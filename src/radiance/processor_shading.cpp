@@ -1,8 +1,11 @@
 #include "radiance/processor_shading.h"
 
 #include <cstring>
+#include <functional>
 
+#include "appearance/model_table.h"
 #include "core/parallel.h"
+#include "radiance/any_model_shading.h"
 #include "radiance/sky_visibility.h"
 
 namespace livery {
@@ -10,6 +13,13 @@ namespace {
 
 /// Small enough that two threads end together, large enough that starting one is nothing.
 constexpr std::size_t kBlocksAtOnce = 64, kPixelsAtOnce = 2048;
+
+/// Of a model with its own shading.
+auto lanes_of(ReflectanceModel model, const LaneFunctions& functions, bool environment) {
+    if (model == ReflectanceModel::lambert) return functions.lambert;
+    const auto& of_model = model == ReflectanceModel::ggx ? functions.ggx : functions.clearcoat;
+    return of_model[environment ? 1 : 0];
+}
 
 }  // namespace
 
@@ -23,17 +33,14 @@ void ProcessorShading::shade(const Material& material,
                              double exposure_ev,
                              std::size_t part,
                              const LaneFunctions& functions) {
+    const ModelInfo& model = model_info(material.model);
     LaneJob job;
-    job.paint = uniforms_of(material, exposure_ev);
     std::vector<const float*> lights;
     std::vector<const std::uint16_t*> mirror;
-    const std::size_t environment = inputs.mirror ? 1 : 0;
-    void (*shade_blocks)(const LaneJob&) = functions.lambert;
-    if (material.model == ReflectanceModel::lambert) {
+    const bool environment = static_cast<bool>(model.mirrors() ? inputs.mirror : inputs.sky);
+    if (model.same_from_all_sides) {
         job.lit = inputs.lit.halves(0);
     } else {
-        shade_blocks = material.model == ReflectanceModel::ggx ? functions.ggx[environment]
-                                                               : functions.clearcoat[environment];
         job.eye = inputs.eye.floats(0);
         for (std::size_t k = 0; k < inputs.light_irradiance.size(); ++k) {
             lights.push_back(inputs.lights.floats(k));
@@ -42,14 +49,22 @@ void ProcessorShading::shade(const Material& material,
         job.light_count = static_cast<int>(lights.size());
         job.light_irradiance = lights.empty() ? nullptr : &inputs.light_irradiance[0].x;
         job.light_radius2 = inputs.light_radius2.data();
-        if (environment != 0) {
-            job.sky = inputs.sky.halves(0);
+        if (environment) job.sky = inputs.sky.halves(0);
+        if (environment && model.mirrors()) {
             for (std::size_t k = 0; k < kMirrorAlphas.size(); ++k) {
                 mirror.push_back(inputs.mirror.halves(k));
             }
             job.mirror = mirror.data();
             job.mirror_unit = inputs.mirror_unit;
         }
+    }
+    std::function<void(const LaneJob&)> shade_blocks;
+    if (has_own_shading(material.model)) {
+        job.paint = uniforms_of(material, exposure_ev);
+        shade_blocks = lanes_of(material.model, functions, environment);
+    } else {
+        shade_blocks = [&model, any = any_model_uniforms_of(material, exposure_ev)](
+                           const LaneJob& some) { shade_any_model(some, model, any); };
     }
     job.shaded = shaded_.data();
     const std::size_t first = layout_.address(layout_.part_begin[part], part) / kLaneBlock;

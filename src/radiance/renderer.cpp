@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "appearance/model_table.h"
 #include "core/error.h"
 #include "core/recycler.h"
 #include "gl/context.h"
@@ -161,8 +162,8 @@ void RadianceRenderer::State::upload(const Scene& scene, StageClock& clock) {
     const FragmentInputs::Changed changed = inputs.upload(scene, clock);
     for (std::optional<Shaded>& part : parts) {
         if (!part) continue;
-        const bool diffuse = part->material.model == ReflectanceModel::lambert;
-        if (diffuse ? changed.diffuse : changed.glossy) part.reset();
+        const bool plain = model_info(part->material.model).same_from_all_sides;
+        if (plain ? changed.diffuse : changed.glossy) part.reset();
     }
 }
 
@@ -173,7 +174,7 @@ void RadianceRenderer::State::shade(const Scene& scene, FramePlan& plan) {
         PlannedPass* pass = find_pass(plan, shade_pass(scene, p));
         pass->ms = 0.0;
         const Material& material = scene.part_materials[p];
-        const bool stands = parts[p] && same_paint(parts[p]->material, material) &&
+        const bool stands = parts[p] && same_reflectance(parts[p]->material, material) &&
                             parts[p]->exposure_ev == scene.exposure_ev;
         if (stands) continue;
         parts[p] = Shaded{material, scene.exposure_ev};

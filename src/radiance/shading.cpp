@@ -1,5 +1,7 @@
 #include "radiance/shading.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -8,7 +10,7 @@
 #include <fmt/format.h>
 #include <glm/gtc/type_ptr.hpp>
 
-#include "appearance/bsdf.h"
+#include "appearance/model_table.h"
 #include "core/paths.h"
 #include "radiance/environment_filter.h"
 #include "radiance/sky_visibility.h"
@@ -16,17 +18,16 @@
 namespace livery {
 namespace {
 
-const char* define_of(ReflectanceModel model) {
-    switch (model) {
-        case ReflectanceModel::lambert:
-            return "LAMBERT";
-        case ReflectanceModel::ggx:
-            return "GGX";
-        case ReflectanceModel::clearcoat:
-            return "CLEARCOAT";
-    }
-    throw std::invalid_argument("unknown reflectance model");
+/// Of shade.glsl.
+std::string define_of(ReflectanceModel model) {
+    if (!has_own_shading(model)) return "ANY_MODEL";
+    std::string name = model_info(model).prefix;
+    for (char& c : name) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    return name;
 }
+
+/// Light from all around is looked up under no smaller one.
+constexpr float kLowestCosine = 1e-4f;
 
 std::string shipped_text(const char* file) {
     return read_text_file(shipped_path(std::filesystem::path("shaders/radiance") / file));
@@ -47,6 +48,11 @@ glm::vec2 mirror_layer(float alpha) {
 
 }  // namespace
 
+bool has_own_shading(ReflectanceModel model) {
+    return model == ReflectanceModel::lambert || model == ReflectanceModel::ggx ||
+           model == ReflectanceModel::clearcoat;
+}
+
 PaintUniforms uniforms_of(const Material& material, double exposure_ev) {
     const BsdfParameters p = parameters_of(material);
     PaintUniforms u{};
@@ -58,32 +64,75 @@ PaintUniforms uniforms_of(const Material& material, double exposure_ev) {
     set(u.base_layer, mirror_layer(std::sqrt(p.alpha_x * p.alpha_y)));
     set(u.coat_layer, mirror_layer(p.coat_alpha));
     set(u.alpha, glm::vec4(p.alpha_x, p.alpha_y, p.coat_alpha, p.coat_f0));
-    switch (material.model) {
-        case ReflectanceModel::lambert:
-            set(u.diffuse, p.diffuse);
-            break;
-        case ReflectanceModel::ggx:
-            set(u.diffuse, p.diffuse / average_through(p));
-            set(u.sky_diffuse, p.diffuse);
-            break;
-        case ReflectanceModel::clearcoat: {
-            const float inverse_index2 = f32::coat_inverse_index_squared(p);
-            const glm::vec3 diffuse = f32::coated_diffuse(p, inverse_index2);
-            const glm::vec3 share =
-                glm::min(average_through(p), glm::vec3(f32::coat_average_transmission(p)));
-            const float mean_path = f32::coat_path(2.0f / 3.0f, inverse_index2);
-            set(u.diffuse, diffuse);
-            set(u.sky_diffuse, diffuse * share * f32::coat_absorption(p, mean_path));
-            set(u.coat_log_transmittance,
-                glm::log2(glm::max(p.coat_transmittance, glm::vec3(1e-6f))));
-            u.coat_inverse_index_squared = inverse_index2;
-            break;
-        }
+    if (material.model == ReflectanceModel::ggx) {
+        set(u.diffuse, p.diffuse / average_through(p));
+        set(u.sky_diffuse, p.diffuse);
+    } else if (material.model == ReflectanceModel::clearcoat) {
+        const float inverse_index2 = f32::coat_inverse_index_squared(p);
+        const glm::vec3 diffuse = f32::coated_diffuse(p, inverse_index2);
+        const glm::vec3 share =
+            glm::min(average_through(p), glm::vec3(f32::coat_average_transmission(p)));
+        const float mean_path = f32::coat_path(2.0f / 3.0f, inverse_index2);
+        set(u.diffuse, diffuse);
+        set(u.sky_diffuse, diffuse * share * f32::coat_absorption(p, mean_path));
+        set(u.coat_log_transmittance, glm::log2(glm::max(p.coat_transmittance, glm::vec3(1e-6f))));
+        u.coat_inverse_index_squared = inverse_index2;
+    } else {
+        set(u.diffuse, p.diffuse);
     }
     return u;
 }
 
+AnyModelUniforms any_model_uniforms_of(const Material& material, double exposure_ev) {
+    const ModelInfo& model = model_info(material.model);
+    AnyModelUniforms u;
+    u.exposure = static_cast<float>(std::exp2(exposure_ev));
+    u.paint = parameters_of(material);
+    u.lobe_alpha = lobe_alpha(model, u.paint);
+    u.base_layer = mirror_layer(u.lobe_alpha);
+    for (std::size_t k = 0; k < u.sky_weight.size(); ++k) {
+        const float t = static_cast<float>(k) / static_cast<float>(kEnvironmentWeights - 1);
+        const BsdfEnvironment weights =
+            environment_weights(material.model, u.paint, std::max(t * t, kLowestCosine));
+        u.sky_weight[k] = weights.diffuse;
+        u.mirror_weight[k] = weights.specular + weights.coat;
+    }
+    return u;
+}
+
+namespace {
+
+void set_any_paint(Program& program, const Material& material, double exposure_ev) {
+    AnyModelUniforms u = any_model_uniforms_of(material, exposure_ev);
+    program.set("u_exposure", u.exposure);
+    program.set("u_sky_weight", std::span<const glm::vec3>(u.sky_weight));
+    program.set("u_mirror_weight", std::span<const glm::vec3>(u.mirror_weight));
+    program.set("u_base_layer", u.base_layer);
+    program.set("u_lobe_alpha", u.lobe_alpha);
+    for (const ParameterInfo& parameter : parameter_table()) {
+        const Components<float> v = parameter.in_f32(u.paint);
+        const auto name = [&](const char* suffix) {
+            return fmt::format("u_paint.{}{}", parameter.name, suffix);
+        };
+        switch (parameter.kind) {
+            case ParameterKind::colour:
+                program.set(name(""), glm::vec3(*v[0], *v[1], *v[2]));
+                break;
+            case ParameterKind::number:
+                program.set(name(""), *v[0]);
+                break;
+            case ParameterKind::pair:
+                program.set(name("_x"), *v[0]);
+                program.set(name("_y"), *v[1]);
+                break;
+        }
+    }
+}
+
+}  // namespace
+
 void set_paint(Program& program, const Material& material, double exposure_ev) {
+    if (!has_own_shading(material.model)) return set_any_paint(program, material, exposure_ev);
     const PaintUniforms u = uniforms_of(material, exposure_ev);
     program.set("u_exposure", u.exposure);
     program.set("u_diffuse", glm::make_vec3(u.diffuse));
@@ -102,15 +151,19 @@ Program make_shading_program(const ShadingKey& key, ShadingSource source) {
     const std::string defines = fmt::format(
         "#define {} 1\n#define LIGHTS {}\n#define LIGHT_COUNT LIGHTS\n#define ENVIRONMENT {}\n"
         "#define VEC4 vec4\n#define UNIFORM uniform\n"
-        "#define LAYERS {}\n#define FIRST_ALPHA {:.8f}\n#define MESH_ROW {}\n",
+        "#define LAYERS {}\n#define FIRST_ALPHA {:.8f}\n#define MESH_ROW {}\n"
+        "#define WEIGHTS {}\n#define MIRRORS {}\n#define BSDF_TURN2 R({:.1f})\n",
         define_of(model),
         lights,
         environment ? 1 : 0,
         kLayerAlphas.size(),
         kLayerAlphas[1],
-        kMeshRow);
+        kMeshRow,
+        kEnvironmentWeights,
+        model_info(model).mirrors() ? 1 : 0,
+        lobe_turn_squared(model_info(model)));
     std::string text = "#version 450 core\n" + bsdf_glsl(model) + defines;
-    if (model != ReflectanceModel::lambert) text += shipped_text("disc.glsl");
+    if (has_own_shading(model) && model_info(model).mirrors()) text += shipped_text("disc.glsl");
     if (raster) text += shipped_text("mesh_texels.glsl") + shipped_text("lens.glsl");
     text += shipped_text(raster ? "inputs_raster.glsl" : "inputs_packed.glsl");
     text += shipped_text("shade.glsl");
@@ -118,7 +171,7 @@ Program make_shading_program(const ShadingKey& key, ShadingSource source) {
         "layout(location = 0) out vec4 radiance;\n"
         "void main() {{\n    {}radiance = vec4(shaded(), 1.0);\n}}\n",
         raster ? "prepare_sample();\n    " : "");
-    const ShaderSource fragment{fmt::format("shade {}", define_of(model)), text};
+    const ShaderSource fragment{fmt::format("shade {}", model_info(model).name), text};
     if (!raster) return Program::screen_pass(fragment);
     return Program(load_shader("radiance/raster_part.vert", {}), fragment);
 }
@@ -130,10 +183,11 @@ Program& ShadingPrograms::program_for(const ShadingKey& key) {
 }
 
 ShadingKey ShadingPrograms::key_of(const Material& material, const ShadingInputs& inputs) {
-    if (material.model == ReflectanceModel::lambert) return {material.model, 0, false};
+    const ModelInfo& model = model_info(material.model);
+    if (model.same_from_all_sides) return {material.model, 0, false};
     return {material.model,
             static_cast<int>(inputs.light_irradiance.size()),
-            static_cast<bool>(inputs.mirror)};
+            static_cast<bool>(model.mirrors() ? inputs.mirror : inputs.sky)};
 }
 
 void ShadingPrograms::compile(const Material& material, const ShadingInputs& inputs) {
@@ -157,7 +211,7 @@ void ShadingPrograms::shade(const Material& material,
     Program& program = program_for(key);
     drawn_.insert(key);
     set_paint(program, material, exposure_ev);
-    if (model == ReflectanceModel::lambert) {
+    if (model_info(model).same_from_all_sides) {
         program.set("u_lit", 0);
         inputs.lit.texture().bind(0);
     } else {
@@ -172,20 +226,16 @@ void ShadingPrograms::shade(const Material& material,
     }
     if (environment) {
         program.set("u_sky", 2);
-        program.set("u_mirror", 3);
-        program.set("u_mirror_unit", inputs.mirror_unit);
         inputs.sky.texture().bind(2);
-        inputs.mirror.texture().bind(3);
+        if (model_info(model).mirrors()) {
+            program.set("u_mirror", 3);
+            program.set("u_mirror_unit", inputs.mirror_unit);
+            inputs.mirror.texture().bind(3);
+        }
     }
     DrawState state;
     state.scissor = rectangle;
     screen_.run(program, target, state);
-}
-
-bool same_paint(const Material& a, const Material& b) {
-    return a.model == b.model && a.diffuse == b.diffuse && a.f0 == b.f0 && a.alpha == b.alpha &&
-           a.coat_alpha == b.coat_alpha && a.coat_f0 == b.coat_f0 &&
-           a.coat_transmittance == b.coat_transmittance;
 }
 
 }  // namespace livery

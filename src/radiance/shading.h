@@ -1,6 +1,7 @@
 // The shading programs, one for each combination that a scene uses, and what they read.
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory>
 #include <set>
@@ -9,7 +10,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "appearance/material.h"
+#include "appearance/bsdf.h"
 #include "gl/draw.h"
 #include "gl/handles.h"
 #include "gl/program.h"
@@ -43,8 +44,23 @@ inline constexpr int kMeshRow = 2048;
 
 Program make_shading_program(const ShadingKey& key, ShadingSource source);
 
-/// Uniforms that depend on the paint and the exposure only.
+/// Whether shade.glsl has the model's shading taken apart, eight fragments at a time as well.
+bool has_own_shading(ReflectanceModel model);
+
+/// Uniforms that depend on the paint and the exposure only, of a model with its own shading.
 PaintUniforms uniforms_of(const Material& material, double exposure_ev);
+
+/// The same of any model: what ANY_MODEL of shade.glsl reads.
+inline constexpr int kEnvironmentWeights = 33;
+struct AnyModelUniforms {
+    float exposure = 1.0f;
+    BsdfParameters paint{};
+    std::array<glm::vec3, kEnvironmentWeights> sky_weight{}, mirror_weight{};
+    glm::vec2 base_layer{};
+    float lobe_alpha = 1.0f;
+};
+AnyModelUniforms any_model_uniforms_of(const Material& material, double exposure_ev);
+
 void set_paint(Program& program, const Material& material, double exposure_ev);
 
 /// Compiles on first use.
@@ -71,8 +87,5 @@ class ShadingPrograms {
     Texture2D nowhere_;
     Framebuffer nowhere_framebuffer_;
 };
-
-/// Whether both shade alike (names and files aside).
-bool same_paint(const Material& a, const Material& b);
 
 }  // namespace livery

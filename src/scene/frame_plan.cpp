@@ -10,36 +10,13 @@
 
 #include <fmt/format.h>
 
+#include "appearance/model_table.h"
 #include "core/error.h"
 
 namespace livery {
 namespace {
 
 constexpr std::array kQualities{Quality::draft, Quality::normal, Quality::high, Quality::reference};
-
-const char* model_name(ReflectanceModel model) {
-    switch (model) {
-        case ReflectanceModel::lambert:
-            return "lambert";
-        case ReflectanceModel::ggx:
-            return "ggx";
-        case ReflectanceModel::clearcoat:
-            return "clearcoat";
-    }
-    throw std::invalid_argument("unknown reflectance model");
-}
-
-const char* model_in_words(ReflectanceModel model) {
-    switch (model) {
-        case ReflectanceModel::lambert:
-            return "a plain diffuse paint";
-        case ReflectanceModel::ggx:
-            return "a paint with one glossy lobe";
-        case ReflectanceModel::clearcoat:
-            return "a paint under a clear coat";
-    }
-    throw std::invalid_argument("unknown reflectance model");
-}
 
 void plan_pass(FramePlan& plan, std::string name, std::string why) {
     PlannedPass& pass = plan.passes.emplace_back();
@@ -57,7 +34,8 @@ std::string degrees(double angle_rad) {
 struct Needs {
     bool environment = false;
     std::set<ReflectanceModel> models;
-    std::set<std::string> glossy_parts;
+    std::set<std::string> sided_parts;   ///< that look different from different sides
+    std::set<std::string> mirror_parts;  ///< that mirror the environment
 };
 
 Needs needs_of(const Scene& scene) {
@@ -65,10 +43,11 @@ Needs needs_of(const Scene& scene) {
     needs.environment = scene.environment && !scene.environment->radiance_working.empty() &&
                         scene.environment->scale != 0.0;
     for (std::size_t i = 0; i < scene.part_materials.size(); ++i) {
-        needs.models.insert(scene.part_materials[i].model);
-        if (scene.part_materials[i].model != ReflectanceModel::lambert) {
-            needs.glossy_parts.insert(scene.product->mesh.parts[i].name);
-        }
+        const ModelInfo& model = model_info(scene.part_materials[i].model);
+        const std::string& part = scene.product->mesh.parts[i].name;
+        needs.models.insert(model.model);
+        if (!model.same_from_all_sides) needs.sided_parts.insert(part);
+        if (model.mirrors()) needs.mirror_parts.insert(part);
     }
     return needs;
 }
@@ -102,7 +81,7 @@ void plan_lights(const Scene& scene, FramePlan& plan) {
 }
 
 void plan_environment(const Needs& needs, FramePlan& plan) {
-    const std::string glossy = needs.glossy_parts.empty() ? "" : *needs.glossy_parts.begin();
+    const std::string mirror = needs.mirror_parts.empty() ? "" : *needs.mirror_parts.begin();
     if (!needs.environment) {
         for (const char* pass :
              {kIrradiancePass, kOcclusionPass, kFilterPass, kReflectionPass, kMirrorPass}) {
@@ -117,18 +96,18 @@ void plan_environment(const Needs& needs, FramePlan& plan) {
     } else {
         plan_pass(plan, kOcclusionPass, "parts hide the environment from one another");
     }
-    if (glossy.empty()) {
+    if (mirror.empty()) {
         for (const char* pass : {kFilterPass, kReflectionPass, kMirrorPass}) {
             plan.skipped.push_back({pass, "no part mirrors the environment: all are diffuse"});
         }
         return;
     }
-    plan_pass(plan, kFilterPass, fmt::format("part {} mirrors the environment", glossy));
+    plan_pass(plan, kFilterPass, fmt::format("part {} mirrors the environment", mirror));
     if (plan.quality == Quality::draft) {
         plan.skipped.push_back(
             {kReflectionPass, "draft mirrors the environment through other parts"});
     } else {
-        plan_pass(plan, kReflectionPass, fmt::format("part {} may mirror other parts", glossy));
+        plan_pass(plan, kReflectionPass, fmt::format("part {} may mirror other parts", mirror));
     }
     plan_pass(plan,
               kMirrorPass,
@@ -136,34 +115,37 @@ void plan_environment(const Needs& needs, FramePlan& plan) {
 }
 
 void plan_shading(const Scene& scene, const Needs& needs, FramePlan& plan) {
-    if (needs.glossy_parts.empty()) {
+    if (needs.sided_parts.empty()) {
         plan.skipped.push_back({kDirectionsPass, "every paint looks the same from every side"});
     } else {
         plan_pass(plan,
                   kDirectionsPass,
-                  fmt::format("the gloss of part {} depends on where the eye is",
-                              *needs.glossy_parts.begin()));
+                  needs.mirror_parts.empty()
+                      ? fmt::format("the shade of part {} depends on where the eye is",
+                                    *needs.sided_parts.begin())
+                      : fmt::format("the gloss of part {} depends on where the eye is",
+                                    *needs.mirror_parts.begin()));
     }
-    if (needs.models.contains(ReflectanceModel::lambert)) {
+    const bool plain =
+        std::any_of(needs.models.begin(), needs.models.end(), [](ReflectanceModel model) {
+            return model_info(model).same_from_all_sides;
+        });
+    if (plain) {
         plan_pass(plan, kDiffuseLightPass, "plain diffuse parts need only the sum of all light");
     } else {
         plan.skipped.push_back({kDiffuseLightPass, "no part is plain diffuse"});
     }
     for (std::size_t i = 0; i < scene.part_materials.size(); ++i) {
         const Material& material = scene.part_materials[i];
-        plan_pass(plan,
-                  shade_pass(scene, i),
-                  material.name.empty()
-                      ? std::string(model_in_words(material.model))
-                      : fmt::format("{} is {}", material.name, model_in_words(material.model)));
+        const std::string in_words = model_info(material.model).in_words;
+        plan_pass(
+            plan,
+            shade_pass(scene, i),
+            material.name.empty() ? in_words : fmt::format("{} is {}", material.name, in_words));
     }
-    const std::array unused{std::pair(ReflectanceModel::lambert, "no part is plain diffuse"),
-                            std::pair(ReflectanceModel::ggx, "no part uses GGX"),
-                            std::pair(ReflectanceModel::clearcoat, "no paint has a clear coat")};
-    for (const auto& [model, why] : unused) {
-        if (!needs.models.contains(model)) {
-            plan.skipped.push_back({fmt::format("shade:*:{}", model_name(model)), why});
-        }
+    for (const ModelInfo& model : model_table()) {
+        if (needs.models.contains(model.model)) continue;
+        plan.skipped.push_back({fmt::format("shade:*:{}", model.name), model.unused});
     }
 }
 
@@ -203,7 +185,7 @@ std::string visibility_pass(std::size_t light) { return light_name(light) + "-vi
 std::string shade_pass(const Scene& scene, std::size_t part) {
     return fmt::format("shade:{}:{}",
                        scene.product->mesh.parts.at(part).name,
-                       model_name(scene.part_materials.at(part).model));
+                       model_info(scene.part_materials.at(part).model).name);
 }
 
 const PlannedPass* find_pass(const FramePlan& plan, const std::string& name) {

@@ -5,15 +5,17 @@
 #include <cmath>
 #include <exception>
 #include <functional>
+#include <set>
 #include <span>
 #include <thread>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "appearance/material_library.h"
+#include "appearance/model_table.h"
 #include "core/error.h"
 #include "core/parallel.h"
-#include "radiance/shading.h"
 #include "session/picture.h"
 
 namespace livery {
@@ -45,12 +47,12 @@ void run_giving_way(std::optional<Urgency> urgency, const std::function<void()>&
 
 bool mirrors(const std::vector<Material>& paints) {
     return std::any_of(paints.begin(), paints.end(), [](const Material& paint) {
-        return paint.model != ReflectanceModel::lambert;
+        return model_info(paint.model).mirrors();
     });
 }
 
 bool same_paints(const std::vector<Material>& a, const std::vector<Material>& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), same_paint);
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), same_reflectance);
 }
 
 const Scene& side_of(const FrameDescription& description, std::size_t side) {
@@ -90,21 +92,20 @@ void add_milliseconds(FramePlan& plan, const FramePlan& more, bool add_passes) {
     }
 }
 
-struct ModelInWords {
-    ReflectanceModel model;
-    const char* pass;
-    const char* why;
-};
-constexpr std::array kModels{
-    ModelInWords{ReflectanceModel::lambert,
-                 "prepare:lambert",
-                 "a plain diffuse paint may be next: made ready ahead"},
-    ModelInWords{ReflectanceModel::ggx,
-                 "prepare:ggx",
-                 "a paint with one glossy lobe may be next: made ready ahead"},
-    ModelInWords{ReflectanceModel::clearcoat,
-                 "prepare:clearcoat",
-                 "a paint under a clear coat may be next: made ready ahead"}};
+/// Models that the next paint may have: the library's, and the one that a glowing part wears.
+/// Without a library that can be read (the library panel says why) nothing is likely.
+std::set<ReflectanceModel> models_likely_next() {
+    std::set<ReflectanceModel> models{glow_paint().model};
+    try {
+        const PaintLibrary library = read_paint_library();
+        for (const auto* paints : {&library.shipped, &library.users}) {
+            for (const Material& paint : *paints) models.insert(paint.model);
+        }
+    } catch (const FileError&) {
+        return models;
+    }
+    return models;
+}
 
 }  // namespace
 
@@ -193,15 +194,22 @@ void FrameLane::solve_light(std::size_t index,
 
 void FrameLane::prepare(const FrameDescription& description, const Progress& progress) {
     std::vector<PlannedPass> passes;
-    for (const ModelInWords& model : kModels) {
+    std::set<ReflectanceModel> models;
+    run_giving_way(Urgency::background, [&] { models = models_likely_next(); });
+    for (std::size_t side = 0; side < side_count(description); ++side) {
+        for (const Material& paint : side_of(description, side).part_materials) {
+            models.insert(paint.model);
+        }
+    }
+    for (const ReflectanceModel model : models) {
         const auto start = Clock::now();
         bool used = false;
         for (std::size_t side = 0; side < side_count(description); ++side) {
             Scene scene = scene_of(description, side);
             for (Material& paint : scene.part_materials) {
-                used = used || paint.model == model.model;
+                used = used || paint.model == model;
                 paint = Material{};
-                paint.model = model.model;
+                paint.model = model;
             }
             const std::size_t index = nearest_of(solved_, keys_of(description), side);
             RadianceRenderer& renderer = *lights_[index].renderer;
@@ -211,8 +219,8 @@ void FrameLane::prepare(const FrameDescription& description, const Progress& pro
         }
         if (used) continue;
         PlannedPass& pass = passes.emplace_back();
-        pass.name = model.pass;
-        pass.why = model.why;
+        pass.name = fmt::format("prepare:{}", model_info(model).name);
+        pass.why = fmt::format("{} may be next: made ready ahead", model_info(model).in_words);
         pass.ms = milliseconds_since(start);
     }
     prepare_passes_ = std::move(passes);

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "appearance/bsdf.h"
 #include "appearance/measured_grid.h"
+#include "appearance/parameter_table.h"
 #include "gl/draw.h"
 #include "gl/program.h"
 #include "gl/read_back.h"
@@ -29,23 +29,26 @@ std::string literal(const glm::vec3& v) {
     return fmt::format("vec3({}, {}, {})", literal(v.x), literal(v.y), literal(v.z));
 }
 
-// A field more must be set in paint_text(), or the shader would read what nobody wrote.
-static_assert(sizeof(f32::BsdfParameters) == 13 * sizeof(float));
-
-std::string paint_text(const Material& material) {
-    const f32::BsdfParameters p = parameters_of(material);
-    std::string text =
-        bsdf_glsl(material.model) + "BsdfParameters paint() {\n    BsdfParameters p;\n";
-    const auto assign = [&](const char* name, const auto& value) {
-        text += fmt::format("    p.{} = {};\n", name, literal(value));
-    };
-    assign("diffuse", p.diffuse);
-    assign("f0", p.f0);
-    assign("alpha_x", p.alpha_x);
-    assign("alpha_y", p.alpha_y);
-    assign("coat_alpha", p.coat_alpha);
-    assign("coat_f0", p.coat_f0);
-    assign("coat_transmittance", p.coat_transmittance);
+std::string paint_text(ReflectanceModel model, f32::BsdfParameters p) {
+    std::string text = bsdf_glsl(model) + "BsdfParameters paint() {\n    BsdfParameters p;\n";
+    for (const ParameterInfo& parameter : parameter_table()) {
+        const Components<float> v = parameter.in_f32(p);
+        const auto assign = [&](const char* suffix, const std::string& value) {
+            text += fmt::format("    p.{}{} = {};\n", parameter.name, suffix, value);
+        };
+        switch (parameter.kind) {
+            case ParameterKind::colour:
+                assign("", literal(glm::vec3(*v[0], *v[1], *v[2])));
+                break;
+            case ParameterKind::number:
+                assign("", literal(*v[0]));
+                break;
+            case ParameterKind::pair:
+                assign("_x", literal(*v[0]));
+                assign("_y", literal(*v[1]));
+                break;
+        }
+    }
     return text + "    return p;\n}\n#define VALUE(wi, wo) bsdf_eval(paint(), wi, wo)\n";
 }
 
@@ -116,13 +119,14 @@ std::vector<glm::dvec3> evaluate_pairs(Program& program,
 
 }  // namespace
 
-std::vector<glm::dvec3> reflectance_on_gpu(const Material& material,
+std::vector<glm::dvec3> reflectance_on_gpu(ReflectanceModel model,
+                                           const BsdfParameters& parameters,
                                            std::span<const DirectionPair> pairs,
                                            GlDevice device,
                                            const Progress& progress) {
     const HeadlessContext context(device);
-    Program program =
-        Program::screen_pass({"brdf.frag", "#version 450 core\n" + paint_text(material) + kBody});
+    Program program = Program::screen_pass(
+        {"brdf.frag", "#version 450 core\n" + paint_text(model, parameters) + kBody});
     return evaluate_pairs(program, pairs, progress);
 }
 

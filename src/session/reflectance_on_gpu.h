@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "appearance/material.h"
+#include "appearance/bsdf.h"
 #include "appearance/measured_grid.h"
 #include "core/progress.h"
 #include "gl/context.h"
@@ -13,7 +13,8 @@
 namespace livery {
 
 /// In the working space, one value a pair. Makes a context of its own and leaves none current.
-std::vector<glm::dvec3> reflectance_on_gpu(const Material& material,
+std::vector<glm::dvec3> reflectance_on_gpu(ReflectanceModel model,
+                                           const BsdfParameters& parameters,
                                            std::span<const DirectionPair> pairs,
                                            GlDevice device,
                                            const Progress& progress = {});

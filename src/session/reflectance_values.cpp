@@ -54,7 +54,8 @@ std::vector<glm::dvec3> reflectance_values(const Material& material,
     };
     switch (settings.precision) {
         case Precision::gpu:
-            return reflectance_on_gpu(material, pairs, settings.gl, progress);
+            return reflectance_on_gpu(
+                material.model, parameters_of(material), pairs, settings.gl, progress);
         case Precision::f32:
             return for_each_pair(
                 pairs, progress, [&, p = parameters_of(material)](const DirectionPair& pair) {

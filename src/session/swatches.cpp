@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "appearance/parameter_table.h"
 #include "core/error.h"
 #include "core/hash.h"
 #include "core/image_io.h"
@@ -21,7 +22,7 @@ namespace livery {
 namespace {
 
 /// Grows whenever swatches come to look different.
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 constexpr double kFov_rad = 0.2;
 
 View swatch_view(const Bounds& bounds, int size_px) {
@@ -88,17 +89,10 @@ Image8 SwatchPainter::paint(const Material& material, int size_px) {
 }
 
 std::filesystem::path swatch_file(const Material& material, int size_px) {
-    const auto vector = [](const glm::dvec3& v) { return std::array{v.x, v.y, v.z}; };
     Hasher hasher;
-    const std::array integers{kVersion, size_px, static_cast<int>(material.model)};
+    const std::array integers{kVersion, size_px};
     hasher.add(std::span<const int>(integers));
-    for (const auto& v : {vector(material.diffuse),
-                          vector(material.f0),
-                          vector(material.coat_transmittance),
-                          std::array{material.alpha.x, material.alpha.y, material.coat_alpha},
-                          std::array{material.coat_f0, 0.0, 0.0}}) {
-        hasher.add(std::span<const double>(v));
-    }
+    hasher.add(std::span<const double>(reflectance_numbers(material)));
     return user_folder() / "swatches" / (hasher.hex() + ".png");
 }
 

@@ -8,6 +8,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "appearance/model_table.h"
 #include "core/error.h"
 #include "session/naming.h"
 #include "studio/chosen_part.h"
@@ -77,12 +78,6 @@ bool is_own(const Document& document, const std::string& name) {
     });
 }
 
-bool same_parameters(const Material& a, const Material& b) {
-    return a.model == b.model && a.diffuse == b.diffuse && a.f0 == b.f0 && a.alpha == b.alpha &&
-           a.coat_alpha == b.coat_alpha && a.coat_f0 == b.coat_f0 &&
-           a.coat_transmittance == b.coat_transmittance;
-}
-
 /// One control's row; the edit is tried and committed by what was just drawn.
 class Rows {
   public:
@@ -92,9 +87,9 @@ class Rows {
         row_label(text);
         meaning_ = meaning;
     }
-    void parameter(const char* name, const char* how = "Drag, or Ctrl+click to type.") {
-        const ParameterText& text = parameter_text(name);
-        label(text.label, fmt::format("{}\n{}: {}. {}", text.meaning, text.name, text.range, how));
+    void parameter(const ParameterInfo& info, const char* how = "Drag, or Ctrl+click to type.") {
+        label(info.label,
+              fmt::format("{}\n{}: {}. {}", info.meaning, info.name, info.range_text(), how));
     }
     void after_item(const std::string& name) {
         PaintPanelState& state = studio_.panels.paint;
@@ -105,7 +100,7 @@ class Rows {
         if (!touched) return;
         state.problem = paint_problem(edited_).value_or("");
         // What was put back where it was, or typed in part, is no edit.
-        if (state.problem.empty() && !same_parameters(edited_, *state.material)) {
+        if (state.problem.empty() && !same_reflectance(edited_, *state.material)) {
             edit_with_last_item(studio_, EditPaint{state.look, state.part_name, edited_});
         }
     }
@@ -147,16 +142,16 @@ void draw_title(Studio& studio) {
 void draw_model(Studio& studio, const Material& material) {
     PaintPanelState& state = studio.panels.paint;
     row_label("Model");
-    const ModelText& chosen = model_text(material.model);
+    const ModelInfo& chosen = model_info(material.model);
     if (ImGui::BeginCombo("##model", chosen.label)) {
-        for (const auto model :
-             {ReflectanceModel::lambert, ReflectanceModel::ggx, ReflectanceModel::clearcoat}) {
+        for (const ModelInfo& model : model_table()) {
             Material changed = material;
-            changed.model = model;
-            const bool picked = ImGui::Selectable(model_text(model).label, model == material.model);
-            name_last_item(std::string("model:") + model_text(model).name);
-            tooltip(model_text(model).meaning);
-            if (model == material.model) continue;
+            changed.model = model.model;
+            const bool same = model.model == material.model;
+            const bool picked = ImGui::Selectable(model.label, same);
+            name_last_item(std::string("model:") + model.name);
+            tooltip(model.meaning);
+            if (same) continue;
             if (ImGui::IsItemHovered()) {
                 try_out(studio, EditPaint{state.look, state.part_name, changed});
             }
@@ -168,56 +163,66 @@ void draw_model(Studio& studio, const Material& material) {
     tooltip(chosen.meaning);
 }
 
-void draw_alpha(Studio& studio, Rows& rows, Material& edited) {
-    PaintPanelState& state = studio.panels.paint;
-    const bool differs = edited.alpha.x != edited.alpha.y;
-    const bool brushed = differs || state.brushed;
-    rows.parameter("alpha");
-    ratio_slider("##alpha", edited.alpha.x, 1e-4, 1.0, "%.4g");
-    if (!brushed) edited.alpha.y = edited.alpha.x;
-    rows.after_item("alpha");
-    if (brushed) {
-        rows.label("  across", "Roughness across the brushing; the one above is along it.");
-        ratio_slider("##across", edited.alpha.y, 1e-4, 1.0, "%.4g");
-        rows.after_item("alpha-across");
+void draw_slider(const ParameterInfo& parameter, const std::string& id, double& value) {
+    if (parameter.logarithmic) {
+        ratio_slider(id.c_str(), value, parameter.low, parameter.high, "%.4g");
+    } else {
+        number_slider(id.c_str(), value, parameter.low, parameter.high, "%.3f");
     }
+}
+
+void draw_pair(Studio& studio, Rows& rows, const ParameterInfo& parameter, Material& edited) {
+    PaintPanelState& state = studio.panels.paint;
+    const Components<double> components = parameter.in_material(edited);
+    double& along = *components[0];
+    double& across = *components[1];
+    const bool can_differ = model_info(edited.model).anisotropic;
+    const bool differs = can_differ && along != across;
+    const bool brushed = differs || (can_differ && state.brushed);
+    rows.parameter(parameter);
+    draw_slider(parameter, std::string("##") + parameter.name, along);
+    if (!brushed) across = along;
+    rows.after_item(parameter.name);
+    if (brushed) {
+        rows.label("  across", "The same across the brushing; the one above is along it.");
+        draw_slider(parameter, "##across", across);
+        rows.after_item(std::string(parameter.name) + "-across");
+    }
+    if (!can_differ) return;
     row_label("");
     bool wanted = brushed;
     if (ImGui::Checkbox("Brushed", &wanted)) {
         state.brushed = wanted;
         if (!wanted && differs) {
-            edited.alpha.y = edited.alpha.x;
+            across = along;
             commit_edit(studio, edited);
         }
     }
     name_last_item("param:brushed");
-    tooltip("Different roughness along and across the surface's tangent.");
+    tooltip("Different gloss along and across the surface's tangent.");
 }
 
 void draw_parameters(Studio& studio) {
     PaintPanelState& state = studio.panels.paint;
     Material& edited = state.held.start(*state.material);
     Rows rows(studio, edited);
-    const auto colour = [&](const char* name, glm::dvec3& value) {
-        rows.parameter(name, "The three numbers are linear Rec.709: drag, or Ctrl+click to type.");
-        colour_control(std::string("param:") + name, value);
-        rows.after_item(name);
-    };
-    for (const std::string& name : parameters_of_model(edited.model)) {
-        if (name == "diffuse") colour("diffuse", edited.diffuse);
-        if (name == "f0") colour("f0", edited.f0);
-        if (name == "alpha") draw_alpha(studio, rows, edited);
-        if (name == "coat_alpha") {
-            rows.parameter("coat_alpha");
-            ratio_slider("##coat_alpha", edited.coat_alpha, 1e-4, 1.0, "%.4g");
-            rows.after_item("coat_alpha");
+    for (const char* name : model_info(edited.model).parameters) {
+        const ParameterInfo& parameter = parameter_info(name);
+        const Components<double> components = parameter.in_material(edited);
+        if (parameter.kind == ParameterKind::colour) {
+            rows.parameter(parameter,
+                           "The three numbers are linear Rec.709: drag, or Ctrl+click to type.");
+            glm::dvec3 value = value_of(parameter, edited);
+            colour_control(std::string("param:") + name, value);
+            for (int c = 0; c < 3; ++c) *components[static_cast<std::size_t>(c)] = value[c];
+            rows.after_item(name);
+        } else if (parameter.kind == ParameterKind::pair) {
+            draw_pair(studio, rows, parameter, edited);
+        } else {
+            rows.parameter(parameter);
+            draw_slider(parameter, std::string("##") + name, *components[0]);
+            rows.after_item(name);
         }
-        if (name == "coat_f0") {
-            rows.parameter("coat_f0");
-            number_slider("##coat_f0", edited.coat_f0, 0.0, 0.2, "%.3f");
-            rows.after_item("coat_f0");
-        }
-        if (name == "coat_transmittance") colour("coat_transmittance", edited.coat_transmittance);
     }
     state.held.finish();
 }

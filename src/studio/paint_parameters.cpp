@@ -1,51 +1,18 @@
 #include "studio/paint_parameters.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
 #include "appearance/bsdf.h"
+#include "appearance/model_table.h"
 #include "core/colour.h"
 
 namespace livery {
 
 namespace {
-
-constexpr const char* kColourRange = "0 to 1 a channel, working space";
-constexpr const char* kAlphaRange = "0.0001 to 1";
-
-constexpr std::array kParameters{
-    ParameterText{"diffuse",
-                  "Diffuse colour",
-                  kColourRange,
-                  "Albedo of the diffuse layer, before the interfaces above it take their share. "
-                  "Under a clear coat give it the pigment's colour: the coat darkens it."},
-    ParameterText{"f0",
-                  "Base reflectance",
-                  kColourRange,
-                  "Reflectance of the interface looked at along the normal: 0.04 for varnish, a "
-                  "colour for metals and flakes, 0 for no interface."},
-    ParameterText{"alpha",
-                  "Base roughness",
-                  kAlphaRange,
-                  "GGX slope parameter: mirror 0.001, satin 0.3, chalk 1. Two values, along and "
-                  "across, for brushed surfaces."},
-    ParameterText{"coat_alpha",
-                  "Coat roughness",
-                  kAlphaRange,
-                  "GGX slope parameter of the coat: polished varnish 0.01 to 0.03."},
-    ParameterText{"coat_f0",
-                  "Coat reflectance",
-                  "0 to 0.2",
-                  "The coat's reflectance along the normal: 0.04 for varnish of index 1.5."},
-    ParameterText{"coat_transmittance",
-                  "Coat tint",
-                  kColourRange,
-                  "What the coat lets through, once along the normal: white is clear, a colour is "
-                  "tinted varnish."}};
 
 std::string numbers(const glm::dvec3& colour) {
     return fmt::format("{:.3g} {:.3g} {:.3g}", colour.x, colour.y, colour.z);
@@ -60,65 +27,19 @@ int hex_digit(char c) {
 
 }  // namespace
 
-const ParameterText& parameter_text(const std::string& name) {
-    const auto found = std::find_if(kParameters.begin(),
-                                    kParameters.end(),
-                                    [&](const ParameterText& text) { return text.name == name; });
-    if (found == kParameters.end()) {
-        throw std::invalid_argument(fmt::format("no model has a parameter '{}'", name));
-    }
-    return *found;
-}
-
-const std::vector<std::string>& parameters_of_model(ReflectanceModel model) {
-    static const std::vector<std::string> lambert{"diffuse"}, ggx{"diffuse", "f0", "alpha"},
-        clearcoat{"diffuse", "f0", "alpha", "coat_alpha", "coat_f0", "coat_transmittance"};
-    switch (model) {
-        case ReflectanceModel::lambert:
-            return lambert;
-        case ReflectanceModel::ggx:
-            return ggx;
-        case ReflectanceModel::clearcoat:
-            return clearcoat;
-    }
-    throw std::invalid_argument("unknown reflectance model");
-}
-
-const ModelText& model_text(ReflectanceModel model) {
-    static constexpr ModelText lambert{
-        "lambert", "Plain diffuse", "The same radiance in all directions."},
-        ggx{"ggx", "Glossy or matte", "A rough interface (GGX) over a diffuse layer."},
-        clearcoat{"clearcoat",
-                  "Clear coat",
-                  "A clear coat over a rough interface: solid and metallic car paint."};
-    switch (model) {
-        case ReflectanceModel::lambert:
-            return lambert;
-        case ReflectanceModel::ggx:
-            return ggx;
-        case ReflectanceModel::clearcoat:
-            return clearcoat;
-    }
-    throw std::invalid_argument("unknown reflectance model");
-}
-
 std::string summary_of(const Material& material) {
-    std::string text = model_text(material.model).label;
-    const auto line = [&](const char* name, const std::string& value) {
-        text += fmt::format("\n{} {}", parameter_text(name).label, value);
-    };
-    line("diffuse", numbers(material.diffuse));
-    if (material.model == ReflectanceModel::lambert) return text;
-    line("f0", numbers(material.f0));
-    line("alpha",
-         material.alpha.x == material.alpha.y
-             ? fmt::format("{:.3g}", material.alpha.x)
-             : fmt::format("{:.3g} along, {:.3g} across", material.alpha.x, material.alpha.y));
-    if (material.model == ReflectanceModel::clearcoat) {
-        line("coat_alpha", fmt::format("{:.3g}", material.coat_alpha));
-        if (material.coat_transmittance != glm::dvec3(1.0)) {
-            line("coat_transmittance", numbers(material.coat_transmittance));
+    const ModelInfo& model = model_info(material.model);
+    std::string text = model.label;
+    for (const char* name : model.parameters) {
+        const ParameterInfo& parameter = parameter_info(name);
+        const glm::dvec3 value = value_of(parameter, material);
+        if (value == value_of(parameter, Material{})) continue;
+        std::string shown = fmt::format("{:.3g}", value.x);
+        if (parameter.kind == ParameterKind::colour) shown = numbers(value);
+        if (parameter.kind == ParameterKind::pair && model.anisotropic && value.x != value.y) {
+            shown = fmt::format("{:.3g} along, {:.3g} across", value.x, value.y);
         }
+        text += fmt::format("\n{} {}", parameter.label, shown);
     }
     return text;
 }

@@ -1,5 +1,4 @@
-// What the parameters of a paint mean to a person: one table for the panel, its tooltips and the
-// paints' own tooltips (docs/materials.md says the same).
+// What a person reads and types of a paint. The parameters themselves: parameter_table.h.
 #pragma once
 
 #include <optional>
@@ -12,25 +11,7 @@
 
 namespace livery {
 
-struct ParameterText {
-    const char* name;     ///< as in a material file: "coat_alpha"
-    const char* label;    ///< "Coat roughness"
-    const char* range;    ///< as in the docs' table
-    const char* meaning;  ///< a sentence or two
-};
-/// Throws std::invalid_argument for a name that no model has.
-const ParameterText& parameter_text(const std::string& name);
-/// Names of a model's parameters, in the order of the panel.
-const std::vector<std::string>& parameters_of_model(ReflectanceModel model);
-
-struct ModelText {
-    const char* name;     ///< "clearcoat"
-    const char* label;    ///< "Clear coat"
-    const char* meaning;  ///< a sentence
-};
-const ModelText& model_text(ReflectanceModel model);
-
-/// "diffuse 0.45 0.02 0.02, roughness 0.24": the model's main parameters on a few lines.
+/// "Clear coat", and the model's parameters that are not at their usual value, a line each.
 std::string summary_of(const Material& material);
 
 /// Why a paint cannot be drawn (a colour outside the working space); nothing when it can.

@@ -5,8 +5,10 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <imgui.h>
 
+#include "appearance/model_table.h"
 #include "core/colour.h"
 #include "gl/window.h"
 #include "studio/theme.h"
@@ -20,28 +22,13 @@ constexpr std::size_t kMostKept = 300;
 
 /// All that the picture depends on.
 std::string key_of(const Material& m, int size_px) {
-    return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {} {}",
-                       size_px,
-                       static_cast<int>(m.model),
-                       m.diffuse.x,
-                       m.diffuse.y,
-                       m.diffuse.z,
-                       m.f0.x,
-                       m.f0.y,
-                       m.f0.z,
-                       m.alpha.x,
-                       m.alpha.y,
-                       m.coat_alpha,
-                       m.coat_f0,
-                       m.coat_transmittance.x,
-                       m.coat_transmittance.y,
-                       m.coat_transmittance.z);
+    return fmt::format("{} {}", size_px, fmt::join(reflectance_numbers(m), " "));
 }
 
 void draw_plain_disc(const Material& material, const ImVec2& corner, float side) {
     const glm::dvec3 colour =
         material.diffuse +
-        (material.model == ReflectanceModel::lambert ? glm::dvec3(0.0) : 0.5 * material.f0);
+        (model_info(material.model).has("f0") ? 0.5 * material.f0 : glm::dvec3(0.0));
     const auto channel = [](double value) {
         return static_cast<float>(srgb_encode(std::clamp(value, 0.0, 1.0)));
     };

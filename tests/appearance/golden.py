@@ -71,6 +71,31 @@ def interface(f0, f90, split):
     return f0 * (white - edge) + f90 * edge
 
 
+def angles(w):
+    return acos(w[2] / sqrt(dot(w, w))), atan2(w[1], w[0])
+
+
+def eon(p, wi, wo):
+    """Portsmouth, Kutz and Hill, EON (2025): angles, and the albedo by its arccosine form"""
+    r = p["diffuse_roughness"]
+    (ti, fi), (to, fo) = angles(wi), angles(wo)
+    s = sin(ti) * sin(to) * cos(fi - fo)
+    over = s / max(cos(ti), cos(to)) if s > 0 else s
+    a = 1 / (1 + (mpf(1) / 2 - 2 / (3 * pi)) * r)
+
+    def albedo(theta):
+        g = sin(theta) * (theta - sin(theta) * cos(theta))
+        g += mpf(2) / 3 * (tan(theta) * (1 - sin(theta)**3) - sin(theta))
+        return a + r * a / pi * g
+    mean = a * (1 + (mpf(2) / 3 - 28 / (15 * pi)) * r)
+    values = []
+    for rho in p["diffuse"]:
+        many = rho**2 * mean / (1 - rho * (1 - mean)) / pi
+        many *= (1 - albedo(ti)) * (1 - albedo(to)) / (1 - mean)
+        values.append(rho / pi * a * (1 + r * over) + many)
+    return values
+
+
 def lambert(p, wi, wo):
     return [d / pi for d in p["diffuse"]]
 
@@ -123,33 +148,48 @@ def direction(rng):
     return [float(s * cos(mpf(phi))), float(s * sin(mpf(phi))), z]
 
 
+MODELS = {"lambert": lambert, "eon": eon, "ggx": ggx, "clearcoat": clearcoat}
+
+
+def columns(p):
+    """names and numbers of a parameter set"""
+    for name, value in p.items():
+        ends = {1: [""], 2: ["_x", "_y"], 3: ["_r", "_g", "_b"]}[len(value)]
+        yield from zip([name + end for end in ends], value)
+
+
 def main():
     rng = random.Random(20)
-    names = ["model"] + [f"diffuse{c}" for c in "rgb"] + [f"f0{c}" for c in "rgb"]
-    names += ["alpha_x", "alpha_y", "coat_alpha", "coat_f0"]
-    names += [f"coat_transmittance{c}" for c in "rgb"]
-    names += [f"wi_{c}" for c in "xyz"] + [f"wo_{c}" for c in "xyz"] + list("rgb")
-    print(",".join(names))
-    for model in (lambert, ggx, clearcoat):
+    header = None
+    for name, model in MODELS.items():
         for _ in range(50):
-            diffuse = [rng.random() for _ in range(3)]
-            f0 = [rng.random()**3 for _ in range(3)]
             alphas = [10**rng.uniform(-2, 0) for _ in range(3)]
-            coat_f0 = rng.uniform(0.02, 0.1)
-            transmittance = [rng.uniform(0.2, 1) for _ in range(3)]
+            p = {"diffuse": [rng.random() for _ in range(3)],
+                 "diffuse_roughness": [rng.random()],
+                 "f0": [rng.random()**3 for _ in range(3)],
+                 "specular": [rng.random()**2 for _ in range(3)],
+                 "alpha": alphas[:2],
+                 "exponent": [2 / a**2 - 2 for a in alphas[:2]],
+                 "coat_alpha": alphas[2:],
+                 "coat_f0": [rng.uniform(0.02, 0.1)],
+                 "coat_transmittance": [rng.uniform(0.2, 1) for _ in range(3)]}
             wo = direction(rng)
             wi = direction(rng)
             if rng.random() < 0.6:  # near the mirror direction
                 near = [-wo[0] + alphas[0] * rng.gauss(0, 1), -wo[1] + alphas[1] * rng.gauss(0, 1)]
                 if near[0]**2 + near[1]**2 < 0.999:
                     wi = near + [float(sqrt(1 - mpf(near[0])**2 - mpf(near[1])**2))]
-            p = {"diffuse": [mpf(x) for x in diffuse], "f0": [mpf(x) for x in f0],
-                 "ax": mpf(alphas[0]), "ay": mpf(alphas[1]), "coat_alpha": mpf(alphas[2]),
-                 "coat_f0": mpf(coat_f0), "coat_transmittance": [mpf(x) for x in transmittance]}
-            value = model(p, [mpf(x) for x in wi], [mpf(x) for x in wo])
-            numbers = diffuse + f0 + alphas + [coat_f0] + transmittance + wi + wo
-            print(",".join([model.__name__] + [repr(x) for x in numbers] +
-                           [mp.nstr(v, 17) for v in value]))
+            exact = {key: [mpf(x) for x in v] for key, v in p.items()}
+            exact = {key: v[0] if len(v) == 1 else v for key, v in exact.items()}
+            exact["ax"], exact["ay"] = exact["alpha"]
+            value = model(exact, [mpf(x) for x in wi], [mpf(x) for x in wo])
+            pairs = list(columns(p))
+            if header is None:
+                header = ["model"] + [key for key, _ in pairs]
+                header += [f"w{d}_{c}" for d in "io" for c in "xyz"] + list("rgb")
+                print(",".join(header))
+            numbers = [x for _, x in pairs] + wi + wo
+            print(",".join([name] + [repr(x) for x in numbers] + [mp.nstr(v, 17) for v in value]))
 
 
 if __name__ == "__main__":

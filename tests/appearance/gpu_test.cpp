@@ -37,17 +37,12 @@ class OnTheGpu : public testing::TestWithParam<ReflectanceModel> {
 constexpr const char* kBody = R"(
 uniform sampler2D directions_in;
 uniform sampler2D directions_out;
-uniform vec3 diffuse;
-uniform vec3 f0;
-uniform vec4 slopes;  // alpha_x, alpha_y, coat_alpha, coat_f0
-uniform vec3 coat_transmittance;
+uniform BsdfParameters p;
 layout(location = 0) out vec4 value;
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
     vec3 wi = texelFetch(directions_in, at, 0).xyz;
     vec3 wo = texelFetch(directions_out, at, 0).xyz;
-    BsdfParameters p = BsdfParameters(
-        diffuse, f0, slopes.x, slopes.y, slopes.z, slopes.w, coat_transmittance);
     value = vec4(bsdf_eval(p, wi, wo), bsdf_pdf(p, wi, wo));
     if (wi.z < -2.0) {  // never: the rest of the interface must compile
         BsdfEnvironment e = bsdf_environment(bsdf_widen(p, 0.1), wo.z);
@@ -64,14 +59,15 @@ TEST_P(OnTheGpu, GivesTheValuesOfTheCpuInFloat) {
     const Framebuffer framebuffer({&target});
     const ScreenPass pass;
     Random random(7);
-    for (const float alpha : {1e-4f, 1e-3f, 0.01f, 0.1f, 0.3f, 1.0f}) {
-        f32::BsdfParameters p = rounded(plain_parameters());
-        p.diffuse = {0.7f, 0.4f, 0.1f};
-        p.f0 = {0.6f, 0.3f, 0.05f};
-        p.alpha_x = alpha;
-        p.alpha_y = std::min(2.0f * alpha, 1.0f);
-        p.coat_alpha = alpha;
-        p.coat_transmittance = {0.9f, 0.8f, 0.5f};
+    for (const double alpha : {1e-4, 1e-3, 0.01, 0.1, 0.3, 1.0}) {
+        f64::BsdfParameters wide = plain_parameters();
+        wide.diffuse = {0.7, 0.4, 0.1};
+        wide.f0 = {0.6, 0.3, 0.05};
+        wide.specular = {0.3, 0.2, 0.1};
+        set_slopes(wide, alpha, std::min(2.0 * alpha, 1.0));
+        wide.coat_alpha = alpha;
+        wide.coat_transmittance = {0.9, 0.8, 0.5};
+        const f32::BsdfParameters p = rounded(wide);
         Cases cases;
         for (int k = 0; k < kCases; ++k) {
             const glm::dvec3 wo = random_direction(random);
@@ -85,14 +81,21 @@ TEST_P(OnTheGpu, GivesTheValuesOfTheCpuInFloat) {
         program.use();
         program.set("directions_in", 0);
         program.set("directions_out", 1);
-        program.set("diffuse", p.diffuse);
-        program.set("f0", p.f0);
-        program.set("slopes", glm::vec4(p.alpha_x, p.alpha_y, p.coat_alpha, p.coat_f0));
-        program.set("coat_transmittance", p.coat_transmittance);
+        program.set("p.diffuse", p.diffuse);
+        program.set("p.diffuse_roughness", p.diffuse_roughness);
+        program.set("p.f0", p.f0);
+        program.set("p.specular", p.specular);
+        program.set("p.alpha_x", p.alpha_x);
+        program.set("p.alpha_y", p.alpha_y);
+        program.set("p.exponent_x", p.exponent_x);
+        program.set("p.exponent_y", p.exponent_y);
+        program.set("p.coat_alpha", p.coat_alpha);
+        program.set("p.coat_f0", p.coat_f0);
+        program.set("p.coat_transmittance", p.coat_transmittance);
         pass.run(program, framebuffer);
         const ImageF values = read_floats(target);
         // A few ulp per operation, amplified by the slope of a narrow lobe as 1e-7 / alpha.
-        const double tolerance = std::max(1e-4, 4e-7 / static_cast<double>(alpha));
+        const double tolerance = std::max(1e-4, 4e-7 / alpha);
         for (int k = 0; k < kCases; ++k) {
             const auto at = static_cast<std::size_t>(k);
             const glm::vec3 cpu = evaluate(model, p, cases.wi[at], cases.wo[at]);
@@ -110,11 +113,7 @@ TEST_P(OnTheGpu, GivesTheValuesOfTheCpuInFloat) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Models,
-                         OnTheGpu,
-                         testing::Values(ReflectanceModel::lambert,
-                                         ReflectanceModel::ggx,
-                                         ReflectanceModel::clearcoat));
+INSTANTIATE_TEST_SUITE_P(Models, OnTheGpu, testing::ValuesIn(all_models()), prefix_of);
 
 }  // namespace
 }  // namespace livery

@@ -90,7 +90,7 @@ const BadFile kBadFiles[] = {
      {"modell"}},
     {"unknown model",
      R"({"format_version": 1, "name": "a", "model": "velvet", "parameters": {}})",
-     {"model", "'velvet'", "lambert, ggx, clearcoat"}},
+     {"model", "'velvet'", "lambert, eon, "}},
     {"unknown parameter",
      R"({"format_version": 1, "name": "a", "model": "ggx",
          "parameters": {"diffuse": [0, 0, 0], "f0": [0, 0, 0], "alpha": 0.1, "roughness": 0.3}})",

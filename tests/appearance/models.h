@@ -4,17 +4,46 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
 
 #include "appearance/bsdf.h"
+#include "appearance/model_table.h"
 #include "core/random.h"
 
 namespace livery {
 
+inline std::vector<ReflectanceModel> all_models() {
+    std::vector<ReflectanceModel> models;
+    for (const ModelInfo& model : model_table()) models.push_back(model.model);
+    return models;
+}
+
+/// For the names of parametrised tests.
+inline std::string prefix_of(const testing::TestParamInfo<ReflectanceModel>& info) {
+    return model_info(info.param).prefix;
+}
+
+/// The cosine exponent that stands for a slope parameter.
+inline double exponent_of(double alpha) { return 2.0 / (alpha * alpha) - 2.0; }
+
+/// Slope parameters and exponents alike.
+inline void set_slopes(f64::BsdfParameters& p, double along, double across) {
+    p.alpha_x = along;
+    p.alpha_y = across;
+    p.exponent_x = exponent_of(along);
+    p.exponent_y = exponent_of(across);
+}
+
 inline f64::BsdfParameters plain_parameters() {
-    f64::BsdfParameters p;
+    f64::BsdfParameters p{};
+    p.specular = glm::dvec3(0.04);
+    p.diffuse_roughness = 0.5;
     p.diffuse = glm::dvec3(0.0);
     p.f0 = glm::dvec3(0.04);
-    p.alpha_x = p.alpha_y = 0.3;
+    set_slopes(p, 0.3, 0.3);
     p.coat_alpha = 0.02;
     p.coat_f0 = 0.04;
     p.coat_transmittance = glm::dvec3(1.0);

@@ -69,8 +69,8 @@ TEST_P(Sampling, ChiSquareAgainstTheDensity) {
             f64::BsdfParameters p = plain_parameters();
             p.diffuse = glm::dvec3(0.4);
             p.f0 = glm::dvec3(0.5);
-            p.alpha_x = alpha;
-            p.alpha_y = std::min(2.0 * alpha, 1.0);
+            p.specular = glm::dvec3(0.5);
+            set_slopes(p, alpha, std::min(2.0 * alpha, 1.0));
             p.coat_alpha = 0.12;
             const glm::dvec3 wo = direction(mu, 0.7);
             const std::vector<double> shares = expected_shares(GetParam(), p, wo);
@@ -121,7 +121,8 @@ TEST_P(Sampling, WeightsAverageToTheAlbedoForNarrowLobesToo) {
             f64::BsdfParameters p = plain_parameters();
             p.diffuse = glm::dvec3(0.4);
             p.f0 = glm::dvec3(0.3);
-            p.alpha_x = p.alpha_y = alpha;
+            p.specular = glm::dvec3(0.3);
+            set_slopes(p, alpha, alpha);
             p.coat_alpha = 0.5 * alpha + 1e-4;
             const glm::dvec3 wo = direction(mu, 2.0);
             double sum = 0.0, squares = 0.0;
@@ -144,11 +145,7 @@ TEST_P(Sampling, WeightsAverageToTheAlbedoForNarrowLobesToo) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Models,
-                         Sampling,
-                         testing::Values(ReflectanceModel::lambert,
-                                         ReflectanceModel::ggx,
-                                         ReflectanceModel::clearcoat));
+INSTANTIATE_TEST_SUITE_P(Models, Sampling, testing::ValuesIn(all_models()), prefix_of);
 
 }  // namespace
 }  // namespace livery

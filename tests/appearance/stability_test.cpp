@@ -16,8 +16,8 @@ f64::BsdfParameters coloured(double alpha) {
     f64::BsdfParameters p = plain_parameters();
     p.diffuse = {0.8, 0.3, 0.05};
     p.f0 = {0.7, 0.25, 0.03};
-    p.alpha_x = alpha;
-    p.alpha_y = std::min(1.7 * alpha, 1.0);
+    p.specular = {0.5, 0.2, 0.1};
+    set_slopes(p, alpha, std::min(1.7 * alpha, 1.0));
     p.coat_alpha = alpha;
     p.coat_transmittance = {0.95, 0.7, 0.3};
     return widened(rounded(p));
@@ -106,10 +106,14 @@ f32::BsdfParameters random_parameters(Random& random) {
     for (int c = 0; c < 3; ++c) {
         p.diffuse[c] = extreme();
         p.f0[c] = extreme();
+        p.specular[c] = extreme();
         p.coat_transmittance[c] = extreme();
     }
     p.alpha_x = slope();
     p.alpha_y = slope();
+    p.exponent_x = std::pow(10.0f, 6.0f * random.uniform_float());
+    p.exponent_y = std::pow(10.0f, 6.0f * random.uniform_float());
+    p.diffuse_roughness = extreme();
     p.coat_alpha = slope();
     p.coat_f0 = 0.2f * extreme();
     return p;
@@ -152,11 +156,7 @@ TEST_P(Stability, EveryInputHasAFiniteValueThatIsNotNegative) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Models,
-                         Stability,
-                         testing::Values(ReflectanceModel::lambert,
-                                         ReflectanceModel::ggx,
-                                         ReflectanceModel::clearcoat));
+INSTANTIATE_TEST_SUITE_P(Models, Stability, testing::ValuesIn(all_models()), prefix_of);
 
 }  // namespace
 }  // namespace livery

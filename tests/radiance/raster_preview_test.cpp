@@ -7,9 +7,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "appearance/model_table.h"
 #include "gl/context.h"
 #include "radiance/renderer.h"
 #include "radiance/scenes.h"
+#include "radiance/shading.h"
 
 namespace livery {
 namespace {
@@ -68,12 +70,14 @@ TEST(RasterPreview, AgreesWithTheSurfaceMapInside) {
     HeadlessContext context(GlDevice::software);
     View view = test_view(120, 90);
     view.distortion = {-0.1, 0.02, 1e-3, -5e-4, 0.0};
-    for (const auto model :
-         {ReflectanceModel::lambert, ReflectanceModel::ggx, ReflectanceModel::clearcoat}) {
+    for (const ModelInfo& info : model_table()) {
+        const ReflectanceModel model = info.model;
         Scene scene = scene_of(two_spheres(), paint_of(model, 0.2));
         scene.lights = {light_from({0.5, 0.8, 0.6}, 3.0 * kDegree_rad),
                         light_from({-0.9, 0.3, 0.5}, 0.0, 0.3)};
-        if (model == ReflectanceModel::clearcoat) scene.environment = gradient();
+        if (!has_own_shading(model) || model == ReflectanceModel::clearcoat) {
+            scene.environment = gradient();
+        }
         RadianceRenderer renderer(scene.product, view);
         FramePlan plan = plan_frame(scene, Quality::normal, FrameStage::radiance);
         renderer.render(scene, plan);
@@ -86,8 +90,8 @@ TEST(RasterPreview, AgreesWithTheSurfaceMapInside) {
         // preview's mirror lobes are round, the renderer's are sampled.
         const double median = differences[differences.size() / 2];
         const double p95 = differences[differences.size() * 95 / 100];
-        std::printf("    model %d median %.4f p95 %.4f largest %.4f\n",
-                    static_cast<int>(model),
+        std::printf("    %-30s median %.4f p95 %.4f largest %.4f\n",
+                    info.name,
                     median,
                     p95,
                     differences.back());

@@ -21,6 +21,9 @@ inline Material paint_of(ReflectanceModel model, double alpha) {
     material.alpha = glm::dvec2(model == ReflectanceModel::clearcoat ? 0.25 : alpha);
     material.coat_alpha = alpha;
     material.coat_transmittance = {0.95, 0.85, 0.8};
+    material.exponent = glm::dvec2(2.0 / (alpha * alpha) - 2.0);
+    material.specular = {0.06, 0.05, 0.04};
+    material.diffuse_roughness = 0.7;
     return material;
 }
 

@@ -1,59 +1,15 @@
 // What the panel says of a paint's parameters, and colours as people type them.
 #include "studio/paint_parameters.h"
 
-#include <array>
 #include <cmath>
-#include <stdexcept>
 #include <string>
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "core/colour.h"
-#include "core/paths.h"
-#include "support/temporary_folder.h"
 
 namespace livery {
 namespace {
-
-constexpr std::array kModels{
-    ReflectanceModel::lambert, ReflectanceModel::ggx, ReflectanceModel::clearcoat};
-
-TEST(ParameterText, AgreesWithTheDocs) {
-    const std::string docs = read_text_file(LIVERY_SOURCE "/docs/materials.md");
-    for (const auto model : kModels) {
-        EXPECT_NE(docs.find(fmt::format("| `{}` |", model_text(model).name)), std::string::npos);
-        for (const std::string& name : parameters_of_model(model)) {
-            const auto row = docs.find(fmt::format("\n| `{}` |", name));
-            ASSERT_NE(row, std::string::npos) << name;
-            const std::string line = docs.substr(row, docs.find('\n', row + 1) - row);
-            EXPECT_NE(line.find(fmt::format("| {} |", parameter_text(name).range)),
-                      std::string::npos)
-                << line;
-        }
-    }
-    EXPECT_THROW(parameter_text("sheen"), std::invalid_argument);
-}
-
-TEST(ParameterText, NamesWhatAMaterialFileHolds) {
-    const TemporaryFolder folder;
-    for (const auto model : kModels) {
-        Material material;
-        material.name = "a";
-        material.model = model;
-        write_material_file(folder / "a.json", material);
-        const std::string text = read_text_file(folder / "a.json");
-        EXPECT_NE(text.find(fmt::format("\"{}\"", model_text(model).name)), std::string::npos);
-        std::size_t named = 0;
-        for (const std::string& name : parameters_of_model(ReflectanceModel::clearcoat)) {
-            if (text.find(fmt::format("\"{}\":", name)) != std::string::npos) ++named;
-        }
-        EXPECT_EQ(named, parameters_of_model(model).size());
-        for (const std::string& name : parameters_of_model(model)) {
-            EXPECT_NE(text.find(fmt::format("\"{}\":", name)), std::string::npos) << name;
-        }
-    }
-}
 
 TEST(Summary, HoldsTheModelsOwnParameters) {
     Material material;

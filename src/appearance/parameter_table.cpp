@@ -1,0 +1,182 @@
+#include "appearance/parameter_table.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace livery {
+
+namespace {
+
+template <typename Vector3>
+auto colour(Vector3& v) {
+    return std::array{&v.x, &v.y, &v.z};
+}
+template <typename Real>
+std::array<Real*, 3> numbers(Real& first) {
+    return {&first, nullptr, nullptr};
+}
+template <typename Real>
+std::array<Real*, 3> numbers(Real& first, Real& second) {
+    return {&first, &second, nullptr};
+}
+
+/// `of_material` and `of_parameters` give the numbers by reference, of constants as well.
+template <typename OfMaterial, typename OfParameters>
+ParameterInfo parameter(const char* name,
+                        const char* label,
+                        const char* meaning,
+                        ParameterKind kind,
+                        double low,
+                        double high,
+                        bool logarithmic,
+                        OfMaterial of_material,
+                        OfParameters of_parameters) {
+    return {name,
+            label,
+            meaning,
+            kind,
+            low,
+            high,
+            logarithmic,
+            of_material,
+            of_material,
+            of_parameters,
+            of_parameters};
+}
+
+constexpr bool kLinear = false, kByRatios = true;
+
+}  // namespace
+
+const std::vector<ParameterInfo>& parameter_table() {
+    static const std::vector<ParameterInfo> table = {
+        parameter(
+            "diffuse",
+            "Diffuse colour",
+            "Albedo of the diffuse layer, before the interfaces above it take their share. Under a "
+            "clear coat give it the pigment's colour: the coat darkens it.",
+            ParameterKind::colour,
+            0.0,
+            1.0,
+            kLinear,
+            [](auto& m) { return colour(m.diffuse); },
+            [](auto& p) { return colour(p.diffuse); }),
+        parameter(
+            "diffuse_roughness",
+            "Diffuse roughness",
+            "Of a diffuse surface by itself: 0 is Lambert's, 1 returns light toward where it came "
+            "from, as plaster, clay and the full moon do.",
+            ParameterKind::number,
+            0.0,
+            1.0,
+            kLinear,
+            [](auto& m) { return numbers(m.diffuse_roughness); },
+            [](auto& p) { return numbers(p.diffuse_roughness); }),
+        parameter(
+            "f0",
+            "Base reflectance",
+            "Reflectance of the interface looked at along the normal: 0.04 for an index of 1.5, a "
+            "colour for metals and flakes, 0 for no interface.",
+            ParameterKind::colour,
+            0.0,
+            1.0,
+            kLinear,
+            [](auto& m) { return colour(m.f0); },
+            [](auto& p) { return colour(p.f0); }),
+        parameter(
+            "alpha",
+            "Base roughness",
+            "Slope parameter of the microfacets: mirror 0.001, satin 0.3, chalk 1. Two values, "
+            "along and across the tangent, for brushed surfaces.",
+            ParameterKind::pair,
+            1e-4,
+            1.0,
+            kByRatios,
+            [](auto& m) { return numbers(m.alpha.x, m.alpha.y); },
+            [](auto& p) { return numbers(p.alpha_x, p.alpha_y); }),
+        parameter(
+            "coat_alpha",
+            "Coat roughness",
+            "The same of the coat: polished varnish 0.01 to 0.03.",
+            ParameterKind::number,
+            1e-4,
+            1.0,
+            kByRatios,
+            [](auto& m) { return numbers(m.coat_alpha); },
+            [](auto& p) { return numbers(p.coat_alpha); }),
+        parameter(
+            "coat_f0",
+            "Coat reflectance",
+            "The coat's reflectance along the normal, 0.04 for varnish of index 1.5; its index "
+            "follows from it.",
+            ParameterKind::number,
+            0.0,
+            0.2,
+            kLinear,
+            [](auto& m) { return numbers(m.coat_f0); },
+            [](auto& p) { return numbers(p.coat_f0); }),
+        parameter(
+            "coat_transmittance",
+            "Coat tint",
+            "What the coat lets through, once along the normal: white is clear, a colour is tinted "
+            "varnish.",
+            ParameterKind::colour,
+            0.0,
+            1.0,
+            kLinear,
+            [](auto& m) { return colour(m.coat_transmittance); },
+            [](auto& p) { return colour(p.coat_transmittance); }),
+    };
+    return table;
+}
+
+const ParameterInfo& parameter_info(const std::string& name) {
+    const auto& table = parameter_table();
+    const auto found = std::find_if(
+        table.begin(), table.end(), [&](const ParameterInfo& info) { return info.name == name; });
+    if (found == table.end()) {
+        throw std::invalid_argument(fmt::format("no model has a parameter '{}'", name));
+    }
+    return *found;
+}
+
+int ParameterInfo::count() const {
+    return kind == ParameterKind::colour ? 3 : kind == ParameterKind::pair ? 2 : 1;
+}
+
+std::string ParameterInfo::range_text() const {
+    if (kind == ParameterKind::colour) {
+        return fmt::format("{:.7g} to {:.7g} a channel, working space", low, high);
+    }
+    return fmt::format("{:.7g} to {:.7g}", low, high);
+}
+
+std::string ParameterInfo::default_text() const {
+    return fmt::format("{:.7g}", value_of(*this, Material{}).x);
+}
+
+glm::dvec3 value_of(const ParameterInfo& parameter, const Material& material) {
+    const Components<const double> components = parameter.of_material(material);
+    glm::dvec3 value(0.0);
+    for (int k = 0; k < parameter.count(); ++k) {
+        value[k] = *components[static_cast<std::size_t>(k)];
+    }
+    return value;
+}
+
+std::vector<double> reflectance_numbers(const Material& material) {
+    std::vector<double> numbers{static_cast<double>(material.model)};
+    for (const ParameterInfo& parameter : parameter_table()) {
+        const glm::dvec3 value = value_of(parameter, material);
+        for (int k = 0; k < parameter.count(); ++k) numbers.push_back(value[k]);
+    }
+    return numbers;
+}
+
+bool same_reflectance(const Material& a, const Material& b) {
+    return reflectance_numbers(a) == reflectance_numbers(b);
+}
+
+}  // namespace livery
