@@ -61,6 +61,7 @@ Command check_command();
 Command compensate_command();
 Command demo_command();
 Command desktop_command();
+Command fit_brdf_command();
 Command patterns_command();
 Command photograph_command();
 Command plan_command();

@@ -64,6 +64,7 @@ TEST(Program, HelpNamesEveryCommandAndEachHasAnExample) {
                              "patterns",
                              "photograph",
                              "calibrate color",
+                             "fit brdf",
                              "compensate",
                              "check",
                              "bench",
