@@ -5,15 +5,13 @@
 #include <cmath>
 #include <ctime>
 #include <numbers>
-#include <optional>
 
-#include <ceres/ceres.h>
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
 #include "appearance/bsdf.h"
-#include "appearance/model_table.h"
+#include "appearance/fit_search.h"
 #include "appearance/parameter_table.h"
 #include "core/colour.h"
 #include "core/error.h"
@@ -21,187 +19,16 @@
 namespace livery {
 namespace {
 
-constexpr double kLargestTheta_rad = 80.0 * std::numbers::pi / 180.0;
-constexpr double kFloor = 0.01;  // of f cos: darker differences are not seen beside a highlight
 constexpr std::array kStartAlphas{0.02, 0.06, 0.15, 0.35};
 constexpr std::array kStartCoatAlphas{0.01, 0.05, 0.2};
 // Many short searches, the best of them longer, the best of those to its end.
 constexpr int kFirstSteps = 6, kSecondSteps = 30, kFinalSteps = 60;
 constexpr std::size_t kSecondStarts = 4;
-constexpr double kDifference = 1e-5;  // of a coordinate, whose natural scale is 1
 
 double thread_seconds() {
     timespec now{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-/// One number of a parameter, searched on a scale without ends.
-struct Coordinate {
-    const ParameterInfo* info = nullptr;
-    std::size_t component = 0;
-
-    double get(const f64::BsdfParameters& p) const {
-        f64::BsdfParameters copy = p;
-        return *info->in_f64(copy)[component];
-    }
-    /// Both of a pair: samples of half/difference space say nothing of a grain.
-    void set(f64::BsdfParameters& p, double value) const {
-        const auto numbers = info->in_f64(p);
-        *numbers[component] = value;
-        if (info->kind == ParameterKind::pair) *numbers[1] = value;
-    }
-    double share(double value) const {
-        return info->logarithmic ? std::log(value / info->low) / std::log(info->high / info->low)
-                                 : (value - info->low) / (info->high - info->low);
-    }
-    double encode(double value) const {
-        // Not at an end of the range, where no step changes anything.
-        const double t = std::clamp(share(std::clamp(value, info->low, info->high)), 0.005, 0.995);
-        return std::log(t / (1.0 - t));
-    }
-    double decode(double x) const {
-        const double t = 1.0 / (1.0 + std::exp(-x));
-        return info->logarithmic ? info->low * std::pow(info->high / info->low, t)
-                                 : info->low + (info->high - info->low) * t;
-    }
-};
-
-/// Not searched: a tint, which samples can hardly tell from the colours below it.
-bool is_fixed(const std::string& parameter) { return parameter == "coat_transmittance"; }
-
-std::vector<Coordinate> coordinates_of(const ModelInfo& model) {
-    std::vector<Coordinate> coordinates;
-    for (const char* name : model.parameters) {
-        if (is_fixed(name)) continue;
-        const ParameterInfo& info = parameter_info(name);
-        const std::size_t count = info.kind == ParameterKind::colour ? 3 : 1;
-        for (std::size_t k = 0; k < count; ++k) coordinates.push_back({&info, k});
-    }
-    return coordinates;
-}
-
-/// Residuals of all samples, and their differences by each coordinate.
-class Residuals : public ceres::CostFunction {
-  public:
-    Residuals(const ModelInfo& model,
-              const FitSamples& samples,
-              std::size_t stride,
-              const f64::BsdfParameters& start)
-        : model_(model),
-          samples_(samples),
-          stride_(stride),
-          start_(start),
-          coordinates_(coordinates_of(model)) {
-        const std::size_t used = (samples.pairs.size() + stride - 1) / stride;
-        logarithms_.reserve(3 * used);
-        for (std::size_t i = 0; i < samples.pairs.size(); i += stride) {
-            const double cosine = samples.pairs[i].wi.z;
-            for (int c = 0; c < 3; ++c) {
-                logarithms_.push_back(
-                    std::log(std::max(samples.values_working[i][c], 0.0) * cosine + kFloor));
-            }
-        }
-        set_num_residuals(static_cast<int>(logarithms_.size()));
-        mutable_parameter_block_sizes()->push_back(static_cast<int>(coordinates_.size()));
-    }
-
-    f64::BsdfParameters parameters(const double* x) const {
-        f64::BsdfParameters p = start_;
-        for (std::size_t k = 0; k < coordinates_.size(); ++k) {
-            coordinates_[k].set(p, coordinates_[k].decode(x[k]));
-        }
-        return p;
-    }
-    std::vector<double> encoded() const {
-        std::vector<double> x;
-        for (const Coordinate& c : coordinates_) x.push_back(c.encode(c.get(start_)));
-        return x;
-    }
-    double rms(const double* x) const {
-        std::vector<double> residuals(logarithms_.size());
-        evaluate(parameters(x), residuals.data());
-        double sum = 0.0;
-        for (const double r : residuals) sum += r * r;
-        return std::sqrt(sum / static_cast<double>(residuals.size()));
-    }
-
-    bool Evaluate(const double* const* x, double* residuals, double** jacobians) const override {
-        evaluate(parameters(x[0]), residuals);
-        if (!jacobians || !jacobians[0]) return true;
-        const std::size_t columns = coordinates_.size();
-        std::vector<double> moved(x[0], x[0] + columns), changed(logarithms_.size());
-        for (std::size_t k = 0; k < columns; ++k) {
-            moved[k] += kDifference;
-            evaluate(parameters(moved.data()), changed.data());
-            moved[k] = x[0][k];
-            for (std::size_t i = 0; i < changed.size(); ++i) {
-                jacobians[0][i * columns + k] = (changed[i] - residuals[i]) / kDifference;
-            }
-        }
-        return true;
-    }
-
-  private:
-    void evaluate(const f64::BsdfParameters& p, double* residuals) const {
-        std::size_t at = 0;
-        for (std::size_t i = 0; i < samples_.pairs.size(); i += stride_) {
-            const DirectionPair& pair = samples_.pairs[i];
-            const glm::dvec3 value = model_.f64.eval(p, pair.wi, pair.wo);
-            for (int c = 0; c < 3; ++c, ++at) {
-                residuals[at] =
-                    std::log(std::max(value[c], 0.0) * pair.wi.z + kFloor) - logarithms_[at];
-            }
-        }
-    }
-
-    const ModelInfo& model_;
-    const FitSamples& samples_;
-    std::size_t stride_;
-    f64::BsdfParameters start_;
-    std::vector<Coordinate> coordinates_;
-    std::vector<double> logarithms_;
-};
-
-class StopWhenAsked : public ceres::IterationCallback {
-  public:
-    explicit StopWhenAsked(const Progress& progress) : progress_(progress) {}
-    ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
-        const bool stop = progress_.stop && progress_.stop->load(std::memory_order_relaxed);
-        return stop ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
-    }
-
-  private:
-    const Progress& progress_;
-};
-
-struct Found {
-    f64::BsdfParameters parameters;
-    double rms = 0.0;
-};
-
-Found search(const ModelInfo& model,
-             const FitSamples& samples,
-             std::size_t stride,
-             const f64::BsdfParameters& start,
-             int steps,
-             const Progress& progress) {
-    auto* residuals = new Residuals(model, samples, stride, start);  // the problem's own
-    std::vector<double> x = residuals->encoded();
-    ceres::Problem problem;
-    problem.AddResidualBlock(residuals, nullptr, x.data());
-    ceres::Solver::Options options;
-    options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
-    options.max_num_iterations = steps;
-    options.function_tolerance = 1e-6;
-    options.num_threads = 1;
-    options.logging_type = ceres::SILENT;
-    StopWhenAsked stop(progress);
-    options.callbacks.push_back(&stop);
-    ceres::Solver::Summary summary;
-    ceres::Solve(options, &problem, &summary);
-    progress.check_stop();
-    return {residuals->parameters(x.data()), residuals->rms(x.data())};
 }
 
 /// What the samples say at first sight.
@@ -330,36 +157,6 @@ double largest_albedo(const ModelInfo& model, const f64::BsdfParameters& p) {
 
 }  // namespace
 
-bool can_be_fitted(const ModelInfo& model) { return !coordinates_of(model).empty(); }
-
-FitSamples fit_samples(const ReflectanceFunction& truth_working,
-                       const std::function<bool(const DirectionPair&)>& is_measured,
-                       FitGridSize size) {
-    FitSamples samples;
-    const double lowest = std::cos(kLargestTheta_rad);
-    for (int i = 0; i < size.theta_h; ++i) {
-        const double root = (i + 0.5) / size.theta_h;
-        const double theta_h = 0.5 * std::numbers::pi * root * root;
-        const glm::dvec3 h(std::sin(theta_h), 0.0, std::cos(theta_h));
-        const glm::dvec3 across(std::cos(theta_h), 0.0, -std::sin(theta_h));
-        for (int j = 0; j < size.theta_d; ++j) {
-            const double theta_d = kLargestTheta_rad * (j + 0.5) / size.theta_d;
-            for (int k = 0; k < size.phi_d; ++k) {
-                const double phi_d = std::numbers::pi * (k + 0.5) / size.phi_d;
-                const glm::dvec3 aside =
-                    std::sin(theta_d) *
-                    (std::cos(phi_d) * across + glm::dvec3(0.0, std::sin(phi_d), 0.0));
-                const DirectionPair pair{std::cos(theta_d) * h + aside,
-                                         std::cos(theta_d) * h - aside};
-                if (pair.wi.z < lowest || pair.wo.z < lowest || !is_measured(pair)) continue;
-                samples.pairs.push_back(pair);
-                samples.values_working.push_back(truth_working(pair.wi, pair.wo));
-            }
-        }
-    }
-    return samples;
-}
-
 BrdfFit fit_model(ReflectanceModel model,
                   const FitSamples& samples,
                   const ReflectanceFunction& truth_working,
@@ -384,35 +181,44 @@ BrdfFit fit_model(ReflectanceModel model,
     // Searches on a part of the samples, the last on more of them.
     const std::size_t coarse = std::max<std::size_t>(1, samples.pairs.size() / 2000);
     const std::size_t fine = std::max<std::size_t>(1, samples.pairs.size() / 12000);
-    const auto search_from = [&](const std::vector<f64::BsdfParameters>& from, int steps) {
+    const auto searched = [&](const std::vector<f64::BsdfParameters>& from, int steps) {
         std::vector<Found> found;
         for (const auto& start : from) {
             progress.update(0.0, fmt::format("fitting {}", info.name));
-            found.push_back(search(info, samples, coarse, start, steps, progress));
+            found.push_back(
+                search_from(info, samples, start, {Metric::logarithm, coarse, steps}, progress));
         }
         std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
             return a.rms < b.rms;
         });
         return found;
     };
-    const std::vector<Found> first = search_from(starts, kFirstSteps);
+    const std::vector<Found> first = searched(starts, kFirstSteps);
     starts.clear();
     for (std::size_t k = 0; k < std::min(kSecondStarts, first.size()); ++k) {
         starts.push_back(first[k].parameters);
     }
-    const Found second = search_from(starts, kSecondSteps).front();
-    const Found best = search(info, samples, fine, second.parameters, kFinalSteps, progress);
+    f64::BsdfParameters p = searched(starts, kSecondSteps).front().parameters;
 
-    BrdfFit fit;
-    fit.material = material_of(info, best.parameters);
-    fit.error_log = best.rms;
-    fit.seconds = thread_seconds() - start_s;
-    const f64::BsdfParameters p = parameters_of_f64(fit.material);
-    fit.difference = difference_of(
-        [&](const glm::dvec3& wi, const glm::dvec3& wo) { return info.f64.eval(p, wi, wo); },
-        truth_working);
-    fit.largest_albedo = largest_albedo(info, p);
-    return fit;
+    // To the end by either measure; the one that looks nearer is taken.
+    BrdfFit best;
+    for (const Metric metric : {Metric::logarithm, Metric::cube_root}) {
+        p = search_from(info, samples, p, {metric, fine, kFinalSteps}, progress).parameters;
+        BrdfFit fit;
+        fit.material = material_of(info, p);
+        const f64::BsdfParameters rounded = parameters_of_f64(fit.material);
+        fit.difference =
+            difference_of([&](const glm::dvec3& wi,
+                              const glm::dvec3& wo) { return info.f64.eval(rounded, wi, wo); },
+                          truth_working);
+        const bool nearer = fit.difference.de00_mean < best.difference.de00_mean;
+        if (metric == Metric::logarithm || nearer) best = fit;
+    }
+    p = parameters_of_f64(best.material);
+    best.error_log = rms_of(info, samples, p, {Metric::logarithm, fine});
+    best.seconds = thread_seconds() - start_s;
+    best.largest_albedo = largest_albedo(info, p);
+    return best;
 }
 
 std::vector<BrdfFit> fit_all_models(const FitSamples& samples,

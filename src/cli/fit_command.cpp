@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "appearance/fit_brdf.h"
+#include "appearance/fit_search.h"
 #include "appearance/material_json.h"
 #include "appearance/measured_reflectance.h"
 #include "appearance/model_table.h"

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "appearance/bsdf.h"
+#include "appearance/fit_search.h"
 #include "appearance/measured_reflectance.h"
 #include "core/colour.h"
 #include "core/error.h"
