@@ -99,7 +99,7 @@ TEST(FitBrdf, AllModelsAreRankedAndTheTrueOneIsFound) {
     const ReflectanceFunction truth = [&](const glm::dvec3& wi, const glm::dvec3& wo) {
         return evaluate(paint.model, p, wi, wo);
     };
-    const auto fits = fit_all_models(fit_samples(truth, everywhere), truth);
+    const auto fits = fit_all_models(fit_samples(truth, everywhere, {36, 10, 10}), truth);
     ASSERT_EQ(fits.size(),
               static_cast<std::size_t>(
                   std::count_if(model_table().begin(), model_table().end(), can_be_fitted)));
