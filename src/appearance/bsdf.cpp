@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "appearance/measured_grid.h"
 #include "appearance/model_table.h"
 #include "core/colour.h"
 #include "core/paths.h"
@@ -195,6 +196,11 @@ std::string bsdf_glsl(ReflectanceModel model) {
     const auto source = [](const char* name) {
         return read_text_file(shipped_path(std::filesystem::path("shaders/bsdf") / name)) + "\n";
     };
+    if (model == ReflectanceModel::measured) {
+        return measured_glsl() + source("parameters.glsl") +
+               "uniform sampler2DArray u_measured;\n"
+               "#define bsdf_eval(p, wi, wo) max(measured_eval(u_measured, wi, wo), vec3(0.0))\n";
+    }
     const ModelInfo& info = model_info(model);
     std::string text = source("prelude_glsl.glsl") + source("parameters.glsl");
     for (const char* file : info.shaders) text += source(file);

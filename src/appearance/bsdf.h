@@ -66,7 +66,8 @@ glm::dvec3 directional_albedo(ReflectanceModel model,
 
 /// Shader text to put after `#version`: the model's functions under the names bsdf_eval,
 /// bsdf_sample, bsdf_pdf, bsdf_environment, with struct BsdfParameters, bsdf_widen and what they
-/// need. Throws FileError when the shipped sources are not found.
+/// need. Of measured reflectance bsdf_eval alone, which reads the sampler2DArray `u_measured`
+/// (measured_grid.h). Throws FileError when the shipped sources are not found.
 std::string bsdf_glsl(ReflectanceModel model);
 
 }  // namespace livery

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "appearance/material_library.h"
+#include "appearance/measured_paint.h"
 #include "core/error.h"
 #include "core/paths.h"
 
@@ -43,6 +44,14 @@ Material find_material(const std::string& name_or_file) {
     const std::filesystem::path file(name_or_file);
     std::string suffix = file.extension().string();
     for (char& c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (is_measured_file(file)) {
+        Material material;
+        material.name = file.stem().string();
+        material.model = ReflectanceModel::measured;
+        material.measured = load_measured_paint(file);
+        material.file = file;
+        return material;
+    }
     if (suffix == ".json" || std::filesystem::is_regular_file(file, error)) {
         return read_material_file(file);
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,9 @@
 namespace livery {
 
 /// In the order of model_table.h, which says what each is.
-enum class ReflectanceModel { lambert, eon, ggx, clearcoat };
+enum class ReflectanceModel { lambert, eon, ggx, clearcoat, measured };
+
+struct MeasuredPaint;
 
 /// Parameters of every model; a model reads its own (parameter_table.h, docs/materials.md). Colours
 /// are linear Rec.709 under D65 and may be signed.
@@ -29,6 +32,9 @@ struct Material {
     glm::dvec3 specular{0.2};            ///< scale of a lobe without a Fresnel term
     glm::dvec2 exponent{100.0, 100.0};   ///< cosine exponent along and across the tangent
     double diffuse_roughness = 0.5;      ///< of a diffuse surface by itself
+    /// ReflectanceModel::measured: shared, for materials are copied as values between documents and
+    /// threads, and this is a megabyte that nobody changes.
+    std::shared_ptr<const MeasuredPaint> measured;
 
     std::string provenance;
     std::filesystem::path file;
@@ -40,9 +46,9 @@ Material read_material_file(const std::filesystem::path& file);
 Material parse_material(const std::string& text, const std::filesystem::path& file);
 void write_material_file(const std::filesystem::path& file, const Material& material);
 
-/// A file if there is one of that name, else a paint of the library by its name: of the shipped
-/// ones (materials/), then of the user's own (material_library.h). Throws FileError with the
-/// nearest names.
+/// A file if there is one of that name (of a material, or of measured reflectance), else a paint of
+/// the library by its name: of the shipped ones (materials/), then of the user's own
+/// (material_library.h). Throws FileError with the nearest names.
 Material find_material(const std::string& name_or_file);
 std::vector<Material> load_library(const std::filesystem::path& folder);
 

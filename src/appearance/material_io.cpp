@@ -4,6 +4,7 @@
 #include "appearance/bsdf.h"
 #include "appearance/material.h"
 #include "appearance/material_json.h"
+#include "appearance/measured_paint.h"
 #include "appearance/model_table.h"
 #include "core/error.h"
 #include "core/json.h"
@@ -59,6 +60,16 @@ Json json_of_value(const ParameterInfo& parameter, const Material& material) {
     return value.x;
 }
 
+/// The measured file, absolute or beside the material's own. An absolute place is written: the
+/// material may be kept elsewhere than the file.
+void read_measured(const JsonReader& reader, Material& material) {
+    if (!reader.is_object()) reader.fail(reader.found(), "an object");
+    reader.allow_only({"file"});
+    const std::filesystem::path named = reader["file"].text();
+    if (named.empty()) reader["file"].fail("empty text", "a file of measured reflectance");
+    material.measured = load_measured_paint(reader.file().parent_path() / named);
+}
+
 /// A model's parameters, all of them and no others.
 void read_parameters(const JsonReader& reader, const ModelInfo& model, Material& material) {
     if (!reader.is_object()) reader.fail(reader.found(), "an object");
@@ -84,6 +95,10 @@ Material read_material(const JsonReader& reader) {
     const ModelInfo& model = read_model(reader["model"]);
     material.model = model.model;
     const JsonReader parameters = reader["parameters"];
+    if (model.model == ReflectanceModel::measured) {
+        read_measured(parameters, material);
+        return material;
+    }
     read_parameters(parameters, model, material);
     try {
         parameters_of_f64(material);
@@ -98,6 +113,11 @@ Json json_of(const Material& material) {
     parameters_of_f64(material);
     Json parameters = Json::object();
     const ModelInfo& model = model_info(material.model);
+    if (material.model == ReflectanceModel::measured) {
+        check_argument(material.measured != nullptr,
+                       "json_of: paint '" + material.name + "' is measured, but by no file");
+        parameters["file"] = material.measured->file.string();
+    }
     for (const char* key : model.parameters) {
         parameters[key] = json_of_value(parameter_info(key), material);
     }

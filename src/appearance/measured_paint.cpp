@@ -2,12 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <mutex>
 #include <numbers>
+#include <span>
+#include <tuple>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "core/colour.h"
+#include "core/error.h"
+#include "core/hash.h"
 #include "core/parallel.h"
 
 namespace livery {
@@ -90,24 +96,33 @@ glm::vec3 diffuse_part(const MeasuredPaint& paint) {
     return kPi * lowest;
 }
 
-/// A GGX lobe falls to a quarter where the tangent is alpha.
+/// Half of a GGX lobe's light, D cos(theta_h), lies where the tangent is below alpha. Of two lobes
+/// this takes the one that matters: a varnish's narrow one is bright, but holds little.
 float lobe_alpha(const MeasuredPaint& paint, const glm::vec3& diffuse) {
+    constexpr int kSteps = 200;
+    constexpr float kWidest = 50.0f / 180.0f * kPi;
     const float base = luminance(diffuse) / kPi;
-    const float peak = luminance(profile(paint, 0.0f)) - base;
-    for (int k = 1; k <= 200; ++k) {
-        const float root = static_cast<float>(k) / 200.0f;
-        const float theta_h = 0.25f * kPi * root * root;
-        if (luminance(profile(paint, theta_h)) - base < 0.25f * peak) return std::tan(theta_h);
+    std::vector<float> below(1, 0.0f);
+    for (int k = 0; k < kSteps; ++k) {
+        const float root = (static_cast<float>(k) + 0.5f) / kSteps;
+        const float theta_h = kWidest * root * root;
+        const float light = std::max(luminance(profile(paint, theta_h)) - base, 0.0f);
+        below.push_back(below.back() + light * std::cos(theta_h) * std::sin(theta_h) * root);
     }
-    return 1.0f;
+    if (below.back() <= 0.0f) return 1.0f;
+    const auto half = std::lower_bound(below.begin(), below.end(), 0.5f * below.back());
+    const float root = static_cast<float>(half - below.begin()) / kSteps;
+    return std::clamp(std::tan(kWidest * root * root), 1e-3f, 1.0f);
 }
 
-}  // namespace
-
-MeasuredPaint measured_paint(const MeasuredReflectance& measured, const Progress& progress) {
+/// Everything that follows from the grid.
+MeasuredPaint paint_of(MeasuredGrid grid, const std::filesystem::path& file) {
     MeasuredPaint paint;
-    paint.file = measured.file;
-    paint.grid = resampled(measured, {}, progress);
+    paint.file = file;
+    paint.grid = std::move(grid);
+    Hasher hasher;
+    hasher.add(std::span<const float>(paint.grid.texels));
+    paint.id = hasher.hex();
     paint.rings = rings_of(paint);
     const glm::vec3 diffuse = diffuse_part(paint);
     paint.lobe_alpha = lobe_alpha(paint, diffuse);
@@ -128,6 +143,39 @@ MeasuredPaint measured_paint(const MeasuredReflectance& measured, const Progress
         }
     });
     return paint;
+}
+
+}  // namespace
+
+MeasuredPaint measured_paint(const MeasuredReflectance& measured, const Progress& progress) {
+    return paint_of(resampled(measured, {}, progress), measured.file);
+}
+
+std::shared_ptr<const MeasuredPaint> load_measured_paint(const std::filesystem::path& given) {
+    // A session's document is read anew for every step of its history: what its paints were read
+    // from must not be. Nothing is kept that no material has.
+    using Key = std::tuple<std::filesystem::path, std::filesystem::file_time_type, std::uintmax_t>;
+    static std::mutex mutex;
+    static std::map<Key, std::weak_ptr<const MeasuredPaint>> known;
+    std::error_code error;
+    const auto file = std::filesystem::absolute(given);
+    const auto time = std::filesystem::last_write_time(file, error);
+    const auto size = error ? 0 : std::filesystem::file_size(file, error);
+    if (error) return std::make_shared<MeasuredPaint>(measured_paint(read_measured_file(file)));
+    const std::scoped_lock lock(mutex);
+    std::weak_ptr<const MeasuredPaint>& entry = known[{file, time, size}];
+    if (auto paint = entry.lock()) return paint;
+    auto paint = std::make_shared<const MeasuredPaint>(measured_paint(read_measured_file(file)));
+    std::erase_if(known, [](const auto& old) { return old.second.expired(); });
+    known[{file, time, size}] = paint;
+    return paint;
+}
+
+std::shared_ptr<const MeasuredPaint> blank_measured_paint() {
+    MeasuredGrid grid;
+    grid.size = {2, 2, 1};
+    grid.texels.assign(16, std::log2(kMeasuredGridFloor));
+    return std::make_shared<MeasuredPaint>(paint_of(std::move(grid), "blank"));
 }
 
 glm::vec3 evaluate(const MeasuredPaint& paint, glm::vec3 wi, glm::vec3 wo) {

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <filesystem>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -22,6 +24,7 @@ struct MeasuredRings {
 
 struct MeasuredPaint {
     std::filesystem::path file;
+    std::string id;  ///< 32 hexadecimal digits, a hash of the grid
     MeasuredGrid grid;
     MeasuredRings rings;
     /// Under the cosines (k / 32)^2; see f32::BsdfEnvironment. The coat's is 0.
@@ -31,6 +34,13 @@ struct MeasuredPaint {
 
 /// Throws Cancelled.
 MeasuredPaint measured_paint(const MeasuredReflectance& measured, const Progress& progress = {});
+
+/// Reads the file, or gives what was read of it before, as long as a material has that and the file
+/// is as it was. Throws FileError.
+std::shared_ptr<const MeasuredPaint> load_measured_paint(const std::filesystem::path& file);
+
+/// Black, to prepare with what will draw others.
+std::shared_ptr<const MeasuredPaint> blank_measured_paint();
 
 /// As evaluate() of the grid, but never negative: a saturated colour's lacking channel is black.
 glm::vec3 evaluate(const MeasuredPaint& paint, glm::vec3 wi, glm::vec3 wo);

@@ -31,6 +31,22 @@ namespace {
 #prefix, LIVERY_BSDF_OF(f32, float, glm::vec3, prefix), \
         LIVERY_BSDF_OF(f64, double, glm::dvec3, prefix)
 
+/// In the place of a formula's functions.
+template <typename Real, typename Vec3, typename Parameters, typename Environment>
+BsdfFunctions<Real, Vec3, Parameters, Environment> no_functions() {
+    const auto none = [](const Parameters&, const Vec3&, const Vec3&) -> Vec3 {
+        throw std::logic_error("measured reflectance has no formula");
+    };
+    return {none,
+            none,
+            [](const Parameters&, const Vec3&, const Vec3&) -> Real {
+                throw std::logic_error("measured reflectance has no formula");
+            },
+            [](const Parameters&, Real) -> Environment {
+                throw std::logic_error("measured reflectance has no formula");
+            }};
+}
+
 constexpr bool kFromAllSides = true, kByDirection = false;
 constexpr bool kIsotropic = false, kAnisotropic = true;
 constexpr bool kReciprocal = true, kConserving = true;
@@ -99,10 +115,36 @@ const std::vector<ModelInfo>& model_table() {
     return table;
 }
 
+namespace {
+
+const ModelInfo& measured_info() {
+    static const ModelInfo info = {
+        ReflectanceModel::measured,
+        "measured",
+        "Measured",
+        "What an instrument measured, drawn as it is.",
+        "a measured paint",
+        "no part is measured",
+        {},
+        {},
+        Lobe::half_alpha,
+        kIsotropic,
+        kByDirection,
+        kReciprocal,
+        !kConserving,
+        "measured",
+        no_functions<float, glm::vec3, f32::BsdfParameters, f32::BsdfEnvironment>(),
+        no_functions<double, glm::dvec3, f64::BsdfParameters, f64::BsdfEnvironment>()};
+    return info;
+}
+
+}  // namespace
+
 #undef LIVERY_BSDF
 #undef LIVERY_BSDF_OF
 
 const ModelInfo& model_info(ReflectanceModel model) {
+    if (model == ReflectanceModel::measured) return measured_info();
     const auto& table = model_table();
     const auto index = static_cast<std::size_t>(model);
     if (index >= table.size()) {
@@ -115,12 +157,14 @@ const ModelInfo* find_model(const std::string& name) {
     const auto& table = model_table();
     const auto found = std::find_if(
         table.begin(), table.end(), [&](const ModelInfo& info) { return info.name == name; });
-    return found == table.end() ? nullptr : &*found;
+    if (found != table.end()) return &*found;
+    return name == measured_info().name ? &measured_info() : nullptr;
 }
 
 std::string model_names() {
     std::vector<const char*> names;
     for (const ModelInfo& info : model_table()) names.push_back(info.name);
+    names.push_back(measured_info().name);
     return fmt::format("{}", fmt::join(names, ", "));
 }
 

@@ -51,7 +51,8 @@ struct ModelInfo {
     bool has(const std::string& parameter) const;
 };
 
-/// Indexed by ReflectanceModel.
+/// The formulas, indexed by ReflectanceModel. What is measured follows no formula: it has a
+/// description (model_info), but is evaluated by paint_bsdf.h alone.
 const std::vector<ModelInfo>& model_table();
 const ModelInfo& model_info(ReflectanceModel model);
 /// By its name in files; null: none.

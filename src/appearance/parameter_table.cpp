@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "appearance/measured_paint.h"
+
 namespace livery {
 
 namespace {
@@ -171,6 +173,12 @@ std::vector<double> reflectance_numbers(const Material& material) {
     for (const ParameterInfo& parameter : parameter_table()) {
         const glm::dvec3 value = value_of(parameter, material);
         for (int k = 0; k < parameter.count(); ++k) numbers.push_back(value[k]);
+    }
+    if (material.measured) {
+        for (std::size_t k = 0; k < material.measured->id.size(); k += 8) {
+            numbers.push_back(
+                static_cast<double>(std::stoul(material.measured->id.substr(k, 8), nullptr, 16)));
+        }
     }
     return numbers;
 }

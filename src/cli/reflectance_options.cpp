@@ -5,12 +5,15 @@
 #include <fmt/format.h>
 
 #include "appearance/measured_grid.h"
+#include "appearance/measured_paint.h"
 
 namespace livery {
 
 AnyReflectance find_reflectance(const std::string& name_or_file) {
     if (is_measured_file(name_or_file)) return read_measured_file(name_or_file);
-    return find_material(name_or_file);
+    Material material = find_material(name_or_file);
+    if (material.measured) return read_measured_file(material.measured->file);
+    return material;
 }
 
 std::string name_of(const AnyReflectance& reflectance) {

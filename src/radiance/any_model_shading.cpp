@@ -40,15 +40,17 @@ struct LightRadiance {
 struct Inputs {
     const LaneJob& job;
     const ModelInfo& model;
+    const MeasuredPaint* measured;
     std::size_t block = 0, lane = 0;
     const float turn2 = static_cast<float>(lobe_turn_squared(model));
     LightRadiance u_light_radiance{job.light_irradiance};
     const float* u_light_radius2 = job.light_radius2;
 
-    Inputs(const LaneJob& its_job, const ModelInfo& its_model) : job(its_job), model(its_model) {}
+    Inputs(const LaneJob& its_job, const ModelInfo& its_model, const MeasuredPaint* its_measured)
+        : job(its_job), model(its_model), measured(its_measured) {}
 
     glm::vec3 bsdf_eval(const BsdfParameters& p, const glm::vec3& wi, const glm::vec3& wo) const {
-        return model.f32.eval(p, wi, wo);
+        return measured ? evaluate(*measured, wi, wo) : model.f32.eval(p, wi, wo);
     }
     glm::vec4 four(const float* values) const {
         const float* from = values + 4 * kLaneBlock * block + lane;
@@ -74,7 +76,7 @@ struct Shader : Inputs {
 #include "shaders/radiance/shade.glsl"
 
     Shader(const LaneJob& its_job, const ModelInfo& its_model, const AnyModelUniforms& u)
-        : Inputs(its_job, its_model),
+        : Inputs(its_job, its_model, u.measured.get()),
           u_exposure(u.exposure),
           u_paint(u.paint),
           u_base_layer(u.base_layer),

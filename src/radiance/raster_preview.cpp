@@ -183,6 +183,7 @@ struct RasterPreview::State {
     void downsample(const Texture2D& from, const Framebuffer& to);
     void set_view(Program& program) const;
     Program& shading_program(const ShadingKey& key);
+    MeasuredTextures measured;
 };
 
 RasterPreview::State::State(std::shared_ptr<const Product> its_product, int supersampling)
@@ -321,7 +322,7 @@ void RasterPreview::State::shade_part(const Scene& scene, std::size_t part) {
                                                                       : light->lights;
     const auto count = static_cast<int>(lights.size());
     Program& program = shading_program({material.model, count, light->environment != nullptr});
-    set_paint(program, material, scene.exposure_ev);
+    set_paint(program, material, scene.exposure_ev, measured);
     set_view(program);
     program.set("u_eye_mm", glm::vec3(scene.eye_in_world_mm));
     if (count > 0) {

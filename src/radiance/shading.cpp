@@ -84,16 +84,16 @@ PaintUniforms uniforms_of(const Material& material, double exposure_ev) {
 }
 
 AnyModelUniforms any_model_uniforms_of(const Material& material, double exposure_ev) {
-    const ModelInfo& model = model_info(material.model);
+    const PaintBsdf bsdf = bsdf_of(material);
     AnyModelUniforms u;
     u.exposure = static_cast<float>(std::exp2(exposure_ev));
-    u.paint = parameters_of(material);
-    u.lobe_alpha = lobe_alpha(model, u.paint);
+    u.paint = bsdf.parameters;
+    u.measured = bsdf.measured;
+    u.lobe_alpha = lobe_alpha(bsdf);
     u.base_layer = mirror_layer(u.lobe_alpha);
     for (std::size_t k = 0; k < u.sky_weight.size(); ++k) {
         const float t = static_cast<float>(k) / static_cast<float>(kEnvironmentWeights - 1);
-        const BsdfEnvironment weights =
-            environment_weights(material.model, u.paint, std::max(t * t, kLowestCosine));
+        const BsdfEnvironment weights = environment_weights(bsdf, std::max(t * t, kLowestCosine));
         u.sky_weight[k] = weights.diffuse;
         u.mirror_weight[k] = weights.specular + weights.coat;
     }
@@ -102,13 +102,24 @@ AnyModelUniforms any_model_uniforms_of(const Material& material, double exposure
 
 namespace {
 
-void set_any_paint(Program& program, const Material& material, double exposure_ev) {
+/// Above all units that the inputs of a fragment take.
+constexpr int kMeasuredUnit = 8;
+
+void set_any_paint(Program& program,
+                   const Material& material,
+                   double exposure_ev,
+                   MeasuredTextures& measured) {
     AnyModelUniforms u = any_model_uniforms_of(material, exposure_ev);
     program.set("u_exposure", u.exposure);
     program.set("u_sky_weight", std::span<const glm::vec3>(u.sky_weight));
     program.set("u_mirror_weight", std::span<const glm::vec3>(u.mirror_weight));
     program.set("u_base_layer", u.base_layer);
     program.set("u_lobe_alpha", u.lobe_alpha);
+    if (u.measured) {
+        program.set("u_measured", kMeasuredUnit);
+        measured.bind(u.measured, kMeasuredUnit);
+        return;
+    }
     for (const ParameterInfo& parameter : parameter_table()) {
         const Components<float> v = parameter.in_f32(u.paint);
         const auto name = [&](const char* suffix) {
@@ -131,8 +142,13 @@ void set_any_paint(Program& program, const Material& material, double exposure_e
 
 }  // namespace
 
-void set_paint(Program& program, const Material& material, double exposure_ev) {
-    if (!has_own_shading(material.model)) return set_any_paint(program, material, exposure_ev);
+void set_paint(Program& program,
+               const Material& material,
+               double exposure_ev,
+               MeasuredTextures& measured) {
+    if (!has_own_shading(material.model)) {
+        return set_any_paint(program, material, exposure_ev, measured);
+    }
     const PaintUniforms u = uniforms_of(material, exposure_ev);
     program.set("u_exposure", u.exposure);
     program.set("u_diffuse", glm::make_vec3(u.diffuse));
@@ -210,7 +226,7 @@ void ShadingPrograms::shade(const Material& material,
     const auto [model, lights, environment] = key;
     Program& program = program_for(key);
     drawn_.insert(key);
-    set_paint(program, material, exposure_ev);
+    set_paint(program, material, exposure_ev, measured_);
     if (model_info(model).same_from_all_sides) {
         program.set("u_lit", 0);
         inputs.lit.texture().bind(0);

@@ -10,12 +10,13 @@
 
 #include <glm/vec3.hpp>
 
-#include "appearance/bsdf.h"
+#include "appearance/paint_bsdf.h"
 #include "gl/draw.h"
 #include "gl/handles.h"
 #include "gl/program.h"
 #include "radiance/input_layers.h"
 #include "radiance/lane_shading.h"
+#include "radiance/measured_textures.h"
 #include "scene/look.h"
 
 namespace livery {
@@ -55,13 +56,18 @@ inline constexpr int kEnvironmentWeights = 33;
 struct AnyModelUniforms {
     float exposure = 1.0f;
     BsdfParameters paint{};
+    std::shared_ptr<const MeasuredPaint> measured{};
     std::array<glm::vec3, kEnvironmentWeights> sky_weight{}, mirror_weight{};
     glm::vec2 base_layer{};
     float lobe_alpha = 1.0f;
 };
 AnyModelUniforms any_model_uniforms_of(const Material& material, double exposure_ev);
 
-void set_paint(Program& program, const Material& material, double exposure_ev);
+/// `measured` has the grids of measured paints; the one that is drawn is left bound.
+void set_paint(Program& program,
+               const Material& material,
+               double exposure_ev,
+               MeasuredTextures& measured);
 
 /// Compiles on first use.
 class ShadingPrograms {
@@ -83,6 +89,7 @@ class ShadingPrograms {
 
     std::map<ShadingKey, Program> programs_;
     std::set<ShadingKey> drawn_;
+    MeasuredTextures measured_;
     ScreenPass screen_;
     Texture2D nowhere_;
     Framebuffer nowhere_framebuffer_;

@@ -30,14 +30,12 @@ struct PathScene::Vertex {
     glm::vec3 geometric_normal;
     glm::mat3 world_from_local;
     glm::vec3 wo;  ///< local
-    ReflectanceModel model;
-    const BsdfParameters& parameters;
+    const PaintBsdf& bsdf;
 
     Vertex(const PathScene& scene, const SurfacePoint& point, const glm::vec3& toward_eye)
         : position(point.position_mm),
           geometric_normal(point.geometric_normal),
-          model(scene.models_[point.part]),
-          parameters(scene.parameters_[point.part]) {
+          bsdf(scene.bsdfs_[point.part]) {
         const glm::vec3 n = point.normal;
         glm::vec3 t = glm::vec3(point.tangent) - glm::dot(glm::vec3(point.tangent), n) * n;
         if (glm::dot(t, t) < 1e-12f) {
@@ -71,8 +69,7 @@ PathScene::PathScene(const Scene& scene, const ReferenceOptions& options)
                                scene.part_materials.size(),
                                mesh_.parts.size()));
     for (const Material& material : scene.part_materials) {
-        models_.push_back(material.model);
-        parameters_.push_back(parameters_of(material));
+        bsdfs_.push_back(bsdf_of(material));
     }
     for (const DirectionalLight& light : scene.lights) lights_.emplace_back(light);
 }
@@ -90,7 +87,7 @@ glm::vec3 PathScene::light_on(const Vertex& vertex, Random& random) const {
     const auto reflected = [&](const glm::vec3& direction, glm::vec3& wi) {
         wi = vertex.to_local(direction);
         if (wi.z <= 0.0f || !vertex.above(direction)) return glm::vec3(0.0f);
-        return evaluate(vertex.model, vertex.parameters, wi, vertex.wo) * wi.z;
+        return evaluate(vertex.bsdf, wi, vertex.wo) * wi.z;
     };
     const auto add = [&](const LightSample& light) {
         if (light.pdf <= 0.0f) return;
@@ -99,7 +96,7 @@ glm::vec3 PathScene::light_on(const Vertex& vertex, Random& random) const {
         if (value == glm::vec3(0.0f) || !open(vertex, light.direction)) return;
         float weight = 1.0f;
         if (options_.sampling == ReferenceSampling::combined) {
-            weight = balance(light.pdf, pdf(vertex.model, vertex.parameters, wi, vertex.wo));
+            weight = balance(light.pdf, pdf(vertex.bsdf, wi, vertex.wo));
         }
         sum += value * light.radiance * (weight / light.pdf);
     };
@@ -148,13 +145,12 @@ glm::vec3 PathScene::radiance(SurfacePoint point,
         sum += throughput * light_on(vertex, random);
 
         const glm::vec2 uv = uniform_2d(random);
-        const glm::vec3 wi = sample(
-            vertex.model, vertex.parameters, vertex.wo, glm::vec3(uv, random.uniform_float()));
+        const glm::vec3 wi = sample(vertex.bsdf, vertex.wo, glm::vec3(uv, random.uniform_float()));
         if (!(wi.z > 0.0f)) return sum;
         const glm::vec3 direction = glm::normalize(vertex.world_from_local * wi);
-        const float density = pdf(vertex.model, vertex.parameters, wi, vertex.wo);
+        const float density = pdf(vertex.bsdf, wi, vertex.wo);
         if (!(density > 0.0f) || !vertex.above(direction)) return sum;
-        throughput *= evaluate(vertex.model, vertex.parameters, wi, vertex.wo) * (wi.z / density);
+        throughput *= evaluate(vertex.bsdf, wi, vertex.wo) * (wi.z / density);
 
         TraceRay ray;
         ray.origin = offset_origin(vertex.position, vertex.geometric_normal);

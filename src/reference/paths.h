@@ -5,7 +5,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "appearance/bsdf.h"
+#include "appearance/paint_bsdf.h"
 #include "core/random.h"
 #include "reference/light_sampling.h"
 #include "reference/path_tracer.h"
@@ -38,8 +38,7 @@ class PathScene {
     const Mesh& mesh_;
     ReferenceOptions options_;
     Tracer tracer_;
-    std::vector<ReflectanceModel> models_;
-    std::vector<BsdfParameters> parameters_;
+    std::vector<PaintBsdf> bsdfs_;
     std::vector<DiscLight> lights_;
     EnvironmentSampler environment_;
 };

@@ -147,6 +147,10 @@ void plan_shading(const Scene& scene, const Needs& needs, FramePlan& plan) {
         if (needs.models.contains(model.model)) continue;
         plan.skipped.push_back({fmt::format("shade:*:{}", model.name), model.unused});
     }
+    if (const ModelInfo& model = model_info(ReflectanceModel::measured);
+        !needs.models.contains(model.model)) {
+        plan.skipped.push_back({fmt::format("shade:*:{}", model.name), model.unused});
+    }
 }
 
 }  // namespace

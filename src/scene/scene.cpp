@@ -20,7 +20,7 @@ Material find_paint(const Look& look,
     std::error_code error;
     const auto beside = look.file.parent_path() / name_or_file;
     if (!look.file.empty() && std::filesystem::is_regular_file(beside, error)) {
-        return read_material_file(beside);
+        return find_material(beside.string());
     }
     return find_material(name_or_file);
 }

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "appearance/material_library.h"
+#include "appearance/measured_paint.h"
 #include "appearance/model_table.h"
 #include "core/error.h"
 #include "core/parallel.h"
@@ -210,6 +211,7 @@ void FrameLane::prepare(const FrameDescription& description, const Progress& pro
                 used = used || paint.model == model;
                 paint = Material{};
                 paint.model = model;
+                if (model == ReflectanceModel::measured) paint.measured = blank_measured_paint();
             }
             const std::size_t index = nearest_of(solved_, keys_of(description), side);
             RadianceRenderer& renderer = *lights_[index].renderer;

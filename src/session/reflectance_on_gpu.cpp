@@ -12,6 +12,7 @@
 #include "gl/draw.h"
 #include "gl/program.h"
 #include "gl/read_back.h"
+#include "radiance/measured_textures.h"
 
 namespace livery {
 
@@ -135,15 +136,7 @@ std::vector<glm::dvec3> reflectance_on_gpu(const MeasuredGrid& grid,
                                            GlDevice device,
                                            const Progress& progress) {
     const HeadlessContext context(device);
-    const auto [rows, layers, columns] = grid.size;
-    Texture2D texture({columns, rows, layers, 1}, TexelFormat::rgba32f);
-    const std::size_t layer_floats = grid.texels.size() / static_cast<std::size_t>(layers);
-    for (int layer = 0; layer < layers; ++layer) {
-        texture.upload(std::span(grid.texels)
-                           .subspan(static_cast<std::size_t>(layer) * layer_floats, layer_floats),
-                       0,
-                       layer);
-    }
+    const Texture2D texture = texture_of(grid);
     texture.bind(2);
     Program program =
         Program::screen_pass({"measured.frag",

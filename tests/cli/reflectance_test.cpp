@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "core/image_io.h"
 #include "support/run_program.h"
 
 namespace livery {
@@ -359,6 +360,57 @@ TEST_F(Measured, FilesAreKnownToCheckAndRefusedInOneLine) {
     refuses(table.string(), in, {"table.binary", "header", "8 bytes", "MERL"});
     refuses(other.string(), in, {"other.csv", "header", "'theta_i'"});
     refuses((folder_ / "none.binary").string(), in, {"none.binary", "no such file"});
+}
+
+/// The same paint as a formula and as a measurement, through the whole program.
+TEST_F(Measured, APaintIsDrawnByBothBackends) {
+    std::string text = "theta_i,phi_i,theta_o,phi_o,r,g,b\n";
+    for (int k = 0; k < 60; ++k) {
+        text += std::to_string(0.025 * k) + ",0,0.4," + std::to_string(0.5 * k) +
+                ",0.15915494309,0.0795774715,0.0397887358\n";  // lambert(), measured
+    }
+    folder_.write("chalk.csv", text);
+    folder_.write("chalk.json",
+                  R"({"format_version": 1, "name": "chalk", "model": "measured",
+                      "parameters": {"file": "chalk.csv"}, "provenance": "a test"})");
+    lambert();
+    folder_.write("camera.json",
+                  R"({"width": 64, "height": 48, "matrix": [120, 0, 31.5, 0, 120, 23.5, 0, 0, 1],
+                      "rotation": [1, 0, 0, 0, -1, 0, 0, 0, -1], "translation_mm": [0, 80, 400]})");
+    const auto mean = [&](const std::string& paint, const std::string& backend) {
+        const auto look =
+            folder_.write("look.json",
+                          R"({"format_version": 1, "name": "probe", "parts": {"*": ")" + paint +
+                              R"("}, "lights": [{"type": "directional", "direction": [0, 1, 1],
+                                   "radiance": [1, 1, 1]}]})");
+        const auto picture = (folder_ / "picture.exr").string();
+        const ProgramRun run = run_program(LIVERY_PROGRAM,
+                                           {"render",
+                                            "--json",
+                                            "--product",
+                                            "sphere",
+                                            "--look",
+                                            look.string(),
+                                            "--camera",
+                                            (folder_ / "camera.json").string(),
+                                            "--backend",
+                                            backend,
+                                            "--spp",
+                                            backend == "reference" ? "16" : "0",
+                                            "--out",
+                                            picture});
+        EXPECT_EQ(run.exit_code, 0) << run.err;
+        const ImageF image = read_image(picture).image;
+        double sum = 0.0;
+        for (const float value : image.values) sum += static_cast<double>(value);
+        return sum / static_cast<double>(image.pixel_count());
+    };
+    for (const char* backend : {"gl", "reference"}) {
+        const double formula = mean("grey.json", backend);
+        EXPECT_GT(formula, 0.05);
+        EXPECT_NEAR(mean("chalk.json", backend), formula, 2e-3 * formula) << backend;
+        EXPECT_NEAR(mean("chalk.csv", backend), formula, 2e-3 * formula) << backend;
+    }
 }
 
 }  // namespace

@@ -1,0 +1,50 @@
+#include "appearance/paint_bsdf.h"
+
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "appearance/model_table.h"
+
+namespace livery {
+
+PaintBsdf bsdf_of(const Material& material) {
+    PaintBsdf bsdf;
+    bsdf.model = material.model;
+    if (material.model != ReflectanceModel::measured) {
+        bsdf.parameters = parameters_of(material);
+        return bsdf;
+    }
+    if (!material.measured) {
+        throw std::invalid_argument(
+            fmt::format("paint '{}' is measured, but by no file", material.name));
+    }
+    bsdf.measured = material.measured;
+    return bsdf;
+}
+
+glm::vec3 evaluate(const PaintBsdf& bsdf, glm::vec3 wi, glm::vec3 wo) {
+    return bsdf.measured ? evaluate(*bsdf.measured, wi, wo)
+                         : evaluate(bsdf.model, bsdf.parameters, wi, wo);
+}
+
+glm::vec3 sample(const PaintBsdf& bsdf, glm::vec3 wo, glm::vec3 u) {
+    return bsdf.measured ? sample(*bsdf.measured, wo, u)
+                         : sample(bsdf.model, bsdf.parameters, wo, u);
+}
+
+float pdf(const PaintBsdf& bsdf, glm::vec3 wi, glm::vec3 wo) {
+    return bsdf.measured ? pdf(*bsdf.measured, wi, wo) : pdf(bsdf.model, bsdf.parameters, wi, wo);
+}
+
+f32::BsdfEnvironment environment_weights(const PaintBsdf& bsdf, float mu) {
+    return bsdf.measured ? environment_weights(*bsdf.measured, mu)
+                         : environment_weights(bsdf.model, bsdf.parameters, mu);
+}
+
+float lobe_alpha(const PaintBsdf& bsdf) {
+    return bsdf.measured ? bsdf.measured->lobe_alpha
+                         : lobe_alpha(model_info(bsdf.model), bsdf.parameters);
+}
+
+}  // namespace livery

@@ -1,0 +1,29 @@
+// A material ready to be evaluated in float, whether it is a formula's or a measurement's.
+#pragma once
+
+#include <memory>
+
+#include "appearance/bsdf.h"
+#include "appearance/measured_paint.h"
+
+namespace livery {
+
+struct PaintBsdf {
+    ReflectanceModel model = ReflectanceModel::lambert;
+    f32::BsdfParameters parameters{};                 ///< of a formula
+    std::shared_ptr<const MeasuredPaint> measured{};  ///< of ReflectanceModel::measured
+};
+
+/// Throws std::invalid_argument for parameters out of range, and for a measured material without
+/// its measurement.
+PaintBsdf bsdf_of(const Material& material);
+
+/// As in bsdf.h.
+glm::vec3 evaluate(const PaintBsdf& bsdf, glm::vec3 wi, glm::vec3 wo);
+glm::vec3 sample(const PaintBsdf& bsdf, glm::vec3 wo, glm::vec3 u);
+float pdf(const PaintBsdf& bsdf, glm::vec3 wi, glm::vec3 wo);
+f32::BsdfEnvironment environment_weights(const PaintBsdf& bsdf, float mu);
+/// The GGX slope parameter that is about as wide as the main lobe; 1 without a lobe.
+float lobe_alpha(const PaintBsdf& bsdf);
+
+}  // namespace livery
