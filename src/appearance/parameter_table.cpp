@@ -174,7 +174,8 @@ std::vector<double> reflectance_numbers(const Material& material) {
         const glm::dvec3 value = value_of(parameter, material);
         for (int k = 0; k < parameter.count(); ++k) numbers.push_back(value[k]);
     }
-    if (material.measured) {
+    // A formula chosen for a paint that was measured before looks like any other.
+    if (material.model == ReflectanceModel::measured && material.measured) {
         for (std::size_t k = 0; k < material.measured->id.size(); k += 8) {
             numbers.push_back(
                 static_cast<double>(std::stoul(material.measured->id.substr(k, 8), nullptr, 16)));

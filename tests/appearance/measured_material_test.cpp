@@ -51,6 +51,15 @@ TEST_F(MeasuredMaterial, IsReadFromBesideItAndWrittenForAnywhere) {
     EXPECT_TRUE(same_reflectance(copy, paint));
 }
 
+TEST_F(MeasuredMaterial, LeavesItsMeasurementBehindForAFormula) {
+    const Material paint = find_material(measurement("probe.csv", "0.2,0.2,0.2").string());
+    Material formula = paint;
+    formula.model = ReflectanceModel::lambert;
+    EXPECT_TRUE(same_reflectance(formula, Material{}));
+    EXPECT_FALSE(same_reflectance(formula, paint));
+    EXPECT_NE(grey(formula), grey(paint));
+}
+
 TEST_F(MeasuredMaterial, MayBeTheMeasurementAlone) {
     const auto file = measurement("my panel.csv", "0.1,0.1,0.1");
     const Material paint = find_material(file.string());
