@@ -31,8 +31,9 @@ int hex_digit(char c) {
 std::string summary_of(const Material& material) {
     const ModelInfo& model = model_info(material.model);
     std::string text = model.label;
-    if (material.model == ReflectanceModel::measured)
+    if (material.model == ReflectanceModel::measured && material.measured) {
         text += "\n" + material.measured->file.filename().string();
+    }
     for (const char* name : model.parameters) {
         const ParameterInfo& parameter = parameter_info(name);
         const glm::dvec3 value = value_of(parameter, material);
