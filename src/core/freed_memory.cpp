@@ -6,4 +6,6 @@ namespace livery {
 
 void return_freed_memory() { ::malloc_trim(0); }
 
+void keep_large_blocks_apart() { ::mallopt(M_MMAP_THRESHOLD, 1 << 20); }
+
 }  // namespace livery

@@ -14,6 +14,7 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
+#include "core/freed_memory.h"
 #include "core/log.h"
 #include "core/paths.h"
 #include "session/library.h"
@@ -448,6 +449,7 @@ class Desktop {
 }  // namespace
 
 int run_desktop(const DesktopOptions& options) {
+    keep_large_blocks_apart();
     // Everything is saved as it happens, so Ctrl-C in the terminal may end the program at once.
     std::signal(SIGINT, SIG_DFL);
     std::signal(SIGTERM, SIG_DFL);
