@@ -122,5 +122,5 @@ FN REAL clearcoat_pdf(BsdfParameters p, VEC3 wi, VEC3 wo) {
     VEC3 chance = clearcoat_probabilities(p, wo.z);
     return chance.x * ggx_pdf_lobe(wi, wo, p.coat_alpha, p.coat_alpha) +
            chance.y * ggx_pdf_lobe(wi, wo, p.alpha_x, p.alpha_y) +
-           max(R(1.0) - chance.x - chance.y, R(0.0)) * wi.z * R(0.3183098861837907);
+           chance.z * wi.z * R(0.3183098861837907);
 }

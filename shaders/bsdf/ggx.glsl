@@ -32,7 +32,10 @@ FN VEC3 ggx_interface_average(BsdfParameters p) {
     REAL grazing;
     ggx_average_albedo(ggx_layer_alpha(p), white, grazing);
     REAL f90 = grazing_reflectance(max_component(p.f0));
-    return min(p.f0 * (white - grazing) + VEC3(f90 * grazing), VEC3(R(0.999)));
+    // The layer under a stretched lobe would return up to 1.4e-4 too much.
+    REAL stretch = min(p.alpha_x, p.alpha_y) / max(p.alpha_x, p.alpha_y);
+    REAL in_hand = R(1.0) - R(0.006) * (R(1.0) - stretch);
+    return min(p.f0 * (white - grazing) + VEC3(f90 * grazing), VEC3(R(0.999))) * in_hand;
 }
 
 FN VEC3 ggx_specular(BsdfParameters p, VEC3 wi, VEC3 wo, REAL hh, REAL schlick) {
@@ -52,18 +55,16 @@ FN VEC3 ggx_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
            p.diffuse * through * R(0.3183098861837907);
 }
 
-// Probability of sampling the microfacets rather than the diffuse layer.
-FN REAL ggx_specular_probability(BsdfParameters p, REAL mu) {
-    VEC3 reflected = ggx_interface_albedo(p, mu);
-    REAL s = mean_component(reflected);
-    REAL d = mean_component(p.diffuse * (VEC3(R(1.0)) - reflected));
-    return s + d > R(0.0) ? s / (s + d) : R(0.0);
+// Of sampling the microfacets and the diffuse layer.
+FN VEC2 ggx_chances(BsdfParameters p, REAL mu) {
+    VEC3 through = ggx_interface_transmission(p, mu);
+    return lobe_chances(VEC3(R(1.0)) - through, p.diffuse * through);
 }
 
 // u: three numbers in [0, 1). The direction may lie below the horizon, where ggx_eval is 0.
 FN VEC3 ggx_sample(BsdfParameters p, VEC3 wo, VEC3 u) {
     VEC2 v = VEC2(u.x, u.y);
-    if (u.z < ggx_specular_probability(p, wo.z)) {
+    if (u.z < ggx_chances(p, wo.z).x) {
         return ggx_sample_lobe(wo, v, p.alpha_x, p.alpha_y);
     }
     return cosine_sample(v);
@@ -71,9 +72,9 @@ FN VEC3 ggx_sample(BsdfParameters p, VEC3 wo, VEC3 u) {
 
 FN REAL ggx_pdf(BsdfParameters p, VEC3 wi, VEC3 wo) {
     if (wi.z <= R(0.0) || wo.z <= R(0.0)) return R(0.0);
-    REAL s = ggx_specular_probability(p, wo.z);
-    return s * ggx_pdf_lobe(wi, wo, p.alpha_x, p.alpha_y) +
-           (R(1.0) - s) * wi.z * R(0.3183098861837907);
+    VEC2 chance = ggx_chances(p, wo.z);
+    return chance.x * ggx_pdf_lobe(wi, wo, p.alpha_x, p.alpha_y) +
+           chance.y * wi.z * R(0.3183098861837907);
 }
 
 FN VEC3 ggx_environment_albedo(BsdfParameters p, REAL mu) {

@@ -82,13 +82,15 @@ FN void ggx_albedo_fit(REAL mu, REAL alpha, OUT(REAL) loss, OUT(REAL) cosine) {
     REAL a = alpha;
     REAL m = max(mu, R(1e-6));
     REAL t = m / (m + a);
-    REAL wn0 = a * (R(0.09317) + a * (R(1.7552) - a * R(0.54912))) - R(0.00336);
-    REAL wn1 = R(1.65289) - a * (R(0.81055) + a * R(0.96872));
-    REAL wn2 = a * R(0.70715) - R(3.43295);
+    REAL v = a / (m + a);
+    // The numerator in powers of 1 - t: in powers of t its terms nearly cancel for small alpha.
+    REAL wn0 = R(0.00006) - a * (R(0.01023) - a * (R(0.78648) - a * R(0.54912)));
+    REAL wn1 = -R(0.13743) - a * (R(0.60375) - a * R(0.96872));
+    REAL wn2 = R(1.91749) + a * R(0.70715);
     REAL wd0 = R(0.57679) - a * (R(0.80506) - a * (R(0.80967) - a * R(0.28165)));
     REAL wd1 = R(2.87614) - a * (R(0.62389) - a * R(0.21578));
     REAL wd2 = a * R(0.49333) - R(6.24262);
-    REAL lost = t * (wn0 + t * (wn1 + t * (wn2 + t * R(1.78348)))) /
+    REAL lost = t * (wn0 + v * (wn1 + v * (wn2 - v * R(1.78348)))) /
                 (wd0 + t * (wd1 + t * (wd2 + t * R(3.7214))));
     REAL cn0 = R(1.23986) + a * (R(7.23334) - a * R(3.24966));
     REAL cn1 = -R(1.41008) - a * R(12.0);
@@ -119,13 +121,19 @@ FN void ggx_transmission_fit(REAL mu, REAL alpha, OUT(REAL) loss, OUT(REAL) rest
     rest = (R(1.0) - loss) * not_edge;
 }
 
-// The same, averaged over the hemisphere with the cosine; never above the average of ggx_albedo, at
-// most 0.0024 (white) and 0.001 (grazing) below.
+// 1 - white, averaged over the hemisphere with the cosine.
+FN REAL ggx_average_loss(REAL alpha) {
+    REAL a = alpha;
+    return R(0.000038) -
+           a * (R(0.003956) -
+                a * (R(2.884075) - a * (R(5.08867) - a * (R(4.10955) - a * R(1.312381)))));
+}
+
+// The average of both; never above that of ggx_albedo, at most 0.0024 (white) and 0.001 (grazing)
+// below.
 FN void ggx_average_albedo(REAL alpha, OUT(REAL) white, OUT(REAL) grazing) {
     REAL a = alpha;
-    white = R(0.999962) +
-            a * (R(0.003956) -
-                 a * (R(2.884075) - a * (R(5.08867) - a * (R(4.10955) - a * R(1.312381)))));
+    white = R(1.0) - ggx_average_loss(a);
     grazing = R(0.047628) -
               a * (R(0.083194) +
                    a * (R(0.28277) - a * (R(1.07906) - a * (R(1.220033) - a * R(0.464282)))));

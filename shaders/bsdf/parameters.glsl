@@ -52,3 +52,11 @@ FN VEC3 cosine_sample(VEC2 u) {
 FN REAL mean_component(VEC3 v) {
     return (v.x + v.y + v.z) * R(0.3333333333333333);
 }
+
+// Chances of sampling a lobe and the diffuse layer under it, by what each returns. Both are told:
+// one minus the other would lose the smaller one's digits.
+FN VEC2 lobe_chances(VEC3 lobe, VEC3 diffuse) {
+    REAL l = mean_component(lobe);
+    REAL d = mean_component(diffuse);
+    return l + d > R(0.0) ? VEC2(l / (l + d), d / (l + d)) : VEC2(R(0.0), R(1.0));
+}

@@ -159,33 +159,46 @@ glm::dvec3 directional_albedo(ReflectanceModel model,
     no_diffuse.diffuse = glm::dvec3(0.0);
     f64::BsdfParameters only_coat = no_diffuse;
     only_coat.f0 = glm::dvec3(0.0);
-    const bool has_base = model_info(model).mirrors();
+    const bool has_lobe = model_info(model).mirrors();
     const bool has_coat = model == ReflectanceModel::clearcoat;
+    // Many bounces are as smooth as a diffuse layer.
+    const ReflectanceModel lobes =
+        model == ReflectanceModel::ggx_multiscatter ? ReflectanceModel::ggx : model;
+    const auto smooth = [&](const glm::dvec3& wi) {
+        glm::dvec3 value = evaluate(model, p, wi, wo);
+        if (has_lobe) value -= evaluate(lobes, no_diffuse, wi, wo);
+        return value;
+    };
     glm::dvec3 total(0.0);
-    const auto add_lobe = [&](glm::dvec2 u,
-                              double alpha_x,
-                              double alpha_y,
-                              const f64::BsdfParameters& with,
-                              const f64::BsdfParameters* without) {
-        const glm::dvec3 wi = f64::ggx_sample_lobe(wo, u, alpha_x, alpha_y);
-        if (!(wi.z > 0.0)) return;
-        glm::dvec3 value = evaluate(model, with, wi, wo);
-        if (without) value -= evaluate(model, *without, wi, wo);
-        total += value * (wi.z / f64::ggx_pdf_lobe(wi, wo, alpha_x, alpha_y));
+    // Many points near both ends, where integrands have edges.
+    const auto crowded = [](double s) { return s * s * s * (10.0 - s * (15.0 - 6.0 * s)); };
+    const auto add = [&](const glm::dvec3& wi, const glm::dvec3& value, double density) {
+        if (wi.z > 0.0 && density > 0.0) total += value * (wi.z / density);
     };
     for (int i = 0; i < points; ++i) {
         for (int j = 0; j < points; ++j) {
-            const glm::dvec2 u((i + 0.5) / points, (j + 0.5) / points);
-            // Even steps of the cosine: near grazing the equal-area map is not smooth.
-            const double mu = u.x;
-            const double sine = std::sqrt((1.0 - mu) * (1.0 + mu));
-            const double phi = 2.0 * std::numbers::pi * u.y;
-            const glm::dvec3 wi(sine * std::cos(phi), sine * std::sin(phi), mu);
-            total += (evaluate(model, p, wi, wo) - evaluate(model, no_diffuse, wi, wo)) *
-                     (2.0 * std::numbers::pi * mu);
-            if (has_coat) add_lobe(u, p.coat_alpha, p.coat_alpha, only_coat, nullptr);
-            if (has_base) {
-                add_lobe(u, p.alpha_x, p.alpha_y, no_diffuse, has_coat ? &only_coat : nullptr);
+            const double s = (j + 0.5) / points;
+            const glm::dvec2 u((i + 0.5) / points, crowded(s));
+            const double share = 30.0 * s * s * (1.0 - s) * (1.0 - s);
+            const double sine = std::sqrt((1.0 - u.y) * (1.0 + u.y));
+            const double phi = 2.0 * std::numbers::pi * u.x;
+            const glm::dvec3 even(sine * std::cos(phi), sine * std::sin(phi), u.y);
+            add(even, share * smooth(even), 0.5 / std::numbers::pi);
+            if (has_coat) {
+                const glm::dvec3 coat = f64::ggx_sample_lobe(wo, u, p.coat_alpha, p.coat_alpha);
+                add(coat,
+                    share * evaluate(model, only_coat, coat, wo),
+                    f64::ggx_pdf_lobe(coat, wo, p.coat_alpha, p.coat_alpha));
+                const glm::dvec3 base = f64::ggx_sample_lobe(wo, u, p.alpha_x, p.alpha_y);
+                add(base,
+                    share * (evaluate(model, no_diffuse, base, wo) -
+                             evaluate(model, only_coat, base, wo)),
+                    f64::ggx_pdf_lobe(base, wo, p.alpha_x, p.alpha_y));
+            } else if (has_lobe) {
+                const glm::dvec3 wi = sample(lobes, no_diffuse, wo, {u.x, u.y, 0.0});
+                add(wi,
+                    share * evaluate(lobes, no_diffuse, wi, wo),
+                    pdf(lobes, no_diffuse, wi, wo));
             }
         }
     }

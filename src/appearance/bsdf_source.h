@@ -29,10 +29,19 @@ using glm::abs, glm::acos, glm::atan, glm::clamp, glm::cos, glm::dot, glm::exp, 
 // Each needs the ones before it.
 // clang-format off
 #include "shaders/bsdf/parameters.glsl"
+#include "shaders/bsdf/stable.glsl"
+#include "shaders/bsdf/lobe_albedo.glsl"
 #include "shaders/bsdf/lambert.glsl"
 #include "shaders/bsdf/eon.glsl"
+#include "shaders/bsdf/phong.glsl"
+#include "shaders/bsdf/blinn_phong.glsl"
+#include "shaders/bsdf/beckmann.glsl"
+#include "shaders/bsdf/ward.glsl"
 #include "shaders/bsdf/microfacet.glsl"
+#include "shaders/bsdf/cook_torrance.glsl"
 #include "shaders/bsdf/ggx.glsl"
+#include "shaders/bsdf/ggx_multiscatter.glsl"
+#include "shaders/bsdf/ashikhmin_shirley.glsl"
 #include "shaders/bsdf/clearcoat.glsl"
 // clang-format on
 }  // namespace livery::f32
@@ -46,16 +55,26 @@ using glm::abs, glm::acos, glm::atan, glm::clamp, glm::cos, glm::dot, glm::exp, 
 // Each needs the ones before it.
 // clang-format off
 #include "shaders/bsdf/parameters.glsl"
+#include "shaders/bsdf/stable.glsl"
+#include "shaders/bsdf/lobe_albedo.glsl"
 #include "shaders/bsdf/lambert.glsl"
 #include "shaders/bsdf/eon.glsl"
+#include "shaders/bsdf/phong.glsl"
+#include "shaders/bsdf/blinn_phong.glsl"
+#include "shaders/bsdf/beckmann.glsl"
+#include "shaders/bsdf/ward.glsl"
 #include "shaders/bsdf/microfacet.glsl"
+#include "shaders/bsdf/cook_torrance.glsl"
 #include "shaders/bsdf/ggx.glsl"
+#include "shaders/bsdf/ggx_multiscatter.glsl"
+#include "shaders/bsdf/ashikhmin_shirley.glsl"
 #include "shaders/bsdf/clearcoat.glsl"
 // clang-format on
 }  // namespace livery::f64
 
 #pragma GCC diagnostic pop
 
+#undef LOBE_ALBEDO
 #undef REAL
 #undef VEC2
 #undef VEC3

@@ -77,6 +77,28 @@ const std::vector<ParameterInfo>& parameter_table() {
             [](auto& m) { return numbers(m.diffuse_roughness); },
             [](auto& p) { return numbers(p.diffuse_roughness); }),
         parameter(
+            "specular",
+            "Highlight",
+            "Scale of the highlight: what part of the light its lobe returns, for the models that "
+            "have no Fresnel term. With the diffuse colour it should not exceed 1.",
+            ParameterKind::colour,
+            0.0,
+            1.0,
+            kLinear,
+            [](auto& m) { return colour(m.specular); },
+            [](auto& p) { return colour(p.specular); }),
+        parameter(
+            "exponent",
+            "Sharpness",
+            "Exponent n of the highlight's cosine, about 2 / alpha^2 - 2 of the half vector: satin "
+            "20, gloss 10000.",
+            ParameterKind::pair,
+            1.0,
+            1e6,
+            kByRatios,
+            [](auto& m) { return numbers(m.exponent.x, m.exponent.y); },
+            [](auto& p) { return numbers(p.exponent_x, p.exponent_y); }),
+        parameter(
             "f0",
             "Base reflectance",
             "Reflectance of the interface looked at along the normal: 0.04 for an index of 1.5, a "

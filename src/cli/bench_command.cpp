@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include "cli/command.h"
+#include "core/error.h"
 #include "core/paths.h"
+#include "session/accuracy_bench.h"
 #include "session/bench_plot.h"
 #include "session/bench_table.h"
 #include "session/speed_bench.h"
@@ -49,9 +51,9 @@ Json json_of(const std::vector<SweepPoint>& sweep) {
     return effects;
 }
 
-Json json_of(const SpeedBenchResult& result) {
+Json json_of(const std::vector<BenchEffect>& benched) {
     Json effects = Json::array();
-    for (const BenchEffect& effect : result.effects) {
+    for (const BenchEffect& effect : benched) {
         Json levels = Json::array();
         for (const BenchLevel& level : effect.levels) {
             levels.push_back(
@@ -67,6 +69,11 @@ Json json_of(const SpeedBenchResult& result) {
         }
         effects.push_back({{"name", effect.name}, {"levels", levels}});
     }
+    return effects;
+}
+
+Json json_of(const SpeedBenchResult& result) {
+    Json effects = json_of(result.effects);
     for (Json& effect : json_of(result.sweep)) effects.push_back(std::move(effect));
     return {{"suite", "speed"},
             {"renderer", result.renderer},
@@ -86,7 +93,8 @@ Command bench_command() {
     const auto arguments = std::make_shared<Arguments>();
     Command command;
     command.name = "bench";
-    command.summary = "time every stage on this machine; livery plan predicts from it";
+    command.summary =
+        "time every stage on this machine, or measure how far reflectance models can be trusted";
     command.example = "livery bench --suite speed --out bench";
     command.options = {
         {"--out",
@@ -103,31 +111,56 @@ Command bench_command() {
          {}},
         {"--quick",
          "",
-         "half a minute: the sweep of two sizes and one quality; predictions stay",
+         "half a minute: the sweep of two sizes and one quality, a hundredth of the inputs; "
+         "predictions stay",
          &arguments->quick,
          false,
          {}},
-        {"--suite", "NAME", "speed (default speed)", &arguments->suite, false, {"speed"}},
+        {"--suite",
+         "NAME",
+         "speed, accuracy (of the reflectance models) or all (default speed)",
+         &arguments->suite,
+         false,
+         {"speed", "accuracy", "all"}},
     };
     command.run = [arguments](const CommonOptions& common, const Progress& progress) {
+        const bool speed = arguments->suite != "accuracy", accuracy = arguments->suite != "speed";
         // What cannot be written is found before the work.
+        check_argument(arguments->markdown.empty() || !(speed && accuracy),
+                       "--markdown writes one suite's tables: choose --suite speed or accuracy");
         const auto kept = bench_file();
         if (!arguments->out.empty()) make_output_folder(arguments->out);
         if (!arguments->markdown.empty()) check_bench_block(arguments->markdown);
-        const SpeedBenchResult result =
-            run_speed_bench(common.gl_device(), arguments->quick, progress);
-        if (!arguments->quick) write_pass_costs(kept, result.renderer, result.pass_costs);
         Outcome outcome;
-        outcome.figures = json_of(result);
-        outcome.text = text_of(result);
+        std::string markdown, plot;
+        if (speed) {
+            const SpeedBenchResult result =
+                run_speed_bench(common.gl_device(), arguments->quick, progress);
+            if (!arguments->quick) write_pass_costs(kept, result.renderer, result.pass_costs);
+            outcome.figures = json_of(result);
+            outcome.text = text_of(result);
+            markdown = markdown_of(result);
+            plot = sweep_svg(result.sweep);
+        }
+        if (accuracy) {
+            const AccuracyBenchResult result =
+                run_accuracy_bench(common.gl_device(), arguments->quick, common.seed, progress);
+            Json effects = json_of(effects_of(result));
+            if (speed) {
+                for (Json& effect : effects) outcome.figures["effects"].push_back(effect);
+            } else {
+                outcome.figures = {{"renderer", result.renderer}, {"effects", effects}};
+            }
+            outcome.text += text_of(result);
+            markdown = markdown_of(result);
+        }
+        outcome.figures["suite"] = arguments->suite;
         if (!arguments->out.empty()) {
             const std::filesystem::path out = arguments->out;
             write_json_file(out / "bench.json", outcome.figures);
-            write_text_file(out / "speed.svg", sweep_svg(result.sweep));
+            if (speed) write_text_file(out / "speed.svg", plot);
         }
-        if (!arguments->markdown.empty()) {
-            replace_bench_block(arguments->markdown, markdown_of(result));
-        }
+        if (!arguments->markdown.empty()) replace_bench_block(arguments->markdown, markdown);
         return outcome;
     };
     return command;

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "appearance/bsdf.h"
+#include "appearance/hard_cases.h"
 #include "appearance/model_table.h"
 #include "core/random.h"
 
@@ -25,9 +26,6 @@ inline std::vector<ReflectanceModel> all_models() {
 inline std::string prefix_of(const testing::TestParamInfo<ReflectanceModel>& info) {
     return model_info(info.param).prefix;
 }
-
-/// The cosine exponent that stands for a slope parameter.
-inline double exponent_of(double alpha) { return 2.0 / (alpha * alpha) - 2.0; }
 
 /// Slope parameters and exponents alike.
 inline void set_slopes(f64::BsdfParameters& p, double along, double across) {
