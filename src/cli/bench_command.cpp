@@ -144,7 +144,10 @@ Command bench_command() {
         }
         if (accuracy) {
             const AccuracyBenchResult result =
-                run_accuracy_bench(common.gl_device(), arguments->quick, common.seed, progress);
+                run_accuracy_bench(common.gl_device(),
+                                   arguments->quick,
+                                   static_cast<std::uint64_t>(common.seed),
+                                   progress);
             Json effects = json_of(effects_of(result));
             if (speed) {
                 for (Json& effect : effects) outcome.figures["effects"].push_back(effect);
