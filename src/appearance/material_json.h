@@ -1,5 +1,5 @@
-// A paint's fields as JSON, for material files, for whatever holds paints, and for answers in JSON. Not
-// for headers.
+// A paint's fields as JSON, for material files, for whatever holds paints, and for answers in JSON.
+// Not for headers.
 #pragma once
 
 #include "appearance/material.h"
