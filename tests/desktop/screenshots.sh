@@ -1,13 +1,13 @@
 #!/bin/bash
 # Photographs the operator's window anew for the documentation: docs/images/desktop-*.png. Small
-# files: 128 colours, and the 3840x2160 ones at half their size. Needs ImageMagick and a build of
+# files: 256 colours, and the 3840x2160 ones at half their size. Needs ImageMagick and a build of
 # the target desktop_screenshots. All that was taken stays in DIR when one is given.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 taken=${1:-$(mktemp -d)}
 [ $# -gt 0 ] || trap 'rm -rf "$taken"' EXIT
 "$root/build/release/bin/desktop_screenshots" "$taken"
-small=(+dither -colors 128 -define png:compression-level=9)
+small=(+dither -colors 256 -define png:compression-level=9)
 for name in window hover search wipe view-eye view-projector view-photograph save-picture import-look keys \
     ballot ballot-result calibrating monitor-numbers unplugged; do
     convert "$taken/$name-1280.png" "${small[@]}" "$root/docs/images/desktop-$name.png"
