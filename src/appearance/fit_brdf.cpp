@@ -5,6 +5,7 @@
 #include <cmath>
 #include <ctime>
 #include <numbers>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -181,10 +182,14 @@ BrdfFit fit_model(ReflectanceModel model,
     // Searches on a part of the samples, the last on more of them.
     const std::size_t coarse = std::max<std::size_t>(1, samples.pairs.size() / 2000);
     const std::size_t fine = std::max<std::size_t>(1, samples.pairs.size() / 12000);
+    // The first searches are many and short, those after them a few and longer.
+    const double step = 1.0 / static_cast<double>(starts.size() + kSecondStarts + 1);
+    double done = 0.0;
     const auto searched = [&](const std::vector<f64::BsdfParameters>& from, int steps) {
         std::vector<Found> found;
         for (const auto& start : from) {
-            progress.update(0.0, fmt::format("fitting {}", info.name));
+            progress.update(done, fmt::format("fitting {}", info.name));
+            done = std::min(done + step, 1.0);
             found.push_back(
                 search_from(info, samples, start, {Metric::logarithm, coarse, steps}, progress));
         }
@@ -225,9 +230,18 @@ std::vector<BrdfFit> fit_all_models(const FitSamples& samples,
                                     const ReflectanceFunction& truth_working,
                                     const Progress& progress) {
     std::vector<BrdfFit> fits;
+    const auto count = static_cast<double>(
+        std::count_if(model_table().begin(), model_table().end(), can_be_fitted));
+    double index = 0.0;
     for (const ModelInfo& info : model_table()) {
         if (!can_be_fitted(info)) continue;
-        fits.push_back(fit_model(info.model, samples, truth_working, fits, progress));
+        Progress part;
+        part.stop = progress.stop;
+        part.report = [&](double fraction, std::string_view stage) {
+            if (progress.report) progress.report((index + fraction) / count, stage);
+        };
+        fits.push_back(fit_model(info.model, samples, truth_working, fits, part));
+        index += 1.0;
     }
     std::stable_sort(fits.begin(), fits.end(), [](const BrdfFit& a, const BrdfFit& b) {
         return a.difference.de00_mean < b.difference.de00_mean;

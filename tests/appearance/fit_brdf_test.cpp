@@ -99,7 +99,14 @@ TEST(FitBrdf, AllModelsAreRankedAndTheTrueOneIsFound) {
     const ReflectanceFunction truth = [&](const glm::dvec3& wi, const glm::dvec3& wo) {
         return evaluate(paint.model, p, wi, wo);
     };
-    const auto fits = fit_all_models(fit_samples(truth, everywhere, {36, 10, 10}), truth);
+    std::vector<double> told;
+    Progress progress;
+    progress.report = [&](double fraction, std::string_view) { told.push_back(fraction); };
+    const auto fits = fit_all_models(fit_samples(truth, everywhere, {36, 10, 10}), truth, progress);
+    EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+    EXPECT_LT(told.front(), 0.01);
+    EXPECT_GT(told.back(), 0.9);
+    EXPECT_LE(told.back(), 1.0);
     ASSERT_EQ(fits.size(),
               static_cast<std::size_t>(
                   std::count_if(model_table().begin(), model_table().end(), can_be_fitted)));
