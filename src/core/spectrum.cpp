@@ -41,6 +41,9 @@ Spectrum spectrum_from_samples(std::span<const double> wavelengths_nm,
 const Spectrum& cie1931_x() { return kCie1931X; }
 const Spectrum& cie1931_y() { return kCie1931Y; }
 const Spectrum& cie1931_z() { return kCie1931Z; }
+const Spectrum& cie1964_x() { return kCie1964X; }
+const Spectrum& cie1964_y() { return kCie1964Y; }
+const Spectrum& cie1964_z() { return kCie1964Z; }
 const Spectrum& illuminant_d65() { return kIlluminantD65; }
 
 glm::dvec3 xyz_from_power(const Spectrum& power) {

@@ -1,4 +1,4 @@
-// Spectra from 380 to 780 nm in 5 nm steps, and what the CIE 1931 observer makes of them.
+// Spectra from 380 to 780 nm in 5 nm steps, and what the CIE's observers make of them.
 #pragma once
 
 #include <array>
@@ -24,6 +24,11 @@ Spectrum spectrum_from_samples(std::span<const double> wavelengths_nm,
 const Spectrum& cie1931_x();
 const Spectrum& cie1931_y();
 const Spectrum& cie1931_z();
+
+/// CIE 1964 10 degree observer, by whom paint is measured (ten_degree.h).
+const Spectrum& cie1964_x();
+const Spectrum& cie1964_y();
+const Spectrum& cie1964_z();
 
 /// CIE D65, relative, 100 at 560 nm.
 const Spectrum& illuminant_d65();

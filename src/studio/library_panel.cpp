@@ -12,9 +12,9 @@
 #include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
+#include "appearance/paint_search.h"
 #include "studio/chosen_part.h"
 #include "studio/paint_parameters.h"
-#include "studio/paint_search.h"
 #include "studio/studio.h"
 #include "studio/swatch_textures.h"
 #include "studio/theme.h"

@@ -1,5 +1,5 @@
 // What a typed text finds among the paints, and in which order.
-#include "studio/paint_search.h"
+#include "appearance/paint_search.h"
 
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "studio/paint_search.h"
+#include "appearance/paint_search.h"
 
 #include <algorithm>
 #include <cctype>
