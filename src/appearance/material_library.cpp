@@ -17,15 +17,6 @@ namespace {
 /// File systems take 255 bytes a name.
 constexpr std::size_t kLongestName = 120;
 
-/// "Solid-Red" and "solid red" are one name.
-std::string plain(std::string text) {
-    for (char& c : text) {
-        c = c == '-' || c == '_' ? ' '
-                                 : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    }
-    return text;
-}
-
 /// Levenshtein distance.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
     std::vector<std::size_t> row(b.size() + 1);
@@ -75,7 +66,8 @@ void check_name(const std::string& name) {
                                name.size(),
                                kLongestName));
     // Either would be taken for a file when the paint is looked up.
-    check_argument(name.find('/') == std::string::npos && !plain(name).ends_with(".json") &&
+    check_argument(name.find('/') == std::string::npos &&
+                       !plain_paint_name(name).ends_with(".json") &&
                        std::none_of(name.begin(), name.end(), control),
                    fmt::format("'{}' is not a paint's name: it looks like a file", name));
 }
@@ -84,7 +76,17 @@ void check_name(const std::string& name) {
 
 std::filesystem::path user_materials_folder() { return user_folder() / "materials"; }
 
-bool same_paint_name(const std::string& a, const std::string& b) { return plain(a) == plain(b); }
+std::string plain_paint_name(std::string name) {
+    for (char& c : name) {
+        c = c == '-' || c == '_' ? ' '
+                                 : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    }
+    return name;
+}
+
+bool same_paint_name(const std::string& a, const std::string& b) {
+    return plain_paint_name(a) == plain_paint_name(b);
+}
 
 const Material* PaintLibrary::find(const std::string& name) const {
     const Material* material = find_in(shipped, name);
@@ -95,7 +97,9 @@ std::vector<std::string> PaintLibrary::nearest(const std::string& name, std::siz
     std::vector<std::pair<std::size_t, std::string>> ranked;
     for (const auto* paints : {&shipped, &users}) {
         for (const Material& material : *paints) {
-            ranked.emplace_back(edit_distance(plain(name), plain(material.name)), material.name);
+            ranked.emplace_back(
+                edit_distance(plain_paint_name(name), plain_paint_name(material.name)),
+                material.name);
         }
     }
     std::sort(ranked.begin(), ranked.end());
@@ -138,7 +142,7 @@ std::filesystem::path save_to_library(const Material& material) {
     }
     const auto folder = user_materials_folder();
     make_output_folder(folder);
-    std::string stem = plain(material.name);
+    std::string stem = plain_paint_name(material.name);
     std::replace(stem.begin(), stem.end(), ' ', '-');
     if (stem.front() == '.') stem.front() = '-';
     auto file = folder / (stem + ".json");

@@ -27,6 +27,8 @@ struct PaintLibrary {
 /// Reads both folders. Throws FileError when a shipped paint cannot be read.
 PaintLibrary read_paint_library();
 
+/// "Solid-Red" and "solid red" are one name: this one.
+std::string plain_paint_name(std::string name);
 /// Whether two names mean the same paint.
 bool same_paint_name(const std::string& a, const std::string& b);
 

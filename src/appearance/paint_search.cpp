@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "core/colour.h"
+
 namespace livery {
 
 namespace {
@@ -86,6 +88,17 @@ std::vector<std::size_t> search_paints(const std::vector<Material>& paints,
     std::vector<std::size_t> indices;
     for (const auto& [score, index] : found) indices.push_back(index);
     return indices;
+}
+
+std::vector<NearPaint> nearest_colours(std::span<const glm::dvec3> faces_lab10, glm::dvec3 lab10) {
+    std::vector<NearPaint> near;
+    for (std::size_t i = 0; i < faces_lab10.size(); ++i) {
+        near.push_back({i, ciede2000(faces_lab10[i], lab10)});
+    }
+    std::stable_sort(near.begin(), near.end(), [](const NearPaint& a, const NearPaint& b) {
+        return a.de00 < b.de00;
+    });
+    return near;
 }
 
 }  // namespace livery

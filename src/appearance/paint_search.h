@@ -1,8 +1,11 @@
-// Which paints a typed text means, best first.
+// Which paints a typed text or a colour means, best first.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
+
+#include <glm/vec3.hpp>
 
 #include "appearance/material.h"
 
@@ -17,5 +20,13 @@ double search_score(const std::string& query, const std::string& name, const std
 std::vector<std::size_t> search_paints(const std::vector<Material>& paints,
                                        const std::string& query,
                                        const std::string& family);
+
+struct NearPaint {
+    std::size_t index = 0;
+    double de00 = 0.0;  ///< CIEDE2000
+};
+/// Paints by how far their colour at 45 degrees (five_angle_lab()[kFaceAngle]) is from a colour,
+/// nearest first; equals keep their order.
+std::vector<NearPaint> nearest_colours(std::span<const glm::dvec3> faces_lab10, glm::dvec3 lab10);
 
 }  // namespace livery

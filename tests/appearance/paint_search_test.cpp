@@ -65,6 +65,18 @@ TEST(PaintSearch, ForgivesOneMistakeInALongWord) {
     EXPECT_TRUE(found("mxtxllic").empty());
 }
 
+TEST(PaintSearch, FindsTheNearestColours) {
+    const std::vector<glm::dvec3> faces{
+        {50, 0, 0}, {50, 60, 30}, {52, 1, 0}, {50, 0, 0}, {20, 0, -50}};
+    const auto near = nearest_colours(faces, {50, 0, 0});
+    std::vector<std::size_t> order;
+    for (const NearPaint& paint : near) order.push_back(paint.index);
+    EXPECT_EQ(order, (std::vector<std::size_t>{0, 3, 2, 1, 4}));
+    EXPECT_EQ(near[0].de00, 0.0);
+    EXPECT_NEAR(near[2].de00, 2.4, 0.4);
+    EXPECT_TRUE(nearest_colours({}, {50, 0, 0}).empty());
+}
+
 TEST(PaintSearch, TakesAnyBytes) {
     EXPECT_EQ(found("zoë"), (Names{"Zoë's Rot"}));
     EXPECT_TRUE(found("\xff\xfe").empty());

@@ -1,0 +1,218 @@
+#include "appearance/paint_colour.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "appearance/material_library.h"
+#include "core/colour.h"
+#include "core/csv.h"
+#include "core/error.h"
+#include "core/paths.h"
+#include "core/ten_degree.h"
+
+namespace livery {
+
+namespace {
+
+constexpr std::size_t kLargestFile_bytes = std::size_t{1} << 24u;
+constexpr std::size_t kMostChips = 100'000;
+
+constexpr const char* kColourForms =
+    "#RRGGBB, lab:L,a,b or xyz:X,Y,Z (D65, 10 degree observer, white has Y = 100)";
+constexpr const char* kChipColumns = "a column name and either L, a, b or X, Y, Z or hex";
+
+struct Range {
+    double low, high;
+};
+/// Effect paints are lighter than white beside their highlight.
+constexpr std::array<Range, 3> kLabRanges{{{0.0, 200.0}, {-200.0, 200.0}, {-200.0, 200.0}}};
+constexpr std::array<Range, 3> kXyzRanges{{{0.0, 500.0}, {0.0, 500.0}, {0.0, 500.0}}};
+constexpr std::array kLabNames{"L", "a", "b"}, kXyzNames{"X", "Y", "Z"};
+
+std::string lower(std::string_view text) {
+    std::string small(text);
+    for (char& c : small) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return small;
+}
+
+std::optional<glm::dvec3> lab10_from_hex(std::string_view text) {
+    if (text.starts_with('#')) text.remove_prefix(1);
+    const bool digits = text.size() == 6 && std::all_of(text.begin(), text.end(), [](char c) {
+                            return std::isxdigit(static_cast<unsigned char>(c)) != 0;
+                        });
+    if (!digits) return std::nullopt;
+    glm::dvec3 rec709(0.0);
+    for (int c = 0; c < 3; ++c) {
+        unsigned value = 0;
+        const char* begin = text.data() + 2 * c;
+        std::from_chars(begin, begin + 2, value, 16);
+        rec709[c] = srgb_decode(value / 255.0);
+    }
+    return lab10_from_xyz10(xyz10_from_xyz(xyz_from_rec709() * rec709));
+}
+
+/// "45,30,-20" in ranges; throws std::invalid_argument about `text`.
+glm::dvec3 parse_three(const std::string& text,
+                       std::string_view numbers,
+                       const std::array<const char*, 3>& names,
+                       const std::array<Range, 3>& ranges) {
+    glm::dvec3 values(0.0);
+    for (int c = 0; c < 3; ++c) {
+        const auto i = static_cast<std::size_t>(c);
+        const std::size_t comma = numbers.find(',');
+        check_argument((comma == std::string_view::npos) == (c == 2),
+                       fmt::format("colour '{}': expected three numbers, {}", text, kColourForms));
+        std::string_view cell = numbers.substr(0, comma);
+        while (cell.starts_with(' ')) cell.remove_prefix(1);
+        while (cell.ends_with(' ')) cell.remove_suffix(1);
+        if (cell.starts_with('+')) cell.remove_prefix(1);
+        const auto read = std::from_chars(cell.data(), cell.data() + cell.size(), values[c]);
+        check_argument(read.ec == std::errc() && read.ptr == cell.data() + cell.size() &&
+                           values[c] >= ranges[i].low && values[c] <= ranges[i].high,
+                       fmt::format("colour '{}': {} is '{}', expected a number from {} to {}",
+                                   text,
+                                   names[i],
+                                   cell,
+                                   ranges[i].low,
+                                   ranges[i].high));
+        if (c < 2) numbers.remove_prefix(comma + 1);
+    }
+    return values;
+}
+
+/// Columns of chips, however they are written: "L", "l*", "L*".
+std::optional<std::size_t> find_column(const CsvReader& csv, const std::string& name) {
+    for (std::size_t i = 0; i < csv.names().size(); ++i) {
+        std::string found = lower(csv.names()[i]);
+        if (found.ends_with('*')) found.pop_back();
+        if (found == lower(name)) return i;
+    }
+    return std::nullopt;
+}
+
+/// How a table writes its colours.
+struct ChipColumns {
+    std::size_t name = 0;
+    std::optional<std::array<std::size_t, 3>> lab, xyz;
+    std::optional<std::size_t> hex;
+};
+
+ChipColumns chip_columns(const CsvReader& csv, const std::filesystem::path& file) {
+    const auto fail = [&](const std::string& found, const std::string& expected) {
+        throw FileError(file, "header", found, expected);
+    };
+    using Columns = std::array<std::size_t, 3>;
+    const auto all = [&](const std::array<const char*, 3>& names) -> std::optional<Columns> {
+        Columns columns{};
+        for (std::size_t k = 0; k < columns.size(); ++k) {
+            const auto at = find_column(csv, names[k]);
+            if (!at) return std::nullopt;
+            columns[k] = *at;
+        }
+        return columns;
+    };
+    ChipColumns columns;
+    const auto name = find_column(csv, "name");
+    columns.lab = all(kLabNames);
+    columns.xyz = all(kXyzNames);
+    columns.hex = find_column(csv, "hex");
+    const int kinds = columns.lab.has_value() + columns.xyz.has_value() + columns.hex.has_value();
+    if (!name || kinds != 1) fail(fmt::format("{}", fmt::join(csv.names(), ", ")), kChipColumns);
+    if (columns.hex == std::size_t{0}) {
+        fail("hex as the first column", "another first: a line that starts with # is a comment");
+    }
+    columns.name = *name;
+    return columns;
+}
+
+glm::dvec3 read_three(const CsvReader& csv,
+                      const std::array<std::size_t, 3>& columns,
+                      const std::array<Range, 3>& ranges) {
+    glm::dvec3 values(0.0);
+    for (int c = 0; c < 3; ++c) {
+        const auto i = static_cast<std::size_t>(c);
+        values[c] = csv.number(columns[i]);
+        if (values[c] < ranges[i].low || values[c] > ranges[i].high) {
+            csv.fail(columns[i],
+                     fmt::format("a number from {} to {}", ranges[i].low, ranges[i].high));
+        }
+    }
+    return values;
+}
+
+glm::dvec3 read_chip_colour(const CsvReader& csv, const ChipColumns& columns) {
+    if (columns.lab) return read_three(csv, *columns.lab, kLabRanges);
+    if (columns.xyz) return lab10_from_xyz10(0.01 * read_three(csv, *columns.xyz, kXyzRanges));
+    const auto lab = lab10_from_hex(csv.text(*columns.hex));
+    if (!lab) csv.fail(*columns.hex, "six hexadecimal digits, as #b01020");
+    return *lab;
+}
+
+}  // namespace
+
+glm::dvec3 parse_colour(const std::string& text) {
+    const std::string small = lower(text);
+    const std::string_view rest =
+        std::string_view(small).substr(std::min<std::size_t>(4, small.size()));
+    if (small.starts_with("lab:")) return parse_three(text, rest, kLabNames, kLabRanges);
+    if (small.starts_with("xyz:")) {
+        return lab10_from_xyz10(0.01 * parse_three(text, rest, kXyzNames, kXyzRanges));
+    }
+    if (small.starts_with('#')) {
+        if (const auto lab = lab10_from_hex(small)) return *lab;
+    }
+    throw std::invalid_argument(fmt::format("colour '{}': expected {}", text, kColourForms));
+}
+
+std::vector<ColourChip> read_colour_chips(const std::filesystem::path& file) {
+    return parse_colour_chips(read_text_file(file, kLargestFile_bytes), file);
+}
+
+std::vector<ColourChip> parse_colour_chips(const std::string& text,
+                                           const std::filesystem::path& file) {
+    CsvReader csv(text, file);
+    const ChipColumns columns = chip_columns(csv, file);
+    std::vector<ColourChip> chips;
+    std::set<std::string> names;
+    while (csv.next()) {
+        if (chips.size() == kMostChips) {
+            throw FileError(file, csv.place(), "more chips", fmt::format("at most {}", kMostChips));
+        }
+        ColourChip chip{std::string(csv.text(columns.name)), read_chip_colour(csv, columns)};
+        if (chip.name.empty()) csv.fail(columns.name, "a name");
+        if (!names.insert(plain_paint_name(chip.name)).second) {
+            csv.fail(columns.name, "a name that no chip above has");
+        }
+        chips.push_back(std::move(chip));
+    }
+    if (chips.empty()) throw FileError(file, "", "no chips", "a row for each");
+    return chips;
+}
+
+const ColourChip& chip_named(const std::vector<ColourChip>& chips, const std::string& name) {
+    const auto found = std::find_if(chips.begin(), chips.end(), [&](const ColourChip& chip) {
+        return same_paint_name(chip.name, name);
+    });
+    if (found != chips.end()) return *found;
+    constexpr std::size_t kShown = 8;
+    std::vector<std::string> names;
+    for (const ColourChip& chip : chips) {
+        if (names.size() < kShown) names.push_back("'" + chip.name + "'");
+    }
+    throw std::invalid_argument(fmt::format("no chip named '{}' among {}: {}{}",
+                                            name,
+                                            chips.size(),
+                                            fmt::join(names, ", "),
+                                            chips.size() > kShown ? ", ..." : ""));
+}
+
+}  // namespace livery

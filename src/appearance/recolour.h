@@ -1,0 +1,26 @@
+// Paints made in a wanted colour.
+#pragma once
+
+#include <string>
+
+#include <glm/vec3.hpp>
+
+#include "appearance/material.h"
+
+namespace livery {
+
+struct Recoloured {
+    Material material;     ///< named as the finish; its provenance says what was asked for
+    double de00 = 0.0;     ///< from the colour asked for to its own, at 45 degrees
+    bool reached = false;  ///< within kColourReached
+    std::string why_not;   ///< when not reached: "too light for this finish, ..."
+};
+inline constexpr double kColourReached = 0.5;  ///< CIEDE2000: side by side nobody tells them apart
+
+/// The finish of a paint in another colour: pigment and flakes are tinted alike until the colour at
+/// 45 degrees is the wanted one, or as near as they get. Coat, roughness and the interface of
+/// plastics stay. Throws std::invalid_argument for measured paint, which has no colour to change,
+/// and for a colour that is not finite.
+Recoloured with_colour(const Material& finish, glm::dvec3 lab10);
+
+}  // namespace livery

@@ -1,0 +1,95 @@
+// Fits the library's measured paints anew and writes them into a folder of material files:
+//   LIVERY_REFERENCE_DATA=<folder> livery_make_library materials [NAME ...]
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "appearance/fit_brdf.h"
+#include "appearance/model_table.h"
+#include "appearance/paint_figures.h"
+#include "core/error.h"
+#include "support/library_recipes.h"
+#include "support/reference_data.h"
+
+namespace livery {
+namespace {
+
+BrdfFit best_fit(const LibraryRecipe& recipe, const RecipeTruth& truth) {
+    std::vector<BrdfFit> fits;
+    for (const ReflectanceModel model : recipe.models) {
+        fits.push_back(fit_model(model, truth.samples, truth.value_working, fits));
+    }
+    // A larger model must be worth it.
+    constexpr double kSeen = 0.05;
+    BrdfFit best = fits.front();
+    for (const BrdfFit& fit : fits) {
+        if (fit.difference.de00_mean < best.difference.de00_mean - kSeen) best = fit;
+    }
+    return best;
+}
+
+void make(const LibraryRecipe& recipe,
+          const std::filesystem::path& reference_data,
+          const std::filesystem::path& folder) {
+    const RecipeTruth truth = truth_of(recipe, reference_data);
+    const BrdfFit fit = best_fit(recipe, truth);
+    Material paint = fit.material;
+    paint.name = recipe.name;
+    paint.family = recipe.family;
+    paint.provenance = fmt::format("{}; fitted to {}", truth.origin, stated_error(fit.difference));
+    std::string file = paint.name;
+    std::replace(file.begin(), file.end(), ' ', '-');
+    write_material_file(folder / (file + ".json"), paint);
+    const PaintFigures figures = paint_figures(paint);
+    const glm::dvec3& face = figures.lab[kFaceAngle];
+    std::printf("%-24s %-10s %5.2f %5.1f  %5.1f %5.1f %5.1f  flop %5.2f  gloss %5.1f %5.1f  %.3f\n",
+                recipe.name,
+                model_info(paint.model).name,
+                fit.difference.de00_mean,
+                fit.difference.de00_p95,
+                face.x,
+                face.y,
+                face.z,
+                figures.flop.value_or(-1.0),
+                figures.gloss_20,
+                figures.gloss_60,
+                fit.largest_albedo);
+    std::fflush(stdout);
+}
+
+int run(const std::vector<std::string>& words) {
+    const auto reference = reference_data();
+    if (!reference || words.empty()) {
+        std::fputs("LIVERY_REFERENCE_DATA=<folder> livery_make_library FOLDER [NAME ...]\n",
+                   stderr);
+        return 2;
+    }
+    for (auto name = words.begin() + 1; name != words.end(); ++name) {
+        if (std::none_of(library_recipes().begin(),
+                         library_recipes().end(),
+                         [&](const LibraryRecipe& recipe) { return *name == recipe.name; })) {
+            throw std::invalid_argument("no measured paint '" + *name + "' in the library");
+        }
+    }
+    for (const LibraryRecipe& recipe : library_recipes()) {
+        const bool chosen = words.size() == 1 ||
+                            std::find(words.begin() + 1, words.end(), recipe.name) != words.end();
+        if (chosen) make(recipe, *reference, words.front());
+    }
+    return 0;
+}
+
+}  // namespace
+}  // namespace livery
+
+int main(int argc, char** argv) {
+    try {
+        return livery::run({argv + 1, argv + argc});
+    } catch (const std::exception& problem) {
+        std::fprintf(stderr, "%s\n", problem.what());
+        return 2;
+    }
+}
