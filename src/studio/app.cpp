@@ -415,8 +415,12 @@ class Desktop {
     void write_ui_map() {
         if (!ui_map_) return;
         const WindowPlace place = place_of(window_->native());
+        MapState state = state_of_shell(shell_);
+        state["clicks"] = std::to_string(imgui_->handed_out().clicks);
+        state["notches"] = std::to_string(imgui_->handed_out().notches);
+        state["frame"] = std::to_string(++frames_drawn_);
         ui_map_->update(take_named_items(),
-                        state_of_shell(shell_),
+                        state,
                         {place.position.x, place.position.y, place.size_px.x, place.size_px.y});
     }
 
@@ -440,6 +444,7 @@ class Desktop {
     std::unique_ptr<ImGuiWindow> imgui_;
     Shell shell_;
     std::optional<UiMapFile> ui_map_;
+    int frames_drawn_ = 0;
     int frames_to_draw_ = 0;
     std::vector<std::array<int, 4>> monitor_places_;
     double last_drawn_s_ = 0.0;

@@ -87,6 +87,7 @@ struct ImGuiWindow::State {
     float scale = 0.0f;
     ImVec2 pointer{-FLT_MAX, -FLT_MAX};
     std::array<bool, 5> buttons{};
+    HandedOut handed_out;
 
     void feed(const InputEvent& event, const KeyFilter& filter) {
         ImGuiIO& io = ImGui::GetIO();
@@ -102,10 +103,12 @@ struct ImGuiWindow::State {
                 if (event.code >= 0 && event.code < static_cast<int>(buttons.size())) {
                     buttons[static_cast<std::size_t>(event.code)] = event.down;
                 }
+                if (!event.down) ++handed_out.clicks;
                 break;
             case Kind::wheel:
                 io.MouseWheelH += static_cast<float>(event.x);
                 io.MouseWheel += static_cast<float>(event.y);
+                ++handed_out.notches;
                 break;
             case Kind::key:
                 if (filter(event)) break;
@@ -195,5 +198,7 @@ void ImGuiWindow::draw() {
 }
 
 bool ImGuiWindow::has_input() const { return !state_->queue.empty(); }
+
+const ImGuiWindow::HandedOut& ImGuiWindow::handed_out() const { return state_->handed_out; }
 
 }  // namespace livery

@@ -30,6 +30,13 @@ class ImGuiWindow {
 
     bool has_input() const;
 
+    /// What was handed out since the start: a driver of the program (--ui-map) goes by it.
+    struct HandedOut {
+        int clicks = 0;   ///< buttons let go
+        int notches = 0;  ///< of the wheel
+    };
+    const HandedOut& handed_out() const;
+
   private:
     struct State;
     std::unique_ptr<State> state_;

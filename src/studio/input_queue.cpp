@@ -16,7 +16,7 @@ bool makes_no_character(int key) {
 /// What a frame has taken already, and whether one more event would be lost in it.
 struct Portion {
     std::set<int> buttons, keys;
-    bool wheel = false, characters = false, editing_key = false;
+    bool moved = false, wheel = false, characters = false, editing_key = false;
 
     bool has_room_for(const InputEvent& event) const {
         using Kind = InputEvent::Kind;
@@ -25,7 +25,10 @@ struct Portion {
             case Kind::leave:
                 return buttons.empty() && keys.empty() && !wheel;
             case Kind::button:
-                return !buttons.contains(event.code) && keys.empty() && !wheel;
+                // Things that may overlap (tabs) take a press only when the pointer was over them
+                // in the frame before.
+                return !buttons.contains(event.code) && keys.empty() && !wheel &&
+                       !(moved && event.down);
             case Kind::wheel:
                 return buttons.empty();
             case Kind::key:
@@ -41,6 +44,7 @@ struct Portion {
 
     void add(const InputEvent& event) {
         using Kind = InputEvent::Kind;
+        if (event.kind == Kind::pointer) moved = true;
         if (event.kind == Kind::button) buttons.insert(event.code);
         if (event.kind == Kind::wheel) wheel = true;
         if (event.kind == Kind::character) characters = true;

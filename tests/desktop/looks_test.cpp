@@ -130,8 +130,7 @@ TEST_F(Looks, TheLightPanelStaysWhereItIsWhileALightIsSolved) {
     program->click("tab:Light");
     // To the end, where the panel would be pushed up or down by what comes and goes above.
     const glm::ivec2 tab = middle(program->item("tab:Light"));
-    desktop->move_pointer(tab.x, tab.y + 200);
-    desktop->scroll(-40);
+    program->scroll({tab.x, tab.y + 200}, -40);
     program->wait_for_state("solving", false);
     const Rectangle environment = program->item("environment");
 

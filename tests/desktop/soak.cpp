@@ -208,8 +208,7 @@ class Soak {
         open_tab("tab:Light", {"light:", "environment"});
         // To the end of the panel, which keeps where it was scrolled to.
         const glm::ivec2 tab = middle(program_.item("tab:Light"));
-        desktop_.move_pointer(tab.x, tab.y + 200);
-        desktop_.scroll(-40);
+        program_.scroll({tab.x, tab.y + 200}, -40);
         for (const char* name : {"environment:overcast", "environment:studio"}) {
             program_.click("environment");
             program_.click(name);

@@ -115,12 +115,37 @@ void StudioProgram::hover(const std::string& name) {
 
 void StudioProgram::click(const std::string& name) {
     const glm::ivec2 at = middle(item(name));
+    const int before = state("clicks");
     desktop_.click(at.x, at.y);
+    wait_until_taken("clicks", before + 1);
 }
 
 void StudioProgram::double_click(const std::string& name) {
     const glm::ivec2 at = middle(item(name));
+    const int before = state("clicks");
     desktop_.double_click(at.x, at.y);
+    wait_until_taken("clicks", before + 2);
+}
+
+void StudioProgram::scroll(glm::ivec2 at, int notches) {
+    const int before = state("notches");
+    desktop_.move_pointer(at.x, at.y);
+    desktop_.scroll(notches);
+    wait_until_taken("notches", before + std::abs(notches));
+}
+
+void StudioProgram::wait_until_taken(const std::string& counter, int value) {
+    int frame = 0;
+    const auto taken = [&] {
+        frame = state("frame");
+        return state(counter) >= value;
+    };
+    const auto shown = [&] { return state("frame") >= frame + 2; };
+    // A click may end the program.
+    const auto ended = [&] { return !process_->running(); };
+    const bool done = wait_until([&] { return taken() || ended(); }, patience) &&
+                      wait_until([&] { return shown() || ended(); }, patience);
+    if (!done) throw std::runtime_error("the window does not take input:\n" + words());
 }
 
 void StudioProgram::move_away() {

@@ -52,8 +52,11 @@ class StudioProgram {
     void wait_for_state(const std::string& name, const nlohmann::json& value);
 
     void hover(const std::string& name);
+    /// A click and a notch are done when the window has drawn what came of them, as for a person.
     void click(const std::string& name);
     void double_click(const std::string& name);
+    /// Turns the wheel with the pointer at a place of the desktop.
+    void scroll(glm::ivec2 at, int notches);
     /// The pointer to where nothing reacts to it.
     void move_away();
 
@@ -63,6 +66,9 @@ class StudioProgram {
 
   private:
     nlohmann::json map() const;
+    /// Until the window shows what came of input: its counter has reached `value`, and two more
+    /// frames put everything in its place. Not that anything came of it.
+    void wait_until_taken(const std::string& counter, int value);
 
     Desktop& desktop_;
     TemporaryFolder folder_;

@@ -39,7 +39,19 @@ TEST(InputQueue, AClickStaysWhereItWas) {
     queue.push(of(Kind::button, 0, true));
     queue.push(of(Kind::button, 0, false));
     queue.push(pointer(500));
-    EXPECT_EQ(portions(queue), (std::vector<std::size_t>{2, 1, 1}));
+    EXPECT_EQ(portions(queue), (std::vector<std::size_t>{1, 1, 1, 1}));
+}
+
+TEST(InputQueue, APressComesAFrameAfterTheMoveToIt) {
+    InputQueue queue;
+    queue.push(pointer(10));
+    queue.push(pointer(500));
+    queue.push(of(Kind::button, 0, true));
+    EXPECT_EQ(portions(queue), (std::vector<std::size_t>{2, 1}));
+    // What is let go is let go where the pointer got to.
+    queue.push(pointer(510));
+    queue.push(of(Kind::button, 0, false));
+    EXPECT_EQ(portions(queue), (std::vector<std::size_t>{2}));
 }
 
 TEST(InputQueue, AQuickKeyIsDownInOneFrame) {
