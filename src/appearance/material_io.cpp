@@ -62,12 +62,18 @@ Json json_of_value(const ParameterInfo& parameter, const Material& material) {
 
 /// The measured file, absolute or beside the material's own. An absolute place is written: the
 /// material may be kept elsewhere than the file.
-void read_measured(const JsonReader& reader, Material& material) {
+void read_measured(const JsonReader& reader, UnreadMeasured unread, Material& material) {
     if (!reader.is_object()) reader.fail(reader.found(), "an object");
     reader.allow_only({"file"});
     const std::filesystem::path named = reader["file"].text();
     if (named.empty()) reader["file"].fail("empty text", "a file of measured reflectance");
-    material.measured = load_measured_paint(reader.file().parent_path() / named);
+    const std::filesystem::path file = reader.file().parent_path() / named;
+    try {
+        material.measured = load_measured_paint(file);
+    } catch (const FileError& error) {
+        if (unread == UnreadMeasured::refused) throw;
+        material.measured = unread_measured_paint(file, error.what());
+    }
 }
 
 /// A model's parameters, all of them and no others.
@@ -86,7 +92,7 @@ void read_parameters(const JsonReader& reader, const ModelInfo& model, Material&
 
 }  // namespace
 
-Material read_material(const JsonReader& reader) {
+Material read_material(const JsonReader& reader, UnreadMeasured unread) {
     Material material;
     material.name = reader["name"].text();
     if (material.name.empty()) reader["name"].fail("empty text", "a name");
@@ -96,7 +102,7 @@ Material read_material(const JsonReader& reader) {
     material.model = model.model;
     const JsonReader parameters = reader["parameters"];
     if (model.model == ReflectanceModel::measured) {
-        read_measured(parameters, material);
+        read_measured(parameters, unread, material);
         return material;
     }
     read_parameters(parameters, model, material);

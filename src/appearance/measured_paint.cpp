@@ -172,10 +172,21 @@ std::shared_ptr<const MeasuredPaint> load_measured_paint(const std::filesystem::
 }
 
 std::shared_ptr<const MeasuredPaint> blank_measured_paint() {
-    MeasuredGrid grid;
-    grid.size = {2, 2, 1};
-    grid.texels.assign(16, std::log2(kMeasuredGridFloor));
-    return std::make_shared<MeasuredPaint>(paint_of(std::move(grid), "blank"));
+    static const auto blank = [] {
+        MeasuredGrid grid;
+        grid.size = {2, 2, 1};
+        grid.texels.assign(16, std::log2(kMeasuredGridFloor));
+        return std::make_shared<const MeasuredPaint>(paint_of(std::move(grid), "blank"));
+    }();
+    return blank;
+}
+
+std::shared_ptr<const MeasuredPaint> unread_measured_paint(const std::filesystem::path& file,
+                                                           const std::string& problem) {
+    auto paint = std::make_shared<MeasuredPaint>(*blank_measured_paint());
+    paint->file = file;
+    paint->problem = problem;
+    return paint;
 }
 
 glm::vec3 evaluate(const MeasuredPaint& paint, glm::vec3 wi, glm::vec3 wo) {

@@ -30,6 +30,7 @@ struct MeasuredPaint {
     /// Under the cosines (k / 32)^2; see f32::BsdfEnvironment. The coat's is 0.
     std::array<f32::BsdfEnvironment, 33> environment{};
     float lobe_alpha = 1.0f;  ///< GGX slope parameter of a lobe about as wide
+    std::string problem;      ///< why the file could not be read: the paint is black; empty: it was
 };
 
 /// Throws Cancelled.
@@ -41,6 +42,10 @@ std::shared_ptr<const MeasuredPaint> load_measured_paint(const std::filesystem::
 
 /// Black, to prepare with what will draw others.
 std::shared_ptr<const MeasuredPaint> blank_measured_paint();
+
+/// Stands for a file that cannot be read, in what names it: black, and says why.
+std::shared_ptr<const MeasuredPaint> unread_measured_paint(const std::filesystem::path& file,
+                                                           const std::string& problem);
 
 /// As evaluate() of the grid, but never negative: a saturated colour's lacking channel is black.
 glm::vec3 evaluate(const MeasuredPaint& paint, glm::vec3 wi, glm::vec3 wo);

@@ -38,7 +38,7 @@ void read(const JsonReader& fields, EditPaint& c) {
     fields.allow_only({"look", "part", "material"});
     const JsonReader material = fields["material"];
     material.allow_only({"name", "family", "model", "parameters", "provenance"});
-    c = {look_in(fields), fields["part"].text(), read_material(material)};
+    c = {look_in(fields), fields["part"].text(), read_material(material, UnreadMeasured::kept)};
 }
 
 Json fields_of(const AddLook& c) {

@@ -1,7 +1,10 @@
 #include <algorithm>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include "appearance/material_json.h"
+#include "appearance/measured_paint.h"
 #include "core/error.h"
 #include "core/json.h"
 #include "scene/look_json.h"
@@ -65,7 +68,7 @@ void read_paints(const JsonReader& list, Document& document) {
     for (std::size_t k = 0; k < list.size(); ++k) {
         const JsonReader field = list.at(k);
         field.allow_only({"name", "family", "model", "parameters", "provenance"});
-        Material paint = read_material(field);
+        Material paint = read_material(field, UnreadMeasured::kept);
         paint.name = checked_text(field["name"]);
         for (const Material& other : document.paints) {
             if (other.name == paint.name) {
@@ -145,7 +148,7 @@ Document read_document(const JsonReader& root) {
 Material kept_paint(const Material& paint) {
     try {
         const Json json = json_of(paint);
-        Material kept = read_material(JsonReader("", json));
+        Material kept = read_material(JsonReader("", json), UnreadMeasured::kept);
         kept.file = paint.file;
         return kept;
     } catch (const FileError& mistake) {
@@ -154,6 +157,15 @@ Material kept_paint(const Material& paint) {
     } catch (const Json::exception&) {
         throw std::invalid_argument("the paint has a text that is not UTF-8");
     }
+}
+
+std::vector<std::string> paint_problems(const Document& document) {
+    std::vector<std::string> problems;
+    for (const Material& paint : document.paints) {
+        if (!paint.measured || paint.measured->problem.empty()) continue;
+        problems.push_back(fmt::format("\"{}\" is black: {}", paint.name, paint.measured->problem));
+    }
+    return problems;
 }
 
 std::string text_of(const Document& document) { return json_of(document).dump(); }

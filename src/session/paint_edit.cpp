@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "appearance/material_library.h"
+#include "appearance/measured_paint.h"
 #include "core/error.h"
 #include "session/naming.h"
 
@@ -54,6 +55,10 @@ void edit_paint(Document& document, const EditPaint& command) {
     check_text(command.material.family, "the paint's family");
     check_text(command.material.provenance, "the paint's provenance");
     Material edited = kept_paint(command.material);
+    // A step of long ago may name a file that is gone; a new one may not.
+    if (edited.measured && !edited.measured->problem.empty()) {
+        throw std::invalid_argument(edited.measured->problem);
+    }
     edited.file.clear();
 
     const auto look = std::find_if(document.looks.begin(),

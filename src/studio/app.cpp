@@ -93,6 +93,16 @@ void tell_product_notes(Studio& studio) {
            {Notice::Level::warning, "The product's file was not used as it is:", notes, ""});
 }
 
+void tell_paint_problems(Studio& studio) {
+    for (const std::string& problem : paint_problems(studio.session.document())) {
+        notify(studio,
+               {Notice::Level::warning,
+                problem,
+                "",
+                "Put the file back and open the session again, or choose another paint."});
+    }
+}
+
 /// A monitor's part of the desktop that the window lies on, and its scale.
 float screen_scale(GLFWwindow* window, const std::vector<Monitor>& monitors) {
     float content_scale = 1.0f;
@@ -305,6 +315,7 @@ class Desktop {
         keep_shown_looks_valid(studio);
         contexts_ = start_threads(shell_, *window_);
         tell_product_notes(studio);
+        tell_paint_problems(studio);
         tell_unsaved(shell_);
         monitors_changed(shell_);
         glfwShowWindow(window_->native());

@@ -9,6 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "appearance/measured_paint.h"
 #include "core/database.h"
 #include "session/file_check.h"
 #include "session/session.h"
@@ -279,6 +280,48 @@ TEST(SessionFile, TriesOnceMoreWhenItIsClosed) {
         EXPECT_NE(session.save_problem(), std::nullopt);
     }
     EXPECT_EQ(Session::open(file).document().exposure_ev, 0.5) << "there was room again";
+}
+
+TEST(SessionFile, PaintWhoseMeasuredFileIsGoneStaysAndComesBackWithIt) {
+    const TemporaryFolder folder;
+    const auto panel = folder / "panel.csv", aside = folder / "aside.csv";
+    std::ofstream samples(panel);
+    samples << "theta_i,phi_i,theta_o,phi_o,r,g,b\n";
+    for (int k = 0; k < 12; ++k) samples << 0.1 * k << ",0," << 0.5 << ',' << k << ",.1,.05,.02\n";
+    samples.close();
+    Material paint;
+    paint.name = "panel";
+    paint.model = ReflectanceModel::measured;
+    paint.measured = load_measured_paint(panel);
+    const auto file = folder / "a.livery";
+    std::string text;
+    {
+        Session session = Session::open(file);
+        session.execute(EditPaint{1, "body", paint});
+        text = text_of(session.document());
+        EXPECT_TRUE(paint_problems(session.document()).empty());
+    }
+    std::filesystem::rename(panel, aside);
+    {
+        Session session = Session::open(file);
+        const auto problems = paint_problems(session.document());
+        ASSERT_EQ(problems.size(), 1u);
+        EXPECT_TRUE(problems.front().starts_with("\"panel\" is black: ")) << problems.front();
+        EXPECT_NE(problems.front().find(panel.string()), std::string::npos) << problems.front();
+        EXPECT_EQ(text_of(session.document()), text);
+        Material edited = session.document().paints.front();
+        EXPECT_THROW(session.execute(EditPaint{1, "rims", edited}), std::invalid_argument);
+        session.execute(DuplicateLook{1});
+        session.undo();
+        session.undo();
+        EXPECT_TRUE(session.document().paints.empty());
+        session.redo();
+        EXPECT_EQ(text_of(session.document()), text);
+    }
+    std::filesystem::rename(aside, panel);
+    const Session session = Session::open(file);
+    EXPECT_TRUE(paint_problems(session.document()).empty());
+    EXPECT_EQ(session.document().paints.front().measured->id, paint.measured->id);
 }
 
 TEST(SessionFile, FolderThatCannotBeWrittenIsNamed) {
