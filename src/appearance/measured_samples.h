@@ -36,6 +36,12 @@ MeasuredSamples parse_spectral_samples(const std::string& text, const std::files
 MeasuredSamples read_measured_csv(const std::filesystem::path& file);
 MeasuredSamples parse_measured_csv(const std::string& text, const std::filesystem::path& file);
 
+/// The text of such a CSV with colours. `comments` stand first, a line each. Throws
+/// std::invalid_argument unless there is a value for each pair.
+std::string measured_csv(std::span<const DirectionPair> pairs,
+                         std::span<const glm::dvec3> values_rec709,
+                         std::span<const std::string> comments);
+
 /// Throws FileError unless there are enough samples to interpolate.
 void check_samples(const MeasuredSamples& samples, const std::filesystem::path& file);
 /// The wavelengths rise and reach over the visible ones. Throws FileError about `field`.

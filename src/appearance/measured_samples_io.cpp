@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <string_view>
 
@@ -156,6 +157,33 @@ MeasuredSamples parse_spectral_samples(const std::string& text, const std::files
     }
     check_samples(samples, file);
     return samples;
+}
+
+std::string measured_csv(std::span<const DirectionPair> pairs,
+                         std::span<const glm::dvec3> values_rec709,
+                         std::span<const std::string> comments) {
+    check_argument(
+        pairs.size() == values_rec709.size(),
+        fmt::format("measured_csv: {} values for {} pairs", values_rec709.size(), pairs.size()));
+    fmt::memory_buffer text;
+    const auto out = std::back_inserter(text);
+    for (const std::string& comment : comments) fmt::format_to(out, "# {}\n", comment);
+    fmt::format_to(out, "theta_i,phi_i,theta_o,phi_o,r,g,b\n");
+    const auto angles = [](const glm::dvec3& w) {
+        return fmt::format(
+            "{:.6f},{:.6f}", std::atan2(std::hypot(w.x, w.y), w.z), std::atan2(w.y, w.x));
+    };
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+        const glm::dvec3& value = values_rec709[k];
+        fmt::format_to(out,
+                       "{},{},{:.6g},{:.6g},{:.6g}\n",
+                       angles(pairs[k].wi),
+                       angles(pairs[k].wo),
+                       value.x,
+                       value.y,
+                       value.z);
+    }
+    return {text.data(), text.size()};
 }
 
 MeasuredSamples read_measured_csv(const std::filesystem::path& file) {

@@ -1,5 +1,6 @@
 #include "capture/manifest_io.h"
 
+#include <optional>
 #include <set>
 #include <string>
 #include <tuple>
@@ -63,15 +64,6 @@ std::vector<int> read_drive(const JsonReader& drive) {
     return {drive.at(0).integer(0, 255), drive.at(1).integer(0, 255), drive.at(2).integer(0, 255)};
 }
 
-/// The capture's own value, else the manifest's for all captures.
-JsonReader setting(const JsonReader& root, const JsonReader& capture, const char* name) {
-    return !capture.has(name) && root.has(name) ? root[name] : capture[name];
-}
-
-bool is_set(const JsonReader& root, const JsonReader& capture, const char* name) {
-    return capture.has(name) || root.has(name);
-}
-
 double read_exposure(const JsonReader& exposure) {
     if (!exposure.is_number()) {
         exposure.fail(exposure.found(), "seconds: fill in exposure_s of every photograph");
@@ -80,6 +72,48 @@ double read_exposure(const JsonReader& exposure) {
 }
 
 }  // namespace
+
+std::filesystem::path read_photograph_name(const JsonReader& entry,
+                                           const std::filesystem::path& folder) {
+    const auto file = folder / entry["file"].text();
+    if (std::error_code error; !std::filesystem::is_regular_file(file, error)) {
+        entry["file"].fail("no such file: " + file.string(), "a photograph");
+    }
+    return file;
+}
+
+void read_settings(std::initializer_list<JsonReader> places,
+                   const std::filesystem::path& folder,
+                   Capture& capture) {
+    const auto setting = [&](const char* name) -> std::optional<JsonReader> {
+        for (const JsonReader& place : places) {
+            if (place.has(name)) return place[name];
+        }
+        return std::nullopt;
+    };
+    const auto exposure = setting("exposure_s");
+    capture.exposure_s = read_exposure(exposure ? *exposure : (*places.begin())["exposure_s"]);
+    if (const auto transfer = setting("transfer")) {
+        capture.transfer = transfer->text();
+        if (capture.transfer != "linear" && capture.transfer != "srgb") {
+            const auto response = folder / capture.transfer;
+            if (std::error_code error; !std::filesystem::is_regular_file(response, error)) {
+                transfer->fail("\"" + capture.transfer + "\"",
+                               "\"linear\", \"srgb\" or a response file");
+            }
+            capture.transfer = response.string();
+        }
+    }
+    if (const auto black = setting("black_level")) {
+        capture.black_level = black->number_between(0.0, 1e9);
+    }
+    if (const auto saturates_at = setting("saturates_at")) {
+        capture.saturates_at = saturates_at->number_between(0.0, 1e9);
+        if (capture.saturates_at <= capture.black_level) {
+            saturates_at->fail(saturates_at->found(), "more than black_level");
+        }
+    }
+}
 
 CapturesFolder read_captures_manifest(const std::filesystem::path& manifest) {
     return parse_captures_manifest(read_text_file(manifest), manifest);
@@ -110,39 +144,14 @@ CapturesFolder parse_captures_manifest(const std::string& text,
                           "light_position_mm"});
         Capture capture;
         capture.role = read_role(entry["role"]);
-        capture.exposure_s = read_exposure(setting(root, entry, "exposure_s"));
+        read_settings({entry, root}, result.folder, capture);
         if (!seen.insert({capture.role, capture.exposure_s}).second) {
             entry["role"].fail("\"" + capture.role + "\" a second time with the same exposure",
                                "each role once an exposure");
         }
-        capture.file = result.folder / entry["file"].text();
-        if (std::error_code error; !std::filesystem::is_regular_file(capture.file, error)) {
-            entry["file"].fail("no such file: " + capture.file.string(), "a photograph");
-        }
+        capture.file = read_photograph_name(entry, result.folder);
         if (entry.has("pattern")) capture.pattern = result.folder / entry["pattern"].text();
         if (entry.has("drive")) capture.drive = read_drive(entry["drive"]);
-        if (is_set(root, entry, "transfer")) {
-            const auto transfer = setting(root, entry, "transfer");
-            capture.transfer = transfer.text();
-            if (capture.transfer != "linear" && capture.transfer != "srgb") {
-                const auto response = result.folder / capture.transfer;
-                if (std::error_code error; !std::filesystem::is_regular_file(response, error)) {
-                    transfer.fail("\"" + capture.transfer + "\"",
-                                  "\"linear\", \"srgb\" or a response file");
-                }
-                capture.transfer = response.string();
-            }
-        }
-        if (is_set(root, entry, "black_level")) {
-            capture.black_level = setting(root, entry, "black_level").number_between(0.0, 1e9);
-        }
-        if (is_set(root, entry, "saturates_at")) {
-            const auto saturates_at = setting(root, entry, "saturates_at");
-            capture.saturates_at = saturates_at.number_between(0.0, 1e9);
-            if (capture.saturates_at <= capture.black_level) {
-                saturates_at.fail(saturates_at.found(), "more than black_level");
-            }
-        }
         result.captures.push_back(std::move(capture));
     }
     return result;

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <vector>
 
 #include "capture/captures_folder.h"
 #include "capture/patterns_folder.h"
+#include "core/json.h"
 
 namespace livery {
 
@@ -19,6 +21,15 @@ void write_patterns_manifest(const std::filesystem::path& manifest,
 /// A camera's response: linear light for equally spaced file values from 0 to full scale, both as
 /// fractions of full scale; never falls. Throws FileError.
 std::vector<double> read_response(const std::filesystem::path& file);
+
+/// The photograph that an entry names, which must be there. Throws FileError.
+std::filesystem::path read_photograph_name(const JsonReader& entry,
+                                           const std::filesystem::path& folder);
+/// Exposure, transfer, black level and saturation, each from the first of the places that has it.
+/// Throws FileError.
+void read_settings(std::initializer_list<JsonReader> places,
+                   const std::filesystem::path& folder,
+                   Capture& capture);
 
 /// The same of their texts; what they name lies beside the file.
 CapturesFolder parse_captures_manifest(const std::string& text,

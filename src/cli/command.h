@@ -62,6 +62,7 @@ Command compensate_command();
 Command demo_command();
 Command desktop_command();
 Command fit_brdf_command();
+Command measure_brdf_command();
 Command patterns_command();
 Command photograph_command();
 Command plan_command();

@@ -42,6 +42,7 @@ int run(const std::vector<std::string>& arguments) {
                                      patterns_command(),
                                      photograph_command(),
                                      calibrate_color_command(),
+                                     measure_brdf_command(),
                                      fit_brdf_command(),
                                      compensate_command(),
                                      check_command(),

@@ -10,6 +10,7 @@
 #include "appearance/measured_reflectance.h"
 #include "capture/captures_folder.h"
 #include "capture/patterns_folder.h"
+#include "capture/sphere_folder.h"
 #include "core/csv.h"
 #include "core/error.h"
 #include "core/image_io.h"
@@ -50,11 +51,12 @@ bool is_there(const Path& file) {
 
 void check_mesh(const Path& file, FileCheck& check) { load_mesh(file, &check.notes); }
 
-void read_captures(const Path& folder, FileCheck& check, const Progress& progress) {
-    const CapturesFolder captures = read_captures_folder(folder);
+void check_photographs(const std::vector<Capture>& captures,
+                       FileCheck& check,
+                       const Progress& progress) {
     double done = 0.0;
-    for (const Capture& capture : captures.captures) {
-        progress.update(done / static_cast<double>(captures.captures.size()),
+    for (const Capture& capture : captures) {
+        progress.update(done / static_cast<double>(captures.size()),
                         "checking " + capture.file.string());
         done += 1.0;
         try {
@@ -63,6 +65,22 @@ void read_captures(const Path& folder, FileCheck& check, const Progress& progres
             check.problems.emplace_back(error.what());
         }
     }
+}
+
+void read_captures(const Path& folder, FileCheck& check, const Progress& progress) {
+    check_photographs(read_captures_folder(folder).captures, check, progress);
+}
+
+/// Photographs of a painted sphere.
+void read_sphere(const Path& manifest, FileCheck& check, const Progress& progress) {
+    const SphereFolder folder = read_sphere_folder(manifest.parent_path());
+    parse_camera(folder.camera, folder.camera_origin);
+    if (!folder.camera_to_xyz.empty()) read_camera_to_xyz(folder.camera_to_xyz);
+    std::vector<Capture> captures;
+    for (const auto* list : {&folder.captures, &folder.white}) {
+        for (const SphereCapture& capture : *list) captures.push_back(capture.photograph);
+    }
+    check_photographs(captures, check, progress);
 }
 
 void read_picture(const Path& file, FileCheck& check) {
@@ -120,6 +138,11 @@ Kind kind_of_manifest(const Path& manifest, const Progress& progress) {
     if (is_unphotographed(read_json_file(manifest))) {
         return {"patterns",
                 [manifest](const Path&, FileCheck& check) { read_patterns(manifest, check); }};
+    }
+    if (is_sphere_manifest(manifest)) {
+        return {"sphere captures", [manifest, progress](const Path&, FileCheck& check) {
+                    read_sphere(manifest, check, progress);
+                }};
     }
     return {"captures", [manifest, progress](const Path&, FileCheck& check) {
                 read_captures(manifest.parent_path(), check, progress);

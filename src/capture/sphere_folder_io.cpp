@@ -1,0 +1,225 @@
+#include <algorithm>
+
+#include <glm/geometric.hpp>
+
+#include "capture/manifest_io.h"
+#include "capture/sphere_folder.h"
+#include "core/error.h"
+#include "core/paths.h"
+
+namespace livery {
+
+namespace {
+
+constexpr int kNewestVersion = 1;
+constexpr std::size_t kMostCaptures = 10'000;
+constexpr double kFarthest_mm = 1e6;
+
+glm::dvec3 read_position(const JsonReader& field) {
+    const auto numbers = field.numbers(3);
+    for (std::size_t k = 0; k < 3; ++k) field.at(k).number_between(-kFarthest_mm, kFarthest_mm);
+    return {numbers[0], numbers[1], numbers[2]};
+}
+
+SpherePlace read_sphere(const JsonReader& sphere) {
+    sphere.allow_only({"centre_mm", "diameter_mm"});
+    return {read_position(sphere["centre_mm"]),
+            sphere["diameter_mm"].number_between(0.1, kFarthest_mm)};
+}
+
+/// A camera file's fields, or its name.
+void read_camera(const JsonReader& root, const Json& json, SphereFolder& result) {
+    const auto camera = root["camera"];
+    if (camera.is_text()) {
+        const auto file = result.manifest.parent_path() / camera.text();
+        result.camera = read_text_file(file);
+        result.camera_origin = file.string();
+        return;
+    }
+    if (!camera.is_object()) {
+        camera.fail(camera.found(), "a camera file's fields or its name (docs/files.md)");
+    }
+    result.camera = json["camera"].dump();
+    result.camera_origin = result.manifest.string() + ": camera";
+}
+
+glm::dvec3 read_reflectance(const JsonReader& reflectance) {
+    constexpr double kLowest = 0.05;  // darker is no white
+    if (reflectance.is_number()) return glm::dvec3(reflectance.number_between(kLowest, 1.0));
+    if (!reflectance.is_array() || reflectance.size() != 3) {
+        reflectance.fail(reflectance.found(), "a share of the light, or [R, G, B]");
+    }
+    glm::dvec3 result;
+    for (int c = 0; c < 3; ++c) {
+        result[c] = reflectance.at(static_cast<std::size_t>(c)).number_between(kLowest, 1.0);
+    }
+    return result;
+}
+
+std::optional<glm::dvec3> read_light(const JsonReader& entry, const SpherePlace& sphere) {
+    if (!entry.has("light_position_mm")) return std::nullopt;
+    const auto field = entry["light_position_mm"];
+    const glm::dvec3 light = read_position(field);
+    if (2.0 * glm::distance(light, sphere.centre_mm) <= sphere.diameter_mm) {
+        field.fail(field.found() + " inside the sphere", "a place outside of the sphere");
+    }
+    return light;
+}
+
+void allow_entry(const JsonReader& entry) {
+    entry.allow_only({"file",
+                      "pattern",
+                      "role",
+                      "drive",
+                      "exposure_s",
+                      "transfer",
+                      "black_level",
+                      "saturates_at",
+                      "light_position_mm"});
+}
+
+/// The settings in which all captures agree.
+Json agreed_settings(const Json& captures) {
+    Json agreed = Json::object();
+    for (const char* name : {"exposure_s", "transfer", "black_level", "saturates_at"}) {
+        const auto same = [&](const Json& capture) {
+            return capture.is_object() && capture.contains(name) &&
+                   capture[name] == captures[0][name];
+        };
+        if (std::all_of(captures.begin(), captures.end(), same)) agreed[name] = captures[0][name];
+    }
+    return agreed;
+}
+
+/// A photograph of the white sphere. What its own entry does not say, the one of the same file
+/// among `captures` may, else the whole white_reference, else the manifest, else all captures.
+SphereCapture read_white(const JsonReader& root,
+                         const JsonReader& white,
+                         const JsonReader& entry,
+                         const JsonReader& agreed,
+                         const SphereFolder& result) {
+    SphereCapture capture;
+    const auto folder = result.manifest.parent_path();
+    capture.photograph.file = read_photograph_name(entry, folder);
+    const auto captures = root["captures"];
+    JsonReader same = entry;
+    for (std::size_t k = 0; k < captures.size(); ++k) {
+        const auto other = captures.at(k);
+        if (other["file"].text() == entry["file"].text()) same = other;
+    }
+    read_settings({entry, same, white, root, agreed}, folder, capture.photograph);
+    const SpherePlace& sphere = result.white_sphere ? *result.white_sphere : result.sphere;
+    for (const JsonReader& place : {entry, same, white}) {
+        if (!capture.light_position_mm) capture.light_position_mm = read_light(place, sphere);
+    }
+    return capture;
+}
+
+void read_white_reference(const JsonReader& root, const Json& json, SphereFolder& result) {
+    const auto white = root["white_reference"];
+    white.allow_only({"file",
+                      "captures",
+                      "reflectance",
+                      "sphere",
+                      "exposure_s",
+                      "transfer",
+                      "black_level",
+                      "saturates_at",
+                      "light_position_mm"});
+    result.white_reflectance = read_reflectance(white["reflectance"]);
+    if (white.has("sphere")) result.white_sphere = read_sphere(white["sphere"]);
+    if (white.has("file") == white.has("captures")) {
+        white.fail(white.has("file") ? "file and captures" : "neither file nor captures",
+                   "one of them: photographs of the white sphere");
+    }
+    const Json settings = agreed_settings(json["captures"]);
+    const JsonReader agreed(result.manifest, settings, "captures[0]");
+    if (white.has("file")) {
+        result.white.push_back(read_white(root, white, white, agreed, result));
+        return;
+    }
+    const auto captures = white["captures"];
+    if (captures.size() == 0) captures.fail("an empty list", "at least one photograph");
+    for (std::size_t k = 0; k < captures.size(); ++k) {
+        allow_entry(captures.at(k));
+        result.white.push_back(read_white(root, white, captures.at(k), agreed, result));
+    }
+}
+
+bool is_white(const SphereFolder& result, const std::filesystem::path& file) {
+    return std::any_of(result.white.begin(), result.white.end(), [&](const SphereCapture& white) {
+        return white.photograph.file == file;
+    });
+}
+
+}  // namespace
+
+bool is_sphere_manifest(const std::filesystem::path& manifest) {
+    const Json json = read_json_file(manifest);
+    return json.contains("sphere") || json.contains("white_reference");
+}
+
+SphereFolder read_sphere_folder(const std::filesystem::path& folder) {
+    std::error_code error;
+    if (!std::filesystem::is_directory(folder, error)) {
+        throw FileError(folder,
+                        "",
+                        std::filesystem::exists(folder, error) ? "a file" : "no such folder",
+                        "a folder of photographs with manifest.json");
+    }
+    const auto manifest = folder / "manifest.json";
+    return parse_sphere_manifest(read_text_file(manifest), manifest);
+}
+
+SphereFolder parse_sphere_manifest(const std::string& text, const std::filesystem::path& manifest) {
+    const Json json = parse_json(text, manifest);
+    const JsonReader root(manifest, json);
+    if (root.has("format_version")) root.require_format_version(kNewestVersion);
+    root.allow_only({"format_version",
+                     "projector",
+                     "captures",
+                     "exposure_s",
+                     "transfer",
+                     "black_level",
+                     "saturates_at",
+                     "camera",
+                     "camera_to_xyz",
+                     "sphere",
+                     "white_reference"});
+    SphereFolder result;
+    result.manifest = manifest;
+    const auto captures = root["captures"];
+    if (captures.size() == 0) captures.fail("an empty list", "at least one photograph");
+    if (captures.size() > kMostCaptures) {
+        captures.fail(std::to_string(captures.size()) + " captures",
+                      "at most " + std::to_string(kMostCaptures));
+    }
+    result.sphere = read_sphere(root["sphere"]);
+    read_camera(root, json, result);
+    read_white_reference(root, json, result);
+    for (std::size_t k = 0; k < captures.size(); ++k) {
+        const auto entry = captures.at(k);
+        allow_entry(entry);
+        SphereCapture capture;
+        capture.photograph.file = read_photograph_name(entry, manifest.parent_path());
+        if (is_white(result, capture.photograph.file)) continue;
+        read_settings({entry, root}, manifest.parent_path(), capture.photograph);
+        capture.light_position_mm = read_light(entry, result.sphere);
+        if (!capture.light_position_mm) {
+            throw FileError(manifest,
+                            entry.field() + ".light_position_mm",
+                            "nothing",
+                            "where the light stood: [x, y, z] in mm");
+        }
+        result.captures.push_back(std::move(capture));
+    }
+    if (result.captures.empty()) {
+        captures.fail("the white reference alone", "photographs of the painted sphere");
+    }
+    if (root.has("camera_to_xyz")) {
+        result.camera_to_xyz = manifest.parent_path() / root["camera_to_xyz"].text();
+    }
+    return result;
+}
+
+}  // namespace livery
