@@ -5,6 +5,8 @@ struct BsdfParameters {
     VEC3 f0;                  // Fresnel reflectance of the base at normal incidence
     REAL alpha_x;             // slope parameter along the tangent
     REAL alpha_y;             // slope parameter across it
+    VEC3 flake_f0;            // reflectance of the second lobe of flakes
+    REAL flake_alpha;         // its slope parameter
     REAL coat_alpha;          // slope parameter of the coat
     REAL coat_f0;             // Fresnel reflectance of the coat at normal incidence
     VEC3 coat_transmittance;  // of the coat, once through at normal incidence
@@ -37,6 +39,7 @@ FN BsdfParameters bsdf_widen(BsdfParameters p, REAL mean_squared_slope) {
     BsdfParameters q = p;
     q.alpha_x = min(sqrt(p.alpha_x * p.alpha_x + mean_squared_slope), R(1.0));
     q.alpha_y = min(sqrt(p.alpha_y * p.alpha_y + mean_squared_slope), R(1.0));
+    q.flake_alpha = min(sqrt(p.flake_alpha * p.flake_alpha + mean_squared_slope), R(1.0));
     q.coat_alpha = min(sqrt(p.coat_alpha * p.coat_alpha + mean_squared_slope), R(1.0));
     q.exponent_x = widened_exponent(p.exponent_x, mean_squared_slope);
     q.exponent_y = widened_exponent(p.exponent_y, mean_squared_slope);

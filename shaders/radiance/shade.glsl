@@ -1,8 +1,8 @@
 // Shades one fragment, in the subset of GLSL and C++ (shaders/bsdf/prelude_glsl.glsl): the same lines
 // run in OpenGL and, eight fragments at a time, on the processor (src/radiance/lane_shading.inc).
 // Comes after the model's reflectance functions, disc.glsl, these definitions
-//   LAMBERT, GGX or CLEARCOAT   the part's model, with what does not depend on the fragment taken
-//                               out of it; else ANY_MODEL, which is called as it is, with WEIGHTS,
+//   LAMBERT, GGX, CLEARCOAT or  the part's model, with what does not depend on the fragment taken
+//   CAR_PAINT                   out of it; else ANY_MODEL, which is called as it is, with WEIGHTS,
 //                               MIRRORS and BSDF_TURN2 (src/radiance/shading.cpp)
 //   LIGHTS n                    directional lights, 0 and more; LIGHT_COUNT, the same as a number
 //   ENVIRONMENT 0 or 1
@@ -77,6 +77,15 @@ UNIFORM VEC3 u_sky_diffuse;  // as u_diffuse, under light from everywhere
 UNIFORM VEC2 u_base_layer;   // of kMirrorAlphas: the lobe's lower layer and the weight of the next
 UNIFORM VEC2 u_coat_layer;
 #endif
+#if defined(CLEARCOAT) || defined(CAR_PAINT)
+#define COATED
+#endif
+#ifdef CAR_PAINT
+UNIFORM VEC4 u_flakes;  // the second lobe's reflectance, its alpha
+#if ENVIRONMENT
+UNIFORM VEC2 u_flake_layer;
+#endif
+#endif
 
 FN BsdfParameters paint() {
     BsdfParameters p;
@@ -87,10 +96,23 @@ FN BsdfParameters paint() {
     p.coat_alpha = u_alpha.z;
     p.coat_f0 = u_alpha.w;
     p.coat_transmittance = VEC3(R(1.0));
+#ifdef CAR_PAINT
+    p.flake_f0 = VEC3(u_flakes.x, u_flakes.y, u_flakes.z);
+    p.flake_alpha = u_flakes.w;
+#endif
     return p;
 }
 
-#ifdef CLEARCOAT
+// What the base lets through to the diffuse layer.
+FN VEC3 through_base(BsdfParameters p, REAL mu) {
+#ifdef CAR_PAINT
+    return car_paint_transmission(p, mu);
+#else
+    return ggx_interface_transmission(p, mu);
+#endif
+}
+
+#ifdef COATED
 UNIFORM VEC3 u_coat_log_transmittance;  // base 2
 UNIFORM REAL u_coat_inverse_index_squared;
 
@@ -101,13 +123,27 @@ FN VEC3 through_coat(BsdfParameters p, REAL mu) {
 }
 #endif
 
+#ifdef CAR_PAINT
+// Of light from all around, what a lobe of flakes returns through the coat on the way in.
+FN VEC3 through_lobe(BsdfParameters p, REAL mu, REAL alpha) {
+    REAL loss;
+    REAL cosine;
+    ggx_albedo_fit(mu, alpha, loss, cosine);
+    return (R(1.0) - loss) * through_coat(p, car_paint_mirror_cosine(mu, alpha));
+}
+#endif
+
 FN VEC3 shaded() {
     VEC4 eye = eye_here();
     VEC3 wo = VEC3(eye.x, eye.y, eye.z);
     BsdfParameters p = paint();
+    VEC3 layer_o = through_base(p, wo.z);
+#ifdef CAR_PAINT
+    VEC3 flake_colour = car_paint_flake_colour(p);
+#else
     REAL f90 = grazing_reflectance(max_component(p.f0));
-    VEC3 layer_o = ggx_interface_transmission(p, wo.z);
-#ifdef CLEARCOAT
+#endif
+#ifdef COATED
     REAL coat_f90 = grazing_reflectance(p.coat_f0);
     VEC3 through_o = through_coat(p, wo.z);
 #endif
@@ -120,12 +156,18 @@ FN VEC3 shaded() {
         VEC3 h = wi + wo;
         REAL hh = max(dot(h, h), R(1e-8));
         REAL schlick = schlick_weight(hh);
-        VEC3 value = mix(p.f0, VEC3(f90), schlick) *
-                     disc_distribution_visibility(
-                         wi, wo, hh, p.alpha_x, p.alpha_y, u_light_radius2[k], eye.w);
-        value += u_diffuse * layer_o * ggx_interface_transmission(p, wi.z) *
-                 R(0.3183098861837907);
-#ifdef CLEARCOAT
+        REAL lobe = disc_distribution_visibility(
+            wi, wo, hh, p.alpha_x, p.alpha_y, u_light_radius2[k], eye.w);
+#ifdef CAR_PAINT
+        VEC3 value = p.f0 * lobe;
+        value += flake_colour *
+                 disc_distribution_visibility(
+                     wi, wo, hh, p.flake_alpha, p.flake_alpha, u_light_radius2[k], eye.w);
+#else
+        VEC3 value = mix(p.f0, VEC3(f90), schlick) * lobe;
+#endif
+        value += u_diffuse * layer_o * through_base(p, wi.z) * R(0.3183098861837907);
+#ifdef COATED
         value *= through_o * through_coat(p, wi.z);
         value += VEC3(mix(p.coat_f0, coat_f90, schlick) *
                       disc_distribution_visibility(
@@ -141,17 +183,26 @@ FN VEC3 shaded() {
 #endif
 
 #if ENVIRONMENT
+    VEC3 diffuse = u_sky_diffuse * layer_o * sky_here();
+#ifdef CAR_PAINT
+    VEC3 base = p.f0 * mirrored_here(u_base_layer, p.alpha_x) * through_lobe(p, wo.z, p.alpha_x);
+    base += flake_colour * mirrored_here(u_flake_layer, p.flake_alpha) *
+            through_lobe(p, wo.z, p.flake_alpha);
+    sum += through_o * (base + diffuse);
+#else
     VEC3 base = ggx_environment_albedo(p, wo.z) *
                 mirrored_here(u_base_layer, sqrt(p.alpha_x * p.alpha_y));
-    VEC3 diffuse = u_sky_diffuse * layer_o * sky_here();
 #ifdef CLEARCOAT
     // A rough base takes light from higher than the mirror direction (clearcoat_environment).
     REAL a2 = p.alpha_x * p.alpha_y;
     REAL mu_in = sqrt((wo.z * wo.z + a2) / (R(1.0) + a2));
     sum += through_o * (base * through_coat(p, mu_in) + diffuse);
-    sum += coat_albedo(p, wo.z) * mirrored_here(u_coat_layer, p.coat_alpha);
 #else
     sum += base + diffuse;
+#endif
+#endif
+#ifdef COATED
+    sum += coat_albedo(p, wo.z) * mirrored_here(u_coat_layer, p.coat_alpha);
 #endif
 #endif
     return exposed(sum);

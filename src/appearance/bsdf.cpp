@@ -157,10 +157,13 @@ glm::dvec3 directional_albedo(ReflectanceModel model,
     // smooth however narrow. The lobes are differences of the model with and without a parameter.
     f64::BsdfParameters no_diffuse = p;
     no_diffuse.diffuse = glm::dvec3(0.0);
-    f64::BsdfParameters only_coat = no_diffuse;
+    f64::BsdfParameters no_flakes = no_diffuse;
+    no_flakes.flake_f0 = glm::dvec3(0.0);
+    f64::BsdfParameters only_coat = no_flakes;
     only_coat.f0 = glm::dvec3(0.0);
     const bool has_lobe = model_info(model).mirrors();
-    const bool has_coat = model == ReflectanceModel::clearcoat;
+    const bool has_coat = model_info(model).has("coat_alpha");
+    const bool has_flakes = model_info(model).has("flake_alpha");
     // Many bounces are as smooth as a diffuse layer.
     const ReflectanceModel lobes =
         model == ReflectanceModel::ggx_multiscatter ? ReflectanceModel::ggx : model;
@@ -191,9 +194,15 @@ glm::dvec3 directional_albedo(ReflectanceModel model,
                     f64::ggx_pdf_lobe(coat, wo, p.coat_alpha, p.coat_alpha));
                 const glm::dvec3 base = f64::ggx_sample_lobe(wo, u, p.alpha_x, p.alpha_y);
                 add(base,
-                    share * (evaluate(model, no_diffuse, base, wo) -
+                    share * (evaluate(model, no_flakes, base, wo) -
                              evaluate(model, only_coat, base, wo)),
                     f64::ggx_pdf_lobe(base, wo, p.alpha_x, p.alpha_y));
+                if (!has_flakes) continue;
+                const glm::dvec3 flakes = f64::ggx_sample_lobe(wo, u, p.flake_alpha, p.flake_alpha);
+                add(flakes,
+                    share * (evaluate(model, no_diffuse, flakes, wo) -
+                             evaluate(model, no_flakes, flakes, wo)),
+                    f64::ggx_pdf_lobe(flakes, wo, p.flake_alpha, p.flake_alpha));
             } else if (has_lobe) {
                 const glm::dvec3 wi = sample(lobes, no_diffuse, wo, {u.x, u.y, 0.0});
                 add(wi,

@@ -58,7 +58,7 @@ f32::BsdfEnvironment environment_weights(ReflectanceModel model,
                                          float mu);
 
 /// Share of the light leaving along wo under uniform light, by quadrature of evaluate() in each
-/// lobe's own coordinates: `points` a side for each of the three lobes.
+/// lobe's own coordinates: `points` a side for each lobe.
 glm::dvec3 directional_albedo(ReflectanceModel model,
                               const f64::BsdfParameters& parameters,
                               glm::dvec3 wo,

@@ -43,6 +43,7 @@ using glm::abs, glm::acos, glm::atan, glm::clamp, glm::cos, glm::dot, glm::exp, 
 #include "shaders/bsdf/ggx_multiscatter.glsl"
 #include "shaders/bsdf/ashikhmin_shirley.glsl"
 #include "shaders/bsdf/clearcoat.glsl"
+#include "shaders/bsdf/car_paint.glsl"
 // clang-format on
 }  // namespace livery::f32
 
@@ -69,6 +70,7 @@ using glm::abs, glm::acos, glm::atan, glm::clamp, glm::cos, glm::dot, glm::exp, 
 #include "shaders/bsdf/ggx_multiscatter.glsl"
 #include "shaders/bsdf/ashikhmin_shirley.glsl"
 #include "shaders/bsdf/clearcoat.glsl"
+#include "shaders/bsdf/car_paint.glsl"
 // clang-format on
 }  // namespace livery::f64
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <mutex>
 #include <numbers>
+#include <utility>
 
 #include "appearance/model_table.h"
 #include "core/parallel.h"
@@ -93,6 +94,8 @@ f64::BsdfParameters ledger_parameters(double alpha, double stretch) {
     p.alpha_y = across;
     p.exponent_x = exponent_of(alpha);
     p.exponent_y = exponent_of(across);
+    p.flake_f0 = {0.1, 0.4, 0.6};
+    p.flake_alpha = std::min(2.5 * alpha, 1.0);
     p.coat_alpha = alpha;
     p.coat_f0 = 0.04;
     p.coat_transmittance = {0.95, 0.7, 0.3};
@@ -228,17 +231,36 @@ double reciprocity_error(ReflectanceModel model, std::size_t pairs_each, std::ui
 
 WorstAlbedo worst_albedo(ReflectanceModel model, int points) {
     struct Case {
-        double alpha, stretch, coat_alpha, f0, mu;
+        double alpha, stretch, coat_alpha, coat_f0, f0, flake_f0, flake_alpha, mu;
     };
     std::vector<Case> cases;
+    // Slope parameter and reflectance of coats, reflectance and slope parameter of flakes.
+    std::vector<std::pair<double, double>> coats{{0.001, 0.04}}, flakes{{0.0, 0.1}};
+    const bool has_flakes = model_info(model).has("flake_alpha");
+    if (model_info(model).has("coat_alpha")) {
+        coats = {{0.001, 0.04}, {0.1, 0.04}, {0.6, 0.04}, {0.1, 0.0}};
+    }
+    if (has_flakes) {
+        flakes = {{0.0, 0.1}, {0.3, 0.3}, {1.0, 0.02}, {1.0, 1.0}};
+    }
     for (const double alpha : {1e-4, 0.01, 0.03, 0.1, 0.2, 0.5, 1.0}) {
         for (const double stretch : ledger_stretches(model)) {
             if (stretch > 1.0 && alpha > 0.2) continue;
-            for (const double coat_alpha : {0.001, 0.1, 0.6}) {
-                if (coat_alpha != 0.001 && !model_info(model).has("coat_alpha")) continue;
+            for (const auto& [coat_alpha, coat_f0] : coats) {
                 for (const double f0 : {0.0, 0.01, 0.04, 0.3, 1.0}) {
-                    for (const double mu : {1e-3, 0.01, 0.03, 0.1, 0.2, 0.4, 0.7, 1.0}) {
-                        cases.push_back({alpha, stretch, coat_alpha, f0, mu});
+                    // A lobe of one colour has no edge between 0 and 0.04.
+                    if (has_flakes && f0 > 0.0 && f0 < 0.3) continue;
+                    for (const auto& [flake_f0, flake_alpha] : flakes) {
+                        for (const double mu : {1e-3, 0.01, 0.03, 0.1, 0.2, 0.4, 0.7, 1.0}) {
+                            cases.push_back({alpha,
+                                             stretch,
+                                             coat_alpha,
+                                             coat_f0,
+                                             f0,
+                                             flake_f0,
+                                             flake_alpha,
+                                             mu});
+                        }
                     }
                 }
             }
@@ -257,7 +279,10 @@ WorstAlbedo worst_albedo(ReflectanceModel model, int points) {
             p.diffuse = glm::dvec3(scaled ? 1.0 - one.f0 : 1.0);
             p.diffuse_roughness = 1.0 - one.f0;
             p.f0 = glm::dvec3(one.f0);
+            p.flake_f0 = glm::dvec3(one.flake_f0);
+            p.flake_alpha = one.flake_alpha;
             p.coat_alpha = one.coat_alpha;
+            p.coat_f0 = one.coat_f0;
             p.coat_transmittance = glm::dvec3(1.0);
             const double albedo = directional_albedo(model, p, direction_at(one.mu, 0.3), points).x;
             const std::scoped_lock lock(mutex);

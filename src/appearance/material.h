@@ -26,6 +26,7 @@ enum class ReflectanceModel {
     ggx_multiscatter,
     ashikhmin_shirley,
     clearcoat,
+    car_paint,
     measured
 };
 
@@ -41,8 +42,10 @@ struct Material {
     glm::dvec3 diffuse{0.5};             ///< albedo of the diffuse part
     glm::dvec3 f0{0.04};                 ///< Fresnel reflectance of the base at normal incidence
     glm::dvec2 alpha{0.3, 0.3};          ///< GGX slope parameter along and across the tangent
-    double coat_alpha = 0.02;            ///< clearcoat: slope parameter of the coat
-    double coat_f0 = 0.04;               ///< clearcoat: its Fresnel reflectance at normal incidence
+    glm::dvec3 flake_f0{0.3};            ///< reflectance of the second lobe of flakes
+    double flake_alpha = 0.15;           ///< its slope parameter
+    double coat_alpha = 0.02;            ///< slope parameter of the clear coat
+    double coat_f0 = 0.04;               ///< its Fresnel reflectance at normal incidence
     glm::dvec3 coat_transmittance{1.0};  ///< of the coat, once through at normal incidence
     glm::dvec3 specular{0.2};            ///< scale of a lobe without a Fresnel term
     glm::dvec2 exponent{100.0, 100.0};   ///< cosine exponent along and across the tangent

@@ -121,6 +121,30 @@ const std::vector<ParameterInfo>& parameter_table() {
             [](auto& m) { return numbers(m.alpha.x, m.alpha.y); },
             [](auto& p) { return numbers(p.alpha_x, p.alpha_y); }),
         parameter(
+            "flake_f0",
+            "Flake reflectance",
+            "Of car paint's second lobe of flakes, the wider or the narrower; its first is the "
+            "base. "
+            "It covers what the base leaves: 1 - f0 of it is seen.",
+            ParameterKind::colour,
+            0.0,
+            1.0,
+            kLinear,
+            [](auto& m) { return colour(m.flake_f0); },
+            [](auto& p) { return colour(p.flake_f0); }),
+        parameter(
+            "flake_alpha",
+            "Flake roughness",
+            "Slope parameter of the second lobe: how far its flakes lean. Flat flakes 0.05, "
+            "tumbled "
+            "ones 0.3.",
+            ParameterKind::number,
+            1e-4,
+            1.0,
+            kByRatios,
+            [](auto& m) { return numbers(m.flake_alpha); },
+            [](auto& p) { return numbers(p.flake_alpha); }),
+        parameter(
             "coat_alpha",
             "Coat roughness",
             "The same of the coat: polished varnish 0.01 to 0.03.",

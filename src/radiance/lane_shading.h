@@ -15,6 +15,7 @@ inline constexpr std::size_t kLaneBlock = 8;
 /// The uniforms of shade.glsl.
 struct PaintUniforms {
     float exposure, diffuse[3], sky_diffuse[3], f0[3], alpha[4], base_layer[2], coat_layer[2];
+    float flakes[4], flake_layer[2];
     float coat_log_transmittance[3], coat_inverse_index_squared;
 };
 
@@ -38,6 +39,7 @@ struct LaneFunctions {
     void (*lambert)(const LaneJob&);
     void (*ggx[2])(const LaneJob&);        ///< without and with an environment
     void (*clearcoat[2])(const LaneJob&);  ///< the same
+    void (*car_paint[2])(const LaneJob&);  ///< the same
 };
 
 /// The best that this processor has, first; "portable" is always the last.

@@ -17,7 +17,9 @@ constexpr std::size_t kBlocksAtOnce = 64, kPixelsAtOnce = 2048;
 /// Of a model with its own shading.
 auto lanes_of(ReflectanceModel model, const LaneFunctions& functions, bool environment) {
     if (model == ReflectanceModel::lambert) return functions.lambert;
-    const auto& of_model = model == ReflectanceModel::ggx ? functions.ggx : functions.clearcoat;
+    const auto& of_model = model == ReflectanceModel::ggx         ? functions.ggx
+                           : model == ReflectanceModel::clearcoat ? functions.clearcoat
+                                                                  : functions.car_paint;
     return of_model[environment ? 1 : 0];
 }
 

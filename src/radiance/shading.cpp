@@ -33,6 +33,11 @@ std::string shipped_text(const char* file) {
     return read_text_file(shipped_path(std::filesystem::path("shaders/radiance") / file));
 }
 
+template <typename Uniform, typename Value>
+void set(Uniform& uniform, const Value& value) {
+    for (int c = 0; c < static_cast<int>(std::size(uniform)); ++c) uniform[c] = value[c];
+}
+
 glm::vec3 average_through(const BsdfParameters& p) {
     return glm::vec3(1.0f) - f32::ggx_interface_average(p);
 }
@@ -50,15 +55,29 @@ glm::vec2 mirror_layer(float alpha) {
 
 bool has_own_shading(ReflectanceModel model) {
     return model == ReflectanceModel::lambert || model == ReflectanceModel::ggx ||
-           model == ReflectanceModel::clearcoat;
+           model == ReflectanceModel::clearcoat || model == ReflectanceModel::car_paint;
 }
+
+namespace {
+
+/// How the coat and what lies on a diffuse layer weigh it, and the absorption in the coat.
+void set_coated(PaintUniforms& u,
+                const BsdfParameters& p,
+                const glm::vec3& diffuse,
+                const glm::vec3& share) {
+    const float inverse_index2 = f32::coat_inverse_index_squared(p);
+    const float mean_path = f32::coat_path(2.0f / 3.0f, inverse_index2);
+    set(u.diffuse, diffuse);
+    set(u.sky_diffuse, diffuse * share * f32::coat_absorption(p, mean_path));
+    set(u.coat_log_transmittance, glm::log2(glm::max(p.coat_transmittance, glm::vec3(1e-6f))));
+    u.coat_inverse_index_squared = inverse_index2;
+}
+
+}  // namespace
 
 PaintUniforms uniforms_of(const Material& material, double exposure_ev) {
     const BsdfParameters p = parameters_of(material);
     PaintUniforms u{};
-    const auto set = [](auto& uniform, const auto& value) {
-        for (int c = 0; c < static_cast<int>(std::size(uniform)); ++c) uniform[c] = value[c];
-    };
     u.exposure = static_cast<float>(std::exp2(exposure_ev));
     set(u.f0, p.f0);
     set(u.base_layer, mirror_layer(std::sqrt(p.alpha_x * p.alpha_y)));
@@ -68,15 +87,17 @@ PaintUniforms uniforms_of(const Material& material, double exposure_ev) {
         set(u.diffuse, p.diffuse / average_through(p));
         set(u.sky_diffuse, p.diffuse);
     } else if (material.model == ReflectanceModel::clearcoat) {
-        const float inverse_index2 = f32::coat_inverse_index_squared(p);
-        const glm::vec3 diffuse = f32::coated_diffuse(p, inverse_index2);
-        const glm::vec3 share =
-            glm::min(average_through(p), glm::vec3(f32::coat_average_transmission(p)));
-        const float mean_path = f32::coat_path(2.0f / 3.0f, inverse_index2);
-        set(u.diffuse, diffuse);
-        set(u.sky_diffuse, diffuse * share * f32::coat_absorption(p, mean_path));
-        set(u.coat_log_transmittance, glm::log2(glm::max(p.coat_transmittance, glm::vec3(1e-6f))));
-        u.coat_inverse_index_squared = inverse_index2;
+        set_coated(u,
+                   p,
+                   f32::coated_diffuse(p, f32::coat_inverse_index_squared(p)),
+                   glm::min(average_through(p), glm::vec3(f32::coat_average_transmission(p))));
+    } else if (material.model == ReflectanceModel::car_paint) {
+        set_coated(u,
+                   p,
+                   f32::car_paint_pigment(p, f32::coat_inverse_index_squared(p)),
+                   f32::car_paint_share(p));
+        set(u.flakes, glm::vec4(p.flake_f0, p.flake_alpha));
+        set(u.flake_layer, mirror_layer(p.flake_alpha));
     } else {
         set(u.diffuse, p.diffuse);
     }
@@ -157,6 +178,8 @@ void set_paint(Program& program,
     program.set("u_alpha", glm::make_vec4(u.alpha));
     program.set("u_base_layer", glm::make_vec2(u.base_layer));
     program.set("u_coat_layer", glm::make_vec2(u.coat_layer));
+    program.set("u_flakes", glm::make_vec4(u.flakes));
+    program.set("u_flake_layer", glm::make_vec2(u.flake_layer));
     program.set("u_coat_log_transmittance", glm::make_vec3(u.coat_log_transmittance));
     program.set("u_coat_inverse_index_squared", u.coat_inverse_index_squared);
 }

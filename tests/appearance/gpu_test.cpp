@@ -34,6 +34,25 @@ class OnTheGpu : public testing::TestWithParam<ReflectanceModel> {
     HeadlessContext context_{GlDevice::software};
 };
 
+void set_parameters(Program& program, f32::BsdfParameters p) {
+    for (const ParameterInfo& parameter : parameter_table()) {
+        const Components<float> v = parameter.in_f32(p);
+        const std::string name = std::string("p.") + parameter.name;
+        switch (parameter.kind) {
+            case ParameterKind::colour:
+                program.set(name, glm::vec3(*v[0], *v[1], *v[2]));
+                break;
+            case ParameterKind::number:
+                program.set(name, *v[0]);
+                break;
+            case ParameterKind::pair:
+                program.set(name + "_x", *v[0]);
+                program.set(name + "_y", *v[1]);
+                break;
+        }
+    }
+}
+
 constexpr const char* kBody = R"(
 uniform sampler2D directions_in;
 uniform sampler2D directions_out;
@@ -65,6 +84,8 @@ TEST_P(OnTheGpu, GivesTheValuesOfTheCpuInFloat) {
         wide.f0 = {0.6, 0.3, 0.05};
         wide.specular = {0.3, 0.2, 0.1};
         set_slopes(wide, alpha, std::min(2.0 * alpha, 1.0));
+        wide.flake_f0 = {0.1, 0.3, 0.8};
+        wide.flake_alpha = std::min(3.0 * alpha, 1.0);
         wide.coat_alpha = alpha;
         wide.coat_transmittance = {0.9, 0.8, 0.5};
         const f32::BsdfParameters p = rounded(wide);
@@ -81,17 +102,7 @@ TEST_P(OnTheGpu, GivesTheValuesOfTheCpuInFloat) {
         program.use();
         program.set("directions_in", 0);
         program.set("directions_out", 1);
-        program.set("p.diffuse", p.diffuse);
-        program.set("p.diffuse_roughness", p.diffuse_roughness);
-        program.set("p.f0", p.f0);
-        program.set("p.specular", p.specular);
-        program.set("p.alpha_x", p.alpha_x);
-        program.set("p.alpha_y", p.alpha_y);
-        program.set("p.exponent_x", p.exponent_x);
-        program.set("p.exponent_y", p.exponent_y);
-        program.set("p.coat_alpha", p.coat_alpha);
-        program.set("p.coat_f0", p.coat_f0);
-        program.set("p.coat_transmittance", p.coat_transmittance);
+        set_parameters(program, p);
         pass.run(program, framebuffer);
         const ImageF values = read_floats(target);
         // A few ulp per operation, amplified by the slope of a narrow lobe as 1e-7 / alpha.

@@ -42,6 +42,8 @@ inline f64::BsdfParameters plain_parameters() {
     p.diffuse = glm::dvec3(0.0);
     p.f0 = glm::dvec3(0.04);
     set_slopes(p, 0.3, 0.3);
+    p.flake_f0 = glm::dvec3(0.2);
+    p.flake_alpha = 0.15;
     p.coat_alpha = 0.02;
     p.coat_f0 = 0.04;
     p.coat_transmittance = glm::dvec3(1.0);

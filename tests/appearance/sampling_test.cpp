@@ -71,6 +71,7 @@ TEST_P(Sampling, ChiSquareAgainstTheDensity) {
             p.f0 = glm::dvec3(0.5);
             p.specular = glm::dvec3(0.5);
             set_slopes(p, alpha, std::min(2.0 * alpha, 1.0));
+            p.flake_f0 = glm::dvec3(1.0);
             p.coat_alpha = 0.12;
             const glm::dvec3 wo = direction(mu, 0.7);
             const std::vector<double> shares = expected_shares(GetParam(), p, wo);

@@ -66,6 +66,8 @@ std::vector<float> shaded(const LaneFunctions& functions, int model, bool enviro
                  {0.3f, 0.15f, 0.02f, 0.04f},
                  {1.0f, 0.25f},
                  {0.0f, 0.5f},
+                 {0.5f, 0.2f, 0.9f, 0.1f},
+                 {1.0f, 0.75f},
                  {-0.1f, -2.0f, -19.9f},
                  0.44f};
     job.eye = inputs.eye.data();
@@ -80,13 +82,14 @@ std::vector<float> shaded(const LaneFunctions& functions, int model, bool enviro
     job.end_block = kBlocks;
     const std::array models{functions.lambert,
                             functions.ggx[environment ? 1 : 0],
-                            functions.clearcoat[environment ? 1 : 0]};
+                            functions.clearcoat[environment ? 1 : 0],
+                            functions.car_paint[environment ? 1 : 0]};
     models[static_cast<std::size_t>(model)](job);
     return colours;
 }
 
 TEST(LaneShading, EveryInstructionSetGivesTheSameBits) {
-    for (int model = 0; model < 3; ++model) {
+    for (int model = 0; model < 4; ++model) {
         for (const bool environment : {false, true}) {
             const std::vector<float> best = shaded(best_lanes(), model, environment);
             for (std::size_t i = 0; i < best.size(); ++i) {

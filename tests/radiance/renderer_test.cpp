@@ -45,7 +45,8 @@ TEST_P(Renderer, DirectLightAgreesWithBruteForce) {
     const View view = test_view(96, 72);
     std::vector<std::pair<ReflectanceModel, double>> cases = {{ReflectanceModel::ggx, 0.02},
                                                               {ReflectanceModel::ggx, 0.2},
-                                                              {ReflectanceModel::clearcoat, 0.02}};
+                                                              {ReflectanceModel::clearcoat, 0.02},
+                                                              {ReflectanceModel::car_paint, 0.02}};
     for (const ModelInfo& model : model_table()) cases.emplace_back(model.model, 0.1);
     for (const auto& [model, alpha] : cases) {
         Scene scene = scene_of(two_spheres(), paint_of(model, alpha));
@@ -66,14 +67,14 @@ TEST_P(Renderer, EnvironmentLightAgreesWithBruteForce) {
     const View view = test_view(48, 36);
     for (const auto& [model, alpha] : {std::pair(ReflectanceModel::lambert, 0.5),
                                        std::pair(ReflectanceModel::ggx, 0.02),
-                                       std::pair(ReflectanceModel::clearcoat, 0.02)}) {
+                                       std::pair(ReflectanceModel::clearcoat, 0.02),
+                                       std::pair(ReflectanceModel::car_paint, 0.02)}) {
         Scene scene = scene_of(two_spheres(), paint_of(model, alpha));
         scene.environment = studio();
         const ImageF truth = direct_light(scene, view, {6, 24});
         for (const Quality quality : {Quality::draft, Quality::normal, Quality::high}) {
             const RadianceError error = radiance_error(draw(scene, view, quality), truth);
-            print(fmt::format(
-                      "model {} alpha {} {}", static_cast<int>(model), alpha, to_string(quality)),
+            print(fmt::format("{} alpha {} {}", model_info(model).name, alpha, to_string(quality)),
                   error);
             if (quality == Quality::draft) continue;
             EXPECT_LT(error.median, 0.02);
@@ -213,7 +214,8 @@ TEST_P(Renderer, BothDevicesDrawTheSame) {
     const View view = test_view(96, 72);
     for (const bool with_environment : {false, true}) {
         Scene scene = every_model(with_environment);
-        for (const auto model : {ReflectanceModel::ggx, ReflectanceModel::lambert}) {
+        for (const auto model :
+             {ReflectanceModel::ggx, ReflectanceModel::lambert, ReflectanceModel::car_paint}) {
             scene.part_materials[1] = paint_of(model, 0.12);
             const ImageF one = draw(scene, view, Quality::normal, GetParam());
             const ImageF other = draw(scene,

@@ -16,9 +16,12 @@ inline Material paint_of(ReflectanceModel model, double alpha) {
     Material material;
     material.model = model;
     material.diffuse = {0.55, 0.1, 0.06};
-    material.f0 =
-        model == ReflectanceModel::clearcoat ? glm::dvec3(0.3, 0.12, 0.1) : glm::dvec3(0.04);
-    material.alpha = glm::dvec2(model == ReflectanceModel::clearcoat ? 0.25 : alpha);
+    const bool coated =
+        model == ReflectanceModel::clearcoat || model == ReflectanceModel::car_paint;
+    material.f0 = coated ? glm::dvec3(0.3, 0.12, 0.1) : glm::dvec3(0.04);
+    material.alpha = glm::dvec2(coated ? 0.25 : alpha);
+    material.flake_f0 = {0.1, 0.3, 0.5};
+    material.flake_alpha = 0.1;
     material.coat_alpha = alpha;
     material.coat_transmittance = {0.95, 0.85, 0.8};
     material.exponent = glm::dvec2(2.0 / (alpha * alpha) - 2.0);

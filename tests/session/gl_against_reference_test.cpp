@@ -40,6 +40,20 @@ Material glossy(double alpha) {
     return material;
 }
 
+/// Flakes in two lobes, each of another colour.
+Material flaked(double alpha) {
+    Material material;
+    material.name = "flaked";
+    material.model = ReflectanceModel::car_paint;
+    material.diffuse = glm::dvec3(0.02, 0.03, 0.08);
+    material.f0 = glm::dvec3(0.06, 0.08, 0.1);
+    material.alpha = glm::dvec2(0.12);
+    material.flake_f0 = glm::dvec3(0.08, 0.12, 0.2);
+    material.flake_alpha = 0.3;
+    material.coat_alpha = alpha;
+    return material;
+}
+
 enum class Light { lamps, environment };
 
 /// The path tracer's samples a pixel: its own noise must stay well under the limits, and light from
@@ -101,7 +115,7 @@ constexpr glm::ivec2 kSphereCorner{340, 100}, kSphereSky{100, 60};
 constexpr glm::ivec2 kCarCorner{680, 470}, kCarLamps{200, 130}, kCarSky{100, 64};
 
 TEST(GlAgainstReference, SphereUnderLamps) {
-    for (const Material& paint : {coated(0.02), glossy(0.02), glossy(0.3)}) {
+    for (const Material& paint : {coated(0.02), flaked(0.02), glossy(0.02), glossy(0.3)}) {
         expect_close(error_of("sphere", paint, Light::lamps, resized(sphere_view(), 160, 100)),
                      kMedian,
                      kP99);
@@ -109,7 +123,7 @@ TEST(GlAgainstReference, SphereUnderLamps) {
 }
 
 TEST(GlAgainstReference, SphereInAnEnvironment) {
-    for (const Material& paint : {coated(0.02), glossy(0.3)}) {
+    for (const Material& paint : {coated(0.02), flaked(0.02), glossy(0.3)}) {
         expect_close(error_of("sphere",
                               paint,
                               Light::environment,
@@ -120,7 +134,7 @@ TEST(GlAgainstReference, SphereInAnEnvironment) {
 }
 
 TEST(GlAgainstReference, CarUnderLamps) {
-    for (const Material& paint : {coated(0.02), glossy(0.02), glossy(0.3)}) {
+    for (const Material& paint : {coated(0.02), flaked(0.02), glossy(0.02), glossy(0.3)}) {
         expect_close(
             error_of("default", paint, Light::lamps, part_of(car_view(), kCarCorner, kCarLamps)),
             kMedian,
@@ -129,7 +143,7 @@ TEST(GlAgainstReference, CarUnderLamps) {
 }
 
 TEST(GlAgainstReference, CarInAnEnvironment) {
-    for (const Material& paint : {coated(0.02), glossy(0.3)}) {
+    for (const Material& paint : {coated(0.02), flaked(0.02), glossy(0.3)}) {
         expect_close(
             error_of(
                 "default", paint, Light::environment, part_of(car_view(), kCarCorner, kCarSky)),

@@ -1,0 +1,139 @@
+// Car paint: a clear coat over two lobes of flakes over a pigment. Needs clearcoat.glsl. Local
+// coordinates: z normal, x tangent.
+//
+//   f = f_coat + T(mu_i) T(mu_o) A(mu_i, mu_o) (f_flakes + f_pigment)
+//   f_flakes = f0 D V(alpha) + (1 - f0) flake_f0 D V(flake_alpha)
+//
+// Flakes lie nearly flat; how far they lean is no single GGX distribution, but close to two. What
+// the first lobe's flakes cover the second's cannot, hence 1 - f0: together they never return more
+// than everything. Under a coat of index 1.5 no flake is met at more than 42 degrees, where
+// Fresnel's term has not begun to rise, so each lobe's is a constant colour. Coat and absorption are
+// clearcoat.glsl's, and so is what the coat's inner reflections do to the pigment. The flakes lie
+// the same along and across.
+
+// Of the second lobe.
+FN VEC3 car_paint_flake_colour(BsdfParameters p) {
+    return (VEC3(R(1.0)) - p.f0) * p.flake_f0;
+}
+
+// What the flakes let through to the pigment of a light that each lobe loses that much of: 1 - E
+// without cancellation. Where they lose it, it is the pigment's too.
+FN VEC3 car_paint_passed(BsdfParameters p, REAL loss, REAL flake_loss) {
+    VEC3 one = VEC3(R(1.0));
+    return (one - p.f0) * (one - p.flake_f0 * (R(1.0) - flake_loss)) + p.f0 * loss;
+}
+
+FN VEC3 car_paint_transmission(BsdfParameters p, REAL mu) {
+    REAL loss;
+    REAL flake_loss;
+    REAL cosine;
+    ggx_albedo_fit(mu, p.alpha_x, loss, cosine);
+    ggx_albedo_fit(mu, p.flake_alpha, flake_loss, cosine);
+    return car_paint_passed(p, loss, flake_loss);
+}
+
+// The pigment's share of the light that passes coat and flakes.
+FN VEC3 car_paint_share(BsdfParameters p) {
+    VEC3 passed =
+        car_paint_passed(p, ggx_average_loss(p.alpha_x), ggx_average_loss(p.flake_alpha));
+    return min(max(passed, VEC3(R(0.001))), VEC3(coat_average_transmission(p)));
+}
+
+// The pigment's albedo with the coat's inner reflections, over that share (as coated_diffuse).
+FN VEC3 car_paint_pigment(BsdfParameters p, REAL inverse_index_squared) {
+    REAL inside = R(1.0) - coat_average_transmission(p) * inverse_index_squared;
+    return p.diffuse * (R(1.0) - inside) /
+           ((VEC3(R(1.0)) - p.diffuse * inside) * car_paint_share(p));
+}
+
+FN VEC3 car_paint_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
+    if (wi.z <= R(0.0) || wo.z <= R(0.0)) return VEC3(R(0.0));
+    VEC3 h = wi + wo;
+    REAL hh = dot(h, h);
+    if (hh < R(1e-8)) return VEC3(R(0.0));
+    REAL schlick = schlick_weight(hh);
+    REAL coat_fresnel =
+        p.coat_f0 * (R(1.0) - schlick) + grazing_reflectance(p.coat_f0) * schlick;
+    REAL coat =
+        coat_fresnel * ggx_distribution_visibility(wi, wo, hh, p.coat_alpha, p.coat_alpha);
+    REAL eta = coat_inverse_index_squared(p);
+    VEC3 passed = coat_absorption(p, coat_path(wi.z, eta) + coat_path(wo.z, eta)) *
+                  (coat_transmission(p, wi.z) * coat_transmission(p, wo.z));
+    VEC3 flakes = p.f0 * ggx_distribution_visibility(wi, wo, hh, p.alpha_x, p.alpha_x) +
+                  car_paint_flake_colour(p) *
+                      ggx_distribution_visibility(wi, wo, hh, p.flake_alpha, p.flake_alpha);
+    VEC3 pigment = car_paint_pigment(p, eta) * car_paint_transmission(p, wi.z) *
+                   car_paint_transmission(p, wo.z) * R(0.3183098861837907);
+    return VEC3(coat) + passed * (flakes + pigment);
+}
+
+// The cosine under which a lobe mostly takes light that leaves under mu: higher than the mirror
+// direction, the more so the wider it is (as clearcoat_environment).
+FN REAL car_paint_mirror_cosine(REAL mu, REAL alpha) {
+    REAL a2 = alpha * alpha;
+    return sqrt((mu * mu + a2) / (R(1.0) + a2));
+}
+
+// What the coat does to light that enters under mu_in and leaves under mu.
+FN VEC3 car_paint_through_coat(BsdfParameters p, REAL mu_in, REAL mu, REAL eta) {
+    return coat_absorption(p, coat_path(mu_in, eta) + coat_path(mu, eta)) *
+           (coat_transmission(p, mu_in) * coat_transmission(p, mu));
+}
+
+// Of light from all around through one lobe of flakes of reflectance 1.
+FN VEC3 car_paint_lobe(BsdfParameters p, REAL mu, REAL alpha, REAL eta) {
+    REAL loss;
+    REAL cosine;
+    ggx_albedo_fit(mu, alpha, loss, cosine);
+    return (R(1.0) - loss) *
+           car_paint_through_coat(p, car_paint_mirror_cosine(mu, alpha), mu, eta);
+}
+
+FN BsdfEnvironment car_paint_environment(BsdfParameters p, REAL mu) {
+    REAL eta = coat_inverse_index_squared(p);
+    BsdfEnvironment e;
+    e.coat = VEC3(coat_albedo(p, mu));
+    e.specular = p.f0 * car_paint_lobe(p, mu, p.alpha_x, eta) +
+                 car_paint_flake_colour(p) * car_paint_lobe(p, mu, p.flake_alpha, eta);
+    // The pigment is lit from everywhere: absorbed along the path of the mean cosine, 2/3.
+    REAL path = coat_path(mu, eta) + coat_path(R(0.6666666666666667), eta);
+    e.diffuse = car_paint_pigment(p, eta) * car_paint_share(p) * car_paint_transmission(p, mu) *
+                coat_absorption(p, path) * coat_transmission(p, mu);
+    return e;
+}
+
+// Chances of the coat, the first lobe and the second when a direction is sampled, and the pigment's:
+// one minus the others would lose its digits.
+FN VEC3 car_paint_chances(BsdfParameters p, REAL mu, OUT(REAL) pigment) {
+    BsdfEnvironment e = car_paint_environment(p, mu);
+    REAL coat = mean_component(e.coat);
+    REAL flakes = mean_component(e.specular);
+    REAL diffuse = mean_component(e.diffuse);
+    REAL sum = coat + flakes + diffuse;
+    pigment = sum > R(0.0) ? diffuse / sum : R(1.0);
+    if (sum <= R(0.0)) return VEC3(R(0.0));
+    VEC2 lobes = lobe_chances(p.f0, car_paint_flake_colour(p));
+    return VEC3(coat, flakes * lobes.x, flakes * lobes.y) / sum;
+}
+
+FN VEC3 car_paint_sample(BsdfParameters p, VEC3 wo, VEC3 u) {
+    REAL pigment;
+    VEC3 chance = car_paint_chances(p, wo.z, pigment);
+    VEC2 v = VEC2(u.x, u.y);
+    if (u.z < chance.x) return ggx_sample_lobe(wo, v, p.coat_alpha, p.coat_alpha);
+    if (u.z < chance.x + chance.y) return ggx_sample_lobe(wo, v, p.alpha_x, p.alpha_x);
+    if (u.z < chance.x + chance.y + chance.z) {
+        return ggx_sample_lobe(wo, v, p.flake_alpha, p.flake_alpha);
+    }
+    return cosine_sample(v);
+}
+
+FN REAL car_paint_pdf(BsdfParameters p, VEC3 wi, VEC3 wo) {
+    if (wi.z <= R(0.0) || wo.z <= R(0.0)) return R(0.0);
+    REAL pigment;
+    VEC3 chance = car_paint_chances(p, wo.z, pigment);
+    return chance.x * ggx_pdf_lobe(wi, wo, p.coat_alpha, p.coat_alpha) +
+           chance.y * ggx_pdf_lobe(wi, wo, p.alpha_x, p.alpha_x) +
+           chance.z * ggx_pdf_lobe(wi, wo, p.flake_alpha, p.flake_alpha) +
+           pigment * wi.z * R(0.3183098861837907);
+}
