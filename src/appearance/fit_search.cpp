@@ -47,10 +47,11 @@ struct Coordinate {
 /// Not searched: a tint, which samples can hardly tell from the colours below it.
 bool is_fixed(const std::string& parameter) { return parameter == "coat_transmittance"; }
 
-std::vector<Coordinate> coordinates_of(const ModelInfo& model) {
+std::vector<Coordinate> coordinates_of(const ModelInfo& model,
+                                       const std::vector<std::string>& held = {}) {
     std::vector<Coordinate> coordinates;
     for (const char* name : model.parameters) {
-        if (is_fixed(name)) continue;
+        if (is_fixed(name) || std::find(held.begin(), held.end(), name) != held.end()) continue;
         const ParameterInfo& info = parameter_info(name);
         const std::size_t count = info.kind == ParameterKind::colour ? 3 : 1;
         for (std::size_t k = 0; k < count; ++k) coordinates.push_back({&info, k});
@@ -75,7 +76,7 @@ class Residuals : public ceres::CostFunction {
           stride_(how.stride),
           metric_(how.metric),
           start_(start),
-          coordinates_(coordinates_of(model)) {
+          coordinates_(coordinates_of(model, how.held)) {
         const std::size_t used = (samples.pairs.size() + stride_ - 1) / stride_;
         wanted_.reserve(3 * used);
         for (std::size_t i = 0; i < samples.pairs.size(); i += stride_) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
+#include <vector>
 
 #include "appearance/fit_samples.h"
 #include "appearance/model_table.h"
@@ -18,8 +20,9 @@ enum class Metric {
 
 struct FitSearch {
     Metric metric = Metric::logarithm;
-    std::size_t stride = 1;  ///< every how manieth sample is looked at
-    int steps = 60;          ///< at most
+    std::size_t stride = 1;           ///< every how manieth sample is looked at
+    int steps = 60;                   ///< at most
+    std::vector<std::string> held{};  ///< parameters that stay as they start
 };
 
 struct Found {
