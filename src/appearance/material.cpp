@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
+#include <mutex>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,6 +14,42 @@
 #include "core/paths.h"
 
 namespace livery {
+
+namespace {
+
+/// A file of the library as it was when it was last read: dozens of them are looked through
+/// whenever a paint is asked for by name.
+struct KeptFile {
+    std::filesystem::file_time_type changed_at;
+    std::uintmax_t bytes = 0;
+    Material material;
+};
+
+Material read_or_remember(const std::filesystem::path& file) {
+    static std::mutex mutex;
+    static std::map<std::filesystem::path, KeptFile> kept;
+    std::error_code error, other_error;
+    const auto changed_at = std::filesystem::last_write_time(file, error);
+    const auto bytes = std::filesystem::file_size(file, other_error);
+    if (error || other_error) return read_material_file(file);
+    {
+        const std::lock_guard lock(mutex);
+        const auto known = kept.find(file);
+        if (known != kept.end() && known->second.changed_at == changed_at &&
+            known->second.bytes == bytes) {
+            return known->second.material;
+        }
+    }
+    Material material = read_material_file(file);
+    // What a measured paint was measured in may change while its material does not.
+    if (!material.measured) {
+        const std::lock_guard lock(mutex);
+        kept[file] = {changed_at, bytes, material};
+    }
+    return material;
+}
+
+}  // namespace
 
 std::vector<Material> load_library(const std::filesystem::path& folder) {
     std::error_code error;
@@ -24,7 +62,7 @@ std::vector<Material> load_library(const std::filesystem::path& folder) {
     std::sort(files.begin(), files.end());
     std::vector<Material> library;
     for (const auto& file : files) {
-        Material material = read_material_file(file);
+        Material material = read_or_remember(file);
         for (const Material& other : library) {
             if (same_paint_name(other.name, material.name)) {
                 throw FileError(

@@ -74,6 +74,12 @@ void check_name(const std::string& name) {
 
 }  // namespace
 
+const std::vector<std::string>& paint_families() {
+    static const std::vector<std::string> families{
+        "solid", "metallic", "pearl", "matte", "plastic", "rubber", "chrome", "brushed", "glass"};
+    return families;
+}
+
 std::filesystem::path user_materials_folder() { return user_folder() / "materials"; }
 
 std::string plain_paint_name(std::string name) {
@@ -112,6 +118,13 @@ std::vector<std::string> PaintLibrary::nearest(const std::string& name, std::siz
 PaintLibrary read_paint_library() {
     PaintLibrary library;
     library.shipped = load_library(shipped_path("materials"));
+    const auto place = [](const Material& material) {
+        const auto& families = paint_families();
+        return std::find(families.begin(), families.end(), material.family) - families.begin();
+    };
+    std::stable_sort(library.shipped.begin(),
+                     library.shipped.end(),
+                     [&](const Material& a, const Material& b) { return place(a) < place(b); });
     for (const auto& file : user_files()) {
         try {
             Material material = read_material_file(file);

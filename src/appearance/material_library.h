@@ -12,8 +12,12 @@ namespace livery {
 /// Where the user's own paints lie (`materials` in the user's folder); need not exist.
 std::filesystem::path user_materials_folder();
 
+/// The families of the shipped paints, in the order in which they are shown.
+const std::vector<std::string>& paint_families();
+
 struct PaintLibrary {
-    std::vector<Material> shipped, users;  ///< each sorted by file name
+    std::vector<Material> shipped;  ///< by family, in a family by file name
+    std::vector<Material> users;    ///< by file name
     /// One line for each of the user's files that was left out (unreadable, or a name that another
     /// paint has), with the fix. The others are there all the same.
     std::vector<std::string> problems;

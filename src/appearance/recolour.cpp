@@ -80,12 +80,29 @@ class Tinted {
     std::vector<const ParameterInfo*> pigments_;
 };
 
+/// The tint under which each channel is lightest at 45 degrees. Not the strongest: flakes that
+/// throw back everything near the mirror direction leave nothing to the pigment below.
+glm::dvec3 lightest_tint(const Tinted& paint) {
+    constexpr int kSteps = 240;
+    glm::dvec3 best_tint(1.0), best(-1.0);
+    for (int k = 0; k <= kSteps; ++k) {
+        const double tint = std::pow(kLargestTint, 2.0 * k / kSteps - 1.0);
+        const glm::dvec3 face = paint.face(glm::dvec3(tint));
+        for (int c = 0; c < 3; ++c) {
+            if (face[c] <= best[c]) continue;
+            best[c] = face[c];
+            best_tint[c] = tint;
+        }
+    }
+    return best_tint;
+}
+
 /// Each channel by itself, several times over, for the interface's share couples them.
-glm::dvec3 tint_for(const Tinted& paint, const glm::dvec3& wanted) {
+glm::dvec3 tint_for(const Tinted& paint, const glm::dvec3& lightest, const glm::dvec3& wanted) {
     glm::dvec3 tint(1.0);
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
         for (int c = 0; c < 3; ++c) {
-            double low = -std::log(kLargestTint), high = -low;
+            double low = -std::log(kLargestTint), high = std::log(lightest[c]);
             for (int k = 0; k < kHalvings; ++k) {
                 const double middle = 0.5 * (low + high);
                 tint[c] = std::exp(middle);
@@ -107,8 +124,11 @@ Material material_with(Material material, const Tinted& paint, const glm::dvec3&
     return material;
 }
 
-std::string why_not(const Tinted& paint, const glm::dvec3& wanted, const std::string& finish) {
-    const glm::dvec3 lightest = paint.face(glm::dvec3(kLargestTint));
+std::string why_not(const Tinted& paint,
+                    const glm::dvec3& lightest_tint,
+                    const glm::dvec3& wanted,
+                    const std::string& finish) {
+    const glm::dvec3 lightest = paint.face(lightest_tint);
     const glm::dvec3 darkest = paint.face(glm::dvec3(1.0 / kLargestTint));
     const auto is_beyond = [&](const auto& outside) {
         return outside(0) || outside(1) || outside(2);
@@ -141,7 +161,8 @@ Recoloured with_colour(const Material& finish, glm::dvec3 lab10) {
     const Tinted paint(finish);
     const glm::dvec3 wanted = working_from_xyz() * xyz_from_xyz10(xyz10_from_lab10(lab10));
     Recoloured result;
-    result.material = material_with(finish, paint, tint_for(paint, wanted));
+    const glm::dvec3 lightest = lightest_tint(paint);
+    result.material = material_with(finish, paint, tint_for(paint, lightest, wanted));
     result.material.file.clear();
     result.material.provenance = fmt::format(
         "designed: the finish of '{}' in L*a*b* {:.1f}, {:.1f}, {:.1f} (D65, 10 "
@@ -152,7 +173,7 @@ Recoloured with_colour(const Material& finish, glm::dvec3 lab10) {
         lab10.z);
     result.de00 = ciede2000(lab10, five_angle_lab(result.material)[kFaceAngle]);
     result.reached = result.de00 <= kColourReached;
-    if (!result.reached) result.why_not = why_not(paint, wanted, finish.name);
+    if (!result.reached) result.why_not = why_not(paint, lightest, wanted, finish.name);
     return result;
 }
 

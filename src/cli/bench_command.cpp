@@ -6,6 +6,7 @@
 
 #include "cli/command.h"
 #include "core/error.h"
+#include "core/marked_block.h"
 #include "core/paths.h"
 #include "session/accuracy_bench.h"
 #include "session/bench_plot.h"
@@ -130,7 +131,7 @@ Command bench_command() {
                        "--markdown writes one suite's tables: choose --suite speed or accuracy");
         const auto kept = bench_file();
         if (!arguments->out.empty()) make_output_folder(arguments->out);
-        if (!arguments->markdown.empty()) check_bench_block(arguments->markdown);
+        if (!arguments->markdown.empty()) check_marked_block(arguments->markdown, "bench");
         Outcome outcome;
         std::string markdown, plot;
         if (speed) {
@@ -163,7 +164,8 @@ Command bench_command() {
             write_json_file(out / "bench.json", outcome.figures);
             if (speed) write_text_file(out / "speed.svg", plot);
         }
-        if (!arguments->markdown.empty()) replace_bench_block(arguments->markdown, markdown);
+        if (!arguments->markdown.empty())
+            replace_marked_block(arguments->markdown, "bench", markdown);
         return outcome;
     };
     return command;

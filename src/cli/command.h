@@ -63,6 +63,7 @@ Command demo_command();
 Command desktop_command();
 Command fit_brdf_command();
 Command measure_brdf_command();
+Command paints_command();
 Command patterns_command();
 Command photograph_command();
 Command plan_command();

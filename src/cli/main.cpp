@@ -39,6 +39,7 @@ int run(const std::vector<std::string>& arguments) {
                                      plan_command(),
                                      brdf_command(),
                                      albedo_command(),
+                                     paints_command(),
                                      patterns_command(),
                                      photograph_command(),
                                      calibrate_color_command(),

@@ -5,13 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "core/error.h"
-#include "core/paths.h"
-
 namespace livery {
 namespace {
-
-constexpr std::string_view kBegin = "<!-- bench: begin -->\n", kEnd = "<!-- bench: end -->\n";
 
 std::string size_of(const SweepPoint& point) {
     return fmt::format("{}x{}", point.width, point.height);
@@ -110,27 +105,6 @@ std::string effects_table(const std::vector<BenchEffect>& effects) {
     return text;
 }
 
-struct Block {
-    std::string text;
-    std::size_t begin = 0, end = 0;  ///< of what stands between the two lines
-};
-
-Block find_block(const std::filesystem::path& file) {
-    Block block;
-    block.text = read_text_file(file);
-    block.begin = block.text.find(kBegin);
-    block.end = block.text.find(kEnd);
-    if (block.begin == std::string::npos || block.end == std::string::npos ||
-        block.end < block.begin) {
-        throw FileError(file,
-                        "text",
-                        "no lines to write between",
-                        "a line \"<!-- bench: begin -->\" and below it \"<!-- bench: end -->\"");
-    }
-    block.begin += kBegin.size();
-    return block;
-}
-
 }  // namespace
 
 std::string text_of(const SpeedBenchResult& result) {
@@ -183,14 +157,6 @@ std::string markdown_of(const SpeedBenchResult& result) {
         sweep_table(result.sweep),
         laws(result.sweep, true),
         effects_table(result.effects));
-}
-
-void check_bench_block(const std::filesystem::path& file) { find_block(file); }
-
-void replace_bench_block(const std::filesystem::path& file, const std::string& markdown) {
-    const Block block = find_block(file);
-    write_text_file(file,
-                    block.text.substr(0, block.begin) + markdown + block.text.substr(block.end));
 }
 
 }  // namespace livery

@@ -45,7 +45,8 @@ double items_of(const std::string& pass, const FragmentCounts& counts) {
     return part == counts.by_part.end() ? 0.0 : part->second;
 }
 
-/// Without a home folder no bench can have been kept.
+}  // namespace
+
 std::optional<std::vector<PassCost>> known_pass_costs() {
     std::filesystem::path file;
     try {
@@ -55,8 +56,6 @@ std::optional<std::vector<PassCost>> known_pass_costs() {
     }
     return read_pass_costs(file);
 }
-
-}  // namespace
 
 std::string cost_key(const std::string& pass_name) {
     if (pass_name.starts_with("shade:")) return "shade" + pass_name.substr(pass_name.rfind(':'));

@@ -29,6 +29,8 @@ void write_pass_costs(const std::filesystem::path& file,
                       const std::vector<PassCost>& costs);
 /// Nothing when no bench ran on this machine. Throws FileError for a malformed file.
 std::optional<std::vector<PassCost>> read_pass_costs(const std::filesystem::path& file);
+/// The same of bench_file(); nothing, too, without a home folder to keep one in.
+std::optional<std::vector<PassCost>> known_pass_costs();
 /// The same of its text.
 std::vector<PassCost> parse_pass_costs(const std::string& text, const std::filesystem::path& file);
 

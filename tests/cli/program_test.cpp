@@ -61,6 +61,7 @@ TEST(Program, HelpNamesEveryCommandAndEachHasAnExample) {
                              "plan",
                              "brdf",
                              "albedo",
+                             "paints",
                              "patterns",
                              "photograph",
                              "calibrate color",

@@ -22,7 +22,7 @@ class Core : public TwoMonitors {
 void Core::swap_hover_and_undo() {
     const Image8 first = drive_of_place(0);
     const Image8 red = drive_with_body("solid red"), blue = drive_with_body("solid blue"),
-                 green = drive_with_body("green metallic");
+                 green = drive_with_body("solid green");
     ASSERT_TRUE(projector_shows(first));
     program->click("part:body");
 
@@ -40,7 +40,7 @@ void Core::swap_hover_and_undo() {
     EXPECT_TRUE(projector_shows(first));
     program->move_away();
 
-    program->click("paint:green metallic");
+    program->click("paint:solid green");
     program->move_away();
     EXPECT_TRUE(projector_shows(green));
     EXPECT_TRUE(operator_sees("green"));

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "session/paint_cost.h"
 #include "session/predictions.h"
 #include "support/file_error.h"
 #include "support/temporary_folder.h"
@@ -28,6 +29,21 @@ TEST(PassCosts, AQualityThatIsNoneIsNamed) {
                              "bench.json");
         },
         {"bench.json: passes[0].quality: found \"best\", expected draft, normal, high or"}));
+}
+
+TEST(PassCosts, SayWhatAPaintCosts) {
+    const std::vector<PassCost> costs{{"shade:ggx", Quality::high, 9.0, 1e6, {}},
+                                      {"shade:ggx", Quality::normal, 3.0, 1e6, {}},
+                                      {"shade:eon", Quality::normal, 3.0, 0.0, {}}};
+    const PaintCost ggx = paint_cost(ReflectanceModel::ggx, costs);
+    ASSERT_TRUE(ggx.ns_a_pixel);
+    EXPECT_DOUBLE_EQ(*ggx.ns_a_pixel, 3.0);
+    EXPECT_TRUE(ggx.why_not.empty());
+    const PaintCost eon = paint_cost(ReflectanceModel::eon, costs);
+    EXPECT_FALSE(eon.ns_a_pixel);
+    EXPECT_EQ(eon.why_not, "the last bench shaded nothing with eon");
+    EXPECT_EQ(paint_cost(ReflectanceModel::ggx, std::nullopt).why_not,
+              "no bench has run on this machine");
 }
 
 }  // namespace

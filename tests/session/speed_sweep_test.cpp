@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "core/marked_block.h"
 #include "core/paths.h"
 #include "radiance/surface_map.h"
 #include "session/bench_plot.h"
@@ -115,8 +116,8 @@ TEST(BenchTable, RewritesItsBlockOnly) {
     const auto file = folder.write(
         "page.md", "# Page\n<!-- bench: begin -->\nold\n<!-- bench: end -->\n\nThe rest.\n");
     for (int k = 0; k < 2; ++k) {
-        check_bench_block(file);
-        replace_bench_block(file, markdown_of(result));
+        check_marked_block(file, "bench");
+        replace_marked_block(file, "bench", markdown_of(result));
         const std::string text = read_text_file(file);
         EXPECT_EQ(text.rfind("# Page\n<!-- bench: begin -->\nMeasured", 0), 0u);
         EXPECT_TRUE(text.ends_with("|\n<!-- bench: end -->\n\nThe rest.\n")) << text;
@@ -129,13 +130,13 @@ TEST(BenchTable, RewritesItsBlockOnly) {
 
     const auto plain = folder.write("plain.md", "# Page\n");
     try {
-        check_bench_block(plain);
+        check_marked_block(plain, "bench");
         FAIL();
     } catch (const FileError& error) {
         EXPECT_NE(std::string(error.what()).find("<!-- bench: begin -->"), std::string::npos);
         EXPECT_NE(std::string(error.what()).find("plain.md"), std::string::npos);
     }
-    EXPECT_THROW(replace_bench_block(folder / "none.md", "x"), FileError);
+    EXPECT_THROW(replace_marked_block(folder / "none.md", "bench", "x"), FileError);
     EXPECT_EQ(read_text_file(plain), "# Page\n");
 }
 
