@@ -7,6 +7,8 @@ struct BsdfParameters {
     REAL alpha_y;             // slope parameter across it
     VEC3 flake_f0;            // reflectance of the second lobe of flakes
     REAL flake_alpha;         // its slope parameter
+    REAL film_nm;             // thickness of the film on those flakes, 0 for none
+    REAL film_eta;            // its index
     REAL coat_alpha;          // slope parameter of the coat
     REAL coat_f0;             // Fresnel reflectance of the coat at normal incidence
     VEC3 coat_transmittance;  // of the coat, once through at normal incidence

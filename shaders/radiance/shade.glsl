@@ -81,7 +81,10 @@ UNIFORM VEC2 u_coat_layer;
 #define COATED
 #endif
 #ifdef CAR_PAINT
-UNIFORM VEC4 u_flakes;  // the second lobe's reflectance, its alpha
+UNIFORM VEC4 u_flakes;       // the second lobe's reflectance, its alpha
+UNIFORM VEC3 u_flakes_most;  // what its film reflects at most; without one the same
+UNIFORM bool u_has_film;
+UNIFORM VEC2 u_film;  // thickness in nm, index
 #if ENVIRONMENT
 UNIFORM VEC2 u_flake_layer;
 #endif
@@ -99,6 +102,8 @@ FN BsdfParameters paint() {
 #ifdef CAR_PAINT
     p.flake_f0 = VEC3(u_flakes.x, u_flakes.y, u_flakes.z);
     p.flake_alpha = u_flakes.w;
+    p.film_nm = u_film.x;
+    p.film_eta = u_film.y;
 #endif
     return p;
 }
@@ -106,7 +111,7 @@ FN BsdfParameters paint() {
 // What the base lets through to the diffuse layer.
 FN VEC3 through_base(BsdfParameters p, REAL mu) {
 #ifdef CAR_PAINT
-    return car_paint_transmission(p, mu);
+    return car_paint_transmission(p, u_flakes_most, mu);
 #else
     return ggx_interface_transmission(p, mu);
 #endif
@@ -139,7 +144,7 @@ FN VEC3 shaded() {
     BsdfParameters p = paint();
     VEC3 layer_o = through_base(p, wo.z);
 #ifdef CAR_PAINT
-    VEC3 flake_colour = car_paint_flake_colour(p);
+    VEC3 beside_base = VEC3(R(1.0)) - p.f0;
 #else
     REAL f90 = grazing_reflectance(max_component(p.f0));
 #endif
@@ -160,7 +165,9 @@ FN VEC3 shaded() {
             wi, wo, hh, p.alpha_x, p.alpha_y, u_light_radius2[k], eye.w);
 #ifdef CAR_PAINT
         VEC3 value = p.f0 * lobe;
-        value += flake_colour *
+        VEC3 flakes = p.flake_f0;
+        if (u_has_film) flakes = film_reflectance(p, hh);
+        value += beside_base * flakes *
                  disc_distribution_visibility(
                      wi, wo, hh, p.flake_alpha, p.flake_alpha, u_light_radius2[k], eye.w);
 #else
@@ -186,7 +193,9 @@ FN VEC3 shaded() {
     VEC3 diffuse = u_sky_diffuse * layer_o * sky_here();
 #ifdef CAR_PAINT
     VEC3 base = p.f0 * mirrored_here(u_base_layer, p.alpha_x) * through_lobe(p, wo.z, p.alpha_x);
-    base += flake_colour * mirrored_here(u_flake_layer, p.flake_alpha) *
+    VEC3 flakes = p.flake_f0;
+    if (u_has_film) flakes = film_reflectance(p, car_paint_mirror_hh(wo.z, p.flake_alpha));
+    base += beside_base * flakes * mirrored_here(u_flake_layer, p.flake_alpha) *
             through_lobe(p, wo.z, p.flake_alpha);
     sum += through_o * (base + diffuse);
 #else

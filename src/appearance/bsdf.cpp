@@ -159,6 +159,7 @@ glm::dvec3 directional_albedo(ReflectanceModel model,
     no_diffuse.diffuse = glm::dvec3(0.0);
     f64::BsdfParameters no_flakes = no_diffuse;
     no_flakes.flake_f0 = glm::dvec3(0.0);
+    no_flakes.film_nm = 0.0;
     f64::BsdfParameters only_coat = no_flakes;
     only_coat.f0 = glm::dvec3(0.0);
     const bool has_lobe = model_info(model).mirrors();

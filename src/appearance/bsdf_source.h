@@ -24,8 +24,8 @@ namespace livery::f32 {
 using Real = float;
 using Vec2 = glm::vec2;
 using Vec3 = glm::vec3;
-using glm::abs, glm::acos, glm::atan, glm::clamp, glm::cos, glm::dot, glm::exp, glm::log, glm::max,
-    glm::min, glm::normalize, glm::pow, glm::sin, glm::sqrt;
+using glm::abs, glm::acos, glm::atan, glm::clamp, glm::cos, glm::dot, glm::exp, glm::exp2,
+    glm::floor, glm::log, glm::max, glm::min, glm::normalize, glm::pow, glm::sin, glm::sqrt;
 // Each needs the ones before it.
 // clang-format off
 #include "shaders/bsdf/parameters.glsl"
@@ -43,6 +43,7 @@ using glm::abs, glm::acos, glm::atan, glm::clamp, glm::cos, glm::dot, glm::exp, 
 #include "shaders/bsdf/ggx_multiscatter.glsl"
 #include "shaders/bsdf/ashikhmin_shirley.glsl"
 #include "shaders/bsdf/clearcoat.glsl"
+#include "shaders/bsdf/thin_film.glsl"
 #include "shaders/bsdf/car_paint.glsl"
 // clang-format on
 }  // namespace livery::f32
@@ -51,8 +52,8 @@ namespace livery::f64 {
 using Real = double;
 using Vec2 = glm::dvec2;
 using Vec3 = glm::dvec3;
-using glm::abs, glm::acos, glm::atan, glm::clamp, glm::cos, glm::dot, glm::exp, glm::log, glm::max,
-    glm::min, glm::normalize, glm::pow, glm::sin, glm::sqrt;
+using glm::abs, glm::acos, glm::atan, glm::clamp, glm::cos, glm::dot, glm::exp, glm::exp2,
+    glm::floor, glm::log, glm::max, glm::min, glm::normalize, glm::pow, glm::sin, glm::sqrt;
 // Each needs the ones before it.
 // clang-format off
 #include "shaders/bsdf/parameters.glsl"
@@ -70,6 +71,7 @@ using glm::abs, glm::acos, glm::atan, glm::clamp, glm::cos, glm::dot, glm::exp, 
 #include "shaders/bsdf/ggx_multiscatter.glsl"
 #include "shaders/bsdf/ashikhmin_shirley.glsl"
 #include "shaders/bsdf/clearcoat.glsl"
+#include "shaders/bsdf/thin_film.glsl"
 #include "shaders/bsdf/car_paint.glsl"
 // clang-format on
 }  // namespace livery::f64
@@ -77,6 +79,7 @@ using glm::abs, glm::acos, glm::atan, glm::clamp, glm::cos, glm::dot, glm::exp, 
 #pragma GCC diagnostic pop
 
 #undef LOBE_ALBEDO
+#undef FILM_BAND
 #undef REAL
 #undef VEC2
 #undef VEC3

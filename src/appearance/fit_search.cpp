@@ -44,15 +44,18 @@ struct Coordinate {
     }
 };
 
-/// Not searched: a tint, which samples can hardly tell from the colours below it.
-bool is_fixed(const std::string& parameter) { return parameter == "coat_transmittance"; }
+/// Not searched: a tint, which samples can hardly tell from the colours below it, and what a paint
+/// need not have.
+bool is_fixed(const ParameterInfo& parameter) {
+    return parameter.optional || std::string(parameter.name) == "coat_transmittance";
+}
 
 std::vector<Coordinate> coordinates_of(const ModelInfo& model,
                                        const std::vector<std::string>& held = {}) {
     std::vector<Coordinate> coordinates;
     for (const char* name : model.parameters) {
-        if (is_fixed(name) || std::find(held.begin(), held.end(), name) != held.end()) continue;
         const ParameterInfo& info = parameter_info(name);
+        if (is_fixed(info) || std::find(held.begin(), held.end(), name) != held.end()) continue;
         const std::size_t count = info.kind == ParameterKind::colour ? 3 : 1;
         for (std::size_t k = 0; k < count; ++k) coordinates.push_back({&info, k});
     }

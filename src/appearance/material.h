@@ -44,6 +44,8 @@ struct Material {
     glm::dvec2 alpha{0.3, 0.3};          ///< GGX slope parameter along and across the tangent
     glm::dvec3 flake_f0{0.3};            ///< reflectance of the second lobe of flakes
     double flake_alpha = 0.15;           ///< its slope parameter
+    double film_nm = 0.0;                ///< thickness of the film on those flakes, 0 for none
+    double film_eta = 2.3;               ///< its index
     double coat_alpha = 0.02;            ///< slope parameter of the clear coat
     double coat_f0 = 0.04;               ///< its Fresnel reflectance at normal incidence
     glm::dvec3 coat_transmittance{1.0};  ///< of the coat, once through at normal incidence

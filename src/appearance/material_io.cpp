@@ -76,7 +76,7 @@ void read_measured(const JsonReader& reader, UnreadMeasured unread, Material& ma
     }
 }
 
-/// A model's parameters, all of them and no others.
+/// A model's parameters, no others, and all that are not optional.
 void read_parameters(const JsonReader& reader, const ModelInfo& model, Material& material) {
     if (!reader.is_object()) reader.fail(reader.found(), "an object");
     const auto& known = model.parameters;
@@ -87,7 +87,11 @@ void read_parameters(const JsonReader& reader, const ModelInfo& model, Material&
                 fmt::format("the parameters of {}: {}", model.name, fmt::join(known, ", ")));
         }
     }
-    for (const char* key : known) read_value(reader[key], model, parameter_info(key), material);
+    for (const char* key : known) {
+        const ParameterInfo& parameter = parameter_info(key);
+        if (parameter.optional && !reader.has(key)) continue;
+        read_value(reader[key], model, parameter, material);
+    }
 }
 
 }  // namespace
@@ -125,7 +129,10 @@ Json json_of(const Material& material) {
         parameters["file"] = material.measured->file.string();
     }
     for (const char* key : model.parameters) {
-        parameters[key] = json_of_value(parameter_info(key), material);
+        const ParameterInfo& parameter = parameter_info(key);
+        const bool as_always = value_of(parameter, material) == value_of(parameter, Material{});
+        if (parameter.optional && as_always) continue;
+        parameters[key] = json_of_value(parameter, material);
     }
     Json json = Json::object();
     json["name"] = material.name;

@@ -45,7 +45,16 @@ ParameterInfo parameter(const char* name,
             of_material,
             of_material,
             of_parameters,
-            of_parameters};
+            of_parameters,
+            false};
+}
+
+/// The same of one that a file may leave out.
+template <typename... Arguments>
+ParameterInfo optional_parameter(Arguments... arguments) {
+    ParameterInfo info = parameter(arguments...);
+    info.optional = true;
+    return info;
 }
 
 constexpr bool kLinear = false, kByRatios = true;
@@ -144,6 +153,29 @@ const std::vector<ParameterInfo>& parameter_table() {
             kByRatios,
             [](auto& m) { return numbers(m.flake_alpha); },
             [](auto& p) { return numbers(p.flake_alpha); }),
+        optional_parameter(
+            "film_nm",
+            "Film thickness",
+            "Of the film on the second lobe's flakes, in nanometres, whose interference colours "
+            "change with the angle: pearl 50 to 300, colour shift 300 to 800, 0 for none.",
+            ParameterKind::number,
+            0.0,
+            2000.0,
+            kLinear,
+            [](auto& m) { return numbers(m.film_nm); },
+            [](auto& p) { return numbers(p.film_nm); }),
+        optional_parameter(
+            "film_eta",
+            "Film index",
+            "Its refractive index: glass 1.5, iron oxide 2.4, titanium dioxide 2.5. The nearer to "
+            "the "
+            "varnish's, the paler the colours.",
+            ParameterKind::number,
+            1.3,
+            2.7,
+            kLinear,
+            [](auto& m) { return numbers(m.film_eta); },
+            [](auto& p) { return numbers(p.film_eta); }),
         parameter(
             "coat_alpha",
             "Coat roughness",

@@ -32,6 +32,7 @@ struct ParameterInfo {
     Components<const double> (*of_material)(const Material&);
     Components<double> (*in_f64)(f64::BsdfParameters&);
     Components<float> (*in_f32)(f32::BsdfParameters&);
+    bool optional;  ///< files may leave it out, and do where it has its default
 
     int count() const;                 ///< 3, 1 or 2 numbers
     std::string range_text() const;    ///< "0.0001 to 1"

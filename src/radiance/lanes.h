@@ -82,6 +82,40 @@ LIVERY_LANE_FUNCTION Lanes exp2(Lanes x) {
     return power * scale;
 }
 
+LIVERY_LANE_FUNCTION Lanes floor(Lanes x) {
+    const Lanes nearest = (x + 0x1.8p23f) - 0x1.8p23f;
+    return nearest > x ? nearest - 1.0f : nearest;
+}
+
+/// Cosine and sine to 1e-7, for x in [-pi, pi]: Taylor at 0 up to pi / 2, mirrored beyond.
+LIVERY_LANE_FUNCTION Lanes cos(Lanes x) {
+    const Lanes size = max(x, -x);
+    const Lanes far = size > 1.57079633f ? lanes_of(1.0f) : lanes_of(0.0f);
+    const Lanes y = size + far * (3.14159265f - 2.0f * size);
+    const Lanes q = y * y;
+    Lanes sum = lanes_of(2.0876757e-9f);
+    sum = sum * q - 2.7557319e-7f;
+    sum = sum * q + 2.4801587e-5f;
+    sum = sum * q - 1.3888889e-3f;
+    sum = sum * q + 4.1666667e-2f;
+    sum = sum * q - 0.5f;
+    sum = sum * q + 1.0f;
+    return sum - 2.0f * far * sum;
+}
+LIVERY_LANE_FUNCTION Lanes sin(Lanes x) {
+    const Lanes size = max(x, -x);
+    const Lanes y = size > 1.57079633f ? 3.14159265f - size : size;
+    const Lanes q = y * y;
+    Lanes sum = lanes_of(1.6059044e-10f);
+    sum = sum * q - 2.5052108e-8f;
+    sum = sum * q + 2.7557319e-6f;
+    sum = sum * q - 1.9841270e-4f;
+    sum = sum * q + 8.3333333e-3f;
+    sum = sum * q - 1.6666667e-1f;
+    sum = (sum * q + 1.0f) * y;
+    return x < 0.0f ? -sum : sum;
+}
+
 template <typename T>
 struct Vector2 {
     T x, y;
@@ -117,6 +151,9 @@ LIVERY_LANE_FUNCTION Lanes3 operator*(const Lanes3& a, Lanes b) {
     return {a.x * b, a.y * b, a.z * b};
 }
 LIVERY_LANE_FUNCTION Lanes3 operator*(Lanes a, const Lanes3& b) { return b * a; }
+LIVERY_LANE_FUNCTION Lanes3 operator/(const Lanes3& a, const Lanes3& b) {
+    return {a.x / b.x, a.y / b.y, a.z / b.z};
+}
 LIVERY_LANE_FUNCTION Lanes3& operator+=(Lanes3& a, const Lanes3& b) { return a = a + b; }
 LIVERY_LANE_FUNCTION Lanes3& operator*=(Lanes3& a, const Lanes3& b) { return a = a * b; }
 
@@ -126,6 +163,10 @@ LIVERY_LANE_FUNCTION Lanes dot(const Lanes3& a, const Lanes3& b) {
 LIVERY_LANE_FUNCTION Lanes3 min(const Lanes3& a, const Lanes3& b) {
     return {min(a.x, b.x), min(a.y, b.y), min(a.z, b.z)};
 }
+LIVERY_LANE_FUNCTION Lanes3 max(const Lanes3& a, const Lanes3& b) {
+    return {max(a.x, b.x), max(a.y, b.y), max(a.z, b.z)};
+}
+LIVERY_LANE_FUNCTION Lanes3 sqrt(const Lanes3& a) { return {sqrt(a.x), sqrt(a.y), sqrt(a.z)}; }
 LIVERY_LANE_FUNCTION Lanes3 mix(const Lanes3& a, const Lanes3& b, Lanes t) {
     return {mix(a.x, b.x, t), mix(a.y, b.y, t), mix(a.z, b.z, t)};
 }

@@ -97,7 +97,9 @@ PaintUniforms uniforms_of(const Material& material, double exposure_ev) {
                    f32::car_paint_pigment(p, f32::coat_inverse_index_squared(p)),
                    f32::car_paint_share(p));
         set(u.flakes, glm::vec4(p.flake_f0, p.flake_alpha));
+        set(u.flakes_most, f32::car_paint_most(p));
         set(u.flake_layer, mirror_layer(p.flake_alpha));
+        set(u.film, glm::vec2(p.film_nm, p.film_eta));
     } else {
         set(u.diffuse, p.diffuse);
     }
@@ -179,7 +181,10 @@ void set_paint(Program& program,
     program.set("u_base_layer", glm::make_vec2(u.base_layer));
     program.set("u_coat_layer", glm::make_vec2(u.coat_layer));
     program.set("u_flakes", glm::make_vec4(u.flakes));
+    program.set("u_flakes_most", glm::make_vec3(u.flakes_most));
     program.set("u_flake_layer", glm::make_vec2(u.flake_layer));
+    program.set("u_has_film", u.film[0] > 0.0f ? 1 : 0);
+    program.set("u_film", glm::make_vec2(u.film));
     program.set("u_coat_log_transmittance", glm::make_vec3(u.coat_log_transmittance));
     program.set("u_coat_inverse_index_squared", u.coat_inverse_index_squared);
 }

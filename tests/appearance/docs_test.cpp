@@ -29,17 +29,18 @@ std::string models_as_table() {
 
 std::string parameters_as_table() {
     std::string text =
-        "| parameter | in the desktop | meaning | range | unless a file says |\n"
+        "| parameter | in the desktop | meaning | range | a new paint's |\n"
         "| --- | --- | --- | --- | --- |\n";
     for (const ParameterInfo& parameter : parameter_table()) {
-        text += fmt::format("| `{}` | {} | {} | {} | {} |\n",
-                            parameter.name,
-                            parameter.label,
-                            parameter.meaning,
-                            parameter.kind == ParameterKind::pair
-                                ? parameter.range_text() + ", one number or `[along, across]`"
-                                : parameter.range_text(),
-                            parameter.default_text());
+        text +=
+            fmt::format("| `{}` | {} | {} | {} | {} |\n",
+                        parameter.name,
+                        parameter.label,
+                        parameter.meaning,
+                        parameter.kind == ParameterKind::pair
+                            ? parameter.range_text() + ", one number or `[along, across]`"
+                            : parameter.range_text(),
+                        parameter.default_text() + (parameter.optional ? ", also in files" : ""));
     }
     return text;
 }

@@ -142,8 +142,42 @@ def clearcoat(p, wi, wo):
     return values
 
 
+# Of the ten bands: red, green and blue share of each.
+FILM_BANDS = [
+    ("0.075644", "-0.004271", "0.001114"), ("0.593309", "-0.019742", "0.000640"),
+    ("0.308160", "0.237973", "-0.005129"), ("0.096320", "0.379707", "-0.009457"),
+    ("-0.064482", "0.343306", "-0.001921"), ("-0.044028", "0.095123", "0.035750"),
+    ("-0.024529", "0.043403", "0.106266"), ("0.008848", "-0.020368", "0.379358"),
+    ("0.034606", "-0.035897", "0.337859"), ("0.016152", "-0.019234", "0.155520")]
+
+
+def film(p, c, cosine):
+    """Airy's series of one channel and the most that it can reflect"""
+    f0 = p["flake_f0"][c]
+    if p["film_nm"] == 0:
+        return f0, f0
+    index = (1 + sqrt(p["coat_f0"])) / (1 - sqrt(p["coat_f0"]))
+    eta = p["film_eta"]
+    front = (index - eta) / (index + eta)
+    back = (-sqrt(f0) - front) / (1 + sqrt(f0) * front)
+    inside = asin(sin(acos(min(cosine, mpf(1)))) / eta)
+    path = 2 * eta * p["film_nm"] * cos(inside)
+
+    def seen(x):
+        wave = mpf("1.553499748e-3"), mpf("8.686640551e-5")
+        sharp = mpf(2)**(mpf("-1.035104596e-7") * x**2)
+        return sharp * sum(mpf(band[c]) * cos(2 * pi * (wave[0] + k * wave[1]) * x)
+                           for k, band in enumerate(FILM_BANDS))
+    rho = front * back
+    series = sum((-rho)**m * (1 - seen(m * path)) for m in range(1, 5))
+    series += (-rho)**5 / (1 + rho) * (1 - seen(5 * path))
+    most = ((abs(front) + abs(back)) / (1 + abs(rho)))**2
+    value = f0 + 2 * (1 - front**2) * (1 - back**2) / (1 - rho**2) * series
+    return min(max(value, mpf(0)), most), most
+
+
 def car_paint(p, wi, wo):
-    """Two lobes of flakes, each of one colour, under the coat of clearcoat()"""
+    """Two lobes of flakes, the second perhaps with a film, under the coat of clearcoat()"""
     low, wide = p["ax"], p["flake_alpha"]
     lobes = [microfacets(wi, wo, a, a)[0] for a in (low, wide)]
     f0, alpha = p["coat_f0"], p["coat_alpha"]
@@ -160,10 +194,11 @@ def car_paint(p, wi, wo):
     values = []
     for c in range(3):
         first = p["f0"][c]
-        second = (1 - first) * p["flake_f0"][c]
+        flakes, most = film(p, c, dot(unit(wo), half(wi, wo)))
+        second = (1 - first) * flakes
 
         def left(splits):
-            return 1 - first * splits[0][0] - second * splits[1][0]
+            return 1 - first * splits[0][0] - (1 - first) * most * splits[1][0]
         through = mpf(1)
         for w in (wi, wo):
             through *= left([albedo_split(w[2], a) for a in (low, wide)])
@@ -323,8 +358,9 @@ def main():
     rng = random.Random(20)
     flakes = random.Random(21)  # of its own: the other models' numbers stay what they were
     header = None
-    for name, model in MODELS.items():
-        for _ in range(50):
+    rows = [(name, model, False) for name, model in MODELS.items()]
+    for name, model, with_film in rows + [("car-paint", car_paint, True)]:
+        for _ in range(30 if with_film else 50):
             alphas = [10**rng.uniform(-2, 0) for _ in range(3)]
             p = {"diffuse": [rng.random() for _ in range(3)],
                  "diffuse_roughness": [rng.random()],
@@ -334,6 +370,8 @@ def main():
                  "exponent": [2 / a**2 - 2 for a in alphas[:2]],
                  "flake_f0": [flakes.random()**2 for _ in range(3)],
                  "flake_alpha": [10**flakes.uniform(-2, 0)],
+                 "film_nm": [flakes.uniform(0, 1200) if with_film else 0.0],
+                 "film_eta": [flakes.uniform(1.3, 2.7) if with_film else 2.3],
                  "coat_alpha": alphas[2:],
                  "coat_f0": [rng.uniform(0.02, 0.1)],
                  "coat_transmittance": [rng.uniform(0.2, 1) for _ in range(3)]}

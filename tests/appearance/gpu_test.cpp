@@ -86,6 +86,8 @@ TEST_P(OnTheGpu, GivesTheValuesOfTheCpuInFloat) {
         set_slopes(wide, alpha, std::min(2.0 * alpha, 1.0));
         wide.flake_f0 = {0.1, 0.3, 0.8};
         wide.flake_alpha = std::min(3.0 * alpha, 1.0);
+        wide.film_nm = alpha < 0.05 ? 0.0 : 320.0;
+        wide.film_eta = 2.3;
         wide.coat_alpha = alpha;
         wide.coat_transmittance = {0.9, 0.8, 0.5};
         const f32::BsdfParameters p = rounded(wide);

@@ -56,6 +56,22 @@ TEST(MaterialFile, ComesBackAsItWasWritten) {
     }
 }
 
+TEST(MaterialFile, MayLeaveOutWhatAPaintNeedNotHave) {
+    const TemporaryFolder folder;
+    const auto file = folder / "paint.json";
+    Material material = full_material();
+    material.model = ReflectanceModel::car_paint;
+    write_material_file(file, material);
+    EXPECT_EQ(read_text_file(file).find("film"), std::string::npos);
+    EXPECT_EQ(read_material_file(file).film_nm, 0.0);
+    material.film_nm = 240.0;
+    material.film_eta = 1.9;
+    write_material_file(file, material);
+    const Material back = read_material_file(file);
+    EXPECT_EQ(back.film_nm, 240.0);
+    EXPECT_EQ(back.film_eta, 1.9);
+}
+
 TEST(MaterialFile, RefusesToWriteWhatItWouldNotRead) {
     const TemporaryFolder folder;
     Material material = full_material();
@@ -127,6 +143,12 @@ const BadFile kBadFiles[] = {
      R"({"format_version": 1, "name": "a", "model": "ggx",
          "parameters": {"diffuse": [0, 0, 0], "f0": [0, 0, 0], "alpha": [0.1, 0.1, 0.1]}})",
      {"parameters.alpha", "one number or two"}},
+    {"a film too thick",
+     R"({"format_version": 1, "name": "a", "model": "car-paint",
+         "parameters": {"diffuse": [0, 0, 0], "f0": [0, 0, 0], "alpha": 0.1, "flake_f0": [0, 0, 0],
+                        "flake_alpha": 0.1, "film_nm": 2001, "coat_alpha": 0.1, "coat_f0": 0,
+                        "coat_transmittance": [1, 1, 1]}})",
+     {"parameters.film_nm", "2001", "between 0 and 2000"}},
     {"second alpha too large",
      R"({"format_version": 1, "name": "a", "model": "ggx",
          "parameters": {"diffuse": [0, 0, 0], "f0": [0, 0, 0], "alpha": [0.1, 1.5]}})",

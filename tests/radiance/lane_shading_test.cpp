@@ -66,8 +66,10 @@ std::vector<float> shaded(const LaneFunctions& functions, int model, bool enviro
                  {0.3f, 0.15f, 0.02f, 0.04f},
                  {1.0f, 0.25f},
                  {0.0f, 0.5f},
-                 {0.5f, 0.2f, 0.9f, 0.1f},
+                 {0.1f, 0.2f, 0.5f, 0.1f},
+                 {0.5f, 0.6f, 0.8f},
                  {1.0f, 0.75f},
+                 {320.0f, 2.3f},
                  {-0.1f, -2.0f, -19.9f},
                  0.44f};
     job.eye = inputs.eye.data();

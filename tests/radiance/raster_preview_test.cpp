@@ -73,6 +73,7 @@ TEST(RasterPreview, AgreesWithTheSurfaceMapInside) {
     for (const ModelInfo& info : model_table()) {
         const ReflectanceModel model = info.model;
         Scene scene = scene_of(two_spheres(), paint_of(model, 0.2));
+        scene.part_materials[0].film_nm = 320.0;
         scene.lights = {light_from({0.5, 0.8, 0.6}, 3.0 * kDegree_rad),
                         light_from({-0.9, 0.3, 0.5}, 0.0, 0.3)};
         if (!has_own_shading(model) || model_info(model).has("coat_alpha")) {

@@ -50,6 +50,7 @@ TEST_P(Renderer, DirectLightAgreesWithBruteForce) {
     for (const ModelInfo& model : model_table()) cases.emplace_back(model.model, 0.1);
     for (const auto& [model, alpha] : cases) {
         Scene scene = scene_of(two_spheres(), paint_of(model, alpha));
+        scene.part_materials[1].film_nm = 320.0;  // where there are flakes
         scene.lights = {light_from({0.5, 0.8, 0.6}, 3.0 * kDegree_rad),
                         light_from({-0.9, 0.3, 0.5}, 0.0, 0.3)};
         const ImageF truth = direct_light(scene, view, {12, 0});
@@ -70,6 +71,7 @@ TEST_P(Renderer, EnvironmentLightAgreesWithBruteForce) {
                                        std::pair(ReflectanceModel::clearcoat, 0.02),
                                        std::pair(ReflectanceModel::car_paint, 0.02)}) {
         Scene scene = scene_of(two_spheres(), paint_of(model, alpha));
+        scene.part_materials[1].film_nm = 320.0;  // where there are flakes
         scene.environment = studio();
         const ImageF truth = direct_light(scene, view, {6, 24});
         for (const Quality quality : {Quality::draft, Quality::normal, Quality::high}) {
@@ -108,6 +110,7 @@ TEST_P(Renderer, GlossyPaintsInUniformLightShowTheirAlbedo) {
         if (info.same_from_all_sides) continue;
         const ReflectanceModel model = info.model;
         Scene scene = scene_of(make_sphere({0, 0, 0}, 40.0, 64, "ball"), paint_of(model, 0.1));
+        scene.part_materials[0].film_nm = 320.0;
         Environment uniform;
         uniform.radiance_working = ImageF(32, 16, 3, 0.5f);
         scene.environment = std::make_shared<const Environment>(uniform);
@@ -217,6 +220,7 @@ TEST_P(Renderer, BothDevicesDrawTheSame) {
         for (const auto model :
              {ReflectanceModel::ggx, ReflectanceModel::lambert, ReflectanceModel::car_paint}) {
             scene.part_materials[1] = paint_of(model, 0.12);
+            scene.part_materials[1].film_nm = 320.0;
             const ImageF one = draw(scene, view, Quality::normal, GetParam());
             const ImageF other = draw(scene,
                                       view,
