@@ -24,11 +24,16 @@ View camera(int size_px) {
     return view;
 }
 
-/// Value of a paint, per steradian, from the angle of the half vector to the normal.
-using Paint = std::function<double(double theta_h)>;
+/// Value of a paint, per steradian, from the half vector's angle to the normal and the light's to
+/// the half vector.
+using Paint = std::function<double(double theta_h, double theta_d)>;
 
-double chalk(double) { return 0.3 / kPi; }
-double satin(double theta_h) { return 0.1 / kPi + 0.8 * std::exp(-theta_h * theta_h / 0.08); }
+double chalk(double, double) { return 0.3 / kPi; }
+/// Brighter the more grazing.
+double sheen(double, double theta_d) { return 0.05 + 0.5 * std::pow(1.0 - std::cos(theta_d), 2.0); }
+double satin(double theta_h, double) {
+    return 0.1 / kPi + 0.8 * std::exp(-theta_h * theta_h / 0.08);
+}
 
 /// What a lamp of strength 1e9 at `light_mm` lets the camera see a second.
 LitSphere photographed(const View& view, const glm::dvec3& light_mm, const Paint& paint) {
@@ -56,8 +61,10 @@ LitSphere photographed(const View& view, const glm::dvec3& light_mm, const Paint
                 const glm::dvec3 l = (light_mm - p) / distance;
                 const double cosine = glm::dot(n, l);
                 if (cosine <= 0.0) continue;
-                const double theta_h = std::acos(std::min(glm::dot(n, glm::normalize(l - d)), 1.0));
-                sum += 1e9 * paint(theta_h) * cosine / (distance * distance);
+                const glm::dvec3 h = glm::normalize(l - d);
+                const double theta_h = std::acos(std::min(glm::dot(n, h), 1.0));
+                const double theta_d = std::acos(std::min(glm::dot(l, h), 1.0));
+                sum += 1e9 * paint(theta_h, theta_d) * cosine / (distance * distance);
             }
             for (int c = 0; c < 3; ++c) {
                 lit.picture.counts.at(x, y, c) = static_cast<float>(2.0 * sum / (kSide * kSide));
@@ -134,7 +141,7 @@ TEST(SphereOutline, BoxesAreWhereTheSphereIs) {
 TEST(SphereReflectance, ALampsStrengthIsTheWhiteSpheres) {
     const View view = camera(240);
     const LitSphere white =
-        photographed(view, {250.0, 0.0, 450.0}, [](double) { return 0.9 / kPi; });
+        photographed(view, {250.0, 0.0, 450.0}, [](double, double) { return 0.9 / kPi; });
     const LampResponse lamp = lamp_response(view, kSphere, white, glm::dvec3(0.9));
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(lamp.units[c], 1e9, 3e6);
     EXPECT_LT(lamp.rms, 0.01);
@@ -159,7 +166,7 @@ TEST(SphereReflectance, ALampsStrengthIsTheWhiteSpheres) {
 
 TEST(SphereReflectance, GivesThePaintBack) {
     const View view = camera(240);
-    for (const Paint& paint : {Paint(chalk), Paint(satin)}) {
+    for (const Paint& paint : {Paint(chalk), Paint(satin), Paint(sheen)}) {
         const auto lit = photographed_all(view, paint);
         const std::vector<LampResponse> lamps(lit.size(), exact_lamp());
         const SphereReflectance measured = sphere_reflectance(view, kSphere, lit, lamps);
@@ -170,7 +177,9 @@ TEST(SphereReflectance, GivesThePaintBack) {
             const auto& [wi, wo] = measured.pairs[k];
             EXPECT_NEAR(glm::length(wi), 1.0, 1e-9);
             EXPECT_NEAR(glm::length(wo), 1.0, 1e-9);
-            const double truth = paint(std::acos(std::min(glm::normalize(wi + wo).z, 1.0)));
+            const glm::dvec3 h = glm::normalize(wi + wo);
+            const double truth =
+                paint(std::acos(std::min(h.z, 1.0)), std::acos(std::min(glm::dot(wi, h), 1.0)));
             errors.push_back(std::abs(measured.values[k].y / truth - 1.0));
         }
         std::sort(errors.begin(), errors.end());
