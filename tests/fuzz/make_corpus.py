@@ -186,6 +186,13 @@ put("captures", "photographs.json",
 put("captures", "patterns.json",
     {"format_version": 1, "projector": [64, 32], "captures": [
         {"file": "0.png", "pattern": "0.png", "role": "white", "drive": 255, "exposure_s": None}]})
+put("captures", "sphere.json",
+    {"format_version": 1, "transfer": "srgb", "camera_to_xyz": "colours.json",
+     "camera": {"width": 4, "height": 3, "matrix": [9, 0, 2, 0, 9, 1, 0, 0, 1]},
+     "sphere": {"centre_mm": [0, 0, 900], "diameter_mm": 60},
+     "white_reference": {"reflectance": [0.9, 0.9, 0.8], "sphere": {"centre_mm": [80, 0, 900], "diameter_mm": 55},
+                         "captures": [{"file": ".", "exposure_s": 0.5, "light_position_mm": [0, 90, 300]}]},
+     "captures": [{"file": "0.png", "exposure_s": 0.1, "black_level": 3, "light_position_mm": [40, 0, 300]}]})
 put("captures", "response.json",
     {"format_version": 1, "linear_from_file": [0, 0.02, 0.07, 0.16, 0.29, 0.46, 0.69, 1]})
 CURVE = {"drive_from_n": [0, 100, 255], "largest_violation": 0}
