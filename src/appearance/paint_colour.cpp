@@ -126,7 +126,10 @@ ChipColumns chip_columns(const CsvReader& csv, const std::filesystem::path& file
     columns.xyz = all(kXyzNames);
     columns.hex = find_column(csv, "hex");
     const int kinds = columns.lab.has_value() + columns.xyz.has_value() + columns.hex.has_value();
-    if (!name || kinds != 1) fail(fmt::format("{}", fmt::join(csv.names(), ", ")), kChipColumns);
+    if (!name) fail("no column name", kChipColumns);
+    if (kinds != 1) {
+        fail(kinds == 0 ? "no colours" : fmt::format("colours in {} forms", kinds), kChipColumns);
+    }
     if (columns.hex == std::size_t{0}) {
         fail("hex as the first column", "another first: a line that starts with # is a comment");
     }

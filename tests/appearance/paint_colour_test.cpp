@@ -74,9 +74,10 @@ TEST(ColourChips, NameTheLineThatIsWrong) {
     };
     EXPECT_TRUE(fails("", {"fan.csv"}));
     EXPECT_TRUE(
-        fails("name,L,a\nx,1,2\n", {"fan.csv", "header", "name, L, a", "L, a, b or X, Y, Z"}));
-    EXPECT_TRUE(fails("L,a,b\n1,2,3\n", {"header", "a column name"}));
-    EXPECT_TRUE(fails("name,L,a,b,hex\nx,1,2,3,#000000\n", {"header", "either"}));
+        fails("name,L,a\nx,1,2\n", {"fan.csv", "header", "no colours", "L, a, b or X, Y, Z"}));
+    EXPECT_TRUE(fails("L,a,b\n1,2,3\n", {"header", "no column name"}));
+    EXPECT_TRUE(
+        fails("name,L,a,b,hex\nx,1,2,3,#000000\n", {"header", "colours in 2 forms", "either"}));
     EXPECT_TRUE(fails("name,L,a,b\n", {"no chips"}));
     EXPECT_TRUE(fails("name,L,a,b\nx,1,2,3\ny,4,5\n", {"line 3"}));
     EXPECT_TRUE(fails("name,L,a,b\nx,1,2,3\n\ny,4,red,6\n", {"line 4", "a", "'red'", "number"}));

@@ -144,5 +144,13 @@ TEST_F(Paints, PrintTheTableOfTheDocuments) {
     refuses({"--markdown", page.string(), "--family", "solid"}, {"the whole library"});
 }
 
+TEST_F(Paints, HaveTheTableOfTheDocumentsAsItIsNow) {
+    const std::string docs = read_text_file(LIVERY_SOURCE "/docs/materials.md");
+    const auto copy = folder_.write("materials.md", docs);
+    figures({"--markdown", copy.string()});
+    EXPECT_EQ(read_text_file(copy), docs)
+        << "livery paints --markdown docs/materials.md prints it anew";
+}
+
 }  // namespace
 }  // namespace livery

@@ -163,6 +163,9 @@ put("measured_merl", "head.binary", struct.pack("<3i3d", 90, 90, 180, 1.0, -1.0,
 put("measured_merl", "other.binary", struct.pack("<3i", 90, 90, 360))
 put("directions", "two.csv", "theta_i,phi_i,theta_o,phi_o\n0.1,0,0.5,3.1\n1.5,6.28,1e-3,-2\n")
 put("directions", "others.csv", "# measured\r\nr,phi_o,\"theta_o\",theta_i,phi_i\r\nx,0,1.6,0,0\r\n")
+put("colour_chips", "lab.csv", "# fan\ncode,name,L*,a*,b*\n1,\"signal red\",42,55,33\n2,ivory,88,1,14\n")
+put("colour_chips", "xyz.csv", "name,X,Y,Z\nwhite,94.811,100,107.304\n")
+put("colour_chips", "hex.csv", "name,hex\nblue,#102080\n")
 shipped("spectral_paint", "calibration/paints/solid-red.json")
 put("product", "all.json",
     {"format_version": 1, "name": "Car", "mesh": "car.glb", "unit": "cm", "product_scale": 25,

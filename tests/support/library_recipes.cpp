@@ -45,7 +45,7 @@ const std::vector<LibraryRecipe>& library_recipes() {
     static const std::vector<ReflectanceModel> flakes{clearcoat, car_paint};
     static const std::vector<LibraryRecipe> recipes{
         {"wine red", "solid", cornell, "garnet_red", coated},
-        {"satin purple", "solid", sgd, "purple-paint", coated},
+        {"satin raspberry", "solid", sgd, "purple-paint", coated},
         {"satin white", "solid", abc, "white-paint", coated},
         {"frosted blue", "matte", cornell, "krylon_blue", coated},
         {"matte dark blue", "matte", sgd, "dark-blue-paint", coated},
@@ -66,7 +66,6 @@ const std::vector<LibraryRecipe>& library_recipes() {
         {"soft gold", "metallic", sgd, "gold-paint", flakes},
         {"two-coat silver", "metallic", sgd, "two-layer-silver", flakes},
         {"cream pearl", "pearl", sgd, "pearl-paint", flakes},
-        {"mauve gold pearl", "pearl", sgd, "gold-metallic-paint2", flakes},
         {"rose pearl", "pearl", sgd, "two-layer-gold", flakes},
         {"black violet pearl", "pearl", sgd, "color-changing-paint1", flakes},
         {"black rose pearl", "pearl", sgd, "color-changing-paint2", flakes},
@@ -79,10 +78,9 @@ const std::vector<LibraryRecipe>& library_recipes() {
         {"red phenolic", "plastic", sgd, "specular-red-phenolic", coated},
         {"blue rubber", "rubber", sgd, "blue-rubber", coated},
         {"neoprene", "rubber", sgd, "neoprene-rubber", coated},
-        {"chrome steel", "chrome", sgd, "chrome-steel", bare},
-        {"polished aluminium", "chrome", sgd, "aluminium", bare},
+        {"chrome steel", "chrome", abc, "chrome-steel", bare},
         {"polished brass", "chrome", sgd, "brass", bare},
-        {"stainless steel", "chrome", sgd, "ss440", bare},
+        {"stainless steel", "chrome", abc, "ss440", bare},
         {"black glass", "glass", sgd, "black-obsidian", coated},
     };
     return recipes;
