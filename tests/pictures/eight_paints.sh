@@ -8,8 +8,8 @@ livery=${LIVERY:-$root/build/release/bin/livery}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-paints=("solid red" "bright silver metallic" "solid grey" "deep blue metallic" "matte black"
-    "teal metallic" "solid yellow" "rose pearl")
+paints=("solid red" "silver metallic" "solid grey" "blue metallic" "matte black" "soft gold"
+    "solid yellow" "teal metallic")
 
 # From the front at the right, 38 degrees from the nose and 12 above the ground, drawn at twice the
 # size of a tile.
@@ -44,8 +44,8 @@ convert -size ${width}x${height} gradient:'#3f4043-#85868a' \
 tiles=()
 for paint in "${paints[@]}"; do
     file=$work/${paint// /-}
-    sed "s/\"body\": \"[^\"]*\"/\"body\": \"$paint\"/" "$root/assets/looks/solid-red.json" \
-        > "$file.json"
+    sed -e "s/\"body\": \"[^\"]*\"/\"body\": \"$paint\"/" -e 's/"exposure_ev": .*/"exposure_ev": 0.25/' \
+        "$root/assets/looks/solid-red.json" > "$file.json"
     "$livery" render --look "$file.json" --camera "$camera" --eye "$eye" --quality high \
         --out "$file.exr" > /dev/null
     oiiotool "$file.exr" --unpremult --colorconvert linear sRGB --clamp:min=0:max=1 -d uint8 \
