@@ -23,6 +23,19 @@ PaintBsdf bsdf_of(const Material& material) {
     return bsdf;
 }
 
+ReflectanceFunction reflectance_of(const Material& material) {
+    const PaintBsdf bsdf = bsdf_of(material);
+    if (bsdf.measured) {
+        return [bsdf](const glm::dvec3& wi, const glm::dvec3& wo) {
+            return glm::dvec3(evaluate(*bsdf.measured, glm::vec3(wi), glm::vec3(wo)));
+        };
+    }
+    return [model = material.model, parameters = parameters_of_f64(material)](
+               const glm::dvec3& wi, const glm::dvec3& wo) {
+        return evaluate(model, parameters, wi, wo);
+    };
+}
+
 glm::vec3 evaluate(const PaintBsdf& bsdf, glm::vec3 wi, glm::vec3 wo) {
     return bsdf.measured ? evaluate(*bsdf.measured, wi, wo)
                          : evaluate(bsdf.model, bsdf.parameters, wi, wo);

@@ -18,6 +18,10 @@ struct PaintBsdf {
 /// its measurement.
 PaintBsdf bsdf_of(const Material& material);
 
+/// Values of a material in the working space: a formula's in double, what is measured as it is
+/// drawn. Throws as bsdf_of().
+ReflectanceFunction reflectance_of(const Material& material);
+
 /// As in bsdf.h.
 glm::vec3 evaluate(const PaintBsdf& bsdf, glm::vec3 wi, glm::vec3 wo);
 glm::vec3 sample(const PaintBsdf& bsdf, glm::vec3 wo, glm::vec3 u);

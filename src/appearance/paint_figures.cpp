@@ -70,16 +70,11 @@ FiveAngleLab five_angle_lab(const Material& material) {
             return lab_of_spectra(measured);
         }
     }
-    const PaintBsdf drawn = bsdf_of(material);
-    const auto value = [&](const DirectionPair& pair) {
-        return drawn.measured
-                   ? glm::dvec3(evaluate(drawn, glm::vec3(pair.wi), glm::vec3(pair.wo)))
-                   : evaluate(material.model, parameters_of_f64(material), pair.wi, pair.wo);
-    };
+    const ReflectanceFunction value = reflectance_of(material);
     FiveAngleLab lab;
     const auto pairs = five_pairs();
     for (std::size_t k = 0; k < pairs.size(); ++k) {
-        const glm::dvec3 xyz = xyz_from_working() * (std::numbers::pi * value(pairs[k]));
+        const glm::dvec3 xyz = xyz_from_working() * (std::numbers::pi * value(pairs[k].wi, pairs[k].wo));
         lab[k] = lab10_from_xyz10(xyz10_from_xyz(xyz));
     }
     return lab;

@@ -22,6 +22,7 @@ class Held {
     /// At the end of the panel.
     void finish() { held_ = held_now_; }
     bool is_held() const { return held_; }
+    const Value& value() const { return value_; }  ///< while it is held
 
   private:
     Value value_{};

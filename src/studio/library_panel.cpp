@@ -12,8 +12,8 @@
 #include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
-#include "appearance/paint_search.h"
 #include "studio/chosen_part.h"
+#include "studio/paint_finder.h"
 #include "studio/paint_parameters.h"
 #include "studio/studio.h"
 #include "studio/swatch_textures.h"
@@ -103,7 +103,7 @@ void draw_search(LibraryPanelState& state) {
     state.focus_search = false;
     state.cursor_rows = 0;
     if (ImGui::InputTextWithHint("##search",
-                                 "Search by name or family  ( / )",
+                                 "Name, family or colour  ( / )",
                                  &state.search,
                                  ImGuiInputTextFlags_CallbackHistory,
                                  on_arrow_in_search,
@@ -111,6 +111,7 @@ void draw_search(LibraryPanelState& state) {
         state.cursor.reset();
     }
     name_last_item("paint-search");
+    tooltip("A colour finds the nearest paints: #b01020, lab:45,30,-20 or xyz:20.1,15.2,5.");
     // Enter lets the text go in the frame in which it is pressed.
     state.searching = ImGui::IsItemActive() || ImGui::IsItemDeactivated();
     if (state.search.empty()) return;
@@ -376,7 +377,7 @@ void draw_library_panel(Studio& studio) {
     draw_search(state);
     draw_families(state, sections);
     for (Section& section : sections) {
-        section.found = search_paints(*section.paints, state.search, state.family);
+        section.found = find_paints(*section.paints, state.search, state.family);
         found_any = found_any || !section.found.empty();
     }
     const Target target = target_of(studio);

@@ -12,7 +12,9 @@
 #include "core/error.h"
 #include "session/naming.h"
 #include "studio/chosen_part.h"
+#include "studio/paint_colour_row.h"
 #include "studio/paint_parameters.h"
+#include "studio/paint_portrait.h"
 #include "studio/studio.h"
 #include "studio/theme.h"
 #include "studio/users_library.h"
@@ -349,6 +351,9 @@ void draw_paint_panel(Studio& studio) {
     }
     draw_title(studio);
     ImGui::Spacing();
+    draw_paint_portrait(studio, state.held.is_held() ? state.held.value() : *state.material);
+    ImGui::Spacing();
+    draw_paint_colour_row(studio, *state.material);
     draw_model(studio, *state.material);
     draw_parameters(studio);
     if (!state.problem.empty()) warning_text("Not taken: " + state.problem);

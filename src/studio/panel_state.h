@@ -14,7 +14,12 @@
 #include <utility>
 #include <vector>
 
+#include "appearance/lobe_curve.h"
 #include "appearance/material_library.h"
+#include "appearance/measured_grid.h"
+#include "appearance/paint_colour.h"
+#include "appearance/paint_figures.h"
+#include "appearance/recolour.h"
 #include "core/image.h"
 #include "evaluation/ballots.h"
 #include "gl/handles.h"
@@ -53,7 +58,43 @@ struct LibraryPanelState {
     std::set<std::string> asked;
 };
 
+/// What the background thread works out of a paint.
+struct PaintPortrait {
+    Material material;
+    PaintFigures figures;
+    std::vector<LobePoint> curve;
+};
+/// What of it is asked for; equal when nothing would come out differently.
+struct PortraitKey {
+    std::vector<double> own, other;  ///< reflectance_numbers(); other empty: none
+    double light_rad = 0.0;
+    bool operator==(const PortraitKey&) const = default;
+};
+
+struct PaintPortraitState {
+    double light_deg = 45.0;  ///< from the normal
+    bool logarithmic = true;
+    std::optional<Material> compared;  ///< what the paint is held against
+    std::string search;                ///< in the list to choose that from
+    bool working = false;
+    PortraitKey asked;
+    std::optional<PaintPortrait> own, other;
+    std::optional<ReflectanceDifference> difference;  ///< between the two
+    std::string problem;
+};
+
+struct PaintColourState {
+    std::string text;  ///< in the field
+    bool typing = false, edited = false;
+    std::vector<ColourChip> chips;
+    std::string chips_file;
+    std::optional<Recoloured> made;  ///< the last that was worked out
+    std::vector<double> made_of;     ///< of that paint in that colour
+};
+
 struct PaintPanelState {
+    PaintPortraitState portrait;
+    PaintColourState colour;
     Held<Material> held;
     bool brushed = false;  ///< along and across are shown although they are equal
     // What the panel shows, looked up again when one of these changes.

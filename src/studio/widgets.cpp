@@ -8,6 +8,7 @@
 #include <imgui_internal.h>
 
 #include "core/colour.h"
+#include "core/ten_degree.h"
 #include "studio/held.h"
 #include "studio/paint_parameters.h"
 #include "studio/studio.h"
@@ -28,6 +29,15 @@ ImVec4 shown_colour(const glm::dvec3& linear) {
     };
     return {channel(linear.x), channel(linear.y), channel(linear.z), 1.0f};
 }
+
+}  // namespace
+
+unsigned screen_colour(const glm::dvec3& lab10) {
+    return ImGui::GetColorU32(
+        shown_colour(rec709_from_xyz() * xyz_from_xyz10(xyz10_from_lab10(lab10))));
+}
+
+namespace {
 
 void picker_popup(const std::string& name, glm::dvec3& linear) {
     if (!ImGui::BeginPopup("picker")) return;

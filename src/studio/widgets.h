@@ -17,6 +17,10 @@ float button_width(const char* label);
 /// A small toggle in a row that wraps.
 bool chip(const char* label, bool on);
 
+/// L*a*b* of the 10 degree observer as a screen shows it, packed for a draw list; what is brighter
+/// than white is white.
+unsigned screen_colour(const glm::dvec3& lab10);
+
 /// At most `most` lines of the current font, broken at spaces; a text that needs more ends in an
 /// ellipsis, and so does a word that is wider than a line.
 std::vector<std::string> fitted_lines(const std::string& text, float width, std::size_t most);

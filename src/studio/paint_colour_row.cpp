@@ -1,0 +1,141 @@
+#include "studio/paint_colour_row.h"
+
+#include <exception>
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include "appearance/parameter_table.h"
+#include "core/error.h"
+#include "studio/file_dialog.h"
+#include "studio/paint_finder.h"
+#include "studio/paint_parameters.h"
+#include "studio/theme.h"
+#include "studio/widgets.h"
+
+namespace livery {
+
+namespace {
+
+constexpr const char* kWays =
+    "The colour under light from 45 degrees, seen from straight above: #b01020, "
+    "lab:45,30,-20 or xyz:20.1,15.2,5 (D65, 10 degrees; white has Y = 100).";
+
+/// Worked out once for each paint and colour.
+const Recoloured& recoloured(PaintColourState& state, const Material& paint, glm::dvec3 lab10) {
+    std::vector<double> key = reflectance_numbers(paint);
+    key.insert(key.end(), {lab10.x, lab10.y, lab10.z});
+    if (!state.made || key != state.made_of) {
+        state.made = with_colour(paint, lab10);
+        state.made->material.name = paint.name;
+        state.made_of = std::move(key);
+    }
+    return *state.made;
+}
+
+EditPaint edit_of(const Studio& studio, const Recoloured& made) {
+    const PaintPanelState& panel = studio.panels.paint;
+    return {panel.look, panel.part_name, made.material};
+}
+
+void draw_typed(Studio& studio, const Material& paint) {
+    PaintColourState& state = studio.panels.paint.colour;
+    row_label("Colour at 45°");
+    if (!state.typing) {
+        const glm::dvec3 lab = drawn_face_lab(paint);
+        state.text = fmt::format("lab:{:.1f},{:.1f},{:.1f}", lab.x, lab.y, lab.z);
+    }
+    ImGui::SetNextItemWidth(-1.0f);
+    ImGui::InputText("##colour", &state.text, ImGuiInputTextFlags_AutoSelectAll);
+    name_last_item("paint-colour");
+    tooltip(kWays);
+    const bool edited = ImGui::IsItemDeactivatedAfterEdit();
+    state.typing = ImGui::IsItemActive();
+    state.edited = (state.typing && state.edited) || ImGui::IsItemEdited();
+    if (!(state.typing && state.edited) && !edited) return;
+    const auto lab = colour_in(state.text);
+    if (!lab) {
+        if (edited) {
+            notify(studio,
+                   {Notice::Level::warning,
+                    fmt::format("\"{}\" is no colour.", state.text),
+                    "",
+                    "Type one as #b01020, lab:45,30,-20 or xyz:20.1,15.2,5."});
+        }
+        return;
+    }
+    const Recoloured& made = recoloured(state, paint, *lab);
+    edit_with_last_item(studio, edit_of(studio, made));
+    if (!made.reached) warning_text(made.why_not);
+}
+
+void ask_for_chips(Studio& studio) {
+    studio.file_dialog->ask({FileQuestion::Kind::open,
+                             "Read colour chips",
+                             "Read",
+                             {".csv"},
+                             false,
+                             {},
+                             [&studio](const auto& file) {
+                                 PaintColourState& state = studio.panels.paint.colour;
+                                 try {
+                                     state.chips = read_colour_chips(file);
+                                     state.chips_file = file.filename().string();
+                                 } catch (const FileError& error) {
+                                     notify(studio,
+                                            {Notice::Level::error,
+                                             "The colour chips were not read.",
+                                             error.what(),
+                                             "A chip has a name, and L, a, b or X, Y, Z or hex."});
+                                 }
+                             }});
+}
+
+void draw_chips(Studio& studio, const Material& paint) {
+    PaintColourState& state = studio.panels.paint.colour;
+    row_label("Colour chips");
+    ImGui::SetNextItemWidth(-1.0f);
+    const std::string shown = state.chips.empty()
+                                  ? "none read"
+                                  : fmt::format("{} in {}", state.chips.size(), state.chips_file);
+    const bool open = ImGui::BeginCombo("##chips", shown.c_str(), ImGuiComboFlags_HeightLarge);
+    name_last_item("paint-chips");
+    if (!open) {
+        tooltip(
+            "Gives this finish a colour of your own chart: a CSV with the column name, and "
+            "L, a, b or X, Y, Z or hex.");
+        return;
+    }
+    if (ImGui::Selectable("Read a file…")) ask_for_chips(studio);
+    name_last_item("chip:file");
+    ImGui::Separator();
+    for (const ColourChip& chip : state.chips) {
+        const ImVec2 corner = ImGui::GetCursorScreenPos();
+        const float side = ImGui::GetTextLineHeight();
+        const bool picked = ImGui::Selectable(("      " + chip.name + "##" + chip.name).c_str());
+        name_last_item("chip:" + chip.name);
+        ImGui::GetWindowDrawList()->AddRectFilled(
+            corner, {corner.x + side, corner.y + side}, screen_colour(chip.lab10));
+        if (!ImGui::IsItemHovered() && !picked) continue;
+        const Recoloured& made = recoloured(state, paint, chip.lab10);
+        tooltip(made.reached ? fmt::format("CIEDE2000 {:.2f} from the chip", made.de00)
+                             : made.why_not);
+        if (picked) {
+            commit(studio, edit_of(studio, made));
+        } else {
+            try_out(studio, edit_of(studio, made));
+        }
+    }
+    ImGui::EndCombo();
+}
+
+}  // namespace
+
+void draw_paint_colour_row(Studio& studio, const Material& paint) {
+    if (paint.model == ReflectanceModel::measured) return;
+    draw_typed(studio, paint);
+    draw_chips(studio, paint);
+}
+
+}  // namespace livery
