@@ -1,14 +1,12 @@
 #include "twin/sphere_stand.h"
 
 #include <cmath>
-#include <functional>
 #include <numbers>
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "appearance/bsdf.h"
 #include "appearance/paint_bsdf.h"
 #include "core/error.h"
 #include "core/parallel.h"
@@ -24,18 +22,6 @@ constexpr int kLamps = 28;
 constexpr double kFirstLamp_deg = 4.0, kLastLamp_deg = 158.0;
 constexpr double kShownHeight_mm = 88.0;
 constexpr int kSamplesASide = 4;
-
-using Reflectance = std::function<glm::dvec3(const glm::dvec3& wi, const glm::dvec3& wo)>;
-
-Reflectance reflectance_of(const Material& paint) {
-    if (paint.model == ReflectanceModel::measured) {
-        return [bsdf = bsdf_of(paint)](const glm::dvec3& wi, const glm::dvec3& wo) {
-            return glm::dvec3(evaluate(bsdf, glm::vec3(wi), glm::vec3(wo)));
-        };
-    }
-    return [model = paint.model, p = parameters_of_f64(paint)](
-               const glm::dvec3& wi, const glm::dvec3& wo) { return evaluate(model, p, wi, wo); };
-}
 
 /// What a lamp's light becomes on the way: seen through one sample of a pixel.
 class Scene {
@@ -88,7 +74,7 @@ class Scene {
     }
 
     const SphereStand& stand_;
-    Reflectance reflectance_;
+    ReflectanceFunction reflectance_;
     glm::dvec3 lamp_mm_, side_, up_;
 };
 
