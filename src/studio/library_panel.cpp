@@ -18,6 +18,7 @@
 #include "studio/studio.h"
 #include "studio/swatch_textures.h"
 #include "studio/theme.h"
+#include "studio/ui_map.h"
 #include "studio/users_library.h"
 #include "studio/widgets.h"
 
@@ -391,6 +392,8 @@ void draw_library_panel(Studio& studio) {
     const float height = std::max(ImGui::GetContentRegionAvail().y, em(12.0f));
     state.owns_arrows = false;
     ImGui::BeginChild("swatches", {0.0f, height}, false, ImGuiWindowFlags_NoNavInputs);
+    const ImVec2 corner = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+    name_rectangle("swatches", corner.x, corner.y, size.x, size.y);
     if (found_any) {
         draw_grid(studio, target, sections);
     } else {

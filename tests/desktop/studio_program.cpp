@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -59,7 +60,25 @@ int StudioProgram::quit() {
 
 Json StudioProgram::map() const { return Json::parse(text_of(folder_ / "map")); }
 
+void StudioProgram::scroll_to_paint(const std::string& name) {
+    // At the list's very edge the pointer is on no swatch, which would be tried on.
+    const Rectangle list = item("swatches");
+    const glm::ivec2 edge{list.x + list.width - 2, list.y + list.height / 2};
+    constexpr int kNotches = 4, kMostTurns = 40;
+    for (const int direction : {-1, 1}) {
+        std::vector<std::string> seen;
+        for (int turn = 0; turn < kMostTurns && !has_item(name); ++turn) {
+            auto now = items_starting_with("paint:");
+            if (std::exchange(seen, now) == now) break;
+            scroll(edge, direction * kNotches);
+        }
+    }
+}
+
 Rectangle StudioProgram::item(const std::string& name) {
+    if (name.starts_with("paint:") && has_item("swatches") && !has_item(name)) {
+        scroll_to_paint(name);
+    }
     const auto look = [&]() -> Rectangle {
         const Json map = this->map();
         const auto& items = map["items"];

@@ -43,7 +43,8 @@ class StudioProgram {
     /// Asks it to quit as a person does; its exit code.
     int quit();
 
-    /// The place on the desktop of an item, once it is there and has stopped moving.
+    /// The place on the desktop of an item, once it is there and has stopped moving. A paint is
+    /// looked for as a person does, by scrolling through the swatches.
     Rectangle item(const std::string& name);
     bool has_item(const std::string& name);
     std::vector<std::string> items_starting_with(const std::string& prefix);
@@ -66,6 +67,7 @@ class StudioProgram {
 
   private:
     nlohmann::json map() const;
+    void scroll_to_paint(const std::string& name);
     /// Until the window shows what came of input: its counter has reached `value`, and two more
     /// frames put everything in its place. Not that anything came of it.
     void wait_until_taken(const std::string& counter, int value);
