@@ -19,46 +19,6 @@ constexpr std::size_t kMaxCorners = 1u << 25u;
 
 using Notes = std::vector<std::string>;
 
-/// Pictures are not read: names the one that colours a material in other programs.
-std::string picture_note(const GltfFile& gltf, const JsonReader& texture_index) {
-    const auto root = gltf.root();
-    const auto texture = root["textures"].at(index_into(root, "textures", texture_index));
-    if (!texture.has("source")) return "an embedded picture is not read";
-    const auto image = root["images"].at(index_into(root, "images", texture["source"]));
-    if (!image.has("uri") || image["uri"].text().starts_with("data:")) {
-        return "an embedded picture is not read";
-    }
-    const std::string uri = image["uri"].text();
-    std::error_code error;
-    const bool exists = std::filesystem::exists(gltf.path.parent_path() / uri, error);
-    return fmt::format("the picture \"{}\" {}", uri, exists ? "is not read" : "is missing");
-}
-
-Part read_material(const GltfFile& gltf, std::size_t index, Notes& notes) {
-    Part part;
-    const auto material = gltf.root()["materials"].at(index);
-    part.material_name = name_or(material, fmt::format("material {}", index));
-    if (!material.has("pbrMetallicRoughness")) {
-        part.base_colour_rec709 = glm::dvec3(1.0);  // glTF's default
-        return part;
-    }
-    const auto pbr = material["pbrMetallicRoughness"];
-    const bool has_picture = pbr.has("baseColorTexture");
-    if (pbr.has("baseColorFactor")) {
-        const auto factor = pbr["baseColorFactor"].numbers(4);
-        for (std::size_t k = 0; k < 4; ++k) pbr["baseColorFactor"].at(k).number_between(0.0, 1.0);
-        part.base_colour_rec709 = {factor[0], factor[1], factor[2]};
-    } else if (!has_picture) {
-        part.base_colour_rec709 = glm::dvec3(1.0);
-    }
-    if (has_picture) {
-        notes.push_back(fmt::format("material \"{}\": {}; its plain colour is shown",
-                                    part.material_name,
-                                    picture_note(gltf, pbr["baseColorTexture"]["index"])));
-    }
-    return part;
-}
-
 /// Hands out names that differ: "wheel", "wheel-2", "wheel-3".
 class UniqueNames {
   public:
@@ -102,7 +62,12 @@ void note_unread(const JsonReader& root, Notes& notes) {
     if (root.has("extensionsUsed")) {
         for (std::size_t k = 0; k < root["extensionsUsed"].size(); ++k) {
             const std::string name = root["extensionsUsed"].at(k).text();
-            if (name != "KHR_mesh_quantization") notes.push_back(name + " is not read");
+            // Each material says what it has that is not read.
+            const bool of_materials =
+                name.starts_with("KHR_materials_") && name != "KHR_materials_variants";
+            if (name != "KHR_mesh_quantization" && !of_materials) {
+                notes.push_back(name + " is not read");
+            }
         }
     }
     for (const char* feature : {"skins", "animations"}) {
@@ -153,7 +118,7 @@ Mesh read_gltf(const std::string& bytes, const std::filesystem::path& file, Note
     std::vector<Part> materials;
     const std::size_t material_count = root.has("materials") ? root["materials"].size() : 0;
     for (std::size_t k = 0; k < material_count; ++k) {
-        materials.push_back(read_material(gltf, k, notes));
+        materials.push_back(read_gltf_material(gltf, k, notes));
     }
 
     const auto nodes = placed_nodes(root);

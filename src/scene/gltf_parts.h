@@ -1,4 +1,5 @@
-// The steps of read_gltf: where nodes stand, and one primitive in the world. Internal to scene/.
+// The steps of read_gltf: where nodes stand, one primitive in the world, and a material. Internal
+// to scene/.
 #pragma once
 
 #include <string>
@@ -27,5 +28,9 @@ Mesh build_primitive(GltfAccessors& accessors,
                      bool quantized,
                      const std::string& part_name,
                      std::vector<std::string>& notes);
+
+/// A part that wears a material of the file: its name, colour and paint. `notes` receives what of
+/// it is not read. Throws FileError.
+Part read_gltf_material(const GltfFile& gltf, std::size_t index, std::vector<std::string>& notes);
 
 }  // namespace livery

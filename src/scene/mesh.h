@@ -11,6 +11,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include "appearance/material.h"
 #include "scene/length_unit.h"
 
 namespace livery {
@@ -19,6 +20,7 @@ struct Part {
     std::string name;
     std::string material_name;           ///< as the file names it; may be empty
     glm::dvec3 base_colour_rec709{0.5};  ///< the file's own colour, shown until a look says more
+    std::optional<Material> paint{};     ///< where the file says more of it than a colour
 };
 
 /// World frame: right-handed, y up, millimetres. All vertex arrays have the same length; triangles

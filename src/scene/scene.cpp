@@ -25,7 +25,9 @@ Material find_paint(const Look& look,
     return find_material(name_or_file);
 }
 
-Material plain_material(const Part& part) {
+/// What the mesh file says of a part.
+Material own_material(const Part& part) {
+    if (part.paint) return *part.paint;
     Material material;
     material.name = part.material_name.empty() ? part.name : part.material_name;
     material.diffuse = part.base_colour_rec709;
@@ -61,7 +63,7 @@ Scene make_scene(std::shared_ptr<const Product> product,
         auto paint = look.parts.find(part.name);
         if (paint == look.parts.end()) paint = look.parts.find("*");
         scene.part_materials.push_back(paint == look.parts.end()
-                                           ? plain_material(part)
+                                           ? own_material(part)
                                            : find_paint(look, paint->second, own_paints));
     }
     if (!look.environment.file.empty()) {

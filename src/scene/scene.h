@@ -25,10 +25,10 @@ struct Scene {
 };
 
 /// Resolves a look's names against a product and the paint library. A part that the look does not
-/// name keeps the file's own colour as a plain diffuse. Throws FileError (unknown part or paint,
-/// with the names there are). `loaded` is shared when it is the environment that the look names: a
-/// map takes a while to read, and renderers keep what they have made of it. `own_paints` come
-/// before the library's and files by name.
+/// name keeps the file's own paint, or its colour as a plain diffuse. Throws FileError (unknown
+/// part or paint, with the names there are). `loaded` is shared when it is the environment that the
+/// look names: a map takes a while to read, and renderers keep what they have made of it.
+/// `own_paints` come before the library's and files by name.
 Scene make_scene(std::shared_ptr<const Product> product,
                  const Look& look,
                  glm::dvec3 eye_mm,
