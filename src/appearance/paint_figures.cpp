@@ -74,7 +74,8 @@ FiveAngleLab five_angle_lab(const Material& material) {
     FiveAngleLab lab;
     const auto pairs = five_pairs();
     for (std::size_t k = 0; k < pairs.size(); ++k) {
-        const glm::dvec3 xyz = xyz_from_working() * (std::numbers::pi * value(pairs[k].wi, pairs[k].wo));
+        const glm::dvec3 xyz =
+            xyz_from_working() * (std::numbers::pi * value(pairs[k].wi, pairs[k].wo));
         lab[k] = lab10_from_xyz10(xyz10_from_xyz(xyz));
     }
     return lab;

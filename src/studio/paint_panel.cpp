@@ -5,6 +5,7 @@
 #include <string>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
@@ -279,7 +280,7 @@ void draw_save_popup(Studio& studio) {
     row_label("Family", 0.3f);
     ImGui::InputText("##family", &state.new_family);
     name_last_item("save-paint:family");
-    tooltip("Groups the library: solid, metallic, matte, glass, rubber, metal, lamp.");
+    tooltip(fmt::format("Groups the library: {}.", fmt::join(paint_families(), ", ")));
     if (!state.save_problem.empty()) warning_text(state.save_problem);
     const bool named = state.new_name.find_first_not_of(' ') != std::string::npos;
     begin_disabled(!named);
