@@ -14,6 +14,7 @@
 #include "core/paths.h"
 #include "scene/frame_plan.h"
 #include "session/commands.h"
+#include "session/look_exchange.h"
 #include "session/projector_setup.h"
 #include "session/session.h"
 #include "support/run_program.h"
@@ -99,13 +100,9 @@ Document prepare_session(const fs::path& file, Quality quality) {
 }
 
 Image8 expected_drive(const Document& document, int look_id) {
-    const SessionLook* found = find_look(document, look_id);
-    if (!found) throw std::invalid_argument("no such look");
-    Look look = found->look;
-    look.exposure_ev = document.exposure_ev;
     const TemporaryFolder folder;
     const fs::path look_file = folder / "look.json";
-    write_look_file(look_file, look);
+    const auto files = export_look(document, look_id, look_file);
     const std::vector<std::string> options = {
         "--calibration",
         document.calibration,
@@ -115,7 +112,8 @@ Image8 expected_drive(const Document& document, int look_id) {
         fmt::format("{},{},{}", document.eye_mm.x, document.eye_mm.y, document.eye_mm.z),
         "--design-white",
         fmt::format("{}", document.design_white_percentile)};
-    std::string key = read_text_file(look_file);
+    std::string key;
+    for (const auto& file : files) key += read_text_file(file);
     for (const auto& option : options) key += option;
     const CacheLock lock;
     const fs::path picture = cache_folder() / (hash_of(key) + ".png");
