@@ -112,7 +112,9 @@ void draw_search(LibraryPanelState& state) {
         state.cursor.reset();
     }
     name_last_item("paint-search");
-    tooltip("A colour finds the nearest paints: #b01020, lab:45,30,-20 or xyz:20.1,15.2,5.");
+    // Not over what is found while one types.
+    if (!ImGui::IsItemActive())
+        tooltip("A colour finds the nearest paints: #b01020, lab:45,30,-20 or xyz:20.1,15.2,5.");
     // Enter lets the text go in the frame in which it is pressed.
     state.searching = ImGui::IsItemActive() || ImGui::IsItemDeactivated();
     if (state.search.empty()) return;

@@ -8,10 +8,10 @@
 #include <fmt/ranges.h>
 #include <imgui.h>
 
-#include "appearance/model_table.h"
-#include "core/colour.h"
+#include "appearance/parameter_table.h"
 #include "gl/window.h"
-#include "studio/theme.h"
+#include "studio/paint_finder.h"
+#include "studio/widgets.h"
 
 namespace livery {
 
@@ -26,17 +26,10 @@ std::string key_of(const Material& m, int size_px) {
 }
 
 void draw_plain_disc(const Material& material, const ImVec2& corner, float side) {
-    const glm::dvec3 colour =
-        material.diffuse +
-        (model_info(material.model).has("f0") ? 0.5 * material.f0 : glm::dvec3(0.0));
-    const auto channel = [](double value) {
-        return static_cast<float>(srgb_encode(std::clamp(value, 0.0, 1.0)));
-    };
-    ImGui::GetWindowDrawList()->AddCircleFilled(
-        {corner.x + 0.5f * side, corner.y + 0.5f * side},
-        0.46f * side,
-        ImGui::GetColorU32(ImVec4(channel(colour.x), channel(colour.y), channel(colour.z), 1.0f)),
-        48);
+    ImGui::GetWindowDrawList()->AddCircleFilled({corner.x + 0.5f * side, corner.y + 0.5f * side},
+                                                0.46f * side,
+                                                screen_colour(drawn_face_lab(material)),
+                                                48);
 }
 
 }  // namespace
