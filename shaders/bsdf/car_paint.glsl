@@ -47,11 +47,9 @@ FN VEC3 car_paint_share(BsdfParameters p) {
     return min(max(passed, VEC3(R(0.001))), VEC3(coat_average_transmission(p)));
 }
 
-// The pigment's albedo with the coat's inner reflections, over that share (as coated_diffuse).
+// The pigment's albedo with the coat's inner reflections, over that share.
 FN VEC3 car_paint_pigment(BsdfParameters p, REAL inverse_index_squared) {
-    REAL inside = R(1.0) - coat_average_transmission(p) * inverse_index_squared;
-    return p.diffuse * (R(1.0) - inside) /
-           ((VEC3(R(1.0)) - p.diffuse * inside) * car_paint_share(p));
+    return coated_diffuse_over(p, inverse_index_squared, car_paint_share(p));
 }
 
 FN VEC3 car_paint_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
@@ -60,13 +58,9 @@ FN VEC3 car_paint_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
     REAL hh = dot(h, h);
     if (hh < R(1e-8)) return VEC3(R(0.0));
     REAL schlick = schlick_weight(hh);
-    REAL coat_fresnel =
-        p.coat_f0 * (R(1.0) - schlick) + grazing_reflectance(p.coat_f0) * schlick;
-    REAL coat =
-        coat_fresnel * ggx_distribution_visibility(wi, wo, hh, p.coat_alpha, p.coat_alpha);
+    REAL coat = coat_lobe(p, wi, wo, hh, schlick);
     REAL eta = coat_inverse_index_squared(p);
-    VEC3 passed = coat_absorption(p, coat_path(wi.z, eta) + coat_path(wo.z, eta)) *
-                  (coat_transmission(p, wi.z) * coat_transmission(p, wo.z));
+    VEC3 passed = coat_passed(p, wi.z, wo.z, eta);
     VEC3 flakes = p.f0 * ggx_distribution_visibility(wi, wo, hh, p.alpha_x, p.alpha_x) +
                   (VEC3(R(1.0)) - p.f0) * car_paint_flakes(p, hh) *
                       ggx_distribution_visibility(wi, wo, hh, p.flake_alpha, p.flake_alpha);

@@ -53,12 +53,26 @@ FN VEC3 coat_absorption(BsdfParameters p, REAL path) {
 
 // The diffuse layer's albedo with the coat's inner reflections, over the share of light that passes
 // the interfaces.
+FN VEC3 coated_diffuse_over(BsdfParameters p, REAL inverse_index_squared, VEC3 share) {
+    REAL inside = R(1.0) - coat_average_transmission(p) * inverse_index_squared;
+    return p.diffuse * (R(1.0) - inside) / ((VEC3(R(1.0)) - p.diffuse * inside) * share);
+}
+
 FN VEC3 coated_diffuse(BsdfParameters p, REAL inverse_index_squared) {
-    VEC3 one = VEC3(R(1.0));
-    REAL passed = coat_average_transmission(p);
-    REAL inside = R(1.0) - passed * inverse_index_squared;
-    VEC3 share = min(one - ggx_interface_average(p), VEC3(passed));
-    return p.diffuse * (R(1.0) - inside) / ((one - p.diffuse * inside) * share);
+    VEC3 share = min(VEC3(R(1.0)) - ggx_interface_average(p), VEC3(coat_average_transmission(p)));
+    return coated_diffuse_over(p, inverse_index_squared, share);
+}
+
+// The coat's own lobe. hh = |wi + wo|^2.
+FN REAL coat_lobe(BsdfParameters p, VEC3 wi, VEC3 wo, REAL hh, REAL schlick) {
+    REAL fresnel = p.coat_f0 * (R(1.0) - schlick) + grazing_reflectance(p.coat_f0) * schlick;
+    return fresnel * ggx_distribution_visibility(wi, wo, hh, p.coat_alpha, p.coat_alpha);
+}
+
+// What passes the coat both ways.
+FN VEC3 coat_passed(BsdfParameters p, REAL mu_i, REAL mu_o, REAL inverse_index_squared) {
+    REAL path = coat_path(mu_i, inverse_index_squared) + coat_path(mu_o, inverse_index_squared);
+    return coat_absorption(p, path) * (coat_transmission(p, mu_i) * coat_transmission(p, mu_o));
 }
 
 FN VEC3 clearcoat_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
@@ -67,13 +81,9 @@ FN VEC3 clearcoat_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
     REAL hh = dot(h, h);
     if (hh < R(1e-8)) return VEC3(R(0.0));
     REAL schlick = schlick_weight(hh);
-    REAL coat_fresnel =
-        p.coat_f0 * (R(1.0) - schlick) + grazing_reflectance(p.coat_f0) * schlick;
-    REAL coat =
-        coat_fresnel * ggx_distribution_visibility(wi, wo, hh, p.coat_alpha, p.coat_alpha);
+    REAL coat = coat_lobe(p, wi, wo, hh, schlick);
     REAL eta = coat_inverse_index_squared(p);
-    VEC3 passed = coat_absorption(p, coat_path(wi.z, eta) + coat_path(wo.z, eta)) *
-                  (coat_transmission(p, wi.z) * coat_transmission(p, wo.z));
+    VEC3 passed = coat_passed(p, wi.z, wo.z, eta);
     VEC3 diffuse = coated_diffuse(p, eta) * ggx_interface_transmission(p, wi.z) *
                    ggx_interface_transmission(p, wo.z) * R(0.3183098861837907);
     return VEC3(coat) + passed * (ggx_specular(p, wi, wo, hh, schlick) + diffuse);

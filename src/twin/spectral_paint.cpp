@@ -48,10 +48,7 @@ bool PaintBands::lobes_at(const glm::dvec3& wi, const glm::dvec3& wo, Lobes& lob
     const double hh = glm::dot(h, h);
     if (wi.z <= 0.0 || wo.z <= 0.0 || hh < 1e-8) return false;
     const double schlick = f64::schlick_weight(hh);
-    const double coat_fresnel =
-        paint_.coat_f0 * (1.0 - schlick) + f64::grazing_reflectance(paint_.coat_f0) * schlick;
-    lobes.coat = coat_fresnel *
-                 f64::ggx_distribution_visibility(wi, wo, hh, paint_.coat_alpha, paint_.coat_alpha);
+    lobes.coat = f64::coat_lobe(bands_, wi, wo, hh, schlick);
     const double base = f64::ggx_distribution_visibility(wi, wo, hh, paint_.alpha, paint_.alpha);
     lobes.f0 = base * (1.0 - schlick);
     lobes.grazing = base * f64::grazing_reflectance(largest_f0_) * schlick;
