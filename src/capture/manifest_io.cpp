@@ -73,6 +73,18 @@ double read_exposure(const JsonReader& exposure) {
 
 }  // namespace
 
+void allow_capture_fields(const JsonReader& entry) {
+    entry.allow_only({"file",
+                      "pattern",
+                      "role",
+                      "drive",
+                      "exposure_s",
+                      "transfer",
+                      "black_level",
+                      "saturates_at",
+                      "light_position_mm"});
+}
+
 std::filesystem::path read_photograph_name(const JsonReader& entry,
                                            const std::filesystem::path& folder) {
     const auto file = folder / entry["file"].text();
@@ -133,15 +145,7 @@ CapturesFolder parse_captures_manifest(const std::string& text,
     const auto captures = root["captures"];
     for (std::size_t k = 0; k < captures.size(); ++k) {
         const auto entry = captures.at(k);
-        entry.allow_only({"file",
-                          "pattern",
-                          "role",
-                          "drive",
-                          "exposure_s",
-                          "transfer",
-                          "black_level",
-                          "saturates_at",
-                          "light_position_mm"});
+        allow_capture_fields(entry);
         Capture capture;
         capture.role = read_role(entry["role"]);
         read_settings({entry, root}, result.folder, capture);

@@ -22,6 +22,8 @@ void write_patterns_manifest(const std::filesystem::path& manifest,
 /// fractions of full scale; never falls. Throws FileError.
 std::vector<double> read_response(const std::filesystem::path& file);
 
+/// Refuses fields that no entry of `captures` has. Throws FileError.
+void allow_capture_fields(const JsonReader& entry);
 /// The photograph that an entry names, which must be there. Throws FileError.
 std::filesystem::path read_photograph_name(const JsonReader& entry,
                                            const std::filesystem::path& folder);

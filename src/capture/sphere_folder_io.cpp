@@ -66,18 +66,6 @@ std::optional<glm::dvec3> read_light(const JsonReader& entry, const SpherePlace&
     return light;
 }
 
-void allow_entry(const JsonReader& entry) {
-    entry.allow_only({"file",
-                      "pattern",
-                      "role",
-                      "drive",
-                      "exposure_s",
-                      "transfer",
-                      "black_level",
-                      "saturates_at",
-                      "light_position_mm"});
-}
-
 /// The settings in which all captures agree.
 Json agreed_settings(const Json& captures) {
     Json agreed = Json::object();
@@ -141,7 +129,7 @@ void read_white_reference(const JsonReader& root, const Json& json, SphereFolder
     const auto captures = white["captures"];
     if (captures.size() == 0) captures.fail("an empty list", "at least one photograph");
     for (std::size_t k = 0; k < captures.size(); ++k) {
-        allow_entry(captures.at(k));
+        allow_capture_fields(captures.at(k));
         result.white.push_back(read_white(root, white, captures.at(k), agreed, result));
     }
 }
@@ -199,7 +187,7 @@ SphereFolder parse_sphere_manifest(const std::string& text, const std::filesyste
     read_white_reference(root, json, result);
     for (std::size_t k = 0; k < captures.size(); ++k) {
         const auto entry = captures.at(k);
-        allow_entry(entry);
+        allow_capture_fields(entry);
         SphereCapture capture;
         capture.photograph.file = read_photograph_name(entry, manifest.parent_path());
         if (is_white(result, capture.photograph.file)) continue;
