@@ -4,9 +4,9 @@
 #include <functional>
 #include <vector>
 
-#include "appearance/bsdf.h"
 #include "appearance/measured_grid.h"
 #include "appearance/measured_reflectance.h"
+#include "appearance/paint_bsdf.h"
 #include "core/json.h"
 #include "session/simulated_sphere.h"
 #include "session/sphere_measurement.h"
@@ -58,11 +58,6 @@ inline Material metallic_paint() {
     paint.f0 = {0.55, 0.56, 0.6};
     paint.alpha = glm::dvec2(0.3);
     return paint;
-}
-
-inline ReflectanceFunction truth_of(const Material& paint) {
-    return [model = paint.model, p = parameters_of_f64(paint)](
-               const glm::dvec3& wi, const glm::dvec3& wo) { return evaluate(model, p, wi, wo); };
 }
 
 inline ReflectanceFunction value_of(const MeasuredReflectance& measured) {

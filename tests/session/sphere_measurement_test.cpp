@@ -43,7 +43,7 @@ TEST(SphereMeasurement, LambertsReflectanceIsExactToNoise) {
     const SphereBench bench(lambert_paint(), 256);
     const SphereMeasurement report = bench.measure();
     const MeasuredReflectance measured = bench.measured();
-    const auto off = difference_of(value_of(measured), truth_of(lambert_paint()));
+    const auto off = difference_of(value_of(measured), reflectance_of(lambert_paint()));
     print("chalk", report, off);
     // A wrong factor anywhere (exposure, distance, cosine, pi, the white's reflectance) shows here.
     EXPECT_LT(off.relative_median, 0.005);
@@ -63,11 +63,11 @@ TEST(SphereMeasurement, AMattePaintIsRecovered) {
     const SphereBench bench(matte_paint(), 256);
     const SphereMeasurement report = bench.measure();
     const MeasuredReflectance measured = bench.measured();
-    const auto off = difference_of(value_of(measured), truth_of(matte_paint()));
+    const auto off = difference_of(value_of(measured), reflectance_of(matte_paint()));
     print("matte ochre", report, off);
     EXPECT_LT(off.de00_mean, 1.0);
     const BrdfFit fit = fit_to(measured, ReflectanceModel::eon);
-    const auto fitted = difference_of(truth_of(fit.material), truth_of(matte_paint()));
+    const auto fitted = difference_of(reflectance_of(fit.material), reflectance_of(matte_paint()));
     EXPECT_LT(fitted.de00_mean, 0.5);
     for (int c = 0; c < 3; ++c) {
         EXPECT_NEAR(fit.material.diffuse[c], matte_paint().diffuse[c], 0.01) << c;
@@ -79,11 +79,11 @@ TEST(SphereMeasurement, AGlossySolidPaintIsRecovered) {
     const SphereBench bench(solid_paint(), 512);
     const SphereMeasurement report = bench.measure();
     const MeasuredReflectance measured = bench.measured();
-    const auto off = difference_of(value_of(measured), truth_of(solid_paint()));
+    const auto off = difference_of(value_of(measured), reflectance_of(solid_paint()));
     print("glossy green", report, off);
     EXPECT_LT(off.de00_mean, 2.0);
     const BrdfFit fit = fit_to(measured, ReflectanceModel::clearcoat);
-    const auto fitted = difference_of(truth_of(fit.material), truth_of(solid_paint()));
+    const auto fitted = difference_of(reflectance_of(fit.material), reflectance_of(solid_paint()));
     fmt::print(
         "  fit: coat alpha {:.4f}, f0 {:.4f}, diffuse {:.3f} {:.3f} {:.3f}, CIEDE2000 {:.3f}\n",
         fit.material.coat_alpha,
@@ -103,11 +103,12 @@ TEST(SphereMeasurement, AMetallicPaintIsRecovered) {
     const SphereBench bench(metallic_paint(), 320);
     const SphereMeasurement report = bench.measure();
     const MeasuredReflectance measured = bench.measured();
-    const auto off = difference_of(value_of(measured), truth_of(metallic_paint()));
+    const auto off = difference_of(value_of(measured), reflectance_of(metallic_paint()));
     print("coarse silver", report, off);
     EXPECT_LT(off.de00_mean, 2.0);
     const BrdfFit fit = fit_to(measured, ReflectanceModel::ggx);
-    const auto fitted = difference_of(truth_of(fit.material), truth_of(metallic_paint()));
+    const auto fitted =
+        difference_of(reflectance_of(fit.material), reflectance_of(metallic_paint()));
     fmt::print("  fit: alpha {:.4f}, f0 {:.4f}, CIEDE2000 {:.3f}\n",
                fit.material.alpha.x,
                fit.material.f0.y,
@@ -123,7 +124,7 @@ TEST(SphereMeasurement, TheOutlineRepairsAWrongSphere) {
     bench.rewrite();
     const SphereMeasurement report = bench.measure();
     const MeasuredReflectance measured = bench.measured();
-    const auto off = difference_of(value_of(measured), truth_of(metallic_paint()));
+    const auto off = difference_of(value_of(measured), reflectance_of(metallic_paint()));
     print("coarse silver, sphere 1 mm off", report, off);
     EXPECT_LT(glm::length(report.outline.sphere.centre_mm), 0.1);
     EXPECT_NEAR(report.outline.sphere.diameter_mm, 60.0, 0.1);
@@ -157,7 +158,7 @@ TEST(SphereMeasurement, FlareAndSaturationAreLeftOut) {
     for (const DirectionPair& pair : lit_sphere_pairs(24)) {
         const glm::dvec3 h = glm::normalize(pair.wi + pair.wo);
         if (h.z > 0.95 || pair.wi.z < 0.2 || pair.wo.z < 0.2) continue;
-        const double truth = truth_of(solid_paint())(pair.wi, pair.wo).y;
+        const double truth = reflectance_of(solid_paint())(pair.wi, pair.wo).y;
         errors.push_back(std::abs(evaluate(measured, pair.wi, pair.wo).y / truth - 1.0));
     }
     std::sort(errors.begin(), errors.end());
@@ -174,7 +175,7 @@ TEST(SphereMeasurement, EightBitPicturesWithACurveWillDo) {
     EXPECT_EQ(bench.manifest["transfer"], "srgb");
     const SphereMeasurement report = bench.measure();
     const MeasuredReflectance measured = bench.measured();
-    const auto off = difference_of(value_of(measured), truth_of(matte_paint()));
+    const auto off = difference_of(value_of(measured), reflectance_of(matte_paint()));
     print("matte ochre, 8 bit", report, off);
     EXPECT_LT(off.de00_mean, 2.0);
 }
