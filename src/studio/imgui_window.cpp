@@ -74,7 +74,14 @@ void on_focus(GLFWwindow* window, int focused) {
 }
 
 void on_enter(GLFWwindow* window, int entered) {
-    if (!entered) queue_of(window).push(event_of(InputEvent::Kind::leave));
+    if (!entered) {
+        queue_of(window).push(event_of(InputEvent::Kind::leave));
+        return;
+    }
+    // Where it left: GLFW tells of no motion then.
+    double x = 0.0, y = 0.0;
+    glfwGetCursorPos(window, &x, &y);
+    on_pointer(window, x, y);
 }
 
 }  // namespace
