@@ -42,10 +42,9 @@ EditPaint edit_of(const Studio& studio, const Recoloured& made) {
 void draw_typed(Studio& studio, const Material& paint) {
     PaintColourState& state = studio.panels.paint.colour;
     row_label("Colour at 45°");
-    if (!state.typing) {
-        const glm::dvec3 lab = drawn_face_lab(paint);
-        state.text = fmt::format("lab:{:.1f},{:.1f},{:.1f}", lab.x, lab.y, lab.z);
-    }
+    const glm::dvec3 face = drawn_face_lab(paint);
+    const std::string its_own = fmt::format("lab:{:.1f},{:.1f},{:.1f}", face.x, face.y, face.z);
+    if (!state.typing) state.text = its_own;
     ImGui::SetNextItemWidth(-1.0f);
     ImGui::InputText("##colour", &state.text, ImGuiInputTextFlags_AutoSelectAll);
     name_last_item("paint-colour");
@@ -53,7 +52,8 @@ void draw_typed(Studio& studio, const Material& paint) {
     const bool edited = ImGui::IsItemDeactivatedAfterEdit();
     state.typing = ImGui::IsItemActive();
     state.edited = (state.typing && state.edited) || ImGui::IsItemEdited();
-    if (!(state.typing && state.edited) && !edited) return;
+    // What was put back is no edit, though the text is rounded.
+    if ((!(state.typing && state.edited) && !edited) || state.text == its_own) return;
     const auto lab = colour_in(state.text);
     if (!lab) {
         if (edited) {
