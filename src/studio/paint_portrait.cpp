@@ -11,13 +11,13 @@
 #include "appearance/measured_paint.h"
 #include "appearance/measured_reflectance.h"
 #include "appearance/paint_bsdf.h"
-#include "appearance/paint_search.h"
 #include "appearance/parameter_table.h"
 #include "core/colour.h"
 #include "core/error.h"
 #include "studio/background.h"
 #include "studio/file_dialog.h"
 #include "studio/lobe_plot.h"
+#include "studio/paint_finder.h"
 #include "studio/swatch_textures.h"
 #include "studio/theme.h"
 #include "studio/users_library.h"
@@ -177,7 +177,7 @@ void draw_choices(Studio& studio) {
         ImGui::SetKeyboardFocusHere();
     }
     ImGui::SetNextItemWidth(-1.0f);
-    ImGui::InputTextWithHint("##search", "Search", &state.search);
+    ImGui::InputTextWithHint("##search", "Name, family or colour", &state.search);
     name_last_item("compare-search");
     if (ImGui::Selectable("Nothing", !state.compared.has_value())) state.compared.reset();
     name_last_item("compare:nothing");
@@ -192,18 +192,18 @@ void draw_choices(Studio& studio) {
     }
     name_last_item("compare:file");
     ImGui::Separator();
-    std::vector<Material> paints = studio.session.document().paints;
     const PaintLibrary& library = current_library(studio);
-    paints.insert(paints.end(), library.users.begin(), library.users.end());
-    paints.insert(paints.end(), library.shipped.begin(), library.shipped.end());
-    for (const std::size_t k : search_paints(paints, state.search, "")) {
-        const Material& paint = paints[k];
-        ImGui::PushID(static_cast<int>(k));
-        const bool chosen = state.compared && state.compared->name == paint.name;
-        if (ImGui::Selectable(paint.name.c_str(), chosen)) state.compared = paint;
-        ImGui::PopID();
-        name_last_item("compare:" + paint.name);
-        tooltip(paint.provenance);
+    for (const auto* paints :
+         {&studio.session.document().paints, &library.users, &library.shipped}) {
+        for (const std::size_t k : find_paints(*paints, state.search, "")) {
+            const Material& paint = (*paints)[k];
+            const bool chosen = state.compared && state.compared->name == paint.name;
+            ImGui::PushID(&paint);  // the session's own may have a name of the library's
+            if (ImGui::Selectable(paint.name.c_str(), chosen)) state.compared = paint;
+            ImGui::PopID();
+            name_last_item("compare:" + paint.name);
+            tooltip(paint.provenance);
+        }
     }
 }
 
