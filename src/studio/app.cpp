@@ -188,7 +188,8 @@ void move_off_projector(Shell& shell, GLFWwindow* window) {
 KeyboardOwner keyboard_owner(const Shell& shell) {
     const ImGuiContext& g = *ImGui::GetCurrentContext();
     KeyboardOwner owner;
-    owner.text_field = g.IO.WantTextInput;
+    // As of the last frame; WantTextInput is older by one.
+    owner.text_field = g.ActiveId != 0 && g.ActiveId == g.InputTextState.ID;
     owner.dialog = ImGui::GetTopMostPopupModal() != nullptr;
     owner.keyboard_navigation =
         g.IO.NavVisible || g.OpenPopupStack.Size > 0 || shell.studio.panels.library.owns_arrows;

@@ -32,8 +32,10 @@ struct Portion {
             case Kind::wheel:
                 return buttons.empty();
             case Kind::key:
+                // Enter, Esc or Tab may end a text field: whose the next key is shows after it.
                 return !keys.contains(event.code) && buttons.empty() &&
-                       !(characters && makes_no_character(event.code));
+                       !(characters && makes_no_character(event.code)) &&
+                       !(editing_key && event.down);
             case Kind::character:
                 return !editing_key;
             case Kind::focus:

@@ -79,6 +79,16 @@ TEST(InputQueue, TextAndEditingKeysKeepTheirOrder) {
     EXPECT_EQ(portions(queue), (std::vector<std::size_t>{1, 1, 1}));
 }
 
+TEST(InputQueue, AKeyAfterOneThatMayEndATextFieldWaits) {
+    constexpr int enter = 257, control = 341;
+    InputQueue queue;
+    queue.push(of(Kind::key, enter, true));
+    queue.push(of(Kind::key, enter + 1, false));
+    queue.push(of(Kind::key, control, true));
+    queue.push(of(Kind::key, 'Z', true));
+    EXPECT_EQ(portions(queue), (std::vector<std::size_t>{2, 2}));
+}
+
 TEST(InputQueue, TheWheelTurnsWhereThePointerWas) {
     InputQueue queue;
     queue.push(of(Kind::wheel, 0));
