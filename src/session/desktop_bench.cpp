@@ -10,7 +10,9 @@
 #include <string>
 #include <thread>
 
+#include "appearance/material_library.h"
 #include "core/error.h"
+#include "core/shuffle.h"
 #include "radiance/renderer.h"
 #include "session/bench_calibration.h"
 #include "session/frame_thread.h"
@@ -164,10 +166,11 @@ struct Desktop {
     }
 };
 
-/// Paints of each model on the car's largest part, one after the other as a designer clicks: the
-/// time from before the command to the finished frame with the new paint.
+/// Paints on the car's largest part, one after the other as a designer clicks: the time from before
+/// the command to the finished frame with the new paint.
 struct Swaps {
     Desktop& desktop;
+    std::vector<Material> paints;
     Scene scene;  ///< as last shown
     bool saving = false;
 
@@ -175,17 +178,15 @@ struct Swaps {
                             const Background& beside,
                             const std::function<void(int, Scene&)>& change,
                             const Progress& progress) {
-        const char* const paints[] = {
-            "solid red", "silver metallic", "solid ivory", "blue metallic"};
         std::vector<double> ms;
         for (int k = 0; k < count || !beside.done_enough(); ++k) {
             const auto start = Clock::now();
-            const char* const paint = paints[static_cast<std::size_t>(k) % std::size(paints)];
+            const Material& paint = paints[static_cast<std::size_t>(k) % paints.size()];
             if (saving) {
-                desktop.session.execute(SetPaint{desktop.look(), "body", paint});
+                desktop.session.execute(SetPaint{desktop.look(), "body", paint.name});
             }
             const auto body = static_cast<std::size_t>(part_index(*desktop.product, "body"));
-            scene.part_materials[body] = find_paint(desktop.session.document(), paint);
+            scene.part_materials[body] = paint;
             change(k, scene);
             FrameDescription frame;
             frame.number = ++desktop.number;
@@ -200,6 +201,23 @@ struct Swaps {
         return ms;
     }
 };
+
+/// One of each finish that the shipped looks have.
+std::vector<Material> usual_paints() {
+    std::vector<Material> paints;
+    for (const char* name : {"solid red", "silver metallic", "solid ivory", "blue metallic"}) {
+        paints.push_back(find_material(name));
+    }
+    return paints;
+}
+
+/// All shipped paints in an order that jumps between families.
+std::vector<Material> whole_library() {
+    std::vector<Material> paints = read_paint_library().shipped;
+    Random random(1);
+    shuffle(paints, random);
+    return paints;
+}
 
 /// A calibration that opens, as big as a real one.
 void write_calibration_of(const Product& product, const std::filesystem::path& folder) {
@@ -224,7 +242,7 @@ std::vector<BenchEffect> run_desktop_bench(GlDevice device, const Progress& prog
 
     const auto start = Clock::now();
     Desktop desktop(device, folder / "session.livery", folder / "calibration");
-    Swaps swaps{desktop, {}};
+    Swaps swaps{desktop, usual_paints(), {}};
     FrameDescription first = desktop.description(nullptr);
     swaps.scene = first.scene;
     desktop.thread.show(std::move(first));
@@ -248,6 +266,12 @@ std::vector<BenchEffect> run_desktop_bench(GlDevice device, const Progress& prog
         desktop.wait_until_idle(progress);
     };
     measure("alone", {0, {}}, nothing);
+    swaps.paints = whole_library();
+    progress.update(0.0, "timing every paint of the library");
+    swap_effect.levels.push_back(waited_level_of(
+        "every paint of the library, twice",
+        swaps.run(2 * static_cast<int>(swaps.paints.size()), {0, {}}, nothing, progress)));
+    swaps.paints = usual_paints();
     {
         Bench bench(read_bench_file("default"), desktop.product, progress);
         const auto calibrate = [&](const Progress& stop) {

@@ -147,8 +147,8 @@ std::shared_ptr<const FrameGeometry> GeometryCache::get(const SolveKey& key,
     return made;
 }
 
-FrameLane::FrameLane(std::shared_ptr<GeometryCache> geometries)
-    : geometries_(std::move(geometries)) {}
+FrameLane::FrameLane(std::shared_ptr<GeometryCache> geometries, ShadingDevice device)
+    : geometries_(std::move(geometries)), device_(device) {}
 
 void FrameLane::solve(const FrameDescription& description,
                       Quality quality,
@@ -186,7 +186,7 @@ void FrameLane::solve_light(std::size_t index,
         light = {};
         std::shared_ptr<const FrameGeometry> geometry;
         run_giving_way(urgency, [&] { geometry = geometries_->get(key, progress); });
-        light.renderer = std::make_unique<RadianceRenderer>(std::move(geometry), true);
+        light.renderer = std::make_unique<RadianceRenderer>(std::move(geometry), true, device_);
     }
     run_giving_way(urgency, [&] { light.renderer->solve(scene, plan, progress); });
     if (light.untold) add_milliseconds(plan, *light.untold, false);
@@ -405,6 +405,19 @@ std::shared_ptr<const TexturePool::Slot> FrameLane::upload(const Image8& drive) 
     slot->texture.upload(std::span<const std::uint8_t>(rgba_));
     slot->ready = Fence::after_everything_so_far();
     return slot;
+}
+
+RadianceRenderer::Counters FrameLane::counters() const {
+    RadianceRenderer::Counters sum;
+    for (const Solved& light : lights_) {
+        if (!light.renderer) continue;
+        const RadianceRenderer::Counters one = light.renderer->counters();
+        sum.programs += one.programs;
+        sum.textures += one.textures;
+        sum.passes_run += one.passes_run;
+        sum.fragments_shaded += one.fragments_shaded;
+    }
+    return sum;
 }
 
 FramePlan FrameLane::told_plan(bool wiped) {

@@ -38,7 +38,8 @@ class GeometryCache {
 /// For one thread, with its context current from creation to destruction.
 class FrameLane {
   public:
-    explicit FrameLane(std::shared_ptr<GeometryCache> geometries);
+    explicit FrameLane(std::shared_ptr<GeometryCache> geometries,
+                       ShadingDevice device = ShadingDevice::automatic);
 
     /// Solves the description's light at this quality; rays are traced on threads that give way as
     /// `urgency` says (none: on this thread, at its own priority). After a stop nothing can be
@@ -61,6 +62,9 @@ class FrameLane {
     std::shared_ptr<FinishedFrame> draw(const FrameDescription& description);
     /// The same ahead of draw(), which then tells what it cost.
     void draw_ahead(const FrameDescription& description);
+
+    /// Of all its renderers together.
+    RadianceRenderer::Counters counters() const;
 
   private:
     /// One scene as last drawn.
@@ -99,6 +103,7 @@ class FrameLane {
     FramePlan told_plan(bool wiped);
 
     std::shared_ptr<GeometryCache> geometries_;
+    ShadingDevice device_;
 
     struct Solved {
         std::unique_ptr<RadianceRenderer> renderer;
