@@ -1,4 +1,4 @@
-// Files that a model names. Internal to scene/.
+// Files that a model or a look names. Internal to scene/.
 #pragma once
 
 #include <filesystem>
@@ -11,5 +11,12 @@ namespace livery {
 /// above, on the network): a model from a stranger must not open other files.
 std::optional<std::filesystem::path> path_beside(const std::filesystem::path& model,
                                                  const std::string& name);
+
+/// What a look names: as it is where that is a whole path, else in `folder`, else shipped. Throws
+/// FileError that says of `field` that it wants `expected`.
+std::filesystem::path find_beside_or_shipped(const std::string& name,
+                                             const std::filesystem::path& folder,
+                                             const char* field,
+                                             const char* expected);
 
 }  // namespace livery

@@ -9,7 +9,7 @@
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/image_io.h"
-#include "core/paths.h"
+#include "scene/beside.h"
 #include "scene/look.h"
 
 namespace livery {
@@ -39,19 +39,7 @@ std::array<int, 3> colour_channels(const std::filesystem::path& file, const Imag
 
 std::filesystem::path find_environment_map(const std::string& name,
                                            const std::filesystem::path& beside) {
-    const std::filesystem::path file = name;
-    if (file.is_absolute()) return file;
-    std::error_code error;
-    if (std::filesystem::exists(beside / file, error)) return beside / file;
-    try {
-        return shipped_path(file);
-    } catch (const FileError& missing) {
-        const auto folder = beside.empty() ? std::filesystem::path(".") : beside;
-        throw FileError(file,
-                        "environment",
-                        missing.found() + ", nor in " + folder.string(),
-                        "an .hdr or .exr map");
-    }
+    return find_beside_or_shipped(name, beside, "environment", "an .hdr or .exr map");
 }
 
 Environment load_environment(const EnvironmentReference& reference,

@@ -42,13 +42,15 @@ Needs needs_of(const Scene& scene) {
     Needs needs;
     needs.environment = scene.environment && !scene.environment->radiance_working.empty() &&
                         scene.environment->scale != 0.0;
-    for (std::size_t i = 0; i < scene.part_materials.size(); ++i) {
-        const ModelInfo& model = model_info(scene.part_materials[i].model);
-        const std::string& part = scene.product->mesh.parts[i].name;
+    const auto add = [&](const Material& material, std::size_t part) {
+        const ModelInfo& model = model_info(material.model);
+        const std::string& name = scene.product->mesh.parts[part].name;
         needs.models.insert(model.model);
-        if (!model.same_from_all_sides) needs.sided_parts.insert(part);
-        if (model.mirrors()) needs.mirror_parts.insert(part);
-    }
+        if (!model.same_from_all_sides) needs.sided_parts.insert(name);
+        if (model.mirrors()) needs.mirror_parts.insert(name);
+    };
+    for (std::size_t i = 0; i < scene.part_materials.size(); ++i) add(scene.part_materials[i], i);
+    for (const PartArtwork& artwork : scene.artwork) add(artwork.material, artwork.part);
     return needs;
 }
 
@@ -135,6 +137,13 @@ void plan_shading(const Scene& scene, const Needs& needs, FramePlan& plan) {
     } else {
         plan.skipped.push_back({kDiffuseLightPass, "no part is plain diffuse"});
     }
+    if (scene.artwork.empty()) {
+        plan.skipped.push_back({kArtworkPass, "nothing lies over the parts' paints"});
+    } else {
+        plan_pass(plan,
+                  kArtworkPass,
+                  "how much of each fragment artwork covers, once a pose and place of it");
+    }
     for (std::size_t i = 0; i < scene.part_materials.size(); ++i) {
         const Material& material = scene.part_materials[i];
         const std::string in_words = model_info(material.model).in_words;
@@ -142,6 +151,18 @@ void plan_shading(const Scene& scene, const Needs& needs, FramePlan& plan) {
             plan,
             shade_pass(scene, i),
             material.name.empty() ? in_words : fmt::format("{} is {}", material.name, in_words));
+    }
+    for (std::size_t k = 0; k < scene.artwork.size(); ++k) {
+        const PartArtwork& artwork = scene.artwork[k];
+        const char* shape = kArtworkShapes[static_cast<std::size_t>(artwork.artwork.shape)];
+        const std::size_t coats = coats_of(artwork).size();
+        plan_pass(plan,
+                  artwork_pass(scene, k),
+                  fmt::format("{} ({}) lies over it in {}{}",
+                              artwork.artwork.name.empty() ? "artwork" : artwork.artwork.name,
+                              shape,
+                              artwork.material.name,
+                              coats == 1 ? "" : fmt::format(", mixed of {}", coats)));
     }
     for (const ModelInfo& model : model_table()) {
         if (needs.models.contains(model.model)) continue;
@@ -190,6 +211,14 @@ std::string shade_pass(const Scene& scene, std::size_t part) {
     return fmt::format("shade:{}:{}",
                        scene.product->mesh.parts.at(part).name,
                        model_info(scene.part_materials.at(part).model).name);
+}
+
+std::string artwork_pass(const Scene& scene, std::size_t artwork) {
+    const PartArtwork& one = scene.artwork.at(artwork);
+    return fmt::format("shade:{}:artwork-{}:{}",
+                       scene.product->mesh.parts.at(one.part).name,
+                       artwork + 1,
+                       model_info(one.material.model).name);
 }
 
 const PlannedPass* find_pass(const FramePlan& plan, const std::string& name) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include <glm/vec3.hpp>
 
 #include "core/image.h"
+#include "scene/artwork.h"
 
 namespace livery {
 
@@ -34,12 +36,19 @@ struct EnvironmentReference {
 struct Look {
     std::string name;
     std::map<std::string, std::string>
-        parts;  ///< part name -> material name or file; "*": the rest
+        parts;                     ///< part name -> material name or file; "*": the rest
+    std::vector<Artwork> artwork;  ///< over these paints, each over those before it
     std::vector<DirectionalLight> lights;
     EnvironmentReference environment;
     double exposure_ev = 0.0;
     std::filesystem::path file;
 };
+
+/// Calls `change` for every name in a look that may be one of a file: paints, pictures, the
+/// environment.
+void for_each_file(Look& look, const std::function<void(std::string&)>& change);
+/// For every paint, the parts' and artwork's that has one of its own.
+void for_each_paint(Look& look, const std::function<void(std::string&)>& change);
 
 /// Look file (docs/files.md). Throws FileError; an unknown field is refused, by name.
 Look read_look_file(const std::filesystem::path& file);

@@ -90,6 +90,7 @@ Look read_look(const JsonReader& root) {
             if (look.parts[part].empty()) paint.fail("an empty name", "a paint or a material file");
         }
     }
+    if (root.has("artwork")) look.artwork = read_artwork(root["artwork"]);
     if (root.has("lights")) look.lights = read_lights(root["lights"]);
     look.environment = read_environment(root);
     if (root.has("exposure_ev")) look.exposure_ev = root["exposure_ev"].number_between(-30.0, 30.0);
@@ -101,10 +102,26 @@ Json json_of(const Look& look) {
     json["name"] = look.name;
     json["parts"] = Json::object();
     for (const auto& [part, paint] : look.parts) json["parts"][part] = paint;
+    if (!look.artwork.empty()) json["artwork"] = json_of(look.artwork);
     json["lights"] = json_of(look.lights);
     if (!look.environment.file.empty()) json["environment"] = json_of(look.environment);
     json["exposure_ev"] = look.exposure_ev;
     return json;
+}
+
+void for_each_paint(Look& look, const std::function<void(std::string&)>& change) {
+    for (auto& [part, paint] : look.parts) change(paint);
+    for (Artwork& artwork : look.artwork) {
+        if (!artwork.paint.empty()) change(artwork.paint);
+    }
+}
+
+void for_each_file(Look& look, const std::function<void(std::string&)>& change) {
+    for_each_paint(look, change);
+    for (Artwork& artwork : look.artwork) {
+        if (!artwork.picture.empty()) change(artwork.picture);
+    }
+    if (!look.environment.file.empty()) change(look.environment.file);
 }
 
 Look read_look_file(const std::filesystem::path& file) {
@@ -115,7 +132,8 @@ Look parse_look(const std::string& text, const std::filesystem::path& file) {
     const Json json = parse_json(text, file);
     const JsonReader root(file, json);
     root.require_format_version(kFormatVersion);
-    root.allow_only({"format_version", "name", "parts", "lights", "environment", "exposure_ev"});
+    root.allow_only(
+        {"format_version", "name", "parts", "artwork", "lights", "environment", "exposure_ev"});
     Look look = read_look(root);
     if (!root.has("name")) look.name = file.stem().string();
     look.file = file;

@@ -16,6 +16,10 @@ Json json_of(const Look& look);
 std::vector<DirectionalLight> read_lights(const JsonReader& list);
 Json json_of(const std::vector<DirectionalLight>& lights);
 
+/// Throw FileError, for what check_artwork() refuses as well.
+std::vector<Artwork> read_artwork(const JsonReader& list);
+Json json_of(const std::vector<Artwork>& artwork);
+
 /// The member `environment`; without it, no environment.
 EnvironmentReference read_environment(const JsonReader& parent);
 Json json_of(const EnvironmentReference& environment);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include "core/error.h"
@@ -35,17 +36,43 @@ Material own_material(const Part& part) {
     return material;
 }
 
-void check_part_names(const Product& product, const Look& look) {
+void check_part_name(const Product& product,
+                     const Look& look,
+                     const std::string& field,
+                     const std::string& name) {
     const auto& parts = product.mesh.parts;
-    for (const auto& [name, paint] : look.parts) {
-        if (name == "*") continue;
-        const bool known = std::any_of(
-            parts.begin(), parts.end(), [&](const Part& part) { return part.name == name; });
-        if (known) continue;
-        std::string names;
-        for (const auto& part : parts) names += ", " + part.name;
-        throw FileError(
-            look.file, "parts." + name, "no such part in " + product.name, "one of *" + names);
+    const bool known =
+        name == "*" || std::any_of(parts.begin(), parts.end(), [&](const Part& part) {
+            return part.name == name;
+        });
+    if (known) return;
+    std::string names;
+    for (const auto& part : parts) names += ", " + part.name;
+    throw FileError(look.file, field, "no such part in " + product.name, "one of *" + names);
+}
+
+void add_artwork(const Look& look, const std::vector<Material>& own_paints, Scene& scene) {
+    const std::vector<Part>& parts = scene.product->mesh.parts;
+    for (std::size_t k = 0; k < look.artwork.size(); ++k) {
+        const Artwork& artwork = look.artwork[k];
+        const std::string field = fmt::format("artwork[{}]", k);
+        check_part_name(*scene.product, look, field + ".part", artwork.part);
+        std::shared_ptr<const ArtworkPicture> picture;
+        if (artwork.shape == ArtworkShape::picture) {
+            picture = load_artwork_picture(
+                find_artwork_picture(artwork.picture, look.file.parent_path()));
+        }
+        for (std::size_t p = 0; p < parts.size(); ++p) {
+            if (artwork.part != "*" && artwork.part != parts[p].name) continue;
+            const Material material = artwork.paint.empty()
+                                          ? scene.part_materials[p]
+                                          : find_paint(look, artwork.paint, own_paints);
+            try {
+                scene.artwork.push_back(make_part_artwork(p, artwork, material, picture));
+            } catch (const std::invalid_argument& error) {
+                throw FileError(look.file, field, error.what(), "another paint or use");
+            }
+        }
     }
 }
 
@@ -57,7 +84,9 @@ Scene make_scene(std::shared_ptr<const Product> product,
                  const std::shared_ptr<const Environment>& loaded,
                  const std::vector<Material>& own_paints) {
     check_argument(product != nullptr, "make_scene: a product is needed");
-    check_part_names(*product, look);
+    for (const auto& [name, paint] : look.parts) {
+        check_part_name(*product, look, "parts." + name, name);
+    }
     Scene scene;
     for (const auto& part : product->mesh.parts) {
         auto paint = look.parts.find(part.name);
@@ -76,10 +105,18 @@ Scene make_scene(std::shared_ptr<const Product> product,
                  : std::make_shared<const Environment>(load_environment(look.environment, beside));
     }
     scene.product = std::move(product);
+    add_artwork(look, own_paints, scene);
     scene.lights = look.lights;
     scene.eye_in_world_mm = eye_mm;
     scene.exposure_ev = look.exposure_ev;
     return scene;
+}
+
+bool any_paint(const Scene& scene, const std::function<bool(const Material&)>& is_such) {
+    return std::any_of(scene.part_materials.begin(), scene.part_materials.end(), is_such) ||
+           std::any_of(scene.artwork.begin(), scene.artwork.end(), [&](const PartArtwork& artwork) {
+               return is_such(artwork.material);
+           });
 }
 
 glm::dvec3 default_eye_mm(const Product& product) {

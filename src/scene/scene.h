@@ -1,12 +1,14 @@
 // One immutable description of what to draw: everything that the renderers are handed.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
 #include <glm/vec3.hpp>
 
 #include "appearance/material.h"
+#include "scene/artwork_coats.h"
 #include "scene/look.h"
 #include "scene/product.h"
 
@@ -19,10 +21,14 @@ struct Scene {
     std::shared_ptr<const Environment> environment;  ///< null: none
 
     std::vector<Material> part_materials;  ///< one a part of the product
+    std::vector<PartArtwork> artwork;      ///< over them, each over those before it on its part
     std::vector<DirectionalLight> lights;
     glm::dvec3 eye_in_world_mm{0.0};  ///< the audience's eye: shading is for this point
     double exposure_ev = 0.0;         ///< radiance is scaled by 2^EV
 };
+
+/// Whether any paint on the product, artwork's included, is such.
+bool any_paint(const Scene& scene, const std::function<bool(const Material&)>& is_such);
 
 /// Resolves a look's names against a product and the paint library. A part that the look does not
 /// name keeps the file's own paint, or its colour as a plain diffuse. Throws FileError (unknown
