@@ -6,7 +6,7 @@ uniform float u_samples_a_pixel;  // along a side
 uniform vec3 u_eye_mm;
 uniform vec3 u_view_centre_mm;
 
-uniform sampler2D u_vertices;  // three texels a vertex: position in mm, normal, tangent
+uniform sampler2D u_vertices;  // three texels a vertex: position in mm and u, normal and v, tangent
 uniform usampler2D u_corners;  // one a triangle: its vertices, its part
 uniform sampler2D u_sky;       // one a vertex: radiance of a white diffuser; openness
 #if LIGHTS > 0
@@ -23,6 +23,11 @@ vec3 s_position_mm, s_normal;
 #ifndef LAMBERT
 vec3 s_tangent, s_bitangent, s_eye;
 float s_slope_variance;
+#endif
+#ifdef OVER
+// From this sample to the next
+vec3 s_across_mm, s_down_mm;
+vec2 s_uv, s_uv_across, s_uv_down;
 #endif
 
 vec4 of_vertex(uint k, uint texel) {
@@ -67,6 +72,25 @@ void prepare_sample() {
         dot(flat_normal, u_view_centre_mm - s_position_mm) * dot(flat_normal, outside) < 0.0;
     s_normal = from_inside ? -outside : outside;
 
+#if !defined(LAMBERT) || defined(OVER)
+    vec2 step_x = vec2(-(c.y - a.y), b.y - a.y) * -scale / u_samples_a_pixel;
+    vec2 step_y = vec2(-(c.x - a.x), b.x - a.x) * scale / u_samples_a_pixel;
+    vec3 across = in_perspective(on_picture + vec3(-step_x.x - step_x.y, step_x), depth);
+    vec3 down = in_perspective(on_picture + vec3(-step_y.x - step_y.y, step_y), depth);
+#endif
+
+#ifdef OVER
+    mat3 positions = mat3(xa, xb, xc);
+    s_across_mm = positions * (across - s_weight);
+    s_down_mm = positions * (down - s_weight);
+    mat3x2 uvs = mat3x2(vec2(of_vertex(s_corner.x, 0u).w, of_vertex(s_corner.x, 1u).w),
+                        vec2(of_vertex(s_corner.y, 0u).w, of_vertex(s_corner.y, 1u).w),
+                        vec2(of_vertex(s_corner.z, 0u).w, of_vertex(s_corner.z, 1u).w));
+    s_uv = uvs * s_weight;
+    s_uv_across = uvs * (across - s_weight);
+    s_uv_down = uvs * (down - s_weight);
+#endif
+
 #ifndef LAMBERT
     vec4 tangent = s_weight.x * of_vertex(s_corner.x, 2u) +
                    s_weight.y * of_vertex(s_corner.y, 2u) +
@@ -80,12 +104,8 @@ void prepare_sample() {
     s_eye = cosine < 1e-4 ? normalize(wo + (1e-4 - cosine) * s_normal) : wo;
 
     // Mean squared slope from one sample to the next, as a square footprint has it.
-    vec2 step_x = vec2(-(c.y - a.y), b.y - a.y) * -scale / u_samples_a_pixel;
-    vec2 step_y = vec2(-(c.x - a.x), b.x - a.x) * scale / u_samples_a_pixel;
-    vec3 dx = normalize(normals * in_perspective(
-                            on_picture + vec3(-step_x.x - step_x.y, step_x), depth)) - outside;
-    vec3 dy = normalize(normals * in_perspective(
-                            on_picture + vec3(-step_y.x - step_y.y, step_y), depth)) - outside;
+    vec3 dx = normalize(normals * across) - outside;
+    vec3 dy = normalize(normals * down) - outside;
     s_slope_variance = (dot(dx, dx) + dot(dy, dy)) * (1.0 / 12.0);
 #endif
 }

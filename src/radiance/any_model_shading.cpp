@@ -92,12 +92,20 @@ void shade_any_model(const LaneJob& job, const ModelInfo& model, const AnyModelU
     Shader shader(job, model, uniforms);
     for (shader.block = job.first_block; shader.block < job.end_block; ++shader.block) {
         for (shader.lane = 0; shader.lane < kLaneBlock; ++shader.lane) {
-            const glm::vec3 colour = shader.shaded();
             float* to = job.shaded + 4 * (kLaneBlock * shader.block + shader.lane);
-            to[0] = colour.x;
-            to[1] = colour.y;
-            to[2] = colour.z;
-            to[3] = 1.0f;
+            if (!job.artwork) {
+                const glm::vec3 colour = shader.shaded();
+                for (int c = 0; c < 3; ++c) to[c] = colour[c];
+                to[3] = 1.0f;
+                continue;
+            }
+            const glm::vec4 mean = shader.four(job.artwork);
+            if (!(mean.w > 0.0f)) continue;
+            const glm::vec3 colour = shader.shaded();
+            for (int c = 0; c < 3; ++c) {
+                to[c] = to[c] * (1.0f - job.of_cover * mean.w) +
+                        colour[c] * (job.of_colour * mean[c] + job.of_alpha * mean.w);
+            }
         }
     }
 }

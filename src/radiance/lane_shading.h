@@ -31,6 +31,10 @@ struct LaneJob {
     const std::uint16_t* const* mirror = nullptr;  ///< the same for each layer
     float mirror_unit = 1.0f;
     float* shaded = nullptr;  ///< R, G, B, 1 of each fragment
+    /// Of a paint of an artwork, 4 channels: it is added with the weight of_colour * (R, G, B) +
+    /// of_alpha * A, over of_cover * A less of what is there. Null: what is there is replaced.
+    const float* artwork = nullptr;
+    float of_colour = 1.0f, of_alpha = 0.0f, of_cover = 1.0f;
     std::size_t first_block = 0, end_block = 0;
 };
 

@@ -35,8 +35,30 @@ void ProcessorShading::shade(const Material& material,
                              double exposure_ev,
                              std::size_t part,
                              const LaneFunctions& functions) {
-    const ModelInfo& model = model_info(material.model);
+    shade(material, inputs, exposure_ev, part, functions, LaneJob());
+}
+
+void ProcessorShading::shade(const ArtworkCoat& coat,
+                             const InputLayers& means,
+                             const ShadingInputs& inputs,
+                             double exposure_ev,
+                             std::size_t part,
+                             const LaneFunctions& functions) {
     LaneJob job;
+    job.artwork = means.floats(coat.layer);
+    job.of_colour = coat.of_colour;
+    job.of_alpha = coat.of_alpha;
+    job.of_cover = coat.of_cover;
+    shade(coat.material, inputs, exposure_ev, part, functions, job);
+}
+
+void ProcessorShading::shade(const Material& material,
+                             const ShadingInputs& inputs,
+                             double exposure_ev,
+                             std::size_t part,
+                             const LaneFunctions& functions,
+                             LaneJob job) {
+    const ModelInfo& model = model_info(material.model);
     std::vector<const float*> lights;
     std::vector<const std::uint16_t*> mirror;
     const bool environment = static_cast<bool>(model.mirrors() ? inputs.mirror : inputs.sky);

@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "gl/draw.h"
 #include "gl/read_back.h"
+#include "radiance/artwork_textures.h"
 #include "radiance/environment_filter.h"
 #include "radiance/shading.h"
 
@@ -180,10 +181,13 @@ struct RasterPreview::State {
     void upload_layers(const FilteredEnvironment& filtered);
     void find_samples(const View& new_view);
     void shade_part(const Scene& scene, std::size_t part);
+    Program& ready(const Scene& scene, const Material& material, std::size_t part, bool over);
+    void shade_artwork(const Scene& scene, const PartArtwork& artwork);
     void downsample(const Texture2D& from, const Framebuffer& to);
     void set_view(Program& program) const;
     Program& shading_program(const ShadingKey& key);
     MeasuredTextures measured;
+    ArtworkTextures textures;
 };
 
 RasterPreview::State::State(std::shared_ptr<const Product> its_product, int supersampling)
@@ -193,8 +197,8 @@ RasterPreview::State::State(std::shared_ptr<const Product> its_product, int supe
     vertex_array.floats(0, position_buffer, 3, sizeof(glm::vec3));
     std::vector<glm::vec4> attributes;
     for (std::size_t i = 0; i < mesh.positions_mm.size(); ++i) {
-        attributes.emplace_back(mesh.positions_mm[i], 0.0f);
-        attributes.emplace_back(mesh.normals[i], 0.0f);
+        attributes.emplace_back(mesh.positions_mm[i], mesh.uvs[i].x);
+        attributes.emplace_back(mesh.normals[i], mesh.uvs[i].y);
         attributes.push_back(mesh.tangents[i]);
     }
     vertices = float_texels(attributes);
@@ -314,14 +318,17 @@ void RasterPreview::State::find_samples(const View& new_view) {
     samples_found = true;
 }
 
-void RasterPreview::State::shade_part(const Scene& scene, std::size_t part) {
-    if (parts[part].count == 0) return;
-    const Material& material = scene.part_materials[part];
+/// The program for a part in a paint, with everything but an artwork bound.
+Program& RasterPreview::State::ready(const Scene& scene,
+                                     const Material& material,
+                                     std::size_t part,
+                                     bool over) {
     const std::vector<DirectionalLight>& lights =
         is_solved_for(*light, scene.lights, light->environment.get()) ? scene.lights
                                                                       : light->lights;
     const auto count = static_cast<int>(lights.size());
-    Program& program = shading_program({material.model, count, light->environment != nullptr});
+    Program& program =
+        shading_program({material.model, count, light->environment != nullptr, over});
     set_paint(program, material, scene.exposure_ev, measured);
     set_view(program);
     program.set("u_eye_mm", glm::vec3(scene.eye_in_world_mm));
@@ -356,10 +363,29 @@ void RasterPreview::State::shade_part(const Scene& scene, std::size_t part) {
     corners.bind(3);
     program.set("u_sky", 4);
     sky.bind(4);
+    return program;
+}
+
+void RasterPreview::State::shade_part(const Scene& scene, std::size_t part) {
+    if (parts[part].count == 0) return;
     DrawState state;
     state.depth_equal = true;
     state.scissor = scaled(parts[part].covered, factor);
-    screen.run(program, target.to_samples, state);
+    screen.run(ready(scene, scene.part_materials[part], part, false), target.to_samples, state);
+}
+
+void RasterPreview::State::shade_artwork(const Scene& scene, const PartArtwork& artwork) {
+    if (parts[artwork.part].count == 0) return;
+    DrawState state;
+    state.depth_equal = true;
+    state.scissor = scaled(parts[artwork.part].covered, factor);
+    state.blend = Blend::over;
+    for (const ArtworkCoat& coat : coats_of(artwork)) {
+        Program& program = ready(scene, coat.material, artwork.part, true);
+        set_coat(program, coat);
+        textures.set(program, artwork);
+        screen.run(program, target.to_samples, state);
+    }
 }
 
 void RasterPreview::State::downsample(const Texture2D& from, const Framebuffer& to) {
@@ -425,6 +451,8 @@ void RasterPreview::draw(const Scene& scene, const View& view) {
     s.find_samples(view);
     s.target.to_samples.clear_colour(0, 0.0f, 0.0f, 0.0f, 0.0f);
     for (std::size_t p = 0; p < s.parts.size(); ++p) s.shade_part(scene, p);
+    for (const PartArtwork& artwork : scene.artwork) s.shade_artwork(scene, artwork);
+    s.textures.keep(scene);
     s.downsample(s.target.samples, s.target.to_pixels);
 }
 

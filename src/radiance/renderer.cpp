@@ -13,6 +13,7 @@
 #include "gl/draw.h"
 #include "gl/read_back.h"
 #include "gl/timer.h"
+#include "radiance/artwork_inputs.h"
 #include "radiance/environment_filter.h"
 #include "radiance/fragment_inputs.h"
 #include "radiance/packed_fragments.h"
@@ -25,12 +26,39 @@ namespace {
 
 void check_fits(const Scene& scene, const FramePlan& plan, const Product* product) {
     check_argument(scene.product.get() == product, "the scene shows another product");
-    for (std::size_t i = 0; i < scene.part_materials.size(); ++i) {
-        const std::string pass = shade_pass(scene, i);
+    const auto check = [&](const std::string& pass) {
         check_argument(find_pass(plan, pass) != nullptr,
                        fmt::format("the plan has no pass \"{}\": it is of another scene", pass));
-    }
+    };
+    for (std::size_t i = 0; i < scene.part_materials.size(); ++i) check(shade_pass(scene, i));
+    for (std::size_t k = 0; k < scene.artwork.size(); ++k) check(artwork_pass(scene, k));
 }
+
+/// What a part was shaded with.
+struct Shaded {
+    Material material;
+    std::vector<Material> artwork;
+    double exposure_ev = 0.0;
+};
+
+Shaded wanted_of(const Scene& scene, std::size_t part) {
+    Shaded wanted{scene.part_materials[part], {}, scene.exposure_ev};
+    for (const PartArtwork& artwork : scene.artwork) {
+        if (artwork.part == part) wanted.artwork.push_back(artwork.material);
+    }
+    return wanted;
+}
+
+bool same(const Shaded& a, const Shaded& b) {
+    return a.exposure_ev == b.exposure_ev && same_reflectance(a.material, b.material) &&
+           std::equal(a.artwork.begin(),
+                      a.artwork.end(),
+                      b.artwork.begin(),
+                      b.artwork.end(),
+                      same_reflectance);
+}
+
+bool is_plain(const Material& material) { return model_info(material.model).same_from_all_sides; }
 
 }  // namespace
 
@@ -64,6 +92,7 @@ struct RadianceRenderer::State {
     const ShadingDevice device;
     PackedLayout layout;
     FragmentInputs inputs;
+    ArtworkInputs artwork;
     ShadingPrograms programs;
     std::optional<ResolvePass> resolve;
     Texture2D shaded, target;
@@ -75,10 +104,6 @@ struct RadianceRenderer::State {
     std::shared_ptr<const ImageF> picture;  ///< the last frame; null: still in OpenGL, if at all
     bool target_stale = true;
 
-    struct Shaded {
-        Material material;
-        double exposure_ev = 0.0;
-    };
     std::vector<std::optional<Shaded>> parts;  ///< as last shaded
     std::deque<GlTimer> timers;
     int own_textures = 0;
@@ -92,6 +117,7 @@ struct RadianceRenderer::State {
           device(its_device),
           layout(layout_of(map)),
           inputs(geometry->product->mesh, *geometry->tracer, map, layout, device, keep_better),
+          artwork(geometry->product->mesh, geometry->view, map, layout, device),
           parts(geometry->product->mesh.parts.size()) {}
 
     void solve(const Scene& scene, FramePlan& plan, StageClock& clock, const Progress& progress);
@@ -101,7 +127,12 @@ struct RadianceRenderer::State {
     /// Shades the parts that need it; their timers are read when all is drawn.
     void shade(const Scene& scene, FramePlan& plan);
     void upload(const Scene& scene, StageClock& clock);
-    void shade_part(PlannedPass& pass, const Scene& scene, std::size_t part);
+    template <typename OnProcessor, typename InOpenGl>
+    void time_shading(PlannedPass& pass,
+                      std::size_t fragments,
+                      const OnProcessor& on_processor,
+                      const InOpenGl& in_open_gl);
+    void shade_part(FramePlan& plan, const Scene& scene, std::size_t part);
     void run_resolve(FramePlan& plan);
     void read_timers();
 
@@ -128,6 +159,9 @@ void RadianceRenderer::State::solve(const Scene& scene,
     }
     const int before = clock.passes_run();
     inputs.solve(scene, plan, clock, progress);
+    if (!clock.run(kArtworkPass, !artwork.stands(scene), [&] { artwork.solve(scene); })) {
+        artwork.solve(scene);  // what is there no more
+    }
     counters.passes_run += clock.passes_run() - before;
     progress.check_stop();
 }
@@ -160,45 +194,86 @@ std::shared_ptr<ImageF> RadianceRenderer::State::blank_picture() {
 /// What is shaded in another light now does not stand.
 void RadianceRenderer::State::upload(const Scene& scene, StageClock& clock) {
     const FragmentInputs::Changed changed = inputs.upload(scene, clock);
-    for (std::optional<Shaded>& part : parts) {
-        if (!part) continue;
-        const bool plain = model_info(part->material.model).same_from_all_sides;
-        if (plain ? changed.diffuse : changed.glossy) part.reset();
+    artwork.upload();
+    const std::vector<bool> covered = artwork.take_changed_parts();
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+        if (!parts[p]) continue;
+        const auto stale = [&](const Material& material) {
+            return is_plain(material) ? changed.diffuse : changed.glossy;
+        };
+        const std::vector<Material>& over = parts[p]->artwork;
+        if (covered[p] || stale(parts[p]->material) ||
+            std::any_of(over.begin(), over.end(), stale)) {
+            parts[p].reset();
+        }
     }
 }
 
 void RadianceRenderer::State::shade(const Scene& scene, FramePlan& plan) {
     make_shading();
     parts_shaded = 0;
+    for (std::size_t p = 0; p < parts.size(); ++p) find_pass(plan, shade_pass(scene, p))->ms = 0.0;
+    for (std::size_t k = 0; k < scene.artwork.size(); ++k) {
+        find_pass(plan, artwork_pass(scene, k))->ms = 0.0;
+    }
     for (std::size_t p = 0; p < parts.size(); ++p) {
-        PlannedPass* pass = find_pass(plan, shade_pass(scene, p));
-        pass->ms = 0.0;
-        const Material& material = scene.part_materials[p];
-        const bool stands = parts[p] && same_reflectance(parts[p]->material, material) &&
-                            parts[p]->exposure_ev == scene.exposure_ev;
-        if (stands) continue;
-        parts[p] = Shaded{material, scene.exposure_ev};
+        Shaded wanted = wanted_of(scene, p);
+        if (parts[p] && same(*parts[p], wanted)) continue;
+        parts[p] = std::move(wanted);
         if (layout.fragments(p) == 0) continue;
-        shade_part(*pass, scene, p);
+        shade_part(plan, scene, p);
         ++parts_shaded;
-        ++counters.passes_run;
-        counters.fragments_shaded += static_cast<int>(layout.fragments(p));
     }
 }
 
-void RadianceRenderer::State::shade_part(PlannedPass& pass, const Scene& scene, std::size_t part) {
-    const Material& material = scene.part_materials[part];
+template <typename OnProcessor, typename InOpenGl>
+void RadianceRenderer::State::time_shading(PlannedPass& pass,
+                                           std::size_t fragments,
+                                           const OnProcessor& on_processor,
+                                           const InOpenGl& in_open_gl) {
+    ++counters.passes_run;
+    counters.fragments_shaded += static_cast<int>(fragments);
     if (processor) {
         const double begin = StageClock::now_ms();
-        processor->shade(material, inputs.shading(), scene.exposure_ev, part);
+        on_processor();
         pass.ms = *pass.ms + StageClock::now_ms() - begin;
         return;
     }
     GlTimer& timer = timer_for(&pass);
     timer.start();
-    programs.shade(
-        material, inputs.shading(), scene.exposure_ev, layout.rectangle(part), shaded_framebuffer);
+    in_open_gl();
     timer.stop();
+}
+
+void RadianceRenderer::State::shade_part(FramePlan& plan, const Scene& scene, std::size_t part) {
+    const ShadingInputs& shading = inputs.shading();
+    const double exposure_ev = scene.exposure_ev;
+    const PixelRect rectangle = layout.rectangle(part);
+    const Material& material = scene.part_materials[part];
+    time_shading(
+        *find_pass(plan, shade_pass(scene, part)),
+        layout.fragments(part),
+        [&] { processor->shade(material, shading, exposure_ev, part); },
+        [&] { programs.shade(material, shading, exposure_ev, rectangle, shaded_framebuffer); });
+    for (std::size_t k = 0; k < scene.artwork.size(); ++k) {
+        if (scene.artwork[k].part != part || artwork.covered(k) == 0) continue;
+        const InputLayers& means = artwork.layers(k);
+        const std::vector<ArtworkCoat> coats = coats_of(scene.artwork[k]);
+        time_shading(
+            *find_pass(plan, artwork_pass(scene, k)),
+            coats.size() * artwork.covered(k),
+            [&] {
+                for (const ArtworkCoat& coat : coats) {
+                    processor->shade(coat, means, shading, exposure_ev, part);
+                }
+            },
+            [&] {
+                for (const ArtworkCoat& coat : coats) {
+                    programs.shade(
+                        coat, means, shading, exposure_ev, rectangle, shaded_framebuffer);
+                }
+            });
+    }
 }
 
 void RadianceRenderer::State::run_resolve(FramePlan& plan) {
@@ -266,6 +341,11 @@ void RadianceRenderer::prepare(const Scene& scene, FramePlan& plan, const Progre
     for (const Material& material : scene.part_materials) {
         progress.check_stop();
         s.programs.compile(material, s.inputs.shading());
+        if (!scene.artwork.empty()) s.programs.compile(material, s.inputs.shading(), true);
+    }
+    for (const PartArtwork& artwork : scene.artwork) {
+        progress.check_stop();
+        s.programs.compile(artwork.material, s.inputs.shading(), true);
     }
 }
 
@@ -306,6 +386,14 @@ void RadianceRenderer::count_work(const Scene& scene, FramePlan& plan) const {
     for (std::size_t p = 0; p < scene.part_materials.size(); ++p) {
         set(shade_pass(scene, p), static_cast<double>(s.layout.fragments(p)));
     }
+    std::size_t worn = 0;
+    for (std::size_t k = 0; k < scene.artwork.size(); ++k) {
+        worn += s.layout.fragments(scene.artwork[k].part);
+        if (!s.artwork.stands(scene)) continue;
+        const std::size_t coats = coats_of(scene.artwork[k]).size();
+        set(artwork_pass(scene, k), static_cast<double>(coats * s.artwork.covered(k)));
+    }
+    set(kArtworkPass, static_cast<double>(worn));
     set(kResolvePass, static_cast<double>(s.map.covered_pixels));
 }
 
@@ -342,7 +430,8 @@ const std::shared_ptr<const FrameGeometry>& RadianceRenderer::geometry() const {
 RadianceRenderer::Counters RadianceRenderer::counters() const {
     Counters counters = state_->counters;
     counters.programs = state_->programs.compiled() + (state_->resolve ? 1 : 0);
-    counters.textures = state_->own_textures + state_->inputs.layers_made();
+    counters.textures =
+        state_->own_textures + state_->inputs.layers_made() + state_->artwork.layers_made();
     return counters;
 }
 

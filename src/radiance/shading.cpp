@@ -30,7 +30,7 @@ std::string define_of(ReflectanceModel model) {
 constexpr float kLowestCosine = 1e-4f;
 
 std::string shipped_text(const char* file) {
-    return read_text_file(shipped_path(std::filesystem::path("shaders/radiance") / file));
+    return read_text_file(shipped_path(std::filesystem::path("shaders") / file));
 }
 
 template <typename Uniform, typename Value>
@@ -127,6 +127,7 @@ namespace {
 
 /// Above all units that the inputs of a fragment take.
 constexpr int kMeasuredUnit = 8;
+constexpr unsigned kArtworkUnit = 9;
 
 void set_any_paint(Program& program,
                    const Material& material,
@@ -190,7 +191,7 @@ void set_paint(Program& program,
 }
 
 Program make_shading_program(const ShadingKey& key, ShadingSource source) {
-    const auto [model, lights, environment] = key;
+    const auto [model, lights, environment, over] = key;
     const bool raster = source == ShadingSource::raster;
     const std::string defines = fmt::format(
         "#define {} 1\n#define LIGHTS {}\n#define LIGHT_COUNT LIGHTS\n#define ENVIRONMENT {}\n"
@@ -207,14 +208,23 @@ Program make_shading_program(const ShadingKey& key, ShadingSource source) {
         model_info(model).mirrors() ? 1 : 0,
         lobe_turn_squared(model_info(model)));
     std::string text = "#version 450 core\n" + bsdf_glsl(model) + defines;
-    if (has_own_shading(model) && model_info(model).mirrors()) text += shipped_text("disc.glsl");
-    if (raster) text += shipped_text("mesh_texels.glsl") + shipped_text("lens.glsl");
-    text += shipped_text(raster ? "inputs_raster.glsl" : "inputs_packed.glsl");
-    text += shipped_text("shade.glsl");
+    if (over) text += "#define OVER 1\n";
+    if (has_own_shading(model) && model_info(model).mirrors())
+        text += shipped_text("radiance/disc.glsl");
+    if (raster)
+        text += shipped_text("radiance/mesh_texels.glsl") + shipped_text("radiance/lens.glsl");
+    text += shipped_text(raster ? "radiance/inputs_raster.glsl" : "radiance/inputs_packed.glsl");
+    text += shipped_text("radiance/shade.glsl");
+    if (over) {
+        if (raster) text += shipped_text("artwork/cover.glsl");
+        text += shipped_text(raster ? "artwork/inputs_raster.glsl" : "artwork/inputs_packed.glsl");
+        text += shipped_text("artwork/over.glsl");
+    }
     text += fmt::format(
         "layout(location = 0) out vec4 radiance;\n"
-        "void main() {{\n    {}radiance = vec4(shaded(), 1.0);\n}}\n",
-        raster ? "prepare_sample();\n    " : "");
+        "void main() {{\n    {}radiance = {};\n}}\n",
+        raster ? "prepare_sample();\n    " : "",
+        over ? "over_what_lies_below()" : "vec4(shaded(), 1.0)");
     const ShaderSource fragment{fmt::format("shade {}", model_info(model).name), text};
     if (!raster) return Program::screen_pass(fragment);
     return Program(load_shader("radiance/raster_part.vert", {}), fragment);
@@ -226,36 +236,40 @@ Program& ShadingPrograms::program_for(const ShadingKey& key) {
     return programs_.emplace(key, make_shading_program(key, ShadingSource::packed)).first->second;
 }
 
-ShadingKey ShadingPrograms::key_of(const Material& material, const ShadingInputs& inputs) {
+ShadingKey ShadingPrograms::key_of(const Material& material,
+                                   const ShadingInputs& inputs,
+                                   bool over) {
     const ModelInfo& model = model_info(material.model);
-    if (model.same_from_all_sides) return {material.model, 0, false};
+    if (model.same_from_all_sides) return {material.model, 0, false, over};
     return {material.model,
             static_cast<int>(inputs.light_irradiance.size()),
-            static_cast<bool>(model.mirrors() ? inputs.mirror : inputs.sky)};
+            static_cast<bool>(model.mirrors() ? inputs.mirror : inputs.sky),
+            over};
 }
 
-void ShadingPrograms::compile(const Material& material, const ShadingInputs& inputs) {
-    if (drawn_.contains(key_of(material, inputs))) return;
+void ShadingPrograms::compile(const Material& material, const ShadingInputs& inputs, bool over) {
+    if (drawn_.contains(key_of(material, inputs, over))) return;
     if (!nowhere_) {
         nowhere_ = Texture2D(1, 1, TexelFormat::rgba16f);
         nowhere_framebuffer_ = Framebuffer({&nowhere_});
     }
-    shade(material, inputs, 0.0, {0, 0, 1, 1}, nowhere_framebuffer_);
+    DrawState state;
+    state.scissor = PixelRect{0, 0, 1, 1};
+    screen_.run(ready(material, inputs, 0.0, over), nowhere_framebuffer_, state);
     finish_gl();
 }
 
-void ShadingPrograms::shade(const Material& material,
-                            const ShadingInputs& inputs,
-                            double exposure_ev,
-                            const PixelRect& rectangle,
-                            const Framebuffer& target) {
-    if (rectangle.height == 0) return;
-    const ShadingKey key = key_of(material, inputs);
-    const auto [model, lights, environment] = key;
+/// With its paint, and its inputs bound.
+Program& ShadingPrograms::ready(const Material& material,
+                                const ShadingInputs& inputs,
+                                double exposure_ev,
+                                bool over) {
+    const ShadingKey key = key_of(material, inputs, over);
+    const int lights = std::get<1>(key);
     Program& program = program_for(key);
     drawn_.insert(key);
     set_paint(program, material, exposure_ev, measured_);
-    if (model_info(model).same_from_all_sides) {
+    if (model_info(material.model).same_from_all_sides) {
         program.set("u_lit", 0);
         inputs.lit.texture().bind(0);
     } else {
@@ -268,17 +282,49 @@ void ShadingPrograms::shade(const Material& material,
         program.set("u_light_radiance", std::span<const glm::vec3>(inputs.light_irradiance));
         program.set("u_light_radius2", std::span<const float>(inputs.light_radius2));
     }
-    if (environment) {
+    if (std::get<2>(key)) {
         program.set("u_sky", 2);
         inputs.sky.texture().bind(2);
-        if (model_info(model).mirrors()) {
+        if (model_info(material.model).mirrors()) {
             program.set("u_mirror", 3);
             program.set("u_mirror_unit", inputs.mirror_unit);
             inputs.mirror.texture().bind(3);
         }
     }
+    return program;
+}
+
+void ShadingPrograms::shade(const Material& material,
+                            const ShadingInputs& inputs,
+                            double exposure_ev,
+                            const PixelRect& rectangle,
+                            const Framebuffer& target) {
+    if (rectangle.height == 0) return;
+    Program& program = ready(material, inputs, exposure_ev, false);
     DrawState state;
     state.scissor = rectangle;
+    screen_.run(program, target, state);
+}
+
+void set_coat(Program& program, const ArtworkCoat& coat) {
+    program.set("u_artwork_layer", static_cast<int>(coat.layer));
+    program.set("u_of", glm::vec3(coat.of_colour, coat.of_alpha, coat.of_cover));
+}
+
+void ShadingPrograms::shade(const ArtworkCoat& coat,
+                            const InputLayers& means,
+                            const ShadingInputs& inputs,
+                            double exposure_ev,
+                            const PixelRect& rectangle,
+                            const Framebuffer& target) {
+    if (rectangle.height == 0) return;
+    Program& program = ready(coat.material, inputs, exposure_ev, true);
+    set_coat(program, coat);
+    program.set("u_artwork", static_cast<int>(kArtworkUnit));
+    means.texture().bind(kArtworkUnit);
+    DrawState state;
+    state.scissor = rectangle;
+    state.blend = Blend::over;
     screen_.run(program, target, state);
 }
 

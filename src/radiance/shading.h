@@ -17,6 +17,7 @@
 #include "radiance/input_layers.h"
 #include "radiance/lane_shading.h"
 #include "radiance/measured_textures.h"
+#include "scene/artwork_coats.h"
 #include "scene/look.h"
 
 namespace livery {
@@ -38,7 +39,8 @@ enum class ShadingSource {
     packed,  ///< the surface map's textures
     raster   ///< the triangle that was rasterised there
 };
-using ShadingKey = std::tuple<ReflectanceModel, int, bool>;  ///< model, lights, environment
+/// Model, lights, environment, whether it lies over another paint (an artwork's).
+using ShadingKey = std::tuple<ReflectanceModel, int, bool, bool>;
 
 /// Texels in a row of the textures that hold a mesh's arrays for ShadingSource::raster.
 inline constexpr int kMeshRow = 2048;
@@ -63,6 +65,9 @@ struct AnyModelUniforms {
 };
 AnyModelUniforms any_model_uniforms_of(const Material& material, double exposure_ev);
 
+/// The coefficients of an artwork's paint.
+void set_coat(Program& program, const ArtworkCoat& coat);
+
 /// `measured` has the grids of measured paints; the one that is drawn is left bound.
 void set_paint(Program& program,
                const Material& material,
@@ -78,13 +83,25 @@ class ShadingPrograms {
                double exposure_ev,
                const PixelRect& rectangle,
                const Framebuffer& target);
+    /// Adds one paint of an artwork over what the rectangle was shaded with; `means` are its
+    /// layers'.
+    void shade(const ArtworkCoat& coat,
+               const InputLayers& means,
+               const ShadingInputs& inputs,
+               double exposure_ev,
+               const PixelRect& rectangle,
+               const Framebuffer& target);
     /// The program that the paint would be shaded with, down to the machine's code: drivers put
     /// that off until the first draw, so one pixel is drawn, nowhere.
-    void compile(const Material& material, const ShadingInputs& inputs);
+    void compile(const Material& material, const ShadingInputs& inputs, bool over = false);
     int compiled() const { return static_cast<int>(programs_.size()); }
 
   private:
-    static ShadingKey key_of(const Material& material, const ShadingInputs& inputs);
+    static ShadingKey key_of(const Material& material, const ShadingInputs& inputs, bool over);
+    Program& ready(const Material& material,
+                   const ShadingInputs& inputs,
+                   double exposure_ev,
+                   bool over);
     Program& program_for(const ShadingKey& key);
 
     std::map<ShadingKey, Program> programs_;

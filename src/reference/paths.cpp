@@ -30,12 +30,12 @@ struct PathScene::Vertex {
     glm::vec3 geometric_normal;
     glm::mat3 world_from_local;
     glm::vec3 wo;  ///< local
-    const PaintBsdf& bsdf;
+    PaintBsdf bsdf;
 
-    Vertex(const PathScene& scene, const SurfacePoint& point, const glm::vec3& toward_eye)
+    Vertex(PaintBsdf its_bsdf, const SurfacePoint& point, const glm::vec3& toward_eye)
         : position(point.position_mm),
           geometric_normal(point.geometric_normal),
-          bsdf(scene.bsdfs_[point.part]) {
+          bsdf(std::move(its_bsdf)) {
         const glm::vec3 n = point.normal;
         glm::vec3 t = glm::vec3(point.tangent) - glm::dot(glm::vec3(point.tangent), n) * n;
         if (glm::dot(t, t) < 1e-12f) {
@@ -63,6 +63,7 @@ PathScene::PathScene(const Scene& scene, const ReferenceOptions& options)
     : mesh_(scene.product->mesh),
       options_(options),
       tracer_(scene.product->mesh),
+      artwork_(scene.artwork),
       environment_(scene.environment.get()) {
     check_argument(scene.part_materials.size() == mesh_.parts.size(),
                    fmt::format("the scene has {} materials for {} parts",
@@ -71,7 +72,21 @@ PathScene::PathScene(const Scene& scene, const ReferenceOptions& options)
     for (const Material& material : scene.part_materials) {
         bsdfs_.push_back(bsdf_of(material));
     }
+    for (const PartArtwork& artwork : artwork_) artwork_bsdfs_.push_back(bsdf_of(artwork.material));
     for (const DirectionalLight& light : scene.lights) lights_.emplace_back(light);
+}
+
+PaintBsdf PathScene::bsdf_at(const SurfacePoint& point, Random& random) const {
+    for (std::size_t k = artwork_.size(); k-- > 0;) {
+        const PartArtwork& artwork = artwork_[k];
+        if (artwork.part != point.part) continue;
+        const ArtworkPoint at = artwork_at(
+            artwork, glm::dvec3(point.position_mm), glm::dvec3(point.normal), glm::dvec2(point.uv));
+        if (!(at.cover > 0.0) || random.uniform_float() >= static_cast<float>(at.cover)) continue;
+        const bool same_everywhere = artwork.artwork.use == PictureUse::cover;
+        return same_everywhere ? artwork_bsdfs_[k] : bsdf_of(material_at(artwork, at.rgba));
+    }
+    return bsdfs_[point.part];
 }
 
 bool PathScene::open(const Vertex& vertex, const glm::vec3& direction) const {
@@ -141,7 +156,7 @@ glm::vec3 PathScene::radiance(SurfacePoint point,
     }
     glm::vec3 sum(0.0f), throughput(1.0f);
     for (int bounce = 0;; ++bounce) {
-        const Vertex vertex(*this, point, wo);
+        const Vertex vertex(bsdf_at(point, random), point, wo);
         sum += throughput * light_on(vertex, random);
 
         const glm::vec2 uv = uniform_2d(random);

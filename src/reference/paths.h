@@ -33,12 +33,16 @@ class PathScene {
     glm::vec3 light_on(const Vertex& vertex, Random& random) const;
     /// What an escaping direction sampled from the reflectance meets.
     glm::vec3 light_along(const glm::vec3& direction, float reflectance_pdf) const;
+    /// The paint at a point: artwork's, by chance as much as it covers, else the part's.
+    PaintBsdf bsdf_at(const SurfacePoint& point, Random& random) const;
     bool open(const Vertex& vertex, const glm::vec3& direction) const;
 
     const Mesh& mesh_;
     ReferenceOptions options_;
     Tracer tracer_;
     std::vector<PaintBsdf> bsdfs_;
+    std::vector<PartArtwork> artwork_;
+    std::vector<PaintBsdf> artwork_bsdfs_;
     std::vector<DiscLight> lights_;
     EnvironmentSampler environment_;
 };

@@ -51,6 +51,30 @@ glm::dvec3 sky(const Environment& environment, const glm::dvec3& direction) {
     return environment.scale * sum;
 }
 
+/// What shines at a point: the part's paint and artwork's over it.
+struct Worn {
+    double share;
+    ReflectanceModel model;
+    f64::BsdfParameters parameters;
+};
+
+std::vector<Worn> worn_at(const Scene& scene,
+                          const std::vector<f64::BsdfParameters>& paints,
+                          const SurfacePoint& point) {
+    std::vector<Worn> worn{{1.0, scene.part_materials[point.part].model, paints[point.part]}};
+    for (const PartArtwork& artwork : scene.artwork) {
+        if (artwork.part != point.part) continue;
+        const ArtworkPoint at = artwork_at(
+            artwork, glm::dvec3(point.position_mm), glm::dvec3(point.normal), glm::dvec2(point.uv));
+        if (!(at.cover > 0.0)) continue;
+        for (Worn& below : worn) below.share *= 1.0 - at.cover;
+        const Material material = material_at(artwork, at.rgba);
+        worn.push_back({at.cover, material.model, parameters_of_f64(material)});
+    }
+    std::erase_if(worn, [](const Worn& one) { return !(one.share > 0.0); });
+    return worn;
+}
+
 }  // namespace
 
 ImageF direct_light(const Scene& scene, const View& view, const OracleOptions& options) {
@@ -90,8 +114,7 @@ ImageF direct_light(const Scene& scene, const View& view, const OracleOptions& o
                     wo.z = 1e-4;
                     wo = glm::normalize(wo);
                 }
-                const auto model = scene.part_materials[point.part].model;
-                const f64::BsdfParameters& paint = paints[point.part];
+                const std::vector<Worn> worn = worn_at(scene, paints, point);
                 const auto visible = [&](const glm::dvec3& direction) {
                     return !tracer.occluded(
                         {offset_origin(point.position_mm, point.geometric_normal),
@@ -106,23 +129,28 @@ ImageF direct_light(const Scene& scene, const View& view, const OracleOptions& o
                     const glm::dvec3 direction = disc_direction(light, u);
                     const glm::dvec3 wi = frame.to_local(direction);
                     if (wi.z <= 0.0 || !visible(direction)) continue;
-                    sum += kPi * (working_from_rec709() * light.radiance_rec709) * wi.z *
-                           evaluate(model, paint, wi, wo);
+                    for (const Worn& paint : worn) {
+                        sum += paint.share * kPi * (working_from_rec709() * light.radiance_rec709) *
+                               wi.z * evaluate(paint.model, paint.parameters, wi, wo);
+                    }
                 }
-                for (int j = 0; scene.environment && j < options.sky_samples; ++j) {
-                    const glm::dvec3 wi =
-                        sample(model,
-                               paint,
-                               wo,
-                               glm::dvec3(random.uniform(),
-                                          random.uniform(),
-                                          (j + random.uniform()) / options.sky_samples));
-                    if (wi.z <= 0.0) continue;
-                    const double density = pdf(model, paint, wi, wo);
-                    const glm::dvec3 direction = frame.to_world(wi);
-                    if (density <= 0.0 || !visible(direction)) continue;
-                    sum += sky(*scene.environment, direction) * evaluate(model, paint, wi, wo) *
-                           (wi.z / density / options.sky_samples);
+                for (const Worn& paint : worn) {
+                    for (int j = 0; scene.environment && j < options.sky_samples; ++j) {
+                        const glm::dvec3 wi =
+                            sample(paint.model,
+                                   paint.parameters,
+                                   wo,
+                                   glm::dvec3(random.uniform(),
+                                              random.uniform(),
+                                              (j + random.uniform()) / options.sky_samples));
+                        if (wi.z <= 0.0) continue;
+                        const double density = pdf(paint.model, paint.parameters, wi, wo);
+                        const glm::dvec3 direction = frame.to_world(wi);
+                        if (density <= 0.0 || !visible(direction)) continue;
+                        sum += paint.share * sky(*scene.environment, direction) *
+                               evaluate(paint.model, paint.parameters, wi, wo) *
+                               (wi.z / density / options.sky_samples);
+                    }
                 }
             }
             float* pixel = image.pixel(px, py);
