@@ -112,12 +112,51 @@ void apply(Document& document, const SetPaint& command) {
 void apply(Document& document, const PaintProduct& command) {
     Look& look = look_with(document, command.look);
     look.parts = {{"*", known_paint(document, command.paint)}};
+    look.artwork.clear();
 }
 
 void apply(Document& document, const EditPaint& command) {
     index_of(document, command.look);
     check_part(document, command.part);
     edit_paint(document, command);
+}
+
+/// Names as the session has them; whatever cannot be drawn is refused.
+std::vector<Artwork> checked(const Document& document, const Look& look) {
+    std::vector<Artwork> list = look.artwork;
+    if (list.size() > kMostArtworks) {
+        refuse("there are {} artworks; expected at most {}", list.size(), kMostArtworks);
+    }
+    for (Artwork& artwork : list) {
+        check_artwork(artwork);
+        if (!artwork.name.empty()) check_text(artwork.name, "the artwork's name");
+        check_part(document, artwork.part);
+        std::shared_ptr<const ArtworkPicture> picture;
+        try {
+            if (!artwork.picture.empty()) {
+                check_text(artwork.picture, "the artwork's picture");
+                const auto file = find_artwork_picture(artwork.picture, "");
+                picture = load_artwork_picture(file);
+                std::error_code error;
+                if (std::filesystem::is_regular_file(artwork.picture, error)) {
+                    artwork.picture = std::filesystem::absolute(file).lexically_normal().string();
+                }
+            }
+            if (artwork.paint.empty()) continue;
+            artwork.paint = known_paint(document, artwork.paint);
+            make_part_artwork(0, artwork, find_paint(document, artwork.paint), picture);
+        } catch (const FileError& error) {
+            throw std::invalid_argument(error.what());
+        }
+    }
+    return list;
+}
+
+void apply(Document& document, const SetArtwork& command) {
+    Look& look = look_with(document, command.look);
+    Look with = look;
+    with.artwork = command.artwork;
+    look.artwork = checked(document, with);
 }
 
 void apply(Document& document, const AddLook& command) {
@@ -131,6 +170,7 @@ void apply(Document& document, const AddLook& command) {
         check_part(document, part);
         paint = known_paint(document, paint);
     }
+    look.artwork = checked(document, look);
     look.lights = checked(look.lights);
     look.environment = checked(look.environment);
     add_look(
@@ -239,8 +279,7 @@ Look portable_look(Look look) {
         const auto file = folder / name;
         if (!name.empty() && std::filesystem::is_regular_file(file, error)) name = file.string();
     };
-    for (auto& [part, paint] : look.parts) beside(paint);
-    beside(look.environment.file);
+    for_each_file(look, beside);
     look.file.clear();
     return look;
 }

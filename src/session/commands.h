@@ -27,6 +27,11 @@ struct EditPaint {
     std::string part;
     Material material;
 };
+/// What lies over the paints of a look, as a whole: each over those before it.
+struct SetArtwork {
+    int look = 0;
+    std::vector<Artwork> artwork;
+};
 struct AddLook {
     Look look;    ///< a new one, or what was read from a file; its name is made unique
     int at = -1;  ///< place in the list; -1: last
@@ -79,6 +84,7 @@ struct SetDesignWhite {
 using SessionCommand = std::variant<SetPaint,
                                     PaintProduct,
                                     EditPaint,
+                                    SetArtwork,
                                     AddLook,
                                     DuplicateLook,
                                     RenameLook,

@@ -41,6 +41,12 @@ void read(const JsonReader& fields, EditPaint& c) {
     c = {look_in(fields), fields["part"].text(), read_material(material, UnreadMeasured::kept)};
 }
 
+Json fields_of(const SetArtwork& c) { return {{"look", c.look}, {"artwork", json_of(c.artwork)}}; }
+void read(const JsonReader& fields, SetArtwork& c) {
+    fields.allow_only({"look", "artwork"});
+    c = {look_in(fields), read_artwork(fields["artwork"])};
+}
+
 Json fields_of(const AddLook& c) {
     Json json = {{"look", json_of(portable_look(c.look))}};
     json["look"].erase("exposure_ev");
@@ -50,7 +56,7 @@ Json fields_of(const AddLook& c) {
 void read(const JsonReader& fields, AddLook& c) {
     fields.allow_only({"look", "at"});
     const JsonReader look = fields["look"];
-    look.allow_only({"name", "parts", "lights", "environment"});
+    look.allow_only({"name", "parts", "artwork", "lights", "environment"});
     look["name"].text();
     c.look = read_look(look);
     if (fields.has("at")) c.at = fields["at"].integer(0, std::numeric_limits<int>::max());
@@ -148,6 +154,7 @@ constexpr std::array<const char*, std::variant_size_v<SessionCommand>> kNames = 
     "set-paint",
     "paint-product",
     "edit-paint",
+    "set-artwork",
     "add-look",
     "duplicate-look",
     "rename-look",

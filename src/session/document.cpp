@@ -25,11 +25,11 @@ Document new_document(const std::string& product, std::optional<LengthUnit> unit
     const PaintLibrary library = read_paint_library();
     for (const std::string& name : shipped_looks()) {
         Look look = find_look_for(name, parts);
-        for (auto& [part, paint] : look.parts) {
+        for_each_paint(look, [&](std::string& paint) {
             const Material* known = library.find(paint);
-            if (!known) throw FileError(look.file, "parts." + part, paint, "a paint's name");
+            if (!known) throw FileError(look.file, "parts", paint, "a paint's name");
             paint = known->name;
-        }
+        });
         if (document.looks.empty()) document.exposure_ev = look.exposure_ev;
         look.exposure_ev = 0.0;
         look.file.clear();
@@ -80,6 +80,7 @@ Scene scene_of(const Document& document,
     const SessionLook* found = find_look(document, look_id);
     check_argument(found != nullptr, "scene_of: there is no look " + std::to_string(look_id));
     Look look = found->look;
+    std::erase_if(look.artwork, [](const Artwork& artwork) { return picture_problem(artwork); });
     look.exposure_ev = document.exposure_ev;
     // The library is read once for all parts: a scene is made whenever the pointer moves.
     std::vector<Material> paints = document.paints;

@@ -46,8 +46,9 @@ Document new_document(const std::string& product = "car",
 const SessionLook* find_look(const Document& document, int id);
 /// The session's own paint, else the library's. Throws FileError with the nearest names.
 Material find_paint(const Document& document, const std::string& name);
-/// A line for each of the session's own paints whose measured file cannot be read now. It stays in
-/// the session as it is, black, and is itself again when the file is back.
+/// A line for each of the session's own paints whose measured file cannot be read now, and for each
+/// artwork whose picture cannot. They stay in the session as they are, black or not shown, and are
+/// themselves again when the file is back.
 std::vector<std::string> paint_problems(const Document& document);
 /// The session's and the library's names, sorted, each once.
 std::vector<std::string> paint_names(const Document& document);

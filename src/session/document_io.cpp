@@ -31,7 +31,7 @@ std::string checked_text(const JsonReader& field) {
 }
 
 SessionLook read_session_look(const JsonReader& object) {
-    object.allow_only({"id", "name", "parts", "lights", "environment"});
+    object.allow_only({"id", "name", "parts", "artwork", "lights", "environment"});
     SessionLook look;
     look.id = object["id"].integer(1, kLargestId);
     look.look = read_look(object);
@@ -164,6 +164,16 @@ std::vector<std::string> paint_problems(const Document& document) {
     for (const Material& paint : document.paints) {
         if (!paint.measured || paint.measured->problem.empty()) continue;
         problems.push_back(fmt::format("\"{}\" is black: {}", paint.name, paint.measured->problem));
+    }
+    for (const SessionLook& look : document.looks) {
+        for (const Artwork& artwork : look.look.artwork) {
+            if (const auto problem = picture_problem(artwork)) {
+                problems.push_back(fmt::format("The picture on {} of {} is not shown: {}",
+                                               artwork.part,
+                                               look.look.name,
+                                               *problem));
+            }
+        }
     }
     return problems;
 }

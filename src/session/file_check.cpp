@@ -128,7 +128,8 @@ void read_session(const Path& file, FileCheck& check) {
                           std::to_string(steps) + (steps == 1 ? " step" : " steps"));
     std::set<std::string> environments;
     for (const SessionLook& look : document.looks) {
-        for (const auto& [part, paint] : look.look.parts) find_paint(document, paint);
+        Look look_here = look.look;
+        for_each_paint(look_here, [&](std::string& paint) { find_paint(document, paint); });
         const EnvironmentReference& environment = look.look.environment;
         if (environments.insert(environment.file).second) load_environment(environment, {});
     }
@@ -185,11 +186,16 @@ Kind kind_of_json(const Path& file, const Progress& progress) {
                 [](const Path& path, FileCheck& check) { check.notes = load_product(path).notes; }};
     }
     if (has("lights") || has("environment") || has("exposure_ev")) {
-        return {"look", [](const Path& path, FileCheck&) {
-                    const Look look = read_look_file(path);
-                    for (const auto& [part, paint] : look.parts) find_material(paint);
-                    load_environment(look.environment, path.parent_path());
-                }};
+        return {
+            "look", [](const Path& path, FileCheck&) {
+                Look look = read_look_file(path);
+                for_each_paint(look, [](std::string& paint) { find_material(paint); });
+                for (const Artwork& artwork : look.artwork) {
+                    if (artwork.picture.empty()) continue;
+                    load_artwork_picture(find_artwork_picture(artwork.picture, path.parent_path()));
+                }
+                load_environment(look.environment, path.parent_path());
+            }};
     }
     if (has("width") || has("distortion")) {
         return {"camera", [](const Path& path, FileCheck&) { read_camera_file(path); }};

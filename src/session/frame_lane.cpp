@@ -46,14 +46,14 @@ void run_giving_way(std::optional<Urgency> urgency, const std::function<void()>&
     if (error) std::rethrow_exception(error);
 }
 
-bool mirrors(const std::vector<Material>& paints) {
-    return std::any_of(paints.begin(), paints.end(), [](const Material& paint) {
-        return model_info(paint.model).mirrors();
-    });
+bool mirrors(const Scene& scene) {
+    return any_paint(scene,
+                     [](const Material& paint) { return model_info(paint.model).mirrors(); });
 }
 
-bool same_paints(const std::vector<Material>& a, const std::vector<Material>& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), same_reflectance);
+template <typename T>
+bool all_same(const std::vector<T>& a, const std::vector<T>& b, bool (*same)(const T&, const T&)) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), same);
 }
 
 const Scene& side_of(const FrameDescription& description, std::size_t side) {
@@ -160,10 +160,10 @@ void FrameLane::solve(const FrameDescription& description,
     prepared_ = mirrors_solved_ = false;
     sides_ = {};
     solve_light(0, description.scene, *keys[0], urgency, progress);
-    bool mirroring = mirrors(description.scene.part_materials);
+    bool mirroring = mirrors(description.scene);
     if (keys[1]) {
         solve_light(1, *description.wipe_to, *keys[1], urgency, progress);
-        mirroring = mirroring && mirrors(description.wipe_to->part_materials);
+        mirroring = mirroring && mirrors(*description.wipe_to);
     } else {
         lights_[1] = {};
     }
@@ -198,9 +198,10 @@ void FrameLane::prepare(const FrameDescription& description, const Progress& pro
     std::set<ReflectanceModel> models;
     run_giving_way(Urgency::background, [&] { models = models_likely_next(); });
     for (std::size_t side = 0; side < side_count(description); ++side) {
-        for (const Material& paint : side_of(description, side).part_materials) {
+        any_paint(side_of(description, side), [&](const Material& paint) {
             models.insert(paint.model);
-        }
+            return false;
+        });
     }
     for (const ReflectanceModel model : models) {
         const auto start = Clock::now();
@@ -234,7 +235,7 @@ bool FrameLane::can_draw(const FrameDescription& description) const {
     const SolveKeys keys = keys_of(description);
     for (std::size_t side = 0; side < side_count(description); ++side) {
         if (!same_pose(*solved_[0], *keys[side])) return false;
-        if (!mirrors_solved_ && mirrors(side_of(description, side).part_materials)) return false;
+        if (!mirrors_solved_ && mirrors(side_of(description, side))) return false;
     }
     return true;
 }
@@ -251,6 +252,9 @@ Scene FrameLane::scene_of(const FrameDescription& description, std::size_t side)
             fmt::format(
                 "part {} cannot glow: the product has {}", *part, scene.part_materials.size()));
         scene.part_materials[static_cast<std::size_t>(*part)] = glow_paint();
+        std::erase_if(scene.artwork, [&](const PartArtwork& artwork) {
+            return artwork.part == static_cast<std::size_t>(*part);
+        });
     }
     return scene;
 }
@@ -305,7 +309,9 @@ void FrameLane::draw_side(const FrameDescription& description, std::size_t index
     Side& side = sides_[index];
     const Scene scene = scene_of(description, index);
     const std::size_t light = nearest_of(solved_, keys_of(description), index);
-    const bool painted = side.radiance_working && same_paints(side.paints, scene.part_materials) &&
+    const bool painted = side.radiance_working &&
+                         all_same(side.paints, scene.part_materials, same_reflectance) &&
+                         all_same(side.artwork, scene.artwork, looks_alike) &&
                          side.exposure_ev == scene.exposure_ev && side.light == light;
     const bool ahead = !std::exchange(side.told, true);
     if (ahead && painted && side.setup == description.setup) return;
@@ -329,6 +335,7 @@ void FrameLane::draw_side(const FrameDescription& description, std::size_t index
         side.plan = std::move(drawn);
         side.radiance_working = std::move(radiance);
         side.paints = scene.part_materials;
+        side.artwork = scene.artwork;
         side.exposure_ev = scene.exposure_ev;
         side.light = light;
         if (auto& untold = lights_[light].untold) {

@@ -70,6 +70,7 @@ class FrameLane {
     /// One scene as last drawn.
     struct Side {
         std::vector<Material> paints;  ///< with the glow
+        std::vector<PartArtwork> artwork;
         double exposure_ev = 0.0;
         std::size_t light = 0;  ///< of lights_
         std::shared_ptr<const ProjectorSetup> setup;

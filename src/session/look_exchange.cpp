@@ -27,18 +27,18 @@ std::vector<std::filesystem::path> export_look(const Document& document,
     look.exposure_ev = document.exposure_ev;
     std::vector<std::filesystem::path> written = {file};
     std::map<std::string, std::string> files;  // by paint
-    for (auto& [part, paint] : look.parts) {
+    for_each_paint(look, [&](std::string& paint) {
         const auto own = std::find_if(document.paints.begin(),
                                       document.paints.end(),
                                       [&](const Material& one) { return one.name == paint; });
-        if (own == document.paints.end()) continue;
+        if (own == document.paints.end()) return;
         if (!files.contains(paint)) {
             files[paint] = material_file_name(file, paint);
             written.push_back(file.parent_path() / files[paint]);
             write_material_file(written.back(), *own);
         }
         paint = files[paint];
-    }
+    });
     write_look_file(file, look);
     return written;
 }

@@ -22,10 +22,9 @@ const Material* own_paint(const Document& document, const std::string& name) {
 
 std::ptrdiff_t times_used(const Document& document, const std::string& paint) {
     std::ptrdiff_t count = 0;
-    for (const SessionLook& look : document.looks) {
-        count += std::count_if(look.look.parts.begin(),
-                               look.look.parts.end(),
-                               [&](const auto& entry) { return entry.second == paint; });
+    for (const SessionLook& one : document.looks) {
+        Look look = one.look;
+        for_each_paint(look, [&](const std::string& name) { count += name == paint ? 1 : 0; });
     }
     return count;
 }

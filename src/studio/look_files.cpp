@@ -23,12 +23,11 @@ void name_neighbours_in_full(Look& look) {
     const auto folder = std::filesystem::absolute(look.file).parent_path();
     const auto in_full = [&](std::string& name) {
         std::error_code error;
-        if (!name.empty() && std::filesystem::is_regular_file(folder / name, error)) {
+        if (std::filesystem::is_regular_file(folder / name, error)) {
             name = (folder / name).string();
         }
     };
-    for (auto& [part, paint] : look.parts) in_full(paint);
-    in_full(look.environment.file);
+    for_each_file(look, in_full);
 }
 
 void import_look(Shell& shell, const std::filesystem::path& file) {

@@ -25,6 +25,17 @@ inline Material some_paint() {
     return paint;
 }
 
+inline Artwork some_artwork() {
+    Artwork artwork;
+    artwork.name = "Streifen \"quer\"";
+    artwork.part = "body";
+    artwork.paint = "solid red";
+    artwork.size_mm = 1.0 / 3.0;
+    artwork.share = 0.3;
+    artwork.place.centre_mm = {1.5, 1e-3, -40.0};
+    return artwork;
+}
+
 /// One of each kind, all of which the car's document takes.
 inline std::vector<SessionCommand> one_of_each(const std::string& calibration_folder) {
     Look look = car().looks[1].look;
@@ -33,6 +44,7 @@ inline std::vector<SessionCommand> one_of_each(const std::string& calibration_fo
     return {SetPaint{1, "body", "solid red"},
             PaintProduct{2, "matte grey"},
             EditPaint{1, "rims", some_paint()},
+            SetArtwork{1, {some_artwork(), Artwork{}}},
             AddLook{look, 2},
             AddLook{look},
             DuplicateLook{3},
@@ -89,7 +101,7 @@ inline SessionCommand random_command(Random& random, const Document& document) {
     const auto place = static_cast<int>(random.below(static_cast<std::uint32_t>(looks.size() + 1)));
     // Looks that are many are deleted rather than added to.
     const bool many = looks.size() > 8;
-    switch (random.below(20)) {
+    switch (random.below(21)) {
         case 0:
         case 1:
         case 2:
@@ -132,6 +144,16 @@ inline SessionCommand random_command(Random& random, const Document& document) {
             return SetExposure{number(random, -31.0, 31.0)};
         case 18:
             return SetQuality{static_cast<Quality>(random.below(4))};
+        case 19: {
+            Artwork artwork = some_artwork();
+            artwork.part = pick(random, parts);
+            artwork.paint = pick(random, paints);
+            artwork.size_mm = number(random, -0.5, 9.0);
+            std::vector<Artwork> list = one.look.artwork;
+            if (list.size() > 3) list.clear();
+            list.push_back(artwork);
+            return SetArtwork{id, list};
+        }
         default:
             return SetDesignWhite{number(random, 0.0, 105.0)};
     }
