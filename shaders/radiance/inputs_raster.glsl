@@ -24,10 +24,39 @@ vec3 s_position_mm, s_normal;
 vec3 s_tangent, s_bitangent, s_eye;
 float s_slope_variance;
 #endif
-#ifdef OVER
+#if defined(OVER) || defined(RELIEF)
+#define WITH_ARTWORK
 // From this sample to the next
 vec3 s_across_mm, s_down_mm;
 vec2 s_uv, s_uv_across, s_uv_down;
+
+FlatFootprint flat_footprint(ArtworkPlace place) {
+    if (place.by_uv) return FlatFootprint(s_uv, s_uv_across, s_uv_down);
+    return FlatFootprint(in_plane(place, s_position_mm - place.centre_mm),
+                         in_plane(place, s_across_mm),
+                         in_plane(place, s_down_mm));
+}
+#endif
+#ifdef RELIEF
+uniform ArtworkPlace u_relief_place;
+uniform sampler2DArray u_relief;
+uniform float u_relief_depth;
+
+// Tilts s_normal, and tells the variance of the slopes (src/scene/artwork_relief.cpp).
+float tilt_normal(vec4 tangent) {
+    float facing = facing_cover_of(u_relief_place, s_normal);
+    if (facing <= 0.0) return 0.0;
+    vec4 mean = facing * picture_mean(u_relief, 0, u_relief_place, flat_footprint(u_relief_place));
+    vec3 right = u_relief_place.by_uv ? tangent.xyz : u_relief_place.s;
+    right -= dot(right, s_normal) * s_normal;
+    if (dot(right, right) < 1e-12) right = cross(u_relief_place.t, s_normal);
+    right = normalize(right);
+    vec3 up = cross(s_normal, right);
+    if (u_relief_place.by_uv ? tangent.w < 0.0 : dot(up, u_relief_place.t) < 0.0) up = -up;
+    vec2 slope = u_relief_depth * mean.xy;
+    s_normal = normalize(s_normal + slope.x * right + slope.y * up);
+    return u_relief_depth * u_relief_depth * max(mean.z - dot(mean.xy, mean.xy), 0.0);
+}
 #endif
 
 vec4 of_vertex(uint k, uint texel) {
@@ -72,14 +101,14 @@ void prepare_sample() {
         dot(flat_normal, u_view_centre_mm - s_position_mm) * dot(flat_normal, outside) < 0.0;
     s_normal = from_inside ? -outside : outside;
 
-#if !defined(LAMBERT) || defined(OVER)
+#if !defined(LAMBERT) || defined(WITH_ARTWORK)
     vec2 step_x = vec2(-(c.y - a.y), b.y - a.y) * -scale / u_samples_a_pixel;
     vec2 step_y = vec2(-(c.x - a.x), b.x - a.x) * scale / u_samples_a_pixel;
     vec3 across = in_perspective(on_picture + vec3(-step_x.x - step_x.y, step_x), depth);
     vec3 down = in_perspective(on_picture + vec3(-step_y.x - step_y.y, step_y), depth);
 #endif
 
-#ifdef OVER
+#ifdef WITH_ARTWORK
     mat3 positions = mat3(xa, xb, xc);
     s_across_mm = positions * (across - s_weight);
     s_down_mm = positions * (down - s_weight);
@@ -91,10 +120,15 @@ void prepare_sample() {
     s_uv_down = uvs * (down - s_weight);
 #endif
 
-#ifndef LAMBERT
+#if !defined(LAMBERT) || defined(RELIEF)
     vec4 tangent = s_weight.x * of_vertex(s_corner.x, 2u) +
                    s_weight.y * of_vertex(s_corner.y, 2u) +
                    s_weight.z * of_vertex(s_corner.z, 2u);
+#endif
+#ifdef RELIEF
+    float relief_variance = tilt_normal(tangent);
+#endif
+#ifndef LAMBERT
     s_tangent = normalize(tangent.xyz - dot(tangent.xyz, s_normal) * s_normal);
     s_bitangent = sign(tangent.w) * cross(s_normal, s_tangent);
 
@@ -107,6 +141,9 @@ void prepare_sample() {
     vec3 dx = normalize(normals * across) - outside;
     vec3 dy = normalize(normals * down) - outside;
     s_slope_variance = (dot(dx, dx) + dot(dy, dy)) * (1.0 / 12.0);
+#ifdef RELIEF
+    s_slope_variance += relief_variance;
+#endif
 #endif
 }
 

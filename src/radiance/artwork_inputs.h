@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "radiance/artwork_footprint.h"
 #include "radiance/input_layers.h"
 #include "radiance/packed_fragments.h"
 #include "radiance/surface_map.h"
@@ -13,16 +14,6 @@
 #include "scene/view.h"
 
 namespace livery {
-
-/// Sides of a pixel where its rays meet the surface's tangent plane, in mm. Where the surface turns
-/// away from the view they grow no further than to thirty times a pixel that faces it.
-struct Footprint {
-    glm::dvec3 a{0.0}, b{0.0};
-};
-Footprint footprint_of(const View& view,
-                       std::uint32_t pixel,
-                       const glm::dvec3& position_mm,
-                       const glm::dvec3& normal);
 
 class ArtworkInputs {
   public:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <string>
 
 #include "scene/artwork_cover.h"
 
@@ -11,7 +12,7 @@ namespace {
 
 constexpr int kMostTexels = 2048;  // a side
 /// Above all units that a sample's other inputs take.
-constexpr unsigned kPictureUnit = 6;
+constexpr unsigned kPictureUnit = 6, kReliefUnit = 7;
 
 Texture2D texture_of(const FilteredPicture& picture) {
     const ImageF& image = picture.level_within(kMostTexels);
@@ -35,6 +36,20 @@ Texture2D texture_of(const FilteredPicture& picture) {
     return texture;
 }
 
+void set_place(Program& program, const std::string& name, const PartArtwork& artwork) {
+    const ArtworkPlace& place = artwork.artwork.place;
+    const ArtworkPlane plane = plane_of(place);
+    const PictureFrame picture = artwork.picture ? picture_frame(artwork) : PictureFrame();
+    program.set(name + ".centre_mm", glm::vec3(plane.centre_mm));
+    program.set(name + ".s", glm::vec3(plane.s_axis));
+    program.set(name + ".t", glm::vec3(plane.t_axis));
+    program.set(name + ".toward", glm::vec3(plane.toward));
+    program.set(name + ".through", place.through ? 1 : 0);
+    program.set(name + ".by_uv", place.by_uv ? 1 : 0);
+    program.set(name + ".repeat", artwork.artwork.repeat ? 1 : 0);
+    program.set(name + ".picture", glm::vec4(picture.scale, picture.offset));
+}
+
 }  // namespace
 
 const Texture2D& ArtworkTextures::layers_of(const PartArtwork& artwork) {
@@ -54,28 +69,25 @@ const Texture2D& ArtworkTextures::layers_of(const PartArtwork& artwork) {
 
 void ArtworkTextures::set(Program& program, const PartArtwork& artwork) {
     const Artwork& how = artwork.artwork;
-    const ArtworkPlane plane = plane_of(how.place);
     program.set("u_shape", static_cast<int>(how.shape));
     program.set("u_size", glm::vec3(how.size_mm, how.share, how.softness_mm));
-    program.set("u_plane_centre_mm", glm::vec3(plane.centre_mm));
-    program.set("u_plane_s", glm::vec3(plane.s_axis));
-    program.set("u_plane_t", glm::vec3(plane.t_axis));
-    program.set("u_plane_toward", glm::vec3(plane.toward));
-    program.set("u_through", how.place.through || how.place.by_uv ? 1 : 0);
-    program.set("u_by_uv", how.place.by_uv ? 1 : 0);
-    program.set("u_repeat", how.repeat ? 1 : 0);
+    set_place(program, "u_place", artwork);
     program.set("u_artwork", static_cast<int>(kPictureUnit));
-    if (!artwork.picture) return;
-    const PictureFrame frame = picture_frame(artwork);
-    program.set("u_picture_frame", glm::vec4(frame.scale, frame.offset));
-    layers_of(artwork).bind(kPictureUnit);
+    if (artwork.picture) layers_of(artwork).bind(kPictureUnit);
+}
+
+void ArtworkTextures::set_relief(Program& program, const PartArtwork& relief) {
+    set_place(program, "u_relief_place", relief);
+    program.set("u_relief_depth", static_cast<float>(relief.artwork.depth));
+    program.set("u_relief", static_cast<int>(kReliefUnit));
+    layers_of(relief).bind(kReliefUnit);
 }
 
 void ArtworkTextures::keep(const Scene& scene) {
     std::erase_if(pictures_, [&](const Picture& picture) {
-        return std::none_of(scene.artwork.begin(), scene.artwork.end(), [&](const auto& artwork) {
-            return artwork.picture == picture.of;
-        });
+        const auto has_it = [&](const PartArtwork& one) { return one.picture == picture.of; };
+        return std::none_of(scene.artwork.begin(), scene.artwork.end(), has_it) &&
+               std::none_of(scene.relief.begin(), scene.relief.end(), has_it);
     });
 }
 

@@ -16,6 +16,8 @@ class ArtworkTextures {
     /// Uniforms and the picture of an artwork, but not its paint; the picture is made when it is
     /// first asked for.
     void set(Program& program, const PartArtwork& artwork);
+    /// The same of a part's relief.
+    void set_relief(Program& program, const PartArtwork& relief);
     /// Frees the pictures that a scene does not have.
     void keep(const Scene& scene);
 

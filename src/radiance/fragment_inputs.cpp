@@ -70,10 +70,21 @@ FragmentInputs::FragmentInputs(const Mesh& mesh,
                                bool keep_better)
     : mesh_(mesh),
       tracer_(tracer),
-      map_(map),
+      map_(&map),
       layout_(layout),
       device_(device),
       keep_better_(keep_better) {}
+
+void FragmentInputs::use(const SurfaceMap& map) {
+    map_ = &map;
+    lights_.clear();
+    sky_visibility_.reset();
+    mirror_visibility_.reset();
+    visibility_eye_.reset();
+    sky_made_ = {};
+    mirror_made_ = {};
+    directions_stale_ = diffuse_light_stale_ = true;
+}
 
 void FragmentInputs::solve(const Scene& scene,
                            const FramePlan& plan,
@@ -107,7 +118,7 @@ void FragmentInputs::solve_lights(const Scene& scene,
             lights_.erase(found);
         }
         clock.run(pass, stale, [&] {
-            next.at = light_at_fragments(mesh_, tracer_, map_, light, rays, progress);
+            next.at = light_at_fragments(mesh_, tracer_, *map_, light, rays, progress);
         });
         lights_.insert(lights_.begin() + static_cast<std::ptrdiff_t>(planned++), std::move(next));
         if (changed) directions_stale_ = diffuse_light_stale_ = true;
@@ -135,7 +146,7 @@ void FragmentInputs::solve_sky(const Scene& scene,
     const bool visible =
         !occluded || stands || (sky_visibility_ && enough(sky_visibility_->directions, rays));
     clock.run(kOcclusionPass, !visible, [&] {
-        sky_visibility_ = solve_sky_visibility(mesh_, tracer_, map_, rays, progress);
+        sky_visibility_ = solve_sky_visibility(mesh_, tracer_, *map_, rays, progress);
     });
     clock.run(kIrradiancePass, !stands, [&] {
         if (!same_map(diffused_, scene.environment)) {
@@ -146,7 +157,7 @@ void FragmentInputs::solve_sky(const Scene& scene,
         }
         diffused_ = scene.environment;
         sky_ = sky_at_fragments(
-            map_, *scene.environment, filtered_, occluded ? &*sky_visibility_ : nullptr);
+            *map_, *scene.environment, filtered_, occluded ? &*sky_visibility_ : nullptr);
         sky_made_ = {scene.environment, occluded ? sky_visibility_->directions : 0, {}};
         directions_stale_ = diffuse_light_stale_ = true;
     });
@@ -184,7 +195,7 @@ void FragmentInputs::solve_mirror(const Scene& scene,
     const SkyVisibility* sky = trust_sky ? &*sky_visibility_ : nullptr;
     clock.run(kReflectionPass, !visible, [&] {
         mirror_visibility_ =
-            solve_mirror_visibility(mesh_, tracer_, map_, eye, rays, sky, progress);
+            solve_mirror_visibility(mesh_, tracer_, *map_, eye, rays, sky, progress);
         visibility_eye_ = eye;
     });
     clock.run(kMirrorPass, !stands, [&] {
@@ -206,12 +217,12 @@ void FragmentInputs::fill_mirror(const Scene& scene, bool occluded, const Progre
     parallel_for(texels.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) texels[k].assign(layer_size, 0.0f);
     });
-    parallel_for(map_.fragments.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    parallel_for(map_->fragments.size(), 1024, [&](std::size_t begin, std::size_t end) {
         progress.check_stop();
         for (std::size_t i = begin; i < end; ++i) {
             const auto lobes =
-                environment.at_fragment(mesh_, map_, i, scene.eye_in_world_mm, visibility);
-            const std::size_t at = 4 * layout_.address(i, map_.fragments[i].part);
+                environment.at_fragment(mesh_, *map_, i, scene.eye_in_world_mm, visibility);
+            const std::size_t at = 4 * layout_.address(i, map_->fragments[i].part);
             for (std::size_t k = 0; k < lobes.size(); ++k) {
                 for (std::size_t c = 0; c < 3; ++c) {
                     texels[k][at + c] = lobes[k][static_cast<int>(c)] / unit;
@@ -256,9 +267,9 @@ void FragmentInputs::upload_mirror() {
 }
 
 void FragmentInputs::upload_directions(const Scene& scene) {
-    const auto fragment = [&](std::size_t i) -> const Fragment& { return map_.fragments[i]; };
+    const auto fragment = [&](std::size_t i) -> const Fragment& { return map_->fragments[i]; };
     const auto upload = [&](InputLayers& input, int layer, const auto& value) {
-        input.upload(packed(map_, layout_, value), layer);
+        input.upload(packed(*map_, layout_, value), layer);
     };
     make(shading_.eye, 0, InputLayers::Precision::full);
     upload(shading_.eye, 0, [&](std::size_t i) {
@@ -296,13 +307,13 @@ void FragmentInputs::upload_diffuse_light() {
     const auto light_on = [&](std::size_t i) {
         glm::vec3 sum = sky_.empty() ? glm::vec3(0.0f) : sky_[i];
         for (const Light& light : lights_) {
-            const float cosine = glm::dot(map_.fragments[i].normal, light.at[i].direction);
+            const float cosine = glm::dot(map_->fragments[i].normal, light.at[i].direction);
             sum +=
                 radiance_working(light.light) * (light.at[i].visibility * std::max(cosine, 0.0f));
         }
         return glm::vec4(glm::min(sum, glm::vec3(kHalfLargest)), 1.0f);
     };
-    shading_.lit.upload(packed(map_, layout_, light_on), 0);
+    shading_.lit.upload(packed(*map_, layout_, light_on), 0);
 }
 
 void FragmentInputs::make(InputLayers& input,

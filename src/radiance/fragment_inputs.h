@@ -77,6 +77,9 @@ class FragmentInputs {
                    ShadingDevice device,
                    bool keep_better);
 
+    /// Another map of the same fragments: nothing that was solved stands.
+    void use(const SurfaceMap& map);
+
     /// Solves everything that the plan lists and that does not stand, without OpenGL. A stop leaves
     /// what was solved until then; what a plan does not list is kept while its light stays.
     void solve(const Scene& scene,
@@ -114,7 +117,7 @@ class FragmentInputs {
 
     const Mesh& mesh_;
     const Tracer& tracer_;
-    const SurfaceMap& map_;
+    const SurfaceMap* map_;
     const PackedLayout& layout_;
 
     const ShadingDevice device_;

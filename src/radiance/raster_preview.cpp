@@ -327,8 +327,9 @@ Program& RasterPreview::State::ready(const Scene& scene,
         is_solved_for(*light, scene.lights, light->environment.get()) ? scene.lights
                                                                       : light->lights;
     const auto count = static_cast<int>(lights.size());
-    Program& program =
-        shading_program({material.model, count, light->environment != nullptr, over});
+    const PartArtwork* relief = relief_of(scene, part);
+    Program& program = shading_program(
+        {material.model, count, light->environment != nullptr, over, relief != nullptr});
     set_paint(program, material, scene.exposure_ev, measured);
     set_view(program);
     program.set("u_eye_mm", glm::vec3(scene.eye_in_world_mm));
@@ -363,6 +364,7 @@ Program& RasterPreview::State::ready(const Scene& scene,
     corners.bind(3);
     program.set("u_sky", 4);
     sky.bind(4);
+    if (relief) textures.set_relief(program, *relief);
     return program;
 }
 

@@ -18,6 +18,7 @@
 #include "radiance/fragment_inputs.h"
 #include "radiance/packed_fragments.h"
 #include "radiance/processor_shading.h"
+#include "radiance/relief_map.h"
 #include "radiance/resolve.h"
 #include "radiance/shading.h"
 
@@ -32,6 +33,7 @@ void check_fits(const Scene& scene, const FramePlan& plan, const Product* produc
     };
     for (std::size_t i = 0; i < scene.part_materials.size(); ++i) check(shade_pass(scene, i));
     for (std::size_t k = 0; k < scene.artwork.size(); ++k) check(artwork_pass(scene, k));
+    if (!scene.relief.empty()) check(kReliefPass);
 }
 
 /// What a part was shaded with.
@@ -91,6 +93,8 @@ struct RadianceRenderer::State {
 
     const ShadingDevice device;
     PackedLayout layout;
+    SurfaceMap tilted;  ///< the map with a relief, where the scene has one
+    std::vector<PartArtwork> relief;
     FragmentInputs inputs;
     ArtworkInputs artwork;
     ShadingPrograms programs;
@@ -158,6 +162,12 @@ void RadianceRenderer::State::solve(const Scene& scene,
         map_reported = true;
     }
     const int before = clock.passes_run();
+    const bool other_relief = !same_relief(relief, scene.relief);
+    clock.run(kReliefPass, other_relief, [&] { tilted = relieved(map, scene, geometry->view); });
+    if (other_relief) {
+        inputs.use(scene.relief.empty() ? map : tilted);
+        relief = scene.relief;
+    }
     inputs.solve(scene, plan, clock, progress);
     if (!clock.run(kArtworkPass, !artwork.stands(scene), [&] { artwork.solve(scene); })) {
         artwork.solve(scene);  // what is there no more
@@ -376,6 +386,9 @@ void RadianceRenderer::count_work(const Scene& scene, FramePlan& plan) const {
         const int most = static_cast<int>(kSamplesAFragment);
         set(visibility_pass(i), fragments * (point ? std::min(rays.light, most) : rays.light));
     }
+    std::size_t tilted = 0;
+    for (const PartArtwork& relief : scene.relief) tilted += s.layout.fragments(relief.part);
+    set(kReliefPass, static_cast<double>(tilted));
     set(kIrradiancePass, fragments);
     set(kOcclusionPass, fragments * rays.sky);
     set(kFilterPass, static_cast<double>(kFilterTexels));

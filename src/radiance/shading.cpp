@@ -191,7 +191,7 @@ void set_paint(Program& program,
 }
 
 Program make_shading_program(const ShadingKey& key, ShadingSource source) {
-    const auto [model, lights, environment, over] = key;
+    const auto [model, lights, environment, over, relief] = key;
     const bool raster = source == ShadingSource::raster;
     const std::string defines = fmt::format(
         "#define {} 1\n#define LIGHTS {}\n#define LIGHT_COUNT LIGHTS\n#define ENVIRONMENT {}\n"
@@ -209,6 +209,10 @@ Program make_shading_program(const ShadingKey& key, ShadingSource source) {
         lobe_turn_squared(model_info(model)));
     std::string text = "#version 450 core\n" + bsdf_glsl(model) + defines;
     if (over) text += "#define OVER 1\n";
+    if (relief) text += "#define RELIEF 1\n";
+    if (raster && (over || relief)) {
+        text += shipped_text("artwork/cover.glsl") + shipped_text("artwork/place.glsl");
+    }
     if (has_own_shading(model) && model_info(model).mirrors())
         text += shipped_text("radiance/disc.glsl");
     if (raster)
@@ -216,7 +220,6 @@ Program make_shading_program(const ShadingKey& key, ShadingSource source) {
     text += shipped_text(raster ? "radiance/inputs_raster.glsl" : "radiance/inputs_packed.glsl");
     text += shipped_text("radiance/shade.glsl");
     if (over) {
-        if (raster) text += shipped_text("artwork/cover.glsl");
         text += shipped_text(raster ? "artwork/inputs_raster.glsl" : "artwork/inputs_packed.glsl");
         text += shipped_text("artwork/over.glsl");
     }
@@ -240,11 +243,12 @@ ShadingKey ShadingPrograms::key_of(const Material& material,
                                    const ShadingInputs& inputs,
                                    bool over) {
     const ModelInfo& model = model_info(material.model);
-    if (model.same_from_all_sides) return {material.model, 0, false, over};
+    if (model.same_from_all_sides) return {material.model, 0, false, over, false};
     return {material.model,
             static_cast<int>(inputs.light_irradiance.size()),
             static_cast<bool>(model.mirrors() ? inputs.mirror : inputs.sky),
-            over};
+            over,
+            false};
 }
 
 void ShadingPrograms::compile(const Material& material, const ShadingInputs& inputs, bool over) {

@@ -39,8 +39,9 @@ enum class ShadingSource {
     packed,  ///< the surface map's textures
     raster   ///< the triangle that was rasterised there
 };
-/// Model, lights, environment, whether it lies over another paint (an artwork's).
-using ShadingKey = std::tuple<ReflectanceModel, int, bool, bool>;
+/// Model, lights, environment, whether it lies over another paint (an artwork's), whether the part
+/// has a relief (ShadingSource::raster).
+using ShadingKey = std::tuple<ReflectanceModel, int, bool, bool, bool>;
 
 /// Texels in a row of the textures that hold a mesh's arrays for ShadingSource::raster.
 inline constexpr int kMeshRow = 2048;

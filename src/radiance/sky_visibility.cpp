@@ -144,7 +144,14 @@ glm::vec3 sample_normal(const Mesh& mesh,
     const glm::vec3 normal = glm::normalize(
         (1.0f - s.barycentric.x - s.barycentric.y) * mesh.normals[corners.x] +
         s.barycentric.x * mesh.normals[corners.y] + s.barycentric.y * mesh.normals[corners.z]);
-    return glm::dot(normal, map.fragments[fragment].normal) < 0.0f ? -normal : normal;
+    const glm::vec3 mean = map.fragments[fragment].normal;
+    if (map.flat_normals.empty()) return glm::dot(normal, mean) < 0.0f ? -normal : normal;
+    // A relief turns all of a fragment's normals as it turns their mean
+    const glm::vec3 flat = map.flat_normals[fragment];
+    const glm::vec3 outward = glm::dot(normal, flat) < 0.0f ? -normal : normal;
+    const glm::vec3 turn = glm::cross(flat, mean), turned = glm::cross(turn, outward);
+    return glm::normalize(outward + turned +
+                          glm::cross(turn, turned) / (1.0f + glm::dot(flat, mean)));
 }
 
 glm::vec3 toward_eye(const Fragment& fragment, glm::dvec3 eye_mm) {

@@ -40,6 +40,8 @@ struct SurfaceMap {
     std::vector<Fragment> fragments;
     /// kSamplesAFragment each, spread over the fragment, with repeats where it had fewer
     std::vector<SurfaceSample> samples;
+    /// The fragments' normals without the relief that tilts them; empty where none does.
+    std::vector<glm::vec3> flat_normals;
     std::vector<std::uint32_t> part_begin;  ///< parts + 1 offsets into fragments
     int samples_per_pixel = 0;
     ImageF coverage;                 ///< one channel, of each pixel, all parts together

@@ -125,7 +125,7 @@ ReferenceResult trace_reference(const Scene& scene,
         ray.direction = glm::vec3(lens_ray->direction);
         const Hit hit = paths.tracer().closest(ray);
         if (!hit.valid()) return;
-        const SurfacePoint point = surface_point(paths.mesh(), hit);
+        const SurfacePoint point = paths.surface_at(hit);
         const glm::vec3 wo = glm::normalize(eye - point.position_mm);
         const glm::dvec3 value =
             exposure * glm::dvec3(paths.radiance(point, ray.direction, wo, random));

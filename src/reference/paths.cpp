@@ -9,6 +9,7 @@
 #include <glm/matrix.hpp>
 
 #include "core/error.h"
+#include "scene/artwork_relief.h"
 
 namespace livery {
 
@@ -72,8 +73,24 @@ PathScene::PathScene(const Scene& scene, const ReferenceOptions& options)
     for (const Material& material : scene.part_materials) {
         bsdfs_.push_back(bsdf_of(material));
     }
+    for (std::size_t p = 0; p < mesh_.parts.size(); ++p) {
+        const PartArtwork* relief = relief_of(scene, p);
+        reliefs_.push_back(relief ? std::optional(*relief) : std::nullopt);
+    }
     for (const PartArtwork& artwork : artwork_) artwork_bsdfs_.push_back(bsdf_of(artwork.material));
     for (const DirectionalLight& light : scene.lights) lights_.emplace_back(light);
+}
+
+SurfacePoint PathScene::surface_at(const Hit& hit) const {
+    SurfacePoint point = surface_point(mesh_, hit);
+    const std::optional<PartArtwork>& relief = reliefs_[point.part];
+    if (!relief) return point;
+    const glm::dvec3 normal(point.normal);
+    const ArtworkPoint at =
+        artwork_at(*relief, glm::dvec3(point.position_mm), normal, glm::dvec2(point.uv));
+    const ReliefFrame frame = relief_frame(*relief, normal, glm::dvec4(point.tangent));
+    point.normal = glm::vec3(tilted(normal, frame, tilt_at(*relief, at).slope));
+    return point;
 }
 
 PaintBsdf PathScene::bsdf_at(const SurfacePoint& point, Random& random) const {
@@ -173,7 +190,7 @@ glm::vec3 PathScene::radiance(SurfacePoint point,
         const Hit hit = tracer_.closest(ray);
         if (!hit.valid()) return sum + throughput * light_along(direction, density);
         if (bounce == options_.bounces) return sum;
-        point = surface_point(mesh_, hit);
+        point = surface_at(hit);
         // The inside of a closed product is dark.
         if (glm::dot(point.geometric_normal, direction) >= 0.0f) return sum;
         wo = -direction;

@@ -1,6 +1,7 @@
 // The light that one path carries from the scene to the eye.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -25,7 +26,8 @@ class PathScene {
                        Random& random) const;
 
     const Tracer& tracer() const { return tracer_; }
-    const Mesh& mesh() const { return mesh_; }
+    /// What was hit, with its relief.
+    SurfacePoint surface_at(const Hit& hit) const;
 
   private:
     struct Vertex;
@@ -42,6 +44,7 @@ class PathScene {
     Tracer tracer_;
     std::vector<PaintBsdf> bsdfs_;
     std::vector<PartArtwork> artwork_;
+    std::vector<std::optional<PartArtwork>> reliefs_;  ///< one a part
     std::vector<PaintBsdf> artwork_bsdfs_;
     std::vector<DiscLight> lights_;
     EnvironmentSampler environment_;

@@ -32,10 +32,15 @@ glm::dvec3 square_to(const glm::dvec3& d) {
 
 }  // namespace
 
+bool is_relief(const Artwork& artwork) {
+    return artwork.shape == ArtworkShape::picture && artwork.use == PictureUse::relief;
+}
+
 void check_artwork(const Artwork& artwork) {
     check_between(artwork.size_mm, 0.1, 1e5, "size_mm");
     check_between(artwork.share, 0.0, 1.0, "share");
     check_between(artwork.softness_mm, 0.0, 1e5, "softness_mm");
+    check_between(artwork.depth, -10.0, 10.0, "depth");
     const ArtworkPlace& place = artwork.place;
     check_vector(place.centre_mm, "centre_mm");
     check_vector(place.direction, "direction");
@@ -50,6 +55,10 @@ void check_artwork(const Artwork& artwork) {
     const bool picture = artwork.shape == ArtworkShape::picture;
     if (picture && artwork.picture.empty()) {
         throw std::invalid_argument("an artwork's picture is missing; expected a file");
+    }
+    if (is_relief(artwork) && !artwork.paint.empty()) {
+        throw std::invalid_argument(
+            fmt::format("an artwork's relief has the paint {}; expected none", artwork.paint));
     }
     if (!picture && place.by_uv) {
         throw std::invalid_argument(

@@ -22,9 +22,10 @@ enum class ArtworkShape {
 
 /// What a picture says.
 enum class PictureUse {
-    cover,     ///< its alpha, or without alpha its lightness, says how much is covered
-    colours,   ///< the same of its alpha; its colours are the paint's own
-    roughness  ///< its values squared scale the paint's slope parameters, as glTF has it
+    cover,      ///< its alpha, or without alpha its lightness, says how much is covered
+    colours,    ///< the same of its alpha; its colours are the paint's own
+    roughness,  ///< its values squared scale the paint's slope parameters, as glTF has it
+    relief      ///< normals of the surface: red to the right, green up, blue out, as glTF has them
 };
 
 /// How an artwork's plane, s to the right and t up in mm, lies on the product: projected along a
@@ -52,6 +53,7 @@ struct Artwork {
     std::string picture;       ///< file
     PictureUse use = PictureUse::cover;
     bool repeat = false;  ///< the picture again and again
+    double depth = 1.0;   ///< of a relief: its slopes are so much steeper
     ArtworkPlace place;
 
     bool operator==(const Artwork&) const = default;
@@ -59,7 +61,10 @@ struct Artwork {
 
 /// As files and the command line name them, in the order of the enumerations.
 inline constexpr std::array kArtworkShapes{"half", "stripes", "checks", "dots", "picture"};
-inline constexpr std::array kPictureUses{"cover", "colours", "roughness"};
+inline constexpr std::array kPictureUses{"cover", "colours", "roughness", "relief"};
+
+/// A relief tilts what lies beneath it on its part and has no paint; a part has one at most.
+bool is_relief(const Artwork& artwork);
 
 /// Throws std::invalid_argument that names the field and the value: a size out of range, a
 /// direction without a length, up along it, a picture without a file, too many.

@@ -178,6 +178,7 @@ Material material_at(const PartArtwork& artwork, const glm::vec4& rgba) {
     glm::dvec3 colour(rgba);
     switch (artwork.artwork.use) {
         case PictureUse::cover:
+        case PictureUse::relief:
             return artwork.material;
         case PictureUse::colours:
             if (!artwork.picture->linear) {

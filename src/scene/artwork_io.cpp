@@ -47,7 +47,7 @@ std::set<std::string> own_fields(ArtworkShape shape) {
         case ArtworkShape::checks:
             return {"size_mm"};
         case ArtworkShape::picture:
-            return {"size_mm", "picture", "use", "repeat"};
+            return {"size_mm", "picture", "use", "repeat", "depth"};
     }
     return {};
 }
@@ -75,6 +75,7 @@ Artwork read_one(const JsonReader& field) {
     if (field.has("softness_mm")) artwork.softness_mm = field["softness_mm"].number();
     if (picture) artwork.picture = field["picture"].text();
     if (field.has("use")) artwork.use = read_name<PictureUse>(field["use"], kPictureUses);
+    if (field.has("depth")) artwork.depth = field["depth"].number();
     if (field.has("repeat")) artwork.repeat = field["repeat"].boolean();
     artwork.place.through = !picture;
     if (field.has("place")) {
@@ -107,6 +108,7 @@ Json json_of(const Artwork& artwork) {
     if (own.contains("share")) json["share"] = artwork.share;
     if (own.contains("softness_mm")) json["softness_mm"] = artwork.softness_mm;
     if (own.contains("repeat")) json["repeat"] = artwork.repeat;
+    if (is_relief(artwork)) json["depth"] = artwork.depth;
     const ArtworkPlace& place = artwork.place;
     if (place.by_uv) {
         json["place"] = "uv";

@@ -129,6 +129,13 @@ float picture_cover(const ArtworkPicture& picture, const float* rgba) {
     return picture.has_alpha ? rgba[3] : (rgba[0] + rgba[1] + rgba[2]) * (1.0f / 3.0f);
 }
 
+glm::dvec2 relief_slope(const float* rgba) {
+    glm::dvec3 normal;
+    for (int c = 0; c < 3; ++c) normal[c] = 2.0 * static_cast<double>(rgba[c]) - 1.0;
+    const double longest = std::max({std::abs(normal.x), std::abs(normal.y), 1e-6});
+    return glm::dvec2(normal) / std::max(normal.z, 0.1 * longest);
+}
+
 double slope_scale(float value) {
     const double v = std::max(value, kLeastRoughness);
     return v * v;
@@ -173,6 +180,14 @@ ImageF picture_layers(const ArtworkPicture& picture,
                 case PictureUse::colours:
                     fill_colours(picture, pigment_response, working, rgba, to);
                     break;
+                case PictureUse::relief: {
+                    const glm::vec2 slope(relief_slope(rgba));
+                    to[0] = rgba[3] * slope.x;
+                    to[1] = rgba[3] * slope.y;
+                    to[2] = rgba[3] * (slope.x * slope.x + slope.y * slope.y);
+                    to[3] = rgba[3];
+                    break;
+                }
                 case PictureUse::roughness:
                     fill_roughness(steps, rgba, to);
                     break;

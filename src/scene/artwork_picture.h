@@ -5,6 +5,8 @@
 #include <memory>
 #include <vector>
 
+#include <glm/vec2.hpp>
+
 #include "core/image.h"
 #include "scene/artwork.h"
 
@@ -34,6 +36,10 @@ inline constexpr std::size_t kMostRoughnessSteps = 12;
 /// What PictureUse::cover reads of a texel.
 float picture_cover(const ArtworkPicture& picture, const float* rgba);
 
+/// A texel's normal as a slope to the right and up; one that lies almost in the surface counts as
+/// 84 degrees.
+glm::dvec2 relief_slope(const float* rgba);
+
 /// What a value of the map scales them by: its square, no less than a four hundredth.
 double slope_scale(float value);
 
@@ -43,7 +49,8 @@ std::vector<double> roughness_steps(const ArtworkPicture& picture);
 /// What means are taken of, four channels a layer, alpha last and the others multiplied by it:
 /// `cover`: one layer of alpha; `colours`: one of what pigments of these colours return, each
 /// channel by `pigment_response` (a table from 0 to 1, of what a white pigment returns) in the
-/// working space; `roughness`: one of each step's share.
+/// working space; `roughness`: one of each step's share; `relief`: slopes, their squares
+/// together and alpha.
 ImageF picture_layers(const ArtworkPicture& picture,
                       PictureUse use,
                       const std::vector<float>& pigment_response);

@@ -246,6 +246,14 @@ FramePlan plan_frame(const Scene& scene, Quality quality, FrameStage stage) {
         plan.skipped.push_back({kSurfaceMapPass, "the path tracer finds what it sees by itself"});
     } else {
         plan_pass(plan, kSurfaceMapPass, "what each projector pixel lights, once for a pose");
+        if (scene.relief.empty()) {
+            plan.skipped.push_back({kReliefPass, "no part has a relief"});
+        } else {
+            plan_pass(plan,
+                      kReliefPass,
+                      fmt::format("the relief of part {} tilts its surface before light is solved",
+                                  scene.product->mesh.parts[scene.relief.front().part].name));
+        }
         plan_lights(scene, plan);
         plan_environment(needs, plan);
         plan_shading(scene, needs, plan);

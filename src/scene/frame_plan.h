@@ -46,6 +46,7 @@ inline constexpr const char* kReflectionPass = "reflection-occlusion";
 inline constexpr const char* kMirrorPass = "mirrored-environment";
 inline constexpr const char* kDirectionsPass = "directions";
 inline constexpr const char* kDiffuseLightPass = "diffuse-light";
+inline constexpr const char* kReliefPass = "relief";
 inline constexpr const char* kArtworkPass = "artwork";
 inline constexpr const char* kResolvePass = "resolve";
 inline constexpr const char* kCompensationPass = "compensation";

@@ -67,6 +67,16 @@ void add_artwork(const Look& look, const std::vector<Material>& own_paints, Scen
             const Material material = artwork.paint.empty()
                                           ? scene.part_materials[p]
                                           : find_paint(look, artwork.paint, own_paints);
+            if (is_relief(artwork)) {
+                if (relief_of(scene, p)) {
+                    throw FileError(look.file,
+                                    field,
+                                    "a second relief of part " + parts[p].name,
+                                    "one at most");
+                }
+                scene.relief.push_back(make_part_artwork(p, artwork, material, picture));
+                continue;
+            }
             try {
                 scene.artwork.push_back(make_part_artwork(p, artwork, material, picture));
             } catch (const std::invalid_argument& error) {
@@ -110,6 +120,17 @@ Scene make_scene(std::shared_ptr<const Product> product,
     scene.eye_in_world_mm = eye_mm;
     scene.exposure_ev = look.exposure_ev;
     return scene;
+}
+
+const PartArtwork* relief_of(const Scene& scene, std::size_t part) {
+    const auto found = std::find_if(scene.relief.begin(),
+                                    scene.relief.end(),
+                                    [&](const PartArtwork& one) { return one.part == part; });
+    return found == scene.relief.end() ? nullptr : &*found;
+}
+
+bool same_relief(const std::vector<PartArtwork>& a, const std::vector<PartArtwork>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), covers_alike);
 }
 
 bool any_paint(const Scene& scene, const std::function<bool(const Material&)>& is_such) {

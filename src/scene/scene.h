@@ -22,10 +22,15 @@ struct Scene {
 
     std::vector<Material> part_materials;  ///< one a part of the product
     std::vector<PartArtwork> artwork;      ///< over them, each over those before it on its part
+    std::vector<PartArtwork> relief;       ///< of parts that have one
     std::vector<DirectionalLight> lights;
     glm::dvec3 eye_in_world_mm{0.0};  ///< the audience's eye: shading is for this point
     double exposure_ev = 0.0;         ///< radiance is scaled by 2^EV
 };
+
+/// A part's relief, or null.
+const PartArtwork* relief_of(const Scene& scene, std::size_t part);
+bool same_relief(const std::vector<PartArtwork>& a, const std::vector<PartArtwork>& b);
 
 /// Whether any paint on the product, artwork's included, is such.
 bool any_paint(const Scene& scene, const std::function<bool(const Material&)>& is_such);

@@ -121,6 +121,15 @@ void apply(Document& document, const EditPaint& command) {
     edit_paint(document, command);
 }
 
+void check_only_relief(const std::vector<Artwork>& list, const Artwork& relief) {
+    for (const Artwork& other : list) {
+        const bool same_part = other.part == relief.part || other.part == "*" || relief.part == "*";
+        if (&other != &relief && is_relief(other) && same_part) {
+            refuse("part {} would have two reliefs; expected one at most", relief.part);
+        }
+    }
+}
+
 /// Names as the session has them; whatever cannot be drawn is refused.
 std::vector<Artwork> checked(const Document& document, const Look& look) {
     std::vector<Artwork> list = look.artwork;
@@ -142,6 +151,7 @@ std::vector<Artwork> checked(const Document& document, const Look& look) {
                     artwork.picture = std::filesystem::absolute(file).lexically_normal().string();
                 }
             }
+            if (is_relief(artwork)) check_only_relief(list, artwork);
             if (artwork.paint.empty()) continue;
             artwork.paint = known_paint(document, artwork.paint);
             make_part_artwork(0, artwork, find_paint(document, artwork.paint), picture);

@@ -246,6 +246,7 @@ Scene FrameLane::scene_of(const FrameDescription& description, std::size_t side)
     scene.environment = light.environment;
     scene.lights = light.lights;
     scene.eye_in_world_mm = light.eye_mm;
+    scene.relief = light.relief;
     if (const auto part = description.glowing_part) {
         check_argument(
             *part >= 0 && static_cast<std::size_t>(*part) < scene.part_materials.size(),

@@ -33,6 +33,7 @@ std::string difference(const SolveKey& solved, const SolveKey& wanted) {
     if (solved.environment != wanted.environment) return "environment";
     if (!same_lights(solved.lights, wanted.lights)) return "light";
     if (solved.eye_mm != wanted.eye_mm) return "eye";
+    if (!same_relief(solved.relief, wanted.relief)) return "relief";
     if (solved.quality != wanted.quality) return to_string(wanted.quality) + " quality";
     return "";
 }
@@ -48,7 +49,8 @@ SolveKeys keys_of(const FrameDescription& description) {
                         scene.environment,
                         scene.lights,
                         scene.eye_in_world_mm,
-                        description.quality};
+                        description.quality,
+                        scene.relief};
     };
     SolveKeys keys{key_of(description.scene), std::nullopt};
     if (description.wipe_to) {
@@ -72,7 +74,7 @@ bool same_pose(const SolveKey& a, const SolveKey& b) {
 
 bool same_light(const SolveKey& a, const SolveKey& b) {
     return same_pose(a, b) && a.environment == b.environment && same_lights(a.lights, b.lights) &&
-           a.eye_mm == b.eye_mm;
+           a.eye_mm == b.eye_mm && same_relief(a.relief, b.relief);
 }
 
 std::size_t nearest_of(const SolveKeys& solved, const SolveKeys& wanted, std::size_t side) {

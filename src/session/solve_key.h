@@ -19,6 +19,7 @@ struct SolveKey {
     std::vector<DirectionalLight> lights;
     glm::dvec3 eye_mm{0.0};
     Quality quality = Quality::normal;
+    std::vector<PartArtwork> relief{};
 };
 /// Of the scene left of a wipe's line (or of all) and of the one right of it. What is solved has a
 /// right one only where its light differs from the left one's.

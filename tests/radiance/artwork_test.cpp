@@ -1,6 +1,9 @@
 // Artwork in frames: filtered over the pixel, for nothing where there is none.
+#include <numbers>
+
 #include <fmt/format.h>
 
+#include "appearance/model_table.h"
 #include "core/image_io.h"
 #include "radiance/accuracy.h"
 #include "radiance/artwork_inputs.h"
@@ -219,6 +222,137 @@ TEST_P(ArtworkFrame, CostsOnlyWhatChanged) {
     scene.part_materials[1] = scene.part_materials[0];
     draw_again();
     EXPECT_EQ(renderer.read_back().values, bare.values);
+}
+
+/// Waves along both directions, as normals.
+void write_waves(const std::filesystem::path& file) {
+    ImageF image(256, 256, 3);
+    for (int y = 0; y < 256; ++y) {
+        for (int x = 0; x < 256; ++x) {
+            const double step = 2.0 * std::numbers::pi / 64.0;
+            const glm::dvec3 normal = glm::normalize(glm::dvec3(
+                0.3 * std::cos(step * (x + 0.5)), 0.25 * std::sin(step * (y + 0.5)), 1.0));
+            for (int c = 0; c < 3; ++c) {
+                image.at(x, y, c) = static_cast<float>(0.5 + 0.5 * normal[c]);
+            }
+        }
+    }
+    write_exr(file, image);
+}
+
+struct Relief {
+    std::string name;
+    double size_mm;  ///< of the picture: four waves
+    bool by_uv;
+};
+
+Scene scene_with(const Relief& how,
+                 const Material& material,
+                 const std::filesystem::path& picture) {
+    Scene scene = scene_of(two_spheres(), material);
+    scene.lights = {light_from({0.3, 0.6, 0.8}, 0.05), light_from({-0.6, 0.1, 0.8}, 0.05, 0.5)};
+    Artwork artwork;
+    artwork.shape = ArtworkShape::picture;
+    artwork.use = PictureUse::relief;
+    artwork.picture = picture.string();
+    artwork.repeat = true;
+    artwork.size_mm = how.size_mm;
+    artwork.place.by_uv = how.by_uv;
+    artwork.place.up = {0.2, 1.0, 0.0};
+    scene.relief = {make_part_artwork(0, artwork, material, load_artwork_picture(picture))};
+    return scene;
+}
+
+TEST_P(ArtworkFrame, AReliefAgreesWithBruteForce) {
+    const TemporaryFolder folder;
+    write_waves(folder / "waves.exr");
+    const View view = test_view(96, 72);
+    // Pixels of 1.8 mm: waves of 20 mm are shown, those of 1 mm only widen what is mirrored
+    for (const Relief& how : {Relief{"waves of 20 mm", 80.0, false},
+                              Relief{"waves of 1 mm", 4.0, false},
+                              Relief{"along u and v", 1.0, true}}) {
+        for (const auto model : {ReflectanceModel::lambert, ReflectanceModel::ggx}) {
+            const Material material = paint_of(model, 0.3);
+            const Scene scene = scene_with(how, material, folder / "waves.exr");
+            Scene flat = scene;
+            flat.relief.clear();
+            const ImageF truth = direct_light(scene, view, {16, 0});
+            const ImageF drawn = draw(scene, view);
+            const RadianceError error = radiance_error(drawn, truth);
+            const RadianceError without = radiance_error(draw(flat, view), truth);
+            std::printf("    %-16s %-8s median %.4f p90 %.4f p99 %.4f bias %+.5f, flat %.4f %.4f\n",
+                        how.name.c_str(),
+                        model_info(model).name,
+                        error.median,
+                        error.p90,
+                        error.p99,
+                        error.mean_signed,
+                        without.median,
+                        without.p90);
+            // Waves within a pixel turn its diffuse light down by half their mean squared slope
+            // (.038 of it), which one mean normal of length 1 does not.
+            const bool within_a_pixel = how.size_mm < 50.0 && !how.by_uv;
+            EXPECT_LT(error.median, within_a_pixel ? 0.02 : 0.002) << how.name;
+            EXPECT_LT(error.p99, within_a_pixel ? 0.06 : 0.04) << how.name;
+            EXPECT_LT(std::abs(error.mean_signed), within_a_pixel ? 0.01 : 5e-4) << how.name;
+            if (!within_a_pixel) {
+                EXPECT_LT(error.p90, 0.05 * without.p90) << how.name;
+            }
+        }
+    }
+}
+
+TEST_P(ArtworkFrame, AReliefIsAnotherSurfaceForLight) {
+    const TemporaryFolder folder;
+    write_waves(folder / "waves.exr");
+    const View view = test_view(64, 48);
+    Scene scene = scene_with(
+        {"waves", 80.0, false}, paint_of(ReflectanceModel::clearcoat, 0.05), folder / "waves.exr");
+    scene.environment = studio();
+    RadianceRenderer renderer = renderer_of(scene, view);
+    const auto draw_again = [&] {
+        FramePlan its_plan = plan(scene);
+        renderer.render(scene, its_plan);
+        return renderer.read_back();
+    };
+    const std::vector<PartArtwork> relief = std::exchange(scene.relief, {});
+    const ImageF flat = draw_again();
+    scene.relief = relief;
+    const ImageF waves = draw_again();
+    EXPECT_NE(waves.values, flat.values);
+    EXPECT_EQ(waves.values, draw(scene, view).values);
+    const int passes = renderer.counters().passes_run;
+    draw_again();
+    EXPECT_EQ(renderer.counters().passes_run, passes);
+    scene.relief.clear();
+    EXPECT_EQ(draw_again().values, flat.values);
+    // On both devices alike
+    scene.relief = relief;
+    const ImageF other = draw(
+        scene, view, Quality::normal, in_opengl() ? ShadingDevice::processor : ShadingDevice::gl);
+    for (std::size_t i = 0; i < waves.values.size(); ++i) {
+        ASSERT_NEAR(waves.values[i], other.values[i], 4e-3f * (0.01f + waves.values[i])) << i;
+    }
+}
+
+TEST_P(ArtworkFrame, ThePreviewShowsARelief) {
+    const TemporaryFolder folder;
+    write_waves(folder / "waves.exr");
+    const View view = test_view(120, 90);
+    for (const bool by_uv : {false, true}) {
+        const Scene scene = scene_with(
+            {"waves", 80.0, by_uv}, paint_of(ReflectanceModel::ggx, 0.3), folder / "waves.exr");
+        Scene flat = scene;
+        flat.relief.clear();
+        RasterPreview preview(scene.product, 4);
+        preview.render(scene, view);
+        const RadianceError error = radiance_error(preview.read_back(), draw(scene, view));
+        const RadianceError without = radiance_error(preview.read_back(), draw(flat, view));
+        std::printf(
+            "    relief in the preview: median %.4f, without %.4f\n", error.median, without.median);
+        EXPECT_LT(error.median, 0.005);
+        EXPECT_GT(without.median, 4.0 * error.median);
+    }
 }
 
 TEST(Footprint, IsThePixelOnTheSurface) {

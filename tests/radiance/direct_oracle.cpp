@@ -9,6 +9,7 @@
 #include "core/colour.h"
 #include "core/parallel.h"
 #include "core/random.h"
+#include "scene/artwork_relief.h"
 #include "tracing/tracer.h"
 
 namespace livery {
@@ -75,6 +76,17 @@ std::vector<Worn> worn_at(const Scene& scene,
     return worn;
 }
 
+glm::vec3 relieved_normal(const Scene& scene, const SurfacePoint& point) {
+    const PartArtwork* relief = relief_of(scene, point.part);
+    if (!relief) return point.normal;
+    const glm::dvec3 normal(point.normal);
+    const ArtworkPoint at =
+        artwork_at(*relief, glm::dvec3(point.position_mm), normal, glm::dvec2(point.uv));
+    return glm::vec3(tilted(normal,
+                            relief_frame(*relief, normal, glm::dvec4(point.tangent)),
+                            tilt_at(*relief, at).slope));
+}
+
 }  // namespace
 
 ImageF direct_light(const Scene& scene, const View& view, const OracleOptions& options) {
@@ -103,6 +115,7 @@ ImageF direct_light(const Scene& scene, const View& view, const OracleOptions& o
                     point.geometric_normal = -point.geometric_normal;
                     point.normal = -point.normal;
                 }
+                point.normal = relieved_normal(scene, point);
                 Frame frame;
                 frame.n = glm::normalize(glm::dvec3(point.normal));
                 const glm::dvec3 tangent(point.tangent);

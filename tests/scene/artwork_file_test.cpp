@@ -22,14 +22,16 @@ Json some_look() {
           {"part": "body", "shape": "picture", "picture": "number.png", "use": "colours",
            "size_mm": 40, "place": {"centre_mm": [10, 30, 40], "direction": [0, 0, -1]}},
           {"part": "body", "shape": "picture", "picture": "grain.png", "use": "roughness",
-           "repeat": true, "place": "uv"}]})");
+           "repeat": true, "place": "uv"},
+          {"part": "body", "shape": "picture", "picture": "waves.png", "use": "relief",
+           "repeat": true, "depth": -0.5, "size_mm": 30}]})");
 }
 
 Look look_of(const Json& json) { return parse_look(json.dump(), "look.json"); }
 
 TEST(ArtworkFile, IsRead) {
     const Look look = look_of(some_look());
-    ASSERT_EQ(look.artwork.size(), 6u);
+    ASSERT_EQ(look.artwork.size(), 7u);
     const Artwork& tones = look.artwork[0];
     EXPECT_EQ(tones.name, "two tones");
     EXPECT_EQ(tones.part, "body");
@@ -47,6 +49,8 @@ TEST(ArtworkFile, IsRead) {
     EXPECT_FALSE(number.repeat);
     EXPECT_TRUE(look.artwork[5].place.by_uv);
     EXPECT_TRUE(look.artwork[5].repeat);
+    EXPECT_EQ(look.artwork[6].use, PictureUse::relief);
+    EXPECT_EQ(look.artwork[6].depth, -0.5);
 }
 
 TEST(ArtworkFile, ComesBackAsItWas) {
@@ -88,7 +92,11 @@ TEST(ArtworkFile, EveryMistakeIsNamed) {
          "artwork[0].place.centre_mm",
          ""},
         {[](Json& a) { a[0]["place"]["side"] = 1; }, "artwork[0].place", "side"},
-        {[](Json& a) { a[4]["use"] = "bumps"; }, "artwork[4].use", "cover, colours, roughness"},
+        {[](Json& a) { a[4]["use"] = "bumps"; },
+         "artwork[4].use",
+         "cover, colours, roughness, relief"},
+        {[](Json& a) { a[6]["paint"] = "red"; }, "artwork[6]", "relief has the paint red"},
+        {[](Json& a) { a[6]["depth"] = 20; }, "artwork[6]", "depth is 20"},
         {[](Json& a) { a[4].erase("picture"); }, "artwork[4].picture", ""},
         {[](Json& a) { a[4]["picture"] = ""; }, "artwork[4]", "expected a file"},
         {[](Json& a) { a[4]["repeat"] = 1; }, "artwork[4].repeat", ""},
@@ -98,7 +106,7 @@ TEST(ArtworkFile, EveryMistakeIsNamed) {
              for (int k = 0; k < 40; ++k) a.push_back(a[0]);
          },
          "artwork",
-         "46 artworks"}};
+         "47 artworks"}};
     for (const Case& one : cases) {
         Json json = some_look();
         one.change(json["artwork"]);

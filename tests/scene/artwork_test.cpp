@@ -6,6 +6,7 @@
 
 #include "appearance/paint_bsdf.h"
 #include "core/image_io.h"
+#include "scene/artwork_relief.h"
 #include "scene/scene.h"
 #include "support/file_error.h"
 #include "support/temporary_folder.h"
@@ -215,6 +216,58 @@ TEST(ArtworkScene, LiesOnItsPartsInTheirOrder) {
         {"nowhere.png", "a picture"}));
     folder.write("nowhere.png", "no picture at all");
     EXPECT_TRUE(fails_with([&] { make_scene(two_parts(), look, {0, 0, 500}); }, {"nowhere.png"}));
+}
+
+TEST(ArtworkScene, APartHasOneReliefAtMost) {
+    const TemporaryFolder folder;
+    two_columns(folder);
+    Look look;
+    look.file = folder / "look.json";
+    look.artwork.resize(2, picture_used_as(PictureUse::relief));
+    look.artwork[0].part = "wheel";
+    look.artwork[1].part = "body";
+    const Scene scene = make_scene(two_parts(), look, {0, 0, 500});
+    EXPECT_TRUE(scene.artwork.empty());
+    ASSERT_EQ(scene.relief.size(), 2u);
+    EXPECT_EQ(relief_of(scene, 0), &scene.relief[1]);
+    look.artwork[1].part = "*";
+    EXPECT_TRUE(fails_with(
+        [&] {
+            make_scene(two_parts(), look, {0, 0, 500});
+        },
+        {"artwork[1]", "a second relief of part wheel"}));
+}
+
+TEST(ArtworkRelief, TiltsTheSurfaceAsThePictureSays) {
+    Artwork artwork = picture_used_as(PictureUse::relief);
+    artwork.depth = 2.0;
+    const PartArtwork relief{0, artwork, {}, nullptr, {}};
+    // Seen from the front, right is +x and up +y; as steep again as the picture says
+    const ReliefFrame frame = relief_frame(relief, {0, 0, 1}, {1, 0, 0, 1});
+    EXPECT_LT(glm::distance(frame.right, glm::dvec3(1, 0, 0)), 1e-12);
+    EXPECT_LT(glm::distance(frame.up, glm::dvec3(0, 1, 0)), 1e-12);
+    const glm::dvec3 normal = glm::normalize(glm::dvec3(0.3, -0.2, 1.0));
+    const glm::vec4 texel(0.5 * normal + 0.5, 1.0);
+    const ReliefTilt tilt = tilt_at(relief, {1.0, texel});
+    EXPECT_NEAR(tilt.slope.x, 0.6, 1e-6);
+    EXPECT_NEAR(tilt.slope.y, -0.4, 1e-6);
+    const glm::dvec3 steeper = tilted({0, 0, 1}, frame, tilt.slope);
+    EXPECT_LT(glm::distance(steeper, glm::normalize(glm::dvec3(0.6, -0.4, 1.0))), 1e-6);
+    // Half of the footprint flat, half sloped: the mean, and what is spread around it
+    const ReliefTilt mean = tilt_of(relief, {0.15, 0.0, 0.045, 1.0});
+    EXPECT_NEAR(mean.slope.x, 0.3, 1e-12);
+    EXPECT_NEAR(mean.variance, 0.09, 1e-12);
+    // Along the mesh's texture coordinates, mirrored ones as well
+    PartArtwork by_uv = relief;
+    by_uv.artwork.place.by_uv = true;
+    EXPECT_LT(glm::distance(relief_frame(by_uv, {0, 0, 1}, {0, 1, 0, -1}).up, glm::dvec3(1, 0, 0)),
+              1e-12);
+    // Texels that are no normals at all stay finite
+    for (const glm::vec4& bad : {glm::vec4(0.0f), glm::vec4(1.0f, 0.5f, 0.0f, 1.0f)}) {
+        const glm::dvec3 n = tilted({0, 0, 1}, frame, tilt_at(relief, {1.0, bad}).slope);
+        EXPECT_NEAR(glm::length(n), 1.0, 1e-9);
+        EXPECT_GT(n.z, 0.0);
+    }
 }
 
 TEST(ArtworkPicture, IsReadAnewWhenItsFileHasChanged) {

@@ -62,6 +62,14 @@ TEST(SetArtwork, RefusesWhatCannotBeDrawn) {
               std::string::npos);
     EXPECT_NE(refusal(decal("nowhere.png")).find("nowhere.png"), std::string::npos);
     EXPECT_NE(refusal(decal(folder.write("x.png", "no picture"))).find("x.png"), std::string::npos);
+    Artwork relief = decal(folder / "waves.png");
+    write_png(relief.picture, Image8(4, 4, 3, 128));
+    relief.use = PictureUse::relief;
+    EXPECT_EQ(refusal(relief), "nothing thrown");
+    EXPECT_NE(message_of([&] {
+                  applied(car(), SetArtwork{1, {relief, relief}});
+              }).find("two reliefs"),
+              std::string::npos);
     Artwork rough = decal(folder / "grey.png");
     write_png(rough.picture, Image8(4, 4, 3, 100));
     rough.use = PictureUse::roughness;
