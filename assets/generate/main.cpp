@@ -6,9 +6,11 @@
 #include <vector>
 
 #include "car.h"
+#include "core/image_io.h"
 #include "core/paths.h"
 #include "environments.h"
 #include "glb.h"
+#include "patterns.h"
 #include "player.h"
 #include "solids.h"
 
@@ -21,6 +23,7 @@ int main(int argument_count, char** arguments) {
     try {
         const std::filesystem::path folder = arguments[1];
         make_output_folder(folder / "environments");
+        make_output_folder(folder / "patterns");
         const auto write_product = [&](const std::string& name,
                                        const std::vector<assets::PartMesh>& parts) {
             write_text_file(folder / (name + ".glb"), assets::glb_bytes(name, parts));
@@ -47,6 +50,11 @@ int main(int argument_count, char** arguments) {
         };
         write_environment("studio.hdr", assets::studio_radiance);
         write_environment("overcast.hdr", assets::overcast_radiance);
+
+        constexpr int kPatternSize = 512;
+        write_png(folder / "patterns/blossoms.png", assets::blossoms(2 * kPatternSize));
+        write_png(folder / "patterns/roundel.png", assets::roundel(kPatternSize));
+        write_png(folder / "patterns/weave.png", assets::weave(kPatternSize));
     } catch (const std::exception& error) {
         std::cerr << "livery_generate_assets: " << error.what() << "\n";
         return 1;

@@ -5,6 +5,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "core/parallel.h"
+
 namespace livery {
 
 namespace {
@@ -69,15 +71,26 @@ Footprint footprint_of(const View& view,
             on_surface(direction(0.5, 1.0) - direction(0.5, 0.0))};
 }
 
+std::vector<Footprint> footprints_of(const View& view, const SurfaceMap& map, std::size_t part) {
+    const std::size_t first = map.part_begin[part];
+    std::vector<Footprint> footprints(map.part_begin[part + 1] - first);
+    parallel_for(footprints.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const Fragment& f = map.fragments[first + k];
+            footprints[k] =
+                footprint_of(view, f.pixel, glm::dvec3(f.position_mm), glm::dvec3(f.normal));
+        }
+    });
+    return footprints;
+}
+
 FlatFootprint flat_footprint(const Mesh& mesh,
-                             const View& view,
                              const SurfaceMap& map,
                              std::size_t fragment,
+                             const Footprint& footprint,
                              const PartArtwork& artwork,
                              const ArtworkPlane& plane) {
     const Fragment& f = map.fragments[fragment];
-    const Footprint footprint =
-        footprint_of(view, f.pixel, glm::dvec3(f.position_mm), glm::dvec3(f.normal));
     if (!artwork.artwork.place.by_uv) return on_plane(plane, f, footprint);
     return on_uv(mesh, map.samples[fragment * kSamplesAFragment], f, footprint);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "radiance/surface_map.h"
 #include "scene/artwork_coats.h"
@@ -18,6 +19,8 @@ Footprint footprint_of(const View& view,
                        std::uint32_t pixel,
                        const glm::dvec3& position_mm,
                        const glm::dvec3& normal);
+/// Of every fragment of a part.
+std::vector<Footprint> footprints_of(const View& view, const SurfaceMap& map, std::size_t part);
 
 /// A footprint in an artwork's plane, or along the mesh's texture coordinates.
 struct FlatFootprint {
@@ -25,9 +28,9 @@ struct FlatFootprint {
 };
 /// `plane` is plane_of() the artwork's place.
 FlatFootprint flat_footprint(const Mesh& mesh,
-                             const View& view,
                              const SurfaceMap& map,
                              std::size_t fragment,
+                             const Footprint& footprint,
                              const PartArtwork& artwork,
                              const ArtworkPlane& plane);
 

@@ -21,6 +21,7 @@ ArtworkInputs::ArtworkInputs(const Mesh& mesh,
       map_(map),
       layout_(layout),
       device_(device),
+      footprints_(mesh.parts.size()),
       changed_parts_(mesh.parts.size(), false) {}
 
 bool ArtworkInputs::stands(const Scene& scene) const {
@@ -85,8 +86,10 @@ std::shared_ptr<const FilteredPicture> ArtworkInputs::filtered_of(const PartArtw
     return filtered;
 }
 
-void ArtworkInputs::solve_one(Solved& solved) const {
+void ArtworkInputs::solve_one(Solved& solved) {
     const PartArtwork& artwork = solved.of;
+    std::vector<Footprint>& footprints = footprints_[artwork.part];
+    if (footprints.empty()) footprints = footprints_of(view_, map_, artwork.part);
     const ArtworkPlane plane = plane_of(artwork.artwork.place);
     const std::size_t layers =
         solved.filtered ? static_cast<std::size_t>(solved.filtered->channels()) / 4 : 1;
@@ -103,7 +106,8 @@ void ArtworkInputs::solve_one(Solved& solved) const {
             const double facing =
                 facing_cover(artwork.artwork.place, glm::dot(normal, plane.toward));
             if (facing <= 0.0) continue;
-            const FlatFootprint flat = flat_footprint(mesh_, view_, map_, i, artwork, plane);
+            const FlatFootprint flat =
+                flat_footprint(mesh_, map_, i, footprints[i - first], artwork, plane);
             if (solved.filtered) {
                 solved.filtered->mean(
                     frame.uv(flat.at), frame.turned(flat.a), frame.turned(flat.b), values.data());

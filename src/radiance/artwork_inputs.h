@@ -55,7 +55,7 @@ class ArtworkInputs {
         std::size_t covered = 0;
     };
     std::shared_ptr<const FilteredPicture> filtered_of(const PartArtwork& artwork);
-    void solve_one(Solved& solved) const;
+    void solve_one(Solved& solved);
 
     const Mesh& mesh_;
     const View& view_;
@@ -64,6 +64,7 @@ class ArtworkInputs {
     const ShadingDevice device_;
     std::vector<std::shared_ptr<Solved>> solved_;  ///< one for each of the scene's
     std::vector<Picture> pictures_;
+    std::vector<std::vector<Footprint>> footprints_;  ///< of parts that wore artwork
     std::vector<bool> changed_parts_;
     int layers_made_ = 0;
 };

@@ -33,16 +33,16 @@ SurfaceMap relieved(const SurfaceMap& map, const Scene& scene, const View& view)
         const ArtworkPlane plane = plane_of(relief.artwork.place);
         const PictureFrame in_picture = picture_frame(relief);
         const std::size_t first = map.part_begin[relief.part];
-        const std::size_t count = map.part_begin[relief.part + 1] - first;
-        parallel_for(count, 1024, [&](std::size_t begin, std::size_t end) {
+        const std::vector<Footprint> footprints = footprints_of(view, map, relief.part);
+        parallel_for(footprints.size(), 1024, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = first + begin; i < first + end; ++i) {
                 Fragment& fragment = result.fragments[i];
                 const glm::dvec3 normal(fragment.normal);
                 const double facing =
                     facing_cover(relief.artwork.place, glm::dot(normal, plane.toward));
                 if (facing <= 0.0) continue;
-                const FlatFootprint flat =
-                    flat_footprint(scene.product->mesh, view, map, i, relief, plane);
+                const FlatFootprint flat = flat_footprint(
+                    scene.product->mesh, map, i, footprints[i - first], relief, plane);
                 float mean[4];
                 picture.mean(in_picture.uv(flat.at),
                              in_picture.turned(flat.a),

@@ -11,6 +11,7 @@
 #include "core/paths.h"
 #include "glb.h"
 #include "outline.h"
+#include "patterns.h"
 #include "sheet.h"
 #include "solids.h"
 
@@ -21,6 +22,37 @@ TEST(Generation, IsDeterministicAndWhatIsShipped) {
     const auto first = glb_bytes("car", make_car());
     EXPECT_TRUE(first == glb_bytes("car", make_car()));
     EXPECT_TRUE(first == read_text_file(shipped_path("assets/car.glb")));
+}
+
+TEST(Patterns, RepeatWithoutASeam) {
+    // Steps across the border are no larger than within the tile: squared, on average
+    for (const Image8& tile : {blossoms(128), weave(128)}) {
+        const auto steps = [&](int x) {
+            double sum = 0.0;
+            for (int y = 0; y < tile.height; ++y) {
+                for (int c = 0; c < 3; ++c) {
+                    const double d = tile.at(x, y, c) - tile.at((x + 1) % tile.width, y, c);
+                    sum += d * d;
+                }
+            }
+            return sum;
+        };
+        double largest = 0.0;
+        for (int x = 0; x + 1 < tile.width; ++x) largest = std::max(largest, steps(x));
+        EXPECT_LE(steps(tile.width - 1), largest);
+    }
+}
+
+TEST(Patterns, OfNormalsAreNormals) {
+    const Image8 tile = weave(64);
+    for (std::size_t i = 0; i < tile.pixel_count(); ++i) {
+        glm::dvec3 normal;
+        for (int c = 0; c < 3; ++c) {
+            normal[c] = tile.values[3 * i + static_cast<std::size_t>(c)] / 127.5 - 1.0;
+        }
+        EXPECT_NEAR(glm::length(normal), 1.0, 0.01);
+        EXPECT_GT(normal.z, 0.5);
+    }
 }
 
 TEST(Outline, MeasuresDistanceInsideAndOut) {
