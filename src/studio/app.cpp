@@ -378,7 +378,10 @@ class Desktop {
         const bool had_input = imgui_->has_input();
         shell_.input_at = imgui_->begin_frame(
             [this](const InputEvent& event) { return handle_key(shell_, event); });
-        if (had_input) shell_.trace->write("input", 0, {}, shell_.input_at);
+        if (had_input) {
+            shell_.trace->write("input", 0, {}, shell_.input_at);
+            tell_unrest();
+        }
         draw_everything();
         end_trials(studio);
         imgui_->end_frame();
@@ -431,9 +434,18 @@ class Desktop {
         state["clicks"] = std::to_string(imgui_->handed_out().clicks);
         state["notches"] = std::to_string(imgui_->handed_out().notches);
         state["frame"] = std::to_string(++frames_drawn_);
-        ui_map_->update(take_named_items(),
-                        state,
-                        {place.position.x, place.position.y, place.size_px.x, place.size_px.y});
+        state["at_rest"] = frames_to_draw_ <= 0 && !imgui_->has_input() ? "true" : "false";
+        mapped_ = {take_named_items(),
+                   state,
+                   {place.position.x, place.position.y, place.size_px.x, place.size_px.y}};
+        ui_map_->update(mapped_.items, mapped_.state, mapped_.window);
+    }
+
+    /// Before the mock-up answers to input, so that nobody takes the map for what came of it.
+    void tell_unrest() {
+        if (!ui_map_ || mapped_.state.empty()) return;
+        mapped_.state["at_rest"] = "false";
+        ui_map_->update(mapped_.items, mapped_.state, mapped_.window);
     }
 
     void finish() {
@@ -456,6 +468,12 @@ class Desktop {
     std::unique_ptr<ImGuiWindow> imgui_;
     Shell shell_;
     std::optional<UiMapFile> ui_map_;
+    struct Mapped {
+        ItemPlaces items;
+        MapState state;
+        ItemPlace window;
+    };
+    Mapped mapped_;  ///< as last written
     int frames_drawn_ = 0;
     int frames_to_draw_ = 0;
     std::vector<std::array<int, 4>> monitor_places_;

@@ -82,7 +82,8 @@ Rectangle StudioProgram::item(const std::string& name) {
     const auto look = [&]() -> Rectangle {
         const Json map = this->map();
         const auto& items = map["items"];
-        if (!items.contains(name)) return {};
+        // What was done may still move it, although the projector shows it already.
+        if (!map["state"]["at_rest"].get<bool>() || !items.contains(name)) return {};
         const auto at = items[name].get<std::vector<int>>();
         const auto window = map["window"].get<std::vector<int>>();
         return {window[0] + at[0], window[1] + at[1], at[2], at[3]};

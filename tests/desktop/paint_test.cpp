@@ -1,0 +1,55 @@
+// The tab of one paint on two monitors: what it shows, another colour, another paint beside it.
+
+#include <gtest/gtest.h>
+
+#include "appearance/paint_colour.h"
+#include "appearance/recolour.h"
+#include "desktop/prepared.h"
+#include "desktop/two_monitors.h"
+#include "session/commands.h"
+
+namespace livery {
+namespace {
+
+using PaintTab = TwoMonitors;
+
+TEST_F(PaintTab, GivesAFinishAnotherColourAndHoldsItAgainstAnother) {
+    use_shared();
+    const int look = look_at_place(0);
+    const Image8 first = drive_of_place(0);
+    const std::string worn = document.looks.front().look.parts.at("body");
+    Recoloured made = with_colour(find_paint(document, worn), parse_colour("#b01020"));
+    ASSERT_TRUE(made.reached) << made.why_not;
+    made.material.name = worn;
+    const Image8 red =
+        expected_drive(applied(document, EditPaint{look, "body", made.material}), look);
+
+    program->click("tab:Paint");
+    EXPECT_TRUE(wait_until([&] { return program->has_item("angle:110"); }));
+    program->click("paint-colour");
+    desktop->type("#b01020");
+    EXPECT_TRUE(projector_shows(red)) << "while it is typed";
+    desktop->press_key("Escape");
+    EXPECT_TRUE(projector_shows(first));
+    program->click("paint-colour");
+    desktop->type("#b01020");
+    desktop->press_key("Return");
+    EXPECT_TRUE(projector_shows(red));
+    desktop->press_key("ctrl+z");
+    EXPECT_TRUE(projector_shows(first));
+
+    program->click("paint-compare");
+    EXPECT_TRUE(program->has_item("compare:" + worn));
+    desktop->type("silver metallic");
+    EXPECT_TRUE(wait_until([&] { return !program->has_item("compare:" + worn); }));
+    program->click("compare:silver metallic");
+    EXPECT_TRUE(wait_until([&] { return program->has_item("paint-difference"); }));
+    EXPECT_TRUE(projector_shows(first)) << "comparing changes nothing";
+    program->click("paint-compare");
+    program->click("compare:nothing");
+    EXPECT_TRUE(wait_until([&] { return !program->has_item("paint-difference"); }));
+    program->click("tab:Paints");
+}
+
+}  // namespace
+}  // namespace livery
