@@ -95,6 +95,8 @@ Material find_material(const std::string& name_or_file) {
     }
     const PaintLibrary library = read_paint_library();
     if (const Material* material = library.find(name_or_file)) return *material;
+    // Which names they have is not known yet.
+    if (!library.unread.empty()) throw MeasuredFileUnread(library.unread.front());
     std::string found = fmt::format("no paint named '{}'", name_or_file);
     if (!library.problems.empty()) {
         found += fmt::format(" (left out: {})", fmt::join(library.problems, "; "));

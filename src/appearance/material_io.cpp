@@ -70,6 +70,8 @@ void read_measured(const JsonReader& reader, UnreadMeasured unread, Material& ma
     const std::filesystem::path file = reader.file().parent_path() / named;
     try {
         material.measured = load_measured_paint(file);
+    } catch (const MeasuredFileUnread&) {
+        throw;
     } catch (const FileError& error) {
         if (unread == UnreadMeasured::refused) throw;
         material.measured = unread_measured_paint(file, error.what());

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "appearance/measured_paint.h"
 #include "core/error.h"
 #include "core/paths.h"
 
@@ -115,16 +116,21 @@ std::vector<std::string> PaintLibrary::nearest(const std::string& name, std::siz
     return names;
 }
 
-PaintLibrary read_paint_library() {
-    PaintLibrary library;
-    library.shipped = load_library(shipped_path("materials"));
+std::vector<Material> read_shipped_paints() {
+    std::vector<Material> paints = load_library(shipped_path("materials"));
     const auto place = [](const Material& material) {
         const auto& families = paint_families();
         return std::find(families.begin(), families.end(), material.family) - families.begin();
     };
-    std::stable_sort(library.shipped.begin(),
-                     library.shipped.end(),
-                     [&](const Material& a, const Material& b) { return place(a) < place(b); });
+    std::stable_sort(paints.begin(), paints.end(), [&](const Material& a, const Material& b) {
+        return place(a) < place(b);
+    });
+    return paints;
+}
+
+PaintLibrary read_paint_library() {
+    PaintLibrary library;
+    library.shipped = read_shipped_paints();
     for (const auto& file : user_files()) {
         try {
             Material material = read_material_file(file);
@@ -137,6 +143,8 @@ PaintLibrary read_paint_library() {
                                             other->file.string()));
             }
             library.users.push_back(std::move(material));
+        } catch (const MeasuredFileUnread& unread) {
+            library.unread.push_back(unread.file());
         } catch (const FileError& problem) {
             library.problems.emplace_back(problem.what());
         }

@@ -21,12 +21,18 @@ struct PaintLibrary {
     /// One line for each of the user's files that was left out (unreadable, or a name that another
     /// paint has), with the fix. The others are there all the same.
     std::vector<std::string> problems;
+    /// Measured files of the user's paints that were left out because they were not to be waited
+    /// for (OnlyMeasuredInMemory); empty otherwise.
+    std::vector<std::filesystem::path> unread;
 
     /// By name; case, hyphens and underlines do not matter. Null: none.
     const Material* find(const std::string& name) const;
     /// The names that differ least, nearest first.
     std::vector<std::string> nearest(const std::string& name, std::size_t count) const;
 };
+
+/// Reads the shipped paints alone. Throws FileError.
+std::vector<Material> read_shipped_paints();
 
 /// Reads both folders. Throws FileError when a shipped paint cannot be read.
 PaintLibrary read_paint_library();

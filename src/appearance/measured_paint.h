@@ -12,6 +12,7 @@
 
 #include "appearance/bsdf_source.h"
 #include "appearance/measured_grid.h"
+#include "core/error.h"
 
 namespace livery {
 
@@ -37,8 +38,27 @@ struct MeasuredPaint {
 MeasuredPaint measured_paint(const MeasuredReflectance& measured, const Progress& progress = {});
 
 /// Reads the file, or gives what was read of it before, as long as a material has that and the file
-/// is as it was. Throws FileError.
+/// is as it was. Any thread; two that ask for one file read it once. Throws FileError.
 std::shared_ptr<const MeasuredPaint> load_measured_paint(const std::filesystem::path& file);
+
+/// Reading and resampling a file takes about a second. While one of these lives, its thread does
+/// not wait for that: load_measured_paint() gives what is in memory, throws again what went wrong
+/// when the file was last read, and throws MeasuredFileUnread for any other file.
+class OnlyMeasuredInMemory {
+  public:
+    OnlyMeasuredInMemory();
+    ~OnlyMeasuredInMemory();
+    OnlyMeasuredInMemory(const OnlyMeasuredInMemory&) = delete;
+    OnlyMeasuredInMemory& operator=(const OnlyMeasuredInMemory&) = delete;
+
+  private:
+    bool before_;
+};
+
+class MeasuredFileUnread : public FileError {
+  public:
+    explicit MeasuredFileUnread(const std::filesystem::path& file);
+};
 
 /// Black, to prepare with what will draw others.
 std::shared_ptr<const MeasuredPaint> blank_measured_paint();

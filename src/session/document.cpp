@@ -22,7 +22,8 @@ Document new_document(const std::string& product, std::optional<LengthUnit> unit
     const auto bench = bench_of_shipped_product(product);
     const auto own = bench ? nullptr : find_product(product, unit);
     const std::vector<std::string> parts = own ? part_names(own->mesh) : part_names(product);
-    const PaintLibrary library = read_paint_library();
+    PaintLibrary library;
+    library.shipped = read_shipped_paints();
     for (const std::string& name : shipped_looks()) {
         Look look = find_look_for(name, parts);
         for_each_paint(look, [&](std::string& paint) {

@@ -98,7 +98,9 @@ void add_milliseconds(FramePlan& plan, const FramePlan& more, bool add_passes) {
 std::set<ReflectanceModel> models_likely_next() {
     std::set<ReflectanceModel> models{glow_paint().model};
     try {
+        const OnlyMeasuredInMemory others_read_it;
         const PaintLibrary library = read_paint_library();
+        if (!library.unread.empty()) models.insert(ReflectanceModel::measured);
         for (const auto* paints : {&library.shipped, &library.users}) {
             for (const Material& paint : *paints) models.insert(paint.model);
         }

@@ -390,6 +390,9 @@ void draw_library_panel(Studio& studio) {
     }
     draw_target(studio, target);
     for (const std::string& problem : state.library.problems) warning_text("Left out: " + problem);
+    for (const auto& file : state.being_read) {
+        dim_text("Reading " + file.filename().string() + "…");
+    }
 
     const float height = std::max(ImGui::GetContentRegionAvail().y, em(12.0f));
     state.owns_arrows = false;

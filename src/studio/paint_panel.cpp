@@ -67,9 +67,14 @@ void refresh(Studio& studio) {
     const std::string paint = worn_by(look->look, state.part_name);
     if (paint.empty()) return;
     try {
+        const OnlyMeasuredInMemory no_waiting;
         state.material = find_paint(document, paint);
         state.becomes =
             name_after_edit(document, EditPaint{state.look, state.part_name, *state.material});
+    } catch (const MeasuredFileUnread& unread) {
+        read_measured_behind(studio, unread.file());
+        state.read = false;
+        state.problem = unread.what();
     } catch (const FileError& error) {
         state.problem = error.what();
     }

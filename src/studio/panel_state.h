@@ -17,6 +17,7 @@
 #include "appearance/lobe_curve.h"
 #include "appearance/material_library.h"
 #include "appearance/measured_grid.h"
+#include "appearance/measured_paint.h"
 #include "appearance/paint_colour.h"
 #include "appearance/paint_figures.h"
 #include "appearance/recolour.h"
@@ -43,6 +44,9 @@ struct LibraryPanelState {
     std::string problem;      ///< why there is no library
     double read_at_s = -1.0;  ///< of the window's clock; negative: to be read
     std::filesystem::file_time_type folder_changed_at{};
+    std::set<std::filesystem::path> being_read;  ///< measured files, on the background thread
+    /// Until what waits for them was asked for again.
+    std::vector<std::shared_ptr<const MeasuredPaint>> just_read;
     std::string search;
     bool searching = false;     ///< the text cursor is in the search
     bool focus_search = false;  ///< set by a key: the next frame puts the text cursor there

@@ -6,6 +6,7 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
+#include "appearance/measured_paint.h"
 #include "core/log.h"
 #include "studio/theme.h"
 
@@ -28,6 +29,7 @@ std::string text_of(const Notice& notice) {
 void commit(Studio& studio, const SessionCommand& command) {
     const std::string label = label_of(studio.session.document(), command);
     try {
+        const OnlyMeasuredInMemory no_waiting;
         studio.session.execute(command);
     } catch (const std::exception& error) {
         notify(studio, {Notice::Level::error, label + " was not done.", error.what(), ""});
@@ -82,6 +84,7 @@ Document shown_document(const Studio& studio) {
     const Document& document = studio.session.document();
     if (!studio.tried) return document;
     try {
+        const OnlyMeasuredInMemory no_waiting;
         return applied(document, *studio.tried);
     } catch (const std::invalid_argument&) {
         return document;  // The document changed under the pointer: the look is gone.

@@ -6,11 +6,13 @@
 
 #include <fmt/format.h>
 
+#include "appearance/measured_paint.h"
 #include "core/log.h"
 #include "scene/view.h"
 #include "session/library.h"
 #include "studio/results.h"
 #include "studio/shell.h"
+#include "studio/users_library.h"
 
 namespace livery {
 
@@ -28,6 +30,7 @@ std::string text_of_trial(const Studio& studio) {
 Scene scene_for(Shell& shell, const Document& document, int look) {
     const auto& reference = find_look(document, look)->look.environment;
     auto& kept = shell.environments[{reference.file, reference.rotation_rad, reference.scale}];
+    const OnlyMeasuredInMemory no_waiting;
     Scene scene = scene_of(document, look, shell.studio.product, kept);
     kept = scene.environment;
     constexpr std::size_t most_kept = 16;
@@ -130,6 +133,10 @@ void ask_for_frame(Shell& shell) {
     try {
         description.scene = scene_for(shell, document, key.look);
         if (key.wipe_to) description.wipe_to = scene_for(shell, document, *key.wipe_to);
+    } catch (const MeasuredFileUnread& unread) {
+        // Asked for again when it is read; the last picture stays until then.
+        read_measured_behind(studio, unread.file());
+        return;
     } catch (const std::exception& error) {
         shell.asked_frame = key;
         notify(studio, {Notice::Level::error, "The look cannot be drawn.", error.what(), ""});
@@ -332,6 +339,7 @@ void ask_for_changes(Shell& shell) {
     ask_for_frame(shell);
     ask_for_preview(shell);
     ask_for_photograph(shell);
+    shell.studio.panels.library.just_read.clear();
 }
 
 }  // namespace livery
