@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <glm/common.hpp>
 
+#include "appearance/parameter_table.h"
 #include "core/paths.h"
 #include "scene/gltf_parts.h"
 
@@ -20,7 +21,8 @@ using Notes = std::vector<std::string>;
 constexpr std::string_view kRead[] = {"KHR_materials_clearcoat",
                                       "KHR_materials_specular",
                                       "KHR_materials_ior",
-                                      "KHR_materials_anisotropy"};
+                                      "KHR_materials_anisotropy",
+                                      "KHR_materials_iridescence"};
 constexpr double kSmoothestAlpha = 0.001;  ///< a mirror; glTF's 0 is none that a lamp shows in
 constexpr double kCoatF0 = 0.04;           ///< of an index of 1.5, which glTF gives every coat
 
@@ -76,6 +78,11 @@ std::vector<std::string> dropped(const JsonReader& material) {
         // Their pictures alone: the factors are read.
         for (const std::string& member : extensions[name].keys()) {
             if (member.ends_with("Texture")) names.push_back(name + "." + member);
+        }
+        // Which matters to that picture alone.
+        const char* const thinnest = "iridescenceThicknessMinimum";
+        if (extensions[name].has("iridescenceThicknessTexture") && extensions[name].has(thinnest)) {
+            names.push_back(name + "." + thinnest);
         }
     }
     return names;
@@ -141,6 +148,56 @@ bool says_more(const JsonReader& material) {
     return pbr.has("metallicFactor") || pbr.has("roughnessFactor");
 }
 
+double within_range(
+    const char* parameter, double value, const char* what, const Part& part, Notes& notes) {
+    const ParameterInfo& info = parameter_info(parameter);
+    const double possible = std::clamp(value, info.low, info.high);
+    if (possible != value) {
+        notes.push_back(fmt::format("material \"{}\": {} of {:.4g} is taken for {:.4g}",
+                                    part.material_name,
+                                    what,
+                                    value,
+                                    possible));
+    }
+    return possible;
+}
+
+/// Turns the paint's base into flakes with a thin film. glTF's film has air above it, ours the
+/// coat's varnish: it gets the same step of index and the same path, hence the same colours.
+void add_film(const JsonReader& iridescence, Material& paint, const Part& part, Notes& notes) {
+    const double factor = number_or(iridescence, "iridescenceFactor", 0.0, 1.0, 0.0);
+    const double index = number_or(iridescence, "iridescenceIor", 1.0, 100.0, 1.3);
+    number_or(iridescence, "iridescenceThicknessMinimum", 0.0, 1e6, 100.0);
+    const double thickness_nm =
+        number_or(iridescence, "iridescenceThicknessMaximum", 0.0, 1e6, 400.0);
+    if (factor == 0.0 || thickness_nm == 0.0) return;
+    if (factor < 1.0) {
+        notes.push_back(fmt::format("material \"{}\": iridescenceFactor {:.4g} is taken for 1",
+                                    part.material_name,
+                                    factor));
+    }
+    if (paint.alpha.x != paint.alpha.y) {
+        notes.push_back(
+            fmt::format("material \"{}\": under a thin film it is as rough along the "
+                        "grain as across",
+                        part.material_name));
+    }
+    const double coat_f0 = paint.model == ReflectanceModel::clearcoat ? paint.coat_f0 : 0.0;
+    const double varnish = (1.0 + std::sqrt(coat_f0)) / (1.0 - std::sqrt(coat_f0));
+    paint.model = ReflectanceModel::car_paint;
+    paint.coat_f0 = coat_f0;
+    paint.flake_f0 = paint.f0;
+    paint.f0 = glm::dvec3(0.0);
+    paint.flake_alpha = std::sqrt(paint.alpha.x * paint.alpha.y);
+    paint.alpha = glm::dvec2(paint.flake_alpha);
+    paint.film_eta = within_range("film_eta", index * varnish, "a film's index", part, notes);
+    paint.film_nm = within_range("film_nm",
+                                 thickness_nm * index / paint.film_eta,
+                                 "a film's thickness in nanometres",
+                                 part,
+                                 notes);
+}
+
 Material paint_of(const JsonReader& material, Part& part, Notes& notes) {
     Material paint;
     paint.name = part.material_name;
@@ -168,6 +225,10 @@ Material paint_of(const JsonReader& material, Part& part, Notes& notes) {
                        ? metallic > 0.5 ? "metallic" : "solid"
                    : metallic > 0.5 ? "metal"
                                     : "plain";
+    if (const auto iridescence = extension(material, "KHR_materials_iridescence")) {
+        add_film(*iridescence, paint, part, notes);
+        if (paint.model == ReflectanceModel::car_paint) paint.family = "pearl";
+    }
     paint.provenance = "the mesh file's own material";
     return paint;
 }

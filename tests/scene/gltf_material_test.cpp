@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "appearance/bsdf.h"
 #include "scene/gltf_builder.h"
 #include "scene/look.h"
 #include "scene/mesh.h"
@@ -133,17 +134,87 @@ TEST_F(GltfMaterial, AnisotropyWidensAlongTheGrain) {
               "taken");
 }
 
+TEST_F(GltfMaterial, AnIridescentFilmInAirHasAirysReflectance) {
+    const Material paint = paint_of(R"({"pbrMetallicRoughness":
+        {"baseColorFactor": [0.7, 0.7, 0.7, 1], "roughnessFactor": 0.3},
+        "extensions": {"KHR_materials_iridescence": {"iridescenceFactor": 1,
+            "iridescenceIor": 1.8, "iridescenceThicknessMaximum": 1.5}}})");
+    EXPECT_EQ(paint.model, ReflectanceModel::car_paint);
+    EXPECT_EQ(paint.family, "pearl");
+    EXPECT_EQ(paint.coat_f0, 0.0);
+    EXPECT_EQ(paint.f0, glm::dvec3(0.0));
+    EXPECT_EQ(paint.diffuse, glm::dvec3(0.0));
+    EXPECT_NEAR(paint.flake_alpha, 0.09, 1e-12);
+    EXPECT_EQ(paint.film_eta, 1.8);
+    EXPECT_EQ(paint.film_nm, 1.5);
+    EXPECT_TRUE(notes_.empty()) << notes_.front();
+    EXPECT_NO_THROW(parameters_of_f64(paint));  // in range
+    // A film much thinner than light reflects what its base does; the default one does not.
+    const auto straight = [](const Material& of) {
+        f64::BsdfParameters p = parameters_of_f64(of);
+        return f64::film_reflectance(p, 4.0);
+    };
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(straight(paint)[c], 0.7, 0.005);
+    const Material usual = paint_of(R"({"pbrMetallicRoughness":
+        {"baseColorFactor": [0.7, 0.7, 0.7, 1], "roughnessFactor": 0.3},
+        "extensions": {"KHR_materials_iridescence": {"iridescenceFactor": 1}}})");
+    EXPECT_EQ(usual.film_eta, 1.3);
+    EXPECT_EQ(usual.film_nm, 400.0);
+    EXPECT_GT(glm::distance(straight(usual), glm::dvec3(0.7)), 0.05);
+
+    // Under varnish: the same colours straight on, and the coat's own gloss.
+    const Material coated = paint_of(R"({"pbrMetallicRoughness":
+        {"baseColorFactor": [0.7, 0.7, 0.7, 1], "roughnessFactor": 0.3},
+        "extensions": {"KHR_materials_iridescence": {"iridescenceFactor": 1},
+            "KHR_materials_clearcoat": {"clearcoatFactor": 1}}})");
+    EXPECT_NEAR(coated.coat_f0, 0.04, 1e-12);
+    EXPECT_NEAR(coated.film_eta, 1.95, 1e-12);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(straight(coated)[c], straight(usual)[c], 1e-9);
+    EXPECT_TRUE(notes_.empty()) << notes_.front();
+    // Without a factor there is no film.
+    EXPECT_EQ(paint_of(R"({"extensions": {"KHR_materials_iridescence": {}}})").model,
+              ReflectanceModel::ggx);
+}
+
+TEST_F(GltfMaterial, WhatAFilmCannotKeepIsSaid) {
+    const Material plastic = paint_of(R"({"pbrMetallicRoughness":
+        {"baseColorFactor": [0.1, 0.2, 0.3, 1], "metallicFactor": 0, "roughnessFactor": 0.4},
+        "extensions": {"KHR_materials_anisotropy": {"anisotropyStrength": 0.5},
+            "KHR_materials_iridescence": {"iridescenceFactor": 0.5, "iridescenceIor": 3,
+                "iridescenceThicknessMinimum": 50, "iridescenceThicknessMaximum": 9000,
+                "iridescenceThicknessTexture": {"index": 0}}}})");
+    EXPECT_EQ(plastic.diffuse, glm::dvec3(0.1, 0.2, 0.3));
+    EXPECT_NEAR(plastic.flake_f0.x, 0.04, 1e-12);
+    EXPECT_EQ(plastic.alpha.x, plastic.alpha.y);
+    EXPECT_NO_THROW(parameters_of_f64(plastic));
+    EXPECT_EQ(notes_,
+              (std::vector<std::string>{
+                  "material \"skin\": KHR_materials_iridescence.iridescenceThicknessTexture, "
+                  "KHR_materials_iridescence.iridescenceThicknessMinimum not read",
+                  "material \"skin\": iridescenceFactor 0.5 is taken for 1",
+                  "material \"skin\": under a thin film it is as rough along the grain as across",
+                  "material \"skin\": a film's index of 3 is taken for 2.7",
+                  "material \"skin\": a film's thickness in nanometres of 1e+04 is taken for "
+                  "2000"}));
+    EXPECT_TRUE(fails(R"({"extensions": {"KHR_materials_iridescence": {"iridescenceIor": 0.5}}})",
+                      {"KHR_materials_iridescence.iridescenceIor", "0.5", "between 1 and 100"}));
+    EXPECT_TRUE(fails(R"({"extensions": {"KHR_materials_iridescence":
+                          {"iridescenceThicknessMaximum": -1}}})",
+                      {"iridescenceThicknessMaximum", "-1"}));
+    EXPECT_TRUE(fails(R"({"extensions": {"KHR_materials_iridescence": 1}})",
+                      {"KHR_materials_iridescence", "an object"}));
+}
+
 TEST_F(GltfMaterial, WhatIsDroppedIsNamed) {
     paint_of(R"({"pbrMetallicRoughness": {"metallicFactor": 0}, "alphaMode": "BLEND",
         "emissiveFactor": [1, 0, 0], "normalTexture": {"index": 0},
-        "extensions": {"KHR_materials_iridescence": {"iridescenceFactor": 1},
+        "extensions": {"KHR_materials_sheen": {"sheenRoughnessFactor": 1},
                        "KHR_materials_clearcoat":
                            {"clearcoatFactor": 1, "clearcoatNormalTexture": {"index": 0}}}})");
     EXPECT_EQ(notes_,
               (std::vector<std::string>{
                   "material \"skin\": normalTexture, emissiveFactor, alphaMode BLEND, "
-                  "KHR_materials_iridescence, KHR_materials_clearcoat.clearcoatNormalTexture not "
-                  "read"}));
+                  "KHR_materials_sheen, KHR_materials_clearcoat.clearcoatNormalTexture not read"}));
     // Which places are metal stands in a picture: no paint is better than a wrong one.
     EXPECT_FALSE(part_of(R"({"pbrMetallicRoughness":
         {"metallicFactor": 1, "metallicRoughnessTexture": {"index": 0}}})")
