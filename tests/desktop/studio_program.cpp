@@ -95,7 +95,7 @@ Rectangle StudioProgram::item(const std::string& name) {
         found = look();
         return found.width > 0 && found == before;
     };
-    if (!wait_until(steady, 15s)) {
+    if (!wait_until(steady, patience)) {
         throw std::runtime_error(fmt::format("no \"{}\" in the window, only: {}\n{}",
                                              name,
                                              fmt::join(items_starting_with(""), ", "),
