@@ -165,7 +165,8 @@ ArtworkPoint artwork_at(const PartArtwork& artwork,
     glm::dvec2 on = picture_frame(artwork).uv(at);
     if (artwork.artwork.repeat) on -= glm::floor(on);
     const glm::dvec2 size(picture.rgba.width, picture.rgba.height);
-    const glm::dvec2 texel = glm::floor(on * size);
+    const glm::dvec2 texel = artwork.artwork.repeat ? glm::min(glm::floor(on * size), size - 1.0)
+                                                    : glm::floor(on * size);
     if (!(texel.x >= 0.0 && texel.y >= 0.0 && texel.x < size.x && texel.y < size.y)) return {};
     const float* rgba = picture.rgba.pixel(static_cast<int>(texel.x), static_cast<int>(texel.y));
     double cover = static_cast<double>(rgba[3]);

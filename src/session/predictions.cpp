@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -18,7 +19,8 @@ constexpr int kCoarse = 4;
 
 struct FragmentCounts {
     std::map<std::string, double> by_part;
-    double all = 0.0;
+    std::vector<double> of_artwork;  ///< that it covers, as often as it is shaded
+    double wearing = 0.0, tilted = 0.0, all = 0.0;
 };
 
 FragmentCounts count_fragments(const Scene& scene, const View& view, const Progress& progress) {
@@ -30,16 +32,40 @@ FragmentCounts count_fragments(const Scene& scene, const View& view, const Progr
     const SurfaceMap map = build_surface_map(mesh, Tracer(mesh), coarse, 16, progress);
     // Fragments of many small parts would be counted several times a coarse pixel: area counts.
     FragmentCounts counts;
-    for (const Fragment& fragment : map.fragments) {
+    counts.of_artwork.resize(scene.artwork.size());
+    for (std::size_t i = 0; i < map.fragments.size(); ++i) {
+        const Fragment& fragment = map.fragments[i];
         const double pixels = static_cast<double>(fragment.coverage) / (scale.x * scale.y);
         counts.by_part[mesh.parts[fragment.part].name] += pixels;
         counts.all += pixels;
+        if (relief_of(scene, fragment.part)) counts.tilted += pixels;
+        for (std::size_t k = 0; k < scene.artwork.size(); ++k) {
+            const PartArtwork& artwork = scene.artwork[k];
+            if (artwork.part != fragment.part) continue;
+            counts.wearing += pixels;
+            const SurfaceSample& sample = map.samples[i * kSamplesAFragment];
+            const SurfacePoint point =
+                surface_point(mesh, Hit{sample.triangle, 0.0f, sample.barycentric});
+            const ArtworkPoint at = artwork_at(artwork,
+                                               glm::dvec3(fragment.position_mm),
+                                               glm::dvec3(fragment.normal),
+                                               glm::dvec2(point.uv));
+            if (at.cover > 0.0) counts.of_artwork[k] += pixels;
+        }
+    }
+    for (std::size_t k = 0; k < scene.artwork.size(); ++k) {
+        counts.of_artwork[k] *= static_cast<double>(coats_of(scene.artwork[k]).size());
     }
     return counts;
 }
 
-double items_of(const std::string& pass, const FragmentCounts& counts) {
+double items_of(const std::string& pass, const Scene& scene, const FragmentCounts& counts) {
+    if (pass == kArtworkPass) return counts.wearing;
+    if (pass == kReliefPass) return counts.tilted;
     if (!pass.starts_with("shade:")) return counts.all;
+    for (std::size_t k = 0; k < scene.artwork.size(); ++k) {
+        if (pass == artwork_pass(scene, k)) return counts.of_artwork[k];
+    }
     const auto first = pass.find(':') + 1;
     const auto part = counts.by_part.find(pass.substr(first, pass.rfind(':') - first));
     return part == counts.by_part.end() ? 0.0 : part->second;
@@ -75,7 +101,7 @@ std::string predict(FramePlan& plan,
         return "no predictions: no bench has run on this machine (livery bench --suite speed)";
     }
     const FragmentCounts counts = count_fragments(scene, view, progress);
-    for (PlannedPass& pass : plan.passes) pass.work_items = items_of(pass.name, counts);
+    for (PlannedPass& pass : plan.passes) pass.work_items = items_of(pass.name, scene, counts);
     return predict_drawn(plan, *costs);
 }
 
@@ -94,7 +120,9 @@ std::string predict_drawn(FramePlan& plan, const std::vector<PassCost>& costs) {
             note = "some passes are not predicted: see unpredicted_because";
             continue;
         }
-        const double items = pass.name.starts_with("shade:") ? pass.work_items : pixels;
+        const bool counted = pass.name.starts_with("shade:") || pass.name == kArtworkPass ||
+                             pass.name == kReliefPass;
+        const double items = counted ? pass.work_items : pixels;
         pass.predicted_ms =
             known->work_items > 0.0 ? known->ms * items / known->work_items : known->ms;
         pass.predicted_error = known->error;

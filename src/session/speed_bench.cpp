@@ -13,6 +13,7 @@
 #include "radiance/accuracy.h"
 #include "radiance/renderer.h"
 #include "reference/path_tracer.h"
+#include "session/artwork_bench.h"
 #include "session/desktop_bench.h"
 #include "session/first_frame_bench.h"
 #include "session/library.h"
@@ -176,6 +177,17 @@ void bench_frames(SpeedBenchResult& result,
             .levels.push_back(worked_level_of(size, gpu_ms, pixels));
     }
     if (view.width != 1280) return;
+    ArtworkBench artwork = run_artwork_bench(renderer, scene.looks.front(), quality, progress);
+    if (quality == Quality::normal) {
+        for (BenchLevel& level : artwork.frames) {
+            effect(result, "artwork over the body, shading beside a frame without")
+                .levels.push_back(std::move(level));
+        }
+    }
+    // A prediction scales both by the fragments of the parts that wear it.
+    passes.ms[kArtworkPass] = artwork.cover_ms;
+    passes.ms[kReliefPass] = artwork.relief_ms;
+    passes.work_items[kArtworkPass] = passes.work_items[kReliefPass] = artwork.body_fragments;
     passes.ms[kCompensationPass] = cpu_ms;
     passes.work_items[kCompensationPass] = pixels;
     for (const auto& [key, ms] : passes.ms) {

@@ -51,7 +51,9 @@ std::optional<QualityCost> quality_cost(const std::vector<PassCost>& costs,
     QualityCost sum;
     sum.error = resolve->error;
     for (const PassCost& cost : costs) {
-        if (cost.quality != quality) continue;
+        // Of looks that have artwork or a relief: theirs to add.
+        const bool artwork = cost.pass == kArtworkPass || cost.pass == kReliefPass;
+        if (cost.quality != quality || artwork) continue;
         const double ms = cost.work_items > 0.0 ? cost.ms * pixels / resolve->work_items : cost.ms;
         // A cost's shading goes by model: "shade:ggx".
         (runs_every_frame(cost.pass) ? sum.frame_ms : sum.solve_ms) += ms;
