@@ -9,6 +9,8 @@ struct BsdfParameters {
     REAL flake_alpha;         // its slope parameter
     REAL film_nm;             // thickness of the film on those flakes, 0 for none
     REAL film_eta;            // its index
+    REAL glint_density_per_mm2;  // of those flakes on the product, 0 for no glints
+    REAL glint_scale;         // how many times larger than they are they are drawn
     REAL coat_alpha;          // slope parameter of the coat
     REAL coat_f0;             // Fresnel reflectance of the coat at normal incidence
     VEC3 coat_transmittance;  // of the coat, once through at normal incidence

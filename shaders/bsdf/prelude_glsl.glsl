@@ -9,3 +9,9 @@
 #define R(x) x
 #define FN
 #define OUT(T) out T
+// Of shaders/radiance/glints.glsl
+#define INOUT(T) inout T
+#define WORD uint
+#define word_of(x) uint(int(x))
+#define unit_of(w) ((float((w) >> 9u) + 0.5) * 1.1920928955078125e-7)
+#define octave_of(x) uintBitsToFloat(floatBitsToUint(x) & 0x7f800000u)

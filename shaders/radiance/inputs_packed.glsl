@@ -32,6 +32,15 @@ vec4 light_here(int k) {
     return texelFetch(u_lights, ivec3(gl_FragCoord.xy, k), 0);
 }
 
+#ifdef GLINTS
+uniform sampler2D u_places;
+
+// Position, side of the square that a pixel covers there, in mm.
+vec4 place_here() {
+    return texelFetch(u_places, ivec2(gl_FragCoord.xy), 0);
+}
+#endif
+
 // Radiance of a white diffuser under the environment.
 vec3 sky_here() {
     return texelFetch(u_sky, ivec2(gl_FragCoord.xy), 0).rgb;

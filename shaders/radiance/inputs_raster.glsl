@@ -206,6 +206,21 @@ vec4 light_here(int k) {
 #endif
 }
 
+#ifdef GLINTS
+// Of the view whose pixels hold the flakes
+uniform vec3 u_pixels_from_mm;
+uniform vec3 u_pixels_axis;
+uniform float u_pixels_size;  // of one of them, one mm away
+
+// As pixel_side_mm (src/radiance/glints.h).
+vec4 place_here() {
+    vec3 apart = s_position_mm - u_pixels_from_mm;
+    float depth = dot(apart, u_pixels_axis);
+    float facing = max(abs(dot(apart, s_normal)), 0.1 * length(apart));
+    return vec4(s_position_mm, u_pixels_size * sqrt(max(depth * depth * depth, 0.0) / facing));
+}
+#endif
+
 vec3 mirrored_here(vec2 unused_layer, float alpha) {
     vec3 d = reflect(-s_eye, s_normal);
     vec2 at = vec2((atan(d.x, -d.z) + u_rotation) * 0.15915494309189535 + 0.5,

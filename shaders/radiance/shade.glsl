@@ -6,6 +6,7 @@
 //                               MIRRORS and BSDF_TURN2 (src/radiance/shading.cpp)
 //   LIGHTS n                    directional lights, 0 and more; LIGHT_COUNT, the same as a number
 //   ENVIRONMENT 0 or 1
+//   GLINTS                      if flakes of car paint are seen one by one; needs glints.glsl
 //   VEC4, UNIFORM               as the language has them
 // and the inputs of a fragment: inputs_packed.glsl (surface map), inputs_raster.glsl (preview) or
 // members of a C++ struct. Directions are in each fragment's own frame: z its mean normal, x its
@@ -85,6 +86,9 @@ UNIFORM VEC4 u_flakes;       // the second lobe's reflectance, its alpha
 UNIFORM VEC3 u_flakes_most;  // what its film reflects at most; without one the same
 UNIFORM bool u_has_film;
 UNIFORM VEC2 u_film;  // thickness in nm, index
+#ifdef GLINTS
+UNIFORM REAL u_glint_density;  // flakes on a mm^2 of the mock-up, as large as they are drawn
+#endif
 #if ENVIRONMENT
 UNIFORM VEC2 u_flake_layer;
 #endif
@@ -145,6 +149,9 @@ FN VEC3 shaded() {
     VEC3 layer_o = through_base(p, wo.z);
 #ifdef CAR_PAINT
     VEC3 beside_base = VEC3(R(1.0)) - p.f0;
+#ifdef GLINTS
+    VEC4 place = place_here();
+#endif
 #else
     REAL f90 = grazing_reflectance(max_component(p.f0));
 #endif
@@ -167,9 +174,13 @@ FN VEC3 shaded() {
         VEC3 value = p.f0 * lobe;
         VEC3 flakes = p.flake_f0;
         if (u_has_film) flakes = film_reflectance(p, hh);
-        value += beside_base * flakes *
-                 disc_distribution_visibility(
-                     wi, wo, hh, p.flake_alpha, p.flake_alpha, u_light_radius2[k], eye.w);
+        REAL flake_lobe = disc_distribution_visibility(
+            wi, wo, hh, p.flake_alpha, p.flake_alpha, u_light_radius2[k], eye.w);
+#ifdef GLINTS
+        flake_lobe *= glint_factor(
+            wi, wo, hh, p.flake_alpha, u_light_radius2[k], eye.w, place, u_glint_density);
+#endif
+        value += beside_base * flakes * flake_lobe;
 #else
         VEC3 value = mix(p.f0, VEC3(f90), schlick) * lobe;
 #endif

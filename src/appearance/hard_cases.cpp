@@ -128,8 +128,9 @@ f32::BsdfParameters extreme_parameters(Random& random) {
         for (int k = 0; k < parameter.count(); ++k) {
             const float u = random.uniform_float();
             const float t = random.uniform_float();
+            const bool by_ratios = parameter.logarithmic && low > 0.0f;
             const float between =
-                parameter.logarithmic ? low * std::pow(high / low, t) : low + (high - low) * t;
+                by_ratios ? low * std::pow(high / low, t) : low + (high - low) * t;
             *components[static_cast<std::size_t>(k)] = u < 0.25f  ? low
                                                        : u < 0.5f ? high
                                                                   : std::clamp(between, low, high);

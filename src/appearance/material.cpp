@@ -51,6 +51,16 @@ Material read_or_remember(const std::filesystem::path& file) {
 
 }  // namespace
 
+bool has_glints(const Material& material) {
+    return material.model == ReflectanceModel::car_paint && material.glint_density_per_mm2 > 0.0;
+}
+
+std::string glint_scale_text(const Material& material) {
+    return material.glint_scale > 1.0
+               ? fmt::format("exaggerated {:.3g} times", material.glint_scale)
+               : "physical";
+}
+
 std::vector<Material> load_library(const std::filesystem::path& folder) {
     std::error_code error;
     std::vector<std::filesystem::path> files;

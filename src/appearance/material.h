@@ -46,6 +46,8 @@ struct Material {
     double flake_alpha = 0.15;           ///< its slope parameter
     double film_nm = 0.0;                ///< thickness of the film on those flakes, 0 for none
     double film_eta = 2.3;               ///< its index
+    double glint_density_per_mm2 = 0.0;  ///< of those flakes on the product, 0: no glints
+    double glint_scale = 1.0;            ///< how many times larger than they are they are drawn
     double coat_alpha = 0.02;            ///< slope parameter of the clear coat
     double coat_f0 = 0.04;               ///< its Fresnel reflectance at normal incidence
     glm::dvec3 coat_transmittance{1.0};  ///< of the coat, once through at normal incidence
@@ -59,6 +61,11 @@ struct Material {
     std::string provenance;
     std::filesystem::path file;
 };
+
+/// Whether single flakes are to be seen in it (shaders/radiance/glints.glsl).
+bool has_glints(const Material& material);
+/// "physical", or "exaggerated 30 times": the size of flakes that glint.
+std::string glint_scale_text(const Material& material);
 
 /// Reads and checks one material file. Throws FileError (unknown model or parameter, out of range).
 Material read_material_file(const std::filesystem::path& file);

@@ -259,6 +259,8 @@ const std::vector<ModelInfo>& model_table() {
           "flake_alpha",
           "film_nm",
           "film_eta",
+          "glint_density_per_mm2",
+          "glint_scale",
           "coat_alpha",
           "coat_f0",
           "coat_transmittance"},

@@ -176,6 +176,29 @@ const std::vector<ParameterInfo>& parameter_table() {
             kLinear,
             [](auto& m) { return numbers(m.film_eta); },
             [](auto& p) { return numbers(p.film_eta); }),
+        optional_parameter(
+            "glint_density_per_mm2",
+            "Glint density",
+            "Flakes of the second lobe on a square millimetre of the product, which a projector "
+            "pixel shows as single glints where it holds few: fine ones 5000, coarse ones 300, 0 "
+            "for a smooth lobe.",
+            ParameterKind::number,
+            0.0,
+            1e6,
+            kByRatios,
+            [](auto& m) { return numbers(m.glint_density_per_mm2); },
+            [](auto& p) { return numbers(p.glint_density_per_mm2); }),
+        optional_parameter(
+            "glint_scale",
+            "Glint scale",
+            "How many times larger the glinting flakes are drawn: 1 is physical, as on the real "
+            "product; more is exaggerated, to judge graininess on a small mock-up.",
+            ParameterKind::number,
+            1.0,
+            1000.0,
+            kByRatios,
+            [](auto& m) { return numbers(m.glint_scale); },
+            [](auto& p) { return numbers(p.glint_scale); }),
         parameter(
             "coat_alpha",
             "Coat roughness",

@@ -42,7 +42,7 @@ std::vector<ListedPaint> listed(const std::vector<Material>& paints, const Progr
     const auto costs = known_pass_costs();
     parallel_for(paints.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            list[i] = {paints[i], paint_figures(paints[i]), paint_cost(paints[i].model, costs)};
+            list[i] = {paints[i], paint_figures(paints[i]), paint_cost(paints[i], costs)};
         }
     });
     return list;
@@ -110,6 +110,11 @@ std::string page_of(const ListedPaint& paint) {
     text += fmt::format("gloss at 20 degrees: {:.1f} GU, at 60 degrees: {:.1f} GU\n",
                         paint.figures.gloss_20,
                         paint.figures.gloss_60);
+    if (has_glints(material)) {
+        text += fmt::format("glints: {:.4g} flakes on a square millimetre, {}\n",
+                            material.glint_density_per_mm2,
+                            glint_scale_text(material));
+    }
     text += paint.cost.ns_a_pixel ? fmt::format("shading: {:.1f} ns a pixel by the last bench\n",
                                                 *paint.cost.ns_a_pixel)
                                   : fmt::format("shading: cost unknown, {}\n", paint.cost.why_not);

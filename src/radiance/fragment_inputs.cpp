@@ -64,12 +64,14 @@ double StageClock::now_ms() {
 
 FragmentInputs::FragmentInputs(const Mesh& mesh,
                                const Tracer& tracer,
+                               const View& view,
                                const SurfaceMap& map,
                                const PackedLayout& layout,
                                ShadingDevice device,
                                bool keep_better)
     : mesh_(mesh),
       tracer_(tracer),
+      pixels_(pixel_size_of(view)),
       map_(&map),
       layout_(layout),
       device_(device),
@@ -83,7 +85,7 @@ void FragmentInputs::use(const SurfaceMap& map) {
     visibility_eye_.reset();
     sky_made_ = {};
     mirror_made_ = {};
-    directions_stale_ = diffuse_light_stale_ = true;
+    directions_stale_ = diffuse_light_stale_ = places_stale_ = true;
 }
 
 void FragmentInputs::solve(const Scene& scene,
@@ -254,6 +256,11 @@ FragmentInputs::Changed FragmentInputs::upload(const Scene& scene, StageClock& c
         diffuse_light_stale_ = false;
         changed_.diffuse = true;
     });
+    clock.run(kGlintPlacesPass, places_stale_, [&] {
+        upload_places();
+        places_stale_ = false;
+    });
+    shading_.product_scale = scene.product->product_scale;
     return std::exchange(changed_, {});
 }
 
@@ -314,6 +321,15 @@ void FragmentInputs::upload_diffuse_light() {
         return glm::vec4(glm::min(sum, glm::vec3(kHalfLargest)), 1.0f);
     };
     shading_.lit.upload(packed(*map_, layout_, light_on), 0);
+}
+
+void FragmentInputs::upload_places() {
+    make(shading_.places, 0, InputLayers::Precision::full);
+    const auto place_of = [&](std::size_t i) {
+        const Fragment& f = map_->fragments[i];
+        return glm::vec4(f.position_mm, pixel_side_mm(pixels_, f.position_mm, f.normal));
+    };
+    shading_.places.upload(packed(*map_, layout_, place_of), 0);
 }
 
 void FragmentInputs::make(InputLayers& input,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "radiance/environment_filter.h"
+#include "radiance/glints.h"
 #include "radiance/light_visibility.h"
 #include "radiance/packed_fragments.h"
 #include "radiance/shading.h"
@@ -72,6 +73,7 @@ class FragmentInputs {
     /// With `keep_better`, what was solved with more rays than the plan's quality asks for stands.
     FragmentInputs(const Mesh& mesh,
                    const Tracer& tracer,
+                   const View& view,
                    const SurfaceMap& map,
                    const PackedLayout& layout,
                    ShadingDevice device,
@@ -110,6 +112,7 @@ class FragmentInputs {
     void upload_mirror();
     void upload_directions(const Scene&);
     void upload_diffuse_light();
+    void upload_places();
     bool enough(int rays, int wanted) const {
         return keep_better_ ? rays >= wanted : rays == wanted;
     }
@@ -117,6 +120,7 @@ class FragmentInputs {
 
     const Mesh& mesh_;
     const Tracer& tracer_;
+    const PixelSize pixels_;
     const SurfaceMap* map_;
     const PackedLayout& layout_;
 
@@ -143,7 +147,7 @@ class FragmentInputs {
     Made sky_made_, mirror_made_;
     std::optional<glm::dvec3> eye_;  ///< that shading_.eye is for
     /// Sticky, so that a stop between two passes loses nothing.
-    bool directions_stale_ = true, diffuse_light_stale_ = true;
+    bool directions_stale_ = true, diffuse_light_stale_ = true, places_stale_ = true;
     Changed changed_;
     ShadingInputs shading_;
     int layers_made_ = 0;

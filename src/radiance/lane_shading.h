@@ -30,7 +30,9 @@ struct LaneJob {
     const std::uint16_t* sky = nullptr;            ///< the same
     const std::uint16_t* const* mirror = nullptr;  ///< the same for each layer
     float mirror_unit = 1.0f;
-    float* shaded = nullptr;  ///< R, G, B, 1 of each fragment
+    const float* places = nullptr;  ///< 4 channels: position, side of a pixel there, in mm
+    float glint_density = 0.0f;     ///< flakes on a mm^2 of the mock-up
+    float* shaded = nullptr;        ///< R, G, B, 1 of each fragment
     /// Of a paint of an artwork, 4 channels: it is added with the weight of_colour * (R, G, B) +
     /// of_alpha * A, over of_cover * A less of what is there. Null: what is there is replaced.
     const float* artwork = nullptr;
@@ -44,6 +46,7 @@ struct LaneFunctions {
     void (*ggx[2])(const LaneJob&);        ///< without and with an environment
     void (*clearcoat[2])(const LaneJob&);  ///< the same
     void (*car_paint[2])(const LaneJob&);  ///< the same
+    void (*car_paint_glints[2])(const LaneJob&);
 };
 
 /// The best that this processor has, first; "portable" is always the last.

@@ -19,6 +19,7 @@ inline constexpr std::size_t kLanes = 8;
 
 using Lanes = float __attribute__((vector_size(4 * kLanes)));
 using LaneWords = std::int32_t __attribute__((vector_size(4 * kLanes)));
+using LaneBits = std::uint32_t __attribute__((vector_size(4 * kLanes)));
 using LaneHalves = std::uint16_t __attribute__((vector_size(2 * kLanes)));
 
 LIVERY_LANE_FUNCTION Lanes lanes_of(float value) { return Lanes{} + value; }
@@ -114,6 +115,18 @@ LIVERY_LANE_FUNCTION Lanes sin(Lanes x) {
     sum = sum * q - 1.6666667e-1f;
     sum = (sum * q + 1.0f) * y;
     return x < 0.0f ? -sum : sum;
+}
+
+// Of shaders/radiance/glints.glsl.
+LIVERY_LANE_FUNCTION LaneBits word_of(Lanes whole) {
+    return reinterpret_cast<LaneBits>(__builtin_convertvector(whole, LaneWords));
+}
+LIVERY_LANE_FUNCTION Lanes unit_of(LaneBits word) {
+    const auto upper = reinterpret_cast<LaneWords>(word >> 9u);
+    return (__builtin_convertvector(upper, Lanes) + 0.5f) * 0x1p-23f;
+}
+LIVERY_LANE_FUNCTION Lanes octave_of(Lanes x) {
+    return reinterpret_cast<Lanes>(reinterpret_cast<LaneBits>(x) & 0x7f800000u);
 }
 
 template <typename T>

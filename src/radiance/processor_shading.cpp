@@ -6,6 +6,7 @@
 #include "appearance/model_table.h"
 #include "core/parallel.h"
 #include "radiance/any_model_shading.h"
+#include "radiance/glints.h"
 #include "radiance/sky_visibility.h"
 
 namespace livery {
@@ -15,9 +16,13 @@ namespace {
 constexpr std::size_t kBlocksAtOnce = 64, kPixelsAtOnce = 2048;
 
 /// Of a model with its own shading.
-auto lanes_of(ReflectanceModel model, const LaneFunctions& functions, bool environment) {
+auto lanes_of(ReflectanceModel model,
+              const LaneFunctions& functions,
+              bool environment,
+              bool glints) {
     if (model == ReflectanceModel::lambert) return functions.lambert;
-    const auto& of_model = model == ReflectanceModel::ggx         ? functions.ggx
+    const auto& of_model = glints                                 ? functions.car_paint_glints
+                           : model == ReflectanceModel::ggx       ? functions.ggx
                            : model == ReflectanceModel::clearcoat ? functions.clearcoat
                                                                   : functions.car_paint;
     return of_model[environment ? 1 : 0];
@@ -85,7 +90,13 @@ void ProcessorShading::shade(const Material& material,
     std::function<void(const LaneJob&)> shade_blocks;
     if (has_own_shading(material.model)) {
         job.paint = uniforms_of(material, exposure_ev);
-        shade_blocks = lanes_of(material.model, functions, environment);
+        const bool glints = !lights.empty() && has_glints(material);
+        if (glints) {
+            job.places = inputs.places.floats(0);
+            job.glint_density =
+                static_cast<float>(glint_density_on_mock_up(material, inputs.product_scale));
+        }
+        shade_blocks = lanes_of(material.model, functions, environment, glints);
     } else {
         shade_blocks = [&model, any = any_model_uniforms_of(material, exposure_ev)](
                            const LaneJob& some) { shade_any_model(some, model, any); };

@@ -15,6 +15,7 @@
 #include "gl/read_back.h"
 #include "radiance/artwork_textures.h"
 #include "radiance/environment_filter.h"
+#include "radiance/glints.h"
 #include "radiance/shading.h"
 
 namespace livery {
@@ -172,7 +173,8 @@ struct RasterPreview::State {
     Program find_triangles, find_parts, find_coverage;
     ScreenPass screen;
     Targets target;
-    View view;                   ///< of the last picture
+    View view;  ///< of the last picture
+    std::optional<View> glint_view;
     bool samples_found = false;  ///< `target` has its triangles
     Bounds bounds;
     PixelRect covered;  ///< pixels beyond it show nothing of the product
@@ -328,8 +330,9 @@ Program& RasterPreview::State::ready(const Scene& scene,
                                                                       : light->lights;
     const auto count = static_cast<int>(lights.size());
     const PartArtwork* relief = relief_of(scene, part);
+    const bool glints = count > 0 && has_glints(material);
     Program& program = shading_program(
-        {material.model, count, light->environment != nullptr, over, relief != nullptr});
+        {material.model, count, light->environment != nullptr, over, relief != nullptr, glints});
     set_paint(program, material, scene.exposure_ev, measured);
     set_view(program);
     program.set("u_eye_mm", glm::vec3(scene.eye_in_world_mm));
@@ -347,6 +350,14 @@ Program& RasterPreview::State::ready(const Scene& scene,
         program.set("u_light_radius2", std::span<const float>(radius2));
         program.set("u_visibility", 5);
         visibility.bind(5);
+    }
+    if (glints) {
+        const PixelSize pixels = pixel_size_of(glint_view.value_or(view));
+        program.set("u_pixels_from_mm", glm::vec3(pixels.from_mm));
+        program.set("u_pixels_axis", glm::vec3(pixels.axis));
+        program.set("u_pixels_size", static_cast<float>(pixels.at_one_mm));
+        program.set("u_glint_density",
+                    static_cast<float>(glint_density_on_mock_up(material, product->product_scale)));
     }
     if (light->environment) {
         program.set("u_layers", 1);
@@ -418,6 +429,10 @@ RasterPreview::~RasterPreview() = default;
 void RasterPreview::set_supersampling(int supersampling) {
     check_supersampling(supersampling);
     state_->factor = supersampling;
+}
+
+void RasterPreview::set_glint_view(const std::optional<View>& projector) {
+    state_->glint_view = projector;
 }
 
 void RasterPreview::render(const Scene& scene, const View& view, const Progress& progress) {

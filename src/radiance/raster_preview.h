@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "core/image.h"
 #include "core/progress.h"
@@ -23,6 +24,10 @@ class RasterPreview {
     RasterPreview& operator=(const RasterPreview&) = delete;
 
     void set_supersampling(int supersampling);
+
+    /// Glints are counted in this view's pixels, as the projector shows them; without one in those
+    /// of the view that is drawn.
+    void set_glint_view(const std::optional<View>& projector);
 
     /// Solves what light changed, then draws.
     void render(const Scene& scene, const View& view, const Progress& progress = {});

@@ -120,7 +120,13 @@ struct RadianceRenderer::State {
           map(geometry->map),
           device(its_device),
           layout(layout_of(map)),
-          inputs(geometry->product->mesh, *geometry->tracer, map, layout, device, keep_better),
+          inputs(geometry->product->mesh,
+                 *geometry->tracer,
+                 geometry->view,
+                 map,
+                 layout,
+                 device,
+                 keep_better),
           artwork(geometry->product->mesh, geometry->view, map, layout, device),
           parts(geometry->product->mesh.parts.size()) {}
 
@@ -396,6 +402,7 @@ void RadianceRenderer::count_work(const Scene& scene, FramePlan& plan) const {
     set(kMirrorPass, fragments * static_cast<double>(kMirrorAlphas.size()));
     set(kDirectionsPass, fragments);
     set(kDiffuseLightPass, fragments);
+    set(kGlintPlacesPass, fragments);
     for (std::size_t p = 0; p < scene.part_materials.size(); ++p) {
         set(shade_pass(scene, p), static_cast<double>(s.layout.fragments(p)));
     }

@@ -13,6 +13,7 @@
 #include "appearance/model_table.h"
 #include "core/paths.h"
 #include "radiance/environment_filter.h"
+#include "radiance/glints.h"
 #include "radiance/sky_visibility.h"
 
 namespace livery {
@@ -191,7 +192,7 @@ void set_paint(Program& program,
 }
 
 Program make_shading_program(const ShadingKey& key, ShadingSource source) {
-    const auto [model, lights, environment, over, relief] = key;
+    const auto [model, lights, environment, over, relief, glints] = key;
     const bool raster = source == ShadingSource::raster;
     const std::string defines = fmt::format(
         "#define {} 1\n#define LIGHTS {}\n#define LIGHT_COUNT LIGHTS\n#define ENVIRONMENT {}\n"
@@ -215,6 +216,7 @@ Program make_shading_program(const ShadingKey& key, ShadingSource source) {
     }
     if (has_own_shading(model) && model_info(model).mirrors())
         text += shipped_text("radiance/disc.glsl");
+    if (glints) text += "#define GLINTS 1\n" + shipped_text("radiance/glints.glsl");
     if (raster)
         text += shipped_text("radiance/mesh_texels.glsl") + shipped_text("radiance/lens.glsl");
     text += shipped_text(raster ? "radiance/inputs_raster.glsl" : "radiance/inputs_packed.glsl");
@@ -228,7 +230,8 @@ Program make_shading_program(const ShadingKey& key, ShadingSource source) {
         "void main() {{\n    {}radiance = {};\n}}\n",
         raster ? "prepare_sample();\n    " : "",
         over ? "over_what_lies_below()" : "vec4(shaded(), 1.0)");
-    const ShaderSource fragment{fmt::format("shade {}", model_info(model).name), text};
+    const ShaderSource fragment{
+        fmt::format("shade {}{}", model_info(model).name, glints ? "+glints" : ""), text};
     if (!raster) return Program::screen_pass(fragment);
     return Program(load_shader("radiance/raster_part.vert", {}), fragment);
 }
@@ -243,12 +246,14 @@ ShadingKey ShadingPrograms::key_of(const Material& material,
                                    const ShadingInputs& inputs,
                                    bool over) {
     const ModelInfo& model = model_info(material.model);
-    if (model.same_from_all_sides) return {material.model, 0, false, over, false};
+    if (model.same_from_all_sides) return {material.model, 0, false, over, false, false};
+    const bool lights = !inputs.light_irradiance.empty();
     return {material.model,
             static_cast<int>(inputs.light_irradiance.size()),
             static_cast<bool>(model.mirrors() ? inputs.mirror : inputs.sky),
             over,
-            false};
+            false,
+            lights && has_glints(material)};
 }
 
 void ShadingPrograms::compile(const Material& material, const ShadingInputs& inputs, bool over) {
@@ -285,6 +290,12 @@ Program& ShadingPrograms::ready(const Material& material,
         inputs.lights.texture().bind(1);
         program.set("u_light_radiance", std::span<const glm::vec3>(inputs.light_irradiance));
         program.set("u_light_radius2", std::span<const float>(inputs.light_radius2));
+    }
+    if (std::get<5>(key)) {
+        program.set("u_places", 4);
+        inputs.places.texture().bind(4);
+        program.set("u_glint_density",
+                    static_cast<float>(glint_density_on_mock_up(material, inputs.product_scale)));
     }
     if (std::get<2>(key)) {
         program.set("u_sky", 2);

@@ -29,9 +29,11 @@ struct ShadingInputs {
     InputLayers lights;  ///< one layer a light: direction, visibility
     InputLayers sky;     ///< environment on a white diffuser
     InputLayers mirror;  ///< one layer for each of kMirrorAlphas: environment over the mirror lobe
+    InputLayers places;  ///< for glints: position, side of a pixel's square there, in mm
     float mirror_unit = 1.0f;                 ///< radiance of a value of 1 in `mirror`
     std::vector<glm::vec3> light_irradiance;  ///< one a layer of `lights`, facing it
     std::vector<float> light_radius2;         ///< half of the disc's angle, squared
+    double product_scale = 1.0;               ///< Product's
 };
 
 /// Where a shading program finds its fragments' inputs.
@@ -40,8 +42,8 @@ enum class ShadingSource {
     raster   ///< the triangle that was rasterised there
 };
 /// Model, lights, environment, whether it lies over another paint (an artwork's), whether the part
-/// has a relief (ShadingSource::raster).
-using ShadingKey = std::tuple<ReflectanceModel, int, bool, bool, bool>;
+/// has a relief (ShadingSource::raster), glints.
+using ShadingKey = std::tuple<ReflectanceModel, int, bool, bool, bool, bool>;
 
 /// Texels in a row of the textures that hold a mesh's arrays for ShadingSource::raster.
 inline constexpr int kMeshRow = 2048;

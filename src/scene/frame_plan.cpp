@@ -30,6 +30,17 @@ std::string degrees(double angle_rad) {
     return fmt::format("{:.3g}°", angle_rad * 180.0 / std::numbers::pi);
 }
 
+bool any_light(const Scene& scene) {
+    return std::any_of(scene.lights.begin(), scene.lights.end(), [](const DirectionalLight& light) {
+        return !is_black(light.radiance_rec709);
+    });
+}
+
+/// Light from all around meets flakes of every slope: single ones are not seen.
+bool draws_glints(const Scene& scene, const Material& material) {
+    return has_glints(material) && any_light(scene);
+}
+
 /// What the passes depend on, read off the scene once.
 struct Needs {
     bool environment = false;
@@ -116,6 +127,28 @@ void plan_environment(const Needs& needs, FramePlan& plan) {
               "what each fragment mirrors does not depend on its paint's colour: solved once");
 }
 
+void plan_glints(const Scene& scene, FramePlan& plan) {
+    if (!any_paint(scene, has_glints)) {
+        plan.skipped.push_back({kGlintPlacesPass, "no paint of the scene has glints"});
+    } else if (!any_light(scene)) {
+        plan.skipped.push_back({kGlintPlacesPass, "flakes glint under lights; the look has none"});
+    } else {
+        plan_pass(plan,
+                  kGlintPlacesPass,
+                  "how much of the product a pixel covers, and how many flakes: once for a pose");
+    }
+}
+
+/// "a car paint with flakes, which glint: 3000 on a square millimetre, physical".
+std::string paint_in_words(const Scene& scene, const Material& material) {
+    const std::string model = model_info(material.model).in_words;
+    if (!draws_glints(scene, material)) return model;
+    return fmt::format("{}, which glint: {:.4g} on a square millimetre, {}",
+                       model,
+                       material.glint_density_per_mm2,
+                       glint_scale_text(material));
+}
+
 void plan_shading(const Scene& scene, const Needs& needs, FramePlan& plan) {
     if (needs.sided_parts.empty()) {
         plan.skipped.push_back({kDirectionsPass, "every paint looks the same from every side"});
@@ -144,9 +177,10 @@ void plan_shading(const Scene& scene, const Needs& needs, FramePlan& plan) {
                   kArtworkPass,
                   "how much of each fragment artwork covers, once a pose and place of it");
     }
+    plan_glints(scene, plan);
     for (std::size_t i = 0; i < scene.part_materials.size(); ++i) {
         const Material& material = scene.part_materials[i];
-        const std::string in_words = model_info(material.model).in_words;
+        const std::string in_words = paint_in_words(scene, material);
         plan_pass(
             plan,
             shade_pass(scene, i),
@@ -208,17 +242,19 @@ std::string light_name(std::size_t light) {
 std::string visibility_pass(std::size_t light) { return light_name(light) + "-visibility"; }
 
 std::string shade_pass(const Scene& scene, std::size_t part) {
-    return fmt::format("shade:{}:{}",
+    return fmt::format("shade:{}:{}{}",
                        scene.product->mesh.parts.at(part).name,
-                       model_info(scene.part_materials.at(part).model).name);
+                       model_info(scene.part_materials.at(part).model).name,
+                       draws_glints(scene, scene.part_materials.at(part)) ? "+glints" : "");
 }
 
 std::string artwork_pass(const Scene& scene, std::size_t artwork) {
     const PartArtwork& one = scene.artwork.at(artwork);
-    return fmt::format("shade:{}:artwork-{}:{}",
+    return fmt::format("shade:{}:artwork-{}:{}{}",
                        scene.product->mesh.parts.at(one.part).name,
                        artwork + 1,
-                       model_info(one.material.model).name);
+                       model_info(one.material.model).name,
+                       draws_glints(scene, one.material) ? "+glints" : "");
 }
 
 const PlannedPass* find_pass(const FramePlan& plan, const std::string& name) {

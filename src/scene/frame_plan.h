@@ -48,13 +48,15 @@ inline constexpr const char* kDirectionsPass = "directions";
 inline constexpr const char* kDiffuseLightPass = "diffuse-light";
 inline constexpr const char* kReliefPass = "relief";
 inline constexpr const char* kArtworkPass = "artwork";
+inline constexpr const char* kGlintPlacesPass = "glint-places";
 inline constexpr const char* kResolvePass = "resolve";
 inline constexpr const char* kCompensationPass = "compensation";
 inline constexpr const char* kPathTracerPass = "path-tracer";
 std::string light_name(std::size_t light);
-std::string visibility_pass(std::size_t light);                ///< "key-visibility"
-std::string shade_pass(const Scene& scene, std::size_t part);  ///< "shade:body:ggx"
-/// Of the scene's k-th artwork: "shade:body:artwork-1:clearcoat".
+std::string visibility_pass(std::size_t light);  ///< "key-visibility"
+/// "shade:body:ggx", and "shade:body:car-paint+glints" where single flakes are seen.
+std::string shade_pass(const Scene& scene, std::size_t part);
+/// Of the scene's k-th artwork: "shade:body:artwork-1:clearcoat", and "+glints" alike.
 std::string artwork_pass(const Scene& scene, std::size_t artwork);
 
 /// The pass of that name, or null.

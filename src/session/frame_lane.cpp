@@ -93,21 +93,40 @@ void add_milliseconds(FramePlan& plan, const FramePlan& more, bool add_passes) {
     }
 }
 
-/// Models that the next paint may have: the library's, and the one that a glowing part wears.
-/// Without a library that can be read (the library panel says why) nothing is likely.
-std::set<ReflectanceModel> models_likely_next() {
-    std::set<ReflectanceModel> models{glow_paint().model};
+/// What a paint's program depends on.
+struct ProgramOf {
+    ReflectanceModel model = ReflectanceModel::lambert;
+    bool glints = false;
+
+    explicit ProgramOf(ReflectanceModel its_model) : model(its_model) {}
+    explicit ProgramOf(const Material& paint) : model(paint.model), glints(has_glints(paint)) {}
+    auto operator<=>(const ProgramOf&) const = default;
+};
+
+/// A paint that is drawn with that program.
+Material plain_paint(const ProgramOf& program) {
+    Material paint;
+    paint.model = program.model;
+    if (program.model == ReflectanceModel::measured) paint.measured = blank_measured_paint();
+    if (program.glints) paint.glint_density_per_mm2 = 1000.0;
+    return paint;
+}
+
+/// What the next paint may need: the library's, and that of a glowing part. Without a library that
+/// can be read (the library panel says why) nothing is likely.
+std::set<ProgramOf> programs_likely_next() {
+    std::set<ProgramOf> programs{ProgramOf(glow_paint())};
     try {
         const OnlyMeasuredInMemory others_read_it;
         const PaintLibrary library = read_paint_library();
-        if (!library.unread.empty()) models.insert(ReflectanceModel::measured);
+        if (!library.unread.empty()) programs.emplace(ReflectanceModel::measured);
         for (const auto* paints : {&library.shipped, &library.users}) {
-            for (const Material& paint : *paints) models.insert(paint.model);
+            for (const Material& paint : *paints) programs.emplace(paint);
         }
     } catch (const FileError&) {
-        return models;
+        return programs;
     }
-    return models;
+    return programs;
 }
 
 }  // namespace
@@ -197,24 +216,22 @@ void FrameLane::solve_light(std::size_t index,
 
 void FrameLane::prepare(const FrameDescription& description, const Progress& progress) {
     std::vector<PlannedPass> passes;
-    std::set<ReflectanceModel> models;
-    run_giving_way(Urgency::background, [&] { models = models_likely_next(); });
+    std::set<ProgramOf> programs;
+    run_giving_way(Urgency::background, [&] { programs = programs_likely_next(); });
     for (std::size_t side = 0; side < side_count(description); ++side) {
         any_paint(side_of(description, side), [&](const Material& paint) {
-            models.insert(paint.model);
+            programs.emplace(paint);
             return false;
         });
     }
-    for (const ReflectanceModel model : models) {
+    for (const ProgramOf& program : programs) {
         const auto start = Clock::now();
         bool used = false;
         for (std::size_t side = 0; side < side_count(description); ++side) {
             Scene scene = scene_of(description, side);
             for (Material& paint : scene.part_materials) {
-                used = used || paint.model == model;
-                paint = Material{};
-                paint.model = model;
-                if (model == ReflectanceModel::measured) paint.measured = blank_measured_paint();
+                used = used || ProgramOf(paint) == program;
+                paint = plain_paint(program);
             }
             const std::size_t index = nearest_of(solved_, keys_of(description), side);
             RadianceRenderer& renderer = *lights_[index].renderer;
@@ -224,8 +241,11 @@ void FrameLane::prepare(const FrameDescription& description, const Progress& pro
         }
         if (used) continue;
         PlannedPass& pass = passes.emplace_back();
-        pass.name = fmt::format("prepare:{}", model_info(model).name);
-        pass.why = fmt::format("{} may be next: made ready ahead", model_info(model).in_words);
+        const ModelInfo& model = model_info(program.model);
+        pass.name = fmt::format("prepare:{}{}", model.name, program.glints ? "+glints" : "");
+        pass.why = fmt::format("{}{} may be next: made ready ahead",
+                               model.in_words,
+                               program.glints ? " and glints" : "");
         pass.ms = milliseconds_since(start);
     }
     prepare_passes_ = std::move(passes);

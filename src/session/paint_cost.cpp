@@ -6,9 +6,10 @@
 
 namespace livery {
 
-PaintCost paint_cost(ReflectanceModel model, const std::optional<std::vector<PassCost>>& costs) {
+PaintCost paint_cost(const Material& material, const std::optional<std::vector<PassCost>>& costs) {
     if (!costs) return {std::nullopt, "no bench has run on this machine"};
-    const std::string name = model_info(model).name;
+    std::string name = model_info(material.model).name;
+    if (has_glints(material)) name += "+glints";
     for (const PassCost& cost : *costs) {
         if (cost.pass == "shade:" + name && cost.quality == Quality::normal &&
             cost.work_items > 0.0) {

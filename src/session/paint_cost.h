@@ -14,7 +14,7 @@ struct PaintCost {
     std::string why_not;               ///< when it is not known
 };
 
-/// Of any paint of that model; `costs` as known_pass_costs() gives them.
-PaintCost paint_cost(ReflectanceModel model, const std::optional<std::vector<PassCost>>& costs);
+/// Of any paint of that model, with glints or without; `costs` as known_pass_costs() gives them.
+PaintCost paint_cost(const Material& material, const std::optional<std::vector<PassCost>>& costs);
 
 }  // namespace livery

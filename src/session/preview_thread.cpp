@@ -159,6 +159,7 @@ bool PreviewThread::Implementation::draw(Drawing& drawing, int supersampling) {
     ask_for_light(drawing);
     if (!drawing.light) return false;
     drawing.preview->set_supersampling(supersampling);
+    drawing.preview->set_glint_view(shown->projector);
     const View& view = shown->view;
     const auto slot = drawing.pool.lend(view.width, view.height);
     const auto draw_columns = [&](const Scene& scene, int begin, int end) {

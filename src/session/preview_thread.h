@@ -24,6 +24,7 @@ struct PreviewDescription {
     std::optional<Scene> wipe_to;
     double wipe_at = 0.5;
     View view;
+    std::optional<View> projector;        ///< glints are shown as its pixels hold them
     std::optional<int> highlighted_part;  ///< outlined, on the part itself
     bool ground = true;                   ///< the product darkens the ground that it stands on
 };

@@ -45,6 +45,7 @@ std::string summary_of(const Material& material) {
         }
         text += fmt::format("\n{} {}", parameter.label, shown);
     }
+    if (has_glints(material)) text += "\nGlints " + glint_scale_text(material);
     return text;
 }
 

@@ -31,6 +31,11 @@ const char* what_it_does(Quality quality) {
     throw std::invalid_argument("unknown quality");
 }
 
+/// Timed by the bench in the place of a look's own paint, not beside it.
+bool is_of_another_paint(const std::string& pass_name) {
+    return pass_name.starts_with("shade:car-paint") || pass_name == kGlintPlacesPass;
+}
+
 }  // namespace
 
 bool runs_every_frame(const std::string& pass_name) {
@@ -53,7 +58,7 @@ std::optional<QualityCost> quality_cost(const std::vector<PassCost>& costs,
     for (const PassCost& cost : costs) {
         // Of looks that have artwork or a relief: theirs to add.
         const bool artwork = cost.pass == kArtworkPass || cost.pass == kReliefPass;
-        if (cost.quality != quality || artwork) continue;
+        if (cost.quality != quality || artwork || is_of_another_paint(cost.pass)) continue;
         const double ms = cost.work_items > 0.0 ? cost.ms * pixels / resolve->work_items : cost.ms;
         // A cost's shading goes by model: "shade:ggx".
         (runs_every_frame(cost.pass) ? sum.frame_ms : sum.solve_ms) += ms;

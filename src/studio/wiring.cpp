@@ -71,6 +71,7 @@ void take_setup(Shell& shell, std::shared_ptr<const ProjectorSetup> setup) {
     shell.studio.setup = std::move(setup);
     shell.mock_up_columns = columns_of(*shell.studio.product, shell.studio.setup->view);
     shell.photographed.reset();
+    shell.asked_preview.reset();  // it shows glints in this projector's pixels
 }
 
 /// A new calibration, bench or design white is loaded beside the frames, which go on as they were.
@@ -202,6 +203,7 @@ void ask_for_preview(Shell& shell) {
     shell.asked_preview = key;
     description.number = ++shell.preview_number;
     description.view = stage_view(shell, document.eye_mm);
+    if (studio.setup) description.projector = studio.setup->view;
     description.highlighted_part = key.highlighted_part;
     description.wipe_at = key.wipe_at;
     studio.previews->show(std::move(description));

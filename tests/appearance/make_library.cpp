@@ -1,7 +1,9 @@
 // Fits the library's measured paints anew and writes them into a folder of material files:
 //   LIVERY_REFERENCE_DATA=<folder> livery_make_library materials [NAME ...]
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -31,6 +33,15 @@ BrdfFit best_fit(const LibraryRecipe& recipe, const RecipeTruth& truth) {
     return best;
 }
 
+/// No table says what flakes a paint has: one layer of discs of that size.
+void add_glints(int flake_um, Material& paint) {
+    const double radius_mm = 0.5e-3 * flake_um;
+    paint.glint_density_per_mm2 =
+        std::round(1.0 / (std::numbers::pi * radius_mm * radius_mm) / 100.0) * 100.0;
+    paint.provenance +=
+        fmt::format("; glints designed: one layer of flakes of {} micrometres", flake_um);
+}
+
 void make(const LibraryRecipe& recipe,
           const std::filesystem::path& reference_data,
           const std::filesystem::path& folder) {
@@ -40,6 +51,7 @@ void make(const LibraryRecipe& recipe,
     paint.name = recipe.name;
     paint.family = recipe.family;
     paint.provenance = fmt::format("{}; fitted to {}", truth.origin, stated_error(fit.difference));
+    if (recipe.flake_um > 0) add_glints(recipe.flake_um, paint);
     std::string file = paint.name;
     std::replace(file.begin(), file.end(), ' ', '-');
     write_material_file(folder / (file + ".json"), paint);

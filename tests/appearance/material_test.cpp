@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "appearance/bsdf.h"
+#include "appearance/parameter_table.h"
 #include "core/colour.h"
 #include "core/paths.h"
 #include "support/file_error.h"
@@ -56,6 +57,11 @@ TEST(MaterialFile, ComesBackAsItWasWritten) {
     }
 }
 
+Material material_without_glints(Material material) {
+    material.glint_density_per_mm2 = 0.0;
+    return material;
+}
+
 TEST(MaterialFile, MayLeaveOutWhatAPaintNeedNotHave) {
     const TemporaryFolder folder;
     const auto file = folder / "paint.json";
@@ -63,13 +69,21 @@ TEST(MaterialFile, MayLeaveOutWhatAPaintNeedNotHave) {
     material.model = ReflectanceModel::car_paint;
     write_material_file(file, material);
     EXPECT_EQ(read_text_file(file).find("film"), std::string::npos);
+    EXPECT_EQ(read_text_file(file).find("glint"), std::string::npos);
+    EXPECT_FALSE(has_glints(read_material_file(file)));
     EXPECT_EQ(read_material_file(file).film_nm, 0.0);
     material.film_nm = 240.0;
     material.film_eta = 1.9;
+    material.glint_density_per_mm2 = 3200.0;
+    material.glint_scale = 12.0;
     write_material_file(file, material);
     const Material back = read_material_file(file);
     EXPECT_EQ(back.film_nm, 240.0);
     EXPECT_EQ(back.film_eta, 1.9);
+    EXPECT_EQ(back.glint_density_per_mm2, 3200.0);
+    EXPECT_EQ(glint_scale_text(back), "exaggerated 12 times");
+    EXPECT_TRUE(has_glints(back));
+    EXPECT_FALSE(same_reflectance(back, material_without_glints(back)));
 }
 
 TEST(MaterialFile, RefusesToWriteWhatItWouldNotRead) {
@@ -149,6 +163,18 @@ const BadFile kBadFiles[] = {
                         "flake_alpha": 0.1, "film_nm": 2001, "coat_alpha": 0.1, "coat_f0": 0,
                         "coat_transmittance": [1, 1, 1]}})",
      {"parameters.film_nm", "2001", "between 0 and 2000"}},
+    {"flakes smaller than they are",
+     R"({"format_version": 1, "name": "a", "model": "car-paint",
+         "parameters": {"diffuse": [0, 0, 0], "f0": [0, 0, 0], "alpha": 0.1, "flake_f0": [0, 0, 0],
+                        "flake_alpha": 0.1, "glint_density_per_mm2": 10, "glint_scale": 0.5, "coat_alpha": 0.1, "coat_f0": 0,
+                        "coat_transmittance": [1, 1, 1]}})",
+     {"parameters.glint_scale", "0.5", "between 1 and 1000"}},
+    {"fewer flakes than none",
+     R"({"format_version": 1, "name": "a", "model": "car-paint",
+         "parameters": {"diffuse": [0, 0, 0], "f0": [0, 0, 0], "alpha": 0.1, "flake_f0": [0, 0, 0],
+                        "flake_alpha": 0.1, "glint_density_per_mm2": -1, "coat_alpha": 0.1, "coat_f0": 0,
+                        "coat_transmittance": [1, 1, 1]}})",
+     {"parameters.glint_density_per_mm2", "-1", "between 0 and"}},
     {"second alpha too large",
      R"({"format_version": 1, "name": "a", "model": "ggx",
          "parameters": {"diffuse": [0, 0, 0], "f0": [0, 0, 0], "alpha": [0.1, 1.5]}})",

@@ -110,6 +110,11 @@ TEST_F(Paints, AreToldOneByOne) {
                              "gloss at 20 degrees: "}) {
         EXPECT_NE(text.out.find(part), std::string::npos) << part << " in " << text.out;
     }
+    const ProgramRun gold = run_program(LIVERY_PROGRAM, {"paints", "gold metallic"});
+    EXPECT_NE(gold.out.find("glints: 1000 flakes on a square millimetre, physical\n"),
+              std::string::npos)
+        << gold.out;
+    EXPECT_EQ(text.out.find("glints"), std::string::npos);
     refuses({"solid rad"}, {"no paint named 'solid rad'", "'solid red'"});
     refuses({"solid red", "--search", "x"}, {"NAME is one paint"});
 }

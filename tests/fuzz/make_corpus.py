@@ -134,7 +134,7 @@ put("png", "dot.png", b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">2I5B",
 
 # What ships, as it ships.
 shipped("material", "materials/solid-red.json", "materials/blue-metallic.json",
-        "materials/chrome-trim.json", "materials/dark-glass.json")
+        "materials/chrome-trim.json", "materials/dark-glass.json", "materials/teal-metallic.json")
 COLOUR = [0.3, 0.2, 0.1]
 LOBE = {"diffuse": COLOUR, "specular": COLOUR}
 FACETS = {"diffuse": COLOUR, "f0": [0.04, 0.04, 0.04]}

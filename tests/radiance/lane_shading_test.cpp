@@ -14,7 +14,7 @@ constexpr std::size_t kBlocks = 300, kLayers = 3;
 
 /// Inputs as they may be: lights below the horizon, denormal half floats, no light at all.
 struct Inputs {
-    std::vector<float> eye, first_light, second_light;
+    std::vector<float> eye, first_light, second_light, places;
     std::vector<std::uint16_t> diffuse;
     std::array<std::vector<std::uint16_t>, kLayers> mirror;
 
@@ -38,6 +38,12 @@ struct Inputs {
         directions(eye, 1e-4f, false);
         directions(first_light, -1.0f, true);
         directions(second_light, -1.0f, true);
+        places.resize(eye.size());
+        for (float& value : places) value = 100.0f * uniform(random);
+        for (std::size_t i = 0; i < kBlocks * kLaneBlock; ++i) {
+            float& side = places[i / kLaneBlock * 4 * kLaneBlock + i % kLaneBlock + 3 * kLaneBlock];
+            side = std::max(0.02f * side, 0.0f);
+        }
         const auto halves = [&](std::vector<std::uint16_t>& values) {
             std::uniform_int_distribution<int> finite(0, 0x7bff);
             values.resize(kBlocks * 3 * kLaneBlock);
@@ -80,18 +86,21 @@ std::vector<float> shaded(const LaneFunctions& functions, int model, bool enviro
     job.lit = job.sky = inputs.diffuse.data();
     job.mirror = mirror.data();
     job.mirror_unit = 1.25f;
+    job.places = inputs.places.data();
+    job.glint_density = 200.0f;
     job.shaded = colours.data();
     job.end_block = kBlocks;
     const std::array models{functions.lambert,
                             functions.ggx[environment ? 1 : 0],
                             functions.clearcoat[environment ? 1 : 0],
-                            functions.car_paint[environment ? 1 : 0]};
+                            functions.car_paint[environment ? 1 : 0],
+                            functions.car_paint_glints[environment ? 1 : 0]};
     models[static_cast<std::size_t>(model)](job);
     return colours;
 }
 
 TEST(LaneShading, EveryInstructionSetGivesTheSameBits) {
-    for (int model = 0; model < 4; ++model) {
+    for (int model = 0; model < 5; ++model) {
         for (const bool environment : {false, true}) {
             const std::vector<float> best = shaded(best_lanes(), model, environment);
             for (std::size_t i = 0; i < best.size(); ++i) {

@@ -101,6 +101,76 @@ TEST(RasterPreview, AgreesWithTheSurfaceMapInside) {
     }
 }
 
+TEST(RasterPreview, ShowsTheGlintsOfTheProjectorsPixels) {
+    HeadlessContext context(GlDevice::software);
+    const View projector = test_view(120, 90);
+    Scene scene = scene_of(make_sphere({0, 0, 0}, 40.0, 128, "body"),
+                           paint_of(ReflectanceModel::car_paint, 0.05));
+    Material& paint = scene.part_materials[0];
+    paint.diffuse = paint.f0 = glm::dvec3(0.0);
+    paint.coat_f0 = 0.0;
+    paint.flake_f0 = glm::dvec3(0.5);
+    paint.flake_alpha = 0.4;
+    scene.lights = {light_from({0.1, 0.4, 1.0}, 3.0 * kDegree_rad)};
+    Scene glinting = scene;
+    glinting.part_materials[0].glint_density_per_mm2 = 3000.0;
+    const auto drawn = [&](const Scene& some) {
+        RadianceRenderer renderer(some.product, projector);
+        FramePlan plan = plan_frame(some, Quality::normal, FrameStage::radiance);
+        renderer.render(some, plan);
+        return renderer.read_back();
+    };
+    RasterPreview preview(scene.product, 1);
+    const auto previewed = [&](const Scene& some, const View& view) {
+        preview.render(some, view);
+        return preview.read_back();
+    };
+    /// What the glints add to each inner pixel, as a share of what is there without.
+    const auto glints = [&](const ImageF& with, const ImageF& without) {
+        std::vector<double> shares;
+        for (std::size_t i = 0; i < with.pixel_count(); ++i) {
+            const double smooth = static_cast<double>(without.values[4 * i]);
+            const bool inside = without.values[4 * i + 3] >= 1.0f && smooth > 0.05;
+            const double value = static_cast<double>(with.values[4 * i]);
+            shares.push_back(inside ? value / smooth - 1.0 : 0.0);
+        }
+        return shares;
+    };
+    const auto deviation = [](const std::vector<double>& shares) {
+        double squares = 0.0, count = 0.0;
+        for (const double share : shares) {
+            squares += share * share;
+            count += share != 0.0 ? 1.0 : 0.0;
+        }
+        return std::sqrt(squares / count);
+    };
+    const std::vector<double> on_mock_up = glints(drawn(glinting), drawn(scene));
+    const std::vector<double> shown =
+        glints(previewed(glinting, projector), previewed(scene, projector));
+    double product = 0.0, a2 = 0.0, b2 = 0.0;
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+        product += shown[i] * on_mock_up[i];
+        a2 += shown[i] * shown[i];
+        b2 += on_mock_up[i] * on_mock_up[i];
+    }
+    std::printf("    correlation %.3f, deviation %.3f on the mock-up, %.3f in the preview\n",
+                product / std::sqrt(a2 * b2),
+                deviation(on_mock_up),
+                deviation(shown));
+    // The same glints at the same places, but for a pixel's mean point and its middle.
+    EXPECT_GT(product / std::sqrt(a2 * b2), 0.8);
+
+    // Seen from four times as near a pixel holds fewer flakes, the projector's still as many.
+    View near_by = projector;
+    near_by.focal_px *= 4.0;
+    const double own = deviation(glints(previewed(glinting, near_by), previewed(scene, near_by)));
+    preview.set_glint_view(projector);
+    const double projectors =
+        deviation(glints(previewed(glinting, near_by), previewed(scene, near_by)));
+    EXPECT_GT(own, 2.0 * projectors);
+    EXPECT_NEAR(projectors, deviation(on_mock_up), 0.4 * projectors);
+}
+
 TEST(RasterPreview, FollowsTheViewAndLeavesTheRestEmpty) {
     HeadlessContext context(GlDevice::software);
     Scene scene = scene_of(make_sphere({0, 0, 0}, 40.0, 64, "ball"),

@@ -80,6 +80,37 @@ TEST(FramePlan, LightsSayTheirNamesAndWidths) {
               "the look has a key light 3° wide; draft shows its shadows sharp");
 }
 
+TEST(FramePlan, SaysWhetherFlakesGlintAndHowLargeTheyAreDrawn) {
+    Scene scene = bare_scene();
+    scene.environment = grey_environment();
+    Material& paint = scene.part_materials[0];
+    paint.name = "gold";
+    paint.model = ReflectanceModel::car_paint;
+    FramePlan plan = plan_frame(scene, Quality::normal, FrameStage::radiance);
+    EXPECT_EQ(why(plan, "glint-places"), "no paint of the scene has glints");
+    paint.glint_density_per_mm2 = 1000.0;
+    scene.lights = {light(0.1, 0.0)};
+    plan = plan_frame(scene, Quality::normal, FrameStage::radiance);
+    EXPECT_EQ(why(plan, "glint-places"), "flakes glint under lights; the look has none");
+    EXPECT_EQ(why(plan, "shade:body:car-paint"), "gold is a car paint with flakes");
+    scene.lights.push_back(light(0.1));
+    plan = plan_frame(scene, Quality::normal, FrameStage::radiance);
+    EXPECT_EQ(why(plan, "glint-places"),
+              "how much of the product a pixel covers, and how many flakes: once for a pose");
+    EXPECT_EQ(
+        why(plan, "shade:body:car-paint+glints"),
+        "gold is a car paint with flakes, which glint: 1000 on a square millimetre, physical");
+    paint.glint_scale = 30.0;
+    plan = plan_frame(scene, Quality::normal, FrameStage::radiance);
+    EXPECT_EQ(why(plan, "shade:body:car-paint+glints"),
+              "gold is a car paint with flakes, which glint: 1000 on a square millimetre, "
+              "exaggerated 30 times");
+    // Of another model they mean nothing.
+    paint.model = ReflectanceModel::clearcoat;
+    plan = plan_frame(scene, Quality::normal, FrameStage::radiance);
+    EXPECT_EQ(why(plan, "glint-places"), "no paint of the scene has glints");
+}
+
 TEST(FramePlan, EnvironmentCallsOnlyForWhatThePaintsUse) {
     Scene scene = bare_scene();
     scene.environment = grey_environment();

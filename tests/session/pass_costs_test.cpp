@@ -34,16 +34,23 @@ TEST(PassCosts, AQualityThatIsNoneIsNamed) {
 TEST(PassCosts, SayWhatAPaintCosts) {
     const std::vector<PassCost> costs{{"shade:ggx", Quality::high, 9.0, 1e6, {}},
                                       {"shade:ggx", Quality::normal, 3.0, 1e6, {}},
+                                      {"shade:car-paint+glints", Quality::normal, 8.0, 1e6, {}},
                                       {"shade:eon", Quality::normal, 3.0, 0.0, {}}};
-    const PaintCost ggx = paint_cost(ReflectanceModel::ggx, costs);
+    Material paint;
+    paint.model = ReflectanceModel::ggx;
+    const PaintCost ggx = paint_cost(paint, costs);
     ASSERT_TRUE(ggx.ns_a_pixel);
     EXPECT_DOUBLE_EQ(*ggx.ns_a_pixel, 3.0);
     EXPECT_TRUE(ggx.why_not.empty());
-    const PaintCost eon = paint_cost(ReflectanceModel::eon, costs);
+    EXPECT_EQ(paint_cost(paint, std::nullopt).why_not, "no bench has run on this machine");
+    paint.model = ReflectanceModel::eon;
+    const PaintCost eon = paint_cost(paint, costs);
     EXPECT_FALSE(eon.ns_a_pixel);
     EXPECT_EQ(eon.why_not, "the last bench shaded nothing with eon");
-    EXPECT_EQ(paint_cost(ReflectanceModel::ggx, std::nullopt).why_not,
-              "no bench has run on this machine");
+    paint.model = ReflectanceModel::car_paint;
+    EXPECT_EQ(paint_cost(paint, costs).why_not, "the last bench shaded nothing with car-paint");
+    paint.glint_density_per_mm2 = 100.0;
+    EXPECT_DOUBLE_EQ(paint_cost(paint, costs).ns_a_pixel.value_or(0.0), 8.0);
 }
 
 }  // namespace

@@ -20,6 +20,12 @@ TEST(Summary, HoldsTheModelsOwnParameters) {
     const std::string text = summary_of(material);
     EXPECT_NE(text.find("0.1 along, 0.4 across"), std::string::npos) << text;
     EXPECT_EQ(text.find("Coat tint"), std::string::npos) << text;
+    EXPECT_EQ(text.find("Glint"), std::string::npos) << text;
+    material.model = ReflectanceModel::car_paint;
+    material.glint_density_per_mm2 = 1000.0;
+    EXPECT_NE(summary_of(material).find("\nGlints physical"), std::string::npos);
+    material.glint_scale = 25.0;
+    EXPECT_NE(summary_of(material).find("\nGlints exaggerated 25 times"), std::string::npos);
 }
 
 TEST(PaintProblem, NamesTheParameter) {

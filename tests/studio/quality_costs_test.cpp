@@ -20,6 +20,8 @@ TEST(QualityCost, PartsWhatIsSolvedFromWhatRunsEveryFrame) {
                                 cost("light-visibility", Quality::normal, 400.0, 1000.0),
                                 cost("shade:ggx", Quality::normal, 8.0, 600.0),
                                 cost(kResolvePass, Quality::normal, 2.0, 1000.0),
+                                cost("shade:car-paint+glints", Quality::normal, 9.0, 600.0),
+                                cost("glint-places", Quality::normal, 3.0, 600.0),
                                 cost(kCompensationPass, Quality::normal, 4.0, 1000.0),
                                 cost(kResolvePass, Quality::draft, 1.0, 0.0)};
     costs[3].error = 0.01;

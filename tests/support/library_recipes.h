@@ -22,6 +22,7 @@ struct LibraryRecipe {
     PaintSource source;
     const char* source_name;               ///< "dark-blue-paint", or a file without its suffix
     std::vector<ReflectanceModel> models;  ///< the one with the smallest error is shipped
+    int flake_um = 0;  ///< designed: flakes of this size, one layer of which glints; 0: none
 };
 
 /// Every shipped paint of measured origin.
