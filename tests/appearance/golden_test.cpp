@@ -44,6 +44,8 @@ TEST(Golden, ValuesOfAnIndependentImplementation) {
         ASSERT_TRUE(model) << line;
         f64::BsdfParameters p{};
         for (const ParameterInfo& parameter : parameter_table()) {
+            // Single flakes are a pixel's: the reflectance does not know of them.
+            if (std::string(parameter.name).starts_with("glint_")) continue;
             const std::vector<std::string> columns = columns_of(parameter);
             for (std::size_t k = 0; k < columns.size(); ++k) {
                 *parameter.in_f64(p)[k] = at.at(columns[k]);
