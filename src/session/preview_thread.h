@@ -72,7 +72,14 @@ class PreviewThread {
     std::unique_ptr<Implementation> implementation_;
 };
 
-/// The part that a pixel of a view shows; nothing beside the product. Any thread.
+/// A point of the product that a pixel of a view shows.
+struct PickedPoint {
+    int part = 0;
+    glm::dvec3 position_mm{0.0};
+    glm::dvec3 normal{0.0, 1.0, 0.0};  ///< unit, on the side that is seen
+};
+
+/// What of the product a pixel of a view shows; nothing beside it. Any thread.
 class PartPicker {
   public:
     explicit PartPicker(std::shared_ptr<const Product> product);
@@ -80,6 +87,7 @@ class PartPicker {
     PartPicker(const PartPicker&) = delete;
     PartPicker& operator=(const PartPicker&) = delete;
     std::optional<int> part_at(const View& view, const glm::dvec2& pixel) const;
+    std::optional<PickedPoint> point_at(const View& view, const glm::dvec2& pixel) const;
 
   private:
     struct State;

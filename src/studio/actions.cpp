@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/log.h"
+#include "studio/artwork_edit.h"
 #include "studio/look_files.h"
 #include "studio/projector_control.h"
 #include "studio/save_picture.h"
@@ -79,6 +80,9 @@ void give_up(Shell& shell) {
     Studio& studio = shell.studio;
     if (shell.help_open || shell.about_open) {
         shell.help_open = shell.about_open = false;
+    } else if (is_placing(studio)) {
+        stop_placing(studio);
+        stop_trying(studio);
     } else if (studio.tried || studio.trying) {
         stop_trying(studio);
     } else if (studio.renaming_look) {

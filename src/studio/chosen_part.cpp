@@ -16,4 +16,10 @@ std::optional<std::size_t> chosen_part(const Studio& studio) {
     return body == parts.end() ? 0 : static_cast<std::size_t>(body - parts.begin());
 }
 
+std::string worn_paint(const Look& look, const std::string& part) {
+    auto found = look.parts.find(part);
+    if (found == look.parts.end()) found = look.parts.find("*");
+    return found == look.parts.end() ? "" : found->second;
+}
+
 }  // namespace livery

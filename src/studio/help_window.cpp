@@ -72,6 +72,8 @@ void draw_help(Shell& shell) {
             colours::dim_text,
             "%s",
             "Hovering over a paint shows it on the mock-up, a click keeps it, Esc takes it back.\n"
+            "Artwork: Place it by a click lets it follow the pointer, a click leaves it, Esc takes "
+            "it back.\n"
             "Tab and the arrow keys move between items, Enter presses them.");
         ImGui::End();
     }

@@ -8,6 +8,7 @@
 
 #include "studio/actions.h"
 #include "studio/shell.h"
+#include "studio/swatch_textures.h"
 #include "studio/theme.h"
 
 namespace livery {
@@ -66,11 +67,13 @@ void draw_right_column(Shell& shell) {
         const char* label;
         void (*draw)(Studio&);
     };
-    static constexpr std::array<Tab, 5> tabs = {{{"Paints", draw_library_panel},
+    static constexpr std::array<Tab, 6> tabs = {{{"Paints", draw_library_panel},
                                                  {"Paint", draw_paint_panel},
+                                                 {"Artwork", draw_artwork_panel},
                                                  {"Light", draw_lighting_panel},
                                                  {"Calibrate", draw_calibration_panel},
                                                  {"Frame", draw_plan_panel}}};
+    take_swatches(shell.studio);
     if (!ImGui::BeginTabBar("tabs", ImGuiTabBarFlags_FittingPolicyResizeDown)) return;
     for (std::size_t i = 0; i < tabs.size(); ++i) {
         const bool to_open = shell.tab_to_open == static_cast<int>(i);

@@ -164,7 +164,8 @@ void draw_target(Studio& studio, const Target& target) {
     offer("Whole product",
           "paint-target:product",
           product,
-          "Paints every part of this look alike, and takes off what parts wear by themselves.");
+          "Paints every part of this look alike, and takes off what parts wear by themselves, "
+          "artwork as well.");
     if (has_rest(studio)) {
         offer("All other parts",
               "paint-target:rest",
@@ -367,7 +368,6 @@ void draw_nothing_found(LibraryPanelState& state) {
 void draw_library_panel(Studio& studio) {
     LibraryPanelState& state = studio.panels.library;
     current_library(studio);
-    take_swatches(studio);
     if (!state.problem.empty()) {
         warning_text("The paint library cannot be read. " + state.problem);
         return;

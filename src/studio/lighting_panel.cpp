@@ -225,26 +225,11 @@ void draw_eye_angles(Studio& studio, glm::dvec3& eye_mm) {
     row("Elevation", "eye:elevation", "0° is level with the mock-up's middle.", [](Polar& polar) {
         number_slider("##elevation", polar.angles.elevation_deg, -89.9, 89.9, "%.1f°");
     });
-    row_label("x, y, z (mm)");
-    const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
-    const float width = std::floor((ImGui::CalcItemWidth() - 2.0f * gap) / 3.0f);
-    constexpr std::array names{"x", "y", "z"};
-    for (int c = 0; c < 3; ++c) {
-        const std::string name = names[static_cast<std::size_t>(c)];
-        if (c > 0) ImGui::SameLine(0.0f, gap);
-        ImGui::SetNextItemWidth(width);
-        ImGui::DragScalar(("##" + name).c_str(),
-                          ImGuiDataType_Double,
-                          &eye_mm[c],
-                          2.0f,
-                          nullptr,
-                          nullptr,
-                          "%.0f");
-        name_last_item("eye:" + name);
-        tooltip("In the product's frame: y is up.");
-        held.after_item();
-        edit_with_last_item(studio, SetEye{eye_mm});
-    }
+    vector_row(
+        "x, y, z (mm)", "eye", eye_mm, 2.0f, "%.0f", "In the product's frame: y is up.", [&] {
+            held.after_item();
+            edit_with_last_item(studio, SetEye{eye_mm});
+        });
 }
 
 void draw_eye(Studio& studio) {

@@ -27,18 +27,12 @@ namespace {
 
 constexpr const char* kSavePopup = "Save as new paint";
 
-std::string worn_by(const Look& look, const std::string& part) {
-    auto found = look.parts.find(part);
-    if (found == look.parts.end()) found = look.parts.find("*");
-    return found == look.parts.end() ? "" : found->second;
-}
-
 /// The name that the part's paint has after an edit.
 std::string name_after_edit(const Document& document, const EditPaint& edit) {
     try {
         const Document after = applied(document, edit);
         const SessionLook* look = find_look(after, edit.look);
-        return look ? worn_by(look->look, edit.part) : "";
+        return look ? worn_paint(look->look, edit.part) : "";
     } catch (const std::invalid_argument&) {
         return "";
     }
@@ -64,7 +58,7 @@ void refresh(Studio& studio) {
     const SessionLook* look = find_look(document, studio.shown_look);
     if (!look || !chosen) return;
     state.part_name = studio.product->mesh.parts[*chosen].name;
-    const std::string paint = worn_by(look->look, state.part_name);
+    const std::string paint = worn_paint(look->look, state.part_name);
     if (paint.empty()) return;
     try {
         const OnlyMeasuredInMemory no_waiting;

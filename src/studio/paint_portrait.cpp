@@ -17,10 +17,9 @@
 #include "studio/background.h"
 #include "studio/file_dialog.h"
 #include "studio/lobe_plot.h"
-#include "studio/paint_finder.h"
+#include "studio/paint_choice.h"
 #include "studio/swatch_textures.h"
 #include "studio/theme.h"
-#include "studio/users_library.h"
 #include "studio/widgets.h"
 
 namespace livery {
@@ -192,19 +191,14 @@ void draw_choices(Studio& studio) {
     }
     name_last_item("compare:file");
     ImGui::Separator();
-    const PaintLibrary& library = current_library(studio);
-    for (const auto* paints :
-         {&studio.session.document().paints, &library.users, &library.shipped}) {
-        for (const std::size_t k : find_paints(*paints, state.search, "")) {
-            const Material& paint = (*paints)[k];
-            const bool chosen = state.compared && state.compared->name == paint.name;
-            ImGui::PushID(&paint);  // the session's own may have a name of the library's
-            if (ImGui::Selectable(paint.name.c_str(), chosen)) state.compared = paint;
-            ImGui::PopID();
-            name_last_item("compare:" + paint.name);
-            tooltip(paint.provenance);
-        }
-    }
+    draw_paint_list(studio,
+                    state.search,
+                    "compare",
+                    state.compared ? state.compared->name : "",
+                    [&](const Material& paint, bool picked) {
+                        if (picked) state.compared = paint;
+                        tooltip(paint.provenance);
+                    });
 }
 
 void draw_comparison(Studio& studio) {

@@ -113,6 +113,21 @@ struct PaintPanelState {
     std::string new_name, new_family, save_problem;
 };
 
+struct ArtworkPanelState {
+    int look = -1;                      ///< whose artwork it shows
+    std::optional<std::size_t> chosen;  ///< in that look's list
+    Held<Artwork> held;
+    std::string name;  ///< while it is typed
+    bool naming = false;
+    std::string search;             ///< in the list of paints
+    bool placing = false;           ///< the next click on the product puts it there
+    std::optional<Artwork> placed;  ///< where the pointer would put it
+    std::string problem;            ///< why what is being tried cannot be worn
+    // Whether its picture can be read, looked up again when one of these changes.
+    std::optional<std::uint64_t> picture_revision;
+    std::string picture_of, picture_problem;
+};
+
 struct LightingPanelState {
     Held<Look> held;  ///< lights and environment
     Held<glm::dvec3> held_eye_mm;
@@ -169,6 +184,7 @@ struct BallotDialogState {
 struct PanelStates {
     LibraryPanelState library;
     PaintPanelState paint;
+    ArtworkPanelState artwork;
     LightingPanelState lighting;
     PlanPanelState plan;
     CalibrationPanelState calibration;

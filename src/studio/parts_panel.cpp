@@ -1,21 +1,11 @@
 // The product's parts, and the paint that the shown look gives each.
 #include <imgui.h>
 
+#include "studio/chosen_part.h"
 #include "studio/studio.h"
 #include "studio/theme.h"
 
 namespace livery {
-
-namespace {
-
-/// Own, inherited from "*", or none.
-std::string paint_of(const Look& look, const std::string& part) {
-    auto found = look.parts.find(part);
-    if (found == look.parts.end()) found = look.parts.find("*");
-    return found == look.parts.end() ? "as in its file" : found->second;
-}
-
-}  // namespace
 
 void draw_parts_panel(Studio& studio) {
     heading("Parts");
@@ -46,7 +36,8 @@ void draw_parts_panel(Studio& studio) {
                      nullptr,
                      0.0f,
                      &clip);
-        const std::string paint = paint_of(look->look, name);
+        const std::string own = worn_paint(look->look, name);
+        const std::string paint = own.empty() ? "as in its file" : own;
         list.AddText(
             small_font(),
             small_font()->FontSize,

@@ -7,6 +7,7 @@
 
 #include "core/json.h"
 #include "core/paths.h"
+#include "studio/artwork_edit.h"
 #include "studio/shell.h"
 
 namespace livery {
@@ -122,6 +123,9 @@ MapState state_of_shell(const Shell& shell) {
     state["selected_part"] = text(studio.selected_part);
     state["glowing_part"] = text(studio.glowing_part);
     state["tried"] = studio.tried ? text_of(*studio.tried) : "null";
+    // As the command that would make it: what is kept, not what is being tried.
+    state["artwork"] = text_of(SetArtwork{studio.shown_look, shown_artwork(studio)});
+    state["placing"] = text(is_placing(studio));
     state["revision"] = std::to_string(session.revision());
     state["looks"] = std::to_string(session.document().looks.size());
     state["undo"] = session.can_undo() ? quoted(session.undo_label()) : "null";

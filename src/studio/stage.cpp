@@ -7,9 +7,12 @@
 #include <imgui.h>
 
 #include "gl/handles.h"
+#include "studio/artwork_edit.h"
+#include "studio/artwork_values.h"
 #include "studio/shell.h"
 #include "studio/theme.h"
 #include "studio/ui_map.h"
+#include "studio/widgets.h"
 
 namespace livery {
 
@@ -185,6 +188,21 @@ void choose_part_at_pointer(Shell& shell, const Frame& stage) {
     }
 }
 
+/// What of the chosen artwork's new place the pointer says; true while it has the pointer.
+bool handle_placing(Shell& shell, const Pointer& pointer, const glm::dvec2& at) {
+    Studio& studio = shell.studio;
+    if (!is_placing(studio)) return false;
+    const bool turning = pointer.held && shell.stage.dragged;
+    std::optional<PickedPoint> point;
+    if (pointer.hovered && !turning) {
+        point = studio.picker->point_at(stage_view(shell, studio.session.document().eye_mm), at);
+    }
+    if (point) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+    if (pointer.hovered) try_placing(studio, point);
+    if (pointer.released && pointer.hovered && !shell.stage.dragged && point) place(studio, *point);
+    return true;
+}
+
 /// Turning, zooming and choosing parts in a picture drawn for this stage.
 void handle_view(Shell& shell, const Frame& stage, const Pointer& pointer) {
     StageState& state = shell.stage;
@@ -211,6 +229,7 @@ void handle_view(Shell& shell, const Frame& stage, const Pointer& pointer) {
         state.dragged = true;
         if (orbiting) state.orbit = turned(stage_orbit(shell), moved, size_px.y);
     }
+    if (handle_placing(shell, pointer, at)) return;
     if (pointer.hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
         state.orbit.reset();
         state.eye_zoom = 1.0;
@@ -301,6 +320,24 @@ void draw_wipe(const Shell& shell, const Frame& stage) {
     list.AddText({x + em(0.6f), top}, colour, b.c_str());
 }
 
+/// Over the picture's upper edge, while the next click means something else than usual.
+void draw_placing(const Studio& studio, const Frame& stage) {
+    if (!is_placing(studio)) return;
+    const std::string text =
+        fmt::format("Click where \"{}\" goes. Esc takes it back.",
+                    shown_name(shown_artwork(studio)[*chosen_artwork(studio)]));
+    const float pad = em(0.5f), width = stage.width - 4.0f * pad;
+    const auto lines = fitted_lines(text, width - 2.0f * pad, 3);
+    const float height = static_cast<float>(lines.size()) * ImGui::GetFontSize() * 1.15f;
+    const ImVec2 low(stage.x + 2.0f * pad, stage.y + 2.0f * pad);
+    ImGui::GetWindowDrawList()->AddRectFilled(
+        low,
+        {low.x + width, low.y + height + 2.0f * pad},
+        ImGui::GetColorU32(ImVec4(colours::accent.x, colours::accent.y, colours::accent.z, 0.9f)),
+        em(0.25f));
+    centred_lines(lines, {low.x, low.y + pad}, width, colours::text);
+}
+
 void draw_drawn_view(Shell& shell, const Frame& stage) {
     shell.stage.width = static_cast<int>(stage.width);
     shell.stage.height = static_cast<int>(stage.height);
@@ -317,6 +354,7 @@ void draw_drawn_view(Shell& shell, const Frame& stage) {
     }
     draw_texture(preview->texture, picture);
     draw_caption(shell, stage, "");
+    draw_placing(shell.studio, stage);
 }
 
 void draw_projector_view(Shell& shell, const Frame& stage) {

@@ -136,6 +136,7 @@ void draw_looks_panel(Studio& studio);
 void draw_parts_panel(Studio& studio);
 void draw_library_panel(Studio& studio);
 void draw_paint_panel(Studio& studio);
+void draw_artwork_panel(Studio& studio);
 void draw_lighting_panel(Studio& studio);
 void draw_plan_panel(Studio& studio);
 void draw_calibration_panel(Studio& studio);

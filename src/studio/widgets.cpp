@@ -225,6 +225,34 @@ void number_slider(const char* id, double& value, double low, double high, const
     slider(id, value, low, high, format, false);
 }
 
+void vector_row(const char* label,
+                const std::string& name,
+                glm::dvec3& value,
+                float speed,
+                const char* format,
+                const std::string& meaning,
+                const std::function<void()>& after_item) {
+    row_label(label);
+    const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
+    const float width = std::floor((ImGui::CalcItemWidth() - 2.0f * gap) / 3.0f);
+    constexpr std::array axes{"x", "y", "z"};
+    for (int c = 0; c < 3; ++c) {
+        const std::string axis = axes[static_cast<std::size_t>(c)];
+        if (c > 0) ImGui::SameLine(0.0f, gap);
+        ImGui::SetNextItemWidth(width);
+        ImGui::DragScalar(("##" + name + axis).c_str(),
+                          ImGuiDataType_Double,
+                          &value[c],
+                          speed,
+                          nullptr,
+                          nullptr,
+                          format);
+        name_last_item(name + ":" + axis);
+        tooltip(meaning);
+        after_item();
+    }
+}
+
 bool section_header(const char* label, bool* keep) {
     ImGui::PushStyleColor(ImGuiCol_Header, colours::raised);
     const bool open = ImGui::CollapsingHeader(label, keep);

@@ -1,6 +1,7 @@
 // Controls that several panels share.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,15 @@ void colour_control(const std::string& name, glm::dvec3& linear_rec709);
 /// A slider in equal ratios; Ctrl+click types.
 void ratio_slider(const char* id, double& value, double low, double high, const char* format);
 void number_slider(const char* id, double& value, double low, double high, const char* format);
+
+/// A row of three numbers to drag, named "NAME:x", ":y", ":z"; `after_item` is called after each.
+void vector_row(const char* label,
+                const std::string& name,
+                glm::dvec3& value,
+                float speed,
+                const char* format,
+                const std::string& meaning,
+                const std::function<void()>& after_item);
 
 /// A collapsing header in the panel's grey; `keep` (may be null) is set to false by its cross.
 bool section_header(const char* label, bool* keep = nullptr);

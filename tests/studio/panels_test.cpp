@@ -8,7 +8,9 @@
 #include <imgui_internal.h>
 
 #include "core/error.h"
+#include "core/image_io.h"
 #include "session/library.h"
+#include "studio/artwork_edit.h"
 #include "studio/studio.h"
 #include "studio/theme.h"
 #include "studio/ui_map.h"
@@ -36,6 +38,15 @@ Document two_looks() {
     }
     document.eye_mm = {0.0, 200.0, 600.0};
     return document;
+}
+
+std::vector<Artwork> long_names() {
+    Artwork artwork;
+    artwork.name = "stripes with a name that is longer than any column of any window is wide";
+    artwork.paint = "black violet pearl";
+    Artwork other = artwork;
+    other.shape = ArtworkShape::half;
+    return {artwork, other};
 }
 
 /// A studio without threads, projector and window, and an ImGui that draws nowhere.
@@ -132,7 +143,9 @@ TEST_P(Panels, FitIntoTheNarrowestColumn) {
     frame_shown->plan.passes[0].ms = 12345.6;
     frame_shown->plan.passes[1].name = "prepare:clearcoat";
     studio.frame = frame_shown;
+    studio.session.execute(SetArtwork{studio.shown_look, long_names()});
     const std::vector<std::pair<DrawPanel, std::vector<std::string>>> panels{
+        {draw_artwork_panel, {"artwork:0", "artwork:1", "artwork:delete", "artwork:centre:z"}},
         {draw_library_panel, {"paint:solid red", "paint-search", "family:all"}},
         {draw_paint_panel, {"param:diffuse", "param:alpha", "reset-paint", "save-paint"}},
         {draw_lighting_panel,
@@ -246,6 +259,117 @@ TEST_F(Panels, ALightIsAddedPulledAndRemoved) {
     frames(studio, draw_lighting_panel, 2);
     EXPECT_GT(lights()[2].direction.x, direction.x);
     EXPECT_EQ(lights()[0].direction, two_looks().looks[0].look.lights[0].direction);
+}
+
+TEST_F(Panels, ArtworkIsTriedInTheMenuAddedDraggedAndUndone) {
+    use_scale(1.0f);
+    Studio studio = make_studio();
+    const auto artwork = [&] { return studio.session.document().looks[0].look.artwork; };
+    click(studio, draw_artwork_panel, "artwork:add");
+    point_at(frames(studio, draw_artwork_panel, 3), "artwork:add:dots");
+    frames(studio, draw_artwork_panel, 2);
+    ASSERT_TRUE(studio.tried);
+    EXPECT_EQ(find_look(shown_document(studio), 1)->look.artwork.size(), 1u);
+    EXPECT_TRUE(artwork().empty());
+    click(studio, draw_artwork_panel, "artwork:add:stripes");
+    ASSERT_EQ(artwork().size(), 1u);
+    EXPECT_EQ(artwork()[0].part, "sphere");
+    EXPECT_EQ(artwork()[0].paint, "solid ivory") << "over red";
+
+    const std::uint64_t before = studio.session.revision();
+    const double size_mm = artwork()[0].size_mm;
+    point_at(frames(studio, draw_artwork_panel, 2), "artwork:size");
+    frames(studio, draw_artwork_panel, 2);
+    ImGui::GetIO().MouseDown[0] = true;
+    for (int i = 0; i < 5; ++i) {
+        ImGui::GetIO().MousePos.x += 6.0f;
+        frame(studio, draw_artwork_panel);
+    }
+    EXPECT_EQ(studio.session.revision(), before);
+    ASSERT_TRUE(studio.tried);
+    EXPECT_NE(find_look(shown_document(studio), 1)->look.artwork[0].size_mm, size_mm);
+    ImGui::GetIO().MouseDown[0] = false;
+    frames(studio, draw_artwork_panel, 2);
+    EXPECT_EQ(studio.session.revision(), before + 1);
+    EXPECT_NE(artwork()[0].size_mm, size_mm);
+    studio.session.undo();
+    EXPECT_EQ(artwork()[0].size_mm, size_mm);
+}
+
+TEST_F(Panels, ArtworkIsOrderedCopiedAndDeleted) {
+    use_scale(1.0f);
+    Studio studio = make_studio();
+    std::vector<Artwork> list = long_names();
+    list[0].name = "below";
+    list[1].name = "above";
+    studio.session.execute(SetArtwork{studio.shown_look, list});
+    const auto names = [&] {
+        std::string text;
+        for (const Artwork& one : studio.session.document().looks[0].look.artwork) {
+            text += one.name + " ";
+        }
+        return text;
+    };
+    click(studio, draw_artwork_panel, "artwork:down");
+    EXPECT_EQ(names(), "above below ");
+    click(studio, draw_artwork_panel, "artwork:duplicate");
+    EXPECT_EQ(names(), "above above 2 below ");
+    click(studio, draw_artwork_panel, "artwork:2");
+    click(studio, draw_artwork_panel, "artwork:delete");
+    EXPECT_EQ(names(), "above above 2 ");
+    click(studio, draw_artwork_panel, "artwork:side:above");
+    EXPECT_EQ(studio.session.document().looks[0].look.artwork[1].place.direction,
+              glm::dvec3(0.0, -1.0, 0.0));
+}
+
+TEST_F(Panels, ArtworkThatAPaintCannotWearIsRefusedWithTheReason) {
+    use_scale(1.0f);
+    Studio studio = make_studio();
+    studio.session.execute(SetPaint{studio.shown_look, "*", "chrome steel"});
+    const auto file = home_ / "print.png";
+    write_png(file, Image8(4, 4, 3, 100));
+    Artwork print;
+    print.name = "print";
+    print.shape = ArtworkShape::picture;
+    print.picture = file.string();
+    studio.session.execute(SetArtwork{studio.shown_look, {print}});
+    const std::uint64_t before = studio.session.revision();
+    frames(studio, draw_artwork_panel, 2);
+    print.use = PictureUse::colours;
+    set_artwork_at(studio, 0, print);
+    EXPECT_EQ(studio.session.revision(), before);
+    ASSERT_EQ(studio.notices.size(), 1u);
+    EXPECT_EQ(studio.notices[0].what, "\"print\" was not changed.");
+    EXPECT_NE(studio.notices[0].cause.find("chrome steel"), std::string::npos)
+        << studio.notices[0].cause;
+    // In a paint of its own it can.
+    print.paint = "solid white";
+    set_artwork_at(studio, 0, print);
+    EXPECT_EQ(studio.session.revision(), before + 1);
+}
+
+TEST_F(Panels, ArtworkFollowsThePointerUntilItIsPlaced) {
+    use_scale(1.0f);
+    Studio studio = make_studio();
+    studio.session.execute(SetArtwork{studio.shown_look, {long_names()[0]}});
+    frames(studio, draw_artwork_panel, 2);
+    EXPECT_FALSE(is_placing(studio));
+    click(studio, draw_artwork_panel, "artwork:place");
+    ASSERT_TRUE(is_placing(studio));
+    const PickedPoint point{0, {10.0, 20.0, 30.0}, {1.0, 0.0, 0.0}};
+    const std::uint64_t before = studio.session.revision();
+    try_placing(studio, point);
+    ASSERT_TRUE(studio.trying);
+    EXPECT_EQ(studio.session.revision(), before);
+    place(studio, point);
+    EXPECT_FALSE(is_placing(studio));
+    EXPECT_EQ(studio.session.revision(), before + 1);
+    EXPECT_EQ(studio.session.document().looks[0].look.artwork[0].place.centre_mm,
+              point.position_mm);
+    // Another look's artwork is not placed by what was begun here.
+    click(studio, draw_artwork_panel, "artwork:place");
+    studio.shown_look = studio.session.document().looks[1].id;
+    EXPECT_FALSE(is_placing(studio));
 }
 
 }  // namespace
