@@ -51,7 +51,10 @@ void check_part_name(const Product& product,
     throw FileError(look.file, field, "no such part in " + product.name, "one of *" + names);
 }
 
-void add_artwork(const Look& look, const std::vector<Material>& own_paints, Scene& scene) {
+void add_artwork(const Look& look,
+                 const std::vector<Material>& own_paints,
+                 Unwearable unwearable,
+                 Scene& scene) {
     const std::vector<Part>& parts = scene.product->mesh.parts;
     for (std::size_t k = 0; k < look.artwork.size(); ++k) {
         const Artwork& artwork = look.artwork[k];
@@ -80,6 +83,8 @@ void add_artwork(const Look& look, const std::vector<Material>& own_paints, Scen
             try {
                 scene.artwork.push_back(make_part_artwork(p, artwork, material, picture));
             } catch (const std::invalid_argument& error) {
+                const bool own = artwork.paint.empty();
+                if (own && unwearable == Unwearable::left_out) continue;
                 throw FileError(look.file, field, error.what(), "another paint or use");
             }
         }
@@ -92,7 +97,8 @@ Scene make_scene(std::shared_ptr<const Product> product,
                  const Look& look,
                  glm::dvec3 eye_mm,
                  const std::shared_ptr<const Environment>& loaded,
-                 const std::vector<Material>& own_paints) {
+                 const std::vector<Material>& own_paints,
+                 Unwearable unwearable) {
     check_argument(product != nullptr, "make_scene: a product is needed");
     for (const auto& [name, paint] : look.parts) {
         check_part_name(*product, look, "parts." + name, name);
@@ -115,7 +121,7 @@ Scene make_scene(std::shared_ptr<const Product> product,
                  : std::make_shared<const Environment>(load_environment(look.environment, beside));
     }
     scene.product = std::move(product);
-    add_artwork(look, own_paints, scene);
+    add_artwork(look, own_paints, unwearable, scene);
     scene.lights = look.lights;
     scene.eye_in_world_mm = eye_mm;
     scene.exposure_ev = look.exposure_ev;

@@ -39,12 +39,15 @@ bool any_paint(const Scene& scene, const std::function<bool(const Material&)>& i
 /// name keeps the file's own paint, or its colour as a plain diffuse. Throws FileError (unknown
 /// part or paint, with the names there are). `loaded` is shared when it is the environment that the
 /// look names: a map takes a while to read, and renderers keep what they have made of it.
-/// `own_paints` come before the library's and files by name.
+/// `own_paints` come before the library's and files by name. A picture that a part's own paint
+/// cannot wear (artwork_coats.h) is refused, or left out while the part wears it.
+enum class Unwearable { refused, left_out };
 Scene make_scene(std::shared_ptr<const Product> product,
                  const Look& look,
                  glm::dvec3 eye_mm,
                  const std::shared_ptr<const Environment>& loaded = nullptr,
-                 const std::vector<Material>& own_paints = {});
+                 const std::vector<Material>& own_paints = {},
+                 Unwearable unwearable = Unwearable::refused);
 
 /// A plain diffuse studio: the default eye and key light when nothing else was given.
 glm::dvec3 default_eye_mm(const Product& product);

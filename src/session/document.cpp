@@ -89,7 +89,8 @@ Scene scene_of(const Document& document,
     for (const auto* more : {&library.shipped, &library.users}) {
         paints.insert(paints.end(), more->begin(), more->end());
     }
-    return make_scene(std::move(product), look, document.eye_mm, loaded, paints);
+    return make_scene(
+        std::move(product), look, document.eye_mm, loaded, paints, Unwearable::left_out);
 }
 
 }  // namespace livery

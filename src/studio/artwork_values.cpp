@@ -195,7 +195,10 @@ ArtworkPlace from_side(const ArtworkPlace& place, Side side) {
     return with_turn(there, turn_deg_of(place));
 }
 
-Angles angles_of(const ArtworkPlace& place) { return angles_of(-place.direction); }
+Angles angles_of(const ArtworkPlace& place) {
+    // No negative zeros, which would turn 180 degrees into -180.
+    return angles_of(glm::dvec3(0.0) - place.direction);
+}
 
 ArtworkPlace from_angles(const ArtworkPlace& place, const Angles& angles) {
     const glm::dmat3 rotation = frame_at(angles) * glm::transpose(frame_at(angles_of(place)));

@@ -100,6 +100,22 @@ TEST(SetArtwork, APictureThatIsGoneIsToldAndShownAgainWhenItIsBack) {
     EXPECT_EQ(scene_of(document, 1, product).artwork.size(), 2u);
 }
 
+TEST(SetArtwork, OnAPartsOwnPaintIsLeftOutWhileThatCannotWearIt) {
+    const TemporaryFolder folder;
+    Artwork rough = decal(folder / "grey.png");
+    write_png(rough.picture, Image8(4, 4, 3, 100));
+    rough.use = PictureUse::roughness;
+    Material chalk = some_paint();
+    chalk.model = ReflectanceModel::eon;
+    const auto product = find_product("car");
+    const Document glossy = applied(car(), SetArtwork{1, {rough}});
+    EXPECT_EQ(scene_of(glossy, 1, product).artwork.size(), 1u);
+    const Document matte = applied(glossy, EditPaint{1, "body", chalk});
+    EXPECT_EQ(scene_of(matte, 1, product).artwork.size(), 0u);
+    EXPECT_EQ(scene_of(applied(matte, SetPaint{1, "body", "solid red"}), 1, product).artwork.size(),
+              1u);
+}
+
 TEST(SetArtwork, GoesOutWithALookAndComesBack) {
     const TemporaryFolder folder;
     const auto file = folder / "badge.png";

@@ -325,7 +325,10 @@ TEST_F(Panels, ArtworkIsOrderedCopiedAndDeleted) {
 TEST_F(Panels, ArtworkThatAPaintCannotWearIsRefusedWithTheReason) {
     use_scale(1.0f);
     Studio studio = make_studio();
-    studio.session.execute(SetPaint{studio.shown_look, "*", "chrome steel"});
+    Material matte;
+    matte.name = "solid red";
+    matte.model = ReflectanceModel::eon;
+    studio.session.execute(EditPaint{studio.shown_look, "sphere", matte});
     const auto file = home_ / "print.png";
     write_png(file, Image8(4, 4, 3, 100));
     Artwork print;
@@ -335,12 +338,13 @@ TEST_F(Panels, ArtworkThatAPaintCannotWearIsRefusedWithTheReason) {
     studio.session.execute(SetArtwork{studio.shown_look, {print}});
     const std::uint64_t before = studio.session.revision();
     frames(studio, draw_artwork_panel, 2);
-    print.use = PictureUse::colours;
+    print.use = PictureUse::roughness;
     set_artwork_at(studio, 0, print);
     EXPECT_EQ(studio.session.revision(), before);
     ASSERT_EQ(studio.notices.size(), 1u);
     EXPECT_EQ(studio.notices[0].what, "\"print\" was not changed.");
-    EXPECT_NE(studio.notices[0].cause.find("chrome steel"), std::string::npos)
+    EXPECT_NE(studio.notices[0].cause.find("a map of roughness changes nothing on it"),
+              std::string::npos)
         << studio.notices[0].cause;
     // In a paint of its own it can.
     print.paint = "solid white";
