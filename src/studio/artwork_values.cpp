@@ -211,8 +211,9 @@ ArtworkPlace from_angles(const ArtworkPlace& place, const Angles& angles) {
 double turn_deg_of(const ArtworkPlace& place) {
     const ArtworkPlane plane = plane_of(place);
     const ArtworkPlane level = plane_of(place_on(place.centre_mm, plane.toward, place.through));
-    return kDegrees *
-           std::atan2(-glm::dot(plane.t_axis, level.s_axis), glm::dot(plane.t_axis, level.t_axis));
+    const double turn =
+        std::atan2(-glm::dot(plane.t_axis, level.s_axis), glm::dot(plane.t_axis, level.t_axis));
+    return std::abs(turn) < 1e-9 ? 0.0 : kDegrees * turn;
 }
 
 ArtworkPlace with_turn(const ArtworkPlace& place, double turn_deg) {

@@ -117,7 +117,7 @@ struct Shell {
     Window* window = nullptr;       ///< none in tests
     bool window_must_move = false;  ///< it may lie on the projector
     StageState stage;
-    float left_width_em = 15.5f, right_width_em = 23.0f;
+    float left_width_em = 15.5f, right_width_em = 26.5f;
     std::string layout_seen;         ///< as text; remembered when it rests
     double layout_rests_at_s = 0.0;  ///< 0: it is remembered
     double user_scale = 1.0;
