@@ -52,13 +52,6 @@ const SessionLook* find_look(const Document& document, int id) {
     return nullptr;
 }
 
-Material find_paint(const Document& document, const std::string& name) {
-    for (const Material& paint : document.paints) {
-        if (same_paint_name(paint.name, name)) return paint;
-    }
-    return find_material(name);
-}
-
 std::vector<std::string> paint_names(const Document& document) {
     const PaintLibrary library = read_paint_library();
     std::vector<std::string> names;

@@ -36,6 +36,13 @@ std::string provenance_of_edit(const std::string& name) {
 
 }  // namespace
 
+Material find_paint(const Document& document, const std::string& name) {
+    for (const Material& paint : document.paints) {
+        if (same_paint_name(paint.name, name)) return paint;
+    }
+    return find_material(name);
+}
+
 std::string known_paint(const Document& document, const std::string& name) {
     check_text(name, "the paint's name");
     if (const Material* own = own_paint(document, name)) return own->name;
