@@ -46,11 +46,11 @@ glm::vec3 radiance_working(const DirectionalLight& light) {
 QualityRays rays_of(Quality quality) {
     switch (quality) {
         case Quality::draft:
-            return {1, 0, 0};
+            return {1, {8, 0, true}, 0};
         case Quality::normal:
-            return {16, 16, 8};
+            return {16, {16, 128, false}, 8};
         case Quality::high:
-            return {64, 64, 16};
+            return {64, {64, 256, false}, 16};
         case Quality::reference:
             break;
     }
@@ -143,12 +143,13 @@ void FragmentInputs::solve_sky(const Scene& scene,
         return;
     }
     const bool occluded = find_pass(plan, kOcclusionPass) != nullptr;
-    const int rays = occluded ? rays_of(plan.quality).sky : 0;
+    const SkyRays sky_rays = rays_of(plan.quality).sky;
+    const int rays = occluded ? sky_rays.first : 0;
     const bool stands = sky_made_.of == scene.environment && enough(sky_made_.rays, rays);
     const bool visible =
-        !occluded || stands || (sky_visibility_ && enough(sky_visibility_->directions, rays));
+        !occluded || stands || (sky_visibility_ && enough(sky_visibility_->rays.first, rays));
     clock.run(kOcclusionPass, !visible, [&] {
-        sky_visibility_ = solve_sky_visibility(mesh_, tracer_, *map_, rays, progress);
+        sky_visibility_ = solve_sky_visibility(mesh_, tracer_, *map_, sky_rays, progress);
     });
     clock.run(kIrradiancePass, !stands, [&] {
         if (!same_map(diffused_, scene.environment)) {
@@ -159,8 +160,8 @@ void FragmentInputs::solve_sky(const Scene& scene,
         }
         diffused_ = scene.environment;
         sky_ = sky_at_fragments(
-            *map_, *scene.environment, filtered_, occluded ? &*sky_visibility_ : nullptr);
-        sky_made_ = {scene.environment, occluded ? sky_visibility_->directions : 0, {}};
+            mesh_, *map_, *scene.environment, filtered_, occluded ? &*sky_visibility_ : nullptr);
+        sky_made_ = {scene.environment, occluded ? sky_visibility_->rays.first : 0, {}};
         directions_stale_ = diffuse_light_stale_ = true;
     });
 }
@@ -208,6 +209,7 @@ void FragmentInputs::solve_mirror(const Scene& scene,
 
 void FragmentInputs::fill_mirror(const Scene& scene, bool occluded, const Progress& progress) {
     const MirrorVisibility* visibility = occluded ? &*mirror_visibility_ : nullptr;
+    const SkyVisibility* joints = !occluded && sky_visibility_ ? &*sky_visibility_ : nullptr;
     // Half floats hold the radiance in units in which the brightest texel fits.
     const ImageF& sharpest = filtered_.mirrored.front();
     const float largest = *std::max_element(sharpest.values.begin(), sharpest.values.end()) *
@@ -224,10 +226,13 @@ void FragmentInputs::fill_mirror(const Scene& scene, bool occluded, const Progre
         for (std::size_t i = begin; i < end; ++i) {
             const auto lobes =
                 environment.at_fragment(mesh_, *map_, i, scene.eye_in_world_mm, visibility);
+            // Who does not ask which lobes are hidden dims those of a joint like its diffuse light
+            const bool joint = joints && map_->fragments[i].coverage < 1.0f;
+            const float scale = (joint ? joints->openness(i) : 1.0f) / unit;
             const std::size_t at = 4 * layout_.address(i, map_->fragments[i].part);
             for (std::size_t k = 0; k < lobes.size(); ++k) {
                 for (std::size_t c = 0; c < 3; ++c) {
-                    texels[k][at + c] = lobes[k][static_cast<int>(c)] / unit;
+                    texels[k][at + c] = lobes[k][static_cast<int>(c)] * scale;
                 }
             }
         }

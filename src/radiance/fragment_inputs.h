@@ -21,7 +21,7 @@ namespace livery {
 /// How much is spent on what a level of quality solves; rays are a fragment's.
 struct QualityRays {
     int light = 16;  ///< toward each light with a size
-    int sky = 16;    ///< toward the environment
+    SkyRays sky;     ///< toward the environment
     int mirror = 8;  ///< over each wide mirror lobe (MirrorVisibility)
 };
 QualityRays rays_of(Quality quality);

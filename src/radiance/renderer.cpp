@@ -396,7 +396,7 @@ void RadianceRenderer::count_work(const Scene& scene, FramePlan& plan) const {
     for (const PartArtwork& relief : scene.relief) tilted += s.layout.fragments(relief.part);
     set(kReliefPass, static_cast<double>(tilted));
     set(kIrradiancePass, fragments);
-    set(kOcclusionPass, fragments * rays.sky);
+    set(kOcclusionPass, fragments * rays.sky.first);
     set(kFilterPass, static_cast<double>(kFilterTexels));
     set(kReflectionPass, fragments * mirror_rays(rays.mirror));
     set(kMirrorPass, fragments * static_cast<double>(kMirrorAlphas.size()));

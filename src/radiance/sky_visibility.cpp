@@ -1,6 +1,7 @@
 #include "radiance/sky_visibility.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -133,6 +134,65 @@ int samples_of(float alpha, int rays) {
     return is_narrow(alpha) ? static_cast<int>(kSamplesAFragment) : rays;
 }
 
+/// Directions of a fragment that looks again: k-th from the sub-sample k % kSamplesAFragment.
+void more_directions_of(const Mesh& mesh,
+                        const SurfaceMap& map,
+                        std::size_t fragment,
+                        const SkyDirections& sky,
+                        std::span<glm::vec3> directions) {
+    std::vector<glm::vec3> around(directions.size());
+    for (std::size_t s = 0; s < kSamplesAFragment; ++s) {
+        sky.around(sample_normal(mesh, map, fragment, s), turn_of(fragment, 5u), around);
+        for (std::size_t k = s; k < directions.size(); k += kSamplesAFragment) {
+            directions[k] = around[k];
+        }
+    }
+}
+
+/// Whether light from the share of a few directions that is open may err by 15%: a standard error
+/// of directions that know nothing of one another, which a spiral's are better than.
+bool is_noisy(float open, int directions) {
+    constexpr float kNoise = 0.15f;
+    return 1.0f - open > kNoise * kNoise * open * static_cast<float>(directions);
+}
+
+/// Fills again and more.
+void look_again(const Mesh& mesh,
+                const Tracer& tracer,
+                const SurfaceMap& map,
+                const Progress& progress,
+                SkyVisibility& visibility) {
+    for (std::size_t i = 0; i < visibility.blocked.size(); ++i) {
+        if (is_noisy(visibility.openness(i), visibility.rays.first)) {
+            visibility.again.push_back(static_cast<std::uint32_t>(i));
+        }
+    }
+    const SkyDirections sky(visibility.rays.more);
+    const std::size_t count = sky.count(), words = count / 64;
+    visibility.more.assign(visibility.again.size() * words, 0);
+    parallel_for(visibility.again.size(), 128, [&](std::size_t begin, std::size_t end) {
+        progress.check_stop();
+        std::vector<glm::vec3> toward(count);
+        std::vector<TraceRay> rays(count);
+        std::vector<std::uint8_t> blocked(count);
+        std::array<glm::vec3, kSamplesAFragment> origins;
+        for (std::size_t at = begin; at < end; ++at) {
+            const std::size_t i = visibility.again[at];
+            more_directions_of(mesh, map, i, sky, toward);
+            ray_origins(mesh, map, i, origins);
+            for (std::size_t k = 0; k < count; ++k) {
+                rays[k].origin = origins[k % kSamplesAFragment];
+                rays[k].direction = toward[k];
+            }
+            tracer.occluded(rays, blocked, RayOrder::scattered);
+            for (std::size_t k = 0; k < count; ++k) {
+                if (blocked[k])
+                    visibility.more[at * words + k / 64] |= std::uint64_t{1} << (k % 64);
+            }
+        }
+    });
+}
+
 }  // namespace
 
 glm::vec3 sample_normal(const Mesh& mesh,
@@ -163,17 +223,25 @@ glm::vec3 toward_eye(const Fragment& fragment, glm::dvec3 eye_mm) {
     return glm::normalize(wo + (kLowest - cosine) * n);
 }
 
+float SkyVisibility::openness(std::size_t fragment) const {
+    return 1.0f -
+           static_cast<float>(std::popcount(blocked[fragment])) / static_cast<float>(rays.first);
+}
+
 SkyVisibility solve_sky_visibility(const Mesh& mesh,
                                    const Tracer& tracer,
                                    const SurfaceMap& map,
-                                   int directions,
+                                   const SkyRays& sky_rays,
                                    const Progress& progress) {
-    check_argument(directions > 0 && directions <= 64,
-                   fmt::format("{} sky directions a fragment, 1 to 64 are possible", directions));
+    check_argument(
+        sky_rays.first > 0 && sky_rays.first <= 64,
+        fmt::format("{} sky directions a fragment, 1 to 64 are possible", sky_rays.first));
+    check_argument(sky_rays.more >= 0 && sky_rays.more % 64 == 0,
+                   fmt::format("{} more sky directions, no multiple of 64", sky_rays.more));
     SkyVisibility result;
-    result.directions = directions;
+    result.rays = sky_rays;
     result.blocked.assign(map.fragments.size(), 0);
-    const SkyDirections sky(directions);
+    const SkyDirections sky(sky_rays.first);
     parallel_for(map.fragments.size(), 1024, [&](std::size_t begin, std::size_t end) {
         progress.check_stop();
         const std::size_t count = sky.count();
@@ -182,6 +250,7 @@ SkyVisibility solve_sky_visibility(const Mesh& mesh,
         std::vector<std::uint8_t> blocked(count);
         std::array<glm::vec3, kSamplesAFragment> origins;
         for (std::size_t i = begin; i < end; ++i) {
+            if (sky_rays.joints_only && map.fragments[i].coverage >= 1.0f) continue;
             sky.around(map.fragments[i].normal, turn_of(i, 5u), toward);
             ray_origins(mesh, map, i, origins);
             for (std::size_t k = 0; k < count; ++k) {
@@ -194,10 +263,12 @@ SkyVisibility solve_sky_visibility(const Mesh& mesh,
             }
         }
     });
+    if (sky_rays.more > 0) look_again(mesh, tracer, map, progress, result);
     return result;
 }
 
-std::vector<glm::vec3> sky_at_fragments(const SurfaceMap& map,
+std::vector<glm::vec3> sky_at_fragments(const Mesh& mesh,
+                                        const SurfaceMap& map,
                                         const Environment& environment,
                                         const FilteredEnvironment& filtered,
                                         const SkyVisibility* visibility) {
@@ -205,24 +276,44 @@ std::vector<glm::vec3> sky_at_fragments(const SurfaceMap& map,
     const SpherePlaces places(environment);
     const SphereStack diffuse({&filtered.diffuse, 1});
     const SphereStack blurred = visibility ? SphereStack({&filtered.blurred, 1}) : SphereStack();
-    const SkyDirections sky(visibility ? visibility->directions : 0);
+    const auto open_sky = [&](const glm::vec3& n) {
+        return scale * rgb_of(diffuse.at(places.of(n)).in(0));
+    };
+    // The same directions estimate the whole: the ratio is kinder to bright lamps
+    const auto share_seen = [&](std::span<const glm::vec3> directions, const std::uint64_t* words) {
+        Texel hidden{}, seen{};
+        for (std::size_t k = 0; k < directions.size(); ++k) {
+            const bool blocked = ((words[k / 64] >> (k % 64)) & 1u) != 0;
+            (blocked ? hidden : seen) += blurred.at(places.of(directions[k])).in(0);
+        }
+        return rgb_of(seen) / glm::max(rgb_of(hidden + seen), glm::vec3(1e-20f));
+    };
+    const SkyDirections sky(visibility ? visibility->rays.first : 0);
+    const SkyDirections more(visibility ? visibility->rays.more : 0);
     std::vector<glm::vec3> result(map.fragments.size());
     parallel_for(result.size(), 1024, [&](std::size_t begin, std::size_t end) {
         std::vector<glm::vec3> directions(sky.count());
         for (std::size_t i = begin; i < end; ++i) {
             const glm::vec3 n = map.fragments[i].normal;
-            glm::vec3 light = rgb_of(diffuse.at(places.of(n)).in(0));
-            if (visibility && visibility->blocked[i]) {
-                sky.around(n, turn_of(i, 5u), directions);
-                Texel hidden{}, seen{};
-                for (std::size_t k = 0; k < directions.size(); ++k) {
-                    const bool blocked = ((visibility->blocked[i] >> k) & 1u) != 0;
-                    (blocked ? hidden : seen) += blurred.at(places.of(directions[k])).in(0);
-                }
-                // The same directions estimate the whole: the ratio is kinder to bright lamps
-                light *= rgb_of(seen) / glm::max(rgb_of(hidden + seen), glm::vec3(1e-20f));
+            result[i] = open_sky(n);
+            if (!visibility || visibility->blocked[i] == 0) continue;
+            sky.around(n, turn_of(i, 5u), directions);
+            result[i] *= share_seen(directions, &visibility->blocked[i]);
+        }
+    });
+    if (more.count() == 0) return result;
+    // Who looked again knows better
+    parallel_for(visibility->again.size(), 256, [&](std::size_t begin, std::size_t end) {
+        std::vector<glm::vec3> directions(more.count());
+        for (std::size_t at = begin; at < end; ++at) {
+            const std::size_t i = visibility->again[at];
+            more_directions_of(mesh, map, i, more, directions);
+            glm::vec3 light(0.0f);
+            for (std::size_t k = 0; k < kSamplesAFragment; ++k) {
+                light += open_sky(sample_normal(mesh, map, i, k));
             }
-            result[i] = scale * light;
+            result[i] = light / static_cast<float>(kSamplesAFragment) *
+                        share_seen(directions, &visibility->more[at * (more.count() / 64)]);
         }
     });
     return result;

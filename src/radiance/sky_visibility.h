@@ -16,21 +16,37 @@
 
 namespace livery {
 
+/// How many directions a fragment looks in. Most of a product is open, and a few are enough to see
+/// that; in a wheel or under an arch, where little of the sky is left, few are pepper.
+struct SkyRays {
+    int first = 16;  ///< at most 64
+    int more = 0;    ///< where the first are noisy, a multiple of 64; 0: nobody looks again
+    bool joints_only = false;  ///< only fragments that are a part of their pixel look at all
+};
+
 /// Cosine-weighted directions of a fragment, of which some meet the product again. Independent of
 /// the environment: solved once for a pose.
 struct SkyVisibility {
-    int directions = 0;                  ///< a fragment, at most 64
+    SkyRays rays;
     std::vector<std::uint64_t> blocked;  ///< bit k: direction k meets the product
+    /// Fragments that looked again, in their order, each direction around the normal of the
+    /// sub-sample that it starts from; and rays.more / 64 words of each, bits as in `blocked`.
+    std::vector<std::uint32_t> again;
+    std::vector<std::uint64_t> more;
+
+    /// The share of the first directions that meet nothing.
+    float openness(std::size_t fragment) const;
 };
 SkyVisibility solve_sky_visibility(const Mesh& mesh,
                                    const Tracer& tracer,
                                    const SurfaceMap& map,
-                                   int directions,
+                                   const SkyRays& rays,
                                    const Progress& progress = {});
 
 /// What a white diffuser at each fragment sends under the environment: the exact unoccluded value
 /// less the mean over the blocked directions. Without `visibility`, unoccluded.
-std::vector<glm::vec3> sky_at_fragments(const SurfaceMap& map,
+std::vector<glm::vec3> sky_at_fragments(const Mesh& mesh,
+                                        const SurfaceMap& map,
                                         const Environment& environment,
                                         const FilteredEnvironment& filtered,
                                         const SkyVisibility* visibility);

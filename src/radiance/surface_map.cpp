@@ -74,6 +74,66 @@ bool breaks_from(const Sample& a, const Sample& b, float footprint_mm) {
     return off_plane > 2.0f * footprint_mm;
 }
 
+/// Shading takes a fragment's normals for a disc of slopes around their mean, as wide along a bend
+/// as across it. What the disc may stretch across, as a mean squared slope: the lobe of polished
+/// varnish is as wide. Where it stretches more, it mirrors lamps that no normal of the bend does.
+constexpr float kStretchOfADisc = 0.02f * 0.02f;
+
+/// The first sample, in order of their normals along a bend, beyond the bend's widest gap: two
+/// sides of a crease, or halves of what is bent evenly. The samples' count where a disc will do.
+std::size_t bend_among(std::span<Sample*> samples) {
+    const glm::vec3 first = samples.front()->normal;
+    const auto farthest_from = [&](const glm::vec3& from) {
+        glm::vec3 farthest = from;
+        float distance2 = 0.0f;
+        for (const Sample* s : samples) {
+            const glm::vec3 apart = s->normal - from;
+            if (glm::dot(apart, apart) <= distance2) continue;
+            distance2 = glm::dot(apart, apart);
+            farthest = s->normal;
+        }
+        return farthest;
+    };
+    // Nothing is spread more than half of its longest extent squared
+    const glm::vec3 one_end = farthest_from(first);
+    const glm::vec3 extent = farthest_from(one_end) - one_end;
+    if (glm::dot(extent, extent) < 8.0f * kStretchOfADisc) return samples.size();
+    const glm::vec3 axis = glm::normalize(extent);
+
+    const auto count = static_cast<float>(samples.size());
+    glm::vec3 sum(0.0f);
+    float squares = 0.0f, squares_along = 0.0f;
+    for (const Sample* s : samples) {
+        const glm::vec3 apart = s->normal - first;
+        const float along = glm::dot(apart, axis);
+        sum += apart;
+        squares += glm::dot(apart, apart);
+        squares_along += along * along;
+    }
+    const float sum_along = glm::dot(sum, axis);
+    const float along = (squares_along - sum_along * sum_along / count) / count;
+    const float both = (squares - glm::dot(sum, sum) / count) / count;
+    // A disc has half of its spread across; the bend has both - along
+    if (0.5f * both - (both - along) < kStretchOfADisc) return samples.size();
+
+    std::sort(samples.begin(), samples.end(), [&](const Sample* a, const Sample* b) {
+        return glm::dot(a->normal, axis) < glm::dot(b->normal, axis);
+    });
+    glm::vec3 below(0.0f);
+    float widest = -1.0f;
+    std::size_t best = samples.size();
+    for (std::size_t k = 1; k < samples.size(); ++k) {
+        below += samples[k - 1]->normal - first;
+        const auto under = static_cast<float>(k), over = count - under;
+        const glm::vec3 apart = (sum - below) / over - below / under;
+        const float between = glm::dot(apart, apart) * under * over;
+        if (between <= widest) continue;
+        widest = between;
+        best = k;
+    }
+    return best;
+}
+
 /// Unit normals of the triangles themselves, as their corners turn.
 std::vector<glm::vec3> face_normals(const Mesh& mesh) {
     std::vector<glm::vec3> normals(mesh.triangles.size());
@@ -122,7 +182,7 @@ Sample sample_of(const Mesh& mesh,
 }
 
 void append_mean(std::span<const Sample> samples,
-                 int group,
+                 std::size_t group,
                  std::uint32_t pixel,
                  std::size_t per_pixel,
                  Tile& tile) {
@@ -171,23 +231,51 @@ void append_mean(std::span<const Sample> samples,
     tile.fragments.push_back(fragment);
 }
 
+/// What grouping a pixel's samples needs room for.
+struct Grouping {
+    std::vector<const Sample*> first;  ///< of each group
+    std::vector<Sample*> of_one;
+};
+
+/// Parts the group at its bends; returns how many groups there are then.
+std::size_t split_at_bends(std::span<Sample> samples,
+                           std::size_t group,
+                           std::size_t groups,
+                           std::vector<Sample*>& of_one) {
+    of_one.clear();
+    for (Sample& s : samples) {
+        if (s.group == group) of_one.push_back(&s);
+    }
+    const std::size_t bend = bend_among(of_one);
+    if (bend == of_one.size()) return groups;
+    for (std::size_t k = bend; k < of_one.size(); ++k) {
+        of_one[k]->group = static_cast<std::uint16_t>(groups);
+    }
+    const std::size_t with_new = split_at_bends(samples, groups, groups + 1, of_one);
+    return split_at_bends(samples, group, with_new, of_one);
+}
+
 /// Sorts a pixel's samples into groups that a mean can stand for and appends their fragments.
 void append_fragments(std::span<Sample> samples,
                       std::uint32_t pixel,
                       std::size_t per_pixel,
                       float footprint_mm,
-                      std::vector<const Sample*>& first_of_groups,
+                      Grouping& grouping,
                       Tile& tile) {
-    first_of_groups.clear();
+    std::vector<const Sample*>& first = grouping.first;
+    first.clear();
     for (Sample& s : samples) {
-        const auto found =
-            std::find_if(first_of_groups.begin(), first_of_groups.end(), [&](const Sample* f) {
-                return !breaks_from(*f, s, footprint_mm);
-            });
-        s.group = static_cast<std::uint16_t>(found - first_of_groups.begin());
-        if (found == first_of_groups.end()) first_of_groups.push_back(&s);
+        const auto found = std::find_if(first.begin(), first.end(), [&](const Sample* f) {
+            return !breaks_from(*f, s, footprint_mm);
+        });
+        s.group = static_cast<std::uint16_t>(found - first.begin());
+        if (found == first.end()) first.push_back(&s);
     }
-    for (int group = 0; group < static_cast<int>(first_of_groups.size()); ++group) {
+    std::size_t groups = first.size();
+    for (std::size_t group = 0; group < first.size(); ++group) {
+        groups = split_at_bends(samples, group, groups, grouping.of_one);
+    }
+    for (std::size_t group = 0; group < groups; ++group) {
         append_mean(samples, group, pixel, per_pixel, tile);
     }
 }
@@ -263,7 +351,7 @@ Tile TileSolver::solve(glm::ivec2 tile) const {
     std::vector<glm::vec3> directions(static_cast<std::size_t>(x_end - x_begin) * per_pixel);
     std::vector<Hit> hits(directions.size());
     std::vector<Sample> samples(per_pixel);
-    std::vector<const Sample*> groups;
+    Grouping groups;
     Tile result;
     for (int y = tile.y * kTile_px; y < y_end; ++y) {
         aim(lens, x_begin, x_end, y, directions);

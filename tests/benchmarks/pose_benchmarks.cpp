@@ -41,8 +41,8 @@ void SkyVisibilityOfThePose(benchmark::State& state) {
     const Threads threads(state);
     const FrameGeometry& geometry = *geometry_of_width(static_cast<int>(state.range(0)));
     for (auto _ : state) {
-        benchmark::DoNotOptimize(
-            solve_sky_visibility(car().product->mesh, *geometry.tracer, geometry.map, 16));
+        benchmark::DoNotOptimize(solve_sky_visibility(
+            car().product->mesh, *geometry.tracer, geometry.map, SkyRays{16, 128, false}));
     }
     count_items(state, geometry.map.fragments.size() * 16);
 }

@@ -126,7 +126,7 @@ TEST(SurfaceMap, DepthBreakSplitsAPixelIntoTwoFragments) {
     EXPECT_NEAR(std::abs(found[0]->position_mm.z - found[1]->position_mm.z), 50.0, 1e-3);
 }
 
-TEST(SurfaceMap, SharpRidgeSplitsButGentleOneSpreads) {
+TEST(SurfaceMap, RidgeSplitsHoweverGentle) {
     // A roof seen from the front: its two slopes meet in the middle column.
     const auto roof = [](float rise) {
         Mesh mesh;
@@ -155,13 +155,41 @@ TEST(SurfaceMap, SharpRidgeSplitsButGentleOneSpreads) {
         }
         return found;
     };
-    const auto sharp = fragments_in_middle(1.5f);
-    ASSERT_EQ(sharp.size(), 2u);
-    EXPECT_LT(sharp[0].normal_variance, 1e-6);
-    const auto gentle = fragments_in_middle(0.3f);
-    ASSERT_EQ(gentle.size(), 1u);
-    EXPECT_NEAR(gentle[0].normal_variance, 0.09, 0.002);
-    EXPECT_NEAR(gentle[0].normal.z, 1.0, 1e-5);
+    // Rise 0.3 is 33 degrees from side to side, 0.06 is 7.
+    for (const float rise : {1.5f, 0.3f, 0.06f}) {
+        const auto sides = fragments_in_middle(rise);
+        ASSERT_EQ(sides.size(), 2u) << "rise " << rise;
+        for (const Fragment& f : sides) {
+            EXPECT_LT(f.normal_variance, 1e-6);
+            EXPECT_NEAR(f.coverage, 0.5f, 1e-6);
+            EXPECT_NEAR(std::abs(f.normal.x / f.normal.z), rise, 1e-3);
+        }
+    }
+    EXPECT_EQ(fragments_in_middle(0.02f).size(), 1u) << "no highlight tells these sides apart";
+}
+
+TEST(SurfaceMap, RoundBendStaysOneFragmentAndALongOneIsParted) {
+    // A ball of 16 pixels, 7 degrees across each: as much along as across where it is seen
+    // straight on. Toward its edge it is a bend along one direction, and a disc of slopes as wide
+    // across as along would mirror what no normal there does.
+    const Mesh ball = make_sphere({0, 0, 0}, 20.0, 128, "ball");
+    for (const int samples : {4, 16}) {
+        const SurfaceMap map = map_of(ball, front_view(21, 21, 500.0, 0.1), samples);
+        int whole = 0, parted = 0;
+        for (const Fragment& f : map.fragments) {
+            if (map.coverage.values[f.pixel] < 1.0f) continue;
+            if (f.normal.z > 0.9f) {
+                EXPECT_FLOAT_EQ(f.coverage, 1.0f) << samples << " samples";
+                ++whole;
+            }
+            if (f.normal.z < 0.45f) {
+                EXPECT_LT(f.coverage, 1.0f) << samples << " samples";
+                ++parted;
+            }
+        }
+        EXPECT_GE(whole, 25);
+        EXPECT_GE(parted, 8);
+    }
 }
 
 TEST(SurfaceMap, InsideOfAnOpenSurfaceFacesTheView) {
