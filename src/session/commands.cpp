@@ -121,6 +121,8 @@ void apply(Document& document, const EditPaint& command) {
     edit_paint(document, command);
 }
 
+void apply(Document& document, const RenamePaint& command) { rename_paint(document, command); }
+
 void check_only_relief(const std::vector<Artwork>& list, const Artwork& relief) {
     for (const Artwork& other : list) {
         const bool same_part = other.part == relief.part || other.part == "*" || relief.part == "*";
@@ -189,7 +191,8 @@ void apply(Document& document, const AddLook& command) {
 
 void apply(Document& document, const DuplicateLook& command) {
     const std::size_t index = index_of(document, command.look);
-    add_look(document, document.looks[index].look, index + 1);
+    // Last, so that every other look keeps its place and its number key.
+    add_look(document, document.looks[index].look, document.looks.size());
 }
 
 void apply(Document& document, const RenameLook& command) {

@@ -27,6 +27,10 @@ struct EditPaint {
     std::string part;
     Material material;
 };
+/// One of the session's own paints by another name, wherever it is worn.
+struct RenamePaint {
+    std::string paint, name;
+};
 /// What lies over the paints of a look, as a whole: each over those before it.
 struct SetArtwork {
     int look = 0;
@@ -84,6 +88,7 @@ struct SetDesignWhite {
 using SessionCommand = std::variant<SetPaint,
                                     PaintProduct,
                                     EditPaint,
+                                    RenamePaint,
                                     SetArtwork,
                                     AddLook,
                                     DuplicateLook,

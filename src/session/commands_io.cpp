@@ -41,6 +41,12 @@ void read(const JsonReader& fields, EditPaint& c) {
     c = {look_in(fields), fields["part"].text(), read_material(material, UnreadMeasured::kept)};
 }
 
+Json fields_of(const RenamePaint& c) { return {{"paint", c.paint}, {"name", c.name}}; }
+void read(const JsonReader& fields, RenamePaint& c) {
+    fields.allow_only({"paint", "name"});
+    c = {fields["paint"].text(), fields["name"].text()};
+}
+
 Json fields_of(const SetArtwork& c) { return {{"look", c.look}, {"artwork", json_of(c.artwork)}}; }
 void read(const JsonReader& fields, SetArtwork& c) {
     fields.allow_only({"look", "artwork"});
@@ -154,6 +160,7 @@ constexpr std::array<const char*, std::variant_size_v<SessionCommand>> kNames = 
     "set-paint",
     "paint-product",
     "edit-paint",
+    "rename-paint",
     "set-artwork",
     "add-look",
     "duplicate-look",

@@ -38,6 +38,9 @@ std::string label(const Document& before, const PaintProduct& command) {
 std::string label(const Document&, const EditPaint& command) {
     return fmt::format("Edit {} on {}", command.material.name, part_name(command.part));
 }
+std::string label(const Document&, const RenamePaint& command) {
+    return fmt::format("Rename paint {} to {}", command.paint, command.name);
+}
 std::string label(const Document& before, const SetArtwork& command) {
     return fmt::format("Change artwork of {}", name_of(before, command.look));
 }

@@ -95,4 +95,35 @@ void edit_paint(Document& document, const EditPaint& command) {
     document.paints.push_back(std::move(edited));
 }
 
+void rename_paint(Document& document, const RenamePaint& command) {
+    check_name(command.name, "the paint's name");
+    const auto own =
+        std::find_if(document.paints.begin(), document.paints.end(), [&](const Material& paint) {
+            return same_paint_name(paint.name, command.paint);
+        });
+    if (own == document.paints.end()) {
+        std::string known;
+        for (const Material& paint : document.paints) {
+            known += (known.empty() ? "" : ", ") + paint.name;
+        }
+        throw std::invalid_argument(fmt::format("\"{}\" is no paint of the session's own; there {}",
+                                                command.paint,
+                                                known.empty() ? "is none" : "are " + known));
+    }
+    const PaintLibrary library = read_paint_library();
+    const Material* other = own_paint(document, command.name);
+    // Another way to write its own name is no other paint's.
+    if ((other && other != &*own) || library.find(command.name)) {
+        throw std::invalid_argument(
+            fmt::format("there is a paint \"{}\" already; expected another name", command.name));
+    }
+    const std::string before = own->name;
+    own->name = command.name;
+    for (SessionLook& one : document.looks) {
+        for_each_paint(one.look, [&](std::string& name) {
+            if (name == before) name = command.name;
+        });
+    }
+}
+
 }  // namespace livery

@@ -210,6 +210,11 @@ void Session::save_as(const std::filesystem::path& file) {
 
 std::optional<std::string> Session::save_problem() const { return state_->problem; }
 
+bool Session::save_again() {
+    if (state_->problem) state_->save();
+    return !state_->problem;
+}
+
 std::optional<std::filesystem::path> Session::file() const {
     return state_->store ? std::optional(state_->path) : std::nullopt;
 }

@@ -59,6 +59,9 @@ class Session {
     void set_workspace(const std::string& name, const std::string& value);
 
     std::optional<std::string> save_problem() const;
+    /// Tries again to save what could not be; true when there is no problem (any more). To be
+    /// called now and then while there is one: a disk that was full may have room by now.
+    bool save_again();
     std::optional<std::filesystem::path> file() const;
 
   private:

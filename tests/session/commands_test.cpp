@@ -10,6 +10,7 @@
 
 #include "session/some_commands.h"
 #include "support/file_error.h"
+#include "support/message_of.h"
 #include "support/temporary_folder.h"
 
 namespace livery {
@@ -42,7 +43,7 @@ TEST(Commands, EachIsTheSameAfterWritingAndReading) {
     const TemporaryFolder folder;
     folder.write("calibration.json", "{}");
     const auto commands = one_of_each(folder.path().string());
-    const Document before = applied(car(), SetLights{3, {}});
+    const Document before = testing::car_with_own_paint();
     std::vector<bool> seen(std::variant_size_v<SessionCommand>);
     for (const SessionCommand& command : commands) {
         const std::string text = text_of(command);
@@ -84,6 +85,7 @@ TEST(Commands, LabelsSayWhatIsUndone) {
     EXPECT_EQ(label(AddLook{dusk}), "Add look dusk");
     EXPECT_EQ(label(DuplicateLook{2}), "Duplicate look silver metallic");
     EXPECT_EQ(label(RenameLook{2, "dusk"}), "Rename look silver metallic to dusk");
+    EXPECT_EQ(label(RenamePaint{"solid red 2", "Monza"}), "Rename paint solid red 2 to Monza");
     EXPECT_EQ(label(DeleteLook{2}), "Delete look silver metallic");
     EXPECT_EQ(label(DeleteLook{77}), "Delete look 77");
     EXPECT_EQ(label(MoveLook{2, 0}), "Move look silver metallic");
@@ -188,6 +190,39 @@ TEST(EditPaint, ForksWhatAnotherPartOrLookWearsAsWell) {
     EXPECT_EQ(worn(rest, 4, "body"), "solid red 3");
 }
 
+TEST(RenamePaint, IsFollowedWhereverThePaintIsWorn) {
+    Document document = applied(car(), EditPaint{4, "body", some_paint()});
+    document = applied(document, SetPaint{1, "trim", "solid red 2"});
+    Artwork stripes;
+    stripes.paint = "solid red 2";
+    document = applied(document, SetArtwork{2, {stripes}});
+    document = applied(document, RenamePaint{"Solid-Red-2", "Monza"});
+    ASSERT_EQ(document.paints.size(), 1u);
+    EXPECT_EQ(document.paints[0].name, "Monza");
+    EXPECT_EQ(worn(document, 4, "body"), "Monza");
+    EXPECT_EQ(worn(document, 1, "trim"), "Monza");
+    EXPECT_EQ(document.looks[1].look.artwork.at(0).paint, "Monza");
+    EXPECT_EQ(find_paint(document, "monza").diffuse, some_paint().diffuse);
+    // Its own name in other letters.
+    EXPECT_EQ(applied(document, RenamePaint{"Monza", "MONZA"}).paints[0].name, "MONZA");
+}
+
+TEST(RenamePaint, RefusesWhatCannotBe) {
+    const Document document = applied(car(), EditPaint{4, "body", some_paint()});
+    const auto refused = [&](const char* paint, const char* name) {
+        return message_of([&] { applied(document, RenamePaint{paint, name}); });
+    };
+    EXPECT_EQ(refused("solid red", "Monza"),
+              "\"solid red\" is no paint of the session's own; there are solid red 2");
+    EXPECT_EQ(refused("solid red 2", "Solid Blue"),
+              "there is a paint \"Solid Blue\" already; expected another name");
+    EXPECT_EQ(refused("solid red 2", ""), "the paint's name is empty");
+    EXPECT_EQ(message_of([&] {
+                  applied(car(), RenamePaint{"x", "y"});
+              }),
+              "\"x\" is no paint of the session's own; there is none");
+}
+
 TEST(EditPaint, RefusesWhatNoPaintIs) {
     const auto edit = [](auto change) {
         Material paint = some_paint();
@@ -206,10 +241,10 @@ TEST(EditPaint, RefusesWhatNoPaintIs) {
 TEST(Looks, AreAddedWithNamesAndNumbersOfTheirOwn) {
     Document document = applied(car(), DuplicateLook{2});
     ASSERT_EQ(document.looks.size(), 5u);
-    EXPECT_EQ(document.looks[2].id, 5);
-    EXPECT_EQ(document.looks[2].look.name, "silver metallic 2");
+    EXPECT_EQ(document.looks[4].id, 5) << "last: the others keep their number keys";
+    EXPECT_EQ(document.looks[4].look.name, "silver metallic 2");
     document = applied(document, DuplicateLook{5});
-    EXPECT_EQ(document.looks[3].look.name, "silver metallic 3");
+    EXPECT_EQ(document.looks[5].look.name, "silver metallic 3");
     Look look = car().looks[0].look;
     look.exposure_ev = 3.0;
     document = applied(document, AddLook{look, 0});

@@ -3,14 +3,17 @@
 #include "session/session.h"
 
 #include <clocale>
+#include <csignal>
 #include <cstdlib>
 #include <iostream>
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include "core/error.h"
 #include "core/json.h"
 #include "session/library.h"
+#include "session/session_file.h"
 #include "session/session_script.h"
 #include "support/file_error.h"
 #include "support/memory_folder.h"
@@ -149,6 +152,53 @@ TEST(Session, UnsavedIsSavedUnderAName) {
     session.execute(SetExposure{2.0});
     session = Session::unsaved(car(), "closed");
     EXPECT_EQ(Session::open(folder / "a.livery").document().exposure_ev, 2.0);
+}
+
+/// No file can grow: what a full disk does.
+class NoRoom {
+  public:
+    NoRoom() {
+        handler_ = std::signal(SIGXFSZ, SIG_IGN);
+        ::getrlimit(RLIMIT_FSIZE, &before_);
+        rlimit none = before_;
+        none.rlim_cur = 1;
+        ::setrlimit(RLIMIT_FSIZE, &none);
+    }
+    ~NoRoom() {
+        ::setrlimit(RLIMIT_FSIZE, &before_);
+        std::signal(SIGXFSZ, handler_);
+    }
+
+  private:
+    rlimit before_{};
+    void (*handler_)(int) = nullptr;
+};
+
+TEST(Session, GoesOnSavingWhenThereIsRoomAgain) {
+    const TemporaryFolder folder;
+    Session session = Session::open(folder / "a.livery");
+    EXPECT_TRUE(session.save_again()) << "nothing is in the way";
+    std::optional<std::string> problem;
+    bool again = true;
+    {
+        const NoRoom no_room;
+        session.execute(SetExposure{1.0});
+        session.execute(SetExposure{2.0});
+        problem = session.save_problem();
+        again = session.save_again();
+    }
+    EXPECT_TRUE(problem);
+    EXPECT_FALSE(again);
+    EXPECT_EQ(session.document().exposure_ev, 2.0);
+    // Without a change in between.
+    EXPECT_TRUE(session.save_again());
+    EXPECT_EQ(session.save_problem(), std::nullopt);
+    SessionFile file(folder / "a.livery", SessionFile::Access::read);
+    EXPECT_EQ(file.document(file.position()).exposure_ev, 2.0);
+    EXPECT_EQ(file.last_step(), 2);
+
+    Session nowhere = Session::unsaved(car(), "a test");
+    EXPECT_FALSE(nowhere.save_again()) << "there is no file to save in";
 }
 
 TEST(Session, LeavesOneFileBehind) {

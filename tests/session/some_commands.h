@@ -36,7 +36,14 @@ inline Artwork some_artwork() {
     return artwork;
 }
 
-/// One of each kind, all of which the car's document takes.
+/// The car's document with a paint of its own and one look without lights.
+inline Document car_with_own_paint() {
+    Material own = some_paint();
+    own.name = "own paint";
+    return applied(applied(car(), SetLights{3, {}}), EditPaint{4, "rims", own});
+}
+
+/// One of each kind, all of which car_with_own_paint() takes.
 inline std::vector<SessionCommand> one_of_each(const std::string& calibration_folder) {
     Look look = car().looks[1].look;
     look.name = "Übernahme";
@@ -44,6 +51,7 @@ inline std::vector<SessionCommand> one_of_each(const std::string& calibration_fo
     return {SetPaint{1, "body", "solid red"},
             PaintProduct{2, "matte grey"},
             EditPaint{1, "rims", some_paint()},
+            RenamePaint{"own paint", "Monza \"rosso\""},
             SetArtwork{1, {some_artwork(), Artwork{}}},
             AddLook{look, 2},
             AddLook{look},
@@ -101,7 +109,7 @@ inline SessionCommand random_command(Random& random, const Document& document) {
     const auto place = static_cast<int>(random.below(static_cast<std::uint32_t>(looks.size() + 1)));
     // Looks that are many are deleted rather than added to.
     const bool many = looks.size() > 8;
-    switch (random.below(21)) {
+    switch (random.below(22)) {
         case 0:
         case 1:
         case 2:
@@ -154,6 +162,10 @@ inline SessionCommand random_command(Random& random, const Document& document) {
             list.push_back(artwork);
             return SetArtwork{id, list};
         }
+        case 20:
+            if (document.paints.empty()) return RenamePaint{"no such paint", "other"};
+            return RenamePaint{pick(random, document.paints).name,
+                               "paint " + std::to_string(random.below(9))};
         default:
             return SetDesignWhite{number(random, 0.0, 105.0)};
     }
