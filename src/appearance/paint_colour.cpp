@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "appearance/css_colours.h"
 #include "appearance/material_library.h"
 #include "core/colour.h"
 #include "core/csv.h"
@@ -27,7 +28,8 @@ constexpr std::size_t kLargestFile_bytes = std::size_t{1} << 24u;
 constexpr std::size_t kMostChips = 100'000;
 
 constexpr const char* kColourForms =
-    "#RRGGBB, lab:L,a,b or xyz:X,Y,Z (D65, 10 degree observer, white has Y = 100)";
+    "#RRGGBB, #RGB, rgb(R, G, B), a colour's name in CSS, lab:L,a,b or xyz:X,Y,Z (D65, 10 degree "
+    "observer, white has Y = 100)";
 constexpr const char* kChipColumns = "a column name and either L, a, b or X, Y, Z or hex";
 
 struct Range {
@@ -44,8 +46,19 @@ std::string lower(std::string_view text) {
     return small;
 }
 
+glm::dvec3 lab10_from_rec709(const glm::dvec3& linear) {
+    return lab10_from_xyz10(xyz10_from_xyz(xyz_from_rec709() * linear));
+}
+
+/// Six digits with or without "#"; three only with it, or "bad" would be a colour.
 std::optional<glm::dvec3> lab10_from_hex(std::string_view text) {
-    if (text.starts_with('#')) text.remove_prefix(1);
+    const bool marked = text.starts_with('#');
+    if (marked) text.remove_prefix(1);
+    std::string six;
+    if (marked && text.size() == 3) {
+        for (const char c : text) six += {c, c};
+        text = six;
+    }
     const bool digits = text.size() == 6 && std::all_of(text.begin(), text.end(), [](char c) {
                             return std::isxdigit(static_cast<unsigned char>(c)) != 0;
                         });
@@ -57,7 +70,7 @@ std::optional<glm::dvec3> lab10_from_hex(std::string_view text) {
         std::from_chars(begin, begin + 2, value, 16);
         rec709[c] = srgb_decode(value / 255.0);
     }
-    return lab10_from_xyz10(xyz10_from_xyz(xyz_from_rec709() * rec709));
+    return lab10_from_rec709(rec709);
 }
 
 /// "45,30,-20" in ranges; throws std::invalid_argument about `text`.
@@ -87,6 +100,31 @@ glm::dvec3 parse_three(const std::string& text,
         if (c < 2) numbers.remove_prefix(comma + 1);
     }
     return values;
+}
+
+/// "rgb(26, 79, 156)" or "rgb(26 79 156)", 0 to 255 each, or all in percent.
+glm::dvec3 parse_rgb(const std::string& text, std::string_view numbers) {
+    constexpr std::array kRgbNames{"R", "G", "B"};
+    constexpr std::array<Range, 3> kBytes{{{0.0, 255.0}, {0.0, 255.0}, {0.0, 255.0}}};
+    constexpr std::array<Range, 3> kPercents{{{0.0, 100.0}, {0.0, 100.0}, {0.0, 100.0}}};
+    numbers.remove_suffix(1);
+    std::string listed(numbers);
+    const auto percents = std::count(listed.begin(), listed.end(), '%');
+    check_argument(percents == 0 || percents == 3,
+                   fmt::format("colour '{}': expected three numbers, {}", text, kColourForms));
+    std::erase(listed, '%');
+    if (listed.find(',') == std::string::npos) {
+        // CSS writes spaces as well: one comma for each run of them between numbers.
+        const auto first = listed.find_first_not_of(' '), last = listed.find_last_not_of(' ');
+        if (first != std::string::npos) listed = listed.substr(first, last - first + 1);
+        const auto end = std::unique(
+            listed.begin(), listed.end(), [](char a, char b) { return a == ' ' && b == ' '; });
+        listed.erase(end, listed.end());
+        std::replace(listed.begin(), listed.end(), ' ', ',');
+    }
+    glm::dvec3 rgb = parse_three(text, listed, kRgbNames, percents == 0 ? kBytes : kPercents);
+    for (int c = 0; c < 3; ++c) rgb[c] = srgb_decode(rgb[c] / (percents == 0 ? 255.0 : 100.0));
+    return lab10_from_rec709(rgb);
 }
 
 /// Columns of chips, however they are written: "L", "l*", "L*".
@@ -170,9 +208,9 @@ glm::dvec3 parse_colour(const std::string& text) {
     if (small.starts_with("xyz:")) {
         return lab10_from_xyz10(0.01 * parse_three(text, rest, kXyzNames, kXyzRanges));
     }
-    if (small.starts_with('#')) {
-        if (const auto lab = lab10_from_hex(small)) return *lab;
-    }
+    if (small.starts_with("rgb(") && small.ends_with(')')) return parse_rgb(text, rest);
+    if (const auto lab = lab10_from_hex(small)) return *lab;
+    if (const auto linear = css_colour(small)) return lab10_from_rec709(*linear);
     throw std::invalid_argument(fmt::format("colour '{}': expected {}", text, kColourForms));
 }
 

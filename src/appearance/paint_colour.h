@@ -9,9 +9,10 @@
 
 namespace livery {
 
-/// "#b01020" (sRGB), "lab:45,30,-20" or "xyz:20.1,15.2,5" (both D65 and 10 degree observer, white
-/// has Y = 100), as L*a*b* of the 10 degree observer. Throws std::invalid_argument that says what
-/// was found and expected.
+/// "#b01020", "b01020", "#b12", "rgb(176, 16, 32)" or a CSS name such as "tomato" (all sRGB),
+/// "lab:45,30,-20" or "xyz:20.1,15.2,5" (both D65 and 10 degree observer, white has Y = 100), as
+/// L*a*b* of the 10 degree observer. Throws std::invalid_argument that says what was found and
+/// expected.
 glm::dvec3 parse_colour(const std::string& text);
 
 struct ColourChip {

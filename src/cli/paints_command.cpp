@@ -161,7 +161,9 @@ Command paints_command() {
     option("--family", "NAME", "paints of one family", &arguments->family);
     option("--near",
            "COLOUR",
-           "nearest first: #RRGGBB, lab:L,a,b, xyz:X,Y,Z (D65, 10 degrees) or a CSV of chips",
+           "nearest first: #RRGGBB, rgb(R, G, B), a CSS name, lab:L,a,b, xyz:X,Y,Z (D65, 10 "
+           "degrees) or "
+           "a CSV of chips",
            &arguments->near);
     option("--chip", "NAME", "which chip of the CSV", &arguments->chip);
     option("--tint", "COLOUR", "make a paint of NAME's finish in this colour", &arguments->tint);

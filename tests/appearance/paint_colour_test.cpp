@@ -19,7 +19,7 @@ void expect_near(const glm::dvec3& found, const glm::dvec3& expected, double wit
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], within) << c;
 }
 
-TEST(PaintColour, IsTakenInThreeForms) {
+TEST(PaintColour, IsTakenAsPaintMakersWriteIt) {
     expect_near(parse_colour("lab:45,30.5,-20"), {45.0, 30.5, -20.0}, 1e-12);
     expect_near(parse_colour("LAB: 45 , +30.5 , -20 "), {45.0, 30.5, -20.0}, 1e-12);
     // White of ASTM E308.
@@ -31,13 +31,42 @@ TEST(PaintColour, IsTakenInThreeForms) {
     EXPECT_EQ(parse_colour("#D01020"), parse_colour("#d01020"));
 }
 
+TEST(PaintColour, IsTakenAsOtherProgramsWriteIt) {
+    const glm::dvec3 blue = parse_colour("#1a4f9c");
+    for (const char* text : {"1a4f9c",
+                             "1A4F9C",
+                             "rgb(26,79,156)",
+                             "rgb( 26, 79 , 156 )",
+                             "RGB(26 79  156)",
+                             "rgb(10.196078431372549%, 30.980392156862745%, 61.1764705882353%)"}) {
+        expect_near(parse_colour(text), blue, 1e-9);
+    }
+    EXPECT_EQ(parse_colour("#1ac"), parse_colour("#11aacc"));
+    EXPECT_EQ(parse_colour("tomato"), parse_colour("#ff6347"));
+    EXPECT_EQ(parse_colour("RebeccaPurple"), parse_colour("#663399"));
+    EXPECT_EQ(parse_colour("lightslategrey"), parse_colour("lightslategray"));
+    for (const char* text : {"rgb()",
+                             "rgb(1,2)",
+                             "rgb(1,2,3",
+                             "rgb(1,2,256)",
+                             "rgb(1%,2,3)",
+                             "rgb(  )",
+                             "rgb(1,2,3,4)",
+                             "bad",
+                             "1a4f9",
+                             "tomatoes"}) {
+        EXPECT_THROW(parse_colour(text), std::invalid_argument) << text;
+    }
+}
+
 TEST(PaintColour, SaysWhatIsWrong) {
     const auto message = [](const std::string& text) {
         return message_of([&] { parse_colour(text); });
     };
-    for (const char* text : {"", "red", "#12345", "#1234567", "#12345g", "12,3,4", "rgb:1,2,3"}) {
+    for (const char* text : {"", "rot", "#12345", "#1234567", "#12345g", "12,3,4", "rgb:1,2,3"}) {
         const std::string expected =
-            std::string("colour '") + text + "': expected #RRGGBB, lab:L,a,b or xyz:X,Y,Z";
+            std::string("colour '") + text +
+            "': expected #RRGGBB, #RGB, rgb(R, G, B), a colour's name in CSS, lab:";
         EXPECT_EQ(message(text).substr(0, expected.size()), expected);
     }
     EXPECT_NE(message("lab:1,2").find("expected three numbers"), std::string::npos);

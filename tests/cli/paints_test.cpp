@@ -80,7 +80,7 @@ TEST_F(Paints, AreSortedByColour) {
     EXPECT_EQ(figures({"--near", chips, "--chip", "ivory"})["paints"][0]["name"], "solid ivory");
     const Json one = figures({"solid red", "--near", near_red});
     EXPECT_EQ(one["paints"][0]["de00"], found["paints"][0]["de00"]);
-    refuses({"--near", "crimson"}, {"colour 'crimson'", "#RRGGBB"});
+    refuses({"--near", "crimsonish"}, {"colour 'crimsonish'", "#RRGGBB"});
     refuses({"--near", chips}, {"which chip", "--chip"});
     refuses({"--near", chips, "--chip", "green"}, {"no chip named 'green'", "'ours', 'ivory'"});
     refuses({"--near", near_red, "--chip", "x"}, {"--chip is for --near FILE.csv"});
