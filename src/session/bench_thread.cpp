@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/freed_memory.h"
 #include "session/bench_picture.h"
+#include "session/calibration_reuse.h"
 #include "session/low_priority.h"
 #include "session/projector_setup.h"
 #include "twin/bench.h"
@@ -131,7 +132,10 @@ void BenchThread::Implementation::calibrate(const BenchChoice& with) {
     Calibrating result;
     try {
         trace(with, progress);
-        result.finished = calibrate_on_bench(*bench, *with.product, progress);
+        const std::string key = bench_key(with.bench, *with.product);
+        const auto folder = calibrate_on_bench(*bench, *with.product, progress);
+        note_bench(folder, key);
+        result.finished = folder;
     } catch (const Cancelled&) {
     } catch (const Refused& refused) {
         result.refused_why = refused.why();

@@ -7,6 +7,7 @@
 
 #include "core/paths.h"
 #include "session/bench_picture.h"
+#include "session/calibration_reuse.h"
 #include "session/contexts.h"
 #include "session/library.h"
 #include "support/temporary_folder.h"
@@ -191,6 +192,18 @@ TEST_F(OnTheBench, CalibratesAndTellsHowFarItIs) {
     EXPECT_EQ(done.refused_why, "");
     ASSERT_TRUE(done.finished);
     EXPECT_TRUE(std::filesystem::exists(*done.finished / "calibration.json"));
+    // A new session of this product on this bench finds it; no other does.
+    const auto kept = [&](const Product& product) {
+        return kept_calibration_of(bench_key(bench_, product));
+    };
+    EXPECT_EQ(kept(*car_), done.finished);
+    Product other = *car_;
+    other.mesh.positions_mm[0].x += 0.5f;
+    EXPECT_EQ(kept(other), std::nullopt);
+    std::string brighter = kSmallBench;
+    brighter.replace(brighter.find("small"), 5, "other");
+    folder_.write("small.json", brighter);
+    EXPECT_EQ(kept(*car_), std::nullopt) << "the bench is another one";
     std::set<std::string> stages;
     for (const auto& step : watched.calibrations.all()) {
         if (step.running) stages.insert(step.stage);
