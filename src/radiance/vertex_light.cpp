@@ -1,6 +1,10 @@
 #include "radiance/vertex_light.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
 
 #include "core/error.h"
 #include "core/parallel.h"
@@ -26,12 +30,95 @@ bool same_map(const Environment& a, const Environment& b) {
            a.radiance_working.values == b.radiance_working.values;
 }
 
+constexpr int kGuessWidth = 32, kGuessHeight = 16;
+
+/// Means over blocks of a latitude-longitude map.
+ImageF blurred(const ImageF& map) {
+    ImageF small(kGuessWidth, kGuessHeight, 3);
+    for (int y = 0; y < kGuessHeight; ++y) {
+        for (int x = 0; x < kGuessWidth; ++x) {
+            const int left = x * map.width / kGuessWidth, top = y * map.height / kGuessHeight;
+            const int right = std::max(left + 1, (x + 1) * map.width / kGuessWidth);
+            const int bottom = std::max(top + 1, (y + 1) * map.height / kGuessHeight);
+            glm::dvec3 sum(0.0);
+            for (int v = top; v < bottom; ++v) {
+                for (int u = left; u < right; ++u) {
+                    for (int c = 0; c < 3; ++c) {
+                        sum[c] += static_cast<double>(map.at(u, v, map.channels == 1 ? 0 : c));
+                    }
+                }
+            }
+            sum /= static_cast<double>((right - left) * (bottom - top));
+            for (int c = 0; c < 3; ++c) small.at(x, y, c) = static_cast<float>(sum[c]);
+        }
+    }
+    return small;
+}
+
+/// What a white diffuser facing each direction sends, by the sum over a small map's texels.
+ImageF diffuse_of(const ImageF& map, const Environment& frame) {
+    std::vector<glm::dvec3> directions;
+    std::vector<double> solid_angles;
+    for (int y = 0; y < map.height; ++y) {
+        for (int x = 0; x < map.width; ++x) {
+            const glm::dvec2 uv((x + 0.5) / map.width, (y + 0.5) / map.height);
+            directions.push_back(direction_from_uv(frame, uv));
+            solid_angles.push_back(std::sin(std::numbers::pi * uv.y) * 2.0 * std::numbers::pi *
+                                   std::numbers::pi / static_cast<double>(map.pixel_count()));
+        }
+    }
+    ImageF diffuse(map.width, map.height, 3);
+    for (std::size_t to = 0; to < directions.size(); ++to) {
+        glm::dvec3 sum(0.0);
+        for (std::size_t from = 0; from < directions.size(); ++from) {
+            const double cosine = glm::dot(directions[to], directions[from]);
+            if (cosine <= 0.0) continue;
+            const float* rgb = map.values.data() + 3 * from;
+            sum += cosine * solid_angles[from] * glm::dvec3(rgb[0], rgb[1], rgb[2]);
+        }
+        sum /= std::numbers::pi;
+        for (int c = 0; c < 3; ++c) {
+            diffuse.values[3 * to + static_cast<std::size_t>(c)] = static_cast<float>(sum[c]);
+        }
+    }
+    return diffuse;
+}
+
 }  // namespace
+
+std::shared_ptr<const VertexLight> guessed_light(const Product& product,
+                                                 const std::vector<DirectionalLight>& lights,
+                                                 const Environment* environment) {
+    const std::size_t vertices = product.mesh.positions_mm.size();
+    auto guess = std::make_shared<VertexLight>();
+    guess->guessed = true;
+    guess->lights = lights;
+    guess->visibility.assign(lights.size() * vertices, 1.0f);
+    guess->sky.assign(vertices, glm::vec4(0.0f));
+    if (!environment || environment->radiance_working.empty()) return guess;
+    auto small = std::make_shared<Environment>();
+    small->rotation_rad = environment->rotation_rad;
+    small->scale = environment->scale;
+    small->radiance_working = blurred(environment->radiance_working);
+    auto filtered = std::make_shared<FilteredEnvironment>();
+    filtered->mirrored.assign(kLayerAlphas.size(), small->radiance_working);
+    Environment unturned;  // layers are in the map's own frame
+    filtered->diffuse = diffuse_of(small->radiance_working, unturned);
+    const auto scale = static_cast<float>(environment->scale);
+    for (std::size_t i = 0; i < vertices; ++i) {
+        const glm::dvec2 uv = uv_from_direction(*small, glm::dvec3(product.mesh.normals[i]));
+        guess->sky[i] = glm::vec4(scale * sample_sphere(filtered->diffuse, uv), 1.0f);
+    }
+    guess->filtered = std::move(filtered);
+    guess->environment = std::move(small);
+    return guess;
+}
 
 bool is_solved_for(const VertexLight& light,
                    const std::vector<DirectionalLight>& lights,
                    const Environment* environment) {
-    return light.environment.get() == environment && same_discs(light.lights, lights);
+    return !light.guessed && light.environment.get() == environment &&
+           same_discs(light.lights, lights);
 }
 
 struct VertexLightSolver::State {

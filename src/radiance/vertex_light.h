@@ -20,12 +20,19 @@ struct VertexLight {
     std::vector<float> visibility;  ///< lights.size() a vertex: share of the disc that it sees
     std::vector<glm::vec4> sky;     ///< one a vertex: light on a white diffuser; openness
     std::shared_ptr<const FilteredEnvironment> filtered;  ///< mirrored and diffuse; null: none
+    bool guessed = false;                                 ///< of guessed_light()
 };
 
 /// Whether it was solved for these: brightness and colour of a light play no part.
 bool is_solved_for(const VertexLight& light,
                    const std::vector<DirectionalLight>& lights,
                    const Environment* environment);
+
+/// What a first picture can be drawn in at once, without a ray: nothing hides any light, and the
+/// environment is mirrored blurred. is_solved_for() nothing.
+std::shared_ptr<const VertexLight> guessed_light(const Product& product,
+                                                 const std::vector<DirectionalLight>& lights,
+                                                 const Environment* environment);
 
 /// Keeps what the next light may use again: openness, the filtered map (a change of rotation or
 /// scale needs no filtering), shadows of lights that stayed. For one thread at a time.

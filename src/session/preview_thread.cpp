@@ -87,7 +87,7 @@ struct PreviewThread::Implementation {
     explicit Implementation(GlContext& its_context) : context(its_context) {}
     void run();
     void loop(Drawing& drawing);
-    bool draw(Drawing& drawing, int supersampling);
+    void draw(Drawing& drawing, int supersampling);
     void draw_or_tell(Drawing& drawing, int supersampling);
     void ask_for_light(const Drawing& drawing);
     bool take_light(Drawing& drawing);
@@ -143,8 +143,8 @@ void PreviewThread::Implementation::ask_for_light(const Drawing& drawing) {
     lights->solve(scene.product, scene.lights, scene.environment);
 }
 
-/// False while there is no light at all to draw in.
-bool PreviewThread::Implementation::draw(Drawing& drawing, int supersampling) {
+/// The first time in a guess of the light, so that there is a picture at once.
+void PreviewThread::Implementation::draw(Drawing& drawing, int supersampling) {
     const auto start = Clock::now();
     check(*shown);
     if (drawing.product != shown->scene.product) {
@@ -156,8 +156,14 @@ bool PreviewThread::Implementation::draw(Drawing& drawing, int supersampling) {
         drawing.product = shown->scene.product;
         take_light(drawing);
     }
-    ask_for_light(drawing);
-    if (!drawing.light) return false;
+    const bool guess = !drawing.light;
+    if (guess) {
+        drawing.light =
+            guessed_light(*drawing.product, shown->scene.lights, shown->scene.environment.get());
+        drawing.preview->take(drawing.light);
+    } else {
+        ask_for_light(drawing);
+    }
     drawing.preview->set_supersampling(supersampling);
     drawing.preview->set_glint_view(shown->projector);
     const View& view = shown->view;
@@ -200,16 +206,21 @@ bool PreviewThread::Implementation::draw(Drawing& drawing, int supersampling) {
     picture->owner = slot;
     last_good = picture;
     on_finished(std::move(picture));
-    return true;
+    // Rays are traced when there is a picture to look at.
+    if (guess) ask_for_light(drawing);
 }
 
 void PreviewThread::Implementation::draw_or_tell(Drawing& drawing, int supersampling) {
+    // The first picture is what one waits for when the program opens; it takes turns with nothing.
+    const bool first = !last_good;
     drawn_supersampling = kAtRest;  // unless it turns out that there is more to do
     try {
-        if (draw(drawing, supersampling)) drawn_supersampling = supersampling;
+        draw(drawing, supersampling);
+        drawn_supersampling = supersampling;
     } catch (const std::exception& error) {
         tell(error.what());
     }
+    if (first) lower_priority_of_this_thread(Urgency::watched);
 }
 
 /// False when its light is still being solved.
@@ -261,7 +272,7 @@ void PreviewThread::Implementation::loop(Drawing& drawing) {
             newest.reset();
             const bool moving = asked_at - asked_before < kPause;
             lock.unlock();
-            draw_or_tell(drawing, moving ? kWhileMoving : kAtRest);
+            draw_or_tell(drawing, moving || !drawing.light ? kWhileMoving : kAtRest);
         } else if (light_changed) {
             light_changed = false;
             swatches_wait = false;
@@ -286,7 +297,6 @@ void PreviewThread::Implementation::loop(Drawing& drawing) {
 }
 
 void PreviewThread::Implementation::run() {
-    lower_priority_of_this_thread(Urgency::watched);
     try {
         context.make_current();
         {

@@ -110,6 +110,37 @@ TEST(PreviewThread, ShowsWhatRasterPreviewDraws) {
     EXPECT_GT(covered, 3000);
 }
 
+TEST(PreviewThread, ShowsTheProductBeforeItsLightIsSolved) {
+    SharedContexts contexts;
+    FinishedPictures finished;
+    PreviewThread thread(contexts.theirs, finished.callback());
+    PreviewDescription description = description_of(3);
+    auto environment = std::make_shared<Environment>();
+    environment->radiance_working = ImageF(64, 32, 3, 0.5f);
+    description.scene.environment = environment;
+    thread.show(description);
+    const auto last = final_picture(finished, 3);
+    ASSERT_TRUE(last);
+    const PicturePointer first = finished.all().front();
+    EXPECT_EQ(first->problem, "");
+    EXPECT_TRUE(first->unfinished) << "nothing was traced yet";
+    // The same balls, about as bright: only shadows and what is mirrored are missing.
+    const Image8 guess = read(*first), solved = read(*last);
+    const auto mean_of = [](const Image8& picture) {
+        double sum = 0.0, covered = 0.0;
+        for (std::size_t i = 0; i < picture.pixel_count(); ++i) {
+            if (picture.values[4 * i + 3] < 255) continue;
+            sum += picture.values[4 * i + 1];
+            ++covered;
+        }
+        return std::pair(sum / covered, covered);
+    };
+    const auto [guessed, guessed_pixels] = mean_of(guess);
+    const auto [wanted, wanted_pixels] = mean_of(solved);
+    EXPECT_NEAR(guessed_pixels / wanted_pixels, 1.0, 0.05);
+    EXPECT_NEAR(guessed / wanted, 1.0, 0.15);
+}
+
 TEST(PreviewThread, DrawsTheNewestOfMany) {
     SharedContexts contexts;
     FinishedPictures finished;
