@@ -63,7 +63,8 @@ ProductFile parse_product_file(const std::string& text, const std::filesystem::p
     const JsonReader root(file, json);
     ProductFile product;
     root.require_format_version(1);
-    root.allow_only({"format_version", "name", "mesh", "unit", "product_scale", "pose", "parts"});
+    root.allow_only(
+        {"format_version", "name", "mesh", "unit", "product_scale", "pose", "parts", "front"});
     product.name = root.has("name") ? root["name"].text() : file.stem().string();
     if (root.has("product_scale")) {
         product.product_scale = root["product_scale"].number_between(1e-3, 1e6);
@@ -74,6 +75,12 @@ ProductFile parse_product_file(const std::string& text, const std::filesystem::p
     if (root.has("unit")) {
         product.unit = parse_length_unit(root["unit"].text());
         if (!product.unit) root["unit"].fail(root["unit"].found(), "mm, cm, m or in");
+    }
+    if (root.has("front")) {
+        const std::string front = root["front"].text();
+        if (front != "+x" && front != "-x" && front != "+z" && front != "-z") {
+            root["front"].fail(root["front"].found(), "+x, -x, +z or -z");
+        }
     }
     if (root.has("pose")) {
         root["pose"].allow_only({"rotation", "translation_mm"});

@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "core/error.h"
+#include "core/json.h"
 #include "core/paths.h"
 
 namespace livery {
@@ -104,6 +105,25 @@ std::vector<std::string> part_names(const std::string& product_name_or_file) {
         entry = known.emplace(product_name_or_file, part_names(product->mesh)).first;
     }
     return entry->second;
+}
+
+std::string front_of_product(const std::string& name_or_file) {
+    static std::mutex mutex;
+    static std::map<std::string, std::string> known;
+    const std::lock_guard lock(mutex);
+    const auto found = known.find(name_or_file);
+    if (found != known.end()) return found->second;
+    const std::string stem = file_stem_of(name_or_file);
+    const std::filesystem::path file = bench_of_shipped_product(stem)
+                                           ? shipped_path("assets/" + stem + ".json")
+                                           : std::filesystem::path(name_or_file);
+    std::string front;
+    if (file.extension() == ".json") {
+        const Json json = read_json_file(file);
+        if (json.is_object() && json.contains("front"))
+            front = JsonReader(file, json)["front"].text();
+    }
+    return known.emplace(name_or_file, front).first->second;
 }
 
 }  // namespace livery

@@ -27,6 +27,10 @@ std::vector<std::string> part_names(const Mesh& mesh);
 /// Names of a product's parts; the product is read once a run. Throws FileError.
 std::vector<std::string> part_names(const std::string& product_name_or_file);
 
+/// Where the front of a product points as it stands, "+x", "-x", "+z" or "-z", as its product
+/// file says; empty where none does. Read once a run. Throws FileError.
+std::string front_of_product(const std::string& name_or_file);
+
 /// A file, or the name of a shipped look. Throws FileError with the names there are.
 Look find_look(const std::string& name_or_file);
 

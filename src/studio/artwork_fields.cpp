@@ -12,6 +12,8 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "core/error.h"
+#include "session/library.h"
 #include "studio/artwork_edit.h"
 #include "studio/artwork_values.h"
 #include "studio/paint_choice.h"
@@ -288,25 +290,27 @@ void draw_measures(Rows& rows, Artwork& edited) {
     }
 }
 
+/// A product file that cannot be read any more was told when the session opened.
+std::string front_of(const Studio& studio) {
+    try {
+        return front_of_product(studio.session.document().product);
+    } catch (const FileError&) {
+        return "";
+    }
+}
+
 void draw_sides(Rows& rows) {
     const Artwork& before = rows.before();
     const auto now = side_of(before.place);
-    for (std::size_t i = 0; i < kSides.size(); ++i) {
-        static constexpr std::array labels{"Left", "Right", "Front", "Back", "Above"};
-        static constexpr std::array meanings{"From the left (-x).",
-                                             "From the right (+x).",
-                                             "From the front (+z).",
-                                             "From the back (-z).",
-                                             "From above (+y)."};
-        if (i > 0) place_in_row(button_width(labels[i]));
+    const auto sides = named_sides(front_of(rows.studio()));
+    for (const NamedSide& side : sides) {
+        if (&side != &sides.front()) place_in_row(button_width(side.label));
         Artwork other = before;
-        other.place = from_side(before.place, kSides[i]);
-        const bool picked = chip(labels[i], now == kSides[i]);
-        const bool same = now == kSides[i];
-        rows.offer(same ? before : other,
-                   picked && !same,
-                   std::string("side:") + kSideNames[i],
-                   meanings[i]);
+        other.place = from_side(before.place, side.side);
+        const bool same = now == side.side;
+        const bool picked = chip(side.label, same);
+        rows.offer(
+            same ? before : other, picked && !same, std::string("side:") + side.name, side.meaning);
     }
 }
 

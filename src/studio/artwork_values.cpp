@@ -189,6 +189,21 @@ std::optional<Side> side_of(const ArtworkPlace& place) {
     return std::nullopt;
 }
 
+std::array<NamedSide, kSides.size()> named_sides(const std::string& front) {
+    // Of front, back, its own left and its own right, in this order.
+    std::array<Side, 4> there{Side::front, Side::back, Side::left, Side::right};
+    if (front == "+z") there = {Side::front, Side::back, Side::right, Side::left};
+    if (front == "-z") there = {Side::back, Side::front, Side::left, Side::right};
+    if (front == "+x") there = {Side::right, Side::left, Side::back, Side::front};
+    if (front == "-x") there = {Side::left, Side::right, Side::front, Side::back};
+    const bool own = !front.empty();
+    return {{{there[2], "Left", "left", own ? "Onto the product's own left." : "From -x."},
+             {there[3], "Right", "right", own ? "Onto the product's own right." : "From +x."},
+             {there[0], "Front", "front", own ? "Onto its front." : "From +z."},
+             {there[1], "Back", "back", own ? "Onto its back." : "From -z."},
+             {Side::above, "Above", "above", "From above (+y)."}}};
+}
+
 ArtworkPlace from_side(const ArtworkPlace& place, Side side) {
     ArtworkPlace there = place_on(place.centre_mm, -direction_from(side), place.through);
     there.by_uv = place.by_uv;

@@ -28,15 +28,24 @@ struct ShapeFields {
 };
 ShapeFields fields_of(ArtworkShape shape);
 
-/// Where an artwork comes from, as the light panel counts: the front is +z, the right +x.
+/// Where an artwork comes from, as the light panel counts: for somebody at +z, who sees the front,
+/// the right is +x.
 enum class Side { left, right, front, back, above };
 inline constexpr std::array kSides{Side::left, Side::right, Side::front, Side::back, Side::above};
-inline constexpr std::array kSideNames{"left", "right", "front", "back", "above"};
 glm::dvec3 direction_from(Side side);
 /// None when it comes from between them.
 std::optional<Side> side_of(const ArtworkPlace& place);
 /// From another side, at the same centre and as much turned.
 ArtworkPlace from_side(const ArtworkPlace& place, Side side);
+
+/// A side as people call it.
+struct NamedSide {
+    Side side = Side::front;
+    const char *label = "", *name = "", *meaning = "";
+};
+/// Left, right, front, back and above of a product whose front points there ("+x", "-x", "+z",
+/// "-z"): its own left, as one has it who sits in a car. Without a front: as seen from +z.
+std::array<NamedSide, kSides.size()> named_sides(const std::string& front);
 
 /// Of the way back along the projection: where one stands who sees the artwork as it is.
 Angles angles_of(const ArtworkPlace& place);

@@ -8,6 +8,8 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "session/library.h"
+
 namespace livery {
 namespace {
 
@@ -17,6 +19,30 @@ const glm::dvec3 kEye{281.0, 425.0, 696.0};
 
 void expect_same(const glm::dvec3& a, const glm::dvec3& b) {
     EXPECT_NEAR(glm::distance(a, b), 0.0, 1e-9) << a.x << " " << a.y << " " << a.z;
+}
+
+TEST(NamedSides, AreTheProductsOwn) {
+    const auto side = [](const std::string& front, const std::string& name) {
+        for (const NamedSide& one : named_sides(front)) {
+            if (one.name == name) return -direction_from(one.side);
+        }
+        return glm::dvec3(0.0);
+    };
+    // Left is up x front, as one who sits in a car has it.
+    const glm::dvec3 up(0.0, 1.0, 0.0);
+    const std::vector<std::pair<std::string, glm::dvec3>> fronts{{"+x", {1.0, 0.0, 0.0}},
+                                                                 {"-x", {-1.0, 0.0, 0.0}},
+                                                                 {"+z", {0.0, 0.0, 1.0}},
+                                                                 {"-z", {0.0, 0.0, -1.0}}};
+    for (const auto& [name, front] : fronts) {
+        EXPECT_EQ(side(name, "front"), front) << name;
+        EXPECT_EQ(side(name, "back"), -front) << name;
+        EXPECT_EQ(side(name, "left"), glm::cross(up, front)) << name;
+        EXPECT_EQ(side(name, "right"), -glm::cross(up, front)) << name;
+    }
+    EXPECT_EQ(side("", "left"), glm::dvec3(-1.0, 0.0, 0.0));
+    EXPECT_EQ(front_of_product("car"), "+x");
+    EXPECT_EQ(front_of_product("sphere"), "");
 }
 
 TEST(ArtworkWords, NameEveryShapeAndUseOnce) {
