@@ -62,7 +62,7 @@ void add_look(Shell& shell) {
     Look look = find_look(shell.studio.session.document(), shell.studio.shown_look)->look;
     look.name = "new look";
     look.parts.clear();
-    commit(shell.studio, AddLook{look, static_cast<int>(shell.studio.shown_place) + 1});
+    commit(shell.studio, AddLook{look, -1});
 }
 
 void use_scale(Shell& shell, double scale) {
@@ -121,10 +121,8 @@ void add_file_actions(std::vector<Action>& list) {
                           {ctrl_shift(GLFW_KEY_S)},
                           ask_where_to_save_session));
     list.back().starts_group = true;
-    list.push_back(
-        action("save-picture", "File", "Save picture…", {ctrl(GLFW_KEY_S)}, [](Shell& s) {
-            open_save_picture(s);
-        }));
+    list.push_back(action(
+        "save-picture", "File", "Save picture…", {ctrl(GLFW_KEY_S)}, ask_where_to_save_picture));
     list.back().starts_group = true;
     list.push_back(
         action("ballot", "File", "Ballot…", {}, [](Shell& s) { s.ballots_open = true; }));
@@ -233,6 +231,20 @@ void add_view_actions(std::vector<Action>& list) {
     view("view-eye", "From the audience's eye", GLFW_KEY_F6, StageView::eye);
     view("view-projector", "Projector picture", GLFW_KEY_F7, StageView::projector);
     view("view-photograph", "Photograph of the mock-up", GLFW_KEY_F8, StageView::photograph);
+    const auto turn_tabs = [](int step) {
+        return [step](Shell& s) { s.tab_to_open = (s.open_tab + step + kTabs) % kTabs; };
+    };
+    list.push_back(action("next-tab",
+                          "View",
+                          "Next tab",
+                          {ctrl(GLFW_KEY_TAB), ctrl(GLFW_KEY_PAGE_DOWN)},
+                          turn_tabs(1)));
+    list.back().starts_group = true;
+    list.push_back(action("previous-tab",
+                          "View",
+                          "Previous tab",
+                          {ctrl_shift(GLFW_KEY_TAB), ctrl(GLFW_KEY_PAGE_UP)},
+                          turn_tabs(-1)));
     list.push_back(action("larger",
                           "View",
                           "Larger",
@@ -298,6 +310,7 @@ std::string name_of(int code) {
     static const std::pair<int, const char*> names[] = {{GLFW_KEY_ESCAPE, "Esc"},
                                                         {GLFW_KEY_SPACE, "Space"},
                                                         {GLFW_KEY_DELETE, "Del"},
+                                                        {GLFW_KEY_TAB, "Tab"},
                                                         {GLFW_KEY_PAGE_UP, "PgUp"},
                                                         {GLFW_KEY_PAGE_DOWN, "PgDn"},
                                                         {GLFW_KEY_LEFT, "←"},
@@ -356,7 +369,8 @@ const Action* action_for(const KeyChord& chord, const KeyboardOwner& owner) {
         // A text field keeps what it has a meaning for; black and freeze go before everything.
         const bool is_function_key = chord.key >= GLFW_KEY_F1 && chord.key <= GLFW_KEY_F12;
         const bool always = action.in_dialogs && chord.ctrl;
-        if (owner.text_field && !always && !is_function_key) return nullptr;
+        const bool turns_tabs = chord.ctrl && chord.key == GLFW_KEY_TAB;
+        if (owner.text_field && !always && !is_function_key && !turns_tabs) return nullptr;
         return &action;
     }
     return nullptr;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <csignal>
 #include <future>
@@ -22,9 +23,10 @@
 #include "studio/imgui_window.h"
 #include "studio/projector_control.h"
 #include "studio/quality_costs.h"
-#include "studio/save_picture.h"
+#include "studio/running_window.h"
 #include "studio/shell.h"
 #include "studio/shell_state.h"
+#include "studio/tab_order.h"
 #include "studio/theme.h"
 #include "studio/ui_map.h"
 #include "studio/window_icon.h"
@@ -43,6 +45,9 @@ constexpr double kLongestOpening_s = 1.2;
 // What waits for the opening's end loads libraries, which holds up every thread that draws.
 constexpr double kOnItsWayToTheScreen_s = 0.15;
 constexpr double kGiveWay_s = 0.004;
+
+// Not Caps Lock and Num Lock.
+constexpr int kRealModifiers = GLFW_MOD_CONTROL | GLFW_MOD_SHIFT | GLFW_MOD_ALT | GLFW_MOD_SUPER;
 
 bool monitors_have_changed = false;  // Set by GLFW's callback, which carries no pointer.
 
@@ -64,8 +69,12 @@ std::vector<std::array<int, 4>> places_of_monitors() {
 
 double now_s() { return seconds_of(std::chrono::steady_clock::now()); }
 
+std::filesystem::path session_file(const DesktopOptions& options) {
+    return options.session.empty() ? default_session_file() : options.session;
+}
+
 Session open_session(const DesktopOptions& options) {
-    const auto file = options.session.empty() ? default_session_file() : options.session;
+    const auto file = session_file(options);
     const std::string product = options.product.empty() ? "car" : options.product;
     try {
         Session session = Session::open(file, product, options.unit);
@@ -202,6 +211,10 @@ bool handle_key(Shell& shell, const InputEvent& event) {
         if (!event.down) shell.studio.showing_b = false;
         return false;
     }
+    if (event.code == GLFW_KEY_TAB && (event.modifiers & ~GLFW_MOD_SHIFT & kRealModifiers) == 0) {
+        if (event.down) shell.tab_step = (event.modifiers & GLFW_MOD_SHIFT) != 0 ? -1 : 1;
+        return true;
+    }
     const KeyChord chord{event.code,
                          (event.modifiers & GLFW_MOD_CONTROL) != 0,
                          (event.modifiers & GLFW_MOD_SHIFT) != 0};
@@ -219,6 +232,8 @@ bool handle_key(Shell& shell, const InputEvent& event) {
     if ((event.modifiers & (GLFW_MOD_ALT | GLFW_MOD_SUPER)) != 0) return false;
     const KeyboardOwner owner = keyboard_owner(shell);
     const Action* action = action_for(chord, owner);
+    // Dear ImGui has a meaning of its own for Tab and would use it for its list of windows.
+    if (!action && chord.key == GLFW_KEY_TAB) return true;
     if (!action) return chord.key == GLFW_KEY_SPACE && !owner.text_field && !owner.dialog;
     // Esc closes an open menu, and that is all it does then.
     ImGuiContext& g = *ImGui::GetCurrentContext();
@@ -230,7 +245,8 @@ bool handle_key(Shell& shell, const InputEvent& event) {
     }
     const bool repeats = action->id == "undo" || action->id == "redo" || action->id == "larger" ||
                          action->id == "smaller" || action->id == "next-look" ||
-                         action->id == "previous-look";
+                         action->id == "previous-look" || action->id == "next-tab" ||
+                         action->id == "previous-tab";
     if (event.repeated && !repeats) return true;
     run_action(*action, shell);
     if (action->id != "give-up") return true;
@@ -253,6 +269,7 @@ std::optional<double> next_change_s(const Shell& shell) {
         consider(shell.studio.now_s + static_cast<double>(kTooltipAfter_s - g.HoveredIdTimer) +
                  0.02);
     }
+    if (shell.save_again_at_s > 0.0) consider(shell.save_again_at_s);
     if (shell.studio.opening) consider(shell.studio.now_s + kOnItsWayToTheScreen_s);
     if (shell.preview_waits_until_s > 0.0) consider(shell.preview_waits_until_s);
     // A blinking text cursor.
@@ -292,6 +309,7 @@ class Desktop {
         if (!options_.trace.empty()) shell_.trace = std::make_shared<Trace>(options_.trace);
         if (!options_.ui_map.empty()) ui_map_.emplace(options_.ui_map);
         shell_.fixed_scale = options_.ui_scale;
+        studio.settings = read_user_settings();
         restore_workspace(shell_);
         studio.monitors = list_monitors();
         const WindowPlace place = first_place(shell_, options_);
@@ -304,12 +322,11 @@ class Desktop {
         glfwSwapInterval(0);
         log_line(LogLevel::info, "drawing with " + window_->renderer());
         imgui_ = std::make_unique<ImGuiWindow>(*window_);
-        glfwSetWindowSizeLimits(window_->native(), 640, 400, GLFW_DONT_CARE, GLFW_DONT_CARE);
         glfwSetMonitorCallback([](GLFWmonitor*, int) { monitors_have_changed = true; });
         studio.product = product_.get();
         shell_.product_bounds = bounds_of(studio.product->mesh);
         studio.picker = std::make_unique<PartPicker>(studio.product);
-        studio.file_dialog = std::make_unique<FileDialog>();
+        studio.file_dialog = std::make_unique<FileDialog>(studio.settings);
         // What is told before the first frame is shown for as long as the rest.
         studio.now_s = now_s();
         open_ballots(shell_);
@@ -320,6 +337,12 @@ class Desktop {
         tell_unsaved(shell_);
         monitors_changed(shell_);
         glfwShowWindow(window_->native());
+        if (const auto file = studio.session.file()) {
+            running_window_.emplace(*file, [this] {
+                asked_for_ = true;
+                wake_main_thread();
+            });
+        }
         frames_to_draw_ = kFramesAfterInput;
     }
 
@@ -361,6 +384,8 @@ class Desktop {
         studio.ui_scale = static_cast<float>(
             shell_.fixed_scale.value_or(screen_scale(native, studio.monitors) * shell_.user_scale));
         imgui_->use_scale(studio.ui_scale);
+        limit_size();
+        if (asked_for_.exchange(false)) come_to_the_front();
         const auto frame_before = studio.frame;  // Until this frame is drawn: textures are read.
         const auto preview_before = studio.preview;
         take_results(shell_);
@@ -368,6 +393,7 @@ class Desktop {
             studio.opening = false;
             give_icon(studio, native);
         }
+        save_again_now_and_then(shell_);
         if (studio.frame) remember_costs(studio.panels.plan.measured, *studio.frame);
         if (shell_.monitor_numbers && studio.now_s >= shell_.monitor_numbers_until_s) {
             shell_.monitor_numbers.reset();
@@ -384,6 +410,7 @@ class Desktop {
         }
         draw_everything();
         end_trials(studio);
+        if (const int step = std::exchange(shell_.tab_step, 0)) move_focus(step);
         imgui_->end_frame();
         if (studio.session.revision() != revision_before) {
             shell_.trace->write("commit", studio.session.revision());
@@ -394,8 +421,8 @@ class Desktop {
         // Input that waits is taken first, so that it does not wait for pictures of what was
         // before.
         // Where one processor draws everything, the mock-up has it first.
-        const bool mock_up_first =
-            shell_.draws_in_software && (studio.opening || is_frame_under_way(shell_));
+        const bool mock_up_first = shell_.draws_in_software && !preview_goes_first(shell_) &&
+                                   (studio.opening || is_frame_under_way(shell_));
         const bool patient = last_drawn_s_ == 0.0 ? studio.opening && !studio.frame
                                                   : start_s - last_drawn_s_ < kLongestFrame_s;
         gave_way_ = (imgui_->has_input() || mock_up_first) && patient;
@@ -409,9 +436,34 @@ class Desktop {
         write_ui_map();
     }
 
+    /// Nothing overlaps in the least size; a screen that is smaller than that sets its own.
+    void limit_size() {
+        GLFWwindow* native = window_->native();
+        const glm::ivec2 position = place_of(native).position;
+        glm::ivec2 least(glm::vec2(kLeastSize_px) * shell_.studio.ui_scale);
+        for (const Monitor& m : shell_.studio.monitors) {
+            const bool here = position.x >= m.x && position.y >= m.y &&
+                              position.x < m.x + m.width && position.y < m.y + m.height;
+            if (here) least = glm::min(least, glm::ivec2(m.width, m.height));
+        }
+        if (std::exchange(least_size_px_, least) == least) return;
+        glfwSetWindowSizeLimits(native, least.x, least.y, GLFW_DONT_CARE, GLFW_DONT_CARE);
+    }
+
+    /// The program was started again on this session.
+    void come_to_the_front() {
+        GLFWwindow* native = window_->native();
+        if (glfwGetWindowAttrib(native, GLFW_ICONIFIED) != 0) glfwRestoreWindow(native);
+        glfwFocusWindow(native);
+        // For a window manager that does not let windows come to the front by themselves.
+        if (glfwGetWindowAttrib(native, GLFW_FOCUSED) == 0) glfwRequestWindowAttention(native);
+        log_line(LogLevel::info, "the window was asked for by another start");
+    }
+
     /// The mock-up's first picture is on the projector, or takes too long.
     bool has_opened() const {
         const Studio& studio = shell_.studio;
+        if (preview_goes_first(shell_)) return false;
         const double limit_s = shell_.opened_s + kLongestOpening_s;
         if (!studio.frame) return studio.now_s >= limit_s;
         const double shown_s = seconds_of(studio.frame->done_at) + kOnItsWayToTheScreen_s;
@@ -422,7 +474,6 @@ class Desktop {
         draw_layout(shell_);
         draw_notices(shell_);
         draw_help(shell_);
-        draw_save_picture(shell_);
         if (shell_.ballots_open) draw_ballot_dialog(shell_.studio, shell_.ballots_open);
         shell_.studio.file_dialog->draw();
     }
@@ -450,6 +501,7 @@ class Desktop {
 
     void finish() {
         log_line(LogLevel::info, "closing");
+        running_window_.reset();
         remember_workspace(shell_, text_of(place_of(window_->native())), true);
         glfwSetMonitorCallback(nullptr);
         glfwHideWindow(window_->native());
@@ -474,6 +526,9 @@ class Desktop {
         ItemPlace window;
     };
     Mapped mapped_;  ///< as last written
+    glm::ivec2 least_size_px_{0};
+    std::atomic<bool> asked_for_{false};  ///< by another start
+    std::optional<RunningWindow> running_window_;
     int frames_drawn_ = 0;
     int frames_to_draw_ = 0;
     std::vector<std::array<int, 4>> monitor_places_;
@@ -483,6 +538,17 @@ class Desktop {
 
 }  // namespace
 
+/// The session, or nothing where another start has it open and has shown its window.
+std::optional<Session> session_or_running_window(const DesktopOptions& options) {
+    try {
+        return open_session(options);
+    } catch (const Refused&) {
+        if (!ask_running_window(session_file(options))) throw;
+        log_line(LogLevel::info, "the session is open already; its window was asked for");
+        return std::nullopt;
+    }
+}
+
 int run_desktop(const DesktopOptions& options) {
     keep_large_blocks_apart();
     // Everything is saved as it happens, so Ctrl-C in the terminal may end the program at once.
@@ -491,7 +557,9 @@ int run_desktop(const DesktopOptions& options) {
     const WindowSystem window_system;
     open_log(user_folder() / "log" / "livery.log");
     log_line(LogLevel::info, "Livery " LIVERY_VERSION " opens");
-    return Desktop(options, open_session(options)).run();
+    auto session = session_or_running_window(options);
+    if (!session) return 0;
+    return Desktop(options, std::move(*session)).run();
 }
 
 }  // namespace livery

@@ -1,4 +1,4 @@
-// Asks for a file or a folder: a path to type and the folder's content to pick from.
+// Asks for a file or a folder: where one is, what lies there, and a name to type.
 #pragma once
 
 #include <filesystem>
@@ -7,23 +7,34 @@
 #include <string>
 #include <vector>
 
+#include "studio/file_places.h"
+#include "studio/user_settings.h"
+
 namespace livery {
 
 struct FileQuestion {
     enum class Kind { open, save, folder };
     Kind kind = Kind::open;
-    std::string title;                                       ///< "Import look"
-    std::string action;                                      ///< what the button says: "Import"
-    std::vector<std::string> suffixes;                       ///< shown in the list; empty: all
-    bool only_new = false;                                   ///< a file that is there is refused
-    std::filesystem::path suggested;                         ///< folder or file to start with
+    std::string title;                  ///< "Import look"
+    std::string action;                 ///< what the button says: "Import"
+    std::vector<std::string> suffixes;  ///< shown in the list; empty: all
+    bool only_new = false;              ///< a file that is there is refused
+    /// A name, or a folder, or both, to start with.
+    std::filesystem::path suggested;
     std::function<void(const std::filesystem::path&)> then;  ///< overwriting is already agreed to
+    /// Draws choices above the list and changes suffixes and the suggested name by them; a name
+    /// that was typed stays, with the new suffix.
+    std::function<void(FileQuestion&)> choices = {};
+    /// Why there is nothing to save yet, asked when the button is pressed; empty: there is.
+    std::function<std::string()> not_ready = {};
 };
 
-/// One at a time; a new question replaces the one before.
+/// One at a time; a new question replaces the one before. Starts where a question of this title was
+/// answered last, else in the suggested folder, else where any was, else at home.
 class FileDialog {
   public:
-    FileDialog();
+    /// `settings` remembers the folders and must outlive this.
+    explicit FileDialog(UserSettings& settings);
     ~FileDialog();
 
     void ask(FileQuestion question);
@@ -34,17 +45,5 @@ class FileDialog {
     struct State;
     std::unique_ptr<State> state_;
 };
-
-/// What a folder offers to a question, folders first, by name; hidden ones are left out.
-struct FolderEntry {
-    std::string name;
-    bool is_folder = false;
-};
-std::vector<FolderEntry> list_folder(const std::filesystem::path& folder,
-                                     const std::vector<std::string>& suffixes,
-                                     bool folders_only);
-
-/// "~/x" -> the home folder's x.
-std::filesystem::path expand_home(const std::string& text);
 
 }  // namespace livery

@@ -74,7 +74,10 @@ void draw_help(Shell& shell) {
             "Hovering over a paint shows it on the mock-up, a click keeps it, Esc takes it back.\n"
             "Artwork: Place it by a click lets it follow the pointer, a click leaves it, Esc takes "
             "it back.\n"
-            "Tab and the arrow keys move between items, Enter presses them.");
+            "Tab and Shift+Tab go from one button, list or field to the next; the arrow keys move "
+            "inside lists and among neighbours.\n"
+            "Enter presses, opens a list, or types into a slider; Esc closes. On the swatches the "
+            "arrow keys try the neighbours, Enter paints.");
         ImGui::End();
     }
     if (shell.about_open) {

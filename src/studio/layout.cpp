@@ -67,12 +67,12 @@ void draw_right_column(Shell& shell) {
         const char* label;
         void (*draw)(Studio&);
     };
-    static constexpr std::array<Tab, 6> tabs = {{{"Paints", draw_library_panel},
-                                                 {"Paint", draw_paint_panel},
-                                                 {"Artwork", draw_artwork_panel},
-                                                 {"Light", draw_lighting_panel},
-                                                 {"Calibrate", draw_calibration_panel},
-                                                 {"Frame", draw_plan_panel}}};
+    static constexpr std::array<Tab, kTabs> tabs = {{{"Paints", draw_library_panel},
+                                                     {"Paint", draw_paint_panel},
+                                                     {"Artwork", draw_artwork_panel},
+                                                     {"Light", draw_lighting_panel},
+                                                     {"Calibrate", draw_calibration_panel},
+                                                     {"Frame", draw_plan_panel}}};
     take_swatches(shell.studio);
     if (!ImGui::BeginTabBar("tabs", ImGuiTabBarFlags_FittingPolicyResizeDown)) return;
     for (std::size_t i = 0; i < tabs.size(); ++i) {
@@ -81,6 +81,7 @@ void draw_right_column(Shell& shell) {
             tabs[i].label, nullptr, to_open ? ImGuiTabItemFlags_SetSelected : 0);
         name_last_item(std::string("tab:") + tabs[i].label);
         if (!open) continue;
+        shell.open_tab = static_cast<int>(i);
         ImGui::BeginChild(tabs[i].label);
         tabs[i].draw(shell.studio);
         ImGui::EndChild();

@@ -17,6 +17,7 @@
 #include "studio/paint_parameters.h"
 #include "studio/studio.h"
 #include "studio/swatch_textures.h"
+#include "studio/tab_order.h"
 #include "studio/theme.h"
 #include "studio/ui_map.h"
 #include "studio/users_library.h"
@@ -29,14 +30,18 @@ namespace {
 /// One swatch of the grid.
 struct Cell {
     const Material* paint = nullptr;
+    std::string distance;  ///< from the colour that was searched for; empty: none was
     ImVec2 centre{0.0f, 0.0f};
 };
 
 struct Section {
     const char* title;
     const std::vector<Material>* paints;
-    std::vector<std::size_t> found;
+    std::vector<NearPaint> found;  ///< without a colour all are 0 away from it
 };
+
+/// Farther away than this nobody takes a paint for the colour that was asked for.
+constexpr double kNear_de00 = 5.0;
 
 /// What a click paints.
 struct Target {
@@ -114,7 +119,9 @@ void draw_search(LibraryPanelState& state) {
     name_last_item("paint-search");
     // Not over what is found while one types.
     if (!ImGui::IsItemActive())
-        tooltip("A colour finds the nearest paints: #b01020, lab:45,30,-20 or xyz:20.1,15.2,5.");
+        tooltip(
+            "A colour finds the nearest paints: #b01020, rgb(176, 16, 32), a name as in CSS "
+            "(tomato), lab:45,30,-20 or xyz:20.1,15.2,5.");
     // Enter lets the text go in the frame in which it is pressed.
     state.searching = ImGui::IsItemActive() || ImGui::IsItemDeactivated();
     if (state.search.empty()) return;
@@ -122,6 +129,69 @@ void draw_search(LibraryPanelState& state) {
     if (ImGui::Button("×##clear", {clear_width, 0.0f})) state.search.clear();
     name_last_item("paint-search-clear");
     tooltip("Shows all paints again.");
+}
+
+/// By name, else by colour; the colour that was searched for.
+std::optional<glm::dvec3> find_in(const LibraryPanelState& state, std::vector<Section>& sections) {
+    const auto colour = colour_in(state.search);
+    bool named = false;
+    if (!colour || !is_marked_colour(state.search)) {
+        for (Section& section : sections) {
+            for (const std::size_t k : search_paints(*section.paints, state.search, state.family)) {
+                section.found.push_back({k, 0.0});
+                named = true;
+            }
+        }
+    }
+    if (!colour || named) return std::nullopt;
+    for (Section& section : sections) {
+        section.found = find_near_paints(*section.paints, *colour, state.family);
+    }
+    return colour;
+}
+
+/// What was searched for, beside what was found; or that the text is a colour's name, too.
+void draw_colour(LibraryPanelState& state,
+                 const std::optional<glm::dvec3>& searched,
+                 const std::vector<Section>& sections) {
+    const auto colour = colour_in(state.search);
+    if (!colour) return;
+    const float side = ImGui::GetFrameHeight();
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    ImGui::Dummy({1.6f * side, side});
+    ImGui::GetWindowDrawList()->AddRectFilled(corner,
+                                              {corner.x + 1.6f * side, corner.y + side},
+                                              screen_colour(*colour),
+                                              ImGui::GetStyle().FrameRounding);
+    name_last_item("searched-colour");
+    ImGui::SameLine();
+    ImGui::AlignTextToFramePadding();
+    if (!searched) {
+        if (ImGui::SmallButton("Nearest to this colour")) {
+            state.search = fmt::format("lab:{:.2f},{:.2f},{:.2f}", colour->x, colour->y, colour->z);
+        }
+        name_last_item("paint-by-colour");
+        tooltip("The text is also a colour's name.");
+        return;
+    }
+    double nearest = DBL_MAX;
+    for (const Section& section : sections) {
+        if (!section.found.empty()) nearest = std::min(nearest, section.found.front().de00);
+    }
+    ImGui::PushTextWrapPos(0.0f);
+    if (nearest > kNear_de00) {
+        ImGui::TextColored(colours::warning,
+                           nearest < DBL_MAX ? "No paint is near: the nearest is %.1f away."
+                                             : "There is no paint to compare.",
+                           nearest);
+        name_last_item("nothing-near");
+    } else {
+        ImGui::TextUnformatted("Wanted; below, how far each is.");
+    }
+    ImGui::PopTextWrapPos();
+    tooltip(
+        "CIEDE2000 between this colour and the paint's at 45 degrees: at 1 one sees the difference "
+        "side by side, at 5 it is another colour.");
 }
 
 void draw_families(LibraryPanelState& state, const std::vector<Section>& sections) {
@@ -190,8 +260,13 @@ void paint_tooltip(const Material& paint) {
     ImGui::EndTooltip();
 }
 
-void draw_cell_picture(
-    Studio& studio, const Material& paint, const ImVec2& corner, float width, bool worn, bool lit) {
+void draw_cell_picture(Studio& studio,
+                       const Material& paint,
+                       const std::string& distance,
+                       const ImVec2& corner,
+                       float width,
+                       bool worn,
+                       bool lit) {
     ImDrawList* draw = ImGui::GetWindowDrawList();
     const float side = std::floor(0.78f * width);
     const float left = std::floor(corner.x + 0.5f * (width - side)), top = corner.y + em(0.3f);
@@ -204,10 +279,15 @@ void draw_cell_picture(
             corner, end, ImGui::GetColorU32(colours::text), rounding, 0, std::max(1.5f, em(0.1f)));
     }
     ImGui::PushFont(small_font());
+    const float below = top + side + em(0.25f);
     centred_lines(fitted_lines(paint.name, width - em(0.3f), 2),
-                  {corner.x, top + side + em(0.25f)},
+                  {corner.x, below},
                   width,
                   worn || lit ? colours::text : colours::dim_text);
+    if (!distance.empty()) {
+        centred_lines(
+            {distance}, {corner.x, below + 2.3f * ImGui::GetFontSize()}, width, colours::text);
+    }
     ImGui::PopFont();
 }
 
@@ -233,9 +313,19 @@ bool draw_cell(Studio& studio, const Target& target, Cell& cell, float width, fl
         studio.untried_item = ImGui::GetItemID();
         studio.untried_item_still_there = true;
     }
+    // Dear ImGui shows no keyboard in a window that reads its own keys.
+    const ImGuiContext& g = *ImGui::GetCurrentContext();
+    if (g.NavId == ImGui::GetItemID() && g.NavDisableMouseHover && ImGui::IsWindowFocused()) {
+        ImGui::GetWindowDrawList()->AddRect(corner,
+                                            {corner.x + width, corner.y + height},
+                                            ImGui::GetColorU32(ImGuiCol_NavHighlight),
+                                            ImGui::GetStyle().FrameRounding,
+                                            0,
+                                            std::max(2.0f, em(0.13f)));
+    }
     if (on_cursor && std::exchange(state.cursor_moved, false)) ImGui::SetScrollHereY();
     if (ImGui::IsItemVisible()) {
-        draw_cell_picture(studio, paint, corner, width, worn, meant);
+        draw_cell_picture(studio, paint, cell.distance, corner, width, worn, meant);
     }
     if (hovered && meant) paint_tooltip(paint);
     return clicked;
@@ -307,15 +397,20 @@ void follow_keys(Studio& studio, const Target& target, const std::vector<Cell>& 
     if (was_pressed(ImGuiKey_Escape)) state.cursor.reset();
 }
 
-void draw_grid(Studio& studio, const Target& target, const std::vector<Section>& sections) {
+void draw_grid(Studio& studio,
+               const Target& target,
+               const std::vector<Section>& sections,
+               bool by_colour) {
     const float gap = em(0.3f), available = ImGui::GetContentRegionAvail().x;
     const auto columns =
         std::max(1, static_cast<int>(std::floor((available + gap) / (em(5.4f) + gap))));
     const float width = std::floor((available - gap * static_cast<float>(columns - 1)) /
                                    static_cast<float>(columns));
-    const float height = std::floor(0.78f * width) + em(2.75f);
+    const float height = std::floor(0.78f * width) + em(by_colour ? 3.85f : 2.75f);
     std::vector<Cell> cells;
     std::optional<std::string> clicked;
+    std::optional<unsigned> current;
+    begin_tab_group();
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {gap, gap});
     for (const Section& section : sections) {
         if (section.found.empty()) continue;
@@ -323,14 +418,21 @@ void draw_grid(Studio& studio, const Target& target, const std::vector<Section>&
         ImGui::PushID(section.title);
         for (std::size_t i = 0; i < section.found.size(); ++i) {
             if (i % static_cast<std::size_t>(columns) != 0) ImGui::SameLine(0.0f, gap);
-            Cell cell{&(*section.paints)[section.found[i]], {}};
+            const NearPaint& found = section.found[i];
+            Cell cell{&(*section.paints)[found.index],
+                      by_colour ? fmt::format("ΔE {:.1f}", found.de00) : "",
+                      {}};
             if (draw_cell(studio, target, cell, width, height)) clicked = cell.paint->name;
+            const bool worn = same_paint_name(cell.paint->name, target.paint);
+            const auto& cursor = studio.panels.library.cursor;
+            if (cursor ? *cursor == cell.paint->name : worn) current = ImGui::GetItemID();
             cells.push_back(cell);
         }
         ImGui::PopID();
         ImGui::Dummy({0.0f, gap});
     }
     ImGui::PopStyleVar();
+    end_tab_group(current);
     follow_keys(studio, target, cells);
     if (clicked) {
         studio.panels.library.cursor = clicked;
@@ -376,13 +478,12 @@ void draw_library_panel(Studio& studio) {
     std::vector<Section> sections{{"This session's own", &own, {}},
                                   {"Saved by you", &state.library.users, {}},
                                   {"Library", &state.library.shipped, {}}};
-    bool found_any = false;
     draw_search(state);
+    const auto searched = find_in(state, sections);
+    const bool found_any = std::any_of(
+        sections.begin(), sections.end(), [](const Section& one) { return !one.found.empty(); });
+    draw_colour(state, searched, sections);
     draw_families(state, sections);
-    for (Section& section : sections) {
-        section.found = find_paints(*section.paints, state.search, state.family);
-        found_any = found_any || !section.found.empty();
-    }
     const Target target = target_of(studio);
     if (target.part.empty()) {
         dim_text("There is no part to paint.");
@@ -400,7 +501,7 @@ void draw_library_panel(Studio& studio) {
     const ImVec2 corner = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
     name_rectangle("swatches", corner.x, corner.y, size.x, size.y);
     if (found_any) {
-        draw_grid(studio, target, sections);
+        draw_grid(studio, target, sections, searched.has_value());
     } else {
         draw_nothing_found(state);
     }

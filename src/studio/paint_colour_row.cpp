@@ -19,8 +19,9 @@ namespace livery {
 namespace {
 
 constexpr const char* kWays =
-    "The colour under light from 45 degrees, seen from straight above: #b01020, "
-    "lab:45,30,-20 or xyz:20.1,15.2,5 (D65, 10 degrees; white has Y = 100).";
+    "The colour under light from 45 degrees, seen from straight above: #b01020, rgb(176, 16, 32), "
+    "a name as in CSS (tomato), lab:45,30,-20 or xyz:20.1,15.2,5 (D65, 10 degrees; white has "
+    "Y = 100).";
 
 /// Worked out once for each paint and colour.
 const Recoloured& recoloured(PaintColourState& state, const Material& paint, glm::dvec3 lab10) {
@@ -61,7 +62,8 @@ void draw_typed(Studio& studio, const Material& paint) {
                    {Notice::Level::warning,
                     fmt::format("\"{}\" is no colour.", state.text),
                     "",
-                    "Type one as #b01020, lab:45,30,-20 or xyz:20.1,15.2,5."});
+                    "Type one as #b01020, rgb(176, 16, 32), tomato, lab:45,30,-20 or "
+                    "xyz:20.1,15.2,5."});
         }
         return;
     }

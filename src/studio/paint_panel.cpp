@@ -20,12 +20,14 @@
 #include "studio/theme.h"
 #include "studio/users_library.h"
 #include "studio/widgets.h"
+#include "studio/words.h"
 
 namespace livery {
 
 namespace {
 
 constexpr const char* kSavePopup = "Save as new paint";
+constexpr const char* kRenamePopup = "Rename paint";
 
 /// The name that the part's paint has after an edit.
 std::string name_after_edit(const Document& document, const EditPaint& edit) {
@@ -118,12 +120,11 @@ void commit_edit(Studio& studio, const Material& material) {
     commit(studio, EditPaint{state.look, state.part_name, material});
 }
 
-void draw_title(Studio& studio) {
+/// Where the paint comes from, and what becomes of it when it is changed.
+void draw_origin(Studio& studio) {
     const PaintPanelState& state = studio.panels.paint;
     const Material& material = *state.material;
     const bool own = is_own(studio.session.document(), material.name);
-    heading(material.name.c_str());
-    name_last_item("paint-name");
     std::string origin = own ? "This session's own paint" : "From the library";
     if (!own && !material.file.empty() && current_library(studio).find(material.name) == nullptr) {
         origin = "From " + material.file.string();
@@ -166,11 +167,12 @@ void draw_model(Studio& studio, const Material& material) {
 }
 
 void draw_slider(const ParameterInfo& parameter, const std::string& id, double& value) {
-    if (parameter.logarithmic) {
-        ratio_slider(id.c_str(), value, parameter.low, parameter.high, "%.4g");
-    } else {
-        number_slider(id.c_str(), value, parameter.low, parameter.high, "%.3f");
-    }
+    readable_slider(id.c_str(),
+                    value,
+                    parameter.low,
+                    parameter.high,
+                    unit_of(parameter),
+                    parameter.logarithmic);
 }
 
 void draw_pair(Studio& studio, Rows& rows, const ParameterInfo& parameter, Material& edited) {
@@ -292,6 +294,56 @@ void draw_save_popup(Studio& studio) {
     ImGui::EndPopup();
 }
 
+void draw_rename_popup(Studio& studio) {
+    PaintPanelState& state = studio.panels.paint;
+    ImGui::SetNextWindowSize({em(24.0f), 0.0f});
+    if (!ImGui::BeginPopupModal(
+            kRenamePopup, nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove)) {
+        return;
+    }
+    dim_text("The session's own paint, wherever it is worn. Ctrl+Z takes it back.");
+    row_label("Name", 0.3f);
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    const bool entered =
+        ImGui::InputText("##name",
+                         &state.other_name,
+                         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+    name_last_item("rename-paint:name");
+    if (!state.rename_problem.empty()) warning_text(state.rename_problem);
+    const RenamePaint command{state.material->name, state.other_name};
+    const bool agreed = ImGui::Button("Rename") || entered;
+    name_last_item("rename-paint:ok");
+    if (agreed) {
+        try {
+            applied(studio.session.document(), command);
+            ImGui::CloseCurrentPopup();
+            commit(studio, command);
+        } catch (const std::invalid_argument& refused) {
+            state.rename_problem = sentence(refused.what());
+        }
+    }
+    ImGui::SameLine();
+    if (ImGui::Button("Cancel") || was_pressed(ImGuiKey_Escape)) ImGui::CloseCurrentPopup();
+    name_last_item("rename-paint:cancel");
+    ImGui::EndPopup();
+}
+
+void draw_rename(Studio& studio) {
+    PaintPanelState& state = studio.panels.paint;
+    const char* rename = "Rename…";
+    place_in_row(button_width(rename));
+    begin_disabled(!is_own(studio.session.document(), state.material->name));
+    if (ImGui::Button(rename)) {
+        state.other_name = state.material->name;
+        state.rename_problem.clear();
+        ImGui::OpenPopup(kRenamePopup);
+    }
+    name_last_item("rename-paint");
+    tooltip("Another name for this session's own paint. A paint of the library keeps its name.");
+    end_disabled();
+    draw_rename_popup(studio);
+}
+
 void draw_actions(Studio& studio) {
     PaintPanelState& state = studio.panels.paint;
     const Material& material = *state.material;
@@ -327,6 +379,7 @@ void draw_actions(Studio& studio) {
     name_last_item("save-paint");
     tooltip("Writes a material file into your own library.");
     draw_save_popup(studio);
+    draw_rename(studio);
 }
 
 }  // namespace
@@ -349,9 +402,18 @@ void draw_paint_panel(Studio& studio) {
         }
         return;
     }
-    draw_title(studio);
-    ImGui::Spacing();
+    heading(state.material->name.c_str());
+    name_last_item("paint-name");
     draw_paint_portrait(studio, state.held.is_held() ? state.held.value() : *state.material);
+    ImGui::Spacing();
+    // What the sliders do stays in sight while one scrolls to them, as long as there is room.
+    const float room = ImGui::GetContentRegionAvail().y;
+    const bool apart = room >= em(8.0f);
+    if (apart) {
+        ImGui::Separator();
+        ImGui::BeginChild("parameters");
+    }
+    draw_origin(studio);
     ImGui::Spacing();
     draw_paint_colour_row(studio, *state.material);
     draw_model(studio, *state.material);
@@ -359,6 +421,7 @@ void draw_paint_panel(Studio& studio) {
     if (!state.problem.empty()) warning_text("Not taken: " + state.problem);
     ImGui::Spacing();
     draw_actions(studio);
+    if (apart) ImGui::EndChild();
 }
 
 }  // namespace livery

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -10,13 +11,17 @@
 #include "appearance/measured_paint.h"
 #include "appearance/model_table.h"
 #include "core/colour.h"
+#include "studio/words.h"
 
 namespace livery {
 
 namespace {
 
 std::string numbers(const glm::dvec3& colour) {
-    return fmt::format("{:.3g} {:.3g} {:.3g}", colour.x, colour.y, colour.z);
+    return fmt::format("{} {} {}",
+                       readable_number(colour.x),
+                       readable_number(colour.y),
+                       readable_number(colour.z));
 }
 
 int hex_digit(char c) {
@@ -28,6 +33,10 @@ int hex_digit(char c) {
 
 }  // namespace
 
+std::string unit_of(const ParameterInfo& parameter) {
+    return std::string_view(parameter.name).ends_with("_nm") ? "nm" : "";
+}
+
 std::string summary_of(const Material& material) {
     const ModelInfo& model = model_info(material.model);
     std::string text = model.label;
@@ -38,10 +47,12 @@ std::string summary_of(const Material& material) {
         const ParameterInfo& parameter = parameter_info(name);
         const glm::dvec3 value = value_of(parameter, material);
         if (value == value_of(parameter, Material{})) continue;
-        std::string shown = fmt::format("{:.3g}", value.x);
+        const std::string unit = unit_of(parameter);
+        std::string shown = readable_number(value.x) + (unit.empty() ? "" : " " + unit);
         if (parameter.kind == ParameterKind::colour) shown = numbers(value);
         if (parameter.kind == ParameterKind::pair && model.anisotropic && value.x != value.y) {
-            shown = fmt::format("{:.3g} along, {:.3g} across", value.x, value.y);
+            shown = fmt::format(
+                "{} along, {} across", readable_number(value.x), readable_number(value.y));
         }
         text += fmt::format("\n{} {}", parameter.label, shown);
     }

@@ -8,8 +8,12 @@
 #include <glm/vec3.hpp>
 
 #include "appearance/material_library.h"
+#include "appearance/parameter_table.h"
 
 namespace livery {
+
+/// "nm", or nothing, by the parameter's name.
+std::string unit_of(const ParameterInfo& parameter);
 
 /// "Clear coat", and the model's parameters that are not at their usual value, a line each.
 std::string summary_of(const Material& material);

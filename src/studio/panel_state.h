@@ -111,6 +111,8 @@ struct PaintPanelState {
     std::string becomes;  ///< the name that the first change gives
     // "Save as new paint"
     std::string new_name, new_family, save_problem;
+    // "Rename"
+    std::string other_name, rename_problem;
 };
 
 struct ArtworkPanelState {

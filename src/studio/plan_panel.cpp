@@ -1,5 +1,6 @@
 // What the frame on the mock-up cost, pass by pass, and what was not run and why.
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,7 +45,9 @@ void draw_totals(const Studio& studio, const FinishedFrame& frame) {
     ImGui::TextUnformatted(milliseconds(measured.total_ms).c_str());
     ImGui::PopFont();
     name_last_item("frame-total");
-    tooltip("From the frame's description to its finished projector picture.");
+    tooltip(
+        "From the frame's description to its finished projector picture: the sum of what stands "
+        "below under With every paint.");
     dim_text(fmt::format("Quality {}. Shading {}, correction {}.",
                          to_string(frame.plan.quality),
                          milliseconds(measured.shade_ms),
@@ -108,8 +111,12 @@ void draw_pass(const PlannedPass& pass, double longest_ms) {
     ImGui::PopID();
 }
 
-void draw_passes(const FramePlan& plan, Kind kind, const char* title) {
-    double longest_ms = 0.0;
+/// `beside_ms`: what goes with them and is none of them; none: they are the whole.
+void draw_passes(const FramePlan& plan,
+                 Kind kind,
+                 const char* title,
+                 std::optional<double> beside_ms = std::nullopt) {
+    double longest_ms = beside_ms.value_or(0.0);
     bool any = false;
     for (const PlannedPass& pass : plan.passes) {
         if (kind_of(pass) != kind) continue;
@@ -122,6 +129,13 @@ void draw_passes(const FramePlan& plan, Kind kind, const char* title) {
     for (const PlannedPass& pass : plan.passes) {
         if (kind_of(pass) == kind) draw_pass(pass, longest_ms);
     }
+    if (!beside_ms) return;
+    PlannedPass rest;
+    rest.name = "between the passes";
+    rest.why = "handing the picture from one to the next and to the projector";
+    rest.ms = *beside_ms;
+    rest.unpredicted_because = "it is no pass";
+    draw_pass(rest, longest_ms);
 }
 
 void draw_skipped(const FramePlan& plan) {
@@ -156,7 +170,10 @@ void draw_plan_panel(Studio& studio) {
         }
     }
     draw_totals(studio, frame);
-    draw_passes(frame.plan, Kind::every_frame, "With every paint");
+    draw_passes(frame.plan,
+                Kind::every_frame,
+                "With every paint",
+                time_beside_passes_ms(studio.panels.plan.measured, frame.plan));
     draw_passes(frame.plan, Kind::solved_once, "Once for light, eye and pose");
     draw_passes(frame.plan, Kind::prepared, "Prepared while idle");
     draw_skipped(frame.plan);

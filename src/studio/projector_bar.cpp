@@ -1,4 +1,6 @@
 // Below the picture: which monitor is the projector, its state, black and freeze.
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -6,19 +8,20 @@
 #include "studio/projector_control.h"
 #include "studio/shell.h"
 #include "studio/theme.h"
+#include "studio/widgets.h"
 
 namespace livery {
 
 namespace {
 
-void draw_monitor_choice(Shell& shell) {
+void draw_monitor_choice(Shell& shell, float width) {
     const auto& monitors = shell.studio.monitors;
     const auto chosen = find_monitor(monitors, shell.projector_monitor);
     const auto label = [](const Monitor& m) { return fmt::format("{}   {}", m.number, m.name); };
     const std::string shown = chosen                            ? label(*chosen)
                               : shell.projector_monitor.empty() ? "no projector"
                                                                 : "not plugged in";
-    ImGui::SetNextItemWidth(em(14.0f));
+    ImGui::SetNextItemWidth(width);
     const bool open = ImGui::BeginCombo("##projector", shown.c_str());
     name_last_item("projector-monitor");
     if (open) {
@@ -71,22 +74,32 @@ StateText state_of(const Shell& shell) {
     return {};
 }
 
-void draw_warnings(const Shell& shell) {
-    if (shell.signal_warnings.empty()) return;
+/// Behind the last item, cut where `right` begins; the whole is in the tooltip then.
+void draw_fitted(const std::string& text, const ImVec4& colour, std::string help, float right) {
     ImGui::SameLine(0.0f, em(1.0f));
     ImGui::AlignTextToFramePadding();
+    const float room = right - em(1.0f) - ImGui::GetCursorPosX();
+    const auto lines = fitted_lines(text, std::max(room, 0.0f), 1);
+    if (lines.empty()) return;
+    ImGui::TextColored(colour, "%s", lines.front().c_str());
+    if (lines.front() != text) help = text + (help.empty() ? "" : "\n\n" + help);
+    if (!help.empty()) tooltip(help);
+}
+
+void draw_warnings(const Shell& shell, float right) {
+    if (shell.signal_warnings.empty()) return;
     const auto count = shell.signal_warnings.size();
-    ImGui::TextColored(colours::warning,
-                       "%s",
-                       count == 1 ? shell.signal_warnings.front().what.c_str()
-                                  : fmt::format("{} signal warnings", count).c_str());
-    name_last_item("signal-warnings");
     std::string all;
     for (const SignalWarning& warning : shell.signal_warnings) {
         all +=
             (all.empty() ? "" : "\n\n") + warning.what + "\n" + warning.cause + "\n" + warning.fix;
     }
-    tooltip(all);
+    draw_fitted(
+        count == 1 ? shell.signal_warnings.front().what : fmt::format("{} signal warnings", count),
+        colours::warning,
+        all,
+        right);
+    name_last_item("signal-warnings");
 }
 
 /// A key's state that must be read from the other end of the room.
@@ -116,14 +129,16 @@ void draw_projector_bar(Shell& shell) {
     ImGui::AlignTextToFramePadding();
     heading("Projector");
     ImGui::SameLine();
-    draw_monitor_choice(shell);
+    const float spacing = ImGui::GetStyle().ItemSpacing.x;
+    const float keys = right - 2.0f * width - spacing;
+    // What the state says has at least as much room as the monitor's name.
+    const float room =
+        keys - ImGui::GetCursorPosX() - button_width("Show numbers") - 2.0f * spacing;
+    draw_monitor_choice(shell, std::clamp(0.5f * room, em(5.0f), em(14.0f)));
     const StateText state = state_of(shell);
-    ImGui::SameLine(0.0f, em(1.0f));
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextColored(state.colour, "%s", state.text.c_str());
-    if (!state.help.empty()) tooltip(state.help);
-    draw_warnings(shell);
-    ImGui::SameLine(right - 2.0f * width - ImGui::GetStyle().ItemSpacing.x);
+    draw_fitted(state.text, state.colour, state.help, keys);
+    draw_warnings(shell, keys);
+    ImGui::SameLine(keys);
     ImGui::SetCursorPosY(top);
     draw_state_button(
         shell, "black", shell.black ? "BLACK" : "Black  B", shell.black, width, height);

@@ -64,6 +64,7 @@ void use_projector_monitor(Shell& shell, const std::string& id) {
     }
     shell.projector_monitor = id;
     studio.session.set_workspace(kMonitorKey, id);
+    keep_setting(studio.settings, kProjectorSetting, id);
     log_line(LogLevel::info, "projector: " + (monitor ? monitor->name : "none"));
     apply(shell);
     shell.window_must_move = true;

@@ -82,11 +82,22 @@ void remember_costs(MeasuredCosts& measured, const FinishedFrame& frame) {
     // Not by its number: a frame comes again when more of it is there.
     if (frame.done_at == measured.frame_done_at) return;
     measured.frame_done_at = frame.done_at;
-    measured.newest_was_drawn = false;
+    const auto did_something = [](const PlannedPass& pass) {
+        return pass.ms.value_or(0.0) >= kNothingToDo_ms;
+    };
+    measured.newest_was_drawn =
+        std::any_of(frame.plan.passes.begin(), frame.plan.passes.end(), [&](const auto& pass) {
+            return did_something(pass) && runs_every_frame(pass.name);
+        });
+    if (measured.newest_was_drawn) {
+        // Those of one frame, so that they add up to it.
+        std::erase_if(measured.pass_ms,
+                      [](const auto& known) { return runs_every_frame(known.first.second); });
+    }
     for (const PlannedPass& pass : frame.plan.passes) {
-        if (pass.ms.value_or(0.0) < kNothingToDo_ms) continue;
+        const bool of_this_frame = measured.newest_was_drawn && runs_every_frame(pass.name);
+        if (!did_something(pass) && !(of_this_frame && pass.ms)) continue;
         measured.pass_ms[{frame.plan.quality, pass.name}] = *pass.ms;
-        measured.newest_was_drawn = measured.newest_was_drawn || runs_every_frame(pass.name);
     }
     if (!measured.newest_was_drawn) return;
     measured.total_ms = frame.ms_total;
@@ -100,6 +111,14 @@ void show_last_measured(const MeasuredCosts& measured, FramePlan& plan) {
         pass.ms.reset();
         if (last != measured.pass_ms.end()) pass.ms = last->second;
     }
+}
+
+double time_beside_passes_ms(const MeasuredCosts& measured, const FramePlan& plan) {
+    double passes_ms = 0.0;
+    for (const PlannedPass& pass : plan.passes) {
+        if (runs_every_frame(pass.name)) passes_ms += pass.ms.value_or(0.0);
+    }
+    return std::max(0.0, measured.total_ms - passes_ms);
 }
 
 std::string quality_text(Studio& studio, Quality quality) {

@@ -34,6 +34,10 @@ void remember_costs(MeasuredCosts& measured, const FinishedFrame& frame);
 /// that never ran have none.
 void show_last_measured(const MeasuredCosts& measured, FramePlan& plan);
 
+/// What of the last drawn frame's total no pass took: handing pictures on, uploads, the driver.
+/// With the passes that run with every paint it adds up to the total.
+double time_beside_passes_ms(const MeasuredCosts& measured, const FramePlan& plan);
+
 /// For the operator: what the quality does, what it costs here.
 std::string quality_text(Studio& studio, Quality quality);
 

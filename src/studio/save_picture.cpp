@@ -4,13 +4,12 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <optional>
 
 #include <fmt/format.h>
 #include <imgui.h>
-#include <imgui_stdlib.h>
 
-#include "core/error.h"
 #include "core/image_io.h"
 #include "gl/read_back.h"
 #include "session/render.h"
@@ -99,48 +98,16 @@ int what_is_on_stage(const Shell& shell) {
     }
 }
 
-void suggest_path(Shell& shell) {
-    SavePictureState& state = shell.save_picture;
-    const Choice& choice = kChoices[static_cast<std::size_t>(state.what)];
+std::string suggested_name(const Shell& shell, int what) {
+    const Choice& choice = kChoices[static_cast<std::size_t>(what)];
     const auto* look = find_look(shell.studio.session.document(), shell.studio.shown_look);
-    const auto folder =
-        state.path.empty() ? pictures_folder() : std::filesystem::path(state.path).parent_path();
     const std::string name = look ? file_name_of(look->look.name) : "picture";
-    state.path = (folder / fmt::format("{}-{}{}", name, choice.name, choice.suffix)).string();
-    state.problem.clear();
-    state.asking_to_overwrite = false;
+    return fmt::format("{}-{}{}", name, choice.name, choice.suffix);
 }
 
-/// What is in the way; empty: nothing.
-std::string problem_of(const std::filesystem::path& file, const Choice& choice) {
-    std::error_code error;
-    if (!file.has_filename() || std::filesystem::is_directory(file, error))
-        return "Type a file name.";
-    if (file.extension() != choice.suffix) {
-        return fmt::format("The file name must end in {}.", choice.suffix);
-    }
-    if (!std::filesystem::is_directory(file.parent_path(), error)) {
-        return "There is no folder " + file.parent_path().string() + ".";
-    }
-    return "";
-}
-
-void save(Shell& shell) {
-    SavePictureState& state = shell.save_picture;
-    const auto file = std::filesystem::absolute(expand_home(state.path));
-    state.problem = problem_of(file, kChoices[static_cast<std::size_t>(state.what)]);
-    if (!state.problem.empty()) return;
-    std::error_code error;
-    if (std::filesystem::exists(file, error) && !state.asking_to_overwrite) {
-        state.asking_to_overwrite = true;
-        return;
-    }
-    const auto write = writer_of(shell, state.what);
-    if (!write) {
-        state.problem = why_not_there(state.what);
-        return;
-    }
-    state.open = false;
+void save(Shell& shell, int what, const std::filesystem::path& file) {
+    const auto write = writer_of(shell, what);
+    if (!write) return;  // The dialog asked just before.
     shell.studio.background->run(
         [&shell, write = *write, file](const Progress&) -> Background::Then {
             write(file);
@@ -161,13 +128,17 @@ void save(Shell& shell) {
         });
 }
 
-void draw_choices(Shell& shell) {
-    SavePictureState& state = shell.save_picture;
+void use_choice(const Shell& shell, int what, FileQuestion& question) {
+    question.suffixes = {kChoices[static_cast<std::size_t>(what)].suffix};
+    question.suggested = question.suggested.parent_path() / suggested_name(shell, what);
+}
+
+void draw_choices(const Shell& shell, int& what, FileQuestion& question) {
     for (int i = 0; i < static_cast<int>(kChoices.size()); ++i) {
         const Choice& choice = kChoices[static_cast<std::size_t>(i)];
-        if (ImGui::RadioButton(choice.label, state.what == i)) {
-            state.what = i;
-            suggest_path(shell);
+        if (ImGui::RadioButton(choice.label, what == i)) {
+            what = i;
+            use_choice(shell, what, question);
         }
         name_last_item(fmt::format("save-picture:what-{}", i));
         ImGui::SameLine(em(14.0f));
@@ -177,48 +148,20 @@ void draw_choices(Shell& shell) {
 
 }  // namespace
 
-void open_save_picture(Shell& shell) {
-    shell.save_picture.open = true;
-    shell.save_picture.to_focus = true;
-    shell.save_picture.what = what_is_on_stage(shell);
-    suggest_path(shell);
-}
-
-void draw_save_picture(Shell& shell) {
-    SavePictureState& state = shell.save_picture;
-    if (!state.open) return;
-    constexpr const char* title = "Save picture";
-    if (!ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
-    ImGui::SetNextWindowSize({em(42.0f), 0.0f});
-    ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Always, {0.5f, 0.5f});
-    if (!ImGui::BeginPopupModal(title, &state.open, ImGuiWindowFlags_NoResize)) return;
-    draw_choices(shell);
-    ImGui::Dummy({0.0f, em(0.2f)});
-    if (state.to_focus) ImGui::SetKeyboardFocusHere();
-    state.to_focus = false;
-    ImGui::SetNextItemWidth(-1.0f);
-    bool agreed = ImGui::InputText("##path", &state.path, ImGuiInputTextFlags_EnterReturnsTrue);
-    name_last_item("save-picture:path");
-    if (ImGui::IsItemEdited()) {
-        state.problem.clear();
-        state.asking_to_overwrite = false;
-    }
-    if (!state.problem.empty()) warning_text(state.problem);
-    if (state.asking_to_overwrite) warning_text("This file exists already. Replace it?");
-    const float width = em(7.0f);
-    ImGui::SetCursorPosX(ImGui::GetContentRegionMax().x - 2.0f * width -
-                         ImGui::GetStyle().ItemSpacing.x);
-    if (ImGui::Button("Cancel", {width, 0.0f}) ||
-        ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) {
-        state.open = false;
-    }
-    name_last_item("save-picture:cancel");
-    ImGui::SameLine();
-    agreed = ImGui::Button(state.asking_to_overwrite ? "Replace" : "Save", {width, 0.0f}) || agreed;
-    name_last_item("save-picture:ok");
-    if (agreed) save(shell);
-    if (!state.open) ImGui::CloseCurrentPopup();
-    ImGui::EndPopup();
+void ask_where_to_save_picture(Shell& shell) {
+    const auto what = std::make_shared<int>(what_is_on_stage(shell));
+    FileQuestion question;
+    question.kind = FileQuestion::Kind::save;
+    question.title = "Save picture";
+    question.action = "Save";
+    question.suggested = pictures_folder() / "";
+    use_choice(shell, *what, question);
+    question.choices = [&shell, what](FileQuestion& asked) { draw_choices(shell, *what, asked); };
+    question.not_ready = [&shell, what] {
+        return std::string(writer_of(shell, *what) ? "" : why_not_there(*what));
+    };
+    question.then = [&shell, what](const std::filesystem::path& file) { save(shell, *what, file); };
+    shell.studio.file_dialog->ask(std::move(question));
 }
 
 }  // namespace livery

@@ -5,7 +5,6 @@ namespace livery {
 
 struct Shell;
 
-void open_save_picture(Shell& shell);
-void draw_save_picture(Shell& shell);  ///< once a frame
+void ask_where_to_save_picture(Shell& shell);
 
 }  // namespace livery

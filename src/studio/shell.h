@@ -71,15 +71,6 @@ struct SetupKey {
     bool operator==(const SetupKey&) const = default;
 };
 
-struct SavePictureState {
-    bool open = false;
-    bool to_focus = false;
-    int what = 0;
-    std::string path;
-    std::string problem;
-    bool asking_to_overwrite = false;
-};
-
 struct Shell {
     explicit Shell(Session session) : studio(std::move(session)) {}
 
@@ -120,17 +111,21 @@ struct Shell {
     float left_width_em = 15.5f, right_width_em = 26.5f;
     std::string layout_seen;         ///< as text; remembered when it rests
     double layout_rests_at_s = 0.0;  ///< 0: it is remembered
+    double save_again_at_s = 0.0;    ///< 0: everything is saved, or there is no file
     double user_scale = 1.0;
     std::optional<double> fixed_scale;  ///< --ui-scale
     std::optional<int> tab_to_open;
+    int open_tab = 0;
+    int tab_step = 0;  ///< Tab was pressed: 1, with Shift: -1
     bool help_open = false, about_open = false, ballots_open = false;
     bool signal_test_open = false;
-    SavePictureState save_picture;
     bool quit = false;
     bool clicked_a_view = false;
     float stage_x = 0.0f, stage_y = 0.0f;  ///< upper left corner of the stage, pixels
     double frame_ms = 0.0;                 ///< the window's own last frame
 };
+
+inline constexpr int kTabs = 6;  ///< of the column at the right
 
 Orbit stage_orbit(const Shell& shell);
 

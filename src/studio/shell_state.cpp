@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -9,12 +10,21 @@
 #include "core/paths.h"
 #include "studio/artwork_edit.h"
 #include "studio/shell.h"
+#include "studio/tab_order.h"
 
 namespace livery {
 
 namespace {
 
 constexpr double kLayoutRest_s = 1.0;
+
+constexpr double kBetweenSavings_s = 2.0;
+constexpr const char* kNotSaved = "What you do is not being saved at the moment.";
+
+void tell_saved_again(Studio& studio) {
+    std::erase_if(studio.notices, [](const Notice& n) { return n.what == kNotSaved; });
+    notify(studio, {Notice::Level::info, "Everything is saved again.", "", ""});
+}
 
 const char* name_of(StageView view) {
     switch (view) {
@@ -77,9 +87,9 @@ void restore_workspace(Shell& shell) {
     restore(workspace, "scale", shell.user_scale, 0.75, 3.0);
     restore(workspace, "left-width", shell.left_width_em, 11.0f, 30.0f);
     restore(workspace, "right-width", shell.right_width_em, 17.0f, 40.0f);
-    if (const std::string* monitor = find(workspace, "projector-monitor")) {
-        shell.projector_monitor = *monitor;
-    }
+    // A new session has the projector that the one before had.
+    const std::string* monitor = find(workspace, "projector-monitor");
+    shell.projector_monitor = monitor ? *monitor : setting(studio.settings, kProjectorSetting);
     if (const std::string* view = find(workspace, "view")) {
         for (const auto v :
              {StageView::preview, StageView::eye, StageView::projector, StageView::photograph}) {
@@ -127,6 +137,8 @@ MapState state_of_shell(const Shell& shell) {
     state["artwork"] = text_of(SetArtwork{studio.shown_look, shown_artwork(studio)});
     state["placing"] = text(is_placing(studio));
     state["revision"] = std::to_string(session.revision());
+    state["focused"] = quoted(focused_item());
+    state["open_tab"] = std::to_string(shell.open_tab);
     state["looks"] = std::to_string(session.document().looks.size());
     state["undo"] = session.can_undo() ? quoted(session.undo_label()) : "null";
     state["redo"] = session.can_redo() ? quoted(session.redo_label()) : "null";
@@ -160,6 +172,27 @@ void open_ballots(Shell& shell) {
         shell.studio.ballots = std::make_unique<BallotStore>(folder / "ballots.sqlite");
     } catch (const std::exception& error) {
         notify(shell.studio, {Notice::Level::warning, "Ballots cannot be kept.", error.what(), ""});
+    }
+}
+
+void save_again_now_and_then(Shell& shell) {
+    Studio& studio = shell.studio;
+    if (!studio.session.save_problem() || !studio.session.file()) {
+        // The next change may have saved everything.
+        if (std::exchange(shell.save_again_at_s, 0.0) > 0.0) tell_saved_again(studio);
+        return;
+    }
+    if (shell.save_again_at_s <= 0.0) {
+        shell.save_again_at_s = studio.now_s + kBetweenSavings_s;
+        notify(studio,
+               {Notice::Level::error,
+                kNotSaved,
+                *studio.session.save_problem(),
+                "Make room on the disk: saving then goes on by itself. File > Save session as… "
+                "saves it elsewhere."});
+    } else if (studio.now_s >= shell.save_again_at_s) {
+        shell.save_again_at_s = studio.now_s + kBetweenSavings_s;
+        studio.session.save_again();
     }
 }
 

@@ -20,6 +20,9 @@ MapState state_of_shell(const Shell& shell);
 
 /// The ballots' database beside the session's; a notice when it cannot be opened.
 void open_ballots(Shell& shell);
+/// Once a frame of the window: while something could not be saved, tries again every two seconds,
+/// and tells both.
+void save_again_now_and_then(Shell& shell);
 /// Says loudly when nothing is being saved.
 void tell_unsaved(Shell& shell);
 

@@ -66,9 +66,11 @@ void draw_view_buttons(Shell& shell) {
 
 void draw_compare_buttons(Shell& shell) {
     Studio& studio = shell.studio;
-    const float width = em(3.6f);
-    const float right = ImGui::GetWindowContentRegionMax().x;
-    ImGui::SameLine(right - 2.0f * width - ImGui::GetStyle().ItemInnerSpacing.x);
+    const float width = em(3.6f), gap = ImGui::GetStyle().ItemInnerSpacing.x;
+    const float left = ImGui::GetWindowContentRegionMax().x - 2.0f * width - gap;
+    // A line of their own where the column is too narrow for both.
+    if (ImGui::GetCursorPosX() + gap > left) ImGui::NewLine();
+    ImGui::SameLine(left);
     begin_disabled(!studio.compared_look);
     ImGui::PushStyleColor(ImGuiCol_Text, colours::text);
     toggle_button("Hold B", studio.showing_b, width);
@@ -320,6 +322,28 @@ void draw_wipe(const Shell& shell, const Frame& stage) {
     list.AddText({x + em(0.6f), top}, colour, b.c_str());
 }
 
+/// While B is held everything else in the window is about A.
+void draw_held_name(const Studio& studio, const Frame& stage) {
+    if (!studio.showing_b || !studio.compared_look) return;
+    const SessionLook* look = find_look(studio.session.document(), *studio.compared_look);
+    if (!look) return;
+    ImFont* font = large_font();
+    const float pad = em(0.5f), width = stage.width - 6.0f * pad;
+    ImGui::PushFont(font);
+    const auto lines = fitted_lines("B   " + look->look.name, width, 1);
+    ImGui::PopFont();
+    const ImVec2 size = font->CalcTextSizeA(font->FontSize, FLT_MAX, 0.0f, lines.front().c_str());
+    const ImVec2 at(std::round(stage.x + 0.5f * (stage.width - size.x)), stage.y + 2.0f * pad);
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddRectFilled({at.x - 2.0f * pad, at.y - pad},
+                       {at.x + size.x + 2.0f * pad, at.y + size.y + pad},
+                       IM_COL32(0, 0, 0, 190),
+                       em(0.25f));
+    list.AddText(
+        font, font->FontSize, at, ImGui::GetColorU32(colours::text), lines.front().c_str());
+    name_rectangle("held-b-name", at.x, at.y, size.x, size.y);
+}
+
 /// Over the picture's upper edge, while the next click means something else than usual.
 void draw_placing(const Studio& studio, const Frame& stage) {
     if (!is_placing(studio)) return;
@@ -353,7 +377,7 @@ void draw_drawn_view(Shell& shell, const Frame& stage) {
         picture = place_picture(stage, preview->size_px.x, preview->size_px.y, {});
     }
     draw_texture(preview->texture, picture);
-    draw_caption(shell, stage, "");
+    draw_caption(shell, stage, preview->unfinished ? "Light and shadows are being solved." : "");
     draw_placing(shell.studio, stage);
 }
 
@@ -454,7 +478,9 @@ void draw_stage(Shell& shell) {
                                               IM_COL32(18, 18, 18, 255),
                                               em(0.25f));
     ImGui::PushClipRect({stage.x, stage.y}, {stage.x + stage.width, stage.y + stage.height}, true);
+    ImGui::PushAllowKeyboardFocus(false);  // only the pointer means anything here
     ImGui::InvisibleButton("stage", {stage.width, stage.height});
+    ImGui::PopAllowKeyboardFocus();
     name_last_item("stage");
     const Pointer pointer{ImGui::IsItemHovered(),
                           ImGui::IsItemActivated(),
@@ -478,6 +504,7 @@ void draw_stage(Shell& shell) {
         draw_drawn_view(shell, stage);
     }
     draw_wipe(shell, stage);
+    draw_held_name(shell.studio, stage);
     ImGui::PopClipRect();
 }
 

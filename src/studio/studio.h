@@ -90,7 +90,8 @@ struct Studio {
     std::vector<Notice> notices;
     float ui_scale = 1.0f;
     std::unique_ptr<Background> background;
-    std::unique_ptr<FileDialog> file_dialog;
+    UserSettings settings;
+    std::unique_ptr<FileDialog> file_dialog;  ///< keeps its folders in `settings`
     PanelStates panels;
 };
 

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/json.h"
 #include "studio/studio.h"
+#include "studio/tab_order.h"
 
 namespace livery {
 
@@ -34,6 +35,7 @@ Json json_of(const ItemPlace& place) {
 void start_naming_items(bool wanted) {
     naming = wanted;
     named.clear();
+    start_tab_order();
 }
 
 ItemPlaces take_named_items() { return std::exchange(named, {}); }
@@ -43,6 +45,7 @@ void name_rectangle(const std::string& name, float x, float y, float width, floa
 }
 
 void name_last_item(const std::string& name) {
+    note_tab_stop(name);
     if (!naming) return;
     // A pop-up's first frames only measure it: it is not seen, and not yet at its place.
     if (ImGui::GetCurrentWindowRead()->Hidden) return;

@@ -16,7 +16,8 @@ struct ItemPlace {
 };
 using ItemPlaces = std::map<std::string, ItemPlace>;
 
-/// name_last_item() (studio.h) adds to these between the two; main thread.
+/// name_last_item() (studio.h) adds to these between the two, and to the order of Tab
+/// (tab_order.h); main thread.
 void start_naming_items(bool wanted);
 ItemPlaces take_named_items();
 /// For what is not one item: a rectangle of the screen.

@@ -13,6 +13,7 @@
 #include "studio/paint_parameters.h"
 #include "studio/studio.h"
 #include "studio/theme.h"
+#include "studio/words.h"
 
 namespace livery {
 
@@ -76,6 +77,27 @@ double share_of(double value, double low, double high, bool in_ratios) {
         return std::log(std::max(value, floor) / floor) / std::log(high / floor);
     }
     return (value - low) / (high - low);
+}
+
+/// Draws an item with a number, `draw`, and over it the number as `shown`, in place of Dear
+/// ImGui's, which has no thousands; while it is typed in, it is the item's own.
+template <typename Draw>
+void draw_with_text(const char* id, const std::string& shown, const Draw& draw) {
+    const bool typed_before = ImGui::TempInputIsActive(ImGui::GetID(id));
+    const ImU32 colour = ImGui::GetColorU32(ImGuiCol_Text);
+    if (!typed_before) ImGui::PushStyleColor(ImGuiCol_Text, 0);
+    draw();
+    if (!typed_before) ImGui::PopStyleColor();
+    if (ImGui::TempInputIsActive(ImGui::GetItemID())) return;
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    const ImVec2 size = ImGui::CalcTextSize(shown.c_str());
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    list->PushClipRect(low, high, true);
+    list->AddText({std::floor(std::max(low.x + 2.0f, 0.5f * (low.x + high.x - size.x))),
+                   std::floor(0.5f * (low.y + high.y - size.y))},
+                  colour,
+                  shown.c_str());
+    list->PopClipRect();
 }
 
 /// A line along the bottom shows where it stands, so that the number stays legible.
@@ -195,13 +217,7 @@ void colour_control(const std::string& name, glm::dvec3& linear_rec709) {
         const std::string channel = channels[static_cast<std::size_t>(c)];
         ImGui::SetNextItemWidth(number);
         // Signed: paints leave the gamut of Rec.709.
-        ImGui::DragScalar(("##" + channel).c_str(),
-                          ImGuiDataType_Double,
-                          &linear_rec709[c],
-                          0.002f,
-                          nullptr,
-                          nullptr,
-                          "%.4g");
+        readable_drag(("##" + channel).c_str(), linear_rec709[c], 0.002f);
         name_last_item(name + ":" + channel);
     }
     if (!in_srgb(linear_rec709)) {
@@ -219,6 +235,22 @@ void colour_control(const std::string& name, glm::dvec3& linear_rec709) {
 
 void ratio_slider(const char* id, double& value, double low, double high, const char* format) {
     slider(id, value, low, high, format, true);
+}
+
+void readable_slider(const char* id,
+                     double& value,
+                     double low,
+                     double high,
+                     const std::string& unit,
+                     bool in_ratios) {
+    const std::string shown = readable_number(value) + (unit.empty() ? "" : " " + unit);
+    draw_with_text(id, shown, [&] { slider(id, value, low, high, "%.6g", in_ratios); });
+}
+
+void readable_drag(const char* id, double& value, float speed) {
+    draw_with_text(id, readable_number(value), [&] {
+        ImGui::DragScalar(id, ImGuiDataType_Double, &value, speed, nullptr, nullptr, "%.6g");
+    });
 }
 
 void number_slider(const char* id, double& value, double low, double high, const char* format) {

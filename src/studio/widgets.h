@@ -40,6 +40,16 @@ void colour_control(const std::string& name, glm::dvec3& linear_rec709);
 void ratio_slider(const char* id, double& value, double low, double high, const char* format);
 void number_slider(const char* id, double& value, double low, double high, const char* format);
 
+/// A slider whose value is shown as readable_number() writes it, with its unit (may be empty).
+void readable_slider(const char* id,
+                     double& value,
+                     double low,
+                     double high,
+                     const std::string& unit,
+                     bool in_ratios);
+/// The same for a field that is dragged, without bounds.
+void readable_drag(const char* id, double& value, float speed);
+
 /// A row of three numbers to drag, named "NAME:x", ":y", ":z"; `after_item` is called after each.
 void vector_row(const char* label,
                 const std::string& name,

@@ -9,6 +9,7 @@
 #include "appearance/measured_paint.h"
 #include "core/log.h"
 #include "scene/view.h"
+#include "session/calibration_reuse.h"
 #include "session/library.h"
 #include "studio/results.h"
 #include "studio/shell.h"
@@ -19,6 +20,7 @@ namespace livery {
 namespace {
 
 constexpr double kPreviewPatience_s = 0.3;
+constexpr double kPreviewFirst_s = 5.0;  // nobody looks at the mock-up yet
 constexpr const char* kCalibrating = "Calibrating the simulated bench.";
 constexpr const char* kCalibratedKey = "calibrated-once";
 
@@ -119,7 +121,7 @@ std::optional<int> look_to_wipe_to(const Studio& studio) {
 
 void ask_for_frame(Shell& shell) {
     Studio& studio = shell.studio;
-    if (!studio.setup) return;
+    if (!studio.setup || preview_goes_first(shell)) return;
     FrameKey key;
     key.revision = studio.session.revision();
     key.tried = text_of_trial(studio);
@@ -185,7 +187,7 @@ void ask_for_preview(Shell& shell) {
         shell.asked_preview && shell.asked_preview->revision == key.revision &&
         shell.asked_preview->tried == key.tried && shell.asked_preview->look == key.look &&
         shell.asked_preview->wipe_to == key.wipe_to && shell.asked_preview->wipe_at == key.wipe_at;
-    if (shell.draws_in_software && studio.opening) return;
+    if (shell.draws_in_software && studio.opening && !preview_goes_first(shell)) return;
     const double patience_until_s = shell.frame_asked_s + kPreviewPatience_s;
     if (shell.draws_in_software && !same_scene && is_frame_under_way(shell) &&
         studio.now_s < patience_until_s) {
@@ -221,6 +223,29 @@ void ask_for_photograph(Shell& shell) {
 
 bool needs_first_calibration(const Session& session) {
     return session.document().calibration.empty() && !session.workspace().contains(kCalibratedKey);
+}
+
+/// A new session of a product that was calibrated on this bench before takes that calibration; if
+/// there is none, it is made after the first picture.
+void find_first_calibration(Shell& shell) {
+    Studio& studio = shell.studio;
+    if (!needs_first_calibration(studio.session)) return;
+    studio.background->run(
+        [&shell, bench = studio.session.document().bench, product = studio.product](
+            const Progress&) -> Background::Then {
+            const auto kept = kept_calibration_of(bench_key(bench, *product));
+            return [&shell, kept] {
+                Studio& there = shell.studio;
+                shell.calibrates_after_first_frame = !kept;
+                if (!kept || !needs_first_calibration(there.session)) return;
+                there.session.set_workspace(kCalibratedKey, "yes");
+                commit(there, SetCalibration{kept->string()});
+            };
+        },
+        [&shell](std::exception_ptr why) {
+            shell.calibrates_after_first_frame = true;
+            tell_failure(shell, "Calibrations made before could not be looked through.", why);
+        });
 }
 
 /// A newcomer has no calibration: the simulated bench is measured as soon as there is a first
@@ -267,6 +292,15 @@ void take_calibration(Shell& shell) {
 
 }  // namespace
 
+bool preview_goes_first(const Shell& shell) {
+    const Studio& studio = shell.studio;
+    const bool in_window = studio.view == StageView::preview || studio.view == StageView::eye;
+    const bool drawn =
+        studio.preview && (studio.preview->texture || !studio.preview->problem.empty());
+    return shell.draws_in_software && studio.opening && in_window && !drawn &&
+           shell.projector_monitor.empty() && studio.now_s < shell.opened_s + kPreviewFirst_s;
+}
+
 bool is_frame_under_way(const Shell& shell) {
     if (!shell.studio.setup) return false;
     const auto newest = shell.results->newest_frame();
@@ -297,7 +331,7 @@ Contexts start_threads(Shell& shell, const Window& window) {
         window, [results](const ShownPicture& picture) { results->shown(picture); });
     results->use(studio.projector.get());
     studio.bench->use(studio.session.document().bench, studio.product);
-    shell.calibrates_after_first_frame = needs_first_calibration(studio.session);
+    find_first_calibration(shell);
     ask_for_setup(shell);
     return contexts;
 }

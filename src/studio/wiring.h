@@ -18,6 +18,10 @@ Contexts start_threads(Shell& shell, const Window& window);
 /// In the order in which one needs the other; with the window's context current.
 void stop_threads(Shell& shell);
 
+/// While the program opens without a projector: the window's picture is drawn before the mock-up's
+/// light is solved, where one processor does both.
+bool preview_goes_first(const Shell& shell);
+
 /// A picture for the mock-up was asked for and has not reached the projector, if one shows.
 bool is_frame_under_way(const Shell& shell);
 

@@ -1,6 +1,8 @@
 #include "studio/words.h"
 
+#include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -20,6 +22,30 @@ bool is_like(const std::string& text, std::string_view pattern) {
 }
 
 }  // namespace
+
+std::string readable_number(double value) {
+    const double size = std::abs(value);
+    if (!std::isfinite(value)) return fmt::format("{}", value);
+    if (size >= 1e15 || (size > 0.0 && size < 1e-6)) return fmt::format("{:.3g}", value);
+    if (size < 999.95) {
+        // Four digits that count, without zeros at the end.
+        const int whole = size < 1.0 ? 0 : static_cast<int>(std::floor(std::log10(size))) + 1;
+        const int leading =
+            size > 0.0 && size < 1.0 ? -static_cast<int>(std::floor(std::log10(size))) - 1 : 0;
+        std::string text = fmt::format("{:.{}f}", value, std::max(0, 4 - whole + leading));
+        if (text.find('.') == std::string::npos) return text;
+        text.erase(text.find_last_not_of('0') + 1);
+        if (text.back() == '.') text.pop_back();
+        return text == "-0" ? "0" : text;
+    }
+    std::string text = fmt::format("{:.0f}", value);
+    const std::size_t first = text.front() == '-' ? 1 : 0;
+    for (std::size_t at = text.size(); at > first + 3;) {
+        at -= 3;
+        text.insert(at, 1, ',');
+    }
+    return text;
+}
 
 std::string milliseconds(double ms) {
     if (ms >= 1000.0) return fmt::format("{:.2f} s", 1e-3 * ms);

@@ -5,6 +5,10 @@
 
 namespace livery {
 
+/// As people write it: 19650 is "19,650", 0.04251 "0.04251", 12.0 "12"; four digits below 1,000,
+/// whole numbers above.
+std::string readable_number(double value);
+
 /// "12.3 ms", "4.87 s".
 std::string milliseconds(double ms);
 

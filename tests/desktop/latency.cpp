@@ -105,10 +105,10 @@ class Bench {
     void save_picture(const std::string& file) {
         desktop_.press_key("ctrl+s");
         program_->click("save-picture:what-1");
-        program_->click("save-picture:path");
+        program_->click("file-dialog:path");
         desktop_.press_key("ctrl+a");
         desktop_.type(file);
-        program_->click("save-picture:ok");
+        program_->click("file-dialog:ok");
     }
 
     void report(const std::string& what, const std::vector<double>& moments) {

@@ -114,12 +114,12 @@ TEST_F(Looks, BlackAndFreezeWorkAlsoInDialogs) {
     EXPECT_TRUE(projector_shows(a));
 
     desktop->press_key("ctrl+s");
-    ASSERT_TRUE(wait_until([&] { return program->has_item("save-picture:ok"); }));
+    ASSERT_TRUE(wait_until([&] { return program->has_item("file-dialog:ok"); }));
     desktop->press_key("ctrl+b");
     EXPECT_TRUE(projector_is_black());
     desktop->press_key("ctrl+b");
     EXPECT_TRUE(projector_shows(a));
-    program->click("save-picture:cancel");
+    program->click("file-dialog:cancel");
 }
 
 // What is under the pointer must not move away between looking and pressing.

@@ -92,7 +92,7 @@ class Photographer {
         desktop_.press_key("ctrl+s");
         settle();
         take("save-picture");
-        program().click("save-picture:cancel");
+        program().click("file-dialog:cancel");
         settle();
         desktop_.press_key("ctrl+i");
         settle();

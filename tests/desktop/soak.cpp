@@ -229,10 +229,10 @@ class Soak {
     void save_picture() {
         desktop_.press_key("ctrl+s");
         program_.click("save-picture:what-1");
-        program_.click("save-picture:path");
+        program_.click("file-dialog:path");
         desktop_.press_key("ctrl+a");
         desktop_.type((folder_ / fmt::format("picture{}.exr", pictures_++)).string());
-        program_.click("save-picture:ok");
+        program_.click("file-dialog:ok");
         sleep_ms(1000);
     }
 

@@ -104,6 +104,17 @@ Rectangle StudioProgram::item(const std::string& name) {
     return found;
 }
 
+std::map<std::string, Rectangle> StudioProgram::items() {
+    const Json map = this->map();
+    const auto window = map["window"].get<std::vector<int>>();
+    std::map<std::string, Rectangle> found;
+    for (const auto& [name, place] : map["items"].items()) {
+        const auto at = place.get<std::vector<int>>();
+        found[name] = {window[0] + at[0], window[1] + at[1], at[2], at[3]};
+    }
+    return found;
+}
+
 bool StudioProgram::has_item(const std::string& name) { return map()["items"].contains(name); }
 
 std::vector<std::string> StudioProgram::items_starting_with(const std::string& prefix) {

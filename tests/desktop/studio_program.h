@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -47,6 +48,8 @@ class StudioProgram {
     /// looked for as a person does, by scrolling through the swatches.
     Rectangle item(const std::string& name);
     bool has_item(const std::string& name);
+    /// Every item where it is now.
+    std::map<std::string, Rectangle> items();
     std::vector<std::string> items_starting_with(const std::string& prefix);
     /// What the window says about itself; null for what it does not say.
     nlohmann::json state(const std::string& name);

@@ -12,10 +12,30 @@ namespace {
 TEST(ColourIn, TakesWholeColoursAlone) {
     ASSERT_TRUE(colour_in("lab:45,30,-20"));
     EXPECT_EQ(*colour_in("lab:45,30,-20"), glm::dvec3(45.0, 30.0, -20.0));
-    EXPECT_TRUE(colour_in("#b01020"));
-    for (const char* text : {"", "red", "#b010", "lab:45,", "lab:", "xyz:1,2", "45,30,-20"}) {
+    for (const char* text : {"#b01020", "1a4f9c", "rgb(26, 79, 156)", "tomato", "gold"}) {
+        EXPECT_TRUE(colour_in(text)) << text;
+    }
+    for (const char* text : {"", "rot", "#b010", "lab:45,", "lab:", "xyz:1,2", "45,30,-20"}) {
         EXPECT_FALSE(colour_in(text)) << text;
     }
+}
+
+TEST(FindPaints, TakesANameForAColourOnlyWhereNoPaintHasIt) {
+    const auto paints = read_paint_library().shipped;
+    const auto near = [&](const char* colour) {
+        std::vector<std::size_t> places;
+        for (const NearPaint& one : find_near_paints(paints, *colour_in(colour), "")) {
+            places.push_back(one.index);
+        }
+        return places;
+    };
+    EXPECT_EQ(find_paints(paints, "gold", ""), search_paints(paints, "gold", ""));
+    EXPECT_EQ(find_paints(paints, "#ffd700", ""), near("gold"));
+    EXPECT_EQ(find_paints(paints, "tomato", ""), near("tomato"));
+    EXPECT_EQ(find_paints(paints, "1a4f9c", ""), near("#1a4f9c"));
+    EXPECT_TRUE(is_marked_colour("RGB(1,2,3)"));
+    EXPECT_FALSE(is_marked_colour("rgb"));
+    EXPECT_FALSE(is_marked_colour("gold"));
 }
 
 TEST(DrawnFace, IsTheFiveAngleOneOfAFormula) {

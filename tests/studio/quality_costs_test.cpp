@@ -67,6 +67,36 @@ TEST(MeasuredCosts, OutliveFramesThatChangeNothing) {
     EXPECT_FALSE(same.plan.passes[0].ms) << "not at that quality";
 }
 
+TEST(RememberCosts, OfOneFrameAddUpToItsTotal) {
+    MeasuredCosts measured;
+    FinishedFrame first;
+    first.done_at = std::chrono::steady_clock::time_point(std::chrono::seconds(1));
+    first.ms_total = 30.0;
+    first.plan.quality = Quality::normal;
+    first.plan.passes.resize(3);
+    first.plan.passes[0].name = "shade:body:ggx";
+    first.plan.passes[0].ms = 20.0;
+    first.plan.passes[1].name = kCompensationPass;
+    first.plan.passes[1].ms = 8.0;
+    first.plan.passes[2].name = kSurfaceMapPass;
+    first.plan.passes[2].ms = 900.0;
+    remember_costs(measured, first);
+    // The next paint: little to shade, nothing to correct anew, nothing solved.
+    FinishedFrame next = first;
+    next.done_at += std::chrono::seconds(1);
+    next.ms_total = 6.0;
+    next.plan.passes[0].ms = 5.0;
+    next.plan.passes[1].ms = 0.01;
+    next.plan.passes[2].ms = 0.0;
+    remember_costs(measured, next);
+    show_last_measured(measured, next.plan);
+    const double sum = *next.plan.passes[0].ms + *next.plan.passes[1].ms +
+                       time_beside_passes_ms(measured, next.plan);
+    EXPECT_DOUBLE_EQ(sum, measured.total_ms);
+    EXPECT_DOUBLE_EQ(measured.total_ms, 6.0);
+    EXPECT_EQ(next.plan.passes[2].ms, 900.0) << "solved once";
+}
+
 TEST(PredictDrawn, ScalesByTheFramesOwnWork) {
     FramePlan plan;
     plan.quality = Quality::normal;

@@ -15,6 +15,22 @@ TEST(Words, SayTimesAsPeopleDo) {
     }
 }
 
+TEST(Words, SayNumbersAsPeopleWriteThem) {
+    EXPECT_EQ(readable_number(19650.0), "19,650");
+    EXPECT_EQ(readable_number(1234567.4), "1,234,567");
+    EXPECT_EQ(readable_number(-1000.0), "-1,000");
+    EXPECT_EQ(readable_number(999.96), "1,000");
+    EXPECT_EQ(readable_number(999.9), "999.9");
+    EXPECT_EQ(readable_number(320.0), "320");
+    EXPECT_EQ(readable_number(12.345), "12.35");
+    EXPECT_EQ(readable_number(1.0), "1");
+    EXPECT_EQ(readable_number(0.0425), "0.0425");
+    EXPECT_EQ(readable_number(0.000123456), "0.0001235");
+    EXPECT_EQ(readable_number(0.0), "0");
+    EXPECT_EQ(readable_number(-0.0), "0");
+    EXPECT_EQ(readable_number(2e-7), "2e-07");
+}
+
 TEST(Words, SayDurations) {
     EXPECT_EQ(milliseconds(0.04), "0.0 ms");
     EXPECT_EQ(milliseconds(27.84), "27.8 ms");

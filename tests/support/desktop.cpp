@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <X11/XKBlib.h>
+#include <X11/Xatom.h>
 #include <X11/Xlib.h>
 #include <X11/extensions/XTest.h>
 #include <X11/extensions/Xrandr.h>
@@ -377,6 +378,32 @@ std::vector<Desktop::TopWindow> Desktop::windows() const {
         shown.push_back(found);
     }
     return shown;
+}
+
+void Desktop::minimise_active_window() {
+    Display* const connection = state_->connection;
+    const Atom active = XInternAtom(connection, "_NET_ACTIVE_WINDOW", False);
+    Atom type = None;
+    int format = 0;
+    unsigned long count = 0, left = 0;
+    unsigned char* value = nullptr;
+    XGetWindowProperty(connection,
+                       state_->root(),
+                       active,
+                       0,
+                       1,
+                       False,
+                       XA_WINDOW,
+                       &type,
+                       &format,
+                       &count,
+                       &left,
+                       &value);
+    const Window window = count == 1 ? *reinterpret_cast<Window*>(value) : None;
+    if (value) XFree(value);
+    if (window == None) throw std::logic_error("no window is active");
+    XIconifyWindow(connection, window, XDefaultScreen(connection));
+    XSync(connection, False);
 }
 
 }  // namespace livery

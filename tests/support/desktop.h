@@ -90,6 +90,8 @@ class Desktop {
         bool operator==(const TopWindow&) const = default;
     };
     std::vector<TopWindow> windows() const;
+    /// As its button in the title bar does; only with a window manager.
+    void minimise_active_window();
 
   private:
     struct State;

@@ -1,0 +1,111 @@
+// The operator's window among other windows, by its keys alone, and in its least size.
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "desktop/two_monitors.h"
+#include "studio/window_place.h"
+#include "support/run_program.h"
+
+namespace livery {
+namespace {
+
+using namespace std::chrono_literals;
+
+class OperatorsWindow : public TwoMonitors {
+  protected:
+    /// Whether anything but the bare desktop is there.
+    bool is_seen() {
+        const Image8 screen = desktop->read(desktop->operator_area());
+        return std::any_of(
+            screen.values.begin(), screen.values.end(), [](auto value) { return value > 60; });
+    }
+    ProgramRun start_again() {
+        return run_program(LIVERY_PROGRAM,
+                           {"desktop", "--session", studio->session_file().string()});
+    }
+};
+
+TEST_F(OperatorsWindow, ComesBackWhenTheProgramIsStartedAgain) {
+    DesktopOptions options;
+    options.window_manager = true;
+    start(options);
+    ASSERT_TRUE(wait_until([&] { return is_seen(); }, 60s));
+    desktop->minimise_active_window();
+    ASSERT_TRUE(wait_until([&] { return !is_seen(); }, 60s));
+    const ProgramRun second = start_again();
+    EXPECT_EQ(second.exit_code, 0) << second.err;
+    EXPECT_TRUE(wait_until([&] { return is_seen(); }, 60s));
+    // It has the keyboard, too.
+    desktop->press_key("F6");
+    program->wait_for_state("view", "eye");
+    EXPECT_EQ(program->quit(), 0);
+}
+
+TEST_F(OperatorsWindow, NoButtonsOverlapInItsLeastSize) {
+    start();
+    studio->program.reset();
+    StudioStart how;
+    how.session = studio->session_file();
+    how.size_px = kLeastSize_px;
+    studio->program = std::make_unique<StudioProgram>(*desktop, how);
+    program = studio->program.get();
+    pick_projector();
+    for (const char* tab : {"Paints", "Paint", "Artwork", "Light", "Calibrate", "Frame"}) {
+        program->click(std::string("tab:") + tab);
+        program->move_away();
+        sleep_ms(300);
+        // What lies in another region of the window, or in the same row of one.
+        std::vector<std::pair<std::string, Rectangle>> buttons;
+        for (const auto& [name, place] : program->items()) {
+            const bool is_region = name == "stage" || name == "swatches" || name == "wipe-line" ||
+                                   name.starts_with("param:") || name.starts_with("light-pad");
+            if (!is_region) buttons.emplace_back(name, place);
+        }
+        for (std::size_t i = 0; i < buttons.size(); ++i) {
+            for (std::size_t j = i + 1; j < buttons.size(); ++j) {
+                const Rectangle &a = buttons[i].second, &b = buttons[j].second;
+                const int across = std::min(a.x + a.width, b.x + b.width) - std::max(a.x, b.x);
+                const int down = std::min(a.y + a.height, b.y + b.height) - std::max(a.y, b.y);
+                // Neighbours in a list touch by a pixel that both were rounded to.
+                EXPECT_FALSE(across > 1 && down > 1)
+                    << tab << ": " << buttons[i].first << " and " << buttons[j].first;
+            }
+        }
+    }
+    EXPECT_EQ(program->quit(), 0);
+}
+
+TEST_F(OperatorsWindow, IsWorkedWithTheKeysAlone) {
+    use_shared();
+    const auto tab_to = [&](const std::string& name) {
+        for (int k = 0; k < 200 && program->state("focused") != name; ++k) {
+            const auto frame = program->state("frame");
+            desktop->press_key("Tab");
+            wait_until([&] { return program->state("frame") != frame; });
+            sleep_ms(60);
+        }
+        return program->state("focused") == name;
+    };
+    ASSERT_TRUE(tab_to("part:body"));
+    desktop->press_key("Return");
+    desktop->press_key("ctrl+Tab");
+    program->wait_for_state("open_tab", 1);
+    desktop->press_key("ctrl+shift+Tab");
+    program->wait_for_state("open_tab", 0);
+    const auto wears = drive_with_body("solid red");
+    desktop->press_key("ctrl+k");
+    desktop->type("solid red");
+    desktop->press_key("Return");
+    EXPECT_TRUE(projector_shows(wears));
+    desktop->press_key("Escape");
+    ASSERT_TRUE(tab_to("tab:Light"));
+    desktop->press_key("Return");
+    program->wait_for_state("open_tab", 3);
+    ASSERT_TRUE(tab_to("tab:Paints"));
+    desktop->press_key("Return");
+    program->wait_for_state("open_tab", 0);
+}
+
+}  // namespace
+}  // namespace livery
