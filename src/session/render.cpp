@@ -122,17 +122,22 @@ void write_frame(const std::filesystem::path& file, const RenderedFrame& frame, 
         write_png(file, frame.drive);
         return;
     }
+    // Over black: what a pixel that the product half covers sends, and OpenEXR's associated alpha
+    ImageF over_black = frame.radiance_working;
+    for (std::size_t i = 0; i < over_black.pixel_count(); ++i) {
+        float* v = over_black.values.data() + 4 * i;
+        for (int c = 0; c < 3; ++c) v[c] *= v[3];
+    }
     if (suffix == ".png") {
-        write_png(file, srgb_from_working(frame.radiance_working));
+        write_png(file, srgb_from_working(over_black));
         return;
     }
-    ImageF rec709 = frame.radiance_working;
-    for (std::size_t i = 0; i < rec709.pixel_count(); ++i) {
-        float* v = rec709.values.data() + 4 * i;
+    for (std::size_t i = 0; i < over_black.pixel_count(); ++i) {
+        float* v = over_black.values.data() + 4 * i;
         const glm::dvec3 rgb = rec709_from_working() * glm::dvec3(v[0], v[1], v[2]);
         for (int c = 0; c < 3; ++c) v[c] = static_cast<float>(rgb[c]);
     }
-    write_exr(file, rec709, {"R", "G", "B", "A"});
+    write_exr(file, over_black, {"R", "G", "B", "A"});
 }
 
 }  // namespace livery

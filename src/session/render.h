@@ -53,8 +53,9 @@ std::optional<View> projector_view_of(const std::filesystem::path& calibration_f
 /// write_frame does not write, and for a folder that is not there.
 void check_frame_file(const std::filesystem::path& file, FrameStage stage);
 
-/// EXR: linear Rec.709 with coverage in A. PNG: sRGB for looking at, or device values when the
-/// frame reached the projector stage. Throws FileError for another suffix.
+/// EXR: linear Rec.709, multiplied by the coverage in A as OpenEXR has it. PNG: sRGB over black for
+/// looking at, or device values when the frame reached the projector stage. Throws FileError for
+/// another suffix.
 void write_frame(const std::filesystem::path& file, const RenderedFrame& frame, FrameStage stage);
 
 }  // namespace livery

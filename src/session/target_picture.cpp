@@ -26,10 +26,14 @@ ImageF read_target_picture(const std::filesystem::path& file, int width, int hei
     const auto channels = static_cast<std::size_t>(picture.image.channels);
     for (std::size_t i = 0; i < wanted.pixel_count(); ++i) {
         const float* v = picture.image.values.data() + channels * i;
-        const glm::dvec3 rgb = working_from_rec709() * glm::dvec3(v[0], v[1], v[2]);
+        glm::dvec3 rgb = working_from_rec709() * glm::dvec3(v[0], v[1], v[2]);
         float* out = wanted.values.data() + 4 * i;
+        if (channels > 3) {
+            out[3] = v[3];
+            // The colour of what covers the pixel; nothing does where A is 0
+            if (v[3] > 0.0f) rgb /= static_cast<double>(v[3]);
+        }
         for (int c = 0; c < 3; ++c) out[c] = static_cast<float>(rgb[c]);
-        if (channels > 3) out[3] = v[3];
     }
     return wanted;
 }

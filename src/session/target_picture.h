@@ -7,8 +7,9 @@
 
 namespace livery {
 
-/// Linear Rec.709 floats -> working space with coverage (1 where the file has no A). NaN and Inf
-/// stay: the compensation counts them as invalid. Throws FileError (size, integers, channels).
+/// Linear Rec.709 floats -> working space with coverage: 1 where the file has no A, by which colour
+/// is multiplied where it has one (associated alpha). NaN and Inf stay: the compensation counts
+/// them as invalid. Throws FileError (size, integers, channels).
 ImageF read_target_picture(const std::filesystem::path& file, int width, int height);
 
 }  // namespace livery

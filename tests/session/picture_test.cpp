@@ -5,6 +5,10 @@
 #include <gtest/gtest.h>
 
 #include "core/colour.h"
+#include "core/image_io.h"
+#include "session/render.h"
+#include "session/target_picture.h"
+#include "support/temporary_folder.h"
 
 namespace livery {
 namespace {
@@ -48,6 +52,48 @@ TEST(Picture, DifferenceMapGetsLighterAndGreysWhatIsMissing) {
     }
     const ImageF missing(1, 1, 1, std::numeric_limits<float>::quiet_NaN());
     EXPECT_EQ(difference_map(missing, 5.0).at(0, 0, 0), 96);
+}
+
+/// A covered pixel, one that the product covers half and one by a sixteenth, of the same colour.
+RenderedFrame silhouette() {
+    RenderedFrame frame;
+    frame.radiance_working = ImageF(4, 1, 4, 0.0f);
+    const float coverage[] = {1.0f, 0.5f, 0.0625f, 0.0f};
+    for (int x = 0; x < 4; ++x) {
+        for (int c = 0; c < 3; ++c) frame.radiance_working.at(x, 0, c) = x < 3 ? 0.64f : 0.0f;
+        frame.radiance_working.at(x, 0, 3) = coverage[x];
+    }
+    return frame;
+}
+
+TEST(Picture, ExrIsMultipliedByItsCoverage) {
+    const TemporaryFolder folder;
+    const auto file = folder.path() / "silhouette.exr";
+    write_frame(file, silhouette(), FrameStage::radiance);
+    const ImageF stored = read_image(file).image;
+    const float expected[] = {0.64f, 0.32f, 0.04f, 0.0f};
+    for (int x = 0; x < 4; ++x) {
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(stored.at(x, 0, c), expected[x], 1e-6f) << x;
+    }
+    EXPECT_EQ(stored.at(1, 0, 3), 0.5f);
+    // What a target asks of a pixel is the colour that covers it, as it was before it was written.
+    const ImageF wanted = read_target_picture(file, 4, 1);
+    for (int x = 0; x < 3; ++x) {
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(wanted.at(x, 0, c), 0.64f, 1e-5f) << x;
+    }
+    EXPECT_EQ(wanted.at(2, 0, 3), 0.0625f);
+    EXPECT_EQ(wanted.at(3, 0, 0), 0.0f);
+}
+
+TEST(Picture, PngHasSmoothSilhouettes) {
+    const TemporaryFolder folder;
+    const auto file = folder.path() / "silhouette.png";
+    write_frame(file, silhouette(), FrameStage::radiance);
+    const ImageF stored = read_image(file).image;
+    const double expected[] = {0.64, 0.32, 0.04, 0.0};
+    for (int x = 0; x < 4; ++x) {
+        EXPECT_NEAR(stored.at(x, 0, 1), 255.0 * srgb_encode(expected[x]), 0.51) << x;
+    }
 }
 
 }  // namespace
