@@ -79,9 +79,13 @@ TEST_P(ProjectorScreenTest, BlackComesBeforeEverythingElse) {
     screen.use_monitor(projector);
     screen.present(stage.plain(1, kMagenta));
     ASSERT_TRUE(stage.projector_becomes(kMagenta));
+    // A picture is on the screen before it is counted, and until then the number is 0, as it is
+    // under the black: only a count that was waited for can be held against a later one.
+    ASSERT_TRUE(wait_until([&] { return screen.shown().number == 1; }));
     screen.set_black(true);
     EXPECT_TRUE(screen.is_black());
     ASSERT_TRUE(stage.projector_becomes(kBlack));
+    // Told by the thread that draws: whatever it had begun before is counted.
     EXPECT_TRUE(wait_until([&] { return screen.shown().number == 0; }));
     const auto frames = screen.shown().frames;
     screen.present(stage.plain(2, kGreen));  // under the black
