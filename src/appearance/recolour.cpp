@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "appearance/bsdf.h"
+#include "appearance/colour_record.h"
 #include "appearance/directions.h"
 #include "appearance/model_table.h"
 #include "appearance/paint_figures.h"
@@ -164,14 +165,10 @@ Recoloured with_colour(const Material& finish, glm::dvec3 lab10) {
     const glm::dvec3 lightest = lightest_tint(paint);
     result.material = material_with(finish, paint, tint_for(paint, lightest, wanted));
     result.material.file.clear();
-    result.material.provenance = fmt::format(
-        "designed: the finish of '{}' in L*a*b* {:.1f}, {:.1f}, {:.1f} (D65, 10 "
-        "degrees)",
-        finish.name,
-        lab10.x,
-        lab10.y,
-        lab10.z);
-    result.de00 = ciede2000(lab10, five_angle_lab(result.material)[kFaceAngle]);
+    const glm::dvec3 came = five_angle_lab(result.material)[kFaceAngle];
+    result.de00 = ciede2000(lab10, came);
+    result.material.provenance = fmt::format("designed: the finish of '{}'", finish.name) +
+                                 text_of(ColourRecord{lab10, came, result.de00});
     result.reached = result.de00 <= kColourReached;
     if (!result.reached) result.why_not = why_not(paint, lightest, wanted, finish.name);
     return result;

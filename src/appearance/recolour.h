@@ -10,7 +10,8 @@
 namespace livery {
 
 struct Recoloured {
-    Material material;     ///< named as the finish; its provenance says what was asked for
+    Material
+        material;  ///< named as the finish; its provenance says what was asked for and what came
     double de00 = 0.0;     ///< from the colour asked for to its own, at 45 degrees
     bool reached = false;  ///< within kColourReached
     std::string why_not;   ///< when not reached: "too light for this finish, ..."

@@ -4,8 +4,10 @@
 
 #include <fmt/format.h>
 
+#include "appearance/colour_record.h"
 #include "appearance/material_library.h"
 #include "appearance/measured_paint.h"
+#include "appearance/parameter_table.h"
 #include "core/error.h"
 #include "session/naming.h"
 
@@ -27,6 +29,13 @@ std::ptrdiff_t times_used(const Document& document, const std::string& paint) {
         for_each_paint(look, [&](const std::string& name) { count += name == paint ? 1 : 0; });
     }
     return count;
+}
+
+/// Of a colour that this edit asked for, with what came of it. One that an earlier edit asked for
+/// counts only until the paint is changed again.
+std::string colour_asked_by(const Material& edited, const std::string& provenance_before) {
+    const auto asked = colour_record(edited.provenance);
+    return asked && edited.provenance != provenance_before ? text_of(*asked) : "";
 }
 
 /// What was edited is no longer what was measured or designed under that name.
@@ -85,12 +94,19 @@ void edit_paint(Document& document, const EditPaint& command) {
             return !same_paint_name(own->name, name) && taken(name);
         });
         worn->second = edited.name;
+        if (const std::string asked = colour_asked_by(edited, own->provenance); !asked.empty()) {
+            edited.provenance = without_colour_record(own->provenance) + asked;
+        } else if (!same_reflectance(edited, *own)) {
+            edited.provenance = without_colour_record(edited.provenance);
+        }
         *own = std::move(edited);
         return;
     }
     const std::string from = edited.name;
     edited.name = free_name(from, taken);
-    edited.provenance = provenance_of_edit(from);
+    const Material* before = own != document.paints.end() ? &*own : library.find(from);
+    edited.provenance =
+        provenance_of_edit(from) + colour_asked_by(edited, before ? before->provenance : "");
     parts[command.part] = edited.name;
     document.paints.push_back(std::move(edited));
 }

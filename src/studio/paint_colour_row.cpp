@@ -6,6 +6,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "appearance/colour_record.h"
 #include "appearance/parameter_table.h"
 #include "core/error.h"
 #include "studio/file_dialog.h"
@@ -70,6 +71,29 @@ void draw_typed(Studio& studio, const Material& paint) {
     const Recoloured& made = recoloured(state, paint, *lab);
     edit_with_last_item(studio, edit_of(studio, made));
     if (!made.reached) warning_text(made.why_not);
+}
+
+std::string lab_text(const glm::dvec3& lab) {
+    return fmt::format("{:.0f}, {:.0f}, {:.0f}", lab.x, lab.y, lab.z);
+}
+
+/// As long as the paint is what came of it: a colour that was missed is not forgotten.
+void draw_asked_for(const Material& paint) {
+    const auto asked = colour_record(paint.provenance);
+    if (!asked) return;
+    if (asked->de00 <= kColourReached) {
+        dim_text(fmt::format("Asked for L*a*b* {}: CIEDE2000 {:.1f} from it.",
+                             lab_text(asked->asked_lab10),
+                             asked->de00));
+    } else {
+        warning_text(fmt::format(
+            "Not the colour that was asked for: L*a*b* {} became {}, CIEDE2000 {:.1f} from it. "
+            "This finish comes no nearer.",
+            lab_text(asked->asked_lab10),
+            lab_text(asked->came_lab10),
+            asked->de00));
+    }
+    name_last_item("paint-colour-asked");
 }
 
 void ask_for_chips(Studio& studio) {
@@ -137,6 +161,7 @@ void draw_chips(Studio& studio, const Material& paint) {
 void draw_paint_colour_row(Studio& studio, const Material& paint) {
     if (paint.model == ReflectanceModel::measured) return;
     draw_typed(studio, paint);
+    if (!studio.panels.paint.colour.typing) draw_asked_for(paint);
     draw_chips(studio, paint);
 }
 

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "appearance/colour_record.h"
 #include "appearance/material_library.h"
 #include "appearance/model_table.h"
 #include "appearance/paint_bsdf.h"
@@ -42,9 +43,8 @@ TEST(Recolour, KeepsTheFinish) {
     EXPECT_EQ(made.material.family, silver.family);
     EXPECT_EQ(made.material.name, silver.name);
     EXPECT_TRUE(made.material.file.empty());
-    EXPECT_EQ(made.material.provenance,
-              "designed: the finish of 'silver metallic' in L*a*b* 30.0, 5.0, -30.0 (D65, 10 "
-              "degrees)");
+    EXPECT_EQ(without_colour_record(made.material.provenance),
+              "designed: the finish of 'silver metallic'");
     // Flakes and pigment keep their share of each other, so it flops as before.
     EXPECT_NEAR(*paint_figures(made.material).flop / *paint_figures(silver).flop, 1.0, 0.25);
     EXPECT_NEAR(specular_gloss(made.material, 60.0) / specular_gloss(silver, 60.0), 1.0, 0.25);
@@ -78,6 +78,23 @@ TEST(Recolour, SaysWhyNot) {
     EXPECT_NE(tried("chrome trim", "lab:60,0,0").find("too light"), std::string::npos);
     EXPECT_NE(tried("solid red", "lab:50,-150,20").find("more saturated"), std::string::npos);
     EXPECT_NE(tried("matte grey", "lab:1,0,0").find("too dark"), std::string::npos);
+}
+
+TEST(Recolour, RecordsWhatWasAskedWhatCameAndHowFarApart) {
+    const glm::dvec3 asked{90.0, -60.0, 80.0};
+    const Recoloured missed = with_colour(find_material("silver metallic"), asked);
+    ASSERT_FALSE(missed.reached);
+    const auto record = colour_record(missed.material.provenance);
+    ASSERT_TRUE(record) << missed.material.provenance;
+    EXPECT_EQ(record->asked_lab10, asked);
+    // Written with one decimal, the difference with two.
+    const glm::dvec3 came = five_angle_lab(missed.material)[kFaceAngle];
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(record->came_lab10[c], came[c], 0.051);
+    EXPECT_NEAR(record->de00, ciede2000(asked, came), 0.0051);
+    EXPECT_GT(record->de00, 5.0);
+    EXPECT_FALSE(colour_record("designed: by hand"));
+    EXPECT_FALSE(colour_record(missed.material.provenance + " and more"));
+    EXPECT_EQ(without_colour_record("designed: by hand"), "designed: by hand");
 }
 
 TEST(Recolour, RefusesWhatHasNoColour) {

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include "appearance/colour_record.h"
+#include "appearance/recolour.h"
 #include "session/some_commands.h"
 #include "support/file_error.h"
 #include "support/message_of.h"
@@ -169,6 +171,35 @@ TEST(EditPaint, ChangesInPlaceWhatNothingElseWears) {
     changed.name = "solid blue";
     document = applied(document, EditPaint{4, "body", changed});
     EXPECT_EQ(worn(document, 4, "body"), "solid blue 2") << "never the library's name";
+}
+
+TEST(EditPaint, RecordsAColourThatWasAskedForUntilThePaintIsChangedAgain) {
+    const glm::dvec3 asked{90.0, -60.0, 80.0};
+    const auto in_colour = [&](const Document& document, const std::string& paint) {
+        Material made = with_colour(find_paint(document, paint), asked).material;
+        made.name = paint;
+        return applied(document, EditPaint{4, "body", made});
+    };
+    const auto recorded = [](const Document& document) {
+        return colour_record(document.paints.at(0).provenance);
+    };
+    // A paint of the library, then one of the session's own.
+    Document document = in_colour(car(), "silver metallic");
+    ASSERT_TRUE(recorded(document)) << document.paints.at(0).provenance;
+    EXPECT_EQ(recorded(document)->asked_lab10, asked);
+    EXPECT_GT(recorded(document)->de00, 1.0);
+    EXPECT_EQ(without_colour_record(document.paints[0].provenance),
+              "edited in a session, from silver metallic");
+    Material changed = document.paints[0];
+    changed.coat_alpha = 0.3;
+    const Document later = applied(document, EditPaint{4, "body", changed});
+    EXPECT_FALSE(recorded(later)) << later.paints[0].provenance;
+    document = in_colour(later, later.paints[0].name);
+    ASSERT_TRUE(recorded(document)) << document.paints.at(0).provenance;
+    EXPECT_EQ(without_colour_record(document.paints[0].provenance),
+              "edited in a session, from silver metallic");
+    // It is saved with the session.
+    EXPECT_TRUE(recorded(parse_document(text_of(document), "test")));
 }
 
 TEST(EditPaint, ForksWhatAnotherPartOrLookWearsAsWell) {
