@@ -36,6 +36,11 @@ bool is_relief(const Artwork& artwork) {
     return artwork.shape == ArtworkShape::picture && artwork.use == PictureUse::relief;
 }
 
+bool reads_colours(const Artwork& artwork) {
+    return artwork.shape == ArtworkShape::picture &&
+           (artwork.use == PictureUse::colours || artwork.use == PictureUse::tint);
+}
+
 void check_artwork(const Artwork& artwork) {
     check_between(artwork.size_mm, 0.1, 1e5, "size_mm");
     check_between(artwork.share, 0.0, 1.0, "share");

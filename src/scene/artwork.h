@@ -22,10 +22,11 @@ enum class ArtworkShape {
 
 /// What a picture says.
 enum class PictureUse {
-    cover,      ///< its alpha, or without alpha its lightness, says how much is covered
-    colours,    ///< the same of its alpha; its colours are the paint's own
+    cover,    ///< its alpha, or without alpha its lightness, says how much is covered
+    colours,  ///< the same of its alpha; printed in its colours: opaque ink under the paint's coat
     roughness,  ///< its values squared scale the paint's slope parameters, as glTF has it
-    relief      ///< normals of the surface: red to the right, green up, blue out, as glTF has them
+    relief,     ///< normals of the surface: red to the right, green up, blue out, as glTF has them
+    tint        ///< as `colours`, but of the paint's own pigment or metal: its flakes stay
 };
 
 /// How an artwork's plane, s to the right and t up in mm, lies on the product: projected along a
@@ -61,10 +62,13 @@ struct Artwork {
 
 /// As files and the command line name them, in the order of the enumerations.
 inline constexpr std::array kArtworkShapes{"half", "stripes", "checks", "dots", "picture"};
-inline constexpr std::array kPictureUses{"cover", "colours", "roughness", "relief"};
+inline constexpr std::array kPictureUses{"cover", "colours", "roughness", "relief", "tint"};
 
 /// A relief tilts what lies beneath it on its part and has no paint; a part has one at most.
 bool is_relief(const Artwork& artwork);
+
+/// Whether colours are read from its picture.
+bool reads_colours(const Artwork& artwork);
 
 /// Throws std::invalid_argument that names the field and the value: a size out of range, a
 /// direction without a length, up along it, a picture without a file, too many.

@@ -20,6 +20,10 @@ namespace {
 /// The reflectance that a metal's dark end keeps, so that it stays a metal's: between the two ends
 /// its light is a straight line.
 constexpr double kDarkMetal = 0.1;
+/// Of ink's binder, of index 1.5.
+constexpr double kBinderReflectance = 0.04;
+/// Above it a reflectance is a metal's or a flake's.
+constexpr double kMostOfABinder = 0.12;
 constexpr std::size_t kResponses = 257;
 
 bool has(const Material& material, const char* parameter) {
@@ -37,6 +41,29 @@ Material with_pigment(Material material, const glm::dvec3& rec709) {
     } else {
         material.diffuse = rec709;
     }
+    return material;
+}
+
+void hide_metal(glm::dvec3& reflectance) {
+    if (std::max({reflectance.x, reflectance.y, reflectance.z}) > kMostOfABinder) {
+        reflectance = glm::dvec3(kBinderReflectance);
+    }
+}
+
+/// White opaque ink in the paint's gloss. Under a coat it lies on the flakes and on what tints the
+/// coat, and its binder has the coat's index; on bare metal it is as glossy as the metal.
+Material ink_on(Material material) {
+    if (has(material, "coat_f0")) {
+        material.name = "ink under the coat of " + material.name;
+        material.model = ReflectanceModel::clearcoat;
+        material.coat_transmittance = glm::dvec3(1.0);
+        material.f0 = glm::dvec3(0.0);
+    } else {
+        material.name = "ink on " + material.name;
+        if (has(material, "f0")) hide_metal(material.f0);
+        if (has(material, "specular")) hide_metal(material.specular);
+    }
+    material.diffuse = glm::dvec3(1.0);
     return material;
 }
 
@@ -75,7 +102,7 @@ void check_paint(const Artwork& artwork, const Material& material) {
     if (artwork.shape != ArtworkShape::picture) return;
     const bool has_gloss =
         has(material, "alpha") || has(material, "coat_alpha") || has(material, "exponent");
-    if (artwork.use == PictureUse::colours && !has(material, "diffuse") && !has(material, "f0")) {
+    if (reads_colours(artwork) && !has(material, "diffuse") && !has(material, "f0")) {
         throw std::invalid_argument(
             fmt::format("{} is {}: a picture cannot give it colours; expected a paint with a "
                         "colour of its own, or the use \"cover\"",
@@ -113,11 +140,12 @@ PartArtwork make_part_artwork(std::size_t part,
     check_artwork(artwork);
     check_paint(artwork, material);
     PartArtwork result{part, artwork, material, std::move(picture), {}};
-    if (artwork.shape != ArtworkShape::picture || artwork.use != PictureUse::colours) return result;
-    if (is_metal(material)) {
+    if (!reads_colours(artwork)) return result;
+    if (artwork.use == PictureUse::colours) result.material = ink_on(material);
+    if (is_metal(result.material)) {
         result.pigment_response = {0.0f, 1.0f};
     } else {
-        result.pigment_response = pigment_response(material);
+        result.pigment_response = pigment_response(result.material);
     }
     return result;
 }
@@ -127,7 +155,7 @@ std::vector<ArtworkCoat> coats_of(const PartArtwork& artwork) {
     const bool picture = artwork.artwork.shape == ArtworkShape::picture;
     if (!picture || artwork.artwork.use == PictureUse::cover) return {{material}};
     std::vector<ArtworkCoat> coats;
-    if (artwork.artwork.use == PictureUse::colours) {
+    if (reads_colours(artwork.artwork)) {
         const double dark = is_metal(material) ? kDarkMetal : 0.0;
         const auto scale = static_cast<float>(1.0 / (1.0 - dark));
         const auto offset = static_cast<float>(dark / (1.0 - dark));
@@ -182,6 +210,7 @@ Material material_at(const PartArtwork& artwork, const glm::vec4& rgba) {
         case PictureUse::relief:
             return artwork.material;
         case PictureUse::colours:
+        case PictureUse::tint:
             if (!artwork.picture->linear) {
                 for (int c = 0; c < 3; ++c) colour[c] = srgb_decode(colour[c]);
             }

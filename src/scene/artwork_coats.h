@@ -18,7 +18,7 @@ namespace livery {
 struct PartArtwork {
     std::size_t part = 0;
     Artwork artwork;
-    Material material;  ///< what it is painted with
+    Material material;  ///< what it is painted with; of a print: white ink in that paint's gloss
     std::shared_ptr<const ArtworkPicture> picture;
     /// For a picture's colours: what pigments of reflectance 0 to 1 return, of what a white one
     /// does. The coat's inner reflections darken middle tones: taken before the mean, as they are.

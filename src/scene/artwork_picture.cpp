@@ -162,7 +162,8 @@ std::vector<double> roughness_steps(const ArtworkPicture& picture) {
 ImageF picture_layers(const ArtworkPicture& picture,
                       PictureUse use,
                       const std::vector<float>& pigment_response) {
-    check_argument(use != PictureUse::colours || pigment_response.size() >= 2,
+    const bool colours = use == PictureUse::colours || use == PictureUse::tint;
+    check_argument(!colours || pigment_response.size() >= 2,
                    "a picture's colours need a pigment's response");
     const std::vector<double> steps =
         use == PictureUse::roughness ? roughness_steps(picture) : std::vector<double>(1, 1.0);
@@ -178,6 +179,7 @@ ImageF picture_layers(const ArtworkPicture& picture,
                     std::fill(to, to + 4, picture_cover(picture, rgba));
                     break;
                 case PictureUse::colours:
+                case PictureUse::tint:
                     fill_colours(picture, pigment_response, working, rgba, to);
                     break;
                 case PictureUse::relief: {

@@ -129,10 +129,15 @@ Words words_of(PictureUse use) {
               {"Stencil",
                "The picture's alpha, or its lightness if it has none, says how much of the paint "
                "there is."}},
-        Known{"colours",
-              {"Its own colours",
-               "Printed in the picture's colours, with the gloss of the paint; its alpha cuts it "
-               "out."}},
+        Known{
+            "colours",
+            {"Its own colours",
+             "Printed in the picture's colours: opaque ink under the paint's clear coat, as glossy "
+             "as the paint. Its alpha cuts it out."}},
+        Known{"tint",
+              {"Tint of the paint",
+               "The paint itself takes the picture's colours: flakes and metal stay and shine "
+               "through, so that colours come out as theirs mixed with the paint's."}},
         Known{"roughness",
               {"Map of roughness",
                "Only the gloss changes: white keeps the paint's, darker is smoother."}},

@@ -76,9 +76,12 @@ std::vector<Case> cases(const std::filesystem::path& picture) {
         const Material& material = use == PictureUse::roughness ? glossy : coated;
         list.push_back({kPictureUses[static_cast<std::size_t>(use)], artwork, material});
     }
-    list.push_back({"colours on a metal", list[6].artwork, glossy});
+    list.push_back({"tint of a metal", list[6].artwork, glossy});
+    list.back().artwork.use = PictureUse::tint;
     list.back().material.diffuse = glm::dvec3(0.0);
     list.back().material.f0 = {0.9, 0.8, 0.6};
+    list.push_back({"colours on flakes", list[6].artwork, coated});
+    list.back().material.f0 = {0.9, 0.7, 0.3};
     list.push_back({"colours by uv, repeated", list[6].artwork, rough});
     list.back().artwork.place = {};
     list.back().artwork.place.by_uv = true;

@@ -5,7 +5,10 @@
 #include <gtest/gtest.h>
 
 #include "appearance/paint_bsdf.h"
+#include "appearance/paint_figures.h"
+#include "core/colour.h"
 #include "core/image_io.h"
+#include "core/paths.h"
 #include "scene/artwork_relief.h"
 #include "scene/scene.h"
 #include "support/file_error.h"
@@ -108,7 +111,55 @@ TEST(ArtworkCoats, ColoursOfWholeNumbersAreSrgb) {
     EXPECT_NEAR(material_at(artwork, {0.50196f, 0.50196f, 0.50196f, 1.0f}).diffuse.x, kGrey, 1e-4f);
 }
 
-TEST(ArtworkCoats, AMetalTakesItsColourFromItsReflectance) {
+/// Seen from straight above in light from 45 degrees.
+glm::dvec3 lab_at_45(const Material& material) { return five_angle_lab(material)[kFaceAngle]; }
+
+TEST(ArtworkCoats, APrintIsOpaqueInkWhateverThePaintIsMadeOf) {
+    const TemporaryFolder folder;
+    const auto picture = two_columns(folder);
+    const glm::vec4 yellow{0.8f, 0.55f, 0.01f, 1.0f};
+    const auto printed = [&](const Material& paint) {
+        return material_at(
+            make_part_artwork(0, picture_used_as(PictureUse::colours), paint, picture), yellow);
+    };
+    const auto paint_named = [](const std::string& name) {
+        return read_material_file(shipped_path("materials/" + name + ".json"));
+    };
+    for (const char* name : {"blue-metallic",
+                             "silver-metallic",
+                             "gold-metallic",
+                             "dark-red-metallic",
+                             "black-rose-pearl",
+                             "two-coat-silver"}) {
+        const Material paint = paint_named(name);
+        // The same as on a white paint under such a clear coat: nobody could tell them apart.
+        Material white = paint_named("solid-white");
+        white.coat_alpha = paint.coat_alpha;
+        white.coat_f0 = paint.coat_f0;
+        const glm::dvec3 lab = lab_at_45(printed(paint));
+        EXPECT_LT(ciede2000(lab, lab_at_45(printed(white))), 0.01) << name;
+        EXPECT_GT(lab.z, 45.0) << name << " is yellow";
+    }
+    // Bare metal is covered too: lighter and yellower than the metal.
+    for (const char* name : {"polished-brass", "brushed-steel", "chrome-steel"}) {
+        const Material metal = paint_named(name);
+        const glm::dvec3 lab = lab_at_45(printed(metal));
+        EXPECT_GT(lab.z, 45.0) << name;
+        EXPECT_GT(lab.x, lab_at_45(metal).x) << name;
+    }
+}
+
+TEST(ArtworkCoats, ATintLeavesFlakesAndMetal) {
+    const TemporaryFolder folder;
+    const auto picture = two_columns(folder);
+    const Material flakes = read_material_file(shipped_path("materials/silver-metallic.json"));
+    const PartArtwork tint =
+        make_part_artwork(0, picture_used_as(PictureUse::tint), flakes, picture);
+    EXPECT_EQ(material_at(tint, glm::vec4(0.5f)).f0, flakes.f0);
+    EXPECT_EQ(material_at(tint, glm::vec4(0.5f)).model, flakes.model);
+}
+
+TEST(ArtworkCoats, ATintedMetalTakesItsColourFromItsReflectance) {
     const TemporaryFolder folder;
     const auto picture = two_columns(folder);
     Material metal;
@@ -116,7 +167,7 @@ TEST(ArtworkCoats, AMetalTakesItsColourFromItsReflectance) {
     metal.diffuse = glm::dvec3(0.0);
     metal.f0 = {0.9, 0.8, 0.5};
     const PartArtwork artwork =
-        make_part_artwork(0, picture_used_as(PictureUse::colours), metal, picture);
+        make_part_artwork(0, picture_used_as(PictureUse::tint), metal, picture);
     const auto coats = coats_of(artwork);
     // Whatever the colour, the two ends' weights make it
     for (const double colour : {0.0, 0.3, 1.0}) {
