@@ -71,7 +71,7 @@ Outcome told(const Path& file, const Summary& summary) {
     outcome.text += fmt::format("undo     {}\nredo     {}\n",
                                 steps(summary.position, summary.undo_label),
                                 steps(summary.last - summary.position, summary.redo_label));
-    tell_notes(paint_problems(document), outcome);
+    tell_notes(drawing_problems(document), outcome);
     return outcome;
 }
 
@@ -279,7 +279,7 @@ Command picture_command() {
             arguments->stage == "projector" ? FrameStage::projector : FrameStage::radiance;
         check_frame_file(arguments->out, request.stage);
         const Document document = read_summary(arguments->file).document;
-        if (const auto problems = paint_problems(document); !problems.empty()) {
+        if (const auto problems = drawing_problems(document); !problems.empty()) {
             throw Refused(problems.front(), "put the file back, or choose another paint");
         }
         const auto setup = setup_of(document);

@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <map>
+#include <mutex>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -86,6 +89,43 @@ Environment load_environment(const EnvironmentReference& reference,
         }
     }
     return environment;
+}
+
+std::optional<std::string> environment_problem(const EnvironmentReference& reference) {
+    struct Known {
+        std::filesystem::file_time_type changed{};
+        std::uintmax_t bytes = 0;
+        std::optional<std::string> problem;
+    };
+    static std::mutex mutex;
+    static std::map<std::filesystem::path, Known> known;
+    if (reference.file.empty()) return std::nullopt;
+    Known now;
+    std::filesystem::path file;
+    try {
+        file = find_environment_map(reference.file, {});
+    } catch (const FileError& error) {
+        return error.what();
+    }
+    std::error_code error;
+    now.changed = std::filesystem::last_write_time(file, error);
+    now.bytes = std::filesystem::file_size(file, error);
+    {
+        const std::lock_guard lock(mutex);
+        const auto found = known.find(file);
+        if (found != known.end() && found->second.changed == now.changed &&
+            found->second.bytes == now.bytes) {
+            return found->second.problem;
+        }
+    }
+    try {
+        load_environment({file.string(), 0.0, 1.0}, {});
+    } catch (const std::exception& refusal) {
+        now.problem = refusal.what();
+    }
+    const std::lock_guard lock(mutex);
+    known[file] = now;
+    return now.problem;
 }
 
 glm::dvec2 uv_from_direction(const Environment& environment, const glm::dvec3& direction) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -76,6 +77,10 @@ std::filesystem::path find_environment_map(const std::string& name,
 /// name, no environment. Throws FileError.
 Environment load_environment(const EnvironmentReference& reference,
                              const std::filesystem::path& beside);
+
+/// Why load_environment() would refuse it now, as a session names files: by their whole paths or
+/// among the shipped data. Reads a map once, and again when its file was changed.
+std::optional<std::string> environment_problem(const EnvironmentReference& reference);
 
 /// Direction -> map coordinates in [0,1)^2 and back, rotation included.
 glm::dvec2 uv_from_direction(const Environment& environment, const glm::dvec3& direction);

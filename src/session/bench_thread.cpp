@@ -12,6 +12,7 @@
 #include "session/bench_picture.h"
 #include "session/calibration_reuse.h"
 #include "session/low_priority.h"
+#include "session/orbit.h"
 #include "session/projector_setup.h"
 #include "twin/bench.h"
 
@@ -24,6 +25,7 @@ constexpr int kMargin_px = 12;
 struct PhotographRequest {
     std::uint64_t number = 0;
     std::shared_ptr<const Image8> drive;
+    glm::dvec3 eye_mm{0.0};
     double design_white_y = 0.0;
 };
 
@@ -31,6 +33,13 @@ struct BenchChoice {
     std::string bench;
     std::shared_ptr<const Product> product;
     bool operator==(const BenchChoice&) const = default;
+};
+
+/// What a bench is traced for.
+struct Traced {
+    BenchChoice choice;
+    std::optional<glm::dvec3> eye_mm;  ///< its camera there; none: where the bench has it
+    bool operator==(const Traced&) const = default;
 };
 
 }  // namespace
@@ -50,7 +59,7 @@ struct BenchThread::Implementation {
     std::thread thread;
 
     // Of the thread only
-    BenchChoice traced;
+    Traced traced;
     std::unique_ptr<Bench> bench;
     PixelRectangle mockup;
 
@@ -58,7 +67,7 @@ struct BenchThread::Implementation {
     void photograph(const PhotographRequest& request, const BenchChoice& with);
     Image8 picture_of(const PhotographRequest& request, const BenchChoice& with);
     void calibrate(const BenchChoice& with);
-    void trace(const BenchChoice& with, const Progress& progress);
+    void trace(const Traced& with, const Progress& progress);
     Progress abandonable();
     template <typename Change>
     void publish(const Change& change);
@@ -79,18 +88,21 @@ Progress BenchThread::Implementation::abandonable() {
     return progress;
 }
 
-void BenchThread::Implementation::trace(const BenchChoice& with, const Progress& progress) {
+void BenchThread::Implementation::trace(const Traced& with, const Progress& progress) {
     if (bench && traced == with) return;
     bench.reset();
-    const BenchDescription description = read_bench_file(with.bench);
-    bench = std::make_unique<Bench>(description, with.product, progress);
-    mockup = bounds_in_view(with.product->mesh, description.camera.view, kMargin_px);
+    BenchDescription description = read_bench_file(with.choice.bench);
+    const Mesh& mesh = with.choice.product->mesh;
+    View& view = description.camera.view;
+    if (with.eye_mm) view = eye_view(*with.eye_mm, bounds_of(mesh), view.width, view.height);
+    bench = std::make_unique<Bench>(description, with.choice.product, progress);
+    mockup = bounds_in_view(mesh, view, kMargin_px);
     traced = with;
 }
 
 Image8 BenchThread::Implementation::picture_of(const PhotographRequest& request,
                                                const BenchChoice& with) {
-    trace(with, abandonable());
+    trace({with, request.eye_mm}, abandonable());
     const BenchPorts ports = bench->ports();
     ports.show(*request.drive);
     Photograph taken = ports.photograph(bench->default_exposure_s());
@@ -131,7 +143,7 @@ void BenchThread::Implementation::calibrate(const BenchChoice& with) {
     };
     Calibrating result;
     try {
-        trace(with, progress);
+        trace({with, std::nullopt}, progress);
         const std::string key = bench_key(with.bench, *with.product);
         const auto folder = calibrate_on_bench(*bench, *with.product, progress);
         note_bench(folder, key);
@@ -197,12 +209,14 @@ void BenchThread::use(const std::string& bench, std::shared_ptr<const Product> p
 
 void BenchThread::photograph(std::uint64_t number,
                              std::shared_ptr<const Image8> drive,
+                             const glm::dvec3& eye_mm,
                              double design_white_y) {
     check_argument(drive != nullptr, "a photograph of no picture");
     {
         const std::scoped_lock lock(implementation_->mutex);
         check_argument(implementation_->choice.product != nullptr, "a photograph on no bench");
-        implementation_->requested = PhotographRequest{number, std::move(drive), design_white_y};
+        implementation_->requested =
+            PhotographRequest{number, std::move(drive), eye_mm, design_white_y};
     }
     implementation_->wake.notify_all();
 }

@@ -8,6 +8,8 @@
 #include <optional>
 #include <string>
 
+#include <glm/vec3.hpp>
+
 #include "core/image.h"
 #include "scene/product.h"
 
@@ -31,11 +33,14 @@ class BenchThread {
     /// Which bench with which mock-up; traced when first needed. Another one than before ends a
     /// calibration that runs.
     void use(const std::string& bench, std::shared_ptr<const Product> product);
-    /// Shows a drive picture on the bench and photographs it; the newest wins, and waits while the
-    /// bench is being calibrated. `design_white_y` scales the photograph for looking at (0: by its
-    /// own brightest). Throws std::invalid_argument before use() and without a picture.
+    /// Shows a drive picture on the bench and photographs it from the audience's eye, where its
+    /// highlights belong; the bench's own camera stands elsewhere and calibrates. The newest wins,
+    /// and waits while the bench is being calibrated. `design_white_y` scales the photograph for
+    /// looking at (0: by its own brightest). Throws std::invalid_argument before use() and without
+    /// a picture.
     void photograph(std::uint64_t number,
                     std::shared_ptr<const Image8> drive,
+                    const glm::dvec3& eye_mm,
                     double design_white_y);
     std::shared_ptr<const BenchPhotograph> newest_photograph() const;  ///< null: none yet
 

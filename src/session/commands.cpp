@@ -81,10 +81,8 @@ EnvironmentReference checked(EnvironmentReference environment) {
     check_text(environment.file, "the environment's file");
     check_between(environment.rotation_rad, -100.0, 100.0, "the environment's rotation_rad");
     check_between(environment.scale, 0.0, 1e6, "the environment's scale");
-    try {
-        find_environment_map(environment.file, {});
-    } catch (const FileError& error) {
-        throw std::invalid_argument(error.what());
+    if (const auto problem = environment_problem(environment)) {
+        throw std::invalid_argument(*problem);
     }
     return environment;
 }

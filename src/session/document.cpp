@@ -1,12 +1,42 @@
 #include "session/document.h"
 
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+
 #include "appearance/material_library.h"
+#include "appearance/measured_paint.h"
 #include "core/error.h"
 #include "session/library.h"
 #include "session/naming.h"
 #include "twin/description.h"
 
 namespace livery {
+
+namespace {
+
+/// Why a paint that a look names cannot be had now: its file, or that of its measured reflectance.
+std::optional<std::string> why_black(const Document& document,
+                                     const PaintLibrary& library,
+                                     const std::string& name) {
+    for (const Material& own : document.paints) {
+        if (own.name != name) continue;
+        const bool unread = own.measured && !own.measured->problem.empty();
+        return unread ? std::optional(own.measured->problem) : std::nullopt;
+    }
+    if (library.find(name)) return std::nullopt;
+    try {
+        find_material(name);
+    } catch (const MeasuredFileUnread&) {
+        return std::nullopt;
+    } catch (const FileError& error) {
+        return error.what();
+    }
+    return std::nullopt;
+}
+
+}  // namespace
 
 std::string product_reference(const std::string& name_or_file) {
     std::error_code error;
@@ -82,8 +112,51 @@ Scene scene_of(const Document& document,
     for (const auto* more : {&library.shipped, &library.users}) {
         paints.insert(paints.end(), more->begin(), more->end());
     }
+    for_each_paint(look, [&](const std::string& name) {
+        if (!why_black(document, library, name)) return;
+        Material black;
+        black.name = name;
+        black.diffuse = glm::dvec3(0.0);
+        paints.push_back(std::move(black));
+    });
+    if (environment_problem(look.environment)) look.environment = {};
     return make_scene(
         std::move(product), look, document.eye_mm, loaded, paints, Unwearable::left_out);
+}
+
+std::vector<std::string> drawing_problems(const Document& document, const SessionLook& look) {
+    std::vector<std::string> problems;
+    const PaintLibrary library = read_paint_library();
+    std::set<std::string> seen;
+    Look here = look.look;
+    for_each_paint(here, [&](const std::string& name) {
+        if (!seen.insert(name).second) return;
+        if (const auto why = why_black(document, library, name)) {
+            problems.push_back(fmt::format("\"{}\" is black: {}", name, *why));
+        }
+    });
+    for (const Artwork& artwork : look.look.artwork) {
+        if (const auto why = picture_problem(artwork)) {
+            problems.push_back(fmt::format(
+                "The picture on {} of {} is not shown: {}", artwork.part, look.look.name, *why));
+        }
+    }
+    if (const auto why = environment_problem(look.look.environment)) {
+        problems.push_back(
+            fmt::format("{} is lit without its environment: {}", look.look.name, *why));
+    }
+    return problems;
+}
+
+std::vector<std::string> drawing_problems(const Document& document) {
+    std::vector<std::string> problems;
+    for (const SessionLook& look : document.looks) {
+        for (const std::string& one : drawing_problems(document, look)) {
+            const bool told = std::find(problems.begin(), problems.end(), one) != problems.end();
+            if (!told) problems.push_back(one);
+        }
+    }
+    return problems;
 }
 
 }  // namespace livery

@@ -46,15 +46,17 @@ Document new_document(const std::string& product = "car",
 const SessionLook* find_look(const Document& document, int id);
 /// The session's own paint, else the library's. Throws FileError with the nearest names.
 Material find_paint(const Document& document, const std::string& name);
-/// A line for each of the session's own paints whose measured file cannot be read now, and for each
-/// artwork whose picture cannot. They stay in the session as they are, black or not shown, and are
-/// themselves again when the file is back.
-std::vector<std::string> paint_problems(const Document& document);
+/// A line for each file that drawing needs and that cannot be used now. All stays in the session as
+/// it is, and is itself again when the file is back: until then paints are black, pictures are not
+/// shown, and a look is lit without its environment.
+std::vector<std::string> drawing_problems(const Document& document);
+/// The same of one look.
+std::vector<std::string> drawing_problems(const Document& document, const SessionLook& look);
 /// The session's and the library's names, sorted, each once.
 std::vector<std::string> paint_names(const Document& document);
 
-/// What to draw for one look. Shares the environment with `loaded` where it is the same. Throws
-/// FileError.
+/// What to draw for one look, without what drawing_problems() names. Shares the environment with
+/// `loaded` where it is the same. Throws FileError: a part that the product has no longer.
 Scene scene_of(const Document& document,
                int look_id,
                std::shared_ptr<const Product> product,

@@ -159,25 +159,6 @@ Material kept_paint(const Material& paint) {
     }
 }
 
-std::vector<std::string> paint_problems(const Document& document) {
-    std::vector<std::string> problems;
-    for (const Material& paint : document.paints) {
-        if (!paint.measured || paint.measured->problem.empty()) continue;
-        problems.push_back(fmt::format("\"{}\" is black: {}", paint.name, paint.measured->problem));
-    }
-    for (const SessionLook& look : document.looks) {
-        for (const Artwork& artwork : look.look.artwork) {
-            if (const auto problem = picture_problem(artwork)) {
-                problems.push_back(fmt::format("The picture on {} of {} is not shown: {}",
-                                               artwork.part,
-                                               look.look.name,
-                                               *problem));
-            }
-        }
-    }
-    return problems;
-}
-
 std::string text_of(const Document& document) { return json_of(document).dump(); }
 
 Document parse_document(const std::string& text, const std::filesystem::path& origin) {

@@ -13,6 +13,7 @@
 
 #include "core/error.h"
 #include "core/log.h"
+#include "gl/read_back.h"
 #include "radiance/raster_preview.h"
 #include "session/light_thread.h"
 #include "session/low_priority.h"
@@ -29,10 +30,17 @@ constexpr int kWhileMoving = 1, kAtRest = 2;  // supersampling
 /// Descriptions closer than this are a movement; after such a pause it has ended.
 constexpr auto kPause = std::chrono::milliseconds(250);
 
+struct Thumbnail {
+    Scene scene;
+    View view;
+};
+
+/// A paint on a sphere, or a look.
 struct SwatchRequest {
     Material material;
     int size_px = 0;
     std::function<void(const Image8&)> on_drawn;
+    std::optional<Thumbnail> look;
 };
 
 double milliseconds_since(Clock::time_point start) {
@@ -92,6 +100,7 @@ struct PreviewThread::Implementation {
     void ask_for_light(const Drawing& drawing);
     bool take_light(Drawing& drawing);
     bool answer(Drawing& drawing, const SwatchRequest& request);
+    bool answer_look(Drawing& drawing, const SwatchRequest& request);
     void tell(const std::string& problem);
 
     std::vector<DirectionalLight> asked_lights;
@@ -223,8 +232,31 @@ void PreviewThread::Implementation::draw_or_tell(Drawing& drawing, int supersamp
     if (first) lower_priority_of_this_thread(Urgency::watched);
 }
 
+/// False while there is no light to draw it in.
+bool PreviewThread::Implementation::answer_look(Drawing& drawing, const SwatchRequest& request) {
+    const auto& [scene, view] = *request.look;
+    if (!drawing.light || drawing.product != scene.product) return false;
+    Image8 rgba;
+    try {
+        drawing.preview->set_supersampling(kAtRest);
+        drawing.preview->set_glint_view(std::nullopt);
+        const auto slot = drawing.pool.lend(view.width, view.height);
+        Scene lit = scene;
+        lit.lights = drawing.light->lights;
+        lit.environment = drawing.light->environment;
+        drawing.preview->draw(lit, view);
+        drawing.encoder.encode(*drawing.preview, view, std::nullopt, false, slot->framebuffer);
+        rgba = read_bytes(slot->texture, 4);
+    } catch (const std::exception& error) {
+        log_line(LogLevel::warning, fmt::format("no picture of a look: {}", error.what()));
+    }
+    request.on_drawn(rgba);
+    return true;
+}
+
 /// False when its light is still being solved.
 bool PreviewThread::Implementation::answer(Drawing& drawing, const SwatchRequest& request) {
+    if (request.look) return answer_look(drawing, request);
     Image8 swatch;
     try {
         if (const auto kept = kept_swatch(request.material, request.size_px)) {
@@ -356,7 +388,26 @@ void PreviewThread::request_swatch(const Material& material,
                                kLargestSwatch_px));
     {
         const std::scoped_lock lock(implementation_->mutex);
-        implementation_->swatch_requests.push_front({material, size_px, std::move(on_drawn)});
+        implementation_->swatch_requests.push_front(
+            {material, size_px, std::move(on_drawn), std::nullopt});
+    }
+    implementation_->wake.notify_all();
+}
+
+void PreviewThread::request_thumbnail(const Scene& scene,
+                                      const View& view,
+                                      std::function<void(const Image8& rgba)> on_drawn) {
+    check_argument(scene.product != nullptr, "a thumbnail of no product");
+    const int largest = std::max(view.width, view.height);
+    check_argument(std::min(view.width, view.height) > 0 && largest <= kLargestSwatch_px,
+                   fmt::format("a thumbnail of {} x {} px, {} a side are possible",
+                               view.width,
+                               view.height,
+                               kLargestSwatch_px));
+    {
+        const std::scoped_lock lock(implementation_->mutex);
+        implementation_->swatch_requests.push_front(
+            {{}, 0, std::move(on_drawn), Thumbnail{scene, view}});
     }
     implementation_->wake.notify_all();
 }

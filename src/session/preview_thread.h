@@ -67,6 +67,13 @@ class PreviewThread {
                         int size_px,
                         std::function<void(const Image8& rgba)> on_drawn);
 
+    /// A small picture of a look, in the light that the preview has, whatever the look's own is: so
+    /// that a row of them differs by paint alone. Drawn when nothing more urgent is asked for and
+    /// once show() has given the preview its light; otherwise as request_swatch().
+    void request_thumbnail(const Scene& scene,
+                           const View& view,
+                           std::function<void(const Image8& rgba)> on_drawn);
+
   private:
     struct Implementation;
     std::unique_ptr<Implementation> implementation_;

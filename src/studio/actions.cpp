@@ -125,7 +125,8 @@ void add_file_actions(std::vector<Action>& list) {
         "save-picture", "File", "Save picture…", {ctrl(GLFW_KEY_S)}, ask_where_to_save_picture));
     list.back().starts_group = true;
     list.push_back(
-        action("ballot", "File", "Ballot…", {}, [](Shell& s) { s.ballots_open = true; }));
+        action("ballot", "File", "Ballot", {}, [](Shell& s) { s.ballots_open = !s.ballots_open; }));
+    list.back().checked = [](const Shell& s) { return s.ballots_open; };
     list.push_back(
         action("quit", "File", "Quit", {ctrl(GLFW_KEY_Q)}, [](Shell& s) { s.quit = true; }));
     list.back().starts_group = true;
@@ -295,6 +296,16 @@ void add_help_actions(std::vector<Action>& list) {
         action("about", "Help", "About Livery", {}, [](Shell& s) { s.about_open = true; }));
 }
 
+/// While people vote, keys show looks and do nothing to them: whoever votes sits at the keyboard.
+void allow_in_votes(std::vector<Action>& list) {
+    for (Action& one : list) {
+        const bool shows = one.id.starts_with("look-") || one.id == "next-look" ||
+                           one.id == "previous-look" || one.id == "hold-b" || one.id == "wipe";
+        one.in_votes = shows || one.in_dialogs || one.menu == "View" || one.menu == "Projector" ||
+                       one.menu == "Help" || one.id == "give-up";
+    }
+}
+
 std::vector<Action> make_actions() {
     std::vector<Action> list;
     add_file_actions(list);
@@ -303,6 +314,7 @@ std::vector<Action> make_actions() {
     add_look_actions(list);
     add_projector_actions(list);
     add_help_actions(list);
+    allow_in_votes(list);
     return list;
 }
 
@@ -366,6 +378,13 @@ const Action* action_for(const KeyChord& chord, const KeyboardOwner& owner) {
         const auto& chords = action.chords;
         if (std::find(chords.begin(), chords.end(), chord) == chords.end()) continue;
         if (owner.dialog && !action.in_dialogs) return nullptr;
+        const bool letter = !chord.ctrl && chord.key >= GLFW_KEY_A && chord.key <= GLFW_KEY_Z;
+        if (owner.ballot_letters > 0) {
+            if (!action.in_votes) return nullptr;
+            if (letter && static_cast<std::size_t>(chord.key - GLFW_KEY_A) < owner.ballot_letters) {
+                return nullptr;
+            }
+        }
         // A text field keeps what it has a meaning for; black and freeze go before everything.
         const bool is_function_key = chord.key >= GLFW_KEY_F1 && chord.key <= GLFW_KEY_F12;
         const bool always = action.in_dialogs && chord.ctrl;

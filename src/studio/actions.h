@@ -1,6 +1,7 @@
 // Everything that a key or a menu entry does: one table for menus, keys and the list of shortcuts.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <vector>
@@ -28,7 +29,8 @@ struct Action {
     std::function<std::string(const Shell&)> detail;  ///< behind the label: what undo would undo
     std::function<void(Shell&)> released;             ///< for what holds while its key is held
     bool in_dialogs = false;                          ///< its keys also work while a dialog is open
-    bool starts_group = false;                        ///< a line above it in the menu
+    bool in_votes = false;      ///< its keys also work while somebody fills a ballot
+    bool starts_group = false;  ///< a line above it in the menu
 };
 
 const std::vector<Action>& all_actions();
@@ -43,6 +45,7 @@ struct KeyboardOwner {
     bool text_field = false;
     bool dialog = false;
     bool keyboard_navigation = false;  ///< the arrow keys move between items
+    std::size_t ballot_letters = 0;    ///< so many letters, from A, choose designs of a ballot
 };
 
 /// The action that a key means now; none when the key is somebody else's.

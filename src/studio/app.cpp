@@ -102,13 +102,13 @@ void tell_product_notes(Studio& studio) {
            {Notice::Level::warning, "The product's file was not used as it is:", notes, ""});
 }
 
-void tell_paint_problems(Studio& studio) {
-    for (const std::string& problem : paint_problems(studio.session.document())) {
+void tell_drawing_problems(Studio& studio) {
+    for (const std::string& problem : drawing_problems(studio.session.document())) {
         notify(studio,
                {Notice::Level::warning,
                 problem,
                 "",
-                "Put the file back and open the session again, or choose another paint."});
+                "Put the file back, or choose another; then change something to draw it again."});
     }
 }
 
@@ -200,6 +200,7 @@ KeyboardOwner keyboard_owner(const Shell& shell) {
     // As of the last frame; WantTextInput is older by one.
     owner.text_field = g.ActiveId != 0 && g.ActiveId == g.InputTextState.ID;
     owner.dialog = ImGui::GetTopMostPopupModal() != nullptr;
+    owner.ballot_letters = ballot_letters(shell.studio);
     owner.keyboard_navigation =
         g.IO.NavVisible || g.OpenPopupStack.Size > 0 || shell.studio.panels.library.owns_arrows;
     return owner;
@@ -272,6 +273,8 @@ std::optional<double> next_change_s(const Shell& shell) {
     if (shell.save_again_at_s > 0.0) consider(shell.save_again_at_s);
     if (shell.studio.opening) consider(shell.studio.now_s + kOnItsWayToTheScreen_s);
     if (shell.preview_waits_until_s > 0.0) consider(shell.preview_waits_until_s);
+    const double spoken_of_s = shell.frame_asked_s + kUnspokenWait_s;
+    if (spoken_of_s > shell.studio.now_s) consider(spoken_of_s);
     // A blinking text cursor.
     if (ImGui::GetIO().WantTextInput) consider(shell.studio.now_s + 0.4);
     // Progress is read, not told.
@@ -333,7 +336,7 @@ class Desktop {
         keep_shown_looks_valid(studio);
         contexts_ = start_threads(shell_, *window_);
         tell_product_notes(studio);
-        tell_paint_problems(studio);
+        tell_drawing_problems(studio);
         tell_unsaved(shell_);
         monitors_changed(shell_);
         glfwShowWindow(window_->native());
@@ -474,7 +477,6 @@ class Desktop {
         draw_layout(shell_);
         draw_notices(shell_);
         draw_help(shell_);
-        if (shell_.ballots_open) draw_ballot_dialog(shell_.studio, shell_.ballots_open);
         shell_.studio.file_dialog->draw();
     }
 
@@ -509,7 +511,8 @@ class Desktop {
         shell_.monitor_numbers.reset();
         stop_threads(shell_);
         shell_.stage.photograph_texture = {};
-        shell_.studio.panels = {};
+        const auto no_textures = std::make_unique<PanelStates>();
+        shell_.studio.panels = std::move(*no_textures);
         imgui_.reset();
     }
 

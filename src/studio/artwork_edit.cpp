@@ -1,5 +1,6 @@
 #include "studio/artwork_edit.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -90,6 +91,51 @@ std::string wearing_problem(Studio& studio, const Artwork& artwork) {
         return "";  // The command names what is wrong with the file.
     }
     return "";
+}
+
+namespace {
+
+/// Whether an artwork below it may lie between it and the part's paint.
+bool lies_over_another(const std::vector<Artwork>& list, std::size_t at) {
+    return std::any_of(
+        list.begin(), list.begin() + static_cast<std::ptrdiff_t>(at), [&](const Artwork& below) {
+            return !is_relief(below) &&
+                   (below.part == "*" || list[at].part == "*" || below.part == list[at].part);
+        });
+}
+
+std::string look_up_why_not_seen(Studio& studio, std::size_t at) {
+    const Artwork& artwork = shown_artwork(studio).at(at);
+    if (const auto problem = picture_problem(artwork)) return "Not shown: " + *problem;
+    if (const std::string problem = wearing_problem(studio, artwork); !problem.empty()) {
+        return "Left out where the paint below cannot wear it: " + problem + ".";
+    }
+    const bool own_colours =
+        artwork.shape == ArtworkShape::picture && artwork.use != PictureUse::cover;
+    const SessionLook* look = find_look(studio.session.document(), studio.shown_look);
+    if (own_colours || !look || !studio.product) return "";
+    if (lies_over_another(shown_artwork(studio), at)) return "";
+    for (const Part& part : studio.product->mesh.parts) {
+        if (artwork.part != "*" && artwork.part != part.name) continue;
+        const std::string below = worn_paint(look->look, part.name);
+        if (!artwork.paint.empty() && artwork.paint != below) return "";
+    }
+    return "Not to be seen: it has the paint that lies below it. Choose another paint.";
+}
+
+}  // namespace
+
+const std::string& why_not_seen(Studio& studio, std::size_t at) {
+    ArtworkPanelState& state = studio.panels.artwork;
+    const std::vector<Artwork>& list = shown_artwork(studio);
+    if (state.looked_up_at != studio.session.revision() || state.not_seen.size() != list.size()) {
+        state.looked_up_at = studio.session.revision();
+        state.not_seen.clear();
+        for (std::size_t k = 0; k < list.size(); ++k) {
+            state.not_seen.push_back(look_up_why_not_seen(studio, k));
+        }
+    }
+    return state.not_seen.at(at);
 }
 
 SetArtwork artwork_command(const Studio& studio, std::size_t at, const Artwork& artwork) {
@@ -186,7 +232,7 @@ void try_placing(Studio& studio, const std::optional<PickedPoint>& point) {
     const std::size_t at = *chosen_artwork(studio);
     if (point) state.placed = placed_at(studio, at, *point);
     if (state.placed && wearing_problem(studio, *state.placed).empty()) {
-        try_out(studio, artwork_command(studio, at, *state.placed));
+        try_held(studio, artwork_command(studio, at, *state.placed));
     }
 }
 

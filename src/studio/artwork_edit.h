@@ -21,6 +21,10 @@ void choose_artwork(Studio& studio, std::optional<std::size_t> at);
 /// Why the parts cannot wear it with paints of their own; empty: they can. Commands check all else.
 std::string wearing_problem(Studio& studio, const Artwork& artwork);
 
+/// Why nobody sees an artwork of the shown look, a sentence or two; empty: it is seen. Its picture
+/// is gone, the paint below cannot wear it, or has its colour.
+const std::string& why_not_seen(Studio& studio, std::size_t at);
+
 /// Commits the list and chooses from it; a notice where it is refused.
 void set_artwork(Studio& studio,
                  const std::vector<Artwork>& list,

@@ -188,18 +188,6 @@ void draw_paint(Rows& rows) {
     ImGui::EndCombo();
 }
 
-/// Read again after each change: not while nothing happens.
-const std::string& picture_problem_of(Studio& studio, const Artwork& artwork) {
-    ArtworkPanelState& state = studio.panels.artwork;
-    if (state.picture_revision != studio.session.revision() ||
-        state.picture_of != artwork.picture) {
-        state.picture_revision = studio.session.revision();
-        state.picture_of = artwork.picture;
-        state.picture_problem = picture_problem(artwork).value_or("");
-    }
-    return state.picture_problem;
-}
-
 void draw_picture(Rows& rows) {
     const Artwork& before = rows.before();
     const std::filesystem::path file(before.picture);
@@ -211,8 +199,6 @@ void draw_picture(Rows& rows) {
     if (ImGui::Button(label.c_str(), {width, 0.0f})) rows.ask_for_file(before);
     name_last_item("artwork:file");
     tooltip(before.picture + "\nClick to choose another: PNG, JPEG, TIFF or EXR.");
-    const std::string& problem = picture_problem_of(rows.studio(), before);
-    if (!problem.empty()) warning_text("Not shown: " + problem);
     const Words now = words_of(before.use);
     if (begin_list("Says", "use", now.label, now.meaning)) {
         for (std::size_t i = 0; i < kPictureUses.size(); ++i) {
@@ -392,6 +378,10 @@ void draw_artwork_fields(Studio& studio, std::size_t at) {
     Artwork& edited = state.held.start(shown_artwork(studio)[at]);
     Rows rows(studio, at, edited);
     draw_name(rows);
+    if (const std::string why = why_not_seen(studio, at); !why.empty()) {
+        warning_text(why);
+        name_last_item("artwork:not-seen");
+    }
     draw_part(rows);
     draw_shape(rows);
     if (!is_relief(rows.before())) draw_paint(rows);

@@ -92,6 +92,7 @@ void draw_row(Studio& studio, const Artwork& artwork, const InList& place, bool 
     if (const Material* paint = paint_of(studio, artwork)) {
         draw_swatch(studio, *paint, {from.x + em(0.2f), from.y + em(0.15f)}, side);
     }
+    const bool seen = why_not_seen(studio, place.at).empty();
     const ImVec4 clip(from.x, from.y, from.x + width, from.y + height);
     const ImVec2 at(from.x + side + em(0.7f), from.y + em(0.15f));
     ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -109,8 +110,8 @@ void draw_row(Studio& studio, const Artwork& artwork, const InList& place, bool 
     add(ImGui::GetFont(), at, colours::text, shown_name(artwork));
     add(small_font(),
         {at.x, at.y + ImGui::GetTextLineHeight() + em(0.1f)},
-        chosen ? colours::text : colours::dim_text,
-        summary_of(artwork));
+        seen ? (chosen ? colours::text : colours::dim_text) : colours::warning,
+        seen ? summary_of(artwork) : "Not seen. " + summary_of(artwork));
     ImGui::PopID();
 }
 

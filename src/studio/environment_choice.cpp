@@ -98,7 +98,7 @@ void ask_for_thumbnail(Studio& studio, const std::string& file) {
 }
 
 void draw_thumbnail(const LightingPanelState& state, double rotation_rad) {
-    if (!state.thumbnail_problem.empty()) warning_text(state.thumbnail_problem);
+    if (!state.thumbnail_problem.empty()) warning_text("Not shown: " + state.thumbnail_problem);
     const float width = ImGui::GetContentRegionAvail().x, height = std::floor(0.32f * width);
     if (!state.thumbnail) {
         if (state.thumbnail_problem.empty()) ImGui::Dummy({width, height});
@@ -114,6 +114,25 @@ void draw_thumbnail(const LightingPanelState& state, double rotation_rad) {
     tooltip("The environment from azimuth -180° (left) over 0° (middle) to 180°.");
 }
 
+/// What the command would refuse is refused here in plain words. A large map takes seconds to read:
+/// behind the window.
+void take_environment(Studio& studio, int look, const EnvironmentReference& chosen) {
+    const auto take = [&studio, look, chosen](const std::optional<std::string>& problem) {
+        if (!problem) return commit(studio, SetEnvironment{look, chosen});
+        notify(studio,
+               {Notice::Level::error,
+                "The environment was not taken.",
+                *problem,
+                "Choose an .hdr or .exr map, twice as wide as high."});
+    };
+    if (!studio.background) return take(environment_problem(chosen));
+    studio.background->run(
+        [take, chosen](const Progress&) -> Background::Then {
+            return [take, problem = environment_problem(chosen)] { take(problem); };
+        },
+        [take](const std::exception_ptr&) { take("The map could not be read."); });
+}
+
 void ask_for_file(Studio& studio, const EnvironmentReference& environment) {
     if (!studio.file_dialog) return;
     FileQuestion question;
@@ -125,7 +144,7 @@ void ask_for_file(Studio& studio, const EnvironmentReference& environment) {
         [&studio, look = studio.shown_look, environment](const std::filesystem::path& file) {
             EnvironmentReference chosen = environment;
             chosen.file = std::filesystem::absolute(file).string();
-            commit(studio, SetEnvironment{look, chosen});
+            take_environment(studio, look, chosen);
         };
     studio.file_dialog->ask(std::move(question));
 }
@@ -175,9 +194,17 @@ void draw_environment_choice(Studio& studio,
                              EnvironmentReference& environment,
                              const std::function<void()>& after_item) {
     draw_choice(studio, environment);
-    ask_for_thumbnail(studio, environment.file);
+    LightingPanelState& state = studio.panels.lighting;
+    // It may have gone bad since it was chosen, and come back since.
+    if (const auto problem = environment_problem(environment)) {
+        state.thumbnail_of.clear();
+        state.thumbnail = {};
+        state.thumbnail_problem = *problem;
+    } else {
+        ask_for_thumbnail(studio, environment.file);
+    }
     if (environment.file.empty()) return;
-    draw_thumbnail(studio.panels.lighting, environment.rotation_rad);
+    draw_thumbnail(state, environment.rotation_rad);
 
     row_label("Rotation");
     double rotation_deg = kDegrees * environment.rotation_rad;

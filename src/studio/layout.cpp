@@ -74,13 +74,23 @@ void draw_right_column(Shell& shell) {
                                                      {"Calibrate", draw_calibration_panel},
                                                      {"Frame", draw_plan_panel}}};
     take_swatches(shell.studio);
+    if (shell.ballots_open) {
+        shell.studio.panels.library.owns_arrows = false;
+        return draw_ballot_panel(shell.studio, shell.ballots_open);
+    }
+    shell.studio.panels.ballot.was_open = false;
     if (!ImGui::BeginTabBar("tabs", ImGuiTabBarFlags_FittingPolicyResizeDown)) return;
     for (std::size_t i = 0; i < tabs.size(); ++i) {
         const bool to_open = shell.tab_to_open == static_cast<int>(i);
         const bool open = ImGui::BeginTabItem(
             tabs[i].label, nullptr, to_open ? ImGuiTabItemFlags_SetSelected : 0);
         name_last_item(std::string("tab:") + tabs[i].label);
-        if (!open) continue;
+        if (!open) {
+            if (tabs[i].draw == draw_library_panel) {
+                shell.studio.panels.library.owns_arrows = false;
+            }
+            continue;
+        }
         shell.open_tab = static_cast<int>(i);
         ImGui::BeginChild(tabs[i].label);
         tabs[i].draw(shell.studio);

@@ -304,10 +304,15 @@ bool draw_cell(Studio& studio, const Target& target, Cell& cell, float width, fl
     const ImVec2 moved = ImGui::GetIO().MouseDelta;
     if (hovered && (moved.x != 0.0f || moved.y != 0.0f)) state.cursor.reset();
     const bool on_cursor = state.cursor == paint.name;
+    const bool led_here = on_cursor && std::exchange(state.cursor_moved, false);
     const bool meant = on_cursor || (hovered && !state.cursor);
     const bool worn = !target.paint.empty() && same_paint_name(target.paint, paint.name);
     if (meant && !worn) {
-        try_out(studio, paint_command(studio, target, paint.name));
+        // What the arrows are on is meant only as long as the keys come here.
+        const bool has_keys = state.owns_arrows || state.searching;
+        if (!on_cursor || has_keys) {
+            try_out(studio, paint_command(studio, target, paint.name), led_here);
+        }
     } else if (meant) {
         // Undo takes it off: not to be tried out again while pointer and keys rest on it.
         studio.untried_item = ImGui::GetItemID();
@@ -323,7 +328,7 @@ bool draw_cell(Studio& studio, const Target& target, Cell& cell, float width, fl
                                             0,
                                             std::max(2.0f, em(0.13f)));
     }
-    if (on_cursor && std::exchange(state.cursor_moved, false)) ImGui::SetScrollHereY();
+    if (led_here) ImGui::SetScrollHereY();
     if (ImGui::IsItemVisible()) {
         draw_cell_picture(studio, paint, cell.distance, corner, width, worn, meant);
     }
@@ -362,7 +367,6 @@ std::optional<std::size_t> neighbour(const std::vector<Cell>& cells,
 
 void follow_keys(Studio& studio, const Target& target, const std::vector<Cell>& cells) {
     LibraryPanelState& state = studio.panels.library;
-    state.owns_arrows = ImGui::IsWindowFocused() && !state.searching;
     if (!state.owns_arrows && !state.searching) return;
     std::optional<std::size_t> at;
     for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -496,8 +500,8 @@ void draw_library_panel(Studio& studio) {
     }
 
     const float height = std::max(ImGui::GetContentRegionAvail().y, em(12.0f));
-    state.owns_arrows = false;
     ImGui::BeginChild("swatches", {0.0f, height}, false, ImGuiWindowFlags_NoNavInputs);
+    state.owns_arrows = found_any && ImGui::IsWindowFocused() && !state.searching;
     const ImVec2 corner = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
     name_rectangle("swatches", corner.x, corner.y, size.x, size.y);
     if (found_any) {

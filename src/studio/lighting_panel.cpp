@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -232,23 +233,46 @@ void draw_eye_angles(Studio& studio, glm::dvec3& eye_mm) {
         });
 }
 
+/// Read once a bench: a panel is drawn sixty times a second.
+std::optional<glm::dvec3> observer_mm(Studio& studio) {
+    LightingPanelState& state = studio.panels.lighting;
+    const std::string& bench = studio.session.document().bench;
+    if (state.observer_of == bench) return state.observer_mm;
+    state.observer_of = bench;
+    state.observer_mm.reset();
+    try {
+        state.observer_mm = read_bench_file(bench).eye_mm;
+    } catch (const FileError&) {
+        // The calibration's tab says what is wrong with the bench.
+    }
+    return state.observer_mm;
+}
+
+void draw_eye_at_observer(Studio& studio) {
+    const auto observer = observer_mm(studio);
+    const bool there = observer && *observer == studio.session.document().eye_mm;
+    begin_disabled(!observer || there);
+    if (ImGui::Button("Eye at the bench's observer") && observer) {
+        commit(studio, SetEye{*observer});
+    }
+    end_disabled();
+    name_last_item("eye-at-observer");
+    tooltip(there ? "The eye stands there: where the bench measures what an observer sees."
+                  : "Puts the eye back where the bench measures what an observer sees. The "
+                    "photograph is taken from the eye, wherever it stands.");
+}
+
 void draw_eye(Studio& studio) {
     LightingPanelState& state = studio.panels.lighting;
     heading("Eye");
-    tooltip("Where the audience looks from: highlights sit where this eye sees them.");
+    tooltip(
+        "Where the audience looks from: highlights sit where this eye sees them, and the "
+        "photograph is taken from here.");
     ImGui::PushID("eye");
     glm::dvec3& eye_mm = state.held_eye_mm.start(studio.session.document().eye_mm);
     draw_eye_angles(studio, eye_mm);
     state.held_eye_mm.finish();
-    if (ImGui::Button("Eye at the bench's observer")) {
-        try {
-            commit(studio, SetEye{read_bench_file(studio.session.document().bench).eye_mm});
-        } catch (const FileError& error) {
-            notify(studio, {Notice::Level::error, "The eye was not moved.", error.what(), ""});
-        }
-    }
-    name_last_item("eye-at-observer");
-    tooltip("Puts the eye where the bench's photograph is taken from.");
+    draw_eye_at_observer(studio);
     ImGui::PopID();
 }
 

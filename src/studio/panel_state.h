@@ -125,9 +125,10 @@ struct ArtworkPanelState {
     bool placing = false;           ///< the next click on the product puts it there
     std::optional<Artwork> placed;  ///< where the pointer would put it
     std::string problem;            ///< why what is being tried cannot be worn
-    // Whether its picture can be read, looked up again when one of these changes.
-    std::optional<std::uint64_t> picture_revision;
-    std::string picture_of, picture_problem;
+    /// Why each of the list is not to be seen, empty where it is; looked up again when the session
+    /// has changed.
+    std::optional<std::uint64_t> looked_up_at;
+    std::vector<std::string> not_seen;
 };
 
 struct LightingPanelState {
@@ -137,6 +138,8 @@ struct LightingPanelState {
     int lit_look = -1;  ///< whose lights are held
     std::shared_ptr<const Product> centre_of;
     glm::dvec3 centre_mm{0.0};  ///< of that product
+    std::string observer_of;    ///< the bench
+    std::optional<glm::dvec3> observer_mm;
     std::string thumbnail_of;
     Texture2D thumbnail;
     std::string thumbnail_problem;
@@ -169,11 +172,17 @@ struct CalibrationPanelState {
     bool dismissed = false;       ///< the refusal was read
 };
 
-struct BallotDialogState {
+struct LookThumbnailState {
+    std::shared_ptr<SwatchInbox> inbox = std::make_shared<SwatchInbox>();  ///< by the look's name
+    std::map<std::string, Texture2D> pictures;
+    std::map<std::string, std::string> asked;  ///< for which state of the session, and size
+};
+
+struct BallotPanelState {
     enum class Page { start, vote, thanks, result };
     Page page = Page::start;
     bool was_open = false;             ///< in the frame before
-    std::vector<Round> rounds;         ///< read when the dialog opens and after each change
+    std::vector<Round> rounds;         ///< read when the panel opens and after each change
     std::map<int, bool> chosen_looks;  ///< by the look's number
     std::string evaluator, thanked;
     bool focus_name = false;
@@ -190,7 +199,8 @@ struct PanelStates {
     LightingPanelState lighting;
     PlanPanelState plan;
     CalibrationPanelState calibration;
-    BallotDialogState ballot;
+    BallotPanelState ballot;
+    LookThumbnailState thumbnails;
 };
 
 }  // namespace livery

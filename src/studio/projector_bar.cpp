@@ -48,40 +48,33 @@ void draw_monitor_choice(Shell& shell, float width) {
     tooltip("Shows each monitor's number, large, on every monitor for a moment.");
 }
 
-struct StateText {
-    std::string text;
-    ImVec4 colour;
-    std::string help;
-};
-
-StateText state_of(const Shell& shell) {
-    if (shell.only_screen_is_projector) {
-        return {"dark: it is the only screen now",
-                colours::warning,
-                "The projector's picture never covers the only screen that you have."};
+const ImVec4& colour_of(ProjectorWords::Mood mood) {
+    switch (mood) {
+        case ProjectorWords::Mood::good:
+            return colours::good;
+        case ProjectorWords::Mood::warning:
+            return colours::warning;
+        case ProjectorWords::Mood::error:
+            return colours::error;
+        case ProjectorWords::Mood::quiet:
+            break;
     }
-    switch (shell.studio.projector->state()) {
-        case ProjectorScreen::State::off:
-            return {"Works without a projector: look at Photograph.", colours::dim_text, ""};
-        case ProjectorScreen::State::waiting_for_monitor:
-            return {"dark, comes back by itself",
-                    colours::warning,
-                    shell.studio.projector->why_waiting() +
-                        " Until then its picture is shown nowhere."};
-        case ProjectorScreen::State::showing:
-            return {"showing", colours::good, ""};
-    }
-    return {};
+    return colours::dim_text;
 }
 
 /// Behind the last item, cut where `right` begins; the whole is in the tooltip then.
-void draw_fitted(const std::string& text, const ImVec4& colour, std::string help, float right) {
+void draw_fitted(const char* name,
+                 const std::string& text,
+                 const ImVec4& colour,
+                 std::string help,
+                 float right) {
     ImGui::SameLine(0.0f, em(1.0f));
     ImGui::AlignTextToFramePadding();
     const float room = right - em(1.0f) - ImGui::GetCursorPosX();
     const auto lines = fitted_lines(text, std::max(room, 0.0f), 1);
     if (lines.empty()) return;
     ImGui::TextColored(colour, "%s", lines.front().c_str());
+    name_last_item(name);
     if (lines.front() != text) help = text + (help.empty() ? "" : "\n\n" + help);
     if (!help.empty()) tooltip(help);
 }
@@ -95,11 +88,11 @@ void draw_warnings(const Shell& shell, float right) {
             (all.empty() ? "" : "\n\n") + warning.what + "\n" + warning.cause + "\n" + warning.fix;
     }
     draw_fitted(
+        "signal-warnings",
         count == 1 ? shell.signal_warnings.front().what : fmt::format("{} signal warnings", count),
         colours::warning,
         all,
         right);
-    name_last_item("signal-warnings");
 }
 
 /// A key's state that must be read from the other end of the room.
@@ -135,13 +128,21 @@ void draw_projector_bar(Shell& shell) {
     const float room =
         keys - ImGui::GetCursorPosX() - button_width("Show numbers") - 2.0f * spacing;
     draw_monitor_choice(shell, std::clamp(0.5f * room, em(5.0f), em(14.0f)));
-    const StateText state = state_of(shell);
-    draw_fitted(state.text, state.colour, state.help, keys);
+    const ProjectorWords words = projector_words(projector_facts(shell));
+    draw_fitted("projector-words", words.text, colour_of(words.mood), words.help, keys);
     draw_warnings(shell, keys);
     ImGui::SameLine(keys);
     ImGui::SetCursorPosY(top);
-    draw_state_button(
-        shell, "black", shell.black ? "BLACK" : "Black  B", shell.black, width, height);
+    // A voter's letters are not the projector's.
+    const bool letters = ballot_letters(shell.studio) > 0;
+    draw_state_button(shell,
+                      "black",
+                      shell.black ? "BLACK"
+                      : letters   ? "Black Ctrl+B"
+                                  : "Black  B",
+                      shell.black,
+                      width,
+                      height);
     tooltip(shell.black ? "The projector is dark. B shows the picture again."
                         : "Makes the projector dark at once (B, and Ctrl+B while typing).");
     ImGui::SameLine();

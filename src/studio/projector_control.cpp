@@ -131,6 +131,29 @@ void show_signal_test(Shell& shell, bool shown) {
     shell.results->show_instead(std::move(picture));
 }
 
+ProjectorFacts projector_facts(const Shell& shell) {
+    const ProjectorScreen& screen = *shell.studio.projector;
+    ProjectorFacts facts;
+    facts.state = screen.state();
+    if (facts.state == ProjectorScreen::State::waiting_for_monitor) {
+        facts.why_waiting = screen.why_waiting();
+    }
+    facts.only_screen = shell.only_screen_is_projector;
+    facts.black = shell.black;
+    facts.frozen = shell.frozen;
+    facts.monitor_numbers = shell.monitor_numbers != nullptr;
+    facts.signal_test = shell.signal_test_open;
+    facts.wanted = shell.frame_number;
+    facts.shown = screen.shown().number;
+    facts.waited_s = shell.studio.now_s - shell.frame_asked_s;
+    facts.not_drawn = shell.not_drawn;
+    const auto newest = shell.results->newest_frame();
+    if (facts.not_drawn.empty() && newest && newest->number == shell.frame_number) {
+        facts.not_drawn = newest->problem;
+    }
+    return facts;
+}
+
 void set_black(Shell& shell, bool black) {
     shell.black = black;
     if (shell.studio.projector) shell.studio.projector->set_black(black);

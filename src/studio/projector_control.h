@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "studio/projector_words.h"
+
 namespace livery {
 
 struct Shell;
@@ -20,5 +22,7 @@ void set_black(Shell& shell, bool black);
 void set_frozen(Shell& shell, bool frozen);
 bool is_black(const Shell& shell);
 bool is_frozen(const Shell& shell);
+
+ProjectorFacts projector_facts(const Shell& shell);
 
 }  // namespace livery

@@ -86,6 +86,7 @@ struct Shell {
     std::optional<SetupKey> asked_setup;
     std::uint64_t frame_number = 0, preview_number = 0;
     std::shared_ptr<const Image8> photographed;  ///< the newest that the bench was asked to show
+    glm::dvec3 photographed_from_mm{0.0};
     bool draws_in_software = false;
     double frame_asked_s = 0.0, preview_waits_until_s = 0.0;
     double opened_s = 0.0;  ///< steady clock
@@ -95,6 +96,8 @@ struct Shell {
     std::chrono::steady_clock::time_point input_at{};  ///< of the newest input in this frame
     bool calibrates_by_itself = false;                 ///< nobody asked for the one under way
     std::uint64_t problem_number = 0;                  ///< of the frame whose problem was told
+    std::string not_drawn;  ///< why there is no frame of what should be shown; else empty
+    std::map<int, std::vector<std::string>> told_problems;  ///< of what looks need, by look
 
     // The projector.
     std::string projector_monitor;  ///< chosen; empty: none

@@ -9,6 +9,7 @@
 #include "core/json.h"
 #include "core/paths.h"
 #include "studio/artwork_edit.h"
+#include "studio/projector_control.h"
 #include "studio/shell.h"
 #include "studio/tab_order.h"
 
@@ -152,6 +153,7 @@ MapState state_of_shell(const Shell& shell) {
     state["photograph_number"] = std::to_string(studio.photograph ? studio.photograph->number : 0);
     state["preview_number"] = std::to_string(studio.preview ? studio.preview->number : 0);
     state["projector"] = quoted(name_of(studio.projector->state()));
+    state["projector_says"] = quoted(projector_words(projector_facts(shell)).text);
     state["projector_monitor"] = quoted(shell.projector_monitor);
     state["monitors"] = std::to_string(studio.monitors.size());
     state["signal_warnings"] = std::to_string(shell.signal_warnings.size());

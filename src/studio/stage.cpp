@@ -52,7 +52,8 @@ void draw_view_buttons(Shell& shell) {
         {StageView::photograph,
          "Photograph",
          "view:photograph",
-         "A photograph of the mock-up on the simulated bench: what the audience would see."}};
+         "A photograph of the mock-up on the simulated bench, taken from the audience's eye: what "
+         "they would see."}};
     for (const Choice& choice : choices) {
         if (toggle_button(choice.label, shell.studio.view == choice.view)) {
             shell.studio.view = choice.view;
@@ -434,7 +435,7 @@ void draw_photograph(Shell& shell, const Frame& stage) {
     const Frame picture = photograph_picture(shell, stage);
     draw_texture(state.photograph_texture.name(), picture);
     const bool behind = shell.studio.frame && photograph->number < shell.studio.frame->number;
-    std::string caption = "The mock-up on the simulated bench";
+    std::string caption = "The mock-up on the simulated bench, from the audience's eye";
     if (behind) {
         caption += shell.studio.bench->calibrating().running
                        ? ", as it was before the calibration that is running"

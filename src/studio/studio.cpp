@@ -24,6 +24,20 @@ std::string text_of(const Notice& notice) {
     return text;
 }
 
+/// Since the window's last frame. A pointer that left and came back where it was did not move, nor
+/// did one that was there when the window came.
+bool pointer_moved(const Studio& studio) {
+    if (!ImGui::IsMousePosValid() || !studio.pointer_was_there) return false;
+    const ImVec2 at = ImGui::GetIO().MousePos;
+    return at.x != studio.pointer_x || at.y != studio.pointer_y;
+}
+
+/// An arrow key led to the item, as opposed to focus that was given back to it.
+bool was_led_to(unsigned item) {
+    const ImGuiContext& g = *ImGui::GetCurrentContext();
+    return g.NavJustMovedToId == item && (g.NavMoveFlags & ImGuiNavMoveFlags_Tabbing) == 0;
+}
+
 }  // namespace
 
 void commit(Studio& studio, const SessionCommand& command) {
@@ -42,7 +56,14 @@ void commit(Studio& studio, const SessionCommand& command) {
     keep_shown_looks_valid(studio);
 }
 
-void try_out(Studio& studio, const SessionCommand& command) {
+void try_out(Studio& studio, const SessionCommand& command, bool by_arrow) {
+    const unsigned item = ImGui::GetItemID();
+    const bool goes_on = studio.tried && studio.tried_item == item;
+    if (!goes_on && !by_arrow && !was_led_to(item) && !pointer_moved(studio)) return;
+    try_held(studio, command);
+}
+
+void try_held(Studio& studio, const SessionCommand& command) {
     const unsigned item = ImGui::GetItemID();
     if (studio.untried_item == item) {
         studio.untried_item_still_there = true;
@@ -56,7 +77,7 @@ void edit_with_last_item(Studio& studio, const SessionCommand& command) {
     if (ImGui::IsItemDeactivatedAfterEdit()) {
         if (!studio.gave_up) commit(studio, command);
     } else if (ImGui::IsItemActive() && !studio.gave_up) {
-        try_out(studio, command);
+        try_held(studio, command);
     }
 }
 
@@ -76,6 +97,12 @@ void begin_trials(Studio& studio) {
 
 void end_trials(Studio& studio) {
     studio.tried = studio.trying;
+    studio.tried_item = studio.trying_item;
+    if (ImGui::IsMousePosValid()) {
+        studio.pointer_was_there = true;
+        studio.pointer_x = ImGui::GetIO().MousePos.x;
+        studio.pointer_y = ImGui::GetIO().MousePos.y;
+    }
     if (!studio.untried_item_still_there) studio.untried_item.reset();
     studio.gave_up = false;
 }

@@ -69,12 +69,15 @@ struct Studio {
     std::optional<int> selected_part;
     StageView view = StageView::preview;
 
-    /// What the pointer or the arrow keys are on: shown on the mock-up, not in the document. It is
+    /// What the pointer or the arrow keys went to: shown on the mock-up, not in the document. It is
     /// what try_out() was given in the frame before; Esc, undo and a change of look take it back
     /// until the pointer is on something else.
     std::optional<SessionCommand> tried;
-    std::optional<SessionCommand> trying;   ///< given to try_out() in this frame
-    unsigned trying_item = 0;               ///< which item gave it
+    unsigned tried_item = 0;                   ///< which item gave it
+    std::optional<SessionCommand> trying;      ///< given to try_out() in this frame
+    unsigned trying_item = 0;                  ///< which item gave it
+    float pointer_x = 0.0f, pointer_y = 0.0f;  ///< in the window, when it was last there
+    bool pointer_was_there = false;
     std::optional<unsigned> untried_item;   ///< the item whose trial was taken back
     bool untried_item_still_there = false;  ///< in this frame
     bool gave_up = false;                   ///< Esc was pressed: no drag commits in this frame
@@ -99,8 +102,14 @@ struct Studio {
 void commit(Studio& studio, const SessionCommand& command);
 
 /// Shows on the mock-up what committing would show, for this frame of the window. To be called
-/// right after the item that the pointer is on.
-void try_out(Studio& studio, const SessionCommand& command);
+/// right after the item that the pointer or the keyboard is on. Begins only when the pointer really
+/// moved there or an arrow key led there (`by_arrow`, for items that follow the arrows by
+/// themselves): focus that comes back, a list that opens or scrolls under a resting pointer and a
+/// tab that is opened again try nothing.
+void try_out(Studio& studio, const SessionCommand& command, bool by_arrow = false);
+
+/// The same for what the person is doing right now, such as dragging: there is no doubt.
+void try_held(Studio& studio, const SessionCommand& command);
 
 /// For the slider, drag or colour field just drawn: tries `command` out while it is held and
 /// commits once when it is let go; Esc while it is held gives it up.
@@ -141,7 +150,9 @@ void draw_artwork_panel(Studio& studio);
 void draw_lighting_panel(Studio& studio);
 void draw_plan_panel(Studio& studio);
 void draw_calibration_panel(Studio& studio);
-/// The dialog; `open` is the caller's flag.
-void draw_ballot_dialog(Studio& studio, bool& open);
+/// Instead of the tabs; `open` is the caller's flag.
+void draw_ballot_panel(Studio& studio, bool& open);
+/// How many letters, from A, are designs' now; 0 when nobody votes in that panel.
+std::size_t ballot_letters(const Studio& studio);
 
 }  // namespace livery

@@ -115,6 +115,23 @@ void ask_for_setup(Shell& shell) {
         });
 }
 
+/// A file that a look needs may go bad at any time.
+void tell_drawing_problems(Shell& shell, const Document& document, int look) {
+    const SessionLook* shown = find_look(document, look);
+    if (!shown) return;
+    std::vector<std::string> problems = drawing_problems(document, *shown);
+    std::vector<std::string>& told = shell.told_problems[look];
+    for (const std::string& problem : problems) {
+        if (std::find(told.begin(), told.end(), problem) != told.end()) continue;
+        notify(shell.studio,
+               {Notice::Level::warning,
+                problem,
+                "",
+                "Put the file back, or choose another; then change something to draw it again."});
+    }
+    told = std::move(problems);
+}
+
 std::optional<int> look_to_wipe_to(const Studio& studio) {
     return studio.wiping && !studio.showing_b ? studio.compared_look : std::nullopt;
 }
@@ -139,12 +156,17 @@ void ask_for_frame(Shell& shell) {
     } catch (const MeasuredFileUnread& unread) {
         // Asked for again when it is read; the last picture stays until then.
         read_measured_behind(studio, unread.file());
+        shell.not_drawn = "Reading " + unread.file().filename().string() + ".";
         return;
     } catch (const std::exception& error) {
         shell.asked_frame = key;
+        shell.not_drawn = error.what();
         notify(studio, {Notice::Level::error, "The look cannot be drawn.", error.what(), ""});
         return;
     }
+    tell_drawing_problems(shell, document, key.look);
+    if (key.wipe_to) tell_drawing_problems(shell, document, *key.wipe_to);
+    shell.not_drawn.clear();
     shell.asked_frame = key;
     shell.frame_asked_s = studio.now_s;
     description.number = ++shell.frame_number;
@@ -214,11 +236,15 @@ void ask_for_preview(Shell& shell) {
 void ask_for_photograph(Shell& shell) {
     const Studio& studio = shell.studio;
     if (studio.view != StageView::photograph || !studio.frame || !studio.setup) return;
+    const glm::dvec3 eye_mm = shown_document(studio).eye_mm;
     // Not by its number: a frame comes again when more of it is there.
-    if (studio.frame->drive == shell.photographed || !studio.frame->drive) return;
+    const bool same =
+        studio.frame->drive == shell.photographed && eye_mm == shell.photographed_from_mm;
+    if (same || !studio.frame->drive) return;
     shell.photographed = studio.frame->drive;
+    shell.photographed_from_mm = eye_mm;
     studio.bench->photograph(
-        studio.frame->number, studio.frame->drive, studio.setup->design_white_y);
+        studio.frame->number, studio.frame->drive, eye_mm, studio.setup->design_white_y);
 }
 
 bool needs_first_calibration(const Session& session) {

@@ -2,11 +2,14 @@
 // the glow of a clicked part.
 
 #include <algorithm>
+#include <filesystem>
 #include <utility>
 
 #include <gtest/gtest.h>
 
+#include "core/image_io.h"
 #include "desktop/two_monitors.h"
+#include "session/session.h"
 
 namespace livery {
 namespace {
@@ -163,6 +166,74 @@ TEST_F(Looks, AClickedPartGlowsOnTheMockUp) {
     program->move_away();
     EXPECT_TRUE(projector_shows(a));
     EXPECT_LT(most, 0.2);
+}
+
+TEST_F(Looks, AreShownOnTheMockUpWhilePeopleVote) {
+    use_shared();
+    program->click("menu:File");
+    program->click("menu:ballot");
+    program->click("ballot:start");
+    program->item("ballot:best:3");
+    desktop->press_key("3");
+    EXPECT_TRUE(projector_shows(drive_of_place(2)));
+    program->click("ballot:picture:1");
+    EXPECT_TRUE(projector_shows(drive_of_place(1)));
+    program->click("look:" + std::to_string(look_at_place(3)));
+    EXPECT_TRUE(projector_shows(drive_of_place(3)));
+    // Keys that would change a look rest.
+    const auto undo = program->state("undo");
+    desktop->press_key("Delete");
+    desktop->press_key("b");  // design B, not black
+    desktop->press_key("a");
+    program->click("ballot:name");
+    desktop->type("Bo");
+    desktop->press_key("Return");
+    EXPECT_EQ(program->state("undo"), undo);
+    EXPECT_TRUE(projector_shows_now(drive_of_place(3)));
+    program->click("ballot:confirm");
+    program->item("ballot:thanks");
+    program->click("ballot:close");
+    program->click("ballot:close-confirmed");
+    program->item("ballot:result");
+    program->click("ballot:close-panel");
+    EXPECT_TRUE(wait_until([&] { return program->has_item("tab:Paints"); }));
+    desktop->press_key("1");
+    EXPECT_TRUE(projector_shows(drive_of_place(0)));
+}
+
+TEST_F(Looks, AreShownWithoutAFileThatIsGoneAndTheBarSaysWhatIsShown) {
+    start();
+    studio->program.reset();
+    const int look = look_at_place(0);
+    const auto sky = studio->folder / "sky.exr";
+    write_exr(sky, ImageF(16, 8, 3, 0.8f));
+    {
+        Session session = Session::open(studio->session_file());
+        session.execute(SetEnvironment{look, {sky.string(), 0.0, 1.0}});
+        document = session.document();
+    }
+    std::filesystem::remove(sky);
+    start_program();
+    pick_projector();
+    const Document without = applied(document, SetEnvironment{look, {}});
+    EXPECT_TRUE(projector_shows(expected_drive(without, look)));
+    program->wait_for_state("projector_says", "showing");
+    EXPECT_NE(program->state("notices").dump().find("sky.exr"), std::string::npos);
+    // Paints still change what is shown, and so do the number keys.
+    program->click("part:body");
+    program->click("paint:solid red");
+    program->move_away();
+    EXPECT_TRUE(projector_shows(
+        expected_drive(applied(without, SetPaint{look, "body", "solid red"}), look)));
+    desktop->press_key("2");
+    EXPECT_TRUE(projector_shows(drive_of_place(1)));
+    program->wait_for_state("projector_says", "showing");
+    desktop->press_key("f");
+    program->wait_for_state("projector_says", "frozen");
+    desktop->press_key("3");
+    program->wait_for_state("projector_says", "frozen: not what you work on");
+    desktop->press_key("b");
+    program->wait_for_state("projector_says", "black");
 }
 
 }  // namespace

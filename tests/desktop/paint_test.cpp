@@ -51,5 +51,35 @@ TEST_F(PaintTab, GivesAFinishAnotherColourAndHoldsItAgainstAnother) {
     program->click("tab:Paints");
 }
 
+TEST_F(PaintTab, ShowsNothingOnTheMockUpThatNobodyTried) {
+    use_shared();
+    program->click("paint:solid red");
+    ASSERT_TRUE(projector_shows(drive_with_body("solid red")));
+    desktop->press_key("2");
+    ASSERT_TRUE(projector_shows(drive_of_place(1)));
+    // The swatches get their focus back, the pointer goes away.
+    program->click("tab:Light");
+    program->click("tab:Paints");
+    program->move_away();
+    program->item("swatches");
+    EXPECT_EQ(program->state("tried"), nullptr);
+    EXPECT_TRUE(projector_shows_now(drive_of_place(1)));
+    // Undo leads back to the first look.
+    desktop->press_key("ctrl+z");
+    EXPECT_TRUE(projector_shows(drive_of_place(0)));
+    program->click("tab:Light");
+    program->click("tab:Paints");
+    program->move_away();
+    program->item("swatches");
+    EXPECT_EQ(program->state("tried"), nullptr);
+    EXPECT_TRUE(projector_shows_now(drive_of_place(0)));
+    // What a list shows under the pointer when it opens is not what the pointer went to.
+    program->click("tab:Light");
+    program->click("environment");
+    EXPECT_EQ(program->state("tried"), nullptr);
+    desktop->press_key("Escape");
+    program->click("tab:Paints");
+}
+
 }  // namespace
 }  // namespace livery

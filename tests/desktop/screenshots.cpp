@@ -139,7 +139,7 @@ class Photographer {
         program().click("ballot:close-confirmed");
         settle();
         take("ballot-result");
-        desktop_.press_key("Escape");
+        program().click("ballot:close-panel");
     }
 
     void take_calibrating() {

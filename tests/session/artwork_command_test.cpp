@@ -88,10 +88,10 @@ TEST(SetArtwork, APictureThatIsGoneIsToldAndShownAgainWhenItIsBack) {
     const Document document = applied(car(), SetArtwork{1, {decal(file), some_artwork()}});
     const auto product = find_product("car");
     EXPECT_EQ(scene_of(document, 1, product).artwork.size(), 2u);
-    EXPECT_TRUE(paint_problems(document).empty());
+    EXPECT_TRUE(drawing_problems(document).empty());
     std::filesystem::rename(file, folder / "elsewhere.png");
     EXPECT_EQ(scene_of(document, 1, product).artwork.size(), 1u);
-    const auto problems = paint_problems(document);
+    const auto problems = drawing_problems(document);
     ASSERT_EQ(problems.size(), 1u);
     EXPECT_NE(problems[0].find("body of blue metallic"), std::string::npos) << problems[0];
     EXPECT_NE(problems[0].find("badge.png"), std::string::npos) << problems[0];

@@ -10,6 +10,7 @@
 #include "session/calibration_reuse.h"
 #include "session/contexts.h"
 #include "session/library.h"
+#include "session/orbit.h"
 #include "support/temporary_folder.h"
 #include "twin/bench.h"
 
@@ -24,6 +25,8 @@ constexpr const char* kSmallBench = R"({
   "camera": {"width": 432, "height": 288, "matrix": [1225, 0, 216.7, 0, 1225, 143.3, 0, 0, 1],
              "at_px": [216, 145]}
 })";
+
+constexpr glm::dvec3 kEye_mm{281.0, 425.0, 696.0};
 
 class OnTheBench : public ::testing::Test {
   protected:
@@ -86,7 +89,7 @@ struct Watched {
     std::shared_ptr<const BenchPhotograph> photograph(std::uint64_t number,
                                                       std::shared_ptr<const Image8> drive,
                                                       double white_y = 0.5) {
-        thread->photograph(number, std::move(drive), white_y);
+        thread->photograph(number, std::move(drive), kEye_mm, white_y);
         return photographs.wait_for([&](const auto& p) { return p && p->number == number; });
     }
     BenchThread::Calibrating end_of_calibration() {
@@ -127,6 +130,28 @@ TEST_F(OnTheBench, PhotographsWhatTheProjectorShows) {
     EXPECT_GT(mean_of(bright->srgb).y, mean_of(black->srgb).y + 40.0);
 }
 
+TEST_F(OnTheBench, PhotographsFromTheEyeAndCalibratesWithItsOwnCamera) {
+    Watched watched;
+    watched.thread->use(bench_, car_);
+    const auto photograph_from = [&](std::uint64_t number, const glm::dvec3& eye_mm) {
+        watched.thread->photograph(number, drive_of(255, 255, 255), eye_mm, 0.5);
+        return watched.photographs.wait_for([&](const auto& one) { return one->number == number; });
+    };
+    std::uint64_t number = 0;
+    for (const glm::dvec3 eye_mm : {kEye_mm, glm::dvec3(450, 251, 327), glm::dvec3(0, 900, 60)}) {
+        const auto photograph = photograph_from(++number, eye_mm);
+        ASSERT_TRUE(photograph);
+        EXPECT_EQ(photograph->problem, "");
+        // What the stage's eye view shows: the same corners of the car.
+        const View view = eye_view(eye_mm, bounds_of(car_->mesh), 432, 288);
+        const PixelRectangle whole = bounds_in_view(car_->mesh, view, 12);
+        EXPECT_EQ(photograph->srgb.width, whole.right - whole.left);
+        EXPECT_EQ(photograph->srgb.height, whole.bottom - whole.top);
+    }
+    watched.thread->start_calibration();
+    EXPECT_TRUE(watched.end_of_calibration().finished);
+}
+
 TEST_F(OnTheBench, ThePhotographIsTheObserversTruthForNeutralSurfaces) {
     // Absolute scale and colour: the camera's matrix against the bench's own observer, over the
     // same light (a wide average: the two see the car from different sides).
@@ -150,12 +175,13 @@ TEST_F(OnTheBench, ThePhotographIsTheObserversTruthForNeutralSurfaces) {
 TEST_F(OnTheBench, SaysWhyThereIsNoPhotograph) {
     Watched watched;
     EXPECT_FALSE(watched.thread->newest_photograph());
-    EXPECT_THROW(watched.thread->photograph(1, drive_of(1, 1, 1), 0.0), std::invalid_argument);
+    EXPECT_THROW(watched.thread->photograph(1, drive_of(1, 1, 1), kEye_mm, 0.0),
+                 std::invalid_argument);
     EXPECT_THROW(watched.thread->start_calibration(), std::invalid_argument);
     EXPECT_THROW(watched.thread->use(bench_, nullptr), std::invalid_argument);
 
     watched.thread->use("no such bench", car_);
-    EXPECT_THROW(watched.thread->photograph(1, nullptr, 0.0), std::invalid_argument);
+    EXPECT_THROW(watched.thread->photograph(1, nullptr, kEye_mm, 0.0), std::invalid_argument);
     const auto none = watched.photograph(1, drive_of(9, 9, 9));
     ASSERT_TRUE(none);
     EXPECT_NE(none->problem.find("no such bench"), std::string::npos) << none->problem;
@@ -175,7 +201,7 @@ TEST_F(OnTheBench, TheNewestOfManyIsPhotographed) {
     Watched watched;
     watched.thread->use(bench_, car_);
     for (std::uint64_t number = 1; number < 50; ++number) {
-        watched.thread->photograph(number, drive_of(100, 100, 100), 0.5);
+        watched.thread->photograph(number, drive_of(100, 100, 100), kEye_mm, 0.5);
     }
     ASSERT_TRUE(watched.photograph(50, drive_of(100, 100, 100)));
     EXPECT_LT(watched.photographs.all().size(), 50u);
@@ -278,7 +304,7 @@ TEST_F(OnTheBench, EndsAtAnyMoment) {
     for (const int ms : {0, 5, 60, 300, 600}) {
         Watched watched;
         watched.thread->use(bench_, car_);
-        watched.thread->photograph(1, drive_of(255, 255, 255), 0.5);
+        watched.thread->photograph(1, drive_of(255, 255, 255), kEye_mm, 0.5);
         if (ms % 2 == 0) watched.thread->start_calibration();
         std::this_thread::sleep_for(std::chrono::milliseconds(ms));
     }

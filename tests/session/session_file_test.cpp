@@ -299,12 +299,12 @@ TEST(SessionFile, PaintWhoseMeasuredFileIsGoneStaysAndComesBackWithIt) {
         Session session = Session::open(file);
         session.execute(EditPaint{1, "body", paint});
         text = text_of(session.document());
-        EXPECT_TRUE(paint_problems(session.document()).empty());
+        EXPECT_TRUE(drawing_problems(session.document()).empty());
     }
     std::filesystem::rename(panel, aside);
     {
         Session session = Session::open(file);
-        const auto problems = paint_problems(session.document());
+        const auto problems = drawing_problems(session.document());
         ASSERT_EQ(problems.size(), 1u);
         EXPECT_TRUE(problems.front().starts_with("\"panel\" is black: ")) << problems.front();
         EXPECT_NE(problems.front().find(panel.string()), std::string::npos) << problems.front();
@@ -320,7 +320,7 @@ TEST(SessionFile, PaintWhoseMeasuredFileIsGoneStaysAndComesBackWithIt) {
     }
     std::filesystem::rename(aside, panel);
     const Session session = Session::open(file);
-    EXPECT_TRUE(paint_problems(session.document()).empty());
+    EXPECT_TRUE(drawing_problems(session.document()).empty());
     EXPECT_EQ(session.document().paints.front().measured->id, paint.measured->id);
 }
 

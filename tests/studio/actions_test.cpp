@@ -73,6 +73,22 @@ TEST(Actions, ADialogLeavesPlainBlackAndFreezeAndNothingElse) {
     EXPECT_EQ(action_for({GLFW_KEY_ESCAPE, false, false}, dialog), nullptr);
 }
 
+TEST(Actions, ABallotKeepsItsLettersAndWhateverChangesALookRests) {
+    const KeyboardOwner voting{.ballot_letters = 4};
+    EXPECT_EQ(action_for({GLFW_KEY_B, false, false}, voting), nullptr) << "design B";
+    EXPECT_EQ(action_for({GLFW_KEY_B, true, false}, voting)->id, "black");
+    EXPECT_EQ(action_for({GLFW_KEY_F, false, false}, voting)->id, "freeze") << "no design F";
+    EXPECT_EQ(action_for({GLFW_KEY_2, false, false}, voting)->id, "look-2");
+    EXPECT_EQ(action_for({GLFW_KEY_PAGE_DOWN, false, false}, voting)->id, "next-look");
+    EXPECT_EQ(action_for({GLFW_KEY_SPACE, false, false}, voting)->id, "hold-b");
+    EXPECT_EQ(action_for({GLFW_KEY_F6, false, false}, voting)->id, "view-eye");
+    for (const int key : {GLFW_KEY_DELETE, GLFW_KEY_N, GLFW_KEY_F2}) {
+        EXPECT_EQ(action_for({key, false, false}, voting), nullptr) << key;
+    }
+    EXPECT_EQ(action_for({GLFW_KEY_Z, true, false}, voting), nullptr);
+    EXPECT_EQ(action_for({GLFW_KEY_D, true, false}, voting), nullptr);
+}
+
 TEST(Actions, ArrowsStepLooksUnlessTheyMoveBetweenItems) {
     EXPECT_EQ(action_for({GLFW_KEY_RIGHT, false, false}, {})->id, "next-look");
     EXPECT_EQ(action_for({GLFW_KEY_RIGHT, false, false}, {.keyboard_navigation = true}), nullptr);

@@ -1,5 +1,6 @@
 // The panels drawn without a window: everything fits in the narrowest column, and pointer and keys
 // do to the session what they say.
+#include <cfloat>
 #include <cstdlib>
 #include <string>
 
@@ -7,8 +8,11 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
+#include "appearance/colour_record.h"
+#include "appearance/recolour.h"
 #include "core/error.h"
 #include "core/image_io.h"
+#include "core/paths.h"
 #include "session/library.h"
 #include "studio/artwork_edit.h"
 #include "studio/studio.h"
@@ -107,6 +111,18 @@ class Panels : public testing::TestWithParam<float> {
             static_cast<float>(found->second.x) + 0.5f * static_cast<float>(found->second.width),
             static_cast<float>(found->second.y) + 0.5f * static_cast<float>(found->second.height)};
     }
+    /// As a person does: the pointer comes from somewhere else.
+    void move_to(Studio& studio, DrawPanel draw, const std::string& name) {
+        const ItemPlaces places = frames(studio, draw, 2);
+        ImGui::GetIO().MousePos = {1.0f, 3990.0f};
+        frame(studio, draw);
+        point_at(places, name);
+        frames(studio, draw, 2);
+    }
+    void move_away(Studio& studio, DrawPanel draw) {
+        ImGui::GetIO().MousePos = {-FLT_MAX, -FLT_MAX};
+        frames(studio, draw, 2);
+    }
     void click(Studio& studio, DrawPanel draw, const std::string& name) {
         point_at(frames(studio, draw, 2), name);
         frames(studio, draw, 2);
@@ -125,6 +141,11 @@ class Panels : public testing::TestWithParam<float> {
     float scale_ = 1.0f;
     TemporaryFolder home_;
 };
+
+void draw_ballot(Studio& studio) {
+    bool open = true;
+    draw_ballot_panel(studio, open);
+}
 
 std::string worn(const Document& document, std::size_t look = 0) {
     const auto& parts = document.looks.at(look).look.parts;
@@ -151,7 +172,8 @@ TEST_P(Panels, FitIntoTheNarrowestColumn) {
         {draw_lighting_panel,
          {"light:0:intensity", "light-pad:1", "eye:distance", "exposure", "quality:draft"}},
         {draw_plan_panel, {"frame-total", "skipped-passes", "pass:prepare:clearcoat"}},
-        {draw_calibration_panel, {"calibrate", "design-white", "calibration:none"}}};
+        {draw_calibration_panel, {"calibrate", "design-white", "calibration:none"}},
+        {draw_ballot, {"ballot:start", "ballot:look:1", "ballot:close-panel"}}};
     for (const auto& [draw, expected] : panels) {
         const ItemPlaces places = frames(studio, draw, 3);
         for (const std::string& name : expected) EXPECT_TRUE(places.contains(name)) << name;
@@ -170,8 +192,7 @@ TEST_F(Panels, PointingTriesAPaintAndClickingPaints) {
     use_scale(1.0f);
     Studio studio = make_studio();
     const std::uint64_t before = studio.session.revision();
-    point_at(frames(studio, draw_library_panel, 2), "paint:solid blue");
-    frames(studio, draw_library_panel, 2);
+    move_to(studio, draw_library_panel, "paint:solid blue");
     ASSERT_TRUE(studio.tried);
     EXPECT_EQ(worn(shown_document(studio)), "solid blue");
     EXPECT_EQ(worn(studio.session.document()), "solid red");
@@ -194,6 +215,130 @@ TEST_F(Panels, ArrowsTryPaintsAndEnterPaints) {
     EXPECT_EQ(worn(shown_document(studio)), "blue metallic");
     press(studio, draw_library_panel, ImGuiKey_Enter);
     EXPECT_EQ(worn(studio.session.document()), "blue metallic");
+}
+
+TEST_F(Panels, FocusThatComesBackTriesNothing) {
+    use_scale(1.0f);
+    Studio studio = make_studio();
+    const int first = studio.shown_look, second = studio.session.document().looks[1].id;
+    click(studio, draw_library_panel, "paint:solid blue");
+    ASSERT_EQ(worn(studio.session.document()), "solid blue");
+    stop_trying(studio);
+    show_look(studio, second);  // as by its number key
+    frames(studio, draw_library_panel, 2);
+    click(studio, draw_lighting_panel, "light:1");
+    frames(studio, draw_library_panel, 2);
+    EXPECT_FALSE(studio.tried) << text_of(*studio.tried);
+    move_away(studio, draw_library_panel);
+    EXPECT_FALSE(studio.tried) << text_of(*studio.tried);
+    EXPECT_EQ(worn(shown_document(studio), 1), "blue metallic");
+
+    // Nor after undo, when the pointer is somewhere else by then.
+    show_look(studio, first);
+    studio.session.undo();
+    frames(studio, draw_library_panel, 2);
+    EXPECT_FALSE(studio.tried) << text_of(*studio.tried);
+    EXPECT_EQ(worn(shown_document(studio)), "solid red");
+}
+
+TEST_F(Panels, APointerThatRestsTriesNothing) {
+    use_scale(1.0f);
+    Studio studio = make_studio();
+    // The window comes up under the pointer.
+    point_at(frames(studio, draw_library_panel, 2), "paint:solid blue");
+    frames(studio, draw_library_panel, 3);
+    EXPECT_FALSE(studio.tried);
+    // The pointer leaves and comes back to the same place: another window was over this one.
+    const ImVec2 there = ImGui::GetIO().MousePos;
+    move_away(studio, draw_library_panel);
+    ImGui::GetIO().MousePos = there;
+    frames(studio, draw_library_panel, 2);
+    EXPECT_FALSE(studio.tried);
+    // The panel changes under it.
+    frames(studio, draw_lighting_panel, 2);
+    frames(studio, draw_library_panel, 2);
+    EXPECT_FALSE(studio.tried);
+    ImGui::GetIO().MousePos.x += 1.0f;
+    frames(studio, draw_library_panel, 2);
+    ASSERT_TRUE(studio.tried);
+    EXPECT_EQ(worn(shown_document(studio)), "solid blue");
+    frames(studio, draw_library_panel, 5);
+    EXPECT_TRUE(studio.tried) << "as long as the pointer stays";
+}
+
+TEST_F(Panels, APaintFromTheArrowsIsTakenBackWhenTheKeysGoElsewhere) {
+    use_scale(1.0f);
+    Studio studio = make_studio();
+    studio.panels.library.focus_search = true;
+    studio.panels.library.search = "blue";
+    frames(studio, draw_library_panel, 3);
+    press(studio, draw_library_panel, ImGuiKey_DownArrow);
+    ASSERT_TRUE(studio.tried);
+    frames(studio, draw_library_panel, 3);
+    EXPECT_TRUE(studio.tried) << "as long as nothing else happens";
+    ImGui::ClearActiveID();
+    ImGui::FocusWindow(nullptr);
+    frames(studio, draw_library_panel, 2);
+    EXPECT_FALSE(studio.tried);
+    EXPECT_EQ(worn(shown_document(studio)), "solid red");
+}
+
+TEST_F(Panels, ABallotIsFilledByTheLettersThatItShows) {
+    use_scale(1.0f);
+    Studio studio = make_studio();
+    studio.ballots = std::make_unique<BallotStore>(home_ / "ballots.sqlite");
+    EXPECT_EQ(ballot_letters(studio), 0u);
+    click(studio, draw_ballot, "ballot:start");
+    ItemPlaces places = frames(studio, draw_ballot, 2);
+    for (const char* name : {"ballot:picture:1", "ballot:best:0", "ballot:second:1"}) {
+        EXPECT_TRUE(places.contains(name)) << name;
+        EXPECT_LE(places[name].x + places[name].width, kColumn) << name;
+    }
+    EXPECT_EQ(ballot_letters(studio), 2u);
+    const BallotPanelState& state = studio.panels.ballot;
+    const auto type = [&](char letter) {
+        ImGui::GetIO().AddInputCharacter(static_cast<unsigned>(letter));
+        frames(studio, draw_ballot, 2);
+    };
+    type('2');  // shows a look on the mock-up, and chooses nothing here
+    type('c');  // no design of this round
+    EXPECT_FALSE(state.best);
+    type('b');
+    type('A');
+    EXPECT_EQ(state.best, 1);
+    EXPECT_EQ(state.second, 0);
+    // Enter without a name asks for it.
+    press(studio, draw_ballot, ImGuiKey_Enter);
+    EXPECT_EQ(state.page, BallotPanelState::Page::vote);
+    frames(studio, draw_ballot, 2);
+    EXPECT_TRUE(ImGui::GetIO().WantTextInput);
+    for (const char letter : std::string("Bo")) type(letter);
+    EXPECT_EQ(state.evaluator, "Bo");
+    EXPECT_EQ(state.best, 1) << "letters of a name choose nothing";
+    press(studio, draw_ballot, ImGuiKey_Enter);
+    EXPECT_EQ(state.page, BallotPanelState::Page::vote) << "the field is left, nothing more";
+    press(studio, draw_ballot, ImGuiKey_Enter);
+    EXPECT_EQ(state.page, BallotPanelState::Page::thanks);
+    EXPECT_EQ(studio.ballots->rounds().at(0).ballots, 1);
+    EXPECT_EQ(ballot_letters(studio), 2u) << "a letter too many is nobody's command";
+    // A picture shows its look.
+    press(studio, draw_ballot, ImGuiKey_Enter);
+    click(studio, draw_ballot, "ballot:picture:1");
+    EXPECT_EQ(studio.shown_look, studio.session.document().looks[1].id);
+}
+
+TEST_F(Panels, AJunkEnvironmentIsRefusedWhenItIsChosenAndToldWhenItGoesBad) {
+    use_scale(1.0f);
+    Studio studio = make_studio();
+    const auto junk = home_ / "junk.hdr";
+    write_text_file(junk, "no picture at all");
+    const std::uint64_t before = studio.session.revision();
+    commit(studio, SetEnvironment{studio.shown_look, {junk.string(), 0.0, 1.0}});
+    EXPECT_EQ(studio.session.revision(), before);
+    ASSERT_EQ(studio.notices.size(), 1u);
+    EXPECT_NE(studio.notices[0].cause.find("junk.hdr"), std::string::npos)
+        << studio.notices[0].cause;
+    frames(studio, draw_lighting_panel, 2);
 }
 
 TEST_F(Panels, SayWhenNothingIsFound) {
@@ -266,6 +411,8 @@ TEST_F(Panels, ArtworkIsTriedInTheMenuAddedDraggedAndUndone) {
     Studio studio = make_studio();
     const auto artwork = [&] { return studio.session.document().looks[0].look.artwork; };
     click(studio, draw_artwork_panel, "artwork:add");
+    frames(studio, draw_artwork_panel, 2);
+    EXPECT_FALSE(studio.tried) << "a list that opens under the pointer tries nothing";
     point_at(frames(studio, draw_artwork_panel, 3), "artwork:add:dots");
     frames(studio, draw_artwork_panel, 2);
     ASSERT_TRUE(studio.tried);
@@ -350,6 +497,57 @@ TEST_F(Panels, ArtworkThatAPaintCannotWearIsRefusedWithTheReason) {
     print.paint = "solid white";
     set_artwork_at(studio, 0, print);
     EXPECT_EQ(studio.session.revision(), before + 1);
+}
+
+TEST_F(Panels, ArtworkThatNobodySeesSaysSo) {
+    use_scale(1.0f);
+    Studio studio = make_studio();
+    Artwork dots = long_names()[0];
+    dots.shape = ArtworkShape::dots;
+    dots.paint.clear();
+    studio.session.execute(SetArtwork{studio.shown_look, {dots}});
+    EXPECT_TRUE(frames(studio, draw_artwork_panel, 2).contains("artwork:not-seen"));
+    dots.paint = "solid red";
+    studio.session.execute(SetArtwork{studio.shown_look, {dots}});
+    EXPECT_TRUE(frames(studio, draw_artwork_panel, 2).contains("artwork:not-seen"));
+    dots.paint = "solid blue";
+    studio.session.execute(SetArtwork{studio.shown_look, {dots}});
+    EXPECT_FALSE(frames(studio, draw_artwork_panel, 2).contains("artwork:not-seen"));
+    // Over other artwork the part's own paint is seen: it leaves that out.
+    Artwork own = dots;
+    own.paint.clear();
+    studio.session.execute(SetArtwork{studio.shown_look, {dots, own}});
+    EXPECT_FALSE(frames(studio, draw_artwork_panel, 2).contains("artwork:not-seen"));
+    // A paint that is put below later may not wear it.
+    const auto file = home_ / "gloss.png";
+    write_png(file, Image8(4, 4, 3, 100));
+    Artwork gloss;
+    gloss.shape = ArtworkShape::picture;
+    gloss.picture = file.string();
+    gloss.use = PictureUse::roughness;
+    studio.session.execute(SetArtwork{studio.shown_look, {gloss}});
+    EXPECT_FALSE(frames(studio, draw_artwork_panel, 2).contains("artwork:not-seen"));
+    Material matte;
+    matte.name = "solid red";
+    matte.model = ReflectanceModel::eon;
+    studio.session.execute(EditPaint{studio.shown_look, "sphere", matte});
+    EXPECT_TRUE(frames(studio, draw_artwork_panel, 2).contains("artwork:not-seen"));
+}
+
+TEST_F(Panels, AColourThatThePaintCannotHaveStaysInSight) {
+    use_scale(1.0f);
+    Studio studio = make_studio();
+    Material made =
+        with_colour(find_paint(studio.session.document(), "silver metallic"), {90.0, -60.0, 80.0})
+            .material;
+    made.name = "silver metallic";
+    commit(studio, EditPaint{studio.shown_look, "sphere", made});
+    EXPECT_TRUE(frames(studio, draw_paint_panel, 3).contains("paint-colour-asked"));
+    const Material now = find_paint(studio.session.document(), "silver metallic 2");
+    const auto asked = colour_record(now.provenance);
+    ASSERT_TRUE(asked) << now.provenance;
+    EXPECT_EQ(asked->asked_lab10, glm::dvec3(90.0, -60.0, 80.0));
+    EXPECT_GT(asked->de00, kColourReached);
 }
 
 TEST_F(Panels, ArtworkFollowsThePointerUntilItIsPlaced) {

@@ -1,6 +1,7 @@
 // Votes on looks: a round is opened, people vote one after another, and nothing is told before it
-// is closed.
+// is closed. A panel: the looks go on being shown on the mock-up meanwhile.
 #include <algorithm>
+#include <cctype>
 #include <cfloat>
 #include <cmath>
 #include <optional>
@@ -15,6 +16,7 @@
 #include "core/error.h"
 #include "core/paths.h"
 #include "evaluation/tally.h"
+#include "studio/look_thumbnails.h"
 #include "studio/studio.h"
 #include "studio/theme.h"
 #include "studio/widgets.h"
@@ -24,20 +26,24 @@ namespace livery {
 
 namespace {
 
-constexpr const char* kTitle = "Ballots";
-using Page = BallotDialogState::Page;
+using Page = BallotPanelState::Page;
+constexpr std::size_t kLetters = 26;
 
-/// "(a)", "(b)", ..., "(z)", "(27)".
+/// "A", "B", ..., "Z", "27": what a design is called, and the key that chooses it.
 std::string letter(std::size_t design) {
-    return design < 26 ? fmt::format("({})", static_cast<char>('a' + design))
-                       : fmt::format("({})", design + 1);
+    return design < kLetters ? std::string(1, static_cast<char>('A' + design))
+                             : fmt::format("{}", design + 1);
 }
 
 float big_height() { return em(2.4f); }
 
+ImVec2 thumbnail_size(float share = 1.0f) {
+    return {std::floor(share * em(8.0f)), std::floor(share * em(5.0f))};
+}
+
 /// Runs what the store may refuse and keeps the reason for the operator.
 template <typename Work>
-bool attempted(BallotDialogState& state, Work&& work) {
+bool attempted(BallotPanelState& state, Work&& work) {
     state.problem.clear();
     try {
         work();
@@ -51,17 +57,17 @@ bool attempted(BallotDialogState& state, Work&& work) {
 }
 
 void read_rounds(Studio& studio) {
-    BallotDialogState& state = studio.panels.ballot;
+    BallotPanelState& state = studio.panels.ballot;
     attempted(state, [&] { state.rounds = studio.ballots->rounds(); });
 }
 
-const Round* open_round(const BallotDialogState& state) {
+const Round* open_round(const BallotPanelState& state) {
     const auto found = std::find_if(
         state.rounds.begin(), state.rounds.end(), [](const Round& round) { return !round.closed; });
     return found == state.rounds.end() ? nullptr : &*found;
 }
 
-void go_to(BallotDialogState& state, Page page) {
+void go_to(BallotPanelState& state, Page page) {
     state.page = page;
     state.problem.clear();
     state.asking_to_close = false;
@@ -69,7 +75,6 @@ void go_to(BallotDialogState& state, Page page) {
         state.evaluator.clear();
         state.best.reset();
         state.second.reset();
-        state.focus_name = true;
     }
 }
 
@@ -80,10 +85,16 @@ std::string count_of(int ballots) {
 // --- starting a round ---
 
 void draw_looks_to_choose(Studio& studio) {
-    BallotDialogState& state = studio.panels.ballot;
+    BallotPanelState& state = studio.panels.ballot;
     for (const SessionLook& look : studio.session.document().looks) {
         bool& chosen = state.chosen_looks.try_emplace(look.id, true).first->second;
         ImGui::PushID(look.id);
+        const ImVec2 size = thumbnail_size(0.6f);
+        const ImVec2 corner = ImGui::GetCursorScreenPos();
+        draw_look_thumbnail(studio, look.look.name, corner, size);
+        ImGui::Dummy(size);
+        ImGui::SameLine();
+        ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 0.5f * (size.y - ImGui::GetFrameHeight()));
         ImGui::Checkbox(look.look.name.c_str(), &chosen);
         name_last_item(fmt::format("ballot:look:{}", look.id));
         ImGui::PopID();
@@ -102,7 +113,7 @@ std::vector<std::string> chosen_names(const Studio& studio) {
 }
 
 void draw_earlier_rounds(Studio& studio) {
-    BallotDialogState& state = studio.panels.ballot;
+    BallotPanelState& state = studio.panels.ballot;
     heading("Earlier rounds");
     const bool any = std::any_of(
         state.rounds.begin(), state.rounds.end(), [](const Round& round) { return round.closed; });
@@ -123,7 +134,7 @@ void draw_earlier_rounds(Studio& studio) {
 }
 
 void draw_start(Studio& studio) {
-    BallotDialogState& state = studio.panels.ballot;
+    BallotPanelState& state = studio.panels.ballot;
     heading("Looks under vote");
     draw_looks_to_choose(studio);
     const auto names = chosen_names(studio);
@@ -149,12 +160,13 @@ void draw_start(Studio& studio) {
 
 // --- voting ---
 
-/// Keys 1, 2, ... choose the best, then the second best; Backspace takes back.
-void follow_number_keys(BallotDialogState& state, std::size_t designs) {
+/// Keys A, B, ... choose the best, then the second best; Backspace takes back.
+void follow_letter_keys(BallotPanelState& state, std::size_t designs) {
     if (ImGui::GetIO().WantTextInput) return;
     for (const ImWchar typed : ImGui::GetIO().InputQueueCharacters) {
-        if (typed < '1' || typed > '9') continue;
-        const int design = static_cast<int>(typed) - '1';
+        const int lower = typed < 128 ? std::tolower(static_cast<int>(typed)) : 0;
+        if (lower < 'a' || lower > 'z') continue;
+        const int design = lower - 'a';
         if (static_cast<std::size_t>(design) >= designs) continue;
         if (!state.best) {
             state.best = design;
@@ -174,9 +186,6 @@ void draw_choice(std::optional<int>& choice,
     const int index = static_cast<int>(design);
     const bool on = choice == index;
     ImGui::PushID(name);
-    ImGui::PushStyleVar(
-        ImGuiStyleVar_FramePadding,
-        {ImGui::GetStyle().FramePadding.x, 0.5f * (big_height() - ImGui::GetFontSize())});
     if (toggle_button(label, on, width)) {
         if (on) {
             choice.reset();
@@ -187,38 +196,80 @@ void draw_choice(std::optional<int>& choice,
         }
     }
     name_last_item(fmt::format("ballot:{}:{}", name, design));
-    ImGui::PopStyleVar();
     ImGui::PopID();
 }
 
-void draw_designs(BallotDialogState& state, const Round& round) {
-    const float gap = ImGui::GetStyle().ItemSpacing.x;
-    const float button = std::max(em(6.5f), button_width("Second best"));
-    const float text = ImGui::GetContentRegionAvail().x - 2.0f * (button + gap);
+/// The picture of a design; a click shows the look on the mock-up.
+void draw_picture(Studio& studio, const std::string& name, std::size_t design) {
+    const ImVec2 size = thumbnail_size(), corner = ImGui::GetCursorScreenPos();
+    const bool clicked = ImGui::InvisibleButton("picture", size);
+    name_last_item(fmt::format("ballot:picture:{}", design));
+    const bool hovered = ImGui::IsItemHovered();
+    draw_look_thumbnail(studio, name, corner, size);
+    const SessionLook* look = look_named(studio.session.document(), name);
+    const bool shown = look && look->id == studio.shown_look;
+    tooltip(!look   ? "The session has no look of this name any more."
+            : shown ? "On the mock-up now."
+                    : "Click to show it on the mock-up.");
+    if (shown || (look && hovered)) {
+        ImGui::GetWindowDrawList()->AddRect(
+            corner,
+            {corner.x + size.x, corner.y + size.y},
+            ImGui::GetColorU32(shown ? colours::text : colours::dim_text),
+            em(0.2f),
+            0,
+            std::max(1.5f, em(0.12f)));
+    }
+    if (clicked && look) {
+        stop_trying(studio);
+        show_look(studio, look->id);
+    }
+}
+
+/// Its letter, large, and its name.
+void draw_title(const std::string& name, std::size_t design, float width) {
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    ImFont& font = *large_font();
+    const std::string mark = letter(design);
+    const float indent = std::max(
+        em(1.7f), font.CalcTextSizeA(font.FontSize, FLT_MAX, 0.0f, mark.c_str()).x + em(0.5f));
+    const float height = 2.0f * ImGui::GetTextLineHeight() + em(0.3f);
+    const ImU32 colour = ImGui::GetColorU32(colours::text);
+    list.AddText(&font, font.FontSize, corner, colour, mark.c_str());
+    const auto lines = fitted_lines(name, width - indent, 2);
+    float y = corner.y + (lines.size() < 2 ? 0.5f * (font.FontSize - ImGui::GetFontSize()) : 0.0f);
+    for (const std::string& line : lines) {
+        list.AddText({corner.x + indent, y}, colour, line.c_str());
+        y += ImGui::GetTextLineHeight() + em(0.1f);
+    }
+    ImGui::Dummy({width, height});
+    tooltip(name);
+}
+
+void draw_designs(Studio& studio, const Round& round) {
+    BallotPanelState& state = studio.panels.ballot;
+    const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
     for (std::size_t i = 0; i < round.designs.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
-        const ImVec2 corner = ImGui::GetCursorScreenPos();
-        const auto lines =
-            fitted_lines(fmt::format("{} {}", letter(i), round.designs[i]), text - gap, 2);
-        float y = corner.y + 0.5f * (big_height() - ImGui::GetFontSize() * 1.15f *
-                                                        static_cast<float>(lines.size()));
-        for (const std::string& line : lines) {
-            ImGui::GetWindowDrawList()->AddText(
-                {corner.x, y}, ImGui::GetColorU32(colours::text), line.c_str());
-            y += ImGui::GetFontSize() * 1.15f;
-        }
-        ImGui::Dummy({text, big_height()});
-        tooltip(round.designs[i]);
+        draw_picture(studio, round.designs[i], i);
+        ImGui::SameLine();
+        ImGui::BeginGroup();
+        const float width = ImGui::GetContentRegionAvail().x;
+        draw_title(round.designs[i], i, width);
+        const float half = std::floor(0.5f * (width - gap));
+        const bool room = half >= button_width("Second best");
+        draw_choice(state.best, state.second, i, "Best", "best", half);
         ImGui::SameLine(0.0f, gap);
-        draw_choice(state.best, state.second, i, "Best", "best", button);
-        ImGui::SameLine(0.0f, gap);
-        draw_choice(state.second, state.best, i, "Second best", "second", button);
+        draw_choice(state.second, state.best, i, room ? "Second best" : "Second", "second", half);
+        ImGui::EndGroup();
+        ImGui::Dummy({0.0f, em(0.1f)});
         ImGui::PopID();
     }
 }
 
 void draw_closing(Studio& studio, const Round& round) {
-    BallotDialogState& state = studio.panels.ballot;
+    BallotPanelState& state = studio.panels.ballot;
     if (!state.asking_to_close) {
         if (ImGui::Button("Close the round…")) state.asking_to_close = true;
         name_last_item("ballot:close");
@@ -244,7 +295,7 @@ void draw_closing(Studio& studio, const Round& round) {
 }
 
 void confirm(Studio& studio, const Round& round) {
-    BallotDialogState& state = studio.panels.ballot;
+    BallotPanelState& state = studio.panels.ballot;
     const int id = round.id;
     const Ballot ballot{state.evaluator, *state.best, *state.second};
     if (!attempted(state, [&] { studio.ballots->vote(id, ballot); })) return;
@@ -254,17 +305,24 @@ void confirm(Studio& studio, const Round& round) {
 }
 
 void draw_vote(Studio& studio, const Round& round) {
-    BallotDialogState& state = studio.panels.ballot;
+    BallotPanelState& state = studio.panels.ballot;
     heading(fmt::format("Round {}: your ballot", round.id).c_str());
     row_label("Your name", 0.25f);
     if (std::exchange(state.focus_name, false)) ImGui::SetKeyboardFocusHere();
-    ImGui::InputText("##name", &state.evaluator);
+    ImGui::SetNextItemWidth(-1.0f);
+    ImGui::InputTextWithHint("##name", "Enter to type it", &state.evaluator);
     name_last_item("ballot:name");
+    // Enter leaves the field, which is no confirmation yet.
+    const bool was_typing = ImGui::IsItemActive() || ImGui::IsItemDeactivated();
     tooltip("One ballot a person: a second one under the same name replaces the first.");
     ImGui::Spacing();
-    draw_designs(state, round);
-    follow_number_keys(state, round.designs.size());
-    dim_text("Keys 1, 2, 3 … choose the best, then the second best; Backspace takes back.");
+    draw_designs(studio, round);
+    follow_letter_keys(state, round.designs.size());
+    dim_text(
+        fmt::format("Keys A to {} choose the best, then the second best; Backspace takes "
+                    "back. 1, 2, 3 … show looks on the mock-up; black is Ctrl+B, freeze "
+                    "Ctrl+F.",
+                    letter(std::min(round.designs.size(), kLetters) - 1)));
 
     const bool named = state.evaluator.find_first_not_of(' ') != std::string::npos;
     const bool complete = named && state.best && state.second;
@@ -281,7 +339,8 @@ void draw_vote(Studio& studio, const Round& round) {
     ImGui::Spacing();
     ImGui::Separator();
     // Nothing is drawn from `round` after these: both read the rounds anew.
-    const bool enter = was_pressed(ImGuiKey_Enter) && !ImGui::GetIO().WantTextInput;
+    const bool enter = was_pressed(ImGuiKey_Enter) && !was_typing && !ImGui::GetIO().NavVisible;
+    if (enter && !named) state.focus_name = true;
     if (complete && (pressed || enter)) {
         confirm(studio, round);
     } else {
@@ -290,18 +349,19 @@ void draw_vote(Studio& studio, const Round& round) {
 }
 
 void draw_thanks(Studio& studio, const Round& round) {
-    BallotDialogState& state = studio.panels.ballot;
+    BallotPanelState& state = studio.panels.ballot;
     ImGui::PushFont(large_font());
     ImGui::TextWrapped("Thank you, %s.", state.thanked.c_str());
     ImGui::PopFont();
     name_last_item("ballot:thanks");
     ImGui::Text("%s in round %d.", count_of(round.ballots).c_str(), round.id);
     ImGui::Spacing();
-    if (ImGui::Button("Next ballot", {-FLT_MIN, big_height()}) || was_pressed(ImGuiKey_Enter)) {
+    const bool next = ImGui::Button("Next ballot", {-FLT_MIN, big_height()});
+    name_last_item("ballot:next");
+    if (next || was_pressed(ImGuiKey_Enter)) {
         go_to(state, Page::vote);
         return;
     }
-    name_last_item("ballot:next");
     ImGui::Spacing();
     ImGui::Separator();
     draw_closing(studio, round);
@@ -364,7 +424,7 @@ void ask_where_to_export(Studio& studio, const Tally& tally, int round) {
 }
 
 void draw_result(Studio& studio, const Round& round) {
-    BallotDialogState& state = studio.panels.ballot;
+    BallotPanelState& state = studio.panels.ballot;
     heading(fmt::format("Round {}: {}", round.id, count_of(round.ballots)).c_str());
     name_last_item("ballot:result");
     dim_text(fmt::format("Started {}, {}.",
@@ -384,7 +444,7 @@ void draw_result(Studio& studio, const Round& round) {
 }
 
 void draw_page(Studio& studio) {
-    BallotDialogState& state = studio.panels.ballot;
+    BallotPanelState& state = studio.panels.ballot;
     const Round* open = open_round(state);
     if (!open && (state.page == Page::vote || state.page == Page::thanks)) {
         go_to(state, Page::start);
@@ -417,29 +477,24 @@ void draw_page(Studio& studio) {
 
 }  // namespace
 
-void draw_ballot_dialog(Studio& studio, bool& open) {
-    BallotDialogState& state = studio.panels.ballot;
+void draw_ballot_panel(Studio& studio, bool& open) {
+    BallotPanelState& state = studio.panels.ballot;
     if (!open) {
         state.was_open = false;
         return;
     }
     if (!std::exchange(state.was_open, true)) {
+        // What the tabs were trying is not what people vote on.
+        stop_trying(studio);
         if (studio.ballots) read_rounds(studio);
         go_to(state, Page::start);
     }
-    // Asking for a file closes this one; it comes back afterwards, as it was.
-    if (studio.file_dialog && studio.file_dialog->is_open()) return;
-    if (!ImGui::IsPopupOpen(kTitle)) ImGui::OpenPopup(kTitle);
-    const ImVec2 screen = ImGui::GetMainViewport()->WorkSize;
-    const float width = std::min(em(34.0f), 0.96f * screen.x);
-    ImGui::SetNextWindowSizeConstraints({width, 0.0f}, {width, 0.94f * screen.y});
-    ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Always, {0.5f, 0.5f});
-    if (!ImGui::BeginPopupModal(kTitle,
-                                &open,
-                                ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
-                                    ImGuiWindowFlags_NoSavedSettings)) {
-        return;
-    }
+    const float side = ImGui::GetFrameHeight();
+    heading("Ballot");
+    ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - side);
+    if (ImGui::Button("×##close-ballot", {side, 0.0f})) open = false;
+    name_last_item("ballot:close-panel");
+    tooltip("Back to the paints. An open round stays open.");
     if (!studio.ballots) {
         warning_text("Ballots cannot be kept: the ballot file could not be opened.");
     } else {
@@ -449,10 +504,15 @@ void draw_ballot_dialog(Studio& studio, bool& open) {
         warning_text(state.problem);
         name_last_item("ballot:problem");
     }
-    const bool typing = ImGui::GetIO().WantTextInput;
-    if (was_pressed(ImGuiKey_Escape) && !typing) open = false;
-    if (!open) ImGui::CloseCurrentPopup();
-    ImGui::EndPopup();
+}
+
+std::size_t ballot_letters(const Studio& studio) {
+    const BallotPanelState& state = studio.panels.ballot;
+    const Round* round = open_round(state);
+    // Until the next voter begins, the last one's letters mean nothing else either.
+    const bool votes =
+        state.was_open && round && (state.page == Page::vote || state.page == Page::thanks);
+    return votes ? std::min(round->designs.size(), kLetters) : 0;
 }
 
 }  // namespace livery

@@ -1,0 +1,35 @@
+// What the bar says of the projector: never that it shows what it does not.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "projection/projector_screen.h"
+
+namespace livery {
+
+struct ProjectorFacts {
+    ProjectorScreen::State state = ProjectorScreen::State::off;
+    std::string why_waiting;
+    bool only_screen = false;  ///< the chosen one, which therefore stays dark
+    bool black = false, frozen = false;
+    bool monitor_numbers = false, signal_test = false;  ///< shown instead
+    std::uint64_t wanted = 0;                           ///< the newest frame that was asked for
+    std::uint64_t shown = 0;                            ///< the frame on the projector
+    double waited_s = 0.0;                              ///< since the wanted one was asked for
+    std::string not_drawn;                              ///< why there is no such frame
+};
+
+struct ProjectorWords {
+    enum class Mood { quiet, good, warning, error };
+    std::string text;
+    Mood mood = Mood::quiet;
+    std::string help;  ///< may be empty
+};
+
+/// A frame may be on its way for so long before the bar speaks of it.
+inline constexpr double kUnspokenWait_s = 0.25;
+
+ProjectorWords projector_words(const ProjectorFacts& facts);
+
+}  // namespace livery
