@@ -241,7 +241,7 @@ void draw_measures(Rows& rows, Artwork& edited) {
     if (fields.size && !edited.place.by_uv) {
         row_label(fields.picture ? "Width" : "Size");
         const double most = std::clamp(4.0 * extent, 100.0, 1e5);
-        ratio_slider("##size", edited.size_mm, 0.1, most, "%.4g mm");
+        readable_slider("##size", edited.size_mm, 0.1, most, "mm", true);
         rows.after_item(
             "size",
             fmt::format(
@@ -267,11 +267,11 @@ void draw_measures(Rows& rows, Artwork& edited) {
     if (fields.softness) {
         row_label("Soft edge");
         const double most = std::clamp(extent, 10.0, 1e5);
-        ratio_slider("##softness",
-                     edited.softness_mm,
-                     0.0,
-                     most,
-                     edited.softness_mm <= 0.0 ? "sharp" : "%.3g mm");
+        if (edited.softness_mm <= 0.0) {
+            ratio_slider("##softness", edited.softness_mm, 0.0, most, "sharp");
+        } else {
+            readable_slider("##softness", edited.softness_mm, 0.0, most, "mm", true);
+        }
         rows.after_item("softness", "How wide the change from one paint to the other is.");
     }
 }
@@ -361,7 +361,7 @@ void draw_place(Rows& rows, Artwork& edited) {
         "artwork:centre",
         edited.place.centre_mm,
         std::max(1e-3f, 0.002f * static_cast<float>(facts_of(rows.studio().product).extent_mm)),
-        "%.4g",
+        nullptr,
         "Its middle, in the product's frame: y is up. Drag, or Ctrl+click to type.",
         [&] { rows.after_item(); });
     row_label("");

@@ -201,7 +201,7 @@ void draw_calibrating(Studio& studio) {
     if (calibrating.running) {
         progress_bar(calibrating.fraction, fmt::format("{:.0f} %", 100.0 * calibrating.fraction));
         name_last_item("calibration-progress");
-        dim_text(calibrating.stage);
+        dim_text("Of this step: " + calibrating.stage + ".");
         if (ImGui::Button("Cancel", {-FLT_MIN, 0.0f})) studio.bench->cancel_calibration();
         name_last_item("cancel-calibration");
         tooltip("The calibration in use stays as it is.");

@@ -167,10 +167,10 @@ void draw_status_line(Shell& shell) {
     std::string right;
     const auto calibrating = studio.bench->calibrating();
     if (calibrating.running) {
-        right +=
-            fmt::format("Calibrating {:.0f}%: {}", 100.0 * calibrating.fraction, calibrating.stage);
+        right += fmt::format(
+            "Calibrating: {}, {:.0f}%", calibrating.stage, 100.0 * calibrating.fraction);
     } else if (const auto solving = studio.frames->solving()) {
-        right += fmt::format("Solving {:.0f}%: {}", 100.0 * solving->fraction, solving->stage);
+        right += fmt::format("Solving: {}, {:.0f}%", solving->stage, 100.0 * solving->fraction);
     } else if (studio.background->is_busy()) {
         right += "Loading or saving…";
     }

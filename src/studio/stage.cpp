@@ -334,7 +334,9 @@ void draw_held_name(const Studio& studio, const Frame& stage) {
     const auto lines = fitted_lines("B   " + look->look.name, width, 1);
     ImGui::PopFont();
     const ImVec2 size = font->CalcTextSizeA(font->FontSize, FLT_MAX, 0.0f, lines.front().c_str());
-    const ImVec2 at(std::round(stage.x + 0.5f * (stage.width - size.x)), stage.y + 2.0f * pad);
+    // At the lower right: notices and captions have the other corners.
+    const ImVec2 at(std::round(stage.x + stage.width - size.x - 4.0f * pad),
+                    stage.y + stage.height - size.y - 2.0f * pad);
     ImDrawList& list = *ImGui::GetWindowDrawList();
     list.AddRectFilled({at.x - 2.0f * pad, at.y - pad},
                        {at.x + size.x + 2.0f * pad, at.y + size.y + pad},

@@ -272,13 +272,13 @@ void vector_row(const char* label,
         const std::string axis = axes[static_cast<std::size_t>(c)];
         if (c > 0) ImGui::SameLine(0.0f, gap);
         ImGui::SetNextItemWidth(width);
-        ImGui::DragScalar(("##" + name + axis).c_str(),
-                          ImGuiDataType_Double,
-                          &value[c],
-                          speed,
-                          nullptr,
-                          nullptr,
-                          format);
+        const std::string id = "##" + name + axis;
+        if (format) {
+            ImGui::DragScalar(
+                id.c_str(), ImGuiDataType_Double, &value[c], speed, nullptr, nullptr, format);
+        } else {
+            readable_drag(id.c_str(), value[c], speed);
+        }
         name_last_item(name + ":" + axis);
         tooltip(meaning);
         after_item();

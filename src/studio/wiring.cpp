@@ -20,7 +20,7 @@ namespace livery {
 namespace {
 
 constexpr double kPreviewPatience_s = 0.3;
-constexpr double kPreviewFirst_s = 5.0;  // nobody looks at the mock-up yet
+constexpr double kPreviewFirst_s = 20.0;  // nobody looks at the mock-up yet
 constexpr const char* kCalibrating = "Calibrating the simulated bench.";
 constexpr const char* kCalibratedKey = "calibrated-once";
 
@@ -286,7 +286,8 @@ void start_first_calibration(Shell& shell) {
     notify(studio,
            {Notice::Level::info,
             kCalibrating,
-            "There is no calibration yet. This takes a minute or two and happens beside your work.",
+            "There is no calibration yet. This happens beside your work: a minute or two where "
+            "nothing else is done, longer while you work.",
             "Until it is done, pictures go to the projector uncorrected.",
             studio.now_s + 3600.0});
 }
