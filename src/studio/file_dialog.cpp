@@ -69,8 +69,8 @@ struct FileDialog::State {
         const auto or_else = [&](const std::filesystem::path& other) {
             if (where.empty() || !is_folder(where)) where = other;
         };
-        or_else(suggests_folder ? suggested : suggested.parent_path());
         or_else(setting(settings, kAnyFolderSetting));
+        or_else(suggests_folder ? suggested : suggested.parent_path());
         or_else(home_folder());
         enter(where);
     }

@@ -44,7 +44,7 @@ class Photographer {
         take("hover");
         program().move_away();
         program().click("paint-search");
-        desktop_.type("met");
+        desktop_.type("1a4f9c");
         settle();
         take("search");
         desktop_.press_key("Escape");

@@ -14,7 +14,7 @@ for name in window hover search wipe view-eye view-projector view-photograph sav
 done
 # The column at the right, tab by tab.
 for pair in window:paints tab-paint:paint tab-light:light tab-calibrate:calibrate tab-frame:frame; do
-    convert "$taken/${pair%%:*}-1280.png" -crop 346x694+934+24 +repage "${small[@]}" \
+    convert "$taken/${pair%%:*}-1280.png" -crop 398x694+882+24 +repage "${small[@]}" \
         "$root/docs/images/desktop-${pair##*:}.png"
 done
 for name in window tab-light ballot; do

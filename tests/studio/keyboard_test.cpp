@@ -168,7 +168,7 @@ TEST_F(Keyboard, ADialogStartsAtHomeThenWhereTheUserLastWas) {
     press(ImGuiKey_Escape);
     // After a restart as well, and for another question.
     settings_ = read_user_settings();
-    FileQuestion other = question(FileQuestion::Kind::open);
+    FileQuestion other = question(FileQuestion::Kind::open, home_.path().string());
     other.title = "Another";
     ask(other);
     EXPECT_TRUE(frame().contains("file-dialog:b.json"));
