@@ -71,6 +71,24 @@ void clamp_to_positive(ImageF& picture) {
     for (float& value : picture.values) value = std::max(value, 0.0f);
 }
 
+constexpr int kWideDegree = 63;
+
+/// The map itself, then one picture a kernel: the first `sharp` of 512 columns, the rest of 128.
+std::vector<ImageF> layers_of(const ImageF& source,
+                              const SphericalHarmonics& harmonics,
+                              std::span<const std::vector<double>> kernels,
+                              std::size_t sharp) {
+    std::vector<ImageF> layers{resample(source, 512, 256)};
+    for (ImageF& picture : synthesise_sphere(harmonics, kernels.first(sharp), 512, 256)) {
+        layers.push_back(std::move(picture));
+    }
+    for (ImageF& picture : synthesise_sphere(harmonics, kernels.subspan(sharp), 128, 64)) {
+        layers.push_back(std::move(picture));
+    }
+    for (ImageF& picture : layers) clamp_to_positive(picture);
+    return layers;
+}
+
 }  // namespace
 
 std::vector<double> ggx_lobe_kernel(double alpha, int degree) {
@@ -114,7 +132,8 @@ FilteredEnvironment filter_environment(const Environment& environment,
                                        const Progress& progress) {
     progress.update(0.0, "filtering the environment");
     const ImageF source = resample(environment.radiance_working, 1024, 512);
-    const SphericalHarmonics harmonics = analyse_sphere(source, parts.mirrored ? kDegree : 127);
+    const SphericalHarmonics harmonics =
+        analyse_sphere(source, parts.mirrored || parts.gaussians ? kDegree : 127);
     progress.update(0.3, "filtering the environment");
 
     FilteredEnvironment result;
@@ -128,26 +147,28 @@ FilteredEnvironment filter_environment(const Environment& environment,
     }
     if (parts.mirrored) {
         // Lobes of alpha .11 and more are smooth on 128 columns, which stay in a core's cache
-        constexpr float kWide = 0.11f;
-        const std::size_t wide_from = static_cast<std::size_t>(
-            std::lower_bound(kLayerAlphas.begin() + 1, kLayerAlphas.end(), kWide) -
-            (kLayerAlphas.begin() + 1));
+        const auto wide = std::lower_bound(kLayerAlphas.begin() + 1, kLayerAlphas.end(), 0.11f);
         std::vector<std::vector<double>> kernels(kLayerAlphas.size() - 1);
+        const auto wide_from = static_cast<std::size_t>(wide - (kLayerAlphas.begin() + 1));
         parallel_for(kernels.size(), 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t k = begin; k < end; ++k) {
                 kernels[k] = ggx_lobe_kernel(static_cast<double>(kLayerAlphas[k + 1]),
-                                             k < wide_from ? kDegree : 63);
+                                             k < wide_from ? kDegree : kWideDegree);
             }
         });
-        const std::span<const std::vector<double>> all(kernels);
-        result.mirrored.push_back(resample(source, 512, 256));
-        for (ImageF& picture : synthesise_sphere(harmonics, all.first(wide_from), 512, 256)) {
-            result.mirrored.push_back(std::move(picture));
+        result.mirrored = layers_of(source, harmonics, kernels, wide_from);
+    }
+    if (parts.gaussians) {
+        std::vector<std::vector<double>> kernels;
+        std::size_t sharp = 0;
+        for (std::size_t k = 0; k + 1 < kGaussianLayers; ++k) {
+            const double sigma_rad = static_cast<double>(kFirstGaussian_rad) *
+                                     std::pow(2.0, 0.5 * static_cast<double>(k));
+            // As wide as two texels of 128 columns
+            if (sigma_rad < 0.09) sharp = k + 1;
+            kernels.push_back(gaussian_kernel(sigma_rad, k < sharp ? kDegree : kWideDegree));
         }
-        for (ImageF& picture : synthesise_sphere(harmonics, all.subspan(wide_from), 128, 64)) {
-            result.mirrored.push_back(std::move(picture));
-        }
-        for (ImageF& picture : result.mirrored) clamp_to_positive(picture);
+        result.gaussians = layers_of(source, harmonics, kernels, sharp);
     }
     progress.update(1.0, "filtering the environment");
     return result;
@@ -172,13 +193,6 @@ glm::vec3 sample_sphere(const ImageF& picture, const glm::dvec2& uv) {
         glm::mix(texel(x_floor, y_floor), texel(x_floor + 1.0, y_floor), fx),
         glm::mix(texel(x_floor, y_floor + 1.0), texel(x_floor + 1.0, y_floor + 1.0), fx),
         fy);
-}
-
-glm::vec3 sample_layers(const FilteredEnvironment& filtered, const glm::dvec2& uv, float alpha) {
-    const auto [below, share] = layer_of(alpha);
-    return glm::mix(sample_sphere(filtered.mirrored[below], uv),
-                    sample_sphere(filtered.mirrored[below + 1], uv),
-                    share);
 }
 
 }  // namespace livery

@@ -48,9 +48,9 @@ QualityRays rays_of(Quality quality) {
         case Quality::draft:
             return {1, {8, 0, true}, 0};
         case Quality::normal:
-            return {16, {16, 128, false}, 8};
+            return {16, {16, 128, false}, 16};
         case Quality::high:
-            return {64, {64, 256, false}, 16};
+            return {64, {64, 256, false}, 24};
         case Quality::reference:
             break;
     }
@@ -154,7 +154,7 @@ void FragmentInputs::solve_sky(const Scene& scene,
     clock.run(kIrradiancePass, !stands, [&] {
         if (!same_map(diffused_, scene.environment)) {
             FilteredEnvironment filtered =
-                filter_environment(*scene.environment, {false, true, true}, progress);
+                filter_environment(*scene.environment, {false, true, true, false}, progress);
             filtered_.diffuse = std::move(filtered.diffuse);
             filtered_.blurred = std::move(filtered.blurred);
         }
@@ -176,14 +176,14 @@ void FragmentInputs::solve_mirror(const Scene& scene,
         if (mirror_made_.of) changed_.glossy = true;
         mirror_made_ = {};
         layered_ = nullptr;
-        filtered_.mirrored.clear();
+        filtered_.gaussians.clear();
         mirror_visibility_.reset();
         mirror_texels_ = {};
         return;
     }
     clock.run(kFilterPass, !same_map(layered_, scene.environment), [&] {
-        filtered_.mirrored =
-            filter_environment(*scene.environment, {true, false, false}, progress).mirrored;
+        filtered_.gaussians =
+            filter_environment(*scene.environment, {false, false, false, true}, progress).gaussians;
     });
     layered_ = scene.environment;
     const glm::dvec3 eye = scene.eye_in_world_mm;
@@ -193,17 +193,16 @@ void FragmentInputs::solve_mirror(const Scene& scene,
                         enough(mirror_made_.rays, rays);
     const bool visible =
         !occluded || stands ||
-        (mirror_visibility_ && enough(mirror_visibility_->rays, rays) && visibility_eye_ == eye);
-    const bool trust_sky = plan.quality != Quality::high && sky_visibility_;
-    const SkyVisibility* sky = trust_sky ? &*sky_visibility_ : nullptr;
+        (mirror_visibility_ && enough(mirror_visibility_->quadrature.nodes(), rays) &&
+         visibility_eye_ == eye);
     clock.run(kReflectionPass, !visible, [&] {
-        mirror_visibility_ =
-            solve_mirror_visibility(mesh_, tracer_, *map_, eye, rays, sky, progress);
+        mirror_visibility_ = solve_mirror_visibility(mesh_, tracer_, *map_, eye, rays, progress);
         visibility_eye_ = eye;
     });
     clock.run(kMirrorPass, !stands, [&] {
         fill_mirror(scene, occluded, progress);
-        mirror_made_ = {scene.environment, occluded ? mirror_visibility_->rays : 0, eye};
+        mirror_made_ = {
+            scene.environment, occluded ? mirror_visibility_->quadrature.nodes() : 0, eye};
     });
 }
 
@@ -211,11 +210,12 @@ void FragmentInputs::fill_mirror(const Scene& scene, bool occluded, const Progre
     const MirrorVisibility* visibility = occluded ? &*mirror_visibility_ : nullptr;
     const SkyVisibility* joints = !occluded && sky_visibility_ ? &*sky_visibility_ : nullptr;
     // Half floats hold the radiance in units in which the brightest texel fits.
-    const ImageF& sharpest = filtered_.mirrored.front();
+    const ImageF& sharpest = filtered_.gaussians.front();
     const float largest = *std::max_element(sharpest.values.begin(), sharpest.values.end()) *
                           static_cast<float>(scene.environment->scale);
     const float unit = std::max(1.0f, largest / kHalfLargest);
-    const MirroredEnvironment environment(*scene.environment, filtered_);
+    const MirroredEnvironment environment(
+        *scene.environment, filtered_, mesh_, *map_, scene.eye_in_world_mm, visibility);
     const std::size_t layer_size = static_cast<std::size_t>(layout_.rows) * kPackedWidth * 4;
     std::vector<std::vector<float>> texels(kMirrorAlphas.size());
     parallel_for(texels.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -223,9 +223,9 @@ void FragmentInputs::fill_mirror(const Scene& scene, bool occluded, const Progre
     });
     parallel_for(map_->fragments.size(), 1024, [&](std::size_t begin, std::size_t end) {
         progress.check_stop();
+        MirroredEnvironment::Scratch scratch;
         for (std::size_t i = begin; i < end; ++i) {
-            const auto lobes =
-                environment.at_fragment(mesh_, *map_, i, scene.eye_in_world_mm, visibility);
+            const auto lobes = environment.at_fragment(i, scratch);
             // Who does not ask which lobes are hidden dims those of a joint like its diffuse light
             const bool joint = joints && map_->fragments[i].coverage < 1.0f;
             const float scale = (joint ? joints->openness(i) : 1.0f) / unit;

@@ -10,6 +10,7 @@
 #include "radiance/environment_filter.h"
 #include "radiance/glints.h"
 #include "radiance/light_visibility.h"
+#include "radiance/mirrored_environment.h"
 #include "radiance/packed_fragments.h"
 #include "radiance/shading.h"
 #include "radiance/sky_visibility.h"
@@ -20,9 +21,9 @@ namespace livery {
 
 /// How much is spent on what a level of quality solves; rays are a fragment's.
 struct QualityRays {
-    int light = 16;  ///< toward each light with a size
-    SkyRays sky;     ///< toward the environment
-    int mirror = 8;  ///< over each wide mirror lobe (MirrorVisibility)
+    int light = 16;   ///< toward each light with a size
+    SkyRays sky;      ///< toward the environment
+    int mirror = 16;  ///< nodes a ring of half vectors' slopes; 0: unoccluded (mirror_rings)
 };
 QualityRays rays_of(Quality quality);
 
@@ -130,7 +131,7 @@ class FragmentInputs {
     std::vector<Light> lights_;
     FilteredEnvironment filtered_;
     std::shared_ptr<const Environment> diffused_;  ///< that filtered_.diffuse was made for
-    std::shared_ptr<const Environment> layered_;   ///< that filtered_.mirrored was made for
+    std::shared_ptr<const Environment> layered_;   ///< that filtered_.gaussians was made for
     std::optional<SkyVisibility> sky_visibility_;
     std::vector<glm::vec3> sky_;
     std::optional<MirrorVisibility> mirror_visibility_;

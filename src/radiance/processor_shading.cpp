@@ -7,7 +7,7 @@
 #include "core/parallel.h"
 #include "radiance/any_model_shading.h"
 #include "radiance/glints.h"
-#include "radiance/sky_visibility.h"
+#include "radiance/mirror_quadrature.h"
 
 namespace livery {
 namespace {

@@ -399,7 +399,7 @@ void RadianceRenderer::count_work(const Scene& scene, FramePlan& plan) const {
     set(kOcclusionPass, fragments * rays.sky.first);
     set(kFilterPass, static_cast<double>(kFilterTexels));
     set(kReflectionPass, fragments * mirror_rays(rays.mirror));
-    set(kMirrorPass, fragments * static_cast<double>(kMirrorAlphas.size()));
+    set(kMirrorPass, fragments * mirror_nodes(rays.mirror));
     set(kDirectionsPass, fragments);
     set(kDiffuseLightPass, fragments);
     set(kGlintPlacesPass, fragments);

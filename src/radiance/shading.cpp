@@ -14,7 +14,7 @@
 #include "core/paths.h"
 #include "radiance/environment_filter.h"
 #include "radiance/glints.h"
-#include "radiance/sky_visibility.h"
+#include "radiance/mirror_quadrature.h"
 
 namespace livery {
 namespace {
@@ -43,13 +43,15 @@ glm::vec3 average_through(const BsdfParameters& p) {
     return glm::vec3(1.0f) - f32::ggx_interface_average(p);
 }
 
-/// The lobe of kMirrorAlphas below alpha and the weight of the next: linear in 1 / alpha, which
+/// The lobe of kMirrorAlphas below alpha and the weight of the next: linear in log alpha, which
 /// splits the error evenly between a lobe's core (1 / alpha^2) and its tail (alpha^2).
 glm::vec2 mirror_layer(float alpha) {
     std::size_t below = 0;
     while (below + 2 < kMirrorAlphas.size() && kMirrorAlphas[below + 1] <= alpha) ++below;
-    const float a = 1.0f / kMirrorAlphas[below], b = 1.0f / kMirrorAlphas[below + 1];
-    return {static_cast<float>(below), glm::clamp((a - 1.0f / alpha) / (a - b), 0.0f, 1.0f)};
+    const float past = alpha / kMirrorAlphas[below];
+    const float step = kMirrorAlphas[below + 1] / kMirrorAlphas[below];
+    return {static_cast<float>(below),
+            glm::clamp(std::log(std::max(past, 1.0f)) / std::log(step), 0.0f, 1.0f)};
 }
 
 }  // namespace

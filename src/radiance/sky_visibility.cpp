@@ -3,16 +3,13 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "appearance/bsdf.h"
 #include "core/error.h"
 #include "core/parallel.h"
-#include "core/random.h"
 #include "radiance/light_visibility.h"
 #include "radiance/spiral.h"
 
@@ -45,94 +42,6 @@ class SkyDirections {
   private:
     std::vector<glm::vec3> points_;  ///< around the z axis
 };
-
-/// One sample of a mirror lobe: its share of the lobe's albedo, and of the sphere's solid angle in
-/// the slope parameter of the lobe that would fill it.
-struct LobeSample {
-    glm::vec3 direction;
-    float weight = 0.0f;
-    float alpha = 0.0f;
-};
-
-/// Samples of a fragment's mirror lobes: each of its sub-samples mirrors around its own normal, in
-/// one direction or in several stratified ones (visible normals, Vogel's spiral).
-class MirrorLobe {
-  public:
-    MirrorLobe(const Mesh& mesh, const SurfaceMap& map, std::size_t index, glm::dvec3 eye_mm)
-        : turn_(hash_3d(static_cast<std::uint32_t>(index), 7u, 11u) * 0x1p-32) {
-        const Fragment& fragment = map.fragments[index];
-        // Four quarters of a pixel each keep a quarter of its spread
-        variance_ = fragment.normal_variance / static_cast<float>(kSamplesAFragment);
-        Fragment part = fragment;
-        for (std::size_t k = 0; k < kSamplesAFragment; ++k) {
-            part.normal = sample_normal(mesh, map, index, k);
-            const glm::vec3 wo = toward_eye(part, eye_mm);
-            Facet& facet = facets_[k];
-            facet.normal = part.normal;
-            facet.basis = basis_around(part.normal);
-            facet.wo = {glm::dot(wo, facet.basis.s),
-                        glm::dot(wo, facet.basis.t),
-                        glm::dot(wo, part.normal)};
-        }
-    }
-
-    /// k-th of `count` samples; up to kSamplesAFragment each mirrors straight.
-    LobeSample sample(float alpha, int k, int count) const {
-        const auto each = static_cast<int>(kSamplesAFragment);
-        const Facet& facet = facets_[static_cast<std::size_t>(k % each)];
-        const float a = std::min(std::sqrt(alpha * alpha + variance_), 1.0f);
-        if (count <= each) {
-            const glm::vec3 wi(-facet.wo.x, -facet.wo.y, facet.wo.z);
-            return {facet.to_world(wi), 1.0f, a};
-        }
-        return facet.sample(a, k / each, count / each, turn_ + 0.25 * (k % each));
-    }
-
-  private:
-    struct Facet {
-        glm::vec3 normal, wo;
-        Basis basis;
-
-        glm::vec3 to_world(const glm::vec3& v) const {
-            return v.x * basis.s + v.y * basis.t + v.z * normal;
-        }
-        LobeSample sample(float a, int k, int count, double turn) const;
-    };
-    std::array<Facet, kSamplesAFragment> facets_;
-    float variance_ = 0.0f;
-    double turn_;
-};
-
-LobeSample MirrorLobe::Facet::sample(float a, int k, int count, double turn) const {
-    const double around = turn + (kGoldenAngle_rad / (2.0 * std::numbers::pi)) * k;
-    const glm::vec2 u(static_cast<float>(around - std::floor(around)),
-                      (static_cast<float>(k) + 0.5f) / static_cast<float>(count));
-    const glm::vec3 wi = f32::ggx_sample_lobe(wo, u, a, a);
-    LobeSample result;
-    result.direction = to_world(wi);
-    const float density = f32::ggx_pdf_lobe(wi, wo, a, a);
-    if (wi.z <= 0.0f || !(density > 0.0f)) return result;
-    // G2 / G1 of the height-correlated Smith term
-    const auto slope_length = [&](float mu) { return std::sqrt(a * a + (1 - a * a) * mu * mu); };
-    const float li = slope_length(wi.z), lo = slope_length(wo.z);
-    result.weight = wi.z * (wo.z + lo) / (wi.z * lo + wo.z * li);
-    // A lobe seen along the normal fills about 4 pi alpha^2
-    const float solid_angle = 1.0f / (static_cast<float>(count) * density);
-    // The directions carry the lobe's width; a layer with a GGX lobe's own long tails as wide as
-    // the share would blur it a second time. The factor was found against the path tracer.
-    constexpr float kOfShare = 0.3f;
-    result.alpha =
-        std::min(kOfShare * std::sqrt(solid_angle / (4.0f * std::numbers::pi_v<float>)), a);
-    return result;
-}
-
-/// Lobes that are narrower than what the normals of a pixel spread them over: samples of them add
-/// noise and no shape, so each sub-sample mirrors straight and its layer is the lobe.
-bool is_narrow(float alpha) { return alpha < 0.1f; }
-
-int samples_of(float alpha, int rays) {
-    return is_narrow(alpha) ? static_cast<int>(kSamplesAFragment) : rays;
-}
 
 /// Directions of a fragment that looks again: k-th from the sub-sample k % kSamplesAFragment.
 void more_directions_of(const Mesh& mesh,
@@ -316,111 +225,6 @@ std::vector<glm::vec3> sky_at_fragments(const Mesh& mesh,
                         share_seen(directions, &visibility->more[at * (more.count() / 64)]);
         }
     });
-    return result;
-}
-
-int mirror_rays(int rays_a_wide_lobe) {
-    int sum = static_cast<int>(kSamplesAFragment);
-    for (const float alpha : kMirrorAlphas) {
-        if (!is_narrow(alpha)) sum += samples_of(alpha, rays_a_wide_lobe);
-    }
-    return sum;
-}
-
-MirrorVisibility solve_mirror_visibility(const Mesh& mesh,
-                                         const Tracer& tracer,
-                                         const SurfaceMap& map,
-                                         glm::dvec3 eye_mm,
-                                         int rays_a_lobe,
-                                         const SkyVisibility* sky,
-                                         const Progress& progress) {
-    check_argument(rays_a_lobe > 0 && rays_a_lobe <= 16,
-                   fmt::format("{} rays a mirror lobe, 1 to 16 are possible", rays_a_lobe));
-    constexpr std::size_t kLobes = kMirrorAlphas.size();
-    MirrorVisibility result;
-    result.rays = rays_a_lobe;
-    result.blocked.assign(map.fragments.size() * kLobes, 0);
-    parallel_for(map.fragments.size(), 512, [&](std::size_t begin, std::size_t end) {
-        progress.check_stop();
-        std::vector<TraceRay> rays;
-        std::vector<std::uint8_t> blocked;
-        std::array<glm::vec3, kSamplesAFragment> origins;
-        for (std::size_t i = begin; i < end; ++i) {
-            if (sky && sky->blocked[i] == 0) continue;
-            const MirrorLobe mirror(mesh, map, i, eye_mm);
-            ray_origins(mesh, map, i, origins);
-            std::uint16_t* words = &result.blocked[i * kLobes];
-            for (std::size_t lobe = 0; lobe < kLobes; ++lobe) {
-                const float alpha = kMirrorAlphas[lobe];
-                if (lobe > 0 && is_narrow(alpha)) {
-                    words[lobe] = words[0];  // they all mirror straight
-                    continue;
-                }
-                const int count = samples_of(alpha, rays_a_lobe);
-                rays.resize(static_cast<std::size_t>(count));
-                blocked.resize(rays.size());
-                for (std::size_t k = 0; k < rays.size(); ++k) {
-                    rays[k].origin = origins[k % kSamplesAFragment];
-                    rays[k].direction = mirror.sample(alpha, static_cast<int>(k), count).direction;
-                }
-                tracer.occluded(rays, blocked, RayOrder::scattered);
-                for (std::size_t k = 0; k < rays.size(); ++k) {
-                    if (blocked[k]) words[lobe] |= static_cast<std::uint16_t>(1u << k);
-                }
-            }
-        }
-    });
-    return result;
-}
-
-MirroredEnvironment::MirroredEnvironment(const Environment& environment,
-                                         const FilteredEnvironment& filtered)
-    : scale_(static_cast<float>(environment.scale)), places_(environment), layers_(filtered) {}
-
-std::array<glm::vec3, kMirrorAlphas.size()> MirroredEnvironment::at_fragment(
-    const Mesh& mesh,
-    const SurfaceMap& map,
-    std::size_t fragment,
-    glm::dvec3 eye_mm,
-    const MirrorVisibility* visibility) const {
-    using Place = MirroredLayers::Place;
-    std::array<glm::vec3, kMirrorAlphas.size()> result;
-    if (!visibility) {
-        const Fragment& f = map.fragments[fragment];
-        const glm::vec3 wo = toward_eye(f, eye_mm);
-        const Place place(layers_, places_.of(2.0f * glm::dot(wo, f.normal) * f.normal - wo));
-        for (std::size_t lobe = 0; lobe < result.size(); ++lobe) {
-            const float alpha = kMirrorAlphas[lobe];
-            result[lobe] =
-                scale_ * rgb_of(place.with(std::sqrt(alpha * alpha + f.normal_variance)));
-        }
-        return result;
-    }
-    const MirrorLobe mirror(mesh, map, fragment, eye_mm);
-    const auto straight = [&](int k) {
-        const int each = static_cast<int>(kSamplesAFragment);
-        return Place(layers_, places_.of(mirror.sample(kMirrorAlphas[0], k, each).direction));
-    };
-    const std::array<Place, kSamplesAFragment> straights{
-        straight(0), straight(1), straight(2), straight(3)};
-    for (std::size_t lobe = 0; lobe < result.size(); ++lobe) {
-        const float alpha = kMirrorAlphas[lobe];
-        const std::uint16_t blocked = visibility->blocked[fragment * result.size() + lobe];
-        const int count = samples_of(alpha, visibility->rays);
-        float whole = 0.0f;
-        Texel sum{};
-        for (int k = 0; k < count; ++k) {
-            const LobeSample sample = mirror.sample(alpha, k, count);
-            whole += sample.weight;
-            if (sample.weight <= 0.0f || ((blocked >> k) & 1u)) continue;
-            const float w = sample.weight;
-            sum += Texel{w, w, w, w} *
-                   (is_narrow(alpha)
-                        ? straights[static_cast<std::size_t>(k)].with(sample.alpha)
-                        : Place(layers_, places_.of(sample.direction)).with(sample.alpha));
-        }
-        result[lobe] = whole > 0.0f ? scale_ / whole * rgb_of(sum) : glm::vec3(0.0f);
-    }
     return result;
 }
 

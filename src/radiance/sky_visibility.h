@@ -1,7 +1,6 @@
 // What each fragment sees of an environment past the product itself.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -50,45 +49,6 @@ std::vector<glm::vec3> sky_at_fragments(const Mesh& mesh,
                                         const Environment& environment,
                                         const FilteredEnvironment& filtered,
                                         const SkyVisibility* visibility);
-
-/// Slope parameters for which each fragment keeps what it mirrors; paints in between interpolate.
-inline constexpr std::array<float, 10> kMirrorAlphas{
-    0.01f, 0.02f, 0.03f, 0.045f, 0.07f, 0.11f, 0.18f, 0.3f, 0.5f, 1.0f};
-
-/// Which rays of each fragment's mirror lobes meet the product: independent of the environment.
-/// With `sky`, fragments none of whose sky directions are blocked are taken as open.
-struct MirrorVisibility {
-    int rays = 0;                        ///< a lobe, at most 16
-    std::vector<std::uint16_t> blocked;  ///< kMirrorAlphas.size() words a fragment; bit k: ray k
-};
-int mirror_rays(int rays_a_wide_lobe);  ///< that a fragment costs
-MirrorVisibility solve_mirror_visibility(const Mesh& mesh,
-                                         const Tracer& tracer,
-                                         const SurfaceMap& map,
-                                         glm::dvec3 eye_mm,
-                                         int rays_a_lobe,
-                                         const SkyVisibility* sky,
-                                         const Progress& progress = {});
-
-/// Mean radiance of the environment over a fragment's mirror lobes, one for each of kMirrorAlphas:
-/// over the visibility's own samples; without `visibility`, unoccluded, as round lobes widened by
-/// the fragment's normals.
-class MirroredEnvironment {
-  public:
-    MirroredEnvironment(const Environment& environment, const FilteredEnvironment& filtered);
-
-    std::array<glm::vec3, kMirrorAlphas.size()> at_fragment(
-        const Mesh& mesh,
-        const SurfaceMap& map,
-        std::size_t fragment,
-        glm::dvec3 eye_mm,
-        const MirrorVisibility* visibility) const;
-
-  private:
-    float scale_;
-    SpherePlaces places_;
-    MirroredLayers layers_;
-};
 
 /// The shading normal of a fragment's k-th sub-sample, on the seen side.
 glm::vec3 sample_normal(const Mesh& mesh,

@@ -1,13 +1,13 @@
 // Many look-ups of an environment: directions to places on its map without trigonometry of the
-// library's, and all of its mirrored layers side by side.
+// library's, and all of its Gaussians side by side.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -19,19 +19,24 @@
 
 namespace livery {
 
+/// Four floats as one register holds them: red, green, blue, unused.
+using Texel = float __attribute__((vector_size(16)));
+inline glm::vec3 rgb_of(const Texel& t) { return {t[0], t[1], t[2]}; }
+
 /// uv_from_direction() in single precision: within 3e-6 of the map's width and height.
 class SpherePlaces {
   public:
     explicit SpherePlaces(const Environment& environment);
     glm::vec2 of(const glm::vec3& unit_direction) const;
+    /// Four at a time.
+    struct Four {
+        Texel u, v;
+    };
+    Four of(const Texel& x, const Texel& y, const Texel& z) const;
 
   private:
     float turns_;
 };
-
-/// Four floats as one register holds them: red, green, blue, unused.
-using Texel = float __attribute__((vector_size(16)));
-inline glm::vec3 rgb_of(const Texel& t) { return {t[0], t[1], t[2]}; }
 
 /// Pictures of the whole sphere and of one size, texel beside texel; bilinear, wrapped in azimuth.
 class SphereStack {
@@ -59,28 +64,17 @@ class SphereStack {
     std::vector<Texel> texels_;
 };
 
-/// An environment's mirrored layers, of both sizes.
-class MirroredLayers {
+/// An environment's Gaussians, of both sizes.
+class GaussianLayers {
   public:
-    explicit MirroredLayers(const FilteredEnvironment& filtered);
+    explicit GaussianLayers(const FilteredEnvironment& filtered);
 
-    /// Interpolated between the layers to either side of alpha, as sample_layers().
-    class Place {
-      public:
-        Place(const MirroredLayers& layers, const glm::vec2& uv) : layers_(layers), uv_(uv) {}
-        Texel with(float alpha) const;
-
-      private:
-        Texel layer(std::size_t k) const;
-
-        const MirroredLayers& layers_;
-        glm::vec2 uv_;
-        mutable SphereStack::Footprint sharp_, wide_;
-        mutable bool found_sharp_ = false, found_wide_ = false;
-    };
+    /// Under a Gaussian of that variance along each axis, rad^2: two layers mixed so that the
+    /// variance is right.
+    Texel at(const glm::vec2& uv, float variance) const;
 
   private:
-    std::size_t sharp_count_ = 0;
+    std::size_t sharp_count_ = 0, count_ = 0;
     SphereStack sharp_, wide_;
 };
 
@@ -89,9 +83,9 @@ class MirroredLayers {
 inline SphereStack::Footprint SphereStack::at(const glm::vec2& uv) const {
     const float x = uv.x * static_cast<float>(width_) - 0.5f;
     const float y = uv.y * static_cast<float>(height_) - 0.5f;
-    const float x_floor = std::floor(x), y_floor = std::floor(y);
-    const float fx = x - x_floor, fy = y - y_floor;
-    const int column = static_cast<int>(x_floor), row = static_cast<int>(y_floor);
+    // Neither is under -1; std::floor is a call where the processor may be any
+    const int column = static_cast<int>(x + 1.0f) - 1, row = static_cast<int>(y + 1.0f) - 1;
+    const float fx = x - static_cast<float>(column), fy = y - static_cast<float>(row);
     const auto wrapped = [&](int c) {
         return static_cast<std::size_t>(c < 0 ? c + width_ : c >= width_ ? c - width_ : c);
     };
@@ -106,20 +100,31 @@ inline SphereStack::Footprint SphereStack::at(const glm::vec2& uv) const {
             {(1.0f - fx) * (1.0f - fy), fx * (1.0f - fy), (1.0f - fx) * fy, fx * fy}};
 }
 
-inline Texel MirroredLayers::Place::layer(std::size_t k) const {
-    if (k < layers_.sharp_count_) {
-        if (!std::exchange(found_sharp_, true)) sharp_ = layers_.sharp_.at(uv_);
-        return sharp_.in(k);
+inline Texel GaussianLayers::at(const glm::vec2& uv, float variance) const {
+    constexpr float kPerFirst = 1.0f / (kFirstGaussian_rad * kFirstGaussian_rad);
+    // Variances double from layer to layer: the exponent is the layer, the mantissa the share
+    const float ratio = std::max(variance * kPerFirst, 0.0f);
+    std::size_t below = 0;
+    float share = ratio;
+    if (ratio >= 1.0f) {
+        const auto bits = std::bit_cast<std::uint32_t>(ratio);
+        below = (bits >> 23u) - 126u;
+        share = std::bit_cast<float>((bits & 0x007fffffu) | 0x3f800000u) - 1.0f;
+        if (below + 1 >= count_) {
+            below = count_ - 2;
+            share = 1.0f;
+        }
     }
-    if (!std::exchange(found_wide_, true)) wide_ = layers_.wide_.at(uv_);
-    return wide_.in(k - layers_.sharp_count_);
-}
-
-inline Texel MirroredLayers::Place::with(float alpha) const {
-    const auto [below, share] = layer_of(alpha);
     const float rest = 1.0f - share;
-    return Texel{rest, rest, rest, rest} * layer(below) +
-           Texel{share, share, share, share} * layer(below + 1);
+    const Texel of_below{rest, rest, rest, rest}, of_above{share, share, share, share};
+    if (below + 1 < sharp_count_) {
+        const SphereStack::Footprint place = sharp_.at(uv);
+        return of_below * place.in(below) + of_above * place.in(below + 1);
+    }
+    const SphereStack::Footprint place = wide_.at(uv);
+    const Texel above = of_above * place.in(below + 1 - sharp_count_);
+    if (below >= sharp_count_) return of_below * place.in(below - sharp_count_) + above;
+    return of_below * sharp_.at(uv).in(below) + above;
 }
 
 }  // namespace livery

@@ -209,7 +209,7 @@ std::shared_ptr<const VertexLight> VertexLightSolver::solve(
         const bool known = last.environment && same_map(*last.environment, *environment);
         next->filtered = known ? last.filtered
                                : std::make_shared<const FilteredEnvironment>(filter_environment(
-                                     *environment, {true, true, false}, progress));
+                                     *environment, {true, true, false, false}, progress));
         next->sky = s.sky(*environment, next->filtered->diffuse);
     }
     next->environment = std::move(environment);

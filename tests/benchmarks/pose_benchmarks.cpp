@@ -2,6 +2,7 @@
 #include "benchmarks/car.h"
 #include "radiance/environment_filter.h"
 #include "radiance/light_visibility.h"
+#include "radiance/mirrored_environment.h"
 #include "radiance/sky_visibility.h"
 #include "reference/path_tracer.h"
 
@@ -56,8 +57,7 @@ void MirrorVisibilityOfThePose(benchmark::State& state) {
                                                          *geometry.tracer,
                                                          geometry.map,
                                                          car().looks.front().eye_in_world_mm,
-                                                         8,
-                                                         nullptr));
+                                                         16));
     }
     count_items(state, geometry.map.fragments.size());
 }
@@ -66,7 +66,8 @@ BENCHMARK(MirrorVisibilityOfThePose)->Apply(sizes_and_threads);
 void EnvironmentFilter(benchmark::State& state) {
     const Environment& environment = *car().looks.front().environment;
     for (auto _ : state) {
-        benchmark::DoNotOptimize(filter_environment(environment, FilterParts{}));
+        benchmark::DoNotOptimize(
+            filter_environment(environment, FilterParts{false, true, true, true}));
     }
     count_items(state, kFilterTexels);
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "appearance/bsdf.h"
@@ -50,6 +51,13 @@ glm::dvec3 sky(const Environment& environment, const glm::dvec3& direction) {
         }
     }
     return environment.scale * sum;
+}
+
+/// Of a sequence that fills the unit cube evenly (Roberts 2018), shifted.
+glm::dvec3 even_point(int index, const glm::dvec3& shift) {
+    constexpr double kG = 1.22074408460575947536;
+    const glm::dvec3 step(1.0 / kG, 1.0 / (kG * kG), 1.0 / (kG * kG * kG));
+    return glm::fract(shift + static_cast<double>(index) * step);
 }
 
 /// What shines at a point: the part's paint and artwork's over it.
@@ -100,6 +108,8 @@ ImageF direct_light(const Scene& scene, const View& view, const OracleOptions& o
         for (std::size_t i = begin; i < end; ++i) {
             const int px = static_cast<int>(i) % view.width, py = static_cast<int>(i) / view.width;
             Random random(i + 1);
+            Random shifts(i + 1, 1);
+            const glm::dvec3 shift(shifts.uniform(), shifts.uniform(), shifts.uniform());
             glm::dvec3 sum(0.0);
             int hits = 0;
             for (int k = 0; k < count; ++k) {
@@ -153,9 +163,7 @@ ImageF direct_light(const Scene& scene, const View& view, const OracleOptions& o
                             sample(paint.model,
                                    paint.parameters,
                                    wo,
-                                   glm::dvec3(random.uniform(),
-                                              random.uniform(),
-                                              (j + random.uniform()) / options.sky_samples));
+                                   even_point(k * options.sky_samples + j, shift));
                         if (wi.z <= 0.0) continue;
                         const double density = pdf(paint.model, paint.parameters, wi, wo);
                         const glm::dvec3 direction = frame.to_world(wi);

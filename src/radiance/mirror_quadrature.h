@@ -1,0 +1,103 @@
+// Directions and weights for the light that GGX lobes of all roughnesses mirror, one set for all.
+//
+// A lobe's mean radiance is an integral over the slopes of its half vectors: GGX's distribution of
+// slopes times masking, a smooth factor. In slopes all lobes have one centre and differ in width
+// alone, so rings whose radii grow by a constant factor serve each of them: every node stands for a
+// cell as wide as it is long, over which the environment's mean is that of a Gaussian.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "radiance/sphere_lookup.h"
+
+namespace livery {
+
+/// Slope parameters for which each fragment keeps what it mirrors; paints in between interpolate.
+inline constexpr std::array<float, 12> kMirrorAlphas{
+    0.01f, 0.02f, 0.03f, 0.042f, 0.06f, 0.085f, 0.12f, 0.17f, 0.24f, 0.34f, 0.5f, 1.0f};
+
+/// How fine: nodes a ring, a multiple of four, and the logarithm of the ratio of two rings' radii.
+struct MirrorRings {
+    int nodes = 0;
+    double step = 0.0;
+};
+/// As wide as long for so many nodes a ring; 0: the draft's, where nothing is hidden.
+MirrorRings mirror_rings(int nodes);
+/// What a fragment then costs: looks up the environment, and traces.
+int mirror_nodes(int nodes);
+int mirror_rays(int nodes);
+
+class MirrorQuadrature {
+  public:
+    /// Node k belongs to facet k % kFacets, so that each gets as many of each ring. There are a
+    /// multiple of kFacets nodes.
+    static constexpr std::size_t kFacets = 4;
+
+    struct Node {
+        /// Its half vector in its facet's frame (x the eye's projection, z the normal), of about
+        /// unit length; then the variance of the Gaussian over its cell, rad^2 along each axis.
+        Texel half_vector;
+        /// Share in each of kMirrorAlphas' lobes.
+        std::array<Texel, kMirrorAlphas.size() / 4> weight;
+    };
+
+    explicit MirrorQuadrature(const MirrorRings& rings);
+
+    int nodes() const { return nodes_; }  ///< a ring
+    std::size_t count() const { return count_; }
+
+    /// Nodes as an eye sees them whose direction has this sine to the normal, between two tabulated
+    /// ones.
+    class Row {
+      public:
+        Node node(std::size_t k) const;
+
+      private:
+        friend class MirrorQuadrature;
+        const Node* below_ = nullptr;
+        const Node* above_ = nullptr;
+        float share_ = 0.0f;
+    };
+    Row seen_under(float sine) const;
+
+    /// A node whose ray each fragment traces: its facet's first one, which mirrors straight. It
+    /// stands for the nodes close by. Other rays are shared out among neighbours.
+    static constexpr std::uint8_t kStraight = 0xff;
+    struct Ray {
+        std::uint8_t turn = kStraight;  ///< which of kTurns fragments traces it, or kStraight
+        std::uint8_t bit = 0;           ///< in that fragment's answer; the facet if straight
+    };
+    static constexpr std::size_t kTurns = 8;
+    const Ray& ray(std::size_t k) const { return rays_[k]; }
+    /// The bit of a fragment of another turn that comes closest.
+    std::uint8_t nearest(std::size_t k, std::size_t turn) const { return nearest_[k][turn]; }
+    /// Nodes that a fragment of this turn traces, by bit; the straight ones are the same in all.
+    const std::vector<std::size_t>& traced(std::size_t turn) const { return traced_[turn]; }
+
+  private:
+    void share_out_rays(std::size_t rings, const MirrorRings& size);
+
+    int nodes_ = 0;
+    std::size_t count_ = 0;
+    std::vector<Node> rows_;
+    std::vector<Ray> rays_;
+    std::vector<std::array<std::uint8_t, kTurns>> nearest_;
+    std::array<std::vector<std::size_t>, kTurns> traced_;
+};
+
+// Inline: once for each of a fragment's nodes.
+
+inline MirrorQuadrature::Node MirrorQuadrature::Row::node(std::size_t k) const {
+    const Texel share{share_, share_, share_, share_};
+    const auto between = [&](const Texel& a, const Texel& b) { return a + share * (b - a); };
+    Node result;
+    result.half_vector = between(below_[k].half_vector, above_[k].half_vector);
+    for (std::size_t i = 0; i < result.weight.size(); ++i) {
+        result.weight[i] = between(below_[k].weight[i], above_[k].weight[i]);
+    }
+    return result;
+}
+
+}  // namespace livery
