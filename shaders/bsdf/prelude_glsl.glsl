@@ -9,6 +9,8 @@
 #define R(x) x
 #define FN
 #define OUT(T) out T
+// Of shaders/radiance/shade.glsl. By its bits: x != x may be taken for false.
+#define IS_NAN(x) ((floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u)
 // Of shaders/radiance/glints.glsl
 #define INOUT(T) inout T
 #define WORD uint

@@ -8,15 +8,22 @@
 //   ENVIRONMENT 0 or 1
 //   GLINTS                      if flakes of car paint are seen one by one; needs glints.glsl
 //   VEC4, UNIFORM               as the language has them
+//   IS_NAN(x)                   whether x is no number, in a way that no optimiser takes out
 // and the inputs of a fragment: inputs_packed.glsl (surface map), inputs_raster.glsl (preview) or
 // members of a C++ struct. Directions are in each fragment's own frame: z its mean normal, x its
 // tangent. What does not depend on the fragment is a uniform.
 UNIFORM REAL u_exposure;  // 2^EV
 UNIFORM VEC3 u_diffuse;   // what the diffuse layer sends for irradiance pi; see each model
 
-// Half floats end at 65504.
+// Half floats end at 65504. What is no number must stay none, so that it ends black and counted
+// (compensation.frag) and not as the brightest light there is: what min makes of it is each
+// language's, each driver's and each instruction set's own.
+FN REAL exposed(REAL value) {
+    REAL lit = u_exposure * value;
+    return IS_NAN(lit) ? lit : min(lit, R(65000.0));
+}
 FN VEC3 exposed(VEC3 colour) {
-    return min(u_exposure * colour, VEC3(R(65000.0)));
+    return VEC3(exposed(colour.x), exposed(colour.y), exposed(colour.z));
 }
 
 #ifdef LAMBERT
@@ -192,11 +199,11 @@ FN VEC3 shaded() {
                           wi, wo, hh, p.coat_alpha, p.coat_alpha, u_light_radius2[k], eye.w));
 #endif
         VEC3 seen = u_light_radiance[k] * value;
-        REAL lit = wi.z > R(0.0) ? light.w * wi.z : R(0.0);
+        REAL lit = light.w * max(wi.z, R(0.0));
         // A light that is not seen may give no number at all.
-        sum += VEC3(lit > R(0.0) ? lit * seen.x : R(0.0),
-                    lit > R(0.0) ? lit * seen.y : R(0.0),
-                    lit > R(0.0) ? lit * seen.z : R(0.0));
+        sum += VEC3(lit == R(0.0) ? R(0.0) : lit * seen.x,
+                    lit == R(0.0) ? R(0.0) : lit * seen.y,
+                    lit == R(0.0) ? R(0.0) : lit * seen.z);
     }
 #endif
 

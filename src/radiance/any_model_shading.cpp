@@ -14,6 +14,7 @@
 #define R(x) static_cast<float>(x)
 #define FN
 #define UNIFORM
+#define IS_NAN(x) ((x) != (x))
 #define ANY_MODEL
 #define LIGHTS 1
 #define LIGHT_COUNT job.light_count

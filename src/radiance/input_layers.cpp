@@ -9,14 +9,15 @@
 namespace livery {
 namespace {
 
-/// Nearest half float, ties to even; negative and NaN as 0. Without a branch, for whole rows.
+/// Nearest half float, ties to even; negative as 0, NaN as NaN. Without a branch, for whole rows.
 std::uint16_t half_of(float value) {
     const float v = value > 0.0f ? std::min(value, 65504.0f) : 0.0f;
     const auto bits = std::bit_cast<std::uint32_t>(v);
     const std::uint32_t normal = (bits + 0xfffu + ((bits >> 13u) & 1u) - (112u << 23u)) >> 13u;
     // Under 2^-14 a half float counts in units of 2^-24, as a float next to 0.5 does
     const std::uint32_t small = std::bit_cast<std::uint32_t>(v + 0.5f) - 0x3f000000u;
-    return static_cast<std::uint16_t>(v < 0x1p-14f ? small : normal);
+    const std::uint32_t number = v < 0x1p-14f ? small : normal;
+    return static_cast<std::uint16_t>(value == value ? number : 0x7e00u);
 }
 
 /// Interleaved channels into blocks; `channels` of the four that come.

@@ -30,7 +30,7 @@ LIVERY_LANE_FUNCTION Lanes load(const float* from) {
     return value;
 }
 
-/// Half floats, not negative and finite. Small ones go through integers: a thread may flush
+/// Half floats, not negative, and NaN. Small ones go through integers: a thread may flush
 /// denormals.
 LIVERY_LANE_FUNCTION Lanes load_halves(const std::uint16_t* from) {
 #if defined(__F16C__)
@@ -41,15 +41,18 @@ LIVERY_LANE_FUNCTION Lanes load_halves(const std::uint16_t* from) {
     LaneHalves halves;
     std::memcpy(&halves, from, sizeof halves);
     const LaneWords words = __builtin_convertvector(halves, LaneWords);
-    const LaneWords bits = (words << 13) + (112 << 23);
+    const LaneWords least_special = LaneWords{} + 0x7c00, none = {};
+    const LaneWords special = words >= least_special ? LaneWords{} + (112 << 23) : none;
+    const LaneWords bits = (words << 13) + (112 << 23) + special;
     Lanes normal;
     std::memcpy(&normal, &bits, sizeof normal);
     return words < 1024 ? __builtin_convertvector(words, Lanes) * 0x1p-24f : normal;
 #endif
 }
 
-LIVERY_LANE_FUNCTION Lanes min(Lanes a, Lanes b) { return a < b ? a : b; }
-LIVERY_LANE_FUNCTION Lanes max(Lanes a, Lanes b) { return a > b ? a : b; }
+/// As in GLM and GLSL: what is no number stays none when it comes first.
+LIVERY_LANE_FUNCTION Lanes min(Lanes a, Lanes b) { return b < a ? b : a; }
+LIVERY_LANE_FUNCTION Lanes max(Lanes a, Lanes b) { return b > a ? b : a; }
 LIVERY_LANE_FUNCTION Lanes clamp(Lanes x, Lanes low, Lanes high) { return min(max(x, low), high); }
 LIVERY_LANE_FUNCTION Lanes mix(Lanes a, Lanes b, Lanes t) { return a + t * (b - a); }
 

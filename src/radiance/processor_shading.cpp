@@ -113,13 +113,16 @@ void ProcessorShading::shade(const Material& material,
 }
 
 void ProcessorShading::resolve(ImageF* picture) const {
+    // Plain pointers: this runs for each fragment of each pixel.
     const float* shaded = shaded_.data();
+    const std::uint32_t *words = index_.words.data(), *pixels = index_.pixels.data(),
+                        *lists = index_.lists.data();
     float* out = picture->values.data();
     const float share = 1.0f / static_cast<float>(index_.samples_per_pixel);
     parallel_for(index_.pixels.size(), kPixelsAtOnce, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            std::uint32_t word = index_.words[i];
-            float* to = out + 4 * static_cast<std::size_t>(index_.pixels[i]);
+            std::uint32_t word = words[i];
+            float* to = out + 4 * static_cast<std::size_t>(pixels[i]);
             if (!FragmentIndex::more(word)) {
                 std::memcpy(to, shaded + 4 * std::size_t{index_.address(word)}, 4 * sizeof(float));
                 to[3] = share * static_cast<float>(index_.samples(word));
@@ -128,7 +131,7 @@ void ProcessorShading::resolve(ImageF* picture) const {
             std::size_t at = index_.address(word);
             float sum[3] = {0.0f, 0.0f, 0.0f}, covered = 0.0f;
             do {
-                word = index_.lists[at++];
+                word = lists[at++];
                 const auto samples = static_cast<float>(index_.samples(word));
                 const float* from = shaded + 4 * std::size_t{index_.address(word)};
                 for (std::size_t c = 0; c < 3; ++c) sum[c] += samples * from[c];

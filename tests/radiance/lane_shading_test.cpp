@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -56,8 +58,12 @@ struct Inputs {
     }
 };
 
-std::vector<float> shaded(const LaneFunctions& functions, int model, bool environment) {
-    const Inputs inputs;
+std::vector<float> shaded(const LaneFunctions& functions,
+                          int model,
+                          bool environment,
+                          const std::function<void(Inputs&)>& spoil = {}) {
+    Inputs inputs;
+    if (spoil) spoil(inputs);
     const std::array<const float*, 2> lights{inputs.first_light.data(), inputs.second_light.data()};
     const std::array<const std::uint16_t*, kLayers> mirror{
         inputs.mirror[0].data(), inputs.mirror[1].data(), inputs.mirror[2].data()};
@@ -112,6 +118,49 @@ TEST(LaneShading, EveryInstructionSetGivesTheSameBits) {
         }
     }
     EXPECT_STREQ(lanes_available(lanes_available() - 1).instruction_set, "portable");
+}
+
+TEST(LaneShading, WhatIsNoNumberStaysNone) {
+    // One input of one fragment; a half float's NaN where there are half floats. What comes out
+    // must be no number either: as a number it would be the brightest light that there is.
+    constexpr std::size_t kBlock = 7, kLane = 3;
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    constexpr std::uint16_t kHalfNan = 0x7e00;
+    const auto four = [](std::vector<float>& values, std::size_t component, float value) {
+        values[(4 * kBlock + component) * kLaneBlock + kLane] = value;
+    };
+    const auto three = [](std::vector<std::uint16_t>& values) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            values[(3 * kBlock + c) * kLaneBlock + kLane] = kHalfNan;
+        }
+    };
+    const std::pair<const char*, std::function<void(Inputs&)>> spoils[] = {
+        {"light of the diffuse layer", [&](Inputs& i) { three(i.diffuse); }},
+        {"eye", [&](Inputs& i) { four(i.eye, 2, kNan); }},
+        {"light's direction", [&](Inputs& i) { four(i.first_light, 2, kNan); }},
+        {"light's visibility", [&](Inputs& i) { four(i.first_light, 3, kNan); }},
+        {"mirrored light", [&](Inputs& i) { three(i.mirror[1]); }},
+    };
+    for (std::size_t k = 0; k < lanes_available(); ++k) {
+        const LaneFunctions& functions = lanes_available(k);
+        for (int model = 0; model < 5; ++model) {
+            const std::vector<float> good = shaded(functions, model, true);
+            for (const auto& [name, spoil] : spoils) {
+                const bool lambert = model == 0, of_lambert = &spoil == &spoils[0].second;
+                if (lambert != of_lambert && lambert) continue;  // reads nothing else
+                SCOPED_TRACE(testing::Message()
+                             << functions.instruction_set << ", model " << model << ": " << name);
+                const std::vector<float> bad = shaded(functions, model, true, spoil);
+                for (std::size_t i = 0; i < bad.size(); ++i) {
+                    const bool spoiled = i / 4 == kBlock * kLaneBlock + kLane && i % 4 < 3;
+                    ASSERT_EQ(std::isnan(bad[i]), spoiled) << i;
+                    if (!spoiled) {
+                        ASSERT_EQ(bad[i], good[i]) << i;
+                    }
+                }
+            }
+        }
+    }
 }
 
 TEST(LaneShading, WritesItsBlocksOnly) {

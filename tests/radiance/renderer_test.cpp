@@ -85,6 +85,41 @@ TEST_P(Renderer, EnvironmentLightAgreesWithBruteForce) {
     }
 }
 
+TEST_P(Renderer, WhatIsNoNumberIsNeverBright) {
+    // A light, or a pixel of the environment, that is no number: what it falls on is no number in
+    // the picture, which the compensation shows black and counts.
+    const View view = test_view(48, 36);
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    for (const ReflectanceModel model : {ReflectanceModel::lambert,
+                                         ReflectanceModel::ggx,
+                                         ReflectanceModel::clearcoat,
+                                         ReflectanceModel::car_paint,
+                                         ReflectanceModel::ward_1992}) {
+        for (const bool in_environment : {false, true}) {
+            SCOPED_TRACE(testing::Message() << model_info(model).name << in_environment);
+            Scene scene = scene_of(two_spheres(), paint_of(model, 0.1));
+            scene.lights = {light_from({0.5, 0.8, 0.6}, 0.05), light_from({-0.9, 0.3, 0.5}, 0.0)};
+            auto environment = std::make_shared<Environment>(*studio());
+            scene.environment = environment;
+            float brightest = 0.0f;
+            for (const float value : draw(scene, view, Quality::draft).values) {
+                brightest = std::max(brightest, value);
+            }
+            if (in_environment) {
+                environment->radiance_working.at(200, 30, 1) = kNan;
+            } else {
+                scene.lights[0].radiance_rec709.y = static_cast<double>(kNan);
+            }
+            std::size_t none = 0;
+            for (const float value : draw(scene, view, Quality::draft).values) {
+                none += std::isnan(value) ? 1u : 0u;
+                EXPECT_FALSE(value > 1.01f * brightest) << value;
+            }
+            EXPECT_GT(none, 0u);
+        }
+    }
+}
+
 TEST_P(Renderer, WhiteFurnace) {
     // A white diffuser in uniform light shows the light, whichever way it faces.
     Scene scene = scene_of(make_sphere({0, 0, 0}, 40.0, 64, "ball"),
