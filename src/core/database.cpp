@@ -1,8 +1,10 @@
 #include "core/database.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <fstream>
 #include <thread>
 
 #include <fcntl.h>
@@ -11,6 +13,7 @@
 #include <unistd.h>
 
 #include "core/error.h"
+#include "core/utf8.h"
 
 namespace livery {
 
@@ -18,6 +21,9 @@ namespace {
 
 constexpr int kBusyTimeout_ms = 5000;
 constexpr int kLongestValue = 64 << 20;  ///< bytes; more is no value of ours
+/// Steps of SQLite's machine in one statement: seconds. Ours take some ten for each row.
+constexpr std::int64_t kMostSteps = 100'000'000;
+constexpr int kStepsBetweenLooks = 10'000;
 
 /// What was found and what was expected, in words for people.
 struct Finding {
@@ -85,6 +91,8 @@ Finding finding_of(int code,
             return disk_failure(system_error, file);
         case SQLITE_CONSTRAINT:
             return {"values that its rules refuse (" + message + ")", "values that they allow"};
+        case SQLITE_INTERRUPT:
+            return {"a query that does not come to an end", "a database that Livery has written"};
         case SQLITE_TOOBIG:
             return {"a value of more than " + std::to_string(kLongestValue) + " bytes",
                     "a smaller one"};
@@ -168,6 +176,7 @@ bool has_log(const std::filesystem::path& file) {
 
 struct Database::State {
     std::filesystem::path file;
+    std::int64_t steps = 0;  ///< of the statement that runs
     std::unique_ptr<sqlite3, int (*)(sqlite3*)> handle{nullptr, &sqlite3_close_v2};
 
     [[noreturn]] void fail(int code) const {
@@ -195,13 +204,65 @@ struct Database::State {
         // A file from elsewhere may bring a schema of its own; nothing in it is to run.
         sqlite3_db_config(opened, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
         sqlite3_db_config(opened, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+        sqlite3_db_config(opened, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
+        sqlite3_limit(opened, SQLITE_LIMIT_ATTACHED, 0);
+        sqlite3_progress_handler(
+            opened,
+            kStepsBetweenLooks,
+            [](void* state) {
+                auto& taken = static_cast<State*>(state)->steps;
+                return (taken += kStepsBetweenLooks) > kMostSteps ? 1 : 0;
+            },
+            this);
     }
 };
+
+namespace {
+
+/// A killed program leaves a journal beside the file, from which SQLite restores it. One that names
+/// a further journal has SQLite delete whatever stands at that name; we never write such.
+void refuse_linked_journal(const std::filesystem::path& file) {
+    auto journal = file;
+    journal += "-journal";
+    std::ifstream stream(journal, std::ios::binary);
+    constexpr std::string_view mark = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7";
+    char end[8] = {};
+    if (!stream || !stream.seekg(-8, std::ios::end) || !stream.read(end, sizeof end)) return;
+    if (std::string_view(end, sizeof end) != mark) return;
+    throw FileError(journal,
+                    "",
+                    "a journal that names another file",
+                    "none, or one that Livery has left; remove it");
+}
+
+}  // namespace
+
+void Database::check_schema(const std::vector<std::string>& schema) {
+    const auto text = [](const DatabaseValue& value) {
+        const auto* found = std::get_if<std::string>(&value);
+        return found ? *found : std::string();
+    };
+    for (const auto& row :
+         run("SELECT type, name, coalesce(sql, ''), rootpage FROM sqlite_schema")) {
+        const std::string type = text(row[0]), name = text(row[1]), sql = text(row[2]);
+        if (std::find(schema.begin(), schema.end(), sql) != schema.end()) continue;
+        const auto* page = std::get_if<std::int64_t>(&row[3]);
+        const bool stored = (type == "table" || type == "index") && page && *page > 0;
+        const bool of_sqlite = type == "index" && sql.empty();
+        if (of_sqlite || (stored && schema.empty())) continue;
+        const std::string kind = stored || type != "table" ? type : "virtual table";
+        throw FileError(state_->file,
+                        "schema",
+                        "the " + printable(kind, 20) + " " + printable(name, 60),
+                        "only what Livery makes in such a file");
+    }
+}
 
 Database::Database(const std::filesystem::path& file,
                    Mode mode,
                    std::int32_t application_id,
-                   int newest_version)
+                   int newest_version,
+                   const std::vector<std::string>& schema)
     : state_(std::make_unique<State>()) {
     state_->file = file;
     std::error_code error;
@@ -215,6 +276,7 @@ Database::Database(const std::filesystem::path& file,
     }
     // A reader makes the log's index beside the file and only one that may write clears it away
     // again. Where nobody can write, nothing changes either: SQLite then needs no index.
+    refuse_linked_journal(file);
     const bool only_reading = mode == Mode::read_only && !can_write(file);
     int flags = only_reading ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE;
     if (mode == Mode::create) flags |= SQLITE_OPEN_CREATE;
@@ -243,6 +305,8 @@ Database::Database(const std::filesystem::path& file,
                         std::to_string(found) + " (written by a newer Livery)",
                         "at most " + std::to_string(newest_version));
     }
+    run("PRAGMA cell_size_check = ON");
+    check_schema(schema);
     if (mode == Mode::read_only) {
         run("PRAGMA query_only = 1");
         return;
@@ -272,6 +336,7 @@ std::vector<std::vector<DatabaseValue>> Database::run(std::string_view sql,
         if (code != SQLITE_OK) state_->fail(code);
     }
     std::vector<std::vector<DatabaseValue>> rows;
+    state_->steps = 0;
     errno = 0;
     // Where waiting could deadlock, as when two programs make one file, SQLite does not wait but
     // says that it is busy. Outside a transaction nothing of ours is held: try again.

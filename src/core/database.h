@@ -23,16 +23,21 @@ class Database {
     /// be taken up into it.
     enum class Mode { create, existing, read_only };
     /// `application_id` tells our kinds of file apart (PRAGMA application_id); a file of another
-    /// kind or with a user_version above `newest_version` is refused by name.
+    /// kind or with a user_version above `newest_version` is refused by name. What a file's own
+    /// schema may run is nothing: views, virtual tables and triggers are refused, but for what
+    /// `schema` lists, the statements that make such a file. Where it lists any, no other table
+    /// is taken either.
     Database(const std::filesystem::path& file,
              Mode mode,
              std::int32_t application_id,
-             int newest_version);
+             int newest_version,
+             const std::vector<std::string>& schema = {});
     ~Database();
     Database(const Database&) = delete;
     Database& operator=(const Database&) = delete;
 
-    /// Runs one statement; rows come back as values. Parameters are bound to ?1, ?2, ...
+    /// Runs one statement; rows come back as values. Parameters are bound to ?1, ?2, ... One that
+    /// takes more steps than any of ours throws FileError.
     std::vector<std::vector<DatabaseValue>> run(std::string_view sql,
                                                 const std::vector<DatabaseValue>& values = {});
     int version() const;  ///< user_version; 0: new
@@ -41,6 +46,7 @@ class Database {
 
   private:
     struct State;
+    void check_schema(const std::vector<std::string>& schema);
     std::unique_ptr<State> state_;
 };
 

@@ -141,8 +141,8 @@ std::string as_text(const Database& database, const DatabaseValue& value) {
     return *text;
 }
 
-void make_log(Database& database) {
-    database.run(
+std::vector<std::string> log_schema() {
+    std::vector<std::string> statements = {
         "CREATE TABLE log ("
         " id INTEGER PRIMARY KEY,"
         " at TEXT NOT NULL,"
@@ -151,11 +151,13 @@ void make_log(Database& database) {
         " text TEXT NOT NULL,"
         " best INTEGER NOT NULL,"
         " second INTEGER NOT NULL,"
-        " hash TEXT NOT NULL UNIQUE) STRICT");
+        " hash TEXT NOT NULL UNIQUE) STRICT"};
     for (const char* event : {"UPDATE", "DELETE"}) {
-        database.run(std::string("CREATE TRIGGER log_without_") + event + " BEFORE " + event +
-                     " ON log BEGIN SELECT RAISE(ABORT, 'the log is only appended to'); END");
+        statements.push_back(
+            std::string("CREATE TRIGGER log_without_") + event + " BEFORE " + event +
+            " ON log BEGIN SELECT RAISE(ABORT, 'the log is only appended to'); END");
     }
+    return statements;
 }
 
 void append_to_log(Database& database, const LogEntry& entry) {

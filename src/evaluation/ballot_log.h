@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "core/database.h"
 
@@ -22,8 +23,8 @@ struct LogEntry {
     int best = 0, second = 0;
 };
 
-/// Makes the table, within the caller's transaction.
-void make_log(Database& database);
+/// The statements that make its table and keep it as it is.
+std::vector<std::string> log_schema();
 
 /// Appends, within the caller's transaction.
 void append_to_log(Database& database, const LogEntry& entry);

@@ -14,47 +14,6 @@ namespace {
 constexpr std::int32_t kApplicationId = 0x4c765642;  // "LvVB"
 constexpr int kVersion = 1;
 
-void make_tables(Database& database) {
-    const char* const statements[] = {
-        "CREATE TABLE rounds ("
-        " id INTEGER PRIMARY KEY,"
-        " created TEXT NOT NULL,"
-        " calibration_id TEXT NOT NULL,"
-        " closed TEXT) STRICT",
-        "CREATE UNIQUE INDEX one_open_round ON rounds (closed IS NULL) WHERE closed IS NULL",
-        "CREATE TABLE designs ("
-        " round INTEGER NOT NULL REFERENCES rounds (id),"
-        " position INTEGER NOT NULL CHECK (position >= 0),"
-        " name TEXT NOT NULL CHECK (name <> ''),"
-        " PRIMARY KEY (round, position), UNIQUE (round, name)) STRICT, WITHOUT ROWID",
-        "CREATE TABLE ballots ("
-        " round INTEGER NOT NULL,"
-        " name_key TEXT NOT NULL CHECK (name_key <> ''),"
-        " evaluator TEXT NOT NULL CHECK (evaluator <> ''),"
-        " best INTEGER NOT NULL,"
-        " second INTEGER NOT NULL,"
-        " at TEXT NOT NULL,"
-        " PRIMARY KEY (round, name_key),"
-        " CHECK (best <> second),"
-        " FOREIGN KEY (round, best) REFERENCES designs (round, position),"
-        " FOREIGN KEY (round, second) REFERENCES designs (round, position)"
-        ") STRICT, WITHOUT ROWID",
-        "CREATE TRIGGER ballot_in_time BEFORE INSERT ON ballots"
-        " WHEN (SELECT closed FROM rounds WHERE id = new.round) IS NOT NULL"
-        " BEGIN SELECT RAISE(ABORT, 'the round is closed'); END",
-        "CREATE TRIGGER ballot_changed_in_time BEFORE UPDATE ON ballots"
-        " WHEN (SELECT closed FROM rounds WHERE id = old.round) IS NOT NULL"
-        " BEGIN SELECT RAISE(ABORT, 'the round is closed'); END",
-        "CREATE TRIGGER ballot_kept BEFORE DELETE ON ballots"
-        " BEGIN SELECT RAISE(ABORT, 'ballots are not deleted'); END",
-        "CREATE TRIGGER round_closed_for_good BEFORE UPDATE ON rounds"
-        " WHEN old.closed IS NOT NULL"
-        " BEGIN SELECT RAISE(ABORT, 'the round is closed'); END",
-    };
-    for (const char* statement : statements) database.run(statement);
-    make_log(database);
-}
-
 std::string round_name(int round) { return "round " + std::to_string(round); }
 
 /// How many designs it has, and whether it is closed. Throws std::invalid_argument: no such round.
@@ -78,12 +37,56 @@ RoundState state_of(Database& database, int round) {
 
 }  // namespace
 
+const std::vector<std::string>& ballots_schema() {
+    static const std::vector<std::string> statements = [] {
+        std::vector<std::string> all = {
+            "CREATE TABLE rounds ("
+            " id INTEGER PRIMARY KEY,"
+            " created TEXT NOT NULL,"
+            " calibration_id TEXT NOT NULL,"
+            " closed TEXT) STRICT",
+            "CREATE UNIQUE INDEX one_open_round ON rounds (closed IS NULL) WHERE closed IS NULL",
+            "CREATE TABLE designs ("
+            " round INTEGER NOT NULL REFERENCES rounds (id),"
+            " position INTEGER NOT NULL CHECK (position >= 0),"
+            " name TEXT NOT NULL CHECK (name <> ''),"
+            " PRIMARY KEY (round, position), UNIQUE (round, name)) STRICT, WITHOUT ROWID",
+            "CREATE TABLE ballots ("
+            " round INTEGER NOT NULL,"
+            " name_key TEXT NOT NULL CHECK (name_key <> ''),"
+            " evaluator TEXT NOT NULL CHECK (evaluator <> ''),"
+            " best INTEGER NOT NULL,"
+            " second INTEGER NOT NULL,"
+            " at TEXT NOT NULL,"
+            " PRIMARY KEY (round, name_key),"
+            " CHECK (best <> second),"
+            " FOREIGN KEY (round, best) REFERENCES designs (round, position),"
+            " FOREIGN KEY (round, second) REFERENCES designs (round, position)"
+            ") STRICT, WITHOUT ROWID",
+            "CREATE TRIGGER ballot_in_time BEFORE INSERT ON ballots"
+            " WHEN (SELECT closed FROM rounds WHERE id = new.round) IS NOT NULL"
+            " BEGIN SELECT RAISE(ABORT, 'the round is closed'); END",
+            "CREATE TRIGGER ballot_changed_in_time BEFORE UPDATE ON ballots"
+            " WHEN (SELECT closed FROM rounds WHERE id = old.round) IS NOT NULL"
+            " BEGIN SELECT RAISE(ABORT, 'the round is closed'); END",
+            "CREATE TRIGGER ballot_kept BEFORE DELETE ON ballots"
+            " BEGIN SELECT RAISE(ABORT, 'ballots are not deleted'); END",
+            "CREATE TRIGGER round_closed_for_good BEFORE UPDATE ON rounds"
+            " WHEN old.closed IS NOT NULL"
+            " BEGIN SELECT RAISE(ABORT, 'the round is closed'); END",
+        };
+        for (std::string& statement : log_schema()) all.push_back(std::move(statement));
+        return all;
+    }();
+    return statements;
+}
+
 BallotStore::BallotStore(const std::filesystem::path& file)
-    : database_(file, Database::Mode::create, kApplicationId, kVersion) {
+    : database_(file, Database::Mode::create, kApplicationId, kVersion, ballots_schema()) {
     database_.run("PRAGMA foreign_keys = ON");
     Transaction transaction(database_);
     if (database_.version() == 0) {
-        make_tables(database_);
+        for (const std::string& statement : ballots_schema()) database_.run(statement);
         database_.set_version(kVersion);
     }
     check_log(database_);

@@ -27,6 +27,9 @@ struct Round {
     int ballots = 0;  ///< how many, all that is told before it is closed
 };
 
+/// The statements that make the file: tables, and triggers that keep what is recorded.
+const std::vector<std::string>& ballots_schema();
+
 /// What a function has done is on disk when it returns. Several stores (and programs) may share a
 /// file. Throws FileError of the file as Database does, and when the ballots are not what their log
 /// says; std::invalid_argument for what makes no sense (unknown round, no such design, same design

@@ -231,5 +231,59 @@ TEST(Database, RefusesAValueOfAbsurdSize) {
                            {"a.db: found a value of more than 67108864 bytes"}));
 }
 
+/// A file of ours with one statement more.
+Path with(const TemporaryFolder& folder, const std::string& statement) {
+    const Path file = folder / "a.db";
+    std::filesystem::remove(file);
+    make(file);
+    Database(file, Mode::existing, kId, 1).run(statement);
+    return file;
+}
+
+TEST(Database, RunsNothingThatAFileBringsAlong) {
+    const TemporaryFolder folder;
+    const auto refuses = [&](const std::string& statement, std::string_view found) {
+        const Path file = with(folder, statement);
+        for (const Mode mode : {Mode::create, Mode::existing, Mode::read_only}) {
+            if (!fails_with([&] { Database(file, mode, kId, 1); }, {"schema", found})) return false;
+        }
+        return true;
+    };
+    const std::string endless =
+        "WITH RECURSIVE c(n) AS (SELECT 1 UNION ALL SELECT n + 1 FROM c) SELECT n FROM c";
+    EXPECT_TRUE(refuses("CREATE VIEW v AS " + endless, "the view v"));
+    EXPECT_TRUE(
+        refuses("CREATE TRIGGER g AFTER UPDATE ON t BEGIN DELETE FROM t; END", "the trigger g"));
+    // A trigger of ours is what we say, and nothing else by its name.
+    const std::string ours = "CREATE TRIGGER g BEFORE DELETE ON t BEGIN SELECT 1; END";
+    const std::vector<std::string> schema = {"CREATE TABLE t (x)", ours};
+    const Path file = with(folder, ours);
+    EXPECT_NO_THROW(Database(file, Mode::existing, kId, 1, schema));
+    EXPECT_TRUE(fails_with([&] { Database(file, Mode::existing, kId, 1, {schema[0]}); },
+                           {"the trigger g"}));
+    EXPECT_TRUE(
+        fails_with([&] { Database(file, Mode::existing, kId, 1, {ours}); }, {"the table t"}));
+    // What does not end is stopped.
+    Database database(file, Mode::existing, kId, 1, schema);
+    EXPECT_TRUE(fails_with(
+        [&] {
+            database.run(
+                "WITH RECURSIVE c(n) AS (SELECT 1 UNION ALL SELECT n + 1 FROM c) "
+                "SELECT max(n) FROM c");
+        },
+        {"does not come to an end"}));
+    EXPECT_EQ(database.run("SELECT count(*) FROM t").at(0).at(0), DatabaseValue(std::int64_t{1}));
+}
+
+TEST(Database, DeletesNothingThatAJournalNames) {
+    const TemporaryFolder folder;
+    const Path file = folder / "a.db";
+    make(file);
+    const std::string mark = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7";
+    folder.write("a.db-journal", mark + std::string(600, '\0') + "precious.txt" + mark);
+    EXPECT_TRUE(fails_with([&] { Database(file, Mode::existing, kId, 1); },
+                           {"a.db-journal", "names another file"}));
+}
+
 }  // namespace
 }  // namespace livery

@@ -4,13 +4,14 @@
 #include <filesystem>
 
 #include "core/database.h"
+#include "evaluation/ballots.h"
 
 namespace livery {
 
 constexpr std::int32_t kBallotsId = 0x4c765642;
 
 inline Database raw_ballots(const std::filesystem::path& file) {
-    return {file, Database::Mode::existing, kBallotsId, 1};
+    return {file, Database::Mode::existing, kBallotsId, 1, ballots_schema()};
 }
 
 }  // namespace livery
