@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/paths.h"
+#include "core/utf8.h"
 
 namespace livery {
 
@@ -21,9 +22,20 @@ std::string place_in(const std::string& text, std::size_t byte) {
     return "line " + std::to_string(line) + ", column " + std::to_string(column);
 }
 
-/// Brackets that stand open at the deepest place; printing a value recurses this far.
-std::size_t depth_of(const std::string& text) {
-    std::size_t depth = 0, deepest = 0;
+/// Numbers in files are at most this in size where nothing narrower is said, so that squares and
+/// products of a few of them stay finite in double.
+constexpr double kLargest = 1e12;
+
+/// What reading would have to build, found before anything of it is built.
+struct Extent {
+    std::size_t depth =
+        0;  ///< brackets open at the deepest place; whoever prints recurses this far
+    std::size_t values = 1;  ///< at most
+};
+
+Extent extent_of(const std::string& text) {
+    Extent extent;
+    std::size_t depth = 0;
     bool in_text = false;
     for (std::size_t k = 0; k < text.size(); ++k) {
         const char c = text[k];
@@ -35,13 +47,28 @@ std::size_t depth_of(const std::string& text) {
             }
         } else if (c == '"') {
             in_text = true;
+        } else if (c == ',') {
+            ++extent.values;
         } else if (c == '[' || c == '{') {
-            deepest = std::max(deepest, ++depth);
+            ++extent.values;
+            extent.depth = std::max(extent.depth, ++depth);
         } else if ((c == ']' || c == '}') && depth > 0) {
             --depth;
         }
     }
-    return deepest;
+    return extent;
+}
+
+/// Where a number stands that no double can hold; the parser names it, but not its place.
+std::string place_of_number(const std::string& text, const std::string& number) {
+    const auto at = text.find(number);
+    return at == std::string::npos ? "" : place_in(text, at + 1);
+}
+
+/// "1e999" of "... number overflow parsing '1e999'".
+std::string quoted_in(const std::string& message) {
+    const auto first = message.find('\''), last = message.rfind('\'');
+    return first < last ? message.substr(first + 1, last - first - 1) : message;
 }
 
 }  // namespace
@@ -50,12 +77,19 @@ Json parse_json(const std::string& text, const std::filesystem::path& file) {
     if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
         throw FileError(file, "", "an empty file", "a JSON object");
     }
-    constexpr std::size_t max_depth = 200;
-    if (const auto depth = depth_of(text); depth > max_depth) {
+    constexpr std::size_t max_depth = 200, max_values = 4'000'000;
+    const Extent extent = extent_of(text);
+    if (extent.depth > max_depth) {
         throw FileError(file,
                         "",
-                        std::to_string(depth) + " brackets inside one another",
+                        std::to_string(extent.depth) + " brackets inside one another",
                         "at most " + std::to_string(max_depth));
+    }
+    if (extent.values > max_values) {
+        throw FileError(file,
+                        "",
+                        std::to_string(extent.values) + " values",
+                        "at most " + std::to_string(max_values));
     }
     try {
         Json json = Json::parse(text);
@@ -64,6 +98,12 @@ Json parse_json(const std::string& text, const std::filesystem::path& file) {
     } catch (const nlohmann::json::parse_error& error) {
         throw FileError(
             file, place_in(text, error.byte), "text that is not JSON", "a complete JSON object");
+    } catch (const nlohmann::json::out_of_range& error) {
+        const std::string number = quoted_in(error.what());
+        throw FileError(file,
+                        place_of_number(text, number),
+                        "the number " + printable(number, 40),
+                        "numbers that a double can hold, up to 1.8e308");
     } catch (const nlohmann::json::exception& error) {
         throw FileError(file, "", error.what(), "a JSON object");
     }
@@ -111,16 +151,12 @@ std::vector<std::string> JsonReader::keys() const {
     return names;
 }
 
-double JsonReader::number() const {
-    if (!value_->is_number()) fail(found(), "a number");
-    const double value = value_->get<double>();
-    if (!std::isfinite(value)) fail(found(), "a finite number");
-    return value;
-}
+double JsonReader::number() const { return number_between(-kLargest, kLargest); }
 
 double JsonReader::number_between(double low, double high) const {
-    const double value = number();
-    if (value < low || value > high) {
+    if (!value_->is_number()) fail(found(), "a number");
+    const double value = value_->get<double>();
+    if (!(value >= low && value <= high)) {
         std::ostringstream expected;
         expected << "a number between " << low << " and " << high;
         fail(found(), expected.str());
@@ -129,7 +165,8 @@ double JsonReader::number_between(double low, double high) const {
 }
 
 int JsonReader::integer(int low, int high) const {
-    const double value = number();
+    if (!value_->is_number()) fail(found(), "a number");
+    const auto value = value_->get<double>();
     if (value != std::floor(value) || value < low || value > high) {
         fail(found(),
              "a whole number between " + std::to_string(low) + " and " + std::to_string(high));

@@ -13,8 +13,8 @@ namespace livery {
 
 namespace {
 
-/// Of a buffer beside the file.
-constexpr std::size_t kMaxFileBytes = 1u << 30u;
+/// Of all buffers together.
+constexpr std::size_t kMaxBufferBytes = 1u << 30u;
 constexpr int kMaxInt = std::numeric_limits<int>::max();
 
 /// Extensions that a file may require: quantised attributes are read; the others change only how
@@ -23,16 +23,6 @@ bool may_be_required(const std::string& extension) {
     return extension == "KHR_mesh_quantization" || extension == "KHR_texture_transform" ||
            extension == "KHR_lights_punctual" || extension == "KHR_texture_basisu" ||
            extension.starts_with("KHR_materials_");
-}
-
-Json parse(const std::filesystem::path& file, std::string_view text) {
-    try {
-        Json json = Json::parse(text);
-        if (!json.is_object()) throw FileError(file, "", json.type_name(), "a JSON object");
-        return json;
-    } catch (const nlohmann::json::exception&) {
-        throw FileError(file, "JSON", "text that is not JSON", "a complete JSON object");
-    }
 }
 
 std::uint32_t little_endian(const std::string& bytes, std::size_t at) {
@@ -122,18 +112,48 @@ std::string decode_percent(const JsonReader& uri, std::string_view text) {
     return out;
 }
 
-std::string load_buffer(const JsonReader& buffer, const std::filesystem::path& model) {
-    const auto uri = buffer["uri"];
-    const std::string text = uri.text();
-    if (text.starts_with("data:")) {
-        const auto comma = text.find(";base64,");
-        if (comma == std::string::npos) uri.fail(uri.found(), "a data URI in base64");
-        return decode_base64(uri, std::string_view(text).substr(comma + 8));
+/// The contents of buffers: a file that several of them name is read once.
+class BufferContents {
+  public:
+    BufferContents(GltfFile& gltf, Glb& glb) : gltf_(gltf), glb_(glb) {}
+
+    /// Which of gltf.contents a buffer is.
+    std::size_t find(const JsonReader& buffer, std::size_t index) {
+        if (!buffer.has("uri") && index == 0 && glb_.has_binary) return add(std::move(glb_.binary));
+        const auto uri = buffer["uri"];
+        const std::string text = uri.text();
+        if (text.starts_with("data:")) {
+            const auto comma = text.find(";base64,");
+            if (comma == std::string::npos) uri.fail(uri.found(), "a data URI in base64");
+            return add(decode_base64(uri, std::string_view(text).substr(comma + 8)));
+        }
+        const auto beside = path_beside(gltf_.path, decode_percent(uri, text));
+        if (!beside) uri.fail(uri.found(), "a file beside the model or below its folder");
+        const auto known = of_file_.find(*beside);
+        if (known != of_file_.end()) return known->second;
+        const std::size_t content = add(read_text_file(*beside, kMaxBufferBytes - bytes_));
+        of_file_.emplace(*beside, content);
+        return content;
     }
-    const auto beside = path_beside(model, decode_percent(uri, text));
-    if (!beside) uri.fail(uri.found(), "a file beside the model or below its folder");
-    return read_text_file(*beside, kMaxFileBytes);
-}
+
+  private:
+    std::size_t add(std::string bytes) {
+        bytes_ += bytes.size();
+        if (bytes_ > kMaxBufferBytes) {
+            throw FileError(gltf_.path,
+                            "buffers",
+                            std::to_string(bytes_) + " bytes",
+                            "at most " + std::to_string(kMaxBufferBytes) + " in all");
+        }
+        gltf_.contents.push_back(std::move(bytes));
+        return gltf_.contents.size() - 1;
+    }
+
+    GltfFile& gltf_;
+    Glb& glb_;
+    std::map<std::filesystem::path, std::size_t> of_file_;
+    std::size_t bytes_ = 0;
+};
 
 void check_header(const GltfFile& gltf) {
     const auto version = gltf.root()["asset"]["version"];
@@ -176,31 +196,30 @@ GltfFile open_gltf(const std::string& bytes, const std::filesystem::path& file) 
     Glb glb;
     if (bytes.starts_with("glTF")) {
         glb = split_glb(file, bytes);
-        gltf.json = parse(file, glb.json);
+        gltf.json = parse_json(glb.json, file);
     } else if (file.extension() != ".gltf") {
         throw FileError(
             file, "header", "no \"glTF\" at the start", "a .glb file, .gltf text, .ply or .obj");
     } else {
-        gltf.json = parse(file, bytes);
+        gltf.json = parse_json(bytes, file);
     }
     check_header(gltf);
 
     if (!gltf.root().has("buffers")) return gltf;
     const auto buffers = gltf.root()["buffers"];
-    for (std::size_t k = 0; k < buffers.size(); ++k) {
+    BufferContents contents(gltf, glb);
+    const std::size_t count = buffers.size();
+    for (std::size_t k = 0; k < count; ++k) {
         const auto buffer = buffers.at(k);
         const auto declared = static_cast<std::size_t>(buffer["byteLength"].integer(1, kMaxInt));
-        if (!buffer.has("uri") && k == 0 && glb.has_binary) {
-            gltf.buffers.push_back(std::move(glb.binary));
-        } else {
-            gltf.buffers.push_back(load_buffer(buffer, file));
+        const std::size_t content = contents.find(buffer, k);
+        const std::size_t there = gltf.contents[content].size();
+        if (there < declared) {
+            buffer["byteLength"].fail(
+                std::to_string(declared),
+                "at most the " + std::to_string(there) + " bytes that the buffer has");
         }
-        if (gltf.buffers.back().size() < declared) {
-            buffer["byteLength"].fail(std::to_string(declared),
-                                      "at most the " + std::to_string(gltf.buffers.back().size()) +
-                                          " bytes that the buffer has");
-        }
-        gltf.buffers.back().resize(declared);
+        gltf.buffers.push_back({content, declared});
     }
     return gltf;
 }

@@ -14,13 +14,22 @@
 
 namespace livery {
 
-/// An opened file: its JSON, and its buffers as bytes, each at least as long as declared.
+/// An opened file: its JSON, and its buffers, each as long as declared.
 struct GltfFile {
+    struct Buffer {
+        std::size_t content = 0;  ///< several may share one
+        std::size_t bytes = 0;
+    };
     std::filesystem::path path;
     Json json;
-    std::vector<std::string> buffers;
+    std::vector<std::string> contents;
+    std::vector<Buffer> buffers;
 
     JsonReader root() const { return {path, json}; }
+    std::string_view buffer(std::size_t index) const {
+        const Buffer& one = buffers[index];
+        return std::string_view(contents[one.content]).substr(0, one.bytes);
+    }
 };
 
 /// Opens the bytes of a .gltf (buffers beside `file` or as data URIs) or a .glb. Checks the

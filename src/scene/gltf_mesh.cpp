@@ -8,14 +8,18 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "scene/because.h"
 #include "scene/gltf_parts.h"
 
 namespace livery {
 
 namespace {
 
-/// Of all uses of all meshes; about 1.6 GB as vertices of their own.
-constexpr std::size_t kMaxCorners = 1u << 25u;
+/// Of all uses of all meshes; about 0.8 GB as vertices of their own.
+constexpr std::size_t kMaxCorners = 1u << 24u;
+
+/// Of primitives by nodes, with or without triangles in them.
+constexpr std::size_t kMaxUses = 1u << 17u;
 
 using Notes = std::vector<std::string>;
 
@@ -43,17 +47,16 @@ struct MaterialGroup {
 
 std::vector<MaterialGroup> group_by_material(const JsonReader& root, const JsonReader& primitives) {
     std::vector<MaterialGroup> groups;
+    std::map<std::optional<std::size_t>, std::size_t> group_of;
     for (std::size_t k = 0; k < primitives.size(); ++k) {
         const auto primitive = primitives.at(k);
         std::optional<std::size_t> material;
         if (primitive.has("material")) {
             material = index_into(root, "materials", primitive["material"]);
         }
-        auto group = std::find_if(groups.begin(), groups.end(), [&](const MaterialGroup& g) {
-            return g.material == material;
-        });
-        if (group == groups.end()) group = groups.insert(group, {material, {}});
-        group->primitives.push_back(k);
+        const auto [known, is_new] = group_of.try_emplace(material, groups.size());
+        if (is_new) groups.push_back({material, {}});
+        groups[known->second].primitives.push_back(k);
     }
     return groups;
 }
@@ -79,7 +82,7 @@ void note_unread(const JsonReader& root, Notes& notes) {
 
 /// Adds up what the nodes would make of the meshes, from declared counts, before anything is made.
 void check_total_size(const JsonReader& root, const std::vector<PlacedNode>& nodes) {
-    std::size_t corners = 0;
+    std::size_t corners = 0, uses = 0;
     for (const auto& placed : nodes) {
         const auto node = root["nodes"].at(placed.index);
         if (!node.has("mesh")) continue;
@@ -87,6 +90,10 @@ void check_total_size(const JsonReader& root, const std::vector<PlacedNode>& nod
             root["meshes"].at(index_into(root, "meshes", node["mesh"]))["primitives"];
         for (std::size_t k = 0; k < primitives.size(); ++k) {
             const auto primitive = primitives.at(k);
+            if (++uses > kMaxUses) {
+                node["mesh"].fail(fmt::format("{} uses of primitives up to here", uses),
+                                  fmt::format("at most {}", kMaxUses));
+            }
             const auto index = primitive.has("indices") ? primitive["indices"]
                                                         : primitive["attributes"]["POSITION"];
             const auto accessor = root["accessors"].at(index_into(root, "accessors", index));
@@ -157,7 +164,9 @@ Mesh read_gltf(const std::string& bytes, const std::filesystem::path& file, Note
             append(mesh, built, "");
         }
     }
-    if (mesh.triangles.empty()) throw FileError(file, "", "no triangles", "at least one");
+    if (mesh.triangles.empty()) {
+        throw FileError(file, "", "no triangles" + because(notes), "at least one");
+    }
     return mesh;
 }
 

@@ -308,7 +308,7 @@ ScanFile ObjReader::read() {
     for (const auto& [end, part] : polygons_) {
         face_.assign(polygon_corners_.begin() + static_cast<std::ptrdiff_t>(at),
                      polygon_corners_.begin() + static_cast<std::ptrdiff_t>(end));
-        add_polygon(scan_, face_, part);
+        if (!add_polygon(scan_, face_, part)) refuse_polygons(file_);
         at = end;
     }
     name_parts();

@@ -330,7 +330,7 @@ void add_faces(const CornerLists& lists, const std::filesystem::path& file, Scan
                             fmt::format("at most {}", kMaxPolygonCorners));
         }
         if (polygon.size() < 3) ++dropped;
-        add_polygon(scan, polygon, 0);
+        if (!add_polygon(scan, polygon, 0)) refuse_polygons(file);
     }
     if (dropped > 0) {
         scan.notes.push_back(fmt::format("{} faces of fewer than three corners dropped", dropped));

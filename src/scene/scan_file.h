@@ -33,6 +33,7 @@ struct ScanFile {
     std::vector<std::uint16_t> triangle_part;
     std::vector<Part> parts;
     std::vector<std::string> notes;  ///< what was dropped or not understood
+    std::size_t cutting_steps = 0;   ///< that polygons took so far; kMaxCuttingSteps is the end
 };
 
 /// Vertices, and corners of faces, that one file may have: about 2 GB while it is read.
@@ -47,7 +48,9 @@ ScanFile read_obj(std::string_view text, const std::filesystem::path& file);
 /// what was done. Without a unit it is told from the size. Throws FileError.
 Mesh mesh_of(ScanFile& scan, const std::filesystem::path& file, std::optional<LengthUnit> unit);
 
-/// Adds a polygon's triangles; nothing of one with fewer than three corners.
-void add_polygon(ScanFile& scan, const std::vector<ScanCorner>& polygon, std::uint16_t part);
+/// Adds a polygon's triangles; nothing of one with fewer than three corners. Past
+/// kMaxCuttingSteps it stops: false.
+bool add_polygon(ScanFile& scan, const std::vector<ScanCorner>& polygon, std::uint16_t part);
+[[noreturn]] void refuse_polygons(const std::filesystem::path& file);
 
 }  // namespace livery

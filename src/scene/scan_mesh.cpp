@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/error.h"
+#include "scene/because.h"
 #include "scene/scan_file.h"
 #include "scene/surface.h"
 
@@ -327,25 +328,35 @@ void drop_empty_parts(ScanFile& scan) {
 
 }  // namespace
 
-void add_polygon(ScanFile& scan, const std::vector<ScanCorner>& polygon, std::uint16_t part) {
-    if (polygon.size() < 3) return;
+bool add_polygon(ScanFile& scan, const std::vector<ScanCorner>& polygon, std::uint16_t part) {
+    if (polygon.size() < 3) return true;
     if (polygon.size() == 3) {
         scan.triangles.push_back({polygon[0], polygon[1], polygon[2]});
         scan.triangle_part.push_back(part);
-        return;
+        return true;
     }
     std::vector<glm::dvec3> corners;
     corners.reserve(polygon.size());
     for (const ScanCorner& corner : polygon) corners.push_back(scan.positions[corner.position]);
-    for (const glm::uvec3& t : triangulate(corners)) {
+    for (const glm::uvec3& t : triangulate(corners, scan.cutting_steps)) {
         scan.triangles.push_back({polygon[t.x], polygon[t.y], polygon[t.z]});
         scan.triangle_part.push_back(part);
     }
+    return scan.cutting_steps <= kMaxCuttingSteps;
+}
+
+void refuse_polygons(const std::filesystem::path& file) {
+    throw FileError(file,
+                    "faces",
+                    "polygons whose many inward corners take too long to cut",
+                    "triangles (export them triangulated)");
 }
 
 Mesh mesh_of(ScanFile& scan, const std::filesystem::path& file, std::optional<LengthUnit> unit) {
     if (scan.triangles.empty()) {
-        if (scan.positions.empty()) throw FileError(file, "", "no triangles", "at least one");
+        if (scan.positions.empty()) {
+            throw FileError(file, "", "no triangles" + because(scan.notes), "at least one");
+        }
         throw FileError(
             file,
             "",
@@ -371,7 +382,8 @@ Mesh mesh_of(ScanFile& scan, const std::filesystem::path& file, std::optional<Le
     }
     drop_useless(scan, surface);
     if (scan.triangles.empty()) {
-        throw FileError(file, "", "no triangle that has an area", "at least one");
+        throw FileError(
+            file, "", "no triangle that has an area" + because(scan.notes), "at least one");
     }
     find_neighbours(surface);
     turn_right(scan, surface);

@@ -47,12 +47,20 @@ bool holds(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c, const 
 /// no ear.
 class Ring {
   public:
-    explicit Ring(std::vector<glm::dvec2> flat)
-        : flat_(std::move(flat)), next_(flat_.size()), last_(flat_.size()), ear_(flat_.size()) {
+    Ring(std::vector<glm::dvec2> flat, std::size_t& steps)
+        : flat_(std::move(flat)),
+          next_(flat_.size()),
+          last_(flat_.size()),
+          ear_(flat_.size()),
+          place_(flat_.size(), kNowhere),
+          steps_(steps) {
         const auto count = static_cast<std::uint32_t>(flat_.size());
         for (std::uint32_t k = 0; k < count; ++k) {
             next_[k] = (k + 1) % count;
             last_[k] = (k + count - 1) % count;
+        }
+        for (std::uint32_t k = 0; k < count; ++k) {
+            if (turns_inward(k)) list(k);
         }
         for (std::uint32_t k = 0; k < count; ++k) ear_[k] = find_ear(k);
     }
@@ -65,37 +73,68 @@ class Ring {
         const std::uint32_t before = last_[k], after = next_[k];
         next_[before] = after;
         last_[after] = before;
+        forget(k);
+        look_again(before);
+        look_again(after);
         ear_[before] = find_ear(before);
         ear_[after] = find_ear(after);
     }
 
   private:
+    bool turns_inward(std::uint32_t k) const {
+        return !(turn(flat_[last_[k]], flat_[k], flat_[next_[k]]) > 0.0);
+    }
+
     /// Whether the corner juts out and nothing else lies in the triangle that it makes.
-    bool find_ear(std::uint32_t k) const {
+    bool find_ear(std::uint32_t k) {
         const glm::dvec2 &a = flat_[last_[k]], &b = flat_[k], &c = flat_[next_[k]];
         if (turn(a, b, c) <= 0.0) return false;
-        for (std::uint32_t other = next_[next_[k]]; other != last_[k]; other = next_[other]) {
+        steps_ += inward_.size();
+        for (const std::uint32_t other : inward_) {
             const glm::dvec2& p = flat_[other];
             // A bridge to a hole passes the same place twice.
             if (p == a || p == b || p == c) continue;
-            if (turn(flat_[last_[other]], p, flat_[next_[other]]) > 0.0) continue;
             if (holds(a, b, c, p)) return false;
         }
         return true;
     }
 
+    /// Cutting an ear can turn a neighbour outward, never inward but for rounding.
+    void look_again(std::uint32_t k) {
+        const bool listed = place_[k] != kNowhere;
+        if (turns_inward(k) == listed) return;
+        listed ? forget(k) : list(k);
+    }
+    void list(std::uint32_t k) {
+        place_[k] = static_cast<std::uint32_t>(inward_.size());
+        inward_.push_back(k);
+    }
+    void forget(std::uint32_t k) {
+        if (place_[k] == kNowhere) return;
+        inward_[place_[k]] = inward_.back();
+        place_[inward_.back()] = place_[k];
+        inward_.pop_back();
+        place_[k] = kNowhere;
+    }
+
+    static constexpr std::uint32_t kNowhere = 0xffffffffu;
+
     std::vector<glm::dvec2> flat_;
     std::vector<std::uint32_t> next_, last_;
     std::vector<bool> ear_;
+    std::vector<std::uint32_t> inward_;  ///< the corners left that turn inward
+    std::vector<std::uint32_t> place_;   ///< in inward_
+    std::size_t& steps_;
 };
 
 }  // namespace
 
-std::vector<glm::uvec3> triangulate(const std::vector<glm::dvec3>& polygon) {
+std::vector<glm::uvec3> triangulate(const std::vector<glm::dvec3>& polygon, std::size_t& steps) {
     std::vector<glm::uvec3> triangles;
     if (polygon.size() < 3) return triangles;
     triangles.reserve(polygon.size() - 2);
-    Ring ring(flattened(polygon));
+    steps += polygon.size();
+    Ring ring(flattened(polygon), steps);
     std::uint32_t at = 0;
     for (std::size_t left = polygon.size(); left > 3; --left) {
         std::size_t tried = 0;
@@ -103,6 +142,7 @@ std::vector<glm::uvec3> triangulate(const std::vector<glm::dvec3>& polygon) {
             at = ring.next(at);
             ++tried;
         }
+        steps += tried;
         // Without an ear the polygon crosses itself or is a line: any corner goes.
         triangles.push_back(ring.triangle(at));
         ring.cut(at);

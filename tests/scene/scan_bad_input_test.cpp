@@ -132,7 +132,7 @@ const Bad kBadObj[] = {
      std::string("\x7f"
                  "ELF\0\0\1",
                  7),
-     {"found no triangles, expected at least one"}},
+     {"found no triangles (lines that are not read: ", "expected at least one"}},
     {"a cloud", "v 0 0 0\nv 1 0 0\n", {"found a point cloud: 2 vertices without faces"}},
     {"no number", "v 0 zero 0\n", {"line 1: v: found \"zero\", expected a number"}},
     {"too few", "v 0 0\nv 1 0 0\n", {"line 1: v: found nothing, expected a number"}},
