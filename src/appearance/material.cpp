@@ -100,11 +100,12 @@ Material find_material(const std::string& name_or_file) {
         material.file = file;
         return material;
     }
-    if (suffix == ".json" || std::filesystem::is_regular_file(file, error)) {
-        return read_material_file(file);
-    }
+    if (suffix == ".json" || file.has_parent_path()) return read_material_file(file);
+    // A bare name is the library's where it has it, whatever lies in the folder where the program
+    // runs.
     const PaintLibrary library = read_paint_library();
     if (const Material* material = library.find(name_or_file)) return *material;
+    if (std::filesystem::is_regular_file(file, error)) return read_material_file(file);
     // Which names they have is not known yet.
     if (!library.unread.empty()) throw MeasuredFileUnread(library.unread.front());
     std::string found = fmt::format("no paint named '{}'", name_or_file);

@@ -1,11 +1,13 @@
 #include "capture/captures_folder.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
 
 #include "capture/manifest_io.h"
+#include "core/channels.h"
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/image_io.h"
@@ -77,25 +79,11 @@ CapturesFolder match_by_name(const std::filesystem::path& folder,
     return result;
 }
 
-/// R, G and B by name, else the only three; one channel stands for all three.
+/// Red, green and blue alone, one after the other.
 ImageF rgb_of(const std::filesystem::path& file, ImageFile picture) {
-    const auto& names = picture.channel_names;
-    const auto channel = [&](const char* name) {
-        return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
-    };
-    int from[3] = {channel("R"), channel("G"), channel("B")};
+    const std::array<int, 3> from = colour_channels(file, picture);
     const int channels = picture.image.channels;
-    if (std::max({from[0], from[1], from[2]}) >= channels) {
-        if (channels != 1 && channels != 3) {
-            throw FileError(file,
-                            "channels",
-                            std::to_string(channels) + " channels without R, G, B",
-                            "R, G, B or one channel");
-        }
-        for (int c = 0; c < 3; ++c) from[c] = channels == 1 ? 0 : c;
-    } else if (channels == 3 && from[0] == 0 && from[1] == 1 && from[2] == 2) {
-        return std::move(picture.image);
-    }
+    if (channels == 3 && from == std::array{0, 1, 2}) return std::move(picture.image);
     ImageF rgb(picture.image.width, picture.image.height, 3);
     for (std::size_t k = 0; k < rgb.pixel_count(); ++k) {
         for (std::size_t c = 0; c < 3; ++c) {

@@ -1,8 +1,12 @@
 #include "cli/frame_options.h"
 
+#include <cmath>
+#include <cstdint>
+
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/json_ranges.h"
 #include "session/library.h"
 #include "session/predictions.h"
 #include "twin/description.h"
@@ -13,6 +17,8 @@ namespace {
 
 /// Vertical field of view that holds a product seen from default_eye_mm().
 constexpr double kWholeProduct_rad = 0.5;
+/// 8K, 7680 x 4320, and a little more.
+constexpr std::int64_t kMostPixels = std::int64_t{1} << 25;
 
 }  // namespace
 
@@ -125,10 +131,21 @@ ResolvedFrame resolve_frame(const FrameArguments& arguments, const CommonOptions
             view = look_at(eye_mm, 0.5 * (bounds.low + bounds.high), kWholeProduct_rad, 1280, 800);
         }
     }
+    if (std::int64_t{view->width} * view->height > kMostPixels) {
+        throw FileError(arguments.camera,
+                        "width, height",
+                        fmt::format("{} x {}", view->width, view->height),
+                        fmt::format("at most {} pixels to draw", kMostPixels));
+    }
     request.view = *view;
     if (!arguments.eye.empty()) {
         const auto numbers = parse_numbers("--eye", arguments.eye, 3);
         eye_mm = {numbers[0], numbers[1], numbers[2]};
+        for (int c = 0; c < 3; ++c) {
+            if (std::abs(eye_mm[c]) <= kFarthest_mm) continue;
+            throw std::invalid_argument(fmt::format(
+                "--eye: found \"{}\", expected places within 1e9 mm of 0", arguments.eye));
+        }
     }
     request.scene =
         make_scene(product, find_look_for(arguments.look, part_names(product->mesh)), eye_mm);

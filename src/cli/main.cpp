@@ -2,29 +2,49 @@
 
 #include <cstdio>
 #include <exception>
+#include <new>
 #include <string>
 #include <vector>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include "cli/command.h"
 #include "cli/console.h"
+#include "cli/outputs.h"
 #include "cli/parse.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/paths.h"
+#include "core/utf8.h"
 
 namespace livery {
 namespace {
 
-/// One line on stderr, whatever the message brings along (a file name may hold a line break).
+/// One line on stderr, whatever the message brings along (a file name may hold a line break, an
+/// argument a megabyte).
 int fail(int code, const std::string& message) {
     finish_progress_line();
+    constexpr std::size_t longest = 4000;
     std::string line;
     for (const char c : message) {
         const bool gap = c == '\n' || c == ' ';
         if (!gap || line.empty() || line.back() != ' ') line += gap ? ' ' : c;
     }
-    std::fputs((line + "\n").c_str(), stderr);
+    std::fputs((printable(line, longest) + "\n").c_str(), stderr);
     return code;
+}
+
+/// A closed descriptor would become the next file that is opened, and what is printed would be
+/// written into it. Whether the answer has somewhere to go is found before the work.
+bool has_standard_streams(bool answers) {
+    bool stdout_open = true;
+    for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+        if (::fcntl(descriptor, F_GETFD) != -1) continue;
+        stdout_open = stdout_open && descriptor != STDOUT_FILENO;
+        if (::open("/dev/null", O_RDWR) != descriptor) return false;
+    }
+    return stdout_open || !answers;
 }
 
 int print(const std::string& text, int exit_code) {
@@ -53,6 +73,7 @@ int run(const std::vector<std::string>& arguments) {
     if (!parsed.command) {
         return parsed.exit_code != 0 ? fail(parsed.exit_code, parsed.text) : print(parsed.text, 0);
     }
+    check_outputs(*parsed.command);
     set_data_folder(parsed.common.data);
     set_thread_count(parsed.common.threads);
     Outcome outcome;
@@ -78,11 +99,20 @@ int run(const std::vector<std::string>& arguments) {
 int main(int argc, char** argv) {
     using livery::fail;
     try {
-        return livery::run({argv + 1, argv + argc});
+        const std::vector<std::string> arguments(argv + 1, argv + argc);
+        const bool desktop = arguments.empty() || arguments[0] == "desktop";
+        if (!livery::has_standard_streams(!desktop)) {
+            return fail(2, "livery: stdout: found it closed, expected somewhere to write to");
+        }
+        return livery::run(arguments);
     } catch (const livery::Cancelled&) {
         return fail(130, "livery: stopped");
     } catch (const livery::Refused& refused) {
         return fail(1, "livery: refused: " + std::string(refused.what()));
+    } catch (const std::bad_alloc&) {
+        return fail(2,
+                    "livery: found no memory left for what the files ask for, expected smaller "
+                    "ones, or a machine with more");
     } catch (const std::exception& error) {
         return fail(2, "livery: " + std::string(error.what()));
     }

@@ -12,6 +12,7 @@
 
 #include "cli/man_page.h"
 #include "cli/version.h"
+#include "core/utf8.h"
 
 namespace livery {
 
@@ -20,7 +21,7 @@ namespace {
 const std::vector<std::string> kGlNames = {"software", "hardware", "auto"};
 
 std::string found_expected(const std::string& found, const std::string& expected) {
-    return "found \"" + found + "\", expected " + expected;
+    return "found \"" + printable(found, 200) + "\", expected " + expected;
 }
 
 /// Ours, so that a wrong value is answered as everywhere: what was found, what was expected.
@@ -144,8 +145,38 @@ std::string help_text(const std::vector<Command>& commands, const std::string& n
     return text;
 }
 
-ParsedCommandLine parse_command_line(const std::vector<std::string>& arguments,
+namespace {
+
+/// The options that every command takes may stand before its name too: moved behind it.
+std::vector<std::string> command_first(const std::vector<std::string>& words,
+                                       const std::vector<Command>& commands) {
+    CommonOptions common;
+    const std::vector<Option> options = common_options(common);
+    std::size_t at = 0;
+    while (at < words.size()) {
+        const std::string flag = words[at].substr(0, words[at].find('='));
+        const auto option = std::find_if(
+            options.begin(), options.end(), [&](const Option& one) { return one.flag == flag; });
+        if (option == options.end()) break;
+        const bool value_follows = !option->value.empty() && flag == words[at];
+        at += value_follows ? 2 : 1;
+    }
+    if (at == 0 || at >= words.size()) return words;
+    const auto first = words.begin() + static_cast<std::ptrdiff_t>(at);
+    std::vector<std::string> ordered(first, words.end());
+    const bool group = std::none_of(commands.begin(), commands.end(), [&](const Command& command) {
+        return command.name == ordered[0];
+    });
+    const std::ptrdiff_t name_words = group && ordered.size() > 1 ? 2 : 1;
+    ordered.insert(ordered.begin() + name_words, words.begin(), first);
+    return ordered;
+}
+
+}  // namespace
+
+ParsedCommandLine parse_command_line(const std::vector<std::string>& words,
                                      std::vector<Command>& commands) {
+    const std::vector<std::string> arguments = command_first(words, commands);
     if (arguments.empty()) return parse_command_line({"desktop"}, commands);
     ParsedCommandLine parsed;
 

@@ -1,5 +1,6 @@
 // livery render
 
+#include <cmath>
 #include <memory>
 
 #include <fmt/format.h>
@@ -17,6 +18,16 @@ double covered_fraction(const ImageF& picture) {
         sum += static_cast<double>(picture.values[4 * i + 3]);
     }
     return sum / static_cast<double>(picture.pixel_count());
+}
+
+/// Covered pixels whose colour is NaN or infinite; a picture for the projector has them black.
+std::size_t not_finite_pixels(const ImageF& picture) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < picture.pixel_count(); ++i) {
+        const float* v = picture.values.data() + 4 * i;
+        count += std::isfinite(v[0] + v[1] + v[2]) ? 0u : 1u;
+    }
+    return count;
 }
 
 std::string nothing_seen(const Mesh& mesh) {
@@ -103,11 +114,16 @@ Command render_command() {
                                    rendered.renderer,
                                    arguments->out);
         tell_notes(frame.notes, outcome);
-        if (covered == 0.0) {
-            const std::string warning = nothing_seen(request.scene.product->mesh);
-            outcome.figures["warnings"] = {warning};
-            outcome.text += "warning: " + warning + "\n";
+        std::vector<std::string> warnings;
+        if (covered == 0.0) warnings.push_back(nothing_seen(request.scene.product->mesh));
+        const std::size_t not_finite = not_finite_pixels(rendered.radiance_working);
+        outcome.figures["not_finite_pixels"] = not_finite;
+        if (not_finite > 0) {
+            warnings.push_back(fmt::format(
+                "{} pixels are no number; they are black on the projector", not_finite));
         }
+        if (!warnings.empty()) outcome.figures["warnings"] = warnings;
+        for (const std::string& warning : warnings) outcome.text += "warning: " + warning + "\n";
         return outcome;
     };
     return command;

@@ -12,7 +12,7 @@ std::string file_message(const std::filesystem::path& file,
                          const std::string& expected) {
     // What stands in a bad file gets into messages: in one line, and not all of it.
     constexpr std::size_t longest = 600;
-    std::string text = printable(file.string());
+    std::string text = printable(file.string(), longest);
     if (!field.empty()) text += ": " + printable(field, longest);
     text += ": found " + printable(found, longest) + ", expected " + printable(expected, longest);
     return text;

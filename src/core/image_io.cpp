@@ -22,6 +22,12 @@ namespace livery {
 namespace {
 
 constexpr const char* kModuleName = "livery_image_io.so";
+constexpr std::uintmax_t kMaxBytes = std::uintmax_t{1} << 30u;
+/// Of one picture, over its channels; below a gigabyte as floats.
+constexpr std::uintmax_t kMaxValues = 240'000'000;
+/// As many are taken on a file's word. More must be there in its bytes, of which none holds more
+/// than deflate packs into it.
+constexpr std::uintmax_t kBelievedValues = 64'000'000, kMostValuesPerByte = 1'032;
 constexpr const char* kReadable = "a complete EXR, HDR, PNG, TIFF, JPEG or RAW picture";
 
 /// Found beside the program: in an installation, or in a build. Stays open until the end.
@@ -79,6 +85,15 @@ std::string start_of(const std::filesystem::path& file) {
     const auto status = std::filesystem::status(file, error);
     if (!std::filesystem::exists(status)) throw FileError(file, "", "no such file", kReadable);
     if (std::filesystem::is_directory(status)) throw FileError(file, "", "a folder", kReadable);
+    if (!std::filesystem::is_regular_file(status)) {
+        throw FileError(file, "", "a pipe or a device", kReadable);
+    }
+    if (const auto bytes = std::filesystem::file_size(file, error); !error && bytes > kMaxBytes) {
+        throw FileError(file,
+                        "",
+                        std::to_string(bytes) + " bytes",
+                        "at most " + std::to_string(kMaxBytes) + " in a picture");
+    }
     std::ifstream stream(file, std::ios::binary);
     if (!stream) throw FileError(file, "", std::strerror(errno), "a readable file");
     std::string start(16, '\0');
@@ -88,8 +103,7 @@ std::string start_of(const std::filesystem::path& file) {
     return start;
 }
 
-/// Refuses sizes that no honest file of this length declares, before anything is allocated. The
-/// densest coding among the formats read packs less than 100,000 bytes into one.
+/// Refuses sizes that no honest file of this length declares, before anything is allocated.
 void check_size(const std::filesystem::path& file,
                 const PictureHeader& header,
                 std::size_t max_pixels) {
@@ -100,19 +114,20 @@ void check_size(const std::filesystem::path& file,
     }
     const auto pixels =
         static_cast<std::size_t>(header.width) * static_cast<std::size_t>(header.height);
+    const auto channels = static_cast<std::size_t>(header.channels);
     constexpr std::size_t max_channels = 1024;
-    if (pixels > max_pixels || static_cast<std::size_t>(header.channels) > max_channels) {
+    if (pixels > max_pixels || channels > max_channels || pixels * channels > kMaxValues) {
         throw FileError(file,
                         "size",
                         size_text,
                         "at most " + std::to_string(max_pixels) + " pixels of " +
-                            std::to_string(max_channels) + " channels");
+                            std::to_string(max_channels) + " channels and " +
+                            std::to_string(kMaxValues) + " values in all");
     }
-    constexpr std::uintmax_t max_bytes_per_byte = 100'000;
     std::error_code error;
     const auto file_bytes = std::filesystem::file_size(file, error);
-    if (!error &&
-        pixels * static_cast<std::size_t>(header.channels) / max_bytes_per_byte > file_bytes) {
+    if (!error && pixels * channels > kBelievedValues &&
+        pixels * channels / kMostValuesPerByte > file_bytes) {
         throw FileError(file,
                         "size",
                         size_text + " in " + std::to_string(file_bytes) + " bytes",
@@ -166,7 +181,7 @@ ImageFile read_image(const std::filesystem::path& file, std::size_t max_pixels) 
     const char* format = format_of(file, start);
     if (!format) throw FileError(file, "", "content of another kind", kReadable);
     if (std::string_view(format) == "hdr") {
-        const std::string bytes = read_text_file(file, std::numeric_limits<std::size_t>::max());
+        const std::string bytes = read_text_file(file, kMaxBytes);
         if (auto picture = decode_radiance_hdr(bytes, max_pixels)) {
             return {std::move(*picture), {"R", "G", "B"}, 1.0, true};
         }

@@ -118,15 +118,34 @@ const char* channel_name(void* picture, int channel) {
 template <typename T>
 bool read_integers(Picture& picture, float* values) {
     const auto& header = picture.header;
-    std::vector<T> stored(static_cast<std::size_t>(header.width) *
-                          static_cast<std::size_t>(header.height) *
-                          static_cast<std::size_t>(header.channels));
-    if (!picture.input->read_image(
-            0, 0, 0, header.channels, OIIO::BaseTypeFromC<T>::value, stored.data())) {
-        return false;
+    const auto in_row =
+        static_cast<std::size_t>(header.width) * static_cast<std::size_t>(header.channels);
+    // A few rows at a time where the format has rows: the whole would be half as much again.
+    const OIIO::ImageSpec spec = picture.input->spec();
+    const int rows = spec.tile_width > 0 ? header.height : std::min(64, header.height);
+    std::vector<T> stored(static_cast<std::size_t>(rows) * in_row);
+    for (int y = 0; y < header.height; y += rows) {
+        const int end = std::min(y + rows, header.height);
+        const bool ok =
+            spec.tile_width > 0
+                ? picture.input->read_image(
+                      0, 0, 0, header.channels, OIIO::BaseTypeFromC<T>::value, stored.data())
+                : picture.input->read_scanlines(0,
+                                                0,
+                                                spec.y + y,
+                                                spec.y + end,
+                                                spec.z,
+                                                0,
+                                                header.channels,
+                                                OIIO::BaseTypeFromC<T>::value,
+                                                stored.data());
+        if (!ok) return false;
+        const auto count =
+            static_cast<std::ptrdiff_t>(end - y) * static_cast<std::ptrdiff_t>(in_row);
+        values = std::transform(stored.begin(), stored.begin() + count, values, [](T value) {
+            return static_cast<float>(value);
+        });
     }
-    std::transform(
-        stored.begin(), stored.end(), values, [](T value) { return static_cast<float>(value); });
     return true;
 }
 

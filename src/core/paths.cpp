@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "core/error.h"
+#include "core/replace_folder.h"
 
 namespace livery {
 
@@ -77,6 +78,22 @@ std::string read_text_file(const std::filesystem::path& file, std::size_t max_by
     const auto status = std::filesystem::status(file, error);
     if (!std::filesystem::exists(status)) throw FileError(file, "", "no such file", "a file");
     if (std::filesystem::is_directory(status)) throw FileError(file, "", "a folder", "a file");
+    const auto refuse_size = [&] {
+        throw FileError(file,
+                        "",
+                        "more than " + std::to_string(max_bytes) + " bytes",
+                        "a smaller file of this kind");
+    };
+    if (!std::filesystem::is_regular_file(status)) {
+        // What a shell hands over; any other pipe or device may never end, or never begin.
+        const std::string name = file.lexically_normal().string();
+        if (name != "/dev/stdin" && !name.starts_with("/dev/fd/")) {
+            throw FileError(file, "", "a pipe or a device", "a file");
+        }
+    } else if (const auto bytes = std::filesystem::file_size(file, error);
+               !error && bytes > max_bytes) {
+        refuse_size();
+    }
     std::ifstream stream(file, std::ios::binary);
     if (!stream) throw FileError(file, "", std::strerror(errno), "a readable file");
     std::string text;
@@ -84,12 +101,7 @@ std::string read_text_file(const std::filesystem::path& file, std::size_t max_by
     while (stream.read(block.data(), static_cast<std::streamsize>(block.size())) ||
            stream.gcount() > 0) {
         text.append(block.data(), static_cast<std::size_t>(stream.gcount()));
-        if (text.size() > max_bytes) {
-            throw FileError(file,
-                            "",
-                            "more than " + std::to_string(max_bytes) + " bytes",
-                            "a smaller file of this kind");
-        }
+        if (text.size() > max_bytes) refuse_size();
     }
     if (stream.bad()) throw FileError(file, "", "a read error", "a readable file");
     return text;
@@ -130,6 +142,7 @@ void write_text_file(const std::filesystem::path& file, std::string_view text) {
         std::filesystem::remove(temporary, ignored);
         throw FileError(file, "", "cannot replace: " + error.message(), "a writable place");
     }
+    sync_folder(file.parent_path());
 }
 
 void make_output_folder(const std::filesystem::path& folder) {

@@ -28,7 +28,12 @@ class TileMask {
           seen_(static_cast<std::size_t>(columns_ * rows_), 0) {}
 
     void add(const Corner& a, const Corner& b, const Corner& c, int depth) {
+        if (everywhere_) return;
         if (needs_cut(a, b, c) && depth < 9) {
+            if (++cuts_ > kMostCuts) {
+                everywhere_ = true;
+                return;
+            }
             const Corner ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
             add(a, ab, ca, depth + 1);
             add(ab, b, bc, depth + 1);
@@ -54,13 +59,18 @@ class TileMask {
         std::vector<glm::ivec2> result;
         for (int y = 0; y < rows_; ++y) {
             for (int x = 0; x < columns_; ++x) {
-                if (seen_[static_cast<std::size_t>(y * columns_ + x)]) result.emplace_back(x, y);
+                const bool seen = seen_[static_cast<std::size_t>(y * columns_ + x)] != 0;
+                if (everywhere_ || seen) result.emplace_back(x, y);
             }
         }
         return result;
     }
 
   private:
+    /// A tenth of a second of them. A lens that spreads the mesh over more pixels than that has
+    /// room for shows it through a keyhole: every tile is then taken to see something.
+    static constexpr std::size_t kMostCuts = 1'000'000;
+
     bool needs_cut(const Corner& a, const Corner& b, const Corner& c) const {
         if (a.pixel && b.pixel && c.pixel) {
             constexpr double kLargest_px = 48.0;
@@ -97,6 +107,8 @@ class TileMask {
     glm::dvec3 centre_;
     int columns_, rows_;
     std::vector<std::uint8_t> seen_;
+    std::size_t cuts_ = 0;
+    bool everywhere_ = false;
 };
 
 std::optional<glm::dvec3> direction_at(const View& view, glm::dvec2 pixel) {

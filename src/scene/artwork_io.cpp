@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "core/json.h"
+#include "core/json_ranges.h"
 #include "scene/look_json.h"
 
 namespace livery {
@@ -29,9 +29,10 @@ const char* name_of(Enumeration value, const std::array<const char*, Count>& nam
 
 ArtworkPlace read_place(const JsonReader& field, ArtworkPlace place) {
     field.allow_only({"centre_mm", "direction", "up", "through"});
-    if (field.has("centre_mm")) place.centre_mm = field["centre_mm"].vec3();
-    if (field.has("direction")) place.direction = field["direction"].vec3();
-    if (field.has("up")) place.up = field["up"].vec3();
+    if (field.has("centre_mm")) place.centre_mm = place_mm(field["centre_mm"]);
+    if (field.has("direction"))
+        place.direction = vec3_within(field["direction"], kLongestDirection);
+    if (field.has("up")) place.up = vec3_within(field["up"], kLongestDirection);
     if (field.has("through")) place.through = field["through"].boolean();
     return place;
 }

@@ -1,6 +1,7 @@
 #include "scene/artwork_picture.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <mutex>
@@ -9,6 +10,7 @@
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
 
+#include "core/channels.h"
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/image_io.h"
@@ -30,15 +32,13 @@ std::shared_ptr<const ArtworkPicture> read_picture(const std::filesystem::path& 
                         fmt::format("{}x{}", image.width, image.height),
                         fmt::format("at most {} pixels a side", kMostPixelsASide));
     }
-    if (image.channels < 1 || image.channels > 4) {
-        throw FileError(file, "channels", std::to_string(image.channels), "1 to 4");
-    }
+    const std::array<int, 3> colour = colour_channels(file, from);
+    const int alpha = channel_named(from, "A");
     auto picture = std::make_shared<ArtworkPicture>();
     picture->file = file;
     picture->linear = from.floating_point;
-    picture->has_alpha = image.channels == 2 || image.channels == 4;
+    picture->has_alpha = alpha >= 0;
     picture->rgba = ImageF(image.width, image.height, 4);
-    const bool grey = image.channels < 3;
     const auto scale = static_cast<float>(1.0 / from.full_scale);
     for (std::size_t i = 0; i < image.pixel_count(); ++i) {
         const float* values = &image.values[i * static_cast<std::size_t>(image.channels)];
@@ -47,9 +47,10 @@ std::shared_ptr<const ArtworkPicture> read_picture(const std::filesystem::path& 
             throw FileError(file, "pixels", "a value that is not finite", "finite numbers");
         }
         float* rgba = &picture->rgba.values[4 * i];
-        for (int c = 0; c < 3; ++c) rgba[c] = glm::clamp(scale * values[grey ? 0 : c], 0.0f, 1.0f);
-        rgba[3] =
-            picture->has_alpha ? glm::clamp(scale * values[image.channels - 1], 0.0f, 1.0f) : 1.0f;
+        for (std::size_t c = 0; c < 3; ++c) {
+            rgba[c] = glm::clamp(scale * values[colour[c]], 0.0f, 1.0f);
+        }
+        rgba[3] = alpha >= 0 ? glm::clamp(scale * values[alpha], 0.0f, 1.0f) : 1.0f;
     }
     return picture;
 }

@@ -23,7 +23,7 @@ std::filesystem::path find_beside_or_shipped(const std::string& name,
     const std::filesystem::path file = name;
     if (file.is_absolute()) return file;
     std::error_code error;
-    if (std::filesystem::exists(folder / file, error)) return folder / file;
+    if (std::filesystem::is_regular_file(folder / file, error)) return folder / file;
     try {
         return shipped_path(file);
     } catch (const FileError& missing) {

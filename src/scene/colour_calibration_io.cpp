@@ -9,6 +9,7 @@
 #include "core/image_io.h"
 #include "core/json.h"
 #include "core/paths.h"
+#include "core/replace_folder.h"
 #include "scene/colour_calibration.h"
 
 namespace livery {
@@ -228,13 +229,15 @@ void write_calibration(const std::filesystem::path& folder, const ColourCalibrat
     json["warnings"] = c.warnings;
 
     // The JSON comes last: a folder whose writing was cut off does not open.
-    make_output_folder(folder);
-    write_exr(folder / "unmixing.exr", c.unmixing, kMatrixNames);
-    write_exr(folder / "dark.exr", c.dark, kColourNames);
-    write_exr(folder / "span.exr", c.span, kColourNames);
-    write_exr(folder / "camera_px.exr", c.camera_px, kPlaceNames);
-    write_png(folder / "status.png", c.status);
-    write_json_file(folder / "calibration.json", json);
+    FolderReplacement replacement(folder);
+    const auto& files = replacement.staging();
+    write_exr(files / "unmixing.exr", c.unmixing, kMatrixNames);
+    write_exr(files / "dark.exr", c.dark, kColourNames);
+    write_exr(files / "span.exr", c.span, kColourNames);
+    write_exr(files / "camera_px.exr", c.camera_px, kPlaceNames);
+    write_png(files / "status.png", c.status);
+    write_json_file(files / "calibration.json", json);
+    replacement.commit("calibration.json");
 }
 
 ColourCalibration read_calibration(const std::filesystem::path& folder) {

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "core/channels.h"
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/image_io.h"
@@ -20,23 +21,8 @@ namespace livery {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-/// 16384 x 8192: larger maps bring nothing to a mock-up and take gigabytes.
-constexpr std::size_t kMaxPixels = std::size_t{1} << 27u;
-
-/// Which channels are red, green and blue; a grey map serves all three.
-std::array<int, 3> colour_channels(const std::filesystem::path& file, const ImageFile& map) {
-    const auto named = [&](const char* name) {
-        const auto& names = map.channel_names;
-        const auto found = std::find(names.begin(), names.end(), name);
-        return found == names.end() ? -1 : static_cast<int>(found - names.begin());
-    };
-    const std::array<int, 3> rgb{named("R"), named("G"), named("B")};
-    if (std::min({rgb[0], rgb[1], rgb[2]}) >= 0) return rgb;
-    if (map.image.channels == 1) return {0, 0, 0};
-    std::string names;
-    for (const auto& name : map.channel_names) names += (names.empty() ? "" : ", ") + name;
-    throw FileError(file, "channels", names, "R, G, B or a single one");
-}
+/// 8192 x 4096: larger maps bring nothing to a mock-up and take gigabytes.
+constexpr std::size_t kMaxPixels = std::size_t{1} << 25u;
 
 }  // namespace
 

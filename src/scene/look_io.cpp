@@ -2,7 +2,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "core/json.h"
+#include "core/json_ranges.h"
 #include "core/paths.h"
 #include "scene/look.h"
 #include "scene/look_json.h"
@@ -20,13 +20,12 @@ DirectionalLight read_light(const JsonReader& field) {
         field["type"].fail(field["type"].found(), "\"directional\"");
     }
     DirectionalLight light;
-    light.direction = field["direction"].vec3();
+    light.direction = vec3_within(field["direction"], kLongestDirection);
     if (!(glm::length(light.direction) > 1e-12)) {
         field["direction"].fail("a vector of no length", "a direction");
     }
     light.direction = unit_direction(light.direction);
-    light.radiance_rec709 = field["radiance"].vec3();
-    for (std::size_t k = 0; k < 3; ++k) field["radiance"].at(k).number_between(-1e6, 1e6);
+    light.radiance_rec709 = vec3_within(field["radiance"], 1e6);
     if (field.has("angle_rad")) light.angle_rad = field["angle_rad"].number_between(0.0, kPi);
     return light;
 }

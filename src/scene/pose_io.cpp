@@ -5,6 +5,8 @@
 
 #include <glm/matrix.hpp>
 
+#include "core/json_ranges.h"
+
 namespace livery {
 
 glm::dmat3 read_rotation(const JsonReader& field) {
@@ -23,7 +25,29 @@ glm::dmat3 read_rotation(const JsonReader& field) {
 }
 
 Rigid3 read_pose(const JsonReader& object) {
-    return {read_rotation(object["rotation"]), object["translation_mm"].vec3()};
+    return {read_rotation(object["rotation"]), place_mm(object["translation_mm"])};
+}
+
+void read_lens(const JsonReader& object, View& view) {
+    // From a fisheye on a sensor of few pixels to a telescope; coefficients grow with the power of
+    // the focal length that they stand for.
+    constexpr double kShortest_px = 0.1, kLongest_px = 1e6, kFarthest_px = 1e6, kStrongest = 1e6;
+    const auto field = object["matrix"];
+    const glm::dmat3 matrix = field.matrix3();
+    field.at(0).number_between(kShortest_px, kLongest_px);
+    field.at(4).number_between(kShortest_px, kLongest_px);
+    field.at(2).number_between(-kFarthest_px, kFarthest_px);
+    field.at(5).number_between(-kFarthest_px, kFarthest_px);
+    if (matrix[1][0] != 0.0 || matrix[0][1] != 0.0 || matrix[0][2] != 0.0 || matrix[1][2] != 0.0 ||
+        matrix[2][2] != 1.0) {
+        field.fail(field.found(), "fx, 0, cx, 0, fy, cy, 0, 0, 1");
+    }
+    view.focal_px = {matrix[0][0], matrix[1][1]};
+    // OpenCV's pixel centres are at integers, ours at half integers.
+    view.principal_px = glm::dvec2(matrix[2]) + 0.5;
+    if (!object.has("distortion")) return;
+    const auto lens = numbers_between(object["distortion"], 5, -kStrongest, kStrongest);
+    std::copy(lens.begin(), lens.end(), view.distortion.begin());
 }
 
 }  // namespace livery

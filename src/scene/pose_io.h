@@ -12,4 +12,8 @@ glm::dmat3 read_rotation(const JsonReader& field);
 /// {"rotation": [9], "translation_mm": [3]}; both must be there.
 Rigid3 read_pose(const JsonReader& object);
 
+/// The fields `matrix` (fx, 0, cx, 0, fy, cy, 0, 0, 1; pixel centres at integers) and, where it is
+/// there, `distortion`.
+void read_lens(const JsonReader& object, View& view);
+
 }  // namespace livery

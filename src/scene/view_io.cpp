@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "core/json.h"
 #include "core/paths.h"
 #include "scene/pose_io.h"
@@ -35,24 +33,7 @@ View parse_camera(const std::string& text, const std::filesystem::path& file) {
     view.width = root["width"].integer(1, kLargestSide);
     view.height = root["height"].integer(1, kLargestSide);
 
-    const auto matrix_field = root["matrix"];
-    const glm::dmat3 matrix = matrix_field.matrix3();
-    if (!(matrix[0][0] > 0.0) || !(matrix[1][1] > 0.0)) {
-        matrix_field.fail("a focal length that is not positive",
-                          "positive focal lengths in pixels");
-    }
-    if (matrix[1][0] != 0.0 || matrix[0][1] != 0.0 || matrix[0][2] != 0.0 || matrix[1][2] != 0.0 ||
-        matrix[2][2] != 1.0) {
-        matrix_field.fail(matrix_field.found(), "fx, 0, cx, 0, fy, cy, 0, 0, 1");
-    }
-    view.focal_px = {matrix[0][0], matrix[1][1]};
-    // OpenCV's pixel centres are at integers, ours at half integers.
-    view.principal_px = glm::dvec2(matrix[2]) + 0.5;
-
-    if (root.has("distortion")) {
-        const auto lens = root["distortion"].numbers(5);
-        std::copy(lens.begin(), lens.end(), view.distortion.begin());
-    }
+    read_lens(root, view);
     view.view_from_world = read_pose(root);
     return view;
 }

@@ -3,7 +3,7 @@
 #include <chrono>
 
 #include "calibration/predict.h"
-#include "core/paths.h"
+#include "core/replace_folder.h"
 #include "session/projector_irradiance.h"
 
 namespace livery {
@@ -31,10 +31,10 @@ BenchCalibration calibrate_through_ports(Bench& bench,
 void write_setup(const std::filesystem::path& folder,
                  const ColourCalibration& calibration,
                  const View& projector) {
-    make_output_folder(folder);
-    // The camera first: a calibration without its projector would open and then miss it.
-    write_camera_file(folder / "projector.json", projector);
-    write_calibration(folder, calibration);
+    FolderReplacement replacement(folder);
+    write_camera_file(replacement.staging() / "projector.json", projector);
+    write_calibration(replacement.staging(), calibration);
+    replacement.commit("calibration.json");
 }
 
 }  // namespace livery

@@ -6,6 +6,7 @@
 
 #include "appearance/material_json.h"
 #include "core/error.h"
+#include "core/json_ranges.h"
 #include "scene/look_json.h"
 #include "session/commands.h"
 
@@ -117,7 +118,7 @@ void read(const JsonReader& fields, ShareLighting& c) {
 Json fields_of(const SetEye& c) { return {{"eye_mm", json_from(c.eye_mm)}}; }
 void read(const JsonReader& fields, SetEye& c) {
     fields.allow_only({"eye_mm"});
-    c.eye_mm = fields["eye_mm"].vec3();
+    c.eye_mm = place_mm(fields["eye_mm"]);
 }
 
 Json fields_of(const SetExposure& c) { return {{"ev", c.ev}}; }

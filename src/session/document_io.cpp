@@ -6,7 +6,7 @@
 #include "appearance/material_json.h"
 #include "appearance/measured_paint.h"
 #include "core/error.h"
-#include "core/json.h"
+#include "core/json_ranges.h"
 #include "scene/look_json.h"
 #include "session/document.h"
 #include "session/naming.h"
@@ -129,8 +129,7 @@ Document read_document(const JsonReader& root) {
         }
     }
     read_paints(root["paints"], document);
-    const auto eye = root["eye_mm"];
-    document.eye_mm = eye.vec3();
+    document.eye_mm = place_mm(root["eye_mm"]);
     document.exposure_ev = root["exposure_ev"].number_between(-30.0, 30.0);
     try {
         document.quality = parse_quality(root["quality"].text());

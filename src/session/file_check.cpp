@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <new>
 #include <set>
 
 #include "appearance/directions.h"
 #include "appearance/material.h"
+#include "appearance/measured_paint.h"
 #include "appearance/measured_reflectance.h"
 #include "capture/captures_folder.h"
 #include "capture/patterns_folder.h"
@@ -21,6 +23,7 @@
 #include "scene/product.h"
 #include "scene/view.h"
 #include "session/camera_to_xyz_file.h"
+#include "session/files_elsewhere.h"
 #include "session/session_file.h"
 #include "twin/description.h"
 #include "twin/spectra.h"
@@ -49,18 +52,40 @@ bool is_there(const Path& file) {
     return std::filesystem::exists(file, error);
 }
 
+/// As make_scene finds a look's paints.
+Path file_beside(const Path& folder, const std::string& name) {
+    std::error_code error;
+    const Path beside = folder / name;
+    return std::filesystem::is_regular_file(beside, error) ? beside : Path(name);
+}
+
 void check_mesh(const Path& file, FileCheck& check) { load_mesh(file, &check.notes); }
 
+void tell(const FilesElsewhere& elsewhere, FileCheck& check) {
+    if (const std::string note = elsewhere.note(); !note.empty()) check.notes.push_back(note);
+}
+
 void check_photographs(const std::vector<Capture>& captures,
+                       const Path& folder,
                        FileCheck& check,
                        const Progress& progress) {
     double done = 0.0;
+    FilesElsewhere elsewhere(folder);
+    for (const Capture& capture : captures) {
+        elsewhere.add(capture.file);
+        elsewhere.add(capture.pattern);
+        const bool response = capture.transfer != "linear" && capture.transfer != "srgb";
+        if (response) elsewhere.add(capture.transfer);
+    }
+    tell(elsewhere, check);
     for (const Capture& capture : captures) {
         progress.update(done / static_cast<double>(captures.size()),
                         "checking " + capture.file.string());
         done += 1.0;
         try {
             load_photograph(capture);
+        } catch (const std::bad_alloc&) {
+            throw;
         } catch (const std::exception& error) {
             check.problems.emplace_back(error.what());
         }
@@ -68,7 +93,7 @@ void check_photographs(const std::vector<Capture>& captures,
 }
 
 void read_captures(const Path& folder, FileCheck& check, const Progress& progress) {
-    check_photographs(read_captures_folder(folder).captures, check, progress);
+    check_photographs(read_captures_folder(folder).captures, folder, check, progress);
 }
 
 /// Photographs of a painted sphere.
@@ -80,7 +105,12 @@ void read_sphere(const Path& manifest, FileCheck& check, const Progress& progres
     for (const auto* list : {&folder.captures, &folder.white}) {
         for (const SphereCapture& capture : *list) captures.push_back(capture.photograph);
     }
-    check_photographs(captures, check, progress);
+    FilesElsewhere elsewhere(manifest.parent_path());
+    elsewhere.add(folder.camera_origin.starts_with(manifest.string()) ? Path()
+                                                                      : Path(folder.camera_origin));
+    elsewhere.add(folder.camera_to_xyz);
+    tell(elsewhere, check);
+    check_photographs(captures, manifest.parent_path(), check, progress);
 }
 
 void read_picture(const Path& file, FileCheck& check) {
@@ -103,7 +133,9 @@ void read_map(const Path& file, FileCheck& check) {
 /// Whether nobody has photographed these patterns yet: the manifest is as `livery patterns` wrote
 /// it, without any exposure and without any photograph's name of its own.
 bool is_unphotographed(const Json& manifest) {
-    const auto& captures = manifest["captures"];
+    const auto found = manifest.find("captures");
+    if (found == manifest.end()) return false;
+    const Json& captures = *found;
     return captures.is_array() && !captures.empty() &&
            std::all_of(captures.begin(), captures.end(), [](const Json& capture) {
                return capture.is_object() && capture.contains("pattern") &&
@@ -113,6 +145,11 @@ bool is_unphotographed(const Json& manifest) {
 
 void read_patterns(const Path& manifest, FileCheck& check) {
     const PatternsManifest patterns = read_patterns_manifest(manifest);
+    FilesElsewhere elsewhere(manifest.parent_path());
+    for (const PatternEntry& pattern : patterns.patterns) {
+        elsewhere.add(manifest.parent_path() / pattern.file);
+    }
+    tell(elsewhere, check);
     for (const PatternEntry& pattern : patterns.patterns) {
         read_picture(manifest.parent_path() / pattern.file, check);
     }
@@ -127,12 +164,24 @@ void read_session(const Path& file, FileCheck& check) {
     check.notes.push_back(std::to_string(document.looks.size()) + " looks, " +
                           std::to_string(steps) + (steps == 1 ? " step" : " steps"));
     std::set<std::string> environments;
+    FilesElsewhere elsewhere(file.parent_path());
+    std::error_code error;
+    if (std::filesystem::is_regular_file(document.product, error)) elsewhere.add(document.product);
+    elsewhere.add(document.calibration);
     for (const SessionLook& look : document.looks) {
         Look look_here = look.look;
-        for_each_paint(look_here, [&](std::string& paint) { find_paint(document, paint); });
+        for_each_paint(look_here, [&](std::string& paint) {
+            const Material material = find_paint(document, paint);
+            elsewhere.add(material.file);
+            if (material.measured) elsewhere.add(material.measured->file);
+        });
+        for (const Artwork& artwork : look_here.artwork) elsewhere.add(artwork.picture);
         const EnvironmentReference& environment = look.look.environment;
-        if (environments.insert(environment.file).second) load_environment(environment, {});
+        if (environments.insert(environment.file).second) {
+            elsewhere.add(load_environment(environment, {}).file);
+        }
     }
+    tell(elsewhere, check);
 }
 
 Kind kind_of_manifest(const Path& manifest, const Progress& progress) {
@@ -171,6 +220,25 @@ Kind kind_of_folder(const Path& folder, const Progress& progress) {
                     "a calibration, patterns or captures folder");
 }
 
+void check_look(const Path& file, FileCheck& check) {
+    Look look = read_look_file(file);
+    const Path folder = file.parent_path();
+    FilesElsewhere elsewhere(folder);
+    for_each_paint(look, [&](std::string& paint) {
+        const Material material = find_material(file_beside(folder, paint).string());
+        elsewhere.add(material.file);
+        if (material.measured) elsewhere.add(material.measured->file);
+    });
+    for (const Artwork& artwork : look.artwork) {
+        if (artwork.picture.empty()) continue;
+        const Path picture = find_artwork_picture(artwork.picture, folder);
+        elsewhere.add(picture);
+        load_artwork_picture(picture);
+    }
+    elsewhere.add(load_environment(look.environment, folder).file);
+    tell(elsewhere, check);
+}
+
 Kind kind_of_json(const Path& file, const Progress& progress) {
     const Json json = read_json_file(file);
     const auto has = [&](const char* key) { return json.contains(key); };
@@ -182,20 +250,15 @@ Kind kind_of_json(const Path& file, const Progress& progress) {
         return {"bench", [](const Path& path, FileCheck&) { read_bench_file(path); }};
     }
     if (has("mesh")) {
-        return {"product",
-                [](const Path& path, FileCheck& check) { check.notes = load_product(path).notes; }};
+        return {"product", [](const Path& path, FileCheck& check) {
+                    check.notes = load_product(path).notes;
+                    FilesElsewhere elsewhere(path.parent_path());
+                    elsewhere.add(parse_product_file(read_text_file(path), path).mesh);
+                    tell(elsewhere, check);
+                }};
     }
     if (has("lights") || has("environment") || has("exposure_ev")) {
-        return {
-            "look", [](const Path& path, FileCheck&) {
-                Look look = read_look_file(path);
-                for_each_paint(look, [](std::string& paint) { find_material(paint); });
-                for (const Artwork& artwork : look.artwork) {
-                    if (artwork.picture.empty()) continue;
-                    load_artwork_picture(find_artwork_picture(artwork.picture, path.parent_path()));
-                }
-                load_environment(look.environment, path.parent_path());
-            }};
+        return {"look", check_look};
     }
     if (has("width") || has("distortion")) {
         return {"camera", [](const Path& path, FileCheck&) { read_camera_file(path); }};
@@ -287,6 +350,9 @@ FileCheck check_file(const std::filesystem::path& file, const Progress& progress
         kind.read(file, check);
     } catch (const Cancelled&) {
         throw;
+    } catch (const std::bad_alloc&) {
+        check.problems.emplace_back(
+            "found no memory left for what it asks for, expected a smaller file");
     } catch (const std::exception& error) {
         check.problems.emplace_back(error.what());
     }

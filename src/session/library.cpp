@@ -22,13 +22,17 @@ std::string file_stem_of(const std::string& name) {
     return stem;
 }
 
-bool is_file(const std::string& name) {
-    std::error_code error;
-    return std::filesystem::is_regular_file(name, error);
+/// A bare name is a shipped thing's where there is one of that name, whatever lies in the folder
+/// where the program runs.
+bool is_shipped(const std::string& name, const std::vector<std::string>& names) {
+    return std::find(names.begin(), names.end(), file_stem_of(name)) != names.end();
 }
 
-bool looks_like_path(const std::string& name) {
-    return name.find('/') != std::string::npos || !std::filesystem::path(name).extension().empty();
+bool is_file(const std::string& name) {
+    std::error_code error;
+    const bool looks_like_path =
+        name.find('/') != std::string::npos || !std::filesystem::path(name).extension().empty();
+    return looks_like_path || std::filesystem::is_regular_file(name, error);
 }
 
 }  // namespace
@@ -46,13 +50,15 @@ std::filesystem::path shipped_look_file(const std::string& name) {
 }
 
 Look find_look(const std::string& name_or_file) {
-    if (is_file(name_or_file) || looks_like_path(name_or_file)) return read_look_file(name_or_file);
+    if (!is_shipped(name_or_file, shipped_looks()) && is_file(name_or_file)) {
+        return read_look_file(name_or_file);
+    }
     return read_look_file(shipped_look_file(name_or_file));
 }
 
 Look find_look_for(const std::string& name_or_file, const std::vector<std::string>& parts) {
     Look look = find_look(name_or_file);
-    if (is_file(name_or_file) || looks_like_path(name_or_file)) return look;
+    if (!is_shipped(name_or_file, shipped_looks()) && is_file(name_or_file)) return look;
     const auto has_part = [&](const std::string& name) {
         return std::find(parts.begin(), parts.end(), name) != parts.end();
     };
@@ -74,10 +80,10 @@ std::optional<std::string> bench_of_shipped_product(const std::string& name) {
 
 std::shared_ptr<const Product> find_product(const std::string& name_or_file,
                                             std::optional<LengthUnit> unit) {
-    if (is_file(name_or_file) || looks_like_path(name_or_file)) {
+    const std::string stem = file_stem_of(name_or_file);
+    if (!bench_of_shipped_product(stem) && is_file(name_or_file)) {
         return std::make_shared<const Product>(load_product(name_or_file, unit));
     }
-    const std::string stem = file_stem_of(name_or_file);
     if (!bench_of_shipped_product(stem)) {
         throw FileError(name_or_file,
                         "product",

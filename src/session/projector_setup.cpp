@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/paths.h"
+#include "core/replace_folder.h"
 #include "session/bench_calibration.h"
 #include "session/setup_cache.h"
 #include "twin/description.h"
@@ -99,6 +100,7 @@ std::filesystem::path calibrate_on_bench(Bench& bench,
     std::error_code error;
     std::filesystem::rename(unfinished.path(), all / name, error);
     if (error) throw FileError(all / name, "", error.message(), "a folder that can be made");
+    sync_folder(all);
     return all / name;
 }
 

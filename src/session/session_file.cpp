@@ -4,10 +4,8 @@
 #include <array>
 #include <fstream>
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include "core/error.h"
+#include "core/replace_folder.h"
 
 namespace livery {
 
@@ -20,8 +18,10 @@ constexpr const char* kSchema[] = {
     "CREATE TABLE step (number INTEGER PRIMARY KEY, command TEXT NOT NULL, label TEXT NOT NULL, "
     "document TEXT NOT NULL)",
     "CREATE TABLE place (only INTEGER PRIMARY KEY CHECK (only = 1), position INTEGER NOT NULL)",
-    "CREATE TABLE workspace (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID",
-    "INSERT INTO place VALUES (1, 0)"};
+    "CREATE TABLE workspace (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID"};
+constexpr const char* kFirstPlace = "INSERT INTO place VALUES (1, 0)";
+
+std::vector<std::string> schema() { return {std::begin(kSchema), std::end(kSchema)}; }
 
 Database::Mode mode_of(SessionFile::Access access) {
     return access == SessionFile::Access::read ? Database::Mode::read_only
@@ -60,14 +60,6 @@ void write(Database& database,
     }
 }
 
-void sync_folder(const std::filesystem::path& folder) {
-    const int descriptor =
-        ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (descriptor < 0) return;
-    ::fsync(descriptor);
-    ::close(descriptor);
-}
-
 }  // namespace
 
 bool is_session_file(const std::filesystem::path& file) {
@@ -82,7 +74,7 @@ bool is_session_file(const std::filesystem::path& file) {
 }
 
 SessionFile::SessionFile(const std::filesystem::path& file, Access access)
-    : database_(file, mode_of(access), kApplicationId, kVersion) {
+    : database_(file, mode_of(access), kApplicationId, kVersion, schema()) {
     if (database_.version() == 0) {
         throw FileError(file, "user_version", "0, nothing written yet", std::to_string(kVersion));
     }
@@ -106,6 +98,7 @@ void SessionFile::create(const std::filesystem::path& file,
         {
             Transaction transaction(database);
             for (const char* statement : kSchema) database.run(statement);
+            database.run(kFirstPlace);
             write(database, 0, steps, position, workspace);
             database.set_version(kVersion);
             transaction.commit();

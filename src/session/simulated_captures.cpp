@@ -126,16 +126,17 @@ SimulatedCaptures photograph_patterns(const SimulatedCapturesRequest& request,
         progress.update(
             static_cast<double>(result.photographs) / static_cast<double>(manifest.patterns.size()),
             "photographing " + pattern.role);
-        const std::filesystem::path shown = request.patterns / pattern.file;
-        ports.show(read_pattern(shown, manifest));
+        const Image8 shown = read_pattern(request.patterns / pattern.file, manifest);
+        ports.show(shown);
         const Photograph photograph = ports.photograph(request.exposure_s);
         const std::string name = fmt::format("{:03}.exr", result.photographs);
         write_exr(request.out / name, photograph.image);
-        // The pattern lies beside the photograph so that the folder can be moved as a whole.
-        std::filesystem::copy_file(
-            shown, request.out / pattern.file, std::filesystem::copy_options::overwrite_existing);
+        // The pattern lies beside the photograph so that the folder can be moved as a whole, under
+        // a name of ours: what the manifest calls it may lie anywhere.
+        const std::string pattern_name = fmt::format("{:03}.png", result.photographs);
+        write_png(request.out / pattern_name, shown);
         Json entry = {{"file", name},
-                      {"pattern", pattern.file},
+                      {"pattern", pattern_name},
                       {"role", pattern.role},
                       {"exposure_s", photograph.exposure_s},
                       {"transfer", "linear"},

@@ -1,5 +1,6 @@
 #include "session/target_picture.h"
 
+#include "core/channels.h"
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/image_io.h"
@@ -18,20 +19,19 @@ ImageF read_target_picture(const std::filesystem::path& file, int width, int hei
             std::to_string(picture.image.width) + "x" + std::to_string(picture.image.height),
             "the calibrated projector's " + std::to_string(width) + "x" + std::to_string(height));
     }
-    if (picture.image.channels < 3) {
-        throw FileError(
-            file, "channels", std::to_string(picture.image.channels), "R,G,B or R,G,B,A");
-    }
+    const std::array<int, 3> colour = colour_channels(file, picture);
+    const int alpha = channel_named(picture, "A");
     ImageF wanted(width, height, 4, 1.0f);
     const auto channels = static_cast<std::size_t>(picture.image.channels);
     for (std::size_t i = 0; i < wanted.pixel_count(); ++i) {
         const float* v = picture.image.values.data() + channels * i;
-        glm::dvec3 rgb = working_from_rec709() * glm::dvec3(v[0], v[1], v[2]);
+        glm::dvec3 rgb =
+            working_from_rec709() * glm::dvec3(v[colour[0]], v[colour[1]], v[colour[2]]);
         float* out = wanted.values.data() + 4 * i;
-        if (channels > 3) {
-            out[3] = v[3];
+        if (alpha >= 0) {
+            out[3] = v[alpha];
             // The colour of what covers the pixel; nothing does where A is 0
-            if (v[3] > 0.0f) rgb /= static_cast<double>(v[3]);
+            if (v[alpha] > 0.0f) rgb /= static_cast<double>(v[alpha]);
         }
         for (int c = 0; c < 3; ++c) out[c] = static_cast<float>(rgb[c]);
     }

@@ -6,8 +6,9 @@
 #include <glm/matrix.hpp>
 
 #include "core/error.h"
-#include "core/json.h"
+#include "core/json_ranges.h"
 #include "core/paths.h"
+#include "scene/pose_io.h"
 #include "twin/description.h"
 
 namespace livery {
@@ -15,15 +16,13 @@ namespace livery {
 namespace {
 
 constexpr int kNewestVersion = 1;
-/// A thousand kilometres.
-constexpr double kFarthestMm = 1e9;
 constexpr double kDegrees = std::numbers::pi / 180.0;
 
 /// A name in a bench file: beside it, or among the shipped benches' files.
 std::filesystem::path file_beside(const std::filesystem::path& bench, const std::string& name) {
     const auto beside = bench.parent_path() / name;
     std::error_code error;
-    if (std::filesystem::exists(beside, error)) return beside;
+    if (std::filesystem::is_regular_file(beside, error)) return beside;
     return shipped_path(std::filesystem::path("calibration") / name);
 }
 
@@ -66,18 +65,7 @@ View read_view(const JsonReader& json) {
     View view;
     view.width = json["width"].integer(2, 16384);
     view.height = json["height"].integer(2, 16384);
-    const glm::dmat3 matrix = json["matrix"].matrix3();
-    if (!(matrix[0][0] > 0.0) || !(matrix[1][1] > 0.0)) {
-        json["matrix"].fail("a focal length of " + std::to_string(matrix[0][0]) + ", " +
-                                std::to_string(matrix[1][1]),
-                            "focal lengths above 0");
-    }
-    view.focal_px = {matrix[0][0], matrix[1][1]};
-    view.principal_px = glm::dvec2(matrix[2][0], matrix[2][1]) + 0.5;  // OpenCV's centres: integers
-    if (json.has("distortion")) {
-        const auto lens = json["distortion"].numbers(5);
-        std::copy(lens.begin(), lens.end(), view.distortion.begin());
-    }
+    read_lens(json, view);
     const bool posed = json.has("rotation") || json.has("translation_mm");
     const bool aimed = json.has("from_mm") || json.has("at_mm");
     if (posed == aimed) {
@@ -86,25 +74,17 @@ View read_view(const JsonReader& json) {
     }
     Rigid3& pose = view.view_from_world;
     if (posed) {
-        pose.rotation = json["rotation"].matrix3();
-        pose.translation = json["translation_mm"].vec3();
-        const glm::dmat3 error = glm::transpose(pose.rotation) * pose.rotation - glm::dmat3(1.0);
-        double worst = std::abs(glm::determinant(pose.rotation) - 1.0);
-        for (int c = 0; c < 3; ++c) worst = std::max(worst, glm::length(error[c]));
-        if (worst > 1e-4) json["rotation"].fail("a matrix that is no rotation", "a rotation");
+        pose = read_pose(json);
         return view;
     }
-    const glm::dvec3 from = json["from_mm"].vec3(), at = json["at_mm"].vec3();
+    const glm::dvec3 from = place_mm(json["from_mm"]), at = place_mm(json["at_mm"]);
     const glm::dvec3 line = at - from;
-    if (!(glm::length(line) < kFarthestMm)) {
-        json["from_mm"].fail(json["from_mm"].found(), "a place within 1e9 mm of at_mm");
-    }
     if (std::hypot(line.x, line.z) < 1e-6 * std::max(1.0, glm::length(line))) {
         json["from_mm"].fail("a place straight above, below or at at_mm", "a place beside it");
     }
     glm::dvec3 toward(0.0, 0.0, 1.0);
     if (json.has("at_px")) {
-        const auto pixel = json["at_px"].numbers(2);
+        const auto pixel = numbers_between(json["at_px"], 2, -1e6, 1e6);
         try {
             toward = ray_through(view, glm::dvec2(pixel[0], pixel[1]) + 0.5).direction;
         } catch (const std::invalid_argument&) {
@@ -326,10 +306,14 @@ Json with_base(const std::string& text, const std::filesystem::path& file) {
 BenchDescription read_bench_file(const std::filesystem::path& file_or_name) {
     std::filesystem::path file = file_or_name;
     std::error_code error;
-    const bool a_name = !file.has_extension() || file.extension() != ".json";
-    if (a_name && !file.has_parent_path() && !std::filesystem::exists(file, error)) {
+    // A bare name is a shipped bench's, whatever lies in the folder where the program runs.
+    if (file.extension() != ".json" && !file.has_parent_path()) {
         const auto names = shipped_names("calibration");
-        if (std::find(names.begin(), names.end(), file.string()) == names.end()) {
+        const bool shipped = std::find(names.begin(), names.end(), file.string()) != names.end();
+        if (!shipped && std::filesystem::is_regular_file(file, error)) {
+            return parse_bench(read_text_file(file), file);
+        }
+        if (!shipped) {
             throw FileError(file,
                             "bench",
                             "no such file or shipped bench",
@@ -365,7 +349,7 @@ BenchDescription parse_bench(const std::string& text, const std::filesystem::pat
     bench.projector = read_projector(json["projector"]);
     bench.camera = read_camera(json["camera"]);
     bench.mockup = read_mockup(json["mockup"]);
-    bench.eye_mm = json["eye_mm"].vec3();
+    bench.eye_mm = place_mm(json["eye_mm"]);
     read_number(json, "ambient", 0.0, 10.0, bench.ambient);
     if (json.has("ambient_spectrum")) {
         bench.ambient_spectrum = read_ambient_spectrum(json["ambient_spectrum"]);
@@ -375,7 +359,8 @@ BenchDescription parse_bench(const std::string& text, const std::filesystem::pat
         bench.seed = static_cast<std::uint64_t>(json["seed"].integer(0, 2'000'000'000));
     bench.product = file.parent_path() / product;
     std::error_code error;
-    if (!std::filesystem::exists(bench.product, error)) bench.product = shipped_path(product);
+    if (!std::filesystem::is_regular_file(bench.product, error))
+        bench.product = shipped_path(product);
     return bench;
 }
 

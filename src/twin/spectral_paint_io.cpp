@@ -29,10 +29,14 @@ Spectrum column(const std::filesystem::path& file, const SpectrumTable& table, c
 SpectralPaint read_spectral_paint(const std::filesystem::path& file_or_name) {
     std::filesystem::path file = file_or_name;
     std::error_code error;
-    const bool a_name = file.extension() != ".json" && !file.has_parent_path();
-    if (a_name && !std::filesystem::exists(file, error)) {
-        file =
-            shipped_path(std::filesystem::path("calibration/paints") / (file.string() + ".json"));
+    // A bare name is a shipped paint's, whatever lies in the folder where the program runs.
+    if (file.extension() != ".json" && !file.has_parent_path()) {
+        const std::filesystem::path folder = "calibration/paints";
+        const auto names = shipped_names(folder);
+        const bool shipped = std::find(names.begin(), names.end(), file.string()) != names.end();
+        if (shipped || !std::filesystem::is_regular_file(file, error)) {
+            file = shipped_path(folder / (file.string() + ".json"));
+        }
     }
     return parse_spectral_paint(read_text_file(file), file);
 }

@@ -284,7 +284,7 @@ TEST(Photograph, TakesColourChannelsByName) {
     EXPECT_EQ(load_photograph(capture).image.values, (std::vector<float>{7.0f, 7.0f, 7.0f}));
     write_exr(capture.file, ImageF(1, 1, 2), {"X", "Y"});
     EXPECT_TRUE(
-        fails_with([&] { load_photograph(capture); }, {"a.exr", "2 channels without R, G, B"}));
+        fails_with([&] { load_photograph(capture); }, {"a.exr", "channels: found X, Y, expected R, G, B"}));
 }
 
 TEST(Photograph, BadPicturesSayWhy) {

@@ -270,6 +270,13 @@ TEST(ImageIo, RefusesSizesBeforeAllocating) {
     EXPECT_TRUE(fails(folder.write("e2.exr", exr_with_size(exr, 9'000, 9'000)), "expected"));
     EXPECT_TRUE(fails(folder.write("e3.exr", exr_with_size(exr, 1 << 30, 1 << 30)), "expected"));
 
+    // Of what a small file declares, as much is believed as a quarter of a gigabyte holds.
+    const std::string padded = exr + std::string(1u << 16u, '\0');
+    EXPECT_TRUE(
+        fails(folder.write("e4.exr", exr_with_size(padded, 8'000, 3'000)), "fits the file's"));
+    EXPECT_TRUE(
+        fails(folder.write("e5.exr", exr_with_size(padded, 9'900, 9'900)), "240000000 values"));
+
     const std::string hdr = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y ";
     EXPECT_TRUE(fails(folder.write("h1.hdr", hdr + "0 +X 0\n"), "expected"));
     EXPECT_TRUE(fails(folder.write("h2.hdr", hdr + "9000 +X 9000\n"), "9000x9000"));

@@ -4,6 +4,7 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "support/file_error.h"
@@ -147,6 +148,19 @@ TEST(UserFolder, IsLookedUpInOrder) {
 
 TEST(ExecutableFolder, HoldsThisTest) {
     EXPECT_TRUE(std::filesystem::exists(executable_folder() / "test_core"));
+}
+
+TEST(ReadTextFile, TakesFilesOnlyAndOfTheirSize) {
+    const TemporaryFolder folder;
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    EXPECT_TRUE(
+        fails_with([&] { read_text_file(folder / "pipe"); }, {"pipe", "a pipe or a device"}));
+    EXPECT_TRUE(
+        fails_with([] { read_text_file("/dev/zero"); }, {"/dev/zero", "a pipe or a device"}));
+    // Refused by its length, without reading it.
+    const auto large = folder.write("large", "");
+    std::filesystem::resize_file(large, std::uintmax_t{1} << 36u);
+    EXPECT_TRUE(fails_with([&] { read_text_file(large); }, {"more than 67108864 bytes"}));
 }
 
 }  // namespace

@@ -77,7 +77,19 @@ const Broken kBroken[] = {
     {"infinite focal length", [](Json& c) { c["matrix"][0] = nullptr; }, "matrix[0]: found null"},
     {"negative focal length",
      [](Json& c) { c["matrix"][4] = -2010; },
-     "matrix: found a focal length that is not positive"},
+     "matrix[4]: found -2010, expected a number between 0.1 and 1e+06"},
+    {"endless focal length",
+     [](Json& c) { c["matrix"][0] = 3.67e6; },
+     "matrix[0]: found 3670000.0, expected a number between"},
+    {"endless lens shift", [](Json& c) { c["matrix"][2] = -1e7; }, "matrix[2]: found -10000000.0"},
+    {"endless distortion",
+     [](Json& c) {
+         c["distortion"] = {0, 1e12, 0, 0, 0};
+     },
+     "distortion[1]: found 1000000000000.0, expected a number between -1e+06 and 1e+06"},
+    {"endless translation",
+     [](Json& c) { c["translation_mm"][2] = 1e20; },
+     "translation_mm[2]: found 1e+20, expected a number between -1e+"},
     {"skew", [](Json& c) { c["matrix"][1] = 3; }, "expected fx, 0, cx, 0, fy, cy, 0, 0, 1"},
     {"transposed matrix",
      [](Json& c) {

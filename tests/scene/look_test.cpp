@@ -75,6 +75,11 @@ const Broken kBroken[] = {
     {"no direction",
      [](Json& l) { l["lights"][0].erase("direction"); },
      "lights[0].direction: found"},
+    {"endless direction",
+     [](Json& l) {
+         l["lights"][0]["direction"] = {1e155, 0, 0};
+     },
+     "lights[0].direction[0]: found 1e+155, expected a number between -1e+06 and 1e+06"},
     {"direction of no length",
      [](Json& l) {
          l["lights"][0]["direction"] = {0, 0, 0};
