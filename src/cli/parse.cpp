@@ -208,6 +208,14 @@ ParsedCommandLine parse_command_line(const std::vector<std::string>& words,
         return parsed;
     }
 
+    // CLI11 takes a list apart bracket by bracket, with gigabytes for a hundred kilobytes of them.
+    constexpr std::size_t longest_list = 4096;
+    for (const std::string& word : arguments) {
+        if (word.size() <= longest_list || word.front() != '[') continue;
+        parsed.text = "livery: " + found_expected(word, "no list of more than 4096 characters");
+        parsed.exit_code = 2;
+        return parsed;
+    }
     if (!names_command(arguments, commands)) {
         const bool group = std::any_of(commands.begin(), commands.end(), [&](const Command& c) {
             return c.name.starts_with(arguments[0] + " ");

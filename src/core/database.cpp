@@ -268,6 +268,9 @@ Database::Database(const std::filesystem::path& file,
     std::error_code error;
     const auto status = std::filesystem::status(file, error);
     if (std::filesystem::is_directory(status)) throw FileError(file, "", "a folder", "a file");
+    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+        throw FileError(file, "", "a pipe or a device", "a file");
+    }
     const bool exists = std::filesystem::exists(status);
     const bool empty = !exists || std::filesystem::file_size(file, error) == 0;
     if (mode != Mode::create) {

@@ -17,8 +17,9 @@ inline std::vector<double> numbers_between(const JsonReader& list,
                                            std::size_t count,
                                            double low,
                                            double high) {
-    std::vector<double> values = list.numbers(count);
-    for (std::size_t k = 0; k < count; ++k) list.at(k).number_between(low, high);
+    if (!list.is_array() || list.size() != count) return list.numbers(count);  // says so
+    std::vector<double> values(count);
+    for (std::size_t k = 0; k < count; ++k) values[k] = list.at(k).number_between(low, high);
     return values;
 }
 

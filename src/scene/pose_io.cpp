@@ -33,11 +33,13 @@ void read_lens(const JsonReader& object, View& view) {
     // the focal length that they stand for.
     constexpr double kShortest_px = 0.1, kLongest_px = 1e6, kFarthest_px = 1e6, kStrongest = 1e6;
     const auto field = object["matrix"];
+    if (field.is_array() && field.size() == 9) {
+        field.at(0).number_between(kShortest_px, kLongest_px);
+        field.at(4).number_between(kShortest_px, kLongest_px);
+        field.at(2).number_between(-kFarthest_px, kFarthest_px);
+        field.at(5).number_between(-kFarthest_px, kFarthest_px);
+    }
     const glm::dmat3 matrix = field.matrix3();
-    field.at(0).number_between(kShortest_px, kLongest_px);
-    field.at(4).number_between(kShortest_px, kLongest_px);
-    field.at(2).number_between(-kFarthest_px, kFarthest_px);
-    field.at(5).number_between(-kFarthest_px, kFarthest_px);
     if (matrix[1][0] != 0.0 || matrix[0][1] != 0.0 || matrix[0][2] != 0.0 || matrix[1][2] != 0.0 ||
         matrix[2][2] != 1.0) {
         field.fail(field.found(), "fx, 0, cx, 0, fy, cy, 0, 0, 1");

@@ -307,6 +307,9 @@ Kind kind_of_csv(const Path& file) {
 Kind kind_of(const Path& file, const Progress& progress) {
     if (!is_there(file)) throw FileError(file, "", "no such file", "a file or folder");
     if (std::filesystem::is_directory(file)) return kind_of_folder(file, progress);
+    if (!std::filesystem::is_regular_file(file)) {
+        throw FileError(file, "", "a pipe or a device", "a file or folder");
+    }
     const std::string suffix = suffix_of(file);
     if (suffix == ".json") {
         if (file.filename() == "calibration.json") {

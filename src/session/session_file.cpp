@@ -65,6 +65,8 @@ void write(Database& database,
 bool is_session_file(const std::filesystem::path& file) {
     // Offset 68 of an SQLite file holds its application_id, most significant byte first.
     std::array<char, 72> head{};
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(file, error)) return false;
     std::ifstream stream(file, std::ios::binary);
     if (!stream.read(head.data(), static_cast<std::streamsize>(head.size()))) return false;
     std::uint32_t id = 0;

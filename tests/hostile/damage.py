@@ -103,7 +103,7 @@ def other_value(chance, data):
     except ValueError:
         return flip(chance, data)
     for _ in range(chance.choice([1, 1, 1, 2, 3])):
-        places = list(files.leaves(value))
+        places = list(files.leaves(value)) or [()]
         path = chance.choice(places)
         path = path[:chance.randint(max(0, len(path) - 1), len(path))] if path else path
         pick = chance.random()
@@ -128,7 +128,7 @@ def cases(seed, count):
         name = chance.choices(names, weights)[0]
         uses = USES[name]
         # What draws or traces takes a hundred times as long as looking.
-        use = uses[0] if len(uses) == 1 or chance.random() < 0.85 else chance.choice(uses[1:])
+        use = uses[0] if len(uses) == 1 or chance.random() < 0.96 else chance.choice(uses[1:])
         kinds = [flip, cut, doubled, without, words]
         if name.endswith((".json", ".gltf")):
             kinds = [other_value] * 6 + [other_number] * 2 + kinds

@@ -1,4 +1,5 @@
 """Files that mean harm, and the smallest good ones that they are made from."""
+import functools
 import json
 import os
 import pathlib
@@ -182,26 +183,30 @@ def glb(value, binary=TRIANGLE):
     return b"glTF" + struct.pack("<II", 2, 12 + len(body)) + body
 
 
+@functools.lru_cache(None)
+def good_files():
+    """One good file of each kind, by name."""
+    made = {name: dump(value).encode() for name, value in {
+        "camera.json": CAMERA, "look.json": LOOK, "picture-look.json": PICTURE_LOOK, "material.json": MATERIAL,
+        "measured-material.json": MEASURED_MATERIAL, "product.json": PRODUCT, "bench.json": BENCH, "xyz.json": XYZ,
+        "primaries.json": PRIMARIES, "response.json": RESPONSE, "mesh.gltf": GLTF}.items()}
+    made |= {name: text.encode() for name, text in {
+        "tetra.obj": TETRA_OBJ, "tetra.ply": PLY, "dirs.csv": DIRECTIONS, "nine.csv": NINE}.items()}
+    made |= {"triangle.bin": TRIANGLE, "000.png": png(), "001.png": png(grey=0), "dot.png": png(8, 8), "sky.hdr": hdr(),
+             "sky.exr": exr(), "mesh.glb": glb({**GLTF, "buffers": [{"byteLength": 42}]}), "map.exr": exr(("X", "Y"))}
+    for folder, manifest in {"patterns": PATTERNS, "captures": CAPTURES, "sphere": SPHERE}.items():
+        made[folder + "/manifest.json"] = dump(manifest).encode()
+        for name in ("000.png", "001.png", "response.json", "camera.json", "xyz.json"):
+            made[folder + "/" + name] = made[name]
+    return made
+
+
 def good_folder(folder):
-    """One good file of each kind."""
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, value in {"camera.json": CAMERA, "look.json": LOOK, "picture-look.json": PICTURE_LOOK,
-                        "material.json": MATERIAL, "measured-material.json": MEASURED_MATERIAL,
-                        "product.json": PRODUCT, "bench.json": BENCH, "xyz.json": XYZ, "primaries.json": PRIMARIES,
-                        "response.json": RESPONSE, "mesh.gltf": GLTF}.items():
-        (folder / name).write_text(dump(value))
-    for name, text in {"tetra.obj": TETRA_OBJ, "tetra.ply": PLY, "dirs.csv": DIRECTIONS, "nine.csv": NINE}.items():
-        (folder / name).write_text(text)
-    for name, data in {"triangle.bin": TRIANGLE, "000.png": png(), "001.png": png(grey=0), "dot.png": png(8, 8),
-                       "sky.hdr": hdr(), "sky.exr": exr(), "mesh.glb": glb({**GLTF, "buffers": [{"byteLength": 42}]}),
-                       "map.exr": exr(("X", "Y"))}.items():
-        (folder / name).write_bytes(data)
-    for name, manifest in {"patterns": PATTERNS, "captures": CAPTURES, "sphere": SPHERE}.items():
-        part = folder / name
-        part.mkdir(exist_ok=True)
-        (part / "manifest.json").write_text(dump(manifest))
-        for file in ("000.png", "001.png", "response.json", "camera.json", "xyz.json"):
-            (part / file).write_bytes((folder / file).read_bytes())
+    for part in ("patterns", "captures", "sphere"):
+        (folder / part).mkdir(parents=True)
+    for name, data in good_files().items():
+        with open(folder / name, "wb") as file:
+            file.write(data)
 
 
 SESSION = b""  # one that the program made

@@ -10,6 +10,7 @@ processor time (60 by the clock) or over a gigabyte without a word of it, answer
 or a library's words, or changes a file outside of --out. --seed (printed) chooses the damage."""
 import argparse
 import concurrent.futures
+import dataclasses
 import json
 import os
 import pathlib
@@ -29,6 +30,7 @@ import damage  # noqa: E402
 import files  # noqa: E402
 
 CPU_S, CLOCK_S, MEMORY_MB, HARD_MEMORY_MB = 10, 60, 1024, 6144
+BATCH = 40  # files that one run looks at
 WORDS_OF_LIBRARIES = re.compile(r"bad_alloc|length_error|json\.exception|nlohmann|std::|basic_string|vector::|terminate")
 
 
@@ -49,18 +51,70 @@ def limits():
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
+def stop_when_stuck(process, late, over):
+    """A program that waits for ever uses no processor; one on a busy machine goes on slowly."""
+    used = 0.0
+    for _ in range(10):
+        if over.wait(CLOCK_S):
+            return
+        try:
+            fields = pathlib.Path("/proc/%d/stat" % process).read_text().rsplit(")", 1)[1].split()
+        except OSError:
+            return
+        now = (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+        if now - used < 0.5:
+            break
+        used = now
+    late.set()
+    os.kill(process, signal.SIGKILL)
+
+
+def prepared(case, work):
+    """Lays a case out; its arguments."""
+    place = pathlib.Path(work) / case.name
+    case.make(place / "in", place)
+    (place / "canary").mkdir(exist_ok=True)
+    (place / "canary/precious.png").write_bytes(files.png())
+    (place / "canary/precious.txt").write_text("precious")
+    (place / "home").mkdir(exist_ok=True)
+    words = {"{in}": place / "in", "{out}": place / "out", "{place}": place}
+    return [re.sub(r"\{(in|out|place)\}", lambda found: str(words[found.group()]), word) for word in case.arguments]
+
+
 def run_one(program, case, work):
     """Problems that one case shows, in words."""
-    place = pathlib.Path(work) / case.name
-    inputs, canary = place / "in", place / "canary"
-    case.make(inputs, place)
-    canary.mkdir(parents=True, exist_ok=True)
-    (canary / "precious.png").write_bytes(files.png())
-    (canary / "precious.txt").write_text("precious")
-    (place / "home").mkdir(exist_ok=True)
-    out = place / "out"
-    arguments = [word.replace("{in}", str(inputs)).replace("{out}", str(out)).replace("{place}", str(place))
-                 for word in case.arguments]
+    return watched(program, case, pathlib.Path(work) / case.name, prepared(case, work))
+
+
+def run_batch(program, cases, work):
+    """Files that are only looked at, many in one run; one by one when that shows a problem."""
+    place = pathlib.Path(work) / ("batch-" + cases[0].name)
+    place.mkdir()
+    try:
+        arguments = ["check"]
+        for case in cases:
+            arguments += prepared(case, place)[1:]
+        (place / "home").mkdir()
+        (place / "in").mkdir()
+        together = dataclasses.replace(cases[0], may_change=tuple(
+            case.name + "/" + name for case in cases for name in case.may_change + ("home",)))
+        problems, figures = watched(program, together, place, arguments)
+    finally:
+        shutil.rmtree(place, ignore_errors=True)
+    if not problems:
+        return [(case, [], {**figures, "arguments": arguments[:2]}) for case in cases]
+    found = []
+    for case in cases:
+        found.append((case, *run_one(program, case, work)))
+        if not found[-1][1]:
+            shutil.rmtree(pathlib.Path(work) / case.name, ignore_errors=True)
+    if not any(problems for _, problems, _ in found):
+        found[0][1].append("only with others: %s" % problems)
+    return found
+
+
+def watched(program, case, place, arguments):
+    inputs, out = place / "in", place / "out"
     before = tree(place)
     environment = {**os.environ, "LIVERY_HOME": str(place / "home"), "HOME": str(place / "home"),
                    "LIBGL_ALWAYS_SOFTWARE": "1"}
@@ -68,11 +122,12 @@ def run_one(program, case, work):
     with open(place / "stdout", "wb") as stdout, open(place / "stderr", "wb") as stderr:
         child = subprocess.Popen([program] + arguments, stdin=subprocess.DEVNULL, stdout=stdout, stderr=stderr,
                                  env=environment, cwd=inputs, preexec_fn=limits, start_new_session=True)
-        late = threading.Event()
-        timer = threading.Timer(CLOCK_S, lambda: (late.set(), os.kill(child.pid, signal.SIGKILL)))
-        timer.start()
+        late, over = threading.Event(), threading.Event()
+        watcher = threading.Thread(target=stop_when_stuck, args=(child.pid, late, over))
+        watcher.start()
         _, status, usage = os.wait4(child.pid, 0)
-        timer.cancel()
+        over.set()
+        watcher.join()
         child.returncode = os.waitstatus_to_exitcode(status)
     seconds = time.monotonic() - start
     cpu = usage.ru_utime + usage.ru_stime
@@ -125,6 +180,7 @@ def main():
     parser.add_argument("--only", choices=["damaged", "adversarial"])
     parser.add_argument("--match", default="", help="a pattern of case names")
     parser.add_argument("--keep", help="a folder for the cases that fail")
+    parser.add_argument("--progress", action="store_true")
     parser.add_argument("--list", action="store_true")
     options = parser.parse_args()
     cases = []
@@ -148,29 +204,37 @@ def main():
                        stdout=subprocess.DEVNULL, env={**os.environ, "LIVERY_HOME": work})
         files.SESSION = made.read_bytes()
 
-        def one(case):
-            try:
-                return case, *run_one(program, case, work)
-            finally:
-                if not options.keep:
-                    shutil.rmtree(pathlib.Path(work) / case.name, ignore_errors=True)
+        def some(group):
+            if len(group) > 1:
+                return run_batch(program, group, work)
+            return [(group[0], *run_one(program, group[0], work))]
 
+        def only_looked_at(case):
+            return case.arguments[0] == "check" and len(case.arguments) == 2 and not case.exit_codes and not case.says
+
+        looked_at = [case for case in cases if only_looked_at(case) and case.name.startswith("damaged")]
+        groups = [[case] for case in cases if not (only_looked_at(case) and case.name.startswith("damaged"))]
+        groups += [looked_at[k:k + BATCH] for k in range(0, len(looked_at), BATCH)]
+        done = 0
         with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-            for case, problems, figures in pool.map(one, cases):
-                codes[figures["code"]] = codes.get(figures["code"], 0) + 1
-                for key in worst:
-                    worst[key] = max(worst[key], (round(figures[key], 1), case.name))
-                if problems:
-                    failed += 1
-                    print("FAIL %s: %s\n     %s %s" % (case.name, "; ".join(problems), figures["message"],
-                                                       json.dumps(figures["arguments"])), flush=True)
-                kept = pathlib.Path(work) / case.name
-                if options.keep:
+            for future in concurrent.futures.as_completed([pool.submit(some, group) for group in groups]):
+                for case, problems, figures in future.result():
+                    done += 1
+                    codes[figures["code"]] = codes.get(figures["code"], 0) + 1
+                    for key in worst:
+                        worst[key] = max(worst[key], (round(figures[key], 1), case.name))
+                    kept = pathlib.Path(work) / case.name
                     if problems:
-                        shutil.copytree(kept, pathlib.Path(options.keep) / case.name, dirs_exist_ok=True,
-                                        symlinks=True, ignore_dangling_symlinks=True,
-                                        ignore=lambda _, names: [n for n in names if n.startswith("fifo")])
+                        failed += 1
+                        print("FAIL %s: %s\n     %s %s" % (case.name, "; ".join(problems), figures["message"],
+                                                           json.dumps(figures["arguments"])), flush=True)
+                        if options.keep:
+                            shutil.copytree(kept, pathlib.Path(options.keep) / case.name, dirs_exist_ok=True,
+                                            symlinks=True, ignore_dangling_symlinks=True,
+                                            ignore=lambda _, names: [n for n in names if n.startswith("fifo")])
                     shutil.rmtree(kept, ignore_errors=True)
+                if options.progress:
+                    print("%d of %d" % (done, len(cases)), file=sys.stderr, flush=True)
     print("%d cases, %d failed; exit statuses %s; most processor time %s, most memory in MB %s" % (
         len(cases), failed, dict(sorted(codes.items())), worst["cpu"], worst["mb"]))
     return 1 if failed else 0
