@@ -9,8 +9,10 @@
 #include "calibration/colour_report.h"
 #include "calibration/colour_samples.h"
 #include "calibration/drive_table.h"
+#include "calibration/levels_check.h"
 #include "calibration/mixing.h"
 #include "calibration/response.h"
+#include "calibration/scattered_light.h"
 #include "calibration/statistics.h"
 #include "core/colour.h"
 #include "core/error.h"
@@ -24,6 +26,9 @@ constexpr double kSigmas = 20.0;        // of T - S over its noise
 constexpr double kShareOfPeak = 0.005;  // of T - S over the mock-up's largest
 constexpr double kConditionLimit = 10.0;
 constexpr double kLargestShotSpread = 0.01;
+constexpr int kFarthestFromBorder = 5;    // projector pixels
+constexpr std::uint32_t kBlock_px = 16;   // the largest blocks of gray-levels
+constexpr float kUnknownScatter = 0.01f;  // of the scattered light's square: 10%
 
 const Pattern& pattern_of(const std::vector<Pattern>& patterns,
                           const std::string& role,
@@ -39,14 +44,15 @@ const Pattern& pattern_of(const std::vector<Pattern>& patterns,
     return *found;
 }
 
-/// Centres of a pattern's blocks: three pixels from the border where the blocks are large enough.
+/// Centres of a pattern's blocks, as far from the border as their size allows.
 std::vector<std::uint8_t> centres_of(const Pattern& pattern) {
     const auto share = [](const std::vector<std::uint8_t>& centre) {
         return static_cast<double>(std::accumulate(centre.begin(), centre.end(), std::size_t{0})) /
                static_cast<double>(centre.size());
     };
-    auto centre = block_centres(pattern.drive, 3);
-    if (share(centre) < 0.15) centre = block_centres(pattern.drive, 2);
+    auto centre = block_centres(pattern.drive, kFarthestFromBorder);
+    for (int reach = kFarthestFromBorder - 1; reach >= 2 && share(centre) < 0.14; --reach)
+        centre = block_centres(pattern.drive, reach);
     check_argument(share(centre) > 0.0,
                    "the pattern " + pattern.role + " has no uniform blocks of 5 px or more");
     return centre;
@@ -96,17 +102,33 @@ std::vector<ResponseSample> response_samples(const ColourSamples& samples,
                                              const std::vector<PixelStatus>& status,
                                              const Pattern& levels,
                                              const std::vector<std::uint8_t>& centre,
+                                             const ScatteredLight& scattered,
                                              int channel) {
     std::vector<ResponseSample> found;
     const SampledPicture& picture = samples.pictures[kLevels];
+    double span2 = 0.0, count = 0.0;
+    for (std::size_t i = 0; i < status.size(); ++i) {
+        if (status[i] != PixelStatus::measured) continue;
+        span2 += static_cast<double>(mixing.span[i][channel]) * mixing.span[i][channel];
+        count += 1.0;
+    }
+    // A camera without noise still rounds.
+    const auto noise = static_cast<float>(
+        std::max(samples.noise.read[channel] / picture.shots, 1e-8 * span2 / std::max(count, 1.0)));
     for (std::size_t i = 0; i < samples.pixels.size(); ++i) {
         if (status[i] != PixelStatus::measured || !centre[samples.pixels[i]]) continue;
-        const float n = invariant(mixing, i, picture.colour[i])[channel];
-        // Weight (T - S)^2: N's noise grows as the span falls.
-        found.push_back({n,
-                         mixing.span[i][channel] * mixing.span[i][channel],
-                         levels.drive.values[3 * static_cast<std::size_t>(samples.pixels[i]) +
-                                             static_cast<std::size_t>(channel)]});
+        const float span = mixing.span[i][channel], taken_off = scattered.separated[i][channel];
+        const float n = invariant(mixing, i, picture.colour[i])[channel] - taken_off / span;
+        // N's noise grows as the span falls, and so does what is not known of the scattered light.
+        const auto p = samples.pixels[i];
+        const auto x = p % static_cast<std::uint32_t>(samples.width),
+                   y = p / static_cast<std::uint32_t>(samples.width);
+        found.push_back(
+            {n,
+             span * span /
+                 (noise + scattered.variance[i][channel] + kUnknownScatter * taken_off * taken_off),
+             levels.drive.values[3 * std::size_t{p} + static_cast<std::size_t>(channel)],
+             1 + (y / kBlock_px << 16u | x / kBlock_px)});
     }
     return found;
 }
@@ -221,7 +243,11 @@ ColourCalibration calibrate_colour(const std::vector<RoledPhotograph>& captures,
     calibration.mixing_spread = pooled.spread;
     const bool additive = pooled.additivity_error <= kAdditivityWarning ||
                           (pooled.additivity_error <= kAdditivityLimit && samples.mosaics.empty());
-    if (!additive && samples.mosaics.empty()) refuse_not_additive(pooled.additivity_error);
+    if (!additive && samples.mosaics.empty()) {
+        const auto total = [](glm::dvec3 v) { return v.x + v.y + v.z; };
+        refuse_not_additive(pooled.additivity_error,
+                            total(pooled.bright) / total(pooled.red + pooled.green + pooled.blue));
+    }
     if (!additive && options.mode == ColourMode::paper)
         throw Refused("the projector is not additive (" + percent(pooled.additivity_error) +
                           ") and the published method has no model for that",
@@ -240,8 +266,17 @@ ColourCalibration calibrate_colour(const std::vector<RoledPhotograph>& captures,
     glm::dvec3 share_of_channel(1.0);
     double response_error = 0.0;
     if (additive) {
+        ScatteredLight scattered{
+            std::vector<glm::vec3>(status.size()), std::vector<glm::vec3>(status.size()), {}};
+        std::vector<std::uint8_t> usable;
+        for (const PixelStatus s : status) usable.push_back(s == PixelStatus::measured);
+        std::array<LevelCurve, 3> curves;
+        if (options.mode == ColourMode::robust) {
+            scattered = scattered_light(samples, mixing, levels, usable, centre);
+        }
         for (int k = 0; k < 3; ++k) {
-            const auto channel = response_samples(samples, mixing, status, levels, centre, k);
+            const auto channel =
+                response_samples(samples, mixing, status, levels, centre, scattered, k);
             if (channel.size() < 256)
                 throw Refused(
                     "only " + std::to_string(channel.size()) +
@@ -249,18 +284,8 @@ ColourCalibration calibrate_colour(const std::vector<RoledPhotograph>& captures,
                     "bring the projector nearer, so that the mock-up fills more of its picture");
             const LevelCurve measured = level_means(channel);
             const LevelCurve smooth = smooth_levels(measured);
-            if (options.mode == ColourMode::robust) {
-                calibration.response[static_cast<std::size_t>(k)] = invert_levels(smooth, 0, 255);
-                response_error = std::max(
-                    {response_error, std::abs(smooth.n[0]), std::abs(smooth.n[255] - 1.0)});
-                if (response_error > 0.2)
-                    throw Refused("black and white blocks of gray-levels lie " +
-                                      percent(response_error) +
-                                      " from the dark and the bright picture",
-                                  "check that the gray-levels photograph shows the gray-levels "
-                                  "picture at the same exposure, and that the lamp is warm");
-                continue;
-            }
+            curves[static_cast<std::size_t>(k)] = smooth;
+            if (options.mode == ColourMode::robust) continue;
             // N runs from drive 0 to 255, of which S and T are only two: N' = (N - first) / range
             const bool whole = options.dark_drive == 0 && options.bright_drive == 255;
             const double first = whole ? 0.0 : smooth.n[0], last = whole ? 1.0 : smooth.n[255];
@@ -269,6 +294,23 @@ ColourCalibration calibrate_colour(const std::vector<RoledPhotograph>& captures,
             for (std::size_t i = 0; i < status.size(); ++i) {
                 mixing.dark[i][k] += static_cast<float>(first) * mixing.span[i][k];
                 mixing.span[i][k] *= static_cast<float>(last - first);
+            }
+        }
+        if (options.mode == ColourMode::robust) {
+            calibration.warnings =
+                check_levels(samples, mixing, usable, levels, centre, scattered, curves);
+            for (std::size_t k = 0; k < 3; ++k) {
+                const double of_span = scattered.of_span[static_cast<int>(k)];
+                response_error = std::max({response_error,
+                                           std::abs(curves[k].n[0] + of_span),
+                                           std::abs(curves[k].n[255] + of_span - 1.0)});
+                if (response_error > 0.2)
+                    throw Refused("black and white blocks of gray-levels lie " +
+                                      percent(response_error) +
+                                      " from the dark and the bright picture",
+                                  "check that the gray-levels photograph shows the gray-levels "
+                                  "picture at the same exposure, and that the lamp is warm");
+                calibration.response[k] = invert_levels(curves[k], 0, 255);
             }
         }
     } else {

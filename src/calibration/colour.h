@@ -57,6 +57,9 @@ struct LiveOptions {
     int width = 0, height = 0;  ///< projector pixels
     ColourOptions colour;
     int shots = 1;  ///< photographs a colour picture
+    /// Projector pixels that the mock-up itself takes, where its pose is known (non-zero: mock-up;
+    /// empty: not known). The colorimeter is held to these.
+    Image8 mockup;
 };
 struct LiveResult {
     ColourCalibration calibration;

@@ -48,7 +48,15 @@ void refuse_drift(const ColourSamples& samples, double limit) {
                 "dynamic-contrast modes, expose for whole projector frames, and repeat");
 }
 
-void refuse_not_additive(double error) {
+void refuse_not_additive(double error, double white_over_sum) {
+    if (white_over_sum < 1.0)
+        throw Refused(
+            "white is " + percent(error) +
+                " less than red + green + blue: files encoded for viewing but called linear, an "
+                "over-exposed white, or a projector that boosts pure colours",
+            "give the files' \"transfer\" in manifest.json or use RAW; shorten the exposure; "
+            "switch "
+            "colour enhancement off, or photograph the mosaics of colours too");
     throw Refused(
         "the projector is not additive: white differs from red + green + blue by " + percent(error),
         "switch the projector to its sRGB or cinema mode (no clear wheel segment, no colour "
@@ -97,7 +105,10 @@ void fill_planes(const ColourSamples& samples,
         }
     for (std::size_t i = 0; i < samples.pixels.size(); ++i) {
         const std::size_t p = samples.pixels[i];
-        calibration.status.values[p] = static_cast<std::uint8_t>(status[i]);
+        const bool filled =
+            status[i] == PixelStatus::measured && !map.filled.empty() && map.filled.values[p] != 0;
+        calibration.status.values[p] =
+            static_cast<std::uint8_t>(filled ? PixelStatus::filled : status[i]);
         if (!is_valid(status[i])) continue;
         for (std::size_t row = 0; row < 3; ++row) {
             const auto r = static_cast<int>(row);
@@ -126,7 +137,7 @@ void report(const PixelMixing& mixing,
                                               static_cast<std::uint8_t>(which))) /
                std::max(lit, 1.0);
     };
-    calibration.valid_fraction = share(PixelStatus::measured);
+    calibration.valid_fraction = share(PixelStatus::measured) + share(PixelStatus::filled);
 
     // Condition and ambient light over the valid pixels
     std::vector<float> conditions, ambient;

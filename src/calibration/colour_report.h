@@ -16,7 +16,8 @@ std::string percent(double fraction);
 
 /// Throws Refused when shots of one picture differ in brightness by more than `limit`.
 void refuse_drift(const ColourSamples& samples, double limit);
-[[noreturn]] void refuse_not_additive(double error);
+/// `white_over_sum`: luminance-like sum of white over that of red + green + blue.
+[[noreturn]] void refuse_not_additive(double error, double white_over_sum);
 [[noreturn]] void refuse_invalid(const ColourSamples& samples,
                                  const std::vector<PixelStatus>& status);
 

@@ -27,7 +27,9 @@ struct GrayCodeResult {
 
 /// Decodes by the sign of each bit pair. `lit_threshold` is white - black in file units (mean of
 /// the channels); negative picks it from the noise of the black picture. Lit pixels that answer
-/// to the stripes with less than a third of white - black (lit by other parts only) are left out.
+/// to the stripes with less than a third of white - black, or to more than three bits of an axis
+/// with less than a fifth (lit by other parts only), are left out. Several photographs of one role
+/// are averaged.
 /// Throws Refused when too little decodes, FileError for missing roles and unequal sizes. Roles
 /// of other kinds are ignored.
 GrayCodeResult decode_gray_code(const std::vector<RoledPhotograph>& photographs,
@@ -53,14 +55,21 @@ GrayCodeResult decode_gray_code(std::span<const ImageF> in_pattern_order,
 /// Projector pixels -> sub-pixel camera pixel (2 channels, centres at halves), NaN where unknown;
 /// local fits that do not reach across depth or part edges. `edge` is 255 where the pixel's
 /// neighbourhood breaks: the camera pixels around it see something else or were not decoded.
+/// `filled` (empty: none) is 255 where the place is not the pixel's own but that of neighbours
+/// which agree: its own camera pixels decoded wrongly or not at all, alone among theirs.
 struct ProjectorToCamera {
     ImageF camera_px;
     Image8 edge;
+    Image8 filled;
 };
 
-/// Robust affine fits over 5 x 5 to 9 x 9 projector pixels, wider where the camera is coarser.
+/// Robust affine fits over 5 x 5 to 9 x 9 projector pixels, wider where the camera is coarser. A
+/// camera pixel that agrees with hardly any of its neighbours counts as not decoded.
 ProjectorToCamera invert_map(const GrayCodeResult& decoded,
                              int projector_width,
                              int projector_height);
+
+/// Whether the camera sees the projector's picture mirrored: the map turns its sense of rotation.
+bool is_mirrored(const ProjectorToCamera& map);
 
 }  // namespace livery

@@ -34,15 +34,25 @@ using ContrastOf =
 
 constexpr std::size_t kBlock = 1024;  // pixels; the working set stays in the first cache
 
-/// Binary number of each pixel from the signs of its bit pairs; fixed trip counts vectorise.
+/// Stripes answered with less than this part of white - black say little of where the light came
+/// from. Blur weakens the two finest bits of an axis, a stripe's border one more.
+constexpr int kWeakPart = 5;
+constexpr std::uint8_t kMostWeakBits = 3;
+
+/// Binary number of each pixel from the signs of its bit pairs, and how many of them were weak;
+/// fixed trip counts vectorise.
 template <typename T>
 void decode_axis(const Planes<T>& planes,
                  int first_bit,
                  int bits,
                  std::size_t offset,
                  std::uint16_t* code,
+                 std::uint8_t* weak,
                  ContrastOf<T>* contrast) {
     std::fill_n(code, kBlock, std::uint16_t{0});
+    std::fill_n(weak, kBlock, std::uint8_t{0});
+    const T* const white = planes.white + offset;
+    const T* const black = planes.black + offset;
     for (int bit = 0; bit < bits; ++bit) {
         const T* const positive =
             planes.stripes[static_cast<std::size_t>(2 * (first_bit + bit))] + offset;
@@ -55,7 +65,11 @@ void decode_axis(const Planes<T>& planes,
             code[i] = static_cast<std::uint16_t>((previous << 1) | (gray ^ (previous & 1)));
             const T high = positive[i] > negative[i] ? positive[i] : negative[i];
             const T low = positive[i] > negative[i] ? negative[i] : positive[i];
-            contrast[i] = static_cast<ContrastOf<T>>(contrast[i] + (high - low));
+            const auto answer = static_cast<ContrastOf<T>>(high - low);
+            contrast[i] = static_cast<ContrastOf<T>>(contrast[i] + answer);
+            const auto dark = static_cast<ContrastOf<T>>(black[i]);
+            const bool is_weak = static_cast<ContrastOf<T>>(kWeakPart * answer + dark) < white[i];
+            weak[i] = static_cast<std::uint8_t>(weak[i] + (is_weak ? 1 : 0));
         }
     }
 }
@@ -91,12 +105,21 @@ Counts decode_block(const Planes<T>& planes,
                     float* projector_px,
                     std::uint8_t* decoded) {
     std::array<std::uint16_t, kBlock> column, row;
+    std::array<std::uint8_t, kBlock> weak_columns, weak_rows;
     std::array<ContrastOf<T>, kBlock> contrast{};
-    decode_axis(planes, 0, planes.column_bits, offset, column.data(), contrast.data());
-    decode_axis(planes, planes.column_bits, planes.row_bits, offset, row.data(), contrast.data());
+    decode_axis(
+        planes, 0, planes.column_bits, offset, column.data(), weak_columns.data(), contrast.data());
+    decode_axis(planes,
+                planes.column_bits,
+                planes.row_bits,
+                offset,
+                row.data(),
+                weak_rows.data(),
+                contrast.data());
 
     // A third of the mean contrast: blur takes it from the two finest bits of each axis, light
-    // that arrives over other parts takes it from all.
+    // that arrives over other parts takes it from all. In a shadow such light still follows the
+    // coarse stripes, for it comes from somewhere, but none of the finer ones.
     const float share = static_cast<float>(planes.column_bits + planes.row_bits) / 3.0f;
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const auto columns = static_cast<unsigned>(planes.projector_width);
@@ -107,6 +130,7 @@ Counts decode_block(const Planes<T>& planes,
                              static_cast<float>(planes.black[offset + i]);
         const bool lit = lit_by > threshold;
         const bool good = lit & (static_cast<float>(contrast[i]) >= share * lit_by) &
+                          (weak_columns[i] <= kMostWeakBits) & (weak_rows[i] <= kMostWeakBits) &
                           (column[i] < columns) & (row[i] < rows);
         counts.lit += lit;
         counts.decoded += good;
@@ -204,7 +228,8 @@ GrayCodeResult decode_planes(const Planes<T>& planes, double lit_threshold) {
             "only " + percent(result.lit_fraction) +
                 " of the photograph is brighter under white than under black",
             "check that the projector's picture falls on the mock-up, that the camera "
-            "sees it and is neither saturated nor far too dark, and that the room is dark");
+            "sees it and is neither saturated nor far too dark, that its exposure is set by hand, "
+            "and that the room is dark");
     if (decoded < 64 || result.decoded_fraction < 0.2)
         throw Refused(
             "only " + percent(result.decoded_fraction) + " of the lit pixels answer to the stripes",
@@ -303,16 +328,18 @@ GrayCodeResult decode_gray_code(const std::vector<RoledPhotograph>& photographs,
     check_projector_size(projector_width, projector_height);
     const std::string projector =
         std::to_string(projector_width) + "x" + std::to_string(projector_height) + " projector";
-    const auto find = [&](const std::string& role) -> const RoledPhotograph* {
+    const auto all_of = [&](const std::string& role) {
+        std::vector<const RoledPhotograph*> found;
         for (const RoledPhotograph& candidate : photographs)
-            if (candidate.role == role) return &candidate;
-        return nullptr;
+            if (candidate.role == role) found.push_back(&candidate);
+        return found;
     };
 
     // A finer code than expected means another projector.
     const auto refuse_more = [&](const std::string& axis, int count) {
         const std::string role = "gray-" + axis + "-" + std::to_string(gray_code_bits(count));
-        if (find(role)) throw FileError("captures", "role", role, "no such bit for a " + projector);
+        if (!all_of(role).empty())
+            throw FileError("captures", "role", role, "no such bit for a " + projector);
     };
     refuse_more("column", projector_width);
     refuse_more("row", projector_height);
@@ -332,22 +359,31 @@ GrayCodeResult decode_gray_code(const std::vector<RoledPhotograph>& photographs,
     std::vector<ImageF> pictures;
     const RoledPhotograph* first = nullptr;
     for (const std::string& role : roles) {
-        const RoledPhotograph* const found = find(role);
-        if (!found)
+        const auto found = all_of(role);
+        if (found.empty())
             throw FileError(
                 "captures",
                 "role",
                 "no photograph of " + role,
                 std::to_string(roles.size()) + " Gray code photographs for a " + projector);
-        if (!first) first = found;
-        const ImageF& image = found->photograph.image;
-        if (image.empty() || image.width != first->photograph.image.width ||
-            image.height != first->photograph.image.height)
-            throw FileError(found->photograph.name.empty() ? role : found->photograph.name,
-                            "size",
-                            size_of(image),
-                            size_of(first->photograph.image) + " as " + first->role);
-        pictures.push_back(mean_of_channels(found->photograph, first->photograph));
+        if (!first) first = found.front();
+        for (const RoledPhotograph* one : found) {
+            const ImageF& image = one->photograph.image;
+            if (image.empty() || image.width != first->photograph.image.width ||
+                image.height != first->photograph.image.height)
+                throw FileError(one->photograph.name.empty() ? role : one->photograph.name,
+                                "size",
+                                size_of(image),
+                                size_of(first->photograph.image) + " as " + first->role);
+        }
+        ImageF mean = mean_of_channels(found.front()->photograph, first->photograph);
+        for (std::size_t k = 1; k < found.size(); ++k) {
+            const ImageF next = mean_of_channels(found[k]->photograph, first->photograph);
+            const auto share = static_cast<float>(1.0 / static_cast<double>(k + 1));
+            for (std::size_t i = 0; i < mean.values.size(); ++i)
+                mean.values[i] += share * (next.values[i] - mean.values[i]);
+        }
+        pictures.push_back(std::move(mean));
     }
     return decode_in_order(
         std::span<const ImageF>(pictures), projector_width, projector_height, lit_threshold);

@@ -7,7 +7,10 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <utility>
+#include <vector>
 
+#include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
 #include "calibration/gray_code.h"
@@ -36,7 +39,33 @@ struct Bins {
     }
 };
 
-Bins gather(const GrayCodeResult& decoded, int width, int height) {
+/// Decoded camera pixels without those that agree with hardly any pixel around them: in a shadow
+/// that other parts light, codes come out at random, and one of them would be taken for the place
+/// of a projector pixel elsewhere.
+Image8 without_strays(const GrayCodeResult& decoded, double reach) {
+    constexpr int kLeastAgreeing = 2;  // of eight; a corner pixel of a panel keeps three
+    const int width = decoded.decoded.width, height = decoded.decoded.height;
+    Image8 kept = decoded.decoded;
+    parallel_for(static_cast<std::size_t>(height), 16, [&](std::size_t begin, std::size_t end) {
+        for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
+            for (int x = 0; x < width; ++x) {
+                if (!decoded.decoded.at(x, y)) continue;
+                const float* const own = decoded.projector_px.pixel(x, y);
+                int agreeing = 0;
+                for (int v = std::max(0, y - 1); v <= std::min(height - 1, y + 1); ++v)
+                    for (int u = std::max(0, x - 1); u <= std::min(width - 1, x + 1); ++u) {
+                        if ((u == x && v == y) || !decoded.decoded.at(u, v)) continue;
+                        const float* const other = decoded.projector_px.pixel(u, v);
+                        agreeing += std::abs(static_cast<double>(own[0] - other[0])) <= reach &&
+                                    std::abs(static_cast<double>(own[1] - other[1])) <= reach;
+                    }
+                if (agreeing < kLeastAgreeing) kept.at(x, y) = 0;
+            }
+    });
+    return kept;
+}
+
+Bins gather(const GrayCodeResult& decoded, const Image8& kept, int width, int height) {
     const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     const auto place_of = [&](std::size_t i) {
         const auto x = static_cast<std::size_t>(decoded.projector_px.values[2 * i]);
@@ -47,8 +76,8 @@ Bins gather(const GrayCodeResult& decoded, int width, int height) {
     // Counting sort of the camera pixels by projector pixel
     std::vector<std::uint32_t> first(pixels + 1, 0);
     std::size_t total = 0;
-    for (std::size_t i = 0; i < decoded.decoded.values.size(); ++i)
-        if (decoded.decoded.values[i]) {
+    for (std::size_t i = 0; i < kept.values.size(); ++i)
+        if (kept.values[i]) {
             ++first[place_of(i) + 1];
             ++total;
         }
@@ -58,8 +87,8 @@ Bins gather(const GrayCodeResult& decoded, int width, int height) {
         first[p + 1] += first[p];
     }
     std::vector<std::uint32_t> order(total), next(first.begin(), first.end() - 1);
-    for (std::size_t i = 0; i < decoded.decoded.values.size(); ++i)
-        if (decoded.decoded.values[i]) order[next[place_of(i)]++] = static_cast<std::uint32_t>(i);
+    for (std::size_t i = 0; i < kept.values.size(); ++i)
+        if (kept.values[i]) order[next[place_of(i)]++] = static_cast<std::uint32_t>(i);
 
     Bins result;
     result.width = width;
@@ -170,36 +199,50 @@ std::optional<Affine> fit_affine(const WindowSample* samples, int count) {
 constexpr int kMaxRadius = 4;
 constexpr int kMaxSide = 2 * kMaxRadius + 1;
 
+/// The bins around a projector pixel, each of which belongs to one piece of surface.
+struct Window {
+    int radius = 0, side = 0;
+    std::array<const Bin*, kMaxSide * kMaxSide> bins{};
+    std::array<bool, kMaxSide * kMaxSide> seen{};  ///< already part of a piece
+    int filled = 0;                                ///< bins that hold something
+};
+
+Window window_around(const Bins& bins, int x, int y, int radius) {
+    Window window;
+    window.radius = radius;
+    window.side = 2 * radius + 1;
+    for (int dy = -radius; dy <= radius; ++dy)
+        for (int dx = -radius; dx <= radius; ++dx) {
+            const Bin* const bin = bins.find(x + dx, y + dy);
+            window.bins[static_cast<std::size_t>((dy + radius) * window.side + dx + radius)] = bin;
+            window.filled += bin != nullptr;
+        }
+    return window;
+}
+
+/// The unseen bin nearest to the middle, within `reach`; -1: none.
+int seed_of(const Window& window, int reach) {
+    for (int ring = 0; ring <= reach; ++ring)
+        for (int dy = -ring; dy <= ring; ++dy)
+            for (int dx = -ring; dx <= ring; ++dx) {
+                const int k = (dy + window.radius) * window.side + dx + window.radius;
+                if (std::max(std::abs(dx), std::abs(dy)) == ring &&
+                    window.bins[static_cast<std::size_t>(k)] &&
+                    !window.seen[static_cast<std::size_t>(k)])
+                    return k;
+            }
+    return -1;
+}
+
 /// What can be reached from the seed without a jump, flood-filled inside the window.
-int connected_samples(const Bins& bins,
-                      int x,
-                      int y,
-                      int radius,
+int connected_samples(Window& around,
+                      float scale,
+                      int seed,
                       int link_reach,
                       std::array<WindowSample, kMaxSide * kMaxSide>& samples) {
-    const int side = 2 * radius + 1;
-    std::array<const Bin*, kMaxSide * kMaxSide> window{};
-    for (int dy = -radius; dy <= radius; ++dy)
-        for (int dx = -radius; dx <= radius; ++dx)
-            window[static_cast<std::size_t>((dy + radius) * side + dx + radius)] =
-                bins.find(x + dx, y + dy);
-
-    // Seed: the bin nearest to the middle
-    int seed = -1;
-    for (int ring = 0; ring <= link_reach && seed < 0; ++ring)
-        for (int dy = -ring; dy <= ring && seed < 0; ++dy)
-            for (int dx = -ring; dx <= ring; ++dx) {
-                const int k = (dy + radius) * side + dx + radius;
-                if (std::max(std::abs(dx), std::abs(dy)) == ring &&
-                    window[static_cast<std::size_t>(k)]) {
-                    seed = k;
-                    break;
-                }
-            }
-    if (seed < 0) return 0;
-
-    const auto scale = static_cast<float>(bins.camera_px_per_pixel);
-    std::array<bool, kMaxSide * kMaxSide> seen{};
+    const int side = around.side, radius = around.radius;
+    const auto& window = around.bins;
+    auto& seen = around.seen;
     std::array<int, kMaxSide * kMaxSide> queue{};
     int queued = 0, count = 0;
     queue[static_cast<std::size_t>(queued++)] = seed;
@@ -237,12 +280,14 @@ int connected_samples(const Bins& bins,
 
 struct Located {
     glm::dvec2 camera{0.0};
-    Affine fit{};
+    bool filled = false;  ///< from neighbours: the pixel's own bin lies elsewhere or nowhere
 };
 
-std::optional<Located> locate(const Bins& bins, int x, int y, int radius, int link_reach) {
-    std::array<WindowSample, kMaxSide * kMaxSide> samples;
-    int count = connected_samples(bins, x, y, radius, link_reach, samples);
+std::optional<Located> fit_piece(const Bins& bins,
+                                 std::array<WindowSample, kMaxSide * kMaxSide>& samples,
+                                 int count,
+                                 int x,
+                                 int y) {
     if (count < 4) return std::nullopt;
     // The first sample is the seed.
     const Bin* const seed =
@@ -272,25 +317,130 @@ std::optional<Located> locate(const Bins& bins, int x, int y, int radius, int li
         high_y = std::max(high_y, s.dy);
     }
     if (low_x > 0 || high_x < 0 || low_y > 0 || high_y < 0) return std::nullopt;
-    return Located{fit->value + glm::dvec2(seed->x, seed->y), *fit};
+    return Located{fit->value + glm::dvec2(seed->x, seed->y), false};
 }
 
-/// Whether the camera pixels that a sample at `camera` is read from see this place and no other.
-bool sees_one_place(const GrayCodeResult& decoded, glm::dvec2 camera, int x, int y, double reach) {
+/// From the piece of surface that the pixel's own bin belongs to. Where that is no piece, the bin
+/// being a stray, from the one that most of the window's bins agree on.
+std::optional<Located> locate(const Bins& bins, int x, int y, int radius, int link_reach) {
+    Window window = window_around(bins, x, y, radius);
+    const auto scale = static_cast<float>(bins.camera_px_per_pixel);
+    std::array<WindowSample, kMaxSide * kMaxSide> samples;
+    const bool has_own = bins.find(x, y) != nullptr;
+    for (int attempt = 0, seed; (seed = seed_of(window, link_reach)) >= 0; ++attempt) {
+        const int count = connected_samples(window, scale, seed, link_reach, samples);
+        if (attempt > 0 && 5 * count < 3 * window.filled) continue;
+        auto located = fit_piece(bins, samples, count, x, y);
+        if (!located) continue;
+        located->filled = has_own && attempt > 0;
+        return located;
+    }
+    return std::nullopt;
+}
+
+/// What the camera pixels are that a sample is read from.
+enum class Sees { this_place, with_gap, another };
+
+/// Whether they see this place and no other. A pixel that was not decoded, or decoded alone as
+/// something else, while those around it see this place, is a gap in the decoding.
+Sees seen_there(const GrayCodeResult& decoded,
+                const Image8& kept,
+                glm::dvec2 camera,
+                int x,
+                int y,
+                double reach) {
+    constexpr int kSurrounded = 6;  // of eight
     const int left = static_cast<int>(std::floor(camera.x - 0.5));
     const int top = static_cast<int>(std::floor(camera.y - 0.5));
-    if (left < 0 || top < 0 || left + 1 >= decoded.decoded.width ||
-        top + 1 >= decoded.decoded.height)
-        return false;
+    if (left < 0 || top < 0 || left + 1 >= kept.width || top + 1 >= kept.height)
+        return Sees::another;
+    const auto is_here = [&](int cx, int cy, double within) {
+        if (cx < 0 || cy < 0 || cx >= kept.width || cy >= kept.height || !kept.at(cx, cy))
+            return false;
+        const float* const place = decoded.projector_px.pixel(cx, cy);
+        return std::abs(static_cast<double>(place[0]) - x - 0.5) <= within &&
+               std::abs(static_cast<double>(place[1]) - y - 0.5) <= within;
+    };
+    Sees sees = Sees::this_place;
     for (int cy = top; cy <= top + 1; ++cy)
         for (int cx = left; cx <= left + 1; ++cx) {
-            if (!decoded.decoded.at(cx, cy)) return false;
-            const float* const place = decoded.projector_px.pixel(cx, cy);
-            if (std::abs(static_cast<double>(place[0]) - x - 0.5) > reach ||
-                std::abs(static_cast<double>(place[1]) - y - 0.5) > reach)
-                return false;
+            if (is_here(cx, cy, reach)) continue;
+            int around = 0;
+            for (int v = cy - 1; v <= cy + 1; ++v)
+                for (int u = cx - 1; u <= cx + 1; ++u)
+                    around += (u != cx || v != cy) && is_here(u, v, reach + 1.0);
+            if (kept.at(cx, cy) || around < kSurrounded) return Sees::another;
+            sees = Sees::with_gap;
         }
-    return true;
+    return sees;
+}
+
+/// Places of small holes from the neighbours around them, where these agree on one piece of
+/// surface and no camera pixel there is known to see another.
+void fill_holes(const GrayCodeResult& decoded,
+                const Image8& kept,
+                double scale,
+                double reach,
+                ProjectorToCamera& map) {
+    // Seven: then one lies in the hole's own row or column, and a jump in depth shows.
+    constexpr int kSurrounded = 7, kRounds = 2;
+    const int width = map.edge.width, height = map.edge.height;
+    const auto is_placed = [&](int x, int y) {
+        return x >= 0 && y >= 0 && x < width && y < height &&
+               std::isfinite(map.camera_px.at(x, y)) && !map.edge.at(x, y);
+    };
+    for (int round = 0; round < kRounds; ++round) {
+        std::vector<std::pair<std::size_t, glm::vec2>> found;
+        for (int y = 1; y + 1 < height; ++y)
+            for (int x = 1; x + 1 < width; ++x) {
+                if (is_placed(x, y)) continue;
+                std::array<WindowSample, 8> around;
+                int count = 0;
+                for (int dy = -1; dy <= 1; ++dy)
+                    for (int dx = -1; dx <= 1; ++dx)
+                        if ((dx != 0 || dy != 0) && is_placed(x + dx, y + dy))
+                            around[static_cast<std::size_t>(count++)] = {
+                                static_cast<float>(dx),
+                                static_cast<float>(dy),
+                                map.camera_px.at(x + dx, y + dy, 0),
+                                map.camera_px.at(x + dx, y + dy, 1),
+                                1.0f};
+                if (count < kSurrounded) continue;
+                const auto fit = fit_affine(around.data(), count);
+                if (!fit) continue;
+                const double steepest = 2.5 * scale + 0.5;
+                bool agree =
+                    glm::length(fit->along_x) < steepest && glm::length(fit->along_y) < steepest;
+                for (int i = 0; i < count; ++i) {
+                    const WindowSample& s = around[static_cast<std::size_t>(i)];
+                    const glm::dvec2 off = glm::dvec2(s.x, s.y) - fit->at(s.dx, s.dy);
+                    agree = agree && glm::dot(off, off) <= 0.25 * std::max(1.0, scale * scale);
+                }
+                if (!agree) continue;
+                // Nothing else is known to be there.
+                bool free = true;
+                const int left = static_cast<int>(std::floor(fit->value.x - 0.5));
+                const int top = static_cast<int>(std::floor(fit->value.y - 0.5));
+                for (int cy = top; cy <= top + 1; ++cy)
+                    for (int cx = left; cx <= left + 1; ++cx) {
+                        if (cx < 0 || cy < 0 || cx >= kept.width || cy >= kept.height) {
+                            free = false;
+                        } else if (kept.at(cx, cy)) {
+                            const float* const place = decoded.projector_px.pixel(cx, cy);
+                            free = free &&
+                                   std::abs(static_cast<double>(place[0]) - x - 0.5) <= reach &&
+                                   std::abs(static_cast<double>(place[1]) - y - 0.5) <= reach;
+                        }
+                    }
+                if (free) found.emplace_back(map.edge.index(x, y), glm::vec2(fit->value));
+            }
+        for (const auto& [p, camera] : found) {
+            map.camera_px.values[2 * p] = camera.x;
+            map.camera_px.values[2 * p + 1] = camera.y;
+            map.edge.values[p] = 0;
+            map.filled.values[p] = 255;
+        }
+    }
 }
 
 }  // namespace
@@ -313,7 +463,10 @@ ProjectorToCamera invert_map(const GrayCodeResult& decoded,
             "a decoded projector pixel lies outside " + std::to_string(projector_width) + "x" +
                 std::to_string(projector_height));
 
-    const Bins bins = gather(decoded, projector_width, projector_height);
+    Bins bins = gather(decoded, decoded.decoded, projector_width, projector_height);
+    // Strays first: two neighbouring camera pixels lie 1 / scale projector pixels apart.
+    const Image8 kept = without_strays(decoded, 1.5 + 2.0 / bins.camera_px_per_pixel);
+    bins = gather(decoded, kept, projector_width, projector_height);
     const double scale = bins.camera_px_per_pixel;
     const int link_reach = scale >= 0.9 ? 1 : std::min(2, static_cast<int>(std::ceil(1.2 / scale)));
     const int radius =
@@ -325,6 +478,7 @@ ProjectorToCamera invert_map(const GrayCodeResult& decoded,
     map.camera_px =
         ImageF(projector_width, projector_height, 2, std::numeric_limits<float>::quiet_NaN());
     map.edge = Image8(projector_width, projector_height, 1);
+    map.filled = Image8(projector_width, projector_height, 1);
     parallel_for(
         static_cast<std::size_t>(projector_height), 4, [&](std::size_t begin, std::size_t end) {
             for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
@@ -336,11 +490,30 @@ ProjectorToCamera invert_map(const GrayCodeResult& decoded,
                     }
                     map.camera_px.at(x, y, 0) = static_cast<float>(located->camera.x);
                     map.camera_px.at(x, y, 1) = static_cast<float>(located->camera.y);
-                    if (!sees_one_place(decoded, located->camera, x, y, reach))
+                    const Sees sees = seen_there(decoded, kept, located->camera, x, y, reach);
+                    if (sees == Sees::another)
                         map.edge.at(x, y) = 255;
+                    else if (located->filled || sees == Sees::with_gap)
+                        map.filled.at(x, y) = 255;
                 }
         });
+    fill_holes(decoded, kept, scale, reach, map);
     return map;
+}
+
+bool is_mirrored(const ProjectorToCamera& map) {
+    const ImageF& at = map.camera_px;
+    std::ptrdiff_t kept = 0, turned = 0;
+    for (int y = 0; y + 4 < at.height; y += 2)
+        for (int x = 0; x + 4 < at.width; x += 2) {
+            const glm::vec2 here(at.at(x, y, 0), at.at(x, y, 1));
+            const glm::vec2 right = glm::vec2(at.at(x + 4, y, 0), at.at(x + 4, y, 1)) - here;
+            const glm::vec2 down = glm::vec2(at.at(x, y + 4, 0), at.at(x, y + 4, 1)) - here;
+            const float turn = right.x * down.y - right.y * down.x;
+            kept += turn > 0.0f;
+            turned += turn < 0.0f;
+        }
+    return turned > 4 * kept;
 }
 
 }  // namespace livery

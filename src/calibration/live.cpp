@@ -142,13 +142,14 @@ Geometry photograph_geometry(BenchSession& session, const LiveOptions& options) 
 }
 
 /// A well-lit place in the middle of an even neighbourhood, for the colorimeter.
-glm::dvec2 place_to_measure(const Geometry& geometry) {
+glm::dvec2 place_to_measure(const Geometry& geometry, const Image8& mockup) {
     const ImageF& place = geometry.map.camera_px;
     ImageF light(place.width, place.height, 1);
     std::vector<float> all;
     for (int y = 0; y < place.height; ++y)
         for (int x = 0; x < place.width; ++x) {
             if (!std::isfinite(place.at(x, y)) || geometry.map.edge.at(x, y)) continue;
+            if (!mockup.empty() && !mockup.at(x, y)) continue;
             const int cx =
                 std::clamp(static_cast<int>(place.at(x, y, 0)), 0, geometry.light.width - 1);
             const int cy =
@@ -200,6 +201,10 @@ LiveResult calibrate_live(const BenchPorts& ports,
                           const Progress& progress) {
     check_argument(options.shots >= 1 && options.shots <= 1000,
                    "shots " + std::to_string(options.shots) + " is outside 1..1000");
+    check_argument(options.mockup.empty() ||
+                       (options.mockup.width == options.width &&
+                        options.mockup.height == options.height && options.mockup.channels == 1),
+                   "the mock-up's mask is not one channel of the projector's size");
     const ColourOptions& colour = options.colour;
     LiveResult result;
     result.patterns =
@@ -228,7 +233,7 @@ LiveResult calibrate_live(const BenchPorts& ports,
     CameraToXyz& xyz = with_xyz.camera_to_xyz;
     if (measures) {
         xyz.has_primaries = true;
-        xyz.measured_at_px = place_to_measure(geometry);
+        xyz.measured_at_px = place_to_measure(geometry, options.mockup);
     }
     const auto measure = [&](const std::string& role) {
         if (!measures) return;

@@ -4,9 +4,11 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 #include "core/error.h"
+#include "core/random.h"
 
 namespace livery {
 namespace {
@@ -38,8 +40,34 @@ Pattern uniform(std::string role, int width, int height, int red, int green, int
         std::move(role), draw(width, height, [&](int, int) { return drive; }), {red, green, blue}};
 }
 
-/// Even, so that centres stay centred; about a hundred blocks across the picture.
-int block_size(int width) { return std::clamp(width / 200 * 2, 8, 16); }
+/// Even, so that centres stay centred; forty blocks across the picture or more. A centre five
+/// pixels from the border is out of reach of the halo that a good lens throws around a bright
+/// block.
+int block_size(int width) { return std::clamp(width / 80 * 2, 8, 16); }
+
+/// A number for a block of the grey levels' picture: each of 0 to 255 once in 16 x 16, shuffled
+/// (Fisher and Yates), otherwise in each such tile.
+int shuffled_rank(int block_x, int block_y) {
+    std::array<std::uint8_t, 256> order{};
+    std::iota(order.begin(), order.end(), std::uint8_t{0});
+    const auto tile_x = static_cast<std::uint32_t>(block_x / 16);
+    const auto tile_y = static_cast<std::uint32_t>(block_y / 16);
+    for (std::uint32_t k = 255; k > 0; --k) {
+        std::swap(order[k], order[hash_3d(tile_x, tile_y, k) % (k + 1)]);
+    }
+    return order[static_cast<std::size_t>(block_y % 16 * 16 + block_x % 16)];
+}
+
+/// A quarter black, a sixteenth white; the rest rise with the power 1.5 from 1 to 254: light grows
+/// with the drive's square, so that dark levels need more samples for the same relative error.
+std::uint8_t level_of_block(int block_x, int block_y) {
+    constexpr int kBlack = 64, kWhite = 16, kBetween = 256 - kBlack - kWhite;
+    const int rank = shuffled_rank(block_x, block_y);
+    if (rank < kBlack) return 0;
+    if (rank >= kBlack + kBetween) return 255;
+    const double place = static_cast<double>(rank - kBlack) / (kBetween - 1);
+    return static_cast<std::uint8_t>(std::lround(1.0 + 253.0 * std::pow(place, 1.5)));
+}
 
 /// Order in which an ordered dither fills a 16 x 16 tile: any 2^k x 2^k blocks that touch hold
 /// evenly spread values.
@@ -144,15 +172,20 @@ std::vector<Pattern> colour_patterns(int width, int height, int dark_drive, int 
     patterns.push_back(uniform("green", width, height, s, t, s));
     patterns.push_back(uniform("blue", width, height, s, s, t));
     const int block = block_size(width);
-    patterns.push_back({"gray-levels",
-                        draw(width,
-                             height,
-                             [&](int x, int y) {
-                                 const auto value =
-                                     static_cast<std::uint8_t>(dither_rank(x / block, y / block));
-                                 return Drive{value, value, value};
-                             }),
-                        {}});
+    const int columns = (width + block - 1) / block, rows = (height + block - 1) / block;
+    std::vector<std::uint8_t> levels;
+    for (int y = 0; y < rows; ++y)
+        for (int x = 0; x < columns; ++x) levels.push_back(level_of_block(x, y));
+    patterns.push_back(
+        {"gray-levels",
+         draw(width,
+              height,
+              [&](int x, int y) {
+                  const auto value =
+                      levels[static_cast<std::size_t>(y / block * columns + x / block)];
+                  return Drive{value, value, value};
+              }),
+         {}});
     return patterns;
 }
 

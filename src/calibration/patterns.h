@@ -22,8 +22,9 @@ int gray_code_bits(int count);
 std::vector<Pattern> geometry_patterns(int width, int height);
 
 /// The six pictures of the method for drives s and t: dark-gray, bright-gray, red, green, blue,
-/// gray-levels. The blocks of gray-levels are squares of 8 to 16 px; every 16 x 16 of them hold
-/// all 256 levels once, every 4 x 4 of them hold 16 evenly spread levels.
+/// gray-levels. The blocks of gray-levels are squares of 8 to 16 px; of every 16 x 16, a quarter
+/// are black (what these show is light from elsewhere), sixteen white, and the rest hold levels
+/// between, the denser the darker. Which is where is shuffled, so that all have neighbours alike.
 std::vector<Pattern> colour_patterns(int width, int height, int dark_drive, int bright_drive);
 
 /// Mosaics of colours for projectors that are not additive, `count` pictures: ramps of one

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "calibration/statistics.h"
 #include "core/error.h"
@@ -66,6 +67,48 @@ double largest_fall(std::span<const double> values) {
     return fall;
 }
 
+/// One block's mean, with the mean weight of its samples.
+struct BlockMean {
+    std::size_t level;
+    double weight = 0.0, n = 0.0, count = 0.0;
+};
+
+/// Replaces each level's inverse variance by what the blocks' scatter says. Samples' weights are
+/// inverse variances but for one factor, which dark blocks tell; bright ones differ by a share of N
+/// too, that of their light which went elsewhere. Both are told from all levels together: one holds
+/// a few blocks only, and all of those may lie badly.
+void weigh_by_blocks(const std::vector<BlockMean>& blocks, LevelCurve& curve) {
+    constexpr double kDark = 0.1, kBright = 0.3;  // of N
+    constexpr double kMedianOfSquares = 0.455;    // of a standard normal's
+    std::array<std::vector<const BlockMean*>, 256> of_level;
+    for (const BlockMean& block : blocks) of_level[block.level].push_back(&block);
+    std::vector<double> dark, bright;
+    for (std::size_t level = 0; level < 256; ++level) {
+        const auto count = static_cast<double>(of_level[level].size());
+        if (count < 2.0) continue;
+        const double n = curve.n[level];
+        for (const BlockMean* block : of_level[level]) {
+            const double off2 = (block->n - n) * (block->n - n) * count / (count - 1.0);
+            if (n < kDark) dark.push_back(block->weight * off2);
+            if (n > kBright) bright.push_back(off2 / (n * n));
+        }
+    }
+    if (dark.size() < 16 || bright.size() < 16) return;
+    const double factor = median(dark) / kMedianOfSquares;
+    const double relative2 = median(bright) / kMedianOfSquares;
+    for (std::size_t level = 0; level < 256; ++level) {
+        if (of_level[level].empty()) continue;
+        double sum = 0.0, sum2 = 0.0;
+        for (const BlockMean* block : of_level[level]) {
+            sum += block->weight;
+            sum2 += block->weight * block->weight;
+        }
+        const double n = curve.n[level];
+        const double variance = factor / sum + relative2 * n * n * sum2 / (sum * sum);
+        curve.weight[level] = std::min(curve.weight[level], 1.0 / (variance + 1e-12));
+    }
+}
+
 }  // namespace
 
 std::vector<double> isotonic_regression(std::span<const double> values,
@@ -104,6 +147,7 @@ LevelCurve level_means(std::span<const ResponseSample> samples) {
 
     LevelCurve curve;
     std::array<double, 256> scatter{}, share{};  // of the samples; of it, what the mean keeps
+    std::vector<BlockMean> blocks;
     std::vector<double> well_known;
     for (std::size_t level = 0; level < 256; ++level) {
         const auto& here = of_level[level];
@@ -121,6 +165,19 @@ LevelCurve level_means(std::span<const ResponseSample> samples) {
                 weight2 += static_cast<double>(s.weight) * s.weight;
             }
         const double mean = sum / weight;
+        std::map<std::uint32_t, BlockMean> of_block;
+        for (const ResponseSample& s : here)
+            if (s.block != 0 && std::abs(s.n - centre) <= reach) {
+                BlockMean& block = of_block.try_emplace(s.block, BlockMean{level}).first->second;
+                block.n += static_cast<double>(s.weight) * s.n;
+                block.weight += s.weight;
+                block.count += 1.0;
+            }
+        for (auto& [number, block] : of_block) {
+            block.n /= block.weight;
+            block.weight /= block.count;
+            blocks.push_back(block);
+        }
         double spread = 0.0;
         for (const ResponseSample& s : here)
             if (std::abs(s.n - centre) <= reach)
@@ -141,6 +198,7 @@ LevelCurve level_means(std::span<const ResponseSample> samples) {
         const double few = here.size() < 4 ? 4.0 : 1.0;
         curve.weight[level] = 1.0 / (few * std::max(scatter[level], least) * share[level] + 1e-10);
     }
+    weigh_by_blocks(blocks, curve);
     return curve;
 }
 

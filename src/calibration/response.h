@@ -19,13 +19,16 @@ struct ResponseSample {
     float n;
     float weight;
     std::uint8_t drive;
+    /// Samples of one block err together (what scatters there is common to them); 0: alone.
+    std::uint32_t block = 0;
 };
 
 /// Least-squares non-decreasing fit by pooling adjacent violators. Weights must be positive.
 std::vector<double> isotonic_regression(std::span<const double> values,
                                         std::span<const double> weights);
 
-/// Weighted mean of N per drive without what lies over five deviations from the drive's median.
+/// Weighted mean of N per drive without what lies over five deviations from the drive's median. How
+/// sure it is follows from the scatter of its samples or, where they lie in blocks, of the blocks.
 LevelCurve level_means(std::span<const ResponseSample> samples);
 
 /// The smoothest curve (smallest third differences) that stays within the samples' noise; drives

@@ -141,7 +141,7 @@ CapturesFolder parse_captures_manifest(const std::string& text,
     result.folder = manifest.parent_path();
     std::tie(result.projector_width, result.projector_height) = read_projector(root["projector"]);
 
-    std::set<std::pair<std::string, double>> seen;
+    std::set<std::string> seen;
     const auto captures = root["captures"];
     for (std::size_t k = 0; k < captures.size(); ++k) {
         const auto entry = captures.at(k);
@@ -149,9 +149,10 @@ CapturesFolder parse_captures_manifest(const std::string& text,
         Capture capture;
         capture.role = read_role(entry["role"]);
         read_settings({entry, root}, result.folder, capture);
-        if (!seen.insert({capture.role, capture.exposure_s}).second) {
-            entry["role"].fail("\"" + capture.role + "\" a second time with the same exposure",
-                               "each role once an exposure");
+        // A role may come again, for more shots of one picture; a file may not.
+        if (!seen.insert(entry["file"].text()).second) {
+            entry["file"].fail("\"" + entry["file"].text() + "\" a second time",
+                               "each photograph once");
         }
         capture.file = read_photograph_name(entry, result.folder);
         if (entry.has("pattern")) capture.pattern = result.folder / entry["pattern"].text();

@@ -8,6 +8,7 @@
 #include "compensation/compensation.h"
 #include "core/error.h"
 #include "core/image_io.h"
+#include "scene/mockup_mask.h"
 #include "session/target_picture.h"
 
 namespace livery {
@@ -40,7 +41,8 @@ Command compensate_command() {
          {"strict", "preserve"}},
         {"--design-white",
          "PERCENT",
-         "percentile of the brightest neutral that becomes 1 (default 20)",
+         "percentile, over what the target covers, of the brightest neutral that becomes 1 "
+         "(default 20)",
          &arguments->design_white,
          false,
          {}},
@@ -57,7 +59,8 @@ Command compensate_command() {
         const ColourCalibration calibration = read_calibration(arguments->calibration);
         const ImageF wanted =
             read_target_picture(arguments->target, calibration.width, calibration.height);
-        const double white_y = design_white_luminance(calibration, arguments->design_white);
+        const double white_y =
+            design_white_luminance(calibration, arguments->design_white, coverage_mask(wanted));
         const CompensationTable table = bake(calibration, white_y);
         progress.update(0.5, "compensating");
         // The fractions speak of what was wanted, before any gamut mapping.

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/json_ranges.h"
+#include "scene/mockup_mask.h"
 #include "session/library.h"
 #include "session/predictions.h"
 #include "twin/description.h"
@@ -101,9 +102,6 @@ ResolvedFrame resolve_frame(const FrameArguments& arguments, const CommonOptions
     std::optional<View> view;
     if (!arguments.camera.empty()) view = read_camera_file(arguments.camera);
     if (!arguments.calibration.empty()) {
-        const ColourCalibration calibration = read_calibration(arguments.calibration);
-        frame.compensation =
-            bake(calibration, design_white_luminance(calibration, arguments.design_white));
         if (!view) view = projector_view_of(arguments.calibration);
         if (!view) {
             throw FileError(std::filesystem::path(arguments.calibration) / "projector.json",
@@ -138,6 +136,14 @@ ResolvedFrame resolve_frame(const FrameArguments& arguments, const CommonOptions
                         fmt::format("at most {} pixels to draw", kMostPixels));
     }
     request.view = *view;
+    if (!arguments.calibration.empty()) {
+        const ColourCalibration calibration = read_calibration(arguments.calibration);
+        // A view of another size is refused where the projector's picture is asked for.
+        const bool of_view = calibration.width == view->width && calibration.height == view->height;
+        const Image8 mockup = of_view ? mockup_mask(product->mesh, *view) : Image8();
+        frame.compensation =
+            bake(calibration, design_white_luminance(calibration, arguments.design_white, mockup));
+    }
     if (!arguments.eye.empty()) {
         const auto numbers = parse_numbers("--eye", arguments.eye, 3);
         eye_mm = {numbers[0], numbers[1], numbers[2]};

@@ -66,6 +66,14 @@ Command patterns_command() {
                    colour_patterns(size.width, size.height, arguments->dark, arguments->bright));
             append(patterns, mosaic_patterns(size.width, size.height, kMosaics));
         }
+        // White and black again at the end: what moved or changed on the way shows between the two.
+        if (arguments->kind == "all") {
+            for (Pattern& pattern : geometry_patterns(size.width, size.height)) {
+                if (pattern.role == "white" || pattern.role == "black") {
+                    patterns.push_back(std::move(pattern));
+                }
+            }
+        }
         std::vector<PatternFile> files;
         for (Pattern& pattern : patterns) {
             progress.check_stop();

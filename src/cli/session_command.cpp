@@ -252,10 +252,10 @@ Command import_command() {
     return command;
 }
 
-std::shared_ptr<const ProjectorSetup> setup_of(const Document& document) {
+std::shared_ptr<const ProjectorSetup> setup_of(const Document& document, const Product& product) {
     return document.calibration.empty()
                ? uncorrected_setup(document.bench)
-               : load_setup(document.calibration, document.design_white_percentile);
+               : load_setup(document.calibration, document.design_white_percentile, product.mesh);
 }
 
 Command picture_command() {
@@ -282,14 +282,14 @@ Command picture_command() {
         if (const auto problems = drawing_problems(document); !problems.empty()) {
             throw Refused(problems.front(), "put the file back, or choose another paint");
         }
-        const auto setup = setup_of(document);
+        const auto product = find_product(document.product, document.product_unit);
+        const auto setup = setup_of(document, *product);
         if (request.stage == FrameStage::projector && !setup->table) {
             throw Refused("the session has no calibration to correct with",
                           "livery session apply --command "
                           "'{\"set-calibration\": {\"folder\": \"DIR\"}}'");
         }
-        request.scene = scene_of(
-            document, arguments->look, find_product(document.product, document.product_unit));
+        request.scene = scene_of(document, arguments->look, product);
         request.view = setup->view;
         request.quality = document.quality;
         if (request.quality == Quality::reference) request.backend = RenderBackend::reference;

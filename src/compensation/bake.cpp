@@ -140,22 +140,23 @@ NonAdditive non_additive_of(const ColourCalibration& calibration) {
 
 double design_white_luminance(const ColourCalibration& calibration,
                               double percentile,
-                              const Image8& parts_mask) {
+                              const Image8& mockup) {
     check_argument(percentile >= 0.0 && percentile <= 100.0,
                    "percentile " + std::to_string(percentile) + ", expected 0 to 100");
-    if (!parts_mask.empty()) check_plane(calibration, parts_mask, 1, "parts mask");
+    if (!mockup.empty()) check_plane(calibration, mockup, 1, "mock-up mask");
     const PixelMaps maps(calibration);
     const NonAdditive non_additive = non_additive_of(calibration);
     std::vector<std::uint32_t> counted;
     for (std::size_t i = 0; i < calibration.status.values.size(); ++i) {
-        if (maps.valid(i) && (parts_mask.empty() || parts_mask.values[i] != 0)) {
+        if (maps.valid(i) && (mockup.empty() || mockup.values[i] != 0)) {
             counted.push_back(static_cast<std::uint32_t>(i));
         }
     }
     if (counted.empty()) {
-        throw Refused("no pixel of the evaluated parts has a valid correction",
+        throw Refused("no pixel of the mock-up has a valid correction",
                       "look at the calibration's status picture, check that the projector lights "
-                      "the mock-up and the camera sees it, and calibrate again");
+                      "the mock-up where the product stands in the projector's view and that the "
+                      "camera sees it, and calibrate again");
     }
     std::vector<double> brightest(counted.size());
     parallel_for(counted.size(), 4096, [&](std::size_t begin, std::size_t end) {

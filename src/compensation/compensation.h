@@ -15,11 +15,13 @@
 namespace livery {
 
 /// The brightest D65 neutral (as Y in the calibration's XYZ) that at least (100 - percentile)% of
-/// the valid pixels of `parts_mask` (one channel, non-zero: counts; empty: all) can show. Throws
-/// std::invalid_argument on a wrong size or percentile, Refused when no pixel counts.
+/// the valid pixels of `mockup` (one channel, non-zero: counts; empty: all) can show. The projector
+/// also lights the table, and a dark table must not dim the mock-up: pass what is known of the
+/// mock-up (scene/mockup_mask.h). Throws std::invalid_argument on a wrong size or percentile,
+/// Refused when no pixel counts.
 double design_white_luminance(const ColourCalibration& calibration,
                               double percentile,
-                              const Image8& parts_mask = {});
+                              const Image8& mockup);
 
 /// N(drive) of a non-additive projector and a start for its inverse. "Linear" is rho^-1(drive) per
 /// channel, in which N bends least: between nodes N is linear in it, by tetrahedra.

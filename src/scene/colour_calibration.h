@@ -25,9 +25,12 @@ enum class PixelStatus : std::uint8_t {
     one_channel = 6,  ///< only some channels pass
     edge = 7,         ///< the camera pixel straddles a depth or part edge
     not_decoded = 8,
+    filled =
+        9,  ///< valid: measured at a place that agreeing neighbours gave, its own code was lost
 };
 inline bool is_valid(PixelStatus status) {
-    return status == PixelStatus::measured || status == PixelStatus::predicted;
+    return status == PixelStatus::measured || status == PixelStatus::predicted ||
+           status == PixelStatus::filled;
 }
 
 /// rho of equation 8: projector drive (0..255) as a function of the invariant N, monotone,
@@ -69,7 +72,7 @@ struct ColourCalibration {
     // Residuals, all measured.
     double additivity_error = 0.0;
     double condition_p99 = 0.0;
-    double valid_fraction = 0.0;      ///< measured, of the lit pixels
+    double valid_fraction = 0.0;      ///< measured and filled, of the lit pixels
     double ambient_fraction = 0.0;    ///< dark picture over bright picture, median
     double mixing_spread = 0.0;       ///< spatial spread of Vn over its noise
     double predicted_fraction = 0.0;  ///< of the measured and predicted pixels

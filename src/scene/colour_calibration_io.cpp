@@ -140,7 +140,7 @@ Image8 read_status(const std::filesystem::path& file, const ColourCalibration& c
     Image8 status(c.width, c.height, 1);
     for (std::size_t k = 0; k < pixels; ++k) {
         const float value = image.values[k];
-        if (value > static_cast<float>(PixelStatus::not_decoded)) {
+        if (value > static_cast<float>(PixelStatus::filled)) {
             throw FileError(file,
                             fmt::format("pixel {}", k),
                             fmt::format("status {:g}", value),

@@ -4,6 +4,7 @@
 
 #include "calibration/predict.h"
 #include "core/replace_folder.h"
+#include "scene/mockup_mask.h"
 #include "session/projector_irradiance.h"
 
 namespace livery {
@@ -16,6 +17,7 @@ BenchCalibration calibrate_through_ports(Bench& bench,
     options.width = projector.width;
     options.height = projector.height;
     options.colour.made_with = "simulated bench " + bench.description().name;
+    options.mockup = mockup_mask(product.mesh, projector);
     BenchCalibration result;
     result.live = calibrate_live(bench.ports(), options, progress);
 

@@ -10,6 +10,7 @@
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/image_io.h"
+#include "scene/mockup_mask.h"
 #include "session/bench_calibration.h"
 #include "twin/chart.h"
 
@@ -91,7 +92,9 @@ CalibratedBench calibrate_bench(const DemoOptions& options,
     });
 
     result.design_white_y =
-        design_white_luminance(result.calibration, options.design_white_percentile);
+        design_white_luminance(result.calibration,
+                               options.design_white_percentile,
+                               mockup_mask(product->mesh, description.projector.view));
     result.table = bake(result.calibration, result.design_white_y);
 
     timed(times, "solve again with the chart's matrix", [&] {

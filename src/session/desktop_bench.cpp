@@ -142,7 +142,7 @@ struct Desktop {
             const std::filesystem::path& session_file,
             const std::filesystem::path& calibration)
         : product(find_product("car")),
-          setup(load_setup(calibration, 20.0)),
+          setup(load_setup(calibration, 20.0, product->mesh)),
           session(Session::open(session_file)),
           contexts(device),
           thread(contexts.front, contexts.back, [this](FramePointer frame) {

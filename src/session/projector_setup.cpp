@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/paths.h"
 #include "core/replace_folder.h"
+#include "scene/mockup_mask.h"
 #include "session/bench_calibration.h"
 #include "session/setup_cache.h"
 #include "twin/description.h"
@@ -38,17 +39,25 @@ class UnfinishedFolder {
 }  // namespace
 
 std::shared_ptr<const ProjectorSetup> load_setup(const std::filesystem::path& folder,
-                                                 double design_white_percentile) {
+                                                 double design_white_percentile,
+                                                 const Mesh& mesh) {
     std::error_code error;
-    const bool there = std::filesystem::exists(folder / "calibration.json", error);
-    const std::string kept = there ? setup_cache_name(folder, design_white_percentile) : "";
-    auto setup = there ? read_kept_setup(kept) : nullptr;
     const auto camera_file = folder / "projector.json";
-    if (setup) {
-        setup->view = read_camera_file(camera_file);
-        return setup;
+    // Folders without a projector are found out below, after what names them better.
+    const bool there = std::filesystem::exists(folder / "calibration.json", error) &&
+                       std::filesystem::exists(camera_file, error);
+    std::string kept;
+    Image8 mockup;
+    if (there) {
+        const View view = read_camera_file(camera_file);
+        mockup = mockup_mask(mesh, view);
+        kept = setup_cache_name(folder, design_white_percentile, mockup);
+        if (auto setup = read_kept_setup(kept)) {
+            setup->view = view;
+            return setup;
+        }
     }
-    setup = std::make_shared<ProjectorSetup>();
+    auto setup = std::make_shared<ProjectorSetup>();
     ColourCalibration calibration = read_calibration(folder);
     setup->view = read_camera_file(camera_file);
     if (setup->view.width != calibration.width || setup->view.height != calibration.height) {
@@ -58,7 +67,7 @@ std::shared_ptr<const ProjectorSetup> load_setup(const std::filesystem::path& fo
             fmt::format("{} x {}", setup->view.width, setup->view.height),
             fmt::format("{} x {}, as the calibration", calibration.width, calibration.height));
     }
-    setup->design_white_y = design_white_luminance(calibration, design_white_percentile);
+    setup->design_white_y = design_white_luminance(calibration, design_white_percentile, mockup);
     setup->table = bake(calibration, setup->design_white_y);
     for (ImageF* plane :
          {&calibration.unmixing, &calibration.dark, &calibration.span, &calibration.camera_px}) {

@@ -26,10 +26,12 @@ struct ProjectorSetup {
     std::string why_uncorrected;  ///< empty when there is a table
 };
 
-/// From a calibration folder (calibration.json and projector.json). Throws FileError (also for a
-/// projector of another size than the calibration), Refused when nothing in it is valid.
+/// From a calibration folder (calibration.json and projector.json), for the mock-up with this mesh.
+/// Throws FileError (also for a projector of another size than the calibration), Refused when
+/// nothing of the mock-up is valid in it.
 std::shared_ptr<const ProjectorSetup> load_setup(const std::filesystem::path& folder,
-                                                 double design_white_percentile);
+                                                 double design_white_percentile,
+                                                 const Mesh& mesh);
 /// No calibration yet: the bench's projector, pictures go out as sRGB.
 std::shared_ptr<const ProjectorSetup> uncorrected_setup(const std::string& bench);
 

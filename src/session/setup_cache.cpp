@@ -18,7 +18,7 @@ namespace livery {
 namespace {
 
 /// Rises when what is kept, or how it is worked out from a calibration, changes.
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 
 /// Values one after the other into bytes.
 class Writer {
@@ -151,7 +151,8 @@ void visit_setup(Archive& archive, Setup& setup) {
 }  // namespace
 
 std::string setup_cache_name(const std::filesystem::path& calibration,
-                             double design_white_percentile) {
+                             double design_white_percentile,
+                             const Image8& mockup) {
     std::vector<std::filesystem::path> files;
     std::error_code error;
     for (std::filesystem::directory_iterator entry(calibration, error), end; !error && entry != end;
@@ -162,6 +163,7 @@ std::string setup_cache_name(const std::filesystem::path& calibration,
     std::sort(files.begin(), files.end());
     Hasher hasher;
     hasher.add(fmt::format("{} {}", kVersion, design_white_percentile));
+    hasher.add_bytes(mockup.values.data(), mockup.values.size());
     for (const auto& file : files) {
         hasher.add(file.filename().string());
         hasher.add(read_text_file(file, std::size_t{4} << 30u));

@@ -10,10 +10,11 @@
 
 namespace livery {
 
-/// Of all that load_setup() reads and of the percentile. Throws FileError for a folder or a file in
-/// it that cannot be read.
+/// Of all that load_setup() reads, of the percentile and of the pixels that count. Throws FileError
+/// for a folder or a file in it that cannot be read.
 std::string setup_cache_name(const std::filesystem::path& calibration,
-                             double design_white_percentile);
+                             double design_white_percentile,
+                             const Image8& mockup);
 
 /// All but the view. Nothing when it is not kept (core/cache.h).
 std::shared_ptr<ProjectorSetup> read_kept_setup(const std::string& name);

@@ -148,7 +148,8 @@ void bench_frames(SpeedBenchResult& result,
     }
 
     const ColourCalibration calibration = synthetic_calibration(map.coverage);
-    const CompensationTable table = bake(calibration, design_white_luminance(calibration, 20.0));
+    const CompensationTable table =
+        bake(calibration, design_white_luminance(calibration, 20.0, {}));
     GpuCompensation gpu(table);
     // Programs and textures of every look are made before anything is timed.
     for (const Scene& look : scene.looks) {

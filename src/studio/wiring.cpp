@@ -87,10 +87,12 @@ void ask_for_setup(Shell& shell) {
     shell.asked_setup = key;
     const auto still_wanted = [&shell, key] { return shell.asked_setup == key; };
     shell.studio.background->run(
-        [&shell, key, still_wanted](const Progress&) -> Background::Then {
-            const auto setup = key.calibration.empty()
-                                   ? uncorrected_setup(key.bench)
-                                   : load_setup(key.calibration, key.design_white_percentile);
+        [&shell, key, still_wanted, product = shell.studio.product](
+            const Progress&) -> Background::Then {
+            const auto setup =
+                key.calibration.empty()
+                    ? uncorrected_setup(key.bench)
+                    : load_setup(key.calibration, key.design_white_percentile, product->mesh);
             return [&shell, setup, still_wanted] {
                 if (still_wanted()) take_setup(shell, setup);
             };

@@ -46,6 +46,7 @@ void check_view(const View& view, const char* what) {
 struct Bench::State {
     BenchDescription description;
     std::shared_ptr<const Product> product;
+    Mesh mesh;  ///< the product's with what stands around it
     SurfaceSet surfaces;
     Receivers camera, observer;
     Gathers gathers;
@@ -69,8 +70,9 @@ struct Bench::State {
 };
 
 void Bench::State::trace(const Progress& progress) {
-    const Tracer tracer(product->mesh);
-    const TracedWorld world{product->mesh,
+    const Tracer tracer(mesh);
+    const TracedWorld world{mesh,
+                            product->mesh.parts.size(),
                             tracer,
                             surfaces,
                             description,
@@ -235,7 +237,8 @@ Bench::Bench(const BenchDescription& description,
                    fmt::format("bench: {} samples a side", description.samples_a_side));
     state_->description = description;
     state_->product = std::move(product);
-    state_->surfaces = make_surfaces(description.mockup, state_->product->mesh);
+    state_->mesh = with_surroundings(state_->product->mesh, description);
+    state_->surfaces = make_surfaces(description, state_->mesh);
     state_->trace(progress);
     state_->measure_truth();
     state_->default_exposure_s = description.camera.exposure_s > 0.0 ? description.camera.exposure_s

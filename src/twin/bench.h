@@ -34,8 +34,8 @@ class Bench {
     double default_exposure_s() const;
 
     /// The observer's truth, never shown to a calibration: spectral XYZ toward the eye point of
-    /// what each projector pixel lights (3 channels, 0 where it lights nothing of the mock-up): the
-    /// mean over the lit part of the pixel, under the lamp's nominal light. A white diffuser that
+    /// what each projector pixel lights (3 channels, 0 where it lights nothing): the mean over the
+    /// lit part of the pixel, under the lamp's nominal light. A white diffuser that
     /// faces the projector's full red + green + blue at the distance of the mock-up's middle has Y
     /// = 1.
     ImageF observe_xyz(const Image8& drive) const;

@@ -61,7 +61,14 @@ struct MockupDescription {
     double diffuse_sigma_rad = 0.0;  ///< roughness of the diffuse part (Oren-Nayar); 0: Lambert
     double sheen_f0 = 0.0;           ///< Fresnel reflectance of a GGX lobe over it
     double sheen_alpha = 0.4;
-    bool interreflection = false;  ///< one bounce between parts
+    bool interreflection = false;  ///< one bounce between parts, and from what stands around
+};
+
+/// A rectangle that the projector lights besides the mock-up: a table, a wall, a floor. Its front
+/// is where side_a x side_b points.
+struct SurroundingDescription {
+    SurfaceDescription surface;
+    glm::dvec3 corner_mm{0.0}, side_a_mm{0.0}, side_b_mm{0.0};
 };
 
 struct BenchDescription {
@@ -71,7 +78,8 @@ struct BenchDescription {
     ProjectorDescription projector;
     CameraDescription camera;
     MockupDescription mockup;
-    glm::dvec3 eye_mm{0.0};  ///< the observer
+    std::map<std::string, SurroundingDescription> surroundings;  ///< by name
+    glm::dvec3 eye_mm{0.0};                                      ///< the observer
     double ambient =
         0.0;  ///< luminance of a white diffuser in the room's light, over projector white
     Spectrum ambient_spectrum = illuminant_d65();

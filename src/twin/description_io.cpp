@@ -259,6 +259,43 @@ CameraDescription read_camera(const JsonReader& json) {
     return camera;
 }
 
+SurfaceDescription read_surface(const JsonReader& entry) {
+    SurfaceDescription surface;
+    surface.reflectance = read_reflectance(entry["reflectance"]);
+    read_number(entry, "second_share", 0.0, 1.0, surface.second_share);
+    read_number(entry, "pattern_mm", 0.1, 10'000.0, surface.pattern_mm);
+    if (surface.second_share > 0.0 || entry.has("second")) {
+        surface.second = read_reflectance(entry["second"]);
+    }
+    return surface;
+}
+
+std::map<std::string, SurroundingDescription> read_surroundings(const JsonReader& json) {
+    std::map<std::string, SurroundingDescription> surroundings;
+    for (const auto& name : json.keys()) {
+        const auto entry = json[name];
+        entry.allow_only({"reflectance",
+                          "second",
+                          "second_share",
+                          "pattern_mm",
+                          "corner_mm",
+                          "side_a_mm",
+                          "side_b_mm"});
+        SurroundingDescription one;
+        one.surface = read_surface(entry);
+        one.corner_mm = place_mm(entry["corner_mm"]);
+        one.side_a_mm = place_mm(entry["side_a_mm"]);
+        one.side_b_mm = place_mm(entry["side_b_mm"]);
+        const double area = glm::length(glm::cross(one.side_a_mm, one.side_b_mm));
+        if (!(area > 1e-6)) {
+            entry.fail("a rectangle of " + std::to_string(area) + " mm2",
+                       "two sides that span a rectangle");
+        }
+        surroundings[name] = one;
+    }
+    return surroundings;
+}
+
 MockupDescription read_mockup(const JsonReader& json) {
     json.allow_only(
         {"surfaces", "diffuse_sigma_deg", "sheen_f0", "sheen_alpha", "interreflection"});
@@ -267,14 +304,7 @@ MockupDescription read_mockup(const JsonReader& json) {
     for (const auto& part : surfaces.keys()) {
         const auto entry = surfaces[part];
         entry.allow_only({"reflectance", "second", "second_share", "pattern_mm"});
-        SurfaceDescription surface;
-        surface.reflectance = read_reflectance(entry["reflectance"]);
-        read_number(entry, "second_share", 0.0, 1.0, surface.second_share);
-        read_number(entry, "pattern_mm", 0.1, 10'000.0, surface.pattern_mm);
-        if (surface.second_share > 0.0 || entry.has("second")) {
-            surface.second = read_reflectance(entry["second"]);
-        }
-        mockup.surfaces[part] = surface;
+        mockup.surfaces[part] = read_surface(entry);
     }
     double sigma_deg = 0.0;
     read_number(json, "diffuse_sigma_deg", 0.0, 60.0, sigma_deg);
@@ -334,6 +364,7 @@ BenchDescription parse_bench(const std::string& text, const std::filesystem::pat
                      "projector",
                      "camera",
                      "mockup",
+                     "surroundings",
                      "eye_mm",
                      "ambient",
                      "ambient_spectrum",
@@ -349,6 +380,9 @@ BenchDescription parse_bench(const std::string& text, const std::filesystem::pat
     bench.projector = read_projector(json["projector"]);
     bench.camera = read_camera(json["camera"]);
     bench.mockup = read_mockup(json["mockup"]);
+    if (json.has("surroundings")) {
+        bench.surroundings = read_surroundings(json["surroundings"]);
+    }
     bench.eye_mm = place_mm(json["eye_mm"]);
     read_number(json, "ambient", 0.0, 10.0, bench.ambient);
     if (json.has("ambient_spectrum")) {

@@ -267,7 +267,7 @@ ProjectorPaths trace_projector(const TracedWorld& world, const Progress& progres
                 const auto first = static_cast<std::size_t>((x - x0) * samples);
                 const auto own = static_cast<std::uint32_t>(y * view.width + x);
                 glm::dvec3 position(0.0), normal(0.0);
-                int lit = 0, hit_count = 0, looked = 0, seen = 0;
+                int lit = 0, lit_mockup = 0, hit_count = 0, looked = 0, seen = 0;
                 bool parts_differ = false;
                 for (std::size_t k = first; k < first + static_cast<std::size_t>(samples); ++k) {
                     if (!hits[k].valid()) continue;
@@ -283,6 +283,7 @@ ProjectorPaths trace_projector(const TracedWorld& world, const Progress& progres
                     if (!light) continue;
                     light->pixel = own;  // rounding must not hand the patch to a neighbour
                     ++lit;
+                    lit_mockup += place.part < world.mockup_parts;
                     position += place.position_mm;
                     normal += place.normal;
                     // Half of a pixel is not worth sixteen rays: the grid's diagonal is asked.
@@ -309,7 +310,7 @@ ProjectorPaths trace_projector(const TracedWorld& world, const Progress& progres
                 for (auto& term : row.terms) term.weight /= static_cast<float>(lit);
                 for (auto& cover : row.covers) cover.share /= static_cast<float>(lit);
                 position /= double(lit);
-                if (2 * lit >= samples) result.lit.at(x, y) = 255;
+                if (2 * lit_mockup >= samples) result.lit.at(x, y) = 255;
                 if (looked > 0 && 2 * seen >= looked) result.seen_by_eye.at(x, y) = 255;
                 row.finish(own, position, normal);
                 const glm::vec3 mean = row.paths.normal.back();

@@ -28,7 +28,12 @@ struct SurfaceSet {
     std::uint16_t sheen = 0;
     double diffuse_sigma_rad = 0.0, sheen_f0 = 0.0, sheen_alpha = 0.4;
 };
-SurfaceSet make_surfaces(const MockupDescription& mockup, const Mesh& mesh);
+/// The description's surroundings follow the mock-up's parts.
+SurfaceSet make_surfaces(const BenchDescription& bench, const Mesh& mesh);
+
+/// The mock-up with the rectangles around it as further parts. Throws std::invalid_argument for a
+/// name that a part has.
+Mesh with_surroundings(const Mesh& mockup, const BenchDescription& bench);
 
 /// Light from one projector pixel, reflected toward the receiver: weight times the pixel's light
 /// times the reflectance, in units of a white diffuser that faces the projector at the reference
@@ -56,7 +61,8 @@ struct LightPaths {
 
 /// Everything that the tracing needs to know of the world.
 struct TracedWorld {
-    const Mesh& mesh;
+    const Mesh& mesh;              ///< the mock-up, then its surroundings
+    std::size_t mockup_parts = 0;  ///< parts before this one are the mock-up's
     const Tracer& tracer;
     const SurfaceSet& surfaces;
     const BenchDescription& bench;

@@ -54,7 +54,29 @@ double sheen_lobe(
 
 }  // namespace
 
-SurfaceSet make_surfaces(const MockupDescription& mockup, const Mesh& mesh) {
+Mesh with_surroundings(const Mesh& mockup, const BenchDescription& bench) {
+    Mesh world = mockup;
+    for (const auto& [name, around] : bench.surroundings) {
+        for (const Part& part : mockup.parts) {
+            check_argument(part.name != name, "bench: '" + name + "' is a part and a surrounding");
+        }
+        const glm::vec3 corner(around.corner_mm), a(around.side_a_mm), b(around.side_b_mm);
+        Mesh rectangle;
+        rectangle.positions_mm = {corner, corner + a, corner + a + b, corner + b};
+        rectangle.triangles = {{0, 1, 2}, {0, 2, 3}};
+        rectangle.triangle_part = {0, 0};
+        rectangle.uvs.assign(4, glm::vec2(0.0f));
+        rectangle.parts.emplace_back().name = name;
+        compute_normals(rectangle);
+        compute_tangents(rectangle);
+        append(world, rectangle, "");
+    }
+    return world;
+}
+
+SurfaceSet make_surfaces(const BenchDescription& bench, const Mesh& mesh) {
+    MockupDescription mockup = bench.mockup;
+    for (const auto& [name, around] : bench.surroundings) mockup.surfaces[name] = around.surface;
     SurfaceSet set;
     set.diffuse_sigma_rad = mockup.diffuse_sigma_rad;
     set.sheen_f0 = mockup.sheen_f0;

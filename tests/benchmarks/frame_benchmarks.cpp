@@ -13,7 +13,7 @@ namespace {
 
 CompensationTable table_of(const FrameGeometry& geometry) {
     const ColourCalibration calibration = synthetic_calibration(geometry.map.coverage);
-    return bake(calibration, design_white_luminance(calibration, 20.0));
+    return bake(calibration, design_white_luminance(calibration, 20.0, {}));
 }
 
 FramePlan draft_of(const Scene& scene) {

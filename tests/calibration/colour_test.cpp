@@ -393,7 +393,7 @@ TEST(CalibrateColour, APictureThatDidNotArriveIsNoticed) {
     captures[5].photograph = captures[4].photograph;  // gray-levels shows blue
     EXPECT_HAS(
         message_of<Refused>([&] { calibrate_colour(captures, patterns, bench.exact_map(), {}); }),
-        "do not get brighter");
+        "does not show its pattern");
     captures[5].photograph = captures[1].photograph;  // gray-levels shows bright-gray
     EXPECT_THROW(calibrate_colour(captures, patterns, bench.exact_map(), {}), Refused);
     // Red and green swapped

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -91,23 +92,48 @@ int smallest_block(const Image8& drive) {
     return smallest;
 }
 
-TEST(ColourPatterns, GreyLevelsLieInBlocksAndAllOfThemInAnySixteenBlocksSquare) {
-    for (const int width : {160, 1280, 1920}) {
+TEST(ColourPatterns, GreyLevelsLieInBlocksTheDarkOnesDenser) {
+    for (const int width : {160, 640, 1280, 1920}) {
         const Image8 drive = colour_patterns(width, width * 5 / 8, 0, 255).back().drive;
         const int block = smallest_block(drive);
-        EXPECT_GE(block, 8) << width;
-        EXPECT_LE(block, 16) << width;
-        if (width < 60 * block) continue;  // too few blocks for three windows
-        // Three windows, none of them aligned with the tiles
-        for (const int start : {1, 7, 40}) {
-            std::set<int> levels;
-            for (int by = start; by < start + 16; ++by)
-                for (int bx = start; bx < start + 16; ++bx)
-                    if (bx * block + 4 < drive.width && by * block + 4 < drive.height)
-                        levels.insert(drive.at(bx * block + 4, by * block + 4));
-            EXPECT_EQ(levels.size(), 256u) << width << " from " << start;
+        EXPECT_EQ(block, width == 160 ? 8 : 16) << width;
+        std::vector<int> count(256, 0);
+        int blocks = 0;
+        for (int y = block / 2; y < drive.height; y += block)
+            for (int x = block / 2; x < drive.width; x += block) {
+                ++count[drive.at(x, y)];
+                ++blocks;
+            }
+        // A quarter black, a sixteenth white, whichever part of the picture the mock-up takes
+        EXPECT_NEAR(count[0], 0.25 * blocks, 0.06 * blocks) << width;
+        EXPECT_NEAR(count[255], blocks / 16.0, 0.03 * blocks) << width;
+        int dark = 0, middle = 0, largest_gap = 0, last = 0;
+        for (int level = 1; level < 255; ++level) {
+            if (level <= 64) dark += count[static_cast<std::size_t>(level)];
+            if (level > 96 && level <= 160) middle += count[static_cast<std::size_t>(level)];
+            if (count[static_cast<std::size_t>(level)] == 0) continue;
+            largest_gap = std::max(largest_gap, level - last);
+            last = level;
         }
+        EXPECT_GT(dark, 1.3 * middle) << width;
+        EXPECT_LE(largest_gap, width >= 640 ? 6 : 40) << width;
     }
+}
+
+// Light scatters from block to block: black ones must not lie more brightly than others.
+TEST(ColourPatterns, GreyLevelsHaveNeighboursAlike) {
+    const Image8 drive = colour_patterns(1920, 1200, 0, 255).back().drive;
+    const int block = smallest_block(drive);
+    double of_black = 0.0, blacks = 0.0, of_others = 0.0, others = 0.0;
+    for (int y = block + block / 2; y + block < drive.height; y += block)
+        for (int x = block + block / 2; x + block < drive.width; x += block) {
+            const double around = drive.at(x - block, y) + drive.at(x + block, y) +
+                                  drive.at(x, y - block) + drive.at(x, y + block);
+            (drive.at(x, y) == 0 ? of_black : of_others) += around / 4.0;
+            (drive.at(x, y) == 0 ? blacks : others) += 1.0;
+        }
+    // Four standard errors of the mean of some 2000 blocks
+    EXPECT_NEAR(of_black / blacks, of_others / others, 5.0);
 }
 
 TEST(MosaicPatterns, HoldRampsOfEveryKindAndFillTheCube) {

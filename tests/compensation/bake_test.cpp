@@ -95,7 +95,7 @@ TEST(DesignWhite, IsThePercentileOfWhatEachPixelCanShow) {
     const World world = neutral_world(20, 10);  // brightest neutrals 1/200 ... 200/200
     const ColourCalibration calibration = calibrate(world);
     for (const double percentile : {0.0, 5.0, 20.0, 50.0, 99.0, 100.0}) {
-        const double white = design_white_luminance(calibration, percentile);
+        const double white = design_white_luminance(calibration, percentile, {});
         int can = 0;
         for (int i = 1; i <= 200; ++i) can += i / 200.0 >= white * (1.0 - 1e-5) ? 1 : 0;
         const int must = static_cast<int>(std::ceil((100.0 - percentile) / 100.0 * 200.0));
@@ -109,7 +109,7 @@ TEST(DesignWhite, IsThePercentileOfWhatEachPixelCanShow) {
 TEST(DesignWhite, IsReachedByFullDriveAtThePixelThatSetsIt) {
     const World world = neutral_world(20, 10);
     const ColourCalibration calibration = calibrate(world);
-    const double white = design_white_luminance(calibration, 20.0);
+    const double white = design_white_luminance(calibration, 20.0, {});
     CompensationStats stats;
     const Image8 out = compensate(bake(calibration, white), ImageF(20, 10, 3, 1.0f), &stats);
     for (int k = 0; k < 3; ++k) {
@@ -119,18 +119,18 @@ TEST(DesignWhite, IsReachedByFullDriveAtThePixelThatSetsIt) {
     EXPECT_NEAR(stats.clipped_high_fraction, 0.2, 1e-9);
 }
 
-TEST(DesignWhite, CountsOnlyThePartsThatMatter) {
+TEST(DesignWhite, CountsOnlyTheMockup) {
     const ColourCalibration calibration = calibrate(neutral_world(20, 10));
     Image8 mask(20, 10, 1);
     for (std::size_t i = 100; i < 200; ++i) mask.values[i] = 1;
     EXPECT_NEAR(design_white_luminance(calibration, 0.0, mask), 101.0 / 200.0, 1e-5);
     EXPECT_NE(message_of([&] {
                   design_white_luminance(calibration, 20.0, Image8(10, 10, 1));
-              }).find("plane parts mask is 10x10"),
+              }).find("plane mock-up mask is 10x10"),
               std::string::npos);
     EXPECT_THROW(design_white_luminance(calibration, 20.0, Image8(20, 10, 1)), Refused);
     for (const double percentile : {-1.0, 100.5, static_cast<double>(kNan)}) {
-        EXPECT_THROW(design_white_luminance(calibration, percentile), std::invalid_argument);
+        EXPECT_THROW(design_white_luminance(calibration, percentile, {}), std::invalid_argument);
     }
 }
 
@@ -142,10 +142,10 @@ TEST(DesignWhite, IsLimitedByTheWeakestChannel) {
         world.mixing[i][2][2] = 0.25;
     }
     const ColourCalibration calibration = calibrate(world);
-    EXPECT_NEAR(design_white_luminance(calibration, 20.0), 0.25, 1e-6);
+    EXPECT_NEAR(design_white_luminance(calibration, 20.0, {}), 0.25, 1e-6);
     // Ambient light adds to what can be shown.
     for (glm::dvec3& ambient : world.ambient) ambient = glm::dvec3(0.01);
-    EXPECT_NEAR(design_white_luminance(calibrate(world), 20.0), 0.26, 1e-6);
+    EXPECT_NEAR(design_white_luminance(calibrate(world), 20.0, {}), 0.26, 1e-6);
 }
 
 }  // namespace

@@ -327,7 +327,7 @@ TEST(Compensate, EmptyCalibrationShowsBlack) {
     EXPECT_EQ(stats.invalid_fraction, 1.0);
     EXPECT_EQ(stats.out_of_gamut_fraction, 0.0);
     try {
-        design_white_luminance(calibration, 20.0);
+        design_white_luminance(calibration, 20.0, {});
         FAIL() << "an answer from nothing";
     } catch (const Refused& refused) {
         EXPECT_NE(refused.why().find("no pixel of the evaluated parts"), std::string::npos);

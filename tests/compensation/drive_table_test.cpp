@@ -173,7 +173,7 @@ TEST_F(DriveTableTest, CountsAndSurvivesTheImpossible) {
 // Design white of a clear segment: grey 255 is the brightest neutral-ish colour, and pure D65 can
 // be no brighter than the channel that runs out first.
 TEST_F(DriveTableTest, DesignWhiteIsReachable) {
-    const double white = design_white_luminance(calibration_, 0.0);
+    const double white = design_white_luminance(calibration_, 0.0, {});
     EXPECT_GT(white, 0.0);
     CompensationStats stats;
     compensate(bake(calibration_, white * 0.98), ImageF(24, 16, 3, 1.0f), &stats);

@@ -82,7 +82,7 @@ inline std::shared_ptr<const ProjectorSetup> setup_of(const View& view, const Sc
     setup->view = view;
     const FrameGeometry geometry(scene.product, view);
     const ColourCalibration calibration = synthetic_calibration(geometry.map.coverage);
-    setup->design_white_y = design_white_luminance(calibration, 20.0);
+    setup->design_white_y = design_white_luminance(calibration, 20.0, {});
     setup->table = bake(calibration, setup->design_white_y);
     return setup;
 }

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "core/paths.h"
+#include "scene/mockup_mask.h"
 #include "session/bench_calibration.h"
 #include "session/small_session.h"
 #include "session/synthetic_calibration.h"
@@ -34,13 +35,25 @@ class ProjectorSetupTest : public ::testing::Test {
     }
 
     TemporaryFolder folder_;
+    /// The left half of what the projector of write_small() lights.
+    Mesh mesh_ = left_half();
+
+    static Mesh left_half() {
+        Mesh mesh = make_sphere({0, 0, 0}, 1.0, 4, "half");
+        mesh.positions_mm = {{-200, -100, 0}, {0, -100, 0}, {0, 100, 0}, {-200, 100, 0}};
+        mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+        return mesh;
+    }
 };
 
 TEST_F(ProjectorSetupTest, IsTheCalibrationBakedForItsDesignWhite) {
     const auto folder = write_small();
-    const auto setup = load_setup(folder, 20.0);
+    const auto setup = load_setup(folder, 20.0, mesh_);
     const ColourCalibration calibration = read_calibration(folder);
-    EXPECT_EQ(setup->design_white_y, design_white_luminance(calibration, 20.0));
+    EXPECT_EQ(
+        setup->design_white_y,
+        design_white_luminance(
+            calibration, 20.0, mockup_mask(mesh_, read_camera_file(folder / "projector.json"))));
     ASSERT_TRUE(setup->table && setup->calibration);
     EXPECT_EQ(setup->table->coefficients, bake(calibration, setup->design_white_y).coefficients);
     EXPECT_EQ(setup->calibration->id, calibration.id);
@@ -48,7 +61,9 @@ TEST_F(ProjectorSetupTest, IsTheCalibrationBakedForItsDesignWhite) {
     EXPECT_EQ(setup->calibration->status.values, calibration.status.values);
     EXPECT_EQ(setup->view.width, 32);
     EXPECT_EQ(setup->why_uncorrected, "");
-    EXPECT_LT(load_setup(folder, 5.0)->design_white_y, setup->design_white_y);
+    // The synthetic light rises to the right, where there is table: it must not count.
+    EXPECT_LT(setup->design_white_y, design_white_luminance(calibration, 20.0, {}));
+    EXPECT_LT(load_setup(folder, 5.0, mesh_)->design_white_y, setup->design_white_y);
 }
 
 std::vector<std::filesystem::path> kept_setups() {
@@ -82,49 +97,52 @@ void expect_same(const ProjectorSetup& a, const ProjectorSetup& b) {
 
 TEST_F(ProjectorSetupTest, IsKeptAndTheSameAgain) {
     const auto folder = write_small();
-    const auto first = load_setup(folder, 20.0);
+    const auto first = load_setup(folder, 20.0, mesh_);
     ASSERT_EQ(kept_setups().size(), 1u);
-    expect_same(*load_setup(folder, 20.0), *first);
+    expect_same(*load_setup(folder, 20.0, mesh_), *first);
     EXPECT_EQ(kept_setups().size(), 1u);
-    load_setup(folder, 5.0);
+    load_setup(folder, 5.0, mesh_);
     EXPECT_EQ(kept_setups().size(), 2u) << "another design white is baked otherwise";
+    load_setup(folder, 20.0, make_sphere({0, 0, 0}, 30.0, 8, "ball"));
+    EXPECT_EQ(kept_setups().size(), 3u) << "another mock-up has another design white";
 }
 
 TEST_F(ProjectorSetupTest, WhatIsKeptNeverStandsForAChangedCalibration) {
     const auto folder = write_small();
-    load_setup(folder, 20.0);
+    load_setup(folder, 20.0, mesh_);
     std::ofstream(folder / "dark.exr") << "damaged";
-    EXPECT_TRUE(fails_with([&] { load_setup(folder, 20.0); }, {"dark.exr"}));
+    EXPECT_TRUE(fails_with([&] { load_setup(folder, 20.0, mesh_); }, {"dark.exr"}));
 }
 
 TEST_F(ProjectorSetupTest, DamagedOrUnwritableItIsWorkedOutAgain) {
     const auto folder = write_small();
-    const auto first = load_setup(folder, 20.0);
+    const auto first = load_setup(folder, 20.0, mesh_);
     for (const std::uintmax_t size :
          {std::uintmax_t{0}, std::uintmax_t{20}, std::uintmax_t{5000}}) {
         std::filesystem::resize_file(kept_setups().front(), size);
-        expect_same(*load_setup(folder, 20.0), *first);
+        expect_same(*load_setup(folder, 20.0, mesh_), *first);
     }
     const auto file = kept_setups().front();
     std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
     stream.seekp(3000).put('\x55');
     stream.close();
-    expect_same(*load_setup(folder, 20.0), *first);
+    expect_same(*load_setup(folder, 20.0, mesh_), *first);
     std::filesystem::remove_all(user_folder());
     std::ofstream(user_folder()) << "a file where the user's folder should be";
-    expect_same(*load_setup(folder, 20.0), *first);
+    expect_same(*load_setup(folder, 20.0, mesh_), *first);
 }
 
 TEST_F(ProjectorSetupTest, RefusesFoldersThatAreNone) {
-    EXPECT_TRUE(fails_with([&] { load_setup(folder_ / "missing", 20.0); },
+    EXPECT_TRUE(fails_with([&] { load_setup(folder_ / "missing", 20.0, mesh_); },
                            {"missing", "nothing", "a calibration's folder"}));
     const auto folder = write_small();
     std::filesystem::remove(folder / "projector.json");
-    EXPECT_TRUE(fails_with([&] { load_setup(folder, 20.0); }, {"projector.json", "no such file"}));
+    EXPECT_TRUE(
+        fails_with([&] { load_setup(folder, 20.0, mesh_); }, {"projector.json", "no such file"}));
     std::ofstream(folder / "projector.json") << "{";
-    EXPECT_TRUE(fails_with([&] { load_setup(folder, 20.0); }, {"projector.json"}));
+    EXPECT_TRUE(fails_with([&] { load_setup(folder, 20.0, mesh_); }, {"projector.json"}));
     write_small(64);
-    EXPECT_TRUE(fails_with([&] { load_setup(folder, 20.0); },
+    EXPECT_TRUE(fails_with([&] { load_setup(folder, 20.0, mesh_); },
                            {"projector.json", "64 x 20", "32 x 20, as the calibration"}));
 }
 
@@ -141,7 +159,7 @@ TEST_F(ProjectorSetupTest, CalibrationsOfTheBenchAreKeptNewestFirst) {
     const auto product = testing::small_bench_product();
     Bench bench(testing::small_bench_description(), product);
     const auto made = calibrate_on_bench(bench, *product, {});
-    const auto setup = load_setup(made, 20.0);
+    const auto setup = load_setup(made, 20.0, product->mesh);
     EXPECT_GT(setup->calibration->valid_fraction, 0.9);
     EXPECT_GT(setup->calibration->predicted_fraction, 0.0);
     EXPECT_EQ(setup->view.width, 320);

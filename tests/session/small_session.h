@@ -92,7 +92,7 @@ inline Judged judged(const Bench& bench, LiveResult live) {
     Judged result;
     bool masked_is_black = true;
     const ColourCalibration& calibration = live.calibration;
-    const double design_white_y = design_white_luminance(calibration, 20.0);
+    const double design_white_y = design_white_luminance(calibration, 20.0, bench.truth().lit);
     const ImageF wanted = smooth_colours(calibration.width, calibration.height, 7);
     const Image8 drive = compensate(bake(calibration, design_white_y), wanted);
     const ImageF wanted_xyz = xyz_from_wanted(wanted, design_white_y);

@@ -256,6 +256,44 @@ TEST(Bench, ASmallPlateCastsAShadowOnTheWall) {
     EXPECT_EQ(truth.edge.at(80, 60), 0);
 }
 
+// A plate as the mock-up, the wall behind it as its surroundings.
+TEST(Bench, WhatStandsAroundTheMockupIsSeenAndNotJudged) {
+    const Mesh plate = make_rectangle({-40, -30, 60}, {80, 0, 0}, {0, 60, 0}, "plate");
+    BenchDescription description = wall_bench();
+    const Bench alone(description, product_of(plate));
+    SurroundingDescription& wall = description.surroundings["wall"];
+    wall.corner_mm = {-180, -140, 0};
+    wall.side_a_mm = {360, 0, 0};
+    wall.side_b_mm = {0, 280, 0};
+    wall.surface.reflectance = flat(0.25);
+    Bench bench(description, product_of(plate));
+
+    // What counts is the plate, as without a wall.
+    EXPECT_EQ(bench.truth().lit.values, alone.truth().lit.values);
+    const ImageF with = bench.observe_xyz(filled(description, 255, 255, 255));
+    const ImageF without = alone.observe_xyz(filled(description, 255, 255, 255));
+    EXPECT_EQ(with.at(80, 60, 1), without.at(80, 60, 1));
+    // The wall is lit: a quarter at 500 mm, in units of white at the plate's 440 mm
+    EXPECT_EQ(without.at(8, 60, 1), 0.0f);
+    const double cosine = -ray_through(description.projector.view, {8.5, 60.5}).direction.z;
+    EXPECT_NEAR(with.at(8, 60, 1), 0.25 * std::pow(cosine, 3) * 440 * 440 / (500.0 * 500.0), 2e-4);
+
+    // The camera sees the wall, and the plate's shadow on it.
+    const BenchPorts ports = bench.ports();
+    ports.show(filled(description, 255, 255, 255));
+    const Photograph photograph = ports.photograph(0.0);
+    const auto light_at = [&](const glm::dvec3& x_mm) {
+        const glm::dvec2 pixel = *project(description.camera.view, x_mm);
+        return photograph.image.at(static_cast<int>(pixel.x), static_cast<int>(pixel.y), 1) -
+               static_cast<float>(photograph.black_level);
+    };
+    EXPECT_GT(light_at({-80, 0, 0}), 500.0f);
+    EXPECT_LT(light_at({38, 0, 0}), 10.0f) << "the shadow's border lies at 45.5 mm";
+
+    description.surroundings["plate"] = wall;
+    EXPECT_THROW(Bench(description, product_of(plate)), std::invalid_argument);
+}
+
 TEST(Bench, TruthSaysWhatTheEyeSees) {
     // The eye looks at the wall from behind the plate's shadow side: the plate hides some of it.
     Mesh mesh = make_wall();

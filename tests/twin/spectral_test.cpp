@@ -54,9 +54,9 @@ TEST(Spectral, FoldedFactorsEqualTheSumOverAllBands) {
     bench.mockup.surfaces["floor"] = {band(530, 15), {}, 0.0, 20.0};
     const Mesh mesh = make_corner();
     const Tracer tracer(mesh);
-    const SurfaceSet surfaces = make_surfaces(bench.mockup, mesh);
+    const SurfaceSet surfaces = make_surfaces(bench, mesh);
     ASSERT_EQ(surfaces.reflectances.size(), 4u);
-    const TracedWorld world{mesh, tracer, surfaces, bench, 450.0};
+    const TracedWorld world{mesh, mesh.parts.size(), tracer, surfaces, bench, 450.0};
 
     for (const auto& sensor : {camera_sensor(bench), observer_sensor()}) {
         Receivers receivers;

@@ -1,0 +1,26 @@
+// Whether the photograph of the grey levels shows what the other five say it must.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "calibration/colour_samples.h"
+#include "calibration/mixing.h"
+#include "calibration/patterns.h"
+#include "calibration/response.h"
+#include "calibration/scattered_light.h"
+
+namespace livery {
+
+/// `curves`: N of each drive as fitted, one a channel. Throws Refused where the photograph does not
+/// follow its pattern, or a part of it lies in a shadow; returns warnings.
+std::vector<std::string> check_levels(const ColourSamples& samples,
+                                      const PixelMixing& mixing,
+                                      const std::vector<std::uint8_t>& usable,
+                                      const Pattern& levels,
+                                      const std::vector<std::uint8_t>& centre,
+                                      const ScatteredLight& scattered,
+                                      const std::array<LevelCurve, 3>& curves);
+
+}  // namespace livery
