@@ -106,7 +106,18 @@ TEST(CapturesFolder, BadManifestsSayWhy) {
     EXPECT_TRUE(fails(good + R"(, "drive": [1, 2])", {"captures[0].drive", "[R, G, B]"}));
     EXPECT_TRUE(fails(good + R"(, "drive": [1, 2, 256])", {"captures[0].drive[2]", "256"}));
     EXPECT_TRUE(fails(good + R"(, "exposure": 1)", {"unknown field \"exposure\""}));
-    EXPECT_TRUE(fails(good + "}, {" + good, {"captures[1].role", "a second time"}));
+    EXPECT_TRUE(fails(good + "}, {" + good, {"captures[1].file", "a second time"}));
+}
+
+TEST(CapturesFolder, ARoleMayComeAsOftenAsThereArePhotographsOfIt) {
+    const std::string good = R"("file": "000.png", "role": "white", "exposure_s": 1)";
+    const Folder made(
+        one_capture(good + R"(}, {"file": "001.png", "role": "white", "exposure_s": 1)"));
+    made.folder.write("001.png", "");
+    const auto captures = read_captures_folder(made.folder.path()).captures;
+    ASSERT_EQ(captures.size(), 2u);
+    EXPECT_EQ(captures[1].role, "white");
+    EXPECT_EQ(captures[1].file.filename(), "001.png");
 }
 
 TEST(CapturesFolder, WithoutAManifestNamesAndCountsDecide) {
