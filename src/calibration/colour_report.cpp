@@ -181,10 +181,10 @@ void report(const PixelMixing& mixing,
             percent(share(PixelStatus::saturated)) +
             " of the lit pixels saturate the camera and stay black; shorten the exposure");
     if (share(PixelStatus::too_dark) + share(PixelStatus::one_channel) > 0.05)
-        warnings.push_back(
-            percent(share(PixelStatus::too_dark) + share(PixelStatus::one_channel)) +
-            " of the lit pixels are too dark and stay black: shadow, grazing light or too short an "
-            "exposure; more shots, or move the projector");
+        warnings.push_back(percent(share(PixelStatus::too_dark) + share(PixelStatus::one_channel)) +
+                           " of the lit pixels are too dark and stay black: shadow, grazing light, "
+                           "noise or too short an "
+                           "exposure; more shots, or move the projector");
     if (!with_table && response_error > 0.01)
         warnings.push_back("the grey levels' ends lie " + percent(response_error) +
                            " from the dark and bright pictures: the lamp drifted, or light "

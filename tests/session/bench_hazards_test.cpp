@@ -273,6 +273,7 @@ TEST(BenchHazards, GlintsAreMaskedAsSaturated) {
 
 TEST(BenchHazards, LightBetweenPartsStaysBounded) {
     BenchDescription description = small_bench_description();
+    description.surroundings.clear();  // of the mock-up's own parts; a room's adds to it
     description.mockup.interreflection = true;
     const Judged judged = session_on(description);
     expect_within(judged, kNuisance);
@@ -281,6 +282,7 @@ TEST(BenchHazards, LightBetweenPartsStaysBounded) {
 
 TEST(BenchHazards, MissingMockupIsRefused) {
     BenchDescription description = small_bench_description();
+    description.surroundings.clear();
     description.camera.exposure_s = 0.01;  // there is nothing to meter
     auto away = std::make_shared<Product>(*small_bench_product());
     for (glm::vec3& position : away->mesh.positions_mm) position.x += 3000.0f;
@@ -293,6 +295,7 @@ TEST(BenchHazards, MissingMockupIsRefused) {
 
 TEST(BenchHazards, MockupOutsideTheThrowIsRefusedInALitRoom) {
     BenchDescription description = small_bench_description();
+    description.surroundings.clear();
     description.camera.exposure_s = 0.01;
     description.ambient = 0.1;
     description.projector.view.principal_px.x += 2000.0;
@@ -376,6 +379,7 @@ TEST(BenchHazards, CameraThatKeepsAWrongExposureIsRefused) {
 
 TEST(BenchHazards, CameraThatCannotTellTwoChannelsApartIsRefused) {
     BenchDescription description = small_bench_description();
+    description.surroundings.clear();  // whose darker pixels are refused for that first
     description.camera.sensitivities[2] = description.camera.sensitivities[1];
     EXPECT_HAS(refusal_of_bench(description).why, "100.0% ill-conditioned");
 }
