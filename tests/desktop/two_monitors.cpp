@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "core/image_io.h"
+#include "core/paths.h"
 
 namespace livery {
 namespace {
@@ -54,6 +55,8 @@ void TwoMonitors::use(std::shared_ptr<RunningStudio> running) {
 void TwoMonitors::start(const DesktopOptions& options) {
     auto running = std::make_shared<RunningStudio>();
     running->document = prepare_session(running->session_file());
+    // The user's settings outlive a session: nobody has picked a projector yet.
+    std::filesystem::remove(user_folder() / "desktop.json");
     running->desktop = std::make_unique<Desktop>(options);
     use(running);
     start_program();
