@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <numeric>
 
+#include <glm/vec2.hpp>
+
 #include "calibration/patterns.h"
 #include "calibration/statistics.h"
 #include "core/random.h"
@@ -158,6 +160,21 @@ std::optional<std::string> exchanged_stripes(const std::vector<RoledPhotograph>&
     // Photographs that are all wrong improve by chance with any exchange; two that are not, wholly.
     if (answer.empty() || best > kWhole) return std::nullopt;
     return answer;
+}
+
+bool is_mirrored(const ProjectorToCamera& map) {
+    const ImageF& at = map.camera_px;
+    std::ptrdiff_t kept = 0, turned = 0;
+    for (int y = 0; y + 4 < at.height; y += 2)
+        for (int x = 0; x + 4 < at.width; x += 2) {
+            const glm::vec2 here(at.at(x, y, 0), at.at(x, y, 1));
+            const glm::vec2 right = glm::vec2(at.at(x + 4, y, 0), at.at(x + 4, y, 1)) - here;
+            const glm::vec2 down = glm::vec2(at.at(x, y + 4, 0), at.at(x, y + 4, 1)) - here;
+            const float turn = right.x * down.y - right.y * down.x;
+            kept += turn > 0.0f;
+            turned += turn < 0.0f;
+        }
+    return turned > 4 * kept;
 }
 
 }  // namespace livery

@@ -40,8 +40,7 @@ struct Bins {
 };
 
 /// Decoded camera pixels without those that agree with hardly any pixel around them: in a shadow
-/// that other parts light, codes come out at random, and one of them would be taken for the place
-/// of a projector pixel elsewhere.
+/// that other parts light, codes come out at random and name places elsewhere.
 Image8 without_strays(const GrayCodeResult& decoded, double reach) {
     constexpr int kLeastAgreeing = 2;  // of eight; a corner pixel of a panel keeps three
     const int width = decoded.decoded.width, height = decoded.decoded.height;
@@ -274,7 +273,6 @@ int connected_samples(Window& around,
                 queue[static_cast<std::size_t>(queued++)] = static_cast<int>(n);
             }
     }
-    // Offsets are from the seed's camera position; its own is added by the caller.
     return count;
 }
 
@@ -320,8 +318,8 @@ std::optional<Located> fit_piece(const Bins& bins,
     return Located{fit->value + glm::dvec2(seed->x, seed->y), false};
 }
 
-/// From the piece of surface that the pixel's own bin belongs to. Where that is no piece, the bin
-/// being a stray, from the one that most of the window's bins agree on.
+/// From the piece of surface that the pixel's own bin belongs to, else (a stray) most of the
+/// window.
 std::optional<Located> locate(const Bins& bins, int x, int y, int radius, int link_reach) {
     Window window = window_around(bins, x, y, radius);
     const auto scale = static_cast<float>(bins.camera_px_per_pixel);
@@ -341,8 +339,8 @@ std::optional<Located> locate(const Bins& bins, int x, int y, int radius, int li
 /// What the camera pixels are that a sample is read from.
 enum class Sees { this_place, with_gap, another };
 
-/// Whether they see this place and no other. A pixel that was not decoded, or decoded alone as
-/// something else, while those around it see this place, is a gap in the decoding.
+/// Whether they see this place alone. One not decoded while those around it see this place is a
+/// gap.
 Sees seen_there(const GrayCodeResult& decoded,
                 const Image8& kept,
                 glm::dvec2 camera,
@@ -375,8 +373,7 @@ Sees seen_there(const GrayCodeResult& decoded,
     return sees;
 }
 
-/// Places of small holes from the neighbours around them, where these agree on one piece of
-/// surface and no camera pixel there is known to see another.
+/// Places of small holes, where the neighbours agree and no camera pixel there sees another place.
 void fill_holes(const GrayCodeResult& decoded,
                 const Image8& kept,
                 double scale,
@@ -417,7 +414,6 @@ void fill_holes(const GrayCodeResult& decoded,
                     agree = agree && glm::dot(off, off) <= 0.25 * std::max(1.0, scale * scale);
                 }
                 if (!agree) continue;
-                // Nothing else is known to be there.
                 bool free = true;
                 const int left = static_cast<int>(std::floor(fit->value.x - 0.5));
                 const int top = static_cast<int>(std::floor(fit->value.y - 0.5));
@@ -464,7 +460,6 @@ ProjectorToCamera invert_map(const GrayCodeResult& decoded,
                 std::to_string(projector_height));
 
     Bins bins = gather(decoded, decoded.decoded, projector_width, projector_height);
-    // Strays first: two neighbouring camera pixels lie 1 / scale projector pixels apart.
     const Image8 kept = without_strays(decoded, 1.5 + 2.0 / bins.camera_px_per_pixel);
     bins = gather(decoded, kept, projector_width, projector_height);
     const double scale = bins.camera_px_per_pixel;
@@ -499,21 +494,6 @@ ProjectorToCamera invert_map(const GrayCodeResult& decoded,
         });
     fill_holes(decoded, kept, scale, reach, map);
     return map;
-}
-
-bool is_mirrored(const ProjectorToCamera& map) {
-    const ImageF& at = map.camera_px;
-    std::ptrdiff_t kept = 0, turned = 0;
-    for (int y = 0; y + 4 < at.height; y += 2)
-        for (int x = 0; x + 4 < at.width; x += 2) {
-            const glm::vec2 here(at.at(x, y, 0), at.at(x, y, 1));
-            const glm::vec2 right = glm::vec2(at.at(x + 4, y, 0), at.at(x + 4, y, 1)) - here;
-            const glm::vec2 down = glm::vec2(at.at(x, y + 4, 0), at.at(x, y + 4, 1)) - here;
-            const float turn = right.x * down.y - right.y * down.x;
-            kept += turn > 0.0f;
-            turned += turn < 0.0f;
-        }
-    return turned > 4 * kept;
 }
 
 }  // namespace livery
