@@ -141,7 +141,7 @@ CapturesFolder parse_captures_manifest(const std::string& text,
     result.folder = manifest.parent_path();
     std::tie(result.projector_width, result.projector_height) = read_projector(root["projector"]);
 
-    std::set<std::string> seen;
+    std::set<std::pair<std::string, std::string>> seen;
     const auto captures = root["captures"];
     for (std::size_t k = 0; k < captures.size(); ++k) {
         const auto entry = captures.at(k);
@@ -149,8 +149,8 @@ CapturesFolder parse_captures_manifest(const std::string& text,
         Capture capture;
         capture.role = read_role(entry["role"]);
         read_settings({entry, root}, result.folder, capture);
-        // A role may come again, for more shots of one picture; a file may not.
-        if (!seen.insert(entry["file"].text()).second) {
+        // A role may come again, for more shots of one picture; not with the same file.
+        if (!seen.insert({capture.role, entry["file"].text()}).second) {
             entry["file"].fail("\"" + entry["file"].text() + "\" a second time",
                                "each photograph once");
         }
