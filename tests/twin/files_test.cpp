@@ -143,7 +143,7 @@ TEST_F(Files, BrokenBenchFilesAreRefusedByName) {
         [&] { read_bench_file("no-such-bench"); },
         "bench",
         "no such file or shipped bench",
-        "a bench file or default, hard, led, paper-2.75m, player, sphere, white-segment");
+        "a bench file or default, hard, led, paper-2.75m, player, room, sphere, white-segment");
     refuses("", "", "an empty file", "a JSON object");
     refuses(bench_text().substr(0, 200), "line 3, column 31", "not JSON", "complete");
     refuses(with("\"bench\"", "\"captures\""), "kind", "'captures'", "'bench'");
