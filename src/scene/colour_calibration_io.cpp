@@ -144,7 +144,7 @@ Image8 read_status(const std::filesystem::path& file, const ColourCalibration& c
             throw FileError(file,
                             fmt::format("pixel {}", k),
                             fmt::format("status {:g}", value),
-                            "a status from 0 to 8");
+                            "a status from 0 to 9");
         }
         status.values[k] = static_cast<std::uint8_t>(value);
     }

@@ -294,8 +294,8 @@ TEST(Photograph, TakesColourChannelsByName) {
     write_exr(capture.file, ImageF(1, 1, 1, 7.0f));
     EXPECT_EQ(load_photograph(capture).image.values, (std::vector<float>{7.0f, 7.0f, 7.0f}));
     write_exr(capture.file, ImageF(1, 1, 2), {"X", "Y"});
-    EXPECT_TRUE(
-        fails_with([&] { load_photograph(capture); }, {"a.exr", "channels: found X, Y, expected R, G, B"}));
+    EXPECT_TRUE(fails_with([&] { load_photograph(capture); },
+                           {"a.exr", "channels: found X, Y, expected R, G, B"}));
 }
 
 TEST(Photograph, BadPicturesSayWhy) {

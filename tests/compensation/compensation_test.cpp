@@ -330,7 +330,7 @@ TEST(Compensate, EmptyCalibrationShowsBlack) {
         design_white_luminance(calibration, 20.0, {});
         FAIL() << "an answer from nothing";
     } catch (const Refused& refused) {
-        EXPECT_NE(refused.why().find("no pixel of the evaluated parts"), std::string::npos);
+        EXPECT_NE(refused.why().find("no pixel of the mock-up"), std::string::npos);
         EXPECT_NE(refused.fix().find("status picture"), std::string::npos);
     }
 }

@@ -290,9 +290,9 @@ TEST(ColourCalibration, EachMistakeInItsPlanesIsNamed) {
     EXPECT_TRUE(refuses([&] { write_exr(folder / "c/unmixing.exr", plane, matrix); },
                         {"calibration.json: id", "of the content"}));
     auto status = good.status;
-    status.at(0, 0) = 9;
+    status.at(0, 0) = 10;
     EXPECT_TRUE(refuses([&] { write_png(folder / "c/status.png", status); },
-                        {"status.png: pixel 0: found status 9, expected a status from 0 to 8"}));
+                        {"status.png: pixel 0: found status 10, expected a status from 0 to 9"}));
     EXPECT_TRUE(refuses([&] { write_png(folder / "c/status.png", Image16(13, 9, 1)); },
                         {"status.png: size", "of 8 bit"}));
 }

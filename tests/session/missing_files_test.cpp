@@ -22,9 +22,7 @@ std::filesystem::path sky(const TemporaryFolder& folder, const std::string& name
     return file;
 }
 
-SetEnvironment lit_by(const std::filesystem::path& file) {
-    return {1, {file.string(), 0.0, 1.0}};
-}
+SetEnvironment lit_by(const std::filesystem::path& file) { return {1, {file.string(), 0.0, 1.0}}; }
 
 TEST(Environment, ThatIsNoMapIsRefusedWhenItIsChosen) {
     const TemporaryFolder folder;
