@@ -212,13 +212,19 @@ void check_room_light(const Evidence& e, const ShownDrives& drives) {
     constexpr double kOtherExposure = 0.06;  // of the light there
     if (!e.white || !e.black || e.dim.front().empty() || !(e.peak > 0.0)) return;
     for (const std::vector<std::size_t>& band : e.dim) {
-        // The mean: a median of 8-bit files jumps by whole levels.
+        // The mean of the middle half: room light reaches nearly all of them, what a moved camera
+        // sees at edges few; a median of 8-bit files would jump by whole levels.
         const auto in_the_dim = [&](const CaptureSummary& c, const CaptureSummary* against) {
-            double sum = 0.0;
+            std::vector<float> light;
+            light.reserve(band.size());
             for (const std::size_t i : band)
-                sum += static_cast<double>(c.light.values[i] -
-                                           (against ? against->light.values[i] : 0.0f));
-            return sum / static_cast<double>(band.size()) / e.peak;
+                light.push_back(c.light.values[i] - (against ? against->light.values[i] : 0.0f));
+            std::sort(light.begin(), light.end());
+            const std::size_t quarter = light.size() / 4, middle = light.size() - 2 * quarter;
+            double sum = 0.0;
+            for (std::size_t k = quarter; k < quarter + middle; ++k)
+                sum += static_cast<double>(light[k]);
+            return sum / static_cast<double>(middle) / e.peak;
         };
         const auto refuse = [&](const CaptureSummary& c, double added) {
             throw Refused("the room's light changed before " + c.name +
