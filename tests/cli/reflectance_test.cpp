@@ -407,7 +407,7 @@ TEST_F(Measured, APaintIsDrawnByBothBackends) {
     };
     for (const char* backend : {"gl", "reference"}) {
         const double formula = mean("grey.json", backend);
-        EXPECT_GT(formula, 0.05);
+        EXPECT_GT(formula, 0.04);  // the ball fills a part of the picture, weighed by coverage
         EXPECT_NEAR(mean("chalk.json", backend), formula, 2e-3 * formula) << backend;
         EXPECT_NEAR(mean("chalk.csv", backend), formula, 2e-3 * formula) << backend;
     }
