@@ -87,7 +87,7 @@ expect 0 "demo"
 # --- places that cannot be written ---------------------------------------------------------------
 run "$read_only" render --look solid-red --quality draft --out "$read_only/rot.png"
 expect 2 "render into a read-only folder"
-says "cannot create: "
+says "cannot be written"
 run "$read_only" demo --size 64x40 --product sphere --out "$read_only/demo"
 expect 2 "demo into a read-only folder"
 says "$read_only/demo"
