@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <fstream>
 #include <limits>
 
 #include "core/error.h"
@@ -112,13 +113,24 @@ std::string decode_percent(const JsonReader& uri, std::string_view text) {
     return out;
 }
 
-/// The contents of buffers: a file that several of them name is read once.
+/// The first `bytes` of a file that has them: what lies behind is not asked for.
+std::string read_beginning(const std::filesystem::path& file, std::size_t bytes) {
+    std::string text(bytes, '\0');
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream.read(text.data(), static_cast<std::streamsize>(bytes))) {
+        throw FileError(file, "", "a read error", "a readable file");
+    }
+    return text;
+}
+
+/// The contents of buffers: a file that several of them name is read once, as far as the longest
+/// of them goes.
 class BufferContents {
   public:
     BufferContents(GltfFile& gltf, Glb& glb) : gltf_(gltf), glb_(glb) {}
 
-    /// Which of gltf.contents a buffer is.
-    std::size_t find(const JsonReader& buffer, std::size_t index) {
+    /// Which of gltf.contents a buffer is, of which `declared` bytes are wanted.
+    std::size_t find(const JsonReader& buffer, std::size_t index, std::size_t declared) {
         if (!buffer.has("uri") && index == 0 && glb_.has_binary) return add(std::move(glb_.binary));
         const auto uri = buffer["uri"];
         const std::string text = uri.text();
@@ -129,24 +141,46 @@ class BufferContents {
         }
         const auto beside = path_beside(gltf_.path, decode_percent(uri, text));
         if (!beside) uri.fail(uri.found(), "a file beside the model or below its folder");
-        const auto known = of_file_.find(*beside);
-        if (known != of_file_.end()) return known->second;
-        const std::size_t content = add(read_text_file(*beside, kMaxBufferBytes - bytes_));
-        of_file_.emplace(*beside, content);
-        return content;
+        std::error_code error;
+        auto same_file = std::filesystem::canonical(*beside, error);
+        if (error) same_file = *beside;
+        const auto [known, is_new] = of_file_.try_emplace(std::move(same_file));
+        if (is_new) {
+            known->second = add(read_wanted(*beside, declared));
+        } else if (std::string& content = gltf_.contents[known->second];
+                   content.size() < declared) {
+            bytes_ -= content.size();
+            content = read_wanted(*beside, declared);
+            count(content.size());
+        }
+        return known->second;
     }
 
   private:
+    /// As much as is wanted of a file that may hold more; all of one that holds less.
+    std::string read_wanted(const std::filesystem::path& file, std::size_t declared) const {
+        std::error_code error;
+        const bool more = std::filesystem::is_regular_file(file, error) &&
+                          std::filesystem::file_size(file, error) > declared && !error;
+        const std::size_t left = kMaxBufferBytes - bytes_;
+        return more && declared <= left ? read_beginning(file, declared)
+                                        : read_text_file(file, left);
+    }
+
     std::size_t add(std::string bytes) {
-        bytes_ += bytes.size();
+        count(bytes.size());
+        gltf_.contents.push_back(std::move(bytes));
+        return gltf_.contents.size() - 1;
+    }
+
+    void count(std::size_t bytes) {
+        bytes_ += bytes;
         if (bytes_ > kMaxBufferBytes) {
             throw FileError(gltf_.path,
                             "buffers",
                             std::to_string(bytes_) + " bytes",
                             "at most " + std::to_string(kMaxBufferBytes) + " in all");
         }
-        gltf_.contents.push_back(std::move(bytes));
-        return gltf_.contents.size() - 1;
     }
 
     GltfFile& gltf_;
@@ -212,7 +246,7 @@ GltfFile open_gltf(const std::string& bytes, const std::filesystem::path& file) 
     for (std::size_t k = 0; k < count; ++k) {
         const auto buffer = buffers.at(k);
         const auto declared = static_cast<std::size_t>(buffer["byteLength"].integer(1, kMaxInt));
-        const std::size_t content = contents.find(buffer, k);
+        const std::size_t content = contents.find(buffer, k, declared);
         const std::size_t there = gltf.contents[content].size();
         if (there < declared) {
             buffer["byteLength"].fail(

@@ -15,6 +15,8 @@ namespace livery {
 namespace {
 
 constexpr std::size_t kMaxFileBytes = 1u << 30u;
+/// From here on reading may take more than a gigabyte, which the notes say.
+constexpr std::size_t kLargeFileBytes = 1u << 28u;
 
 std::string suffix_of(const std::filesystem::path& file) {
     std::string suffix = file.extension().string();
@@ -72,7 +74,12 @@ Mesh read_mesh(const std::string& bytes,
 Mesh load_mesh(const std::filesystem::path& file,
                std::vector<std::string>* notes,
                std::optional<LengthUnit> unit) {
-    return read_mesh(read_text_file(file, kMaxFileBytes), file, notes, unit);
+    const std::string bytes = read_text_file(file, kMaxFileBytes);
+    if (notes && bytes.size() > kLargeFileBytes) {
+        notes->push_back(fmt::format("{} MB: to read it takes several times as much memory",
+                                     bytes.size() >> 20u));
+    }
+    return read_mesh(bytes, file, notes, unit);
 }
 
 }  // namespace livery

@@ -306,6 +306,26 @@ TEST(GltfBadInput, BuffersThatNameOneFileAreReadOnce) {
     EXPECT_EQ(load_mesh(file).triangles.size(), 2u);
 }
 
+TEST(GltfBadInput, ABufferIsReadAsFarAsItIsDeclared) {
+    const TemporaryFolder folder;
+    GltfBuilder plate = make_plate();
+    // Three gigabytes behind the plate: more than all buffers may have together.
+    const auto large = folder.write("large.bin", plate.binary);
+    std::filesystem::resize_file(large, std::uintmax_t{3} << 30u);
+    const auto buffer = [](const char* uri, std::size_t bytes) {
+        return Json{{"uri", uri}, {"byteLength", bytes}};
+    };
+    // The second spells the same file otherwise, and wants more of it than the first.
+    plate.json["buffers"] = {buffer("./large.bin", 9), buffer("large.bin", plate.binary.size())};
+    for (auto& view : plate.json["bufferViews"]) view["buffer"] = 1;
+    EXPECT_EQ(load_mesh(folder.write("mesh.gltf", plate.json.dump())).triangles.size(), 2u);
+
+    plate.json["buffers"][0]["byteLength"] = (1u << 30u) + 1u;
+    const auto refused = folder.write("refused.gltf", plate.json.dump());
+    EXPECT_TRUE(
+        fails_with([&] { load_mesh(refused); }, {"large.bin", "more than 1073741824 bytes"}));
+}
+
 TEST(GltfBadInput, ManyUsesOfALargeMeshAreRefused) {
     const TemporaryFolder folder;
     GltfBuilder large = make_plate();
