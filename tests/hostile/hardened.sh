@@ -20,7 +20,8 @@ for file in "$program" "$@"; do
     [ "$checks" = ON ] || continue
     symbols=$(readelf -W --dyn-syms "$file")
     [[ $symbols =~ __stack_chk_fail ]] || need "$file" "stack protector"
-    [[ $symbols =~ _chk@ ]] || need "$file" "fortified library call"
+    # A small module may make no call whose size the compiler knows.
+    [[ $file != "$program" || $symbols =~ _chk@ ]] || need "$file" "fortified library call"
     [[ $symbols =~ glibcxx_assert_fail ]] || need "$file" "checked container"
 done
 exit $failed
