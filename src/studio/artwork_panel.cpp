@@ -28,10 +28,10 @@ std::string summary_of(const Artwork& artwork) {
         is_relief(artwork) ? words_of(artwork.use).label : words_of(artwork.shape).label;
     const std::string where = artwork.part == "*" ? "all parts" : artwork.part;
     if (is_relief(artwork)) return fmt::format("{} on {}", what, where);
-    return fmt::format("{} on {}, {}",
-                       what,
-                       where,
-                       artwork.paint.empty() ? "the part's own paint" : artwork.paint);
+    const bool is_print =
+        artwork.shape == ArtworkShape::picture && artwork.use == PictureUse::colours;
+    const std::string paint = artwork.paint.empty() ? "the part's own paint" : artwork.paint;
+    return fmt::format("{} on {}, {}", what, where, is_print ? "ink on " + paint : paint);
 }
 
 /// What it is painted with, as far as one paint says that.

@@ -14,6 +14,7 @@
 #include "studio/results.h"
 #include "studio/shell.h"
 #include "studio/users_library.h"
+#include "studio/words.h"
 
 namespace livery {
 
@@ -299,11 +300,12 @@ void take_calibration(Shell& shell) {
     const auto calibrating = studio.bench->calibrating();
     // The panel tells the person who asked; nobody asked for this one.
     if (!calibrating.refused_why.empty() && std::exchange(shell.calibrates_by_itself, false)) {
+        std::erase_if(studio.notices, [](const Notice& n) { return n.what == kCalibrating; });
         notify(studio,
                {Notice::Level::error,
                 "The simulated bench could not be calibrated; pictures stay uncorrected.",
-                calibrating.refused_why,
-                calibrating.refused_fix});
+                sentence(calibrating.refused_why),
+                sentence(calibrating.refused_fix)});
     }
     if (!calibrating.finished || *calibrating.finished == studio.panels.calibration.taken) return;
     studio.panels.calibration.taken = *calibrating.finished;
