@@ -13,6 +13,23 @@
 
 namespace livery {
 
+namespace {
+
+constexpr const char* kCoverage = "coverage";
+constexpr const char* kNoCoverage = "every valid pixel: the target has no coverage";
+
+/// Of those that count (empty: all).
+std::size_t valid_pixels(const ColourCalibration& calibration, const Image8& counted) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < calibration.status.values.size(); ++i) {
+        const bool valid = is_valid(static_cast<PixelStatus>(calibration.status.values[i]));
+        count += valid && (counted.empty() || counted.values[i] != 0);
+    }
+    return count;
+}
+
+}  // namespace
+
 Command compensate_command() {
     struct Arguments {
         std::string calibration, target, out, gamut = "strict";
@@ -57,10 +74,13 @@ Command compensate_command() {
                             ".png: device values, untagged");
         }
         const ColourCalibration calibration = read_calibration(arguments->calibration);
-        const ImageF wanted =
+        const TargetPicture target =
             read_target_picture(arguments->target, calibration.width, calibration.height);
+        const ImageF& wanted = target.wanted;
+        const Image8 counted = target.has_coverage ? coverage_mask(wanted) : Image8();
         const double white_y =
-            design_white_luminance(calibration, arguments->design_white, coverage_mask(wanted));
+            design_white_luminance(calibration, arguments->design_white, counted);
+        const std::size_t white_pixels = valid_pixels(calibration, counted);
         const CompensationTable table = bake(calibration, white_y);
         progress.update(0.5, "compensating");
         // The fractions speak of what was wanted, before any gamut mapping.
@@ -77,16 +97,30 @@ Command compensate_command() {
                            {"clipped_low_fraction", stats.clipped_low_fraction},
                            {"gamut", arguments->gamut},
                            {"design_white_y", white_y},
+                           {"design_white_mask", target.has_coverage ? kCoverage : kNoCoverage},
+                           {"design_white_pixels", white_pixels},
                            {"calibration", {{"id", calibration.id}}},
                            {"file", arguments->out}};
         outcome.text = fmt::format(
             "out of gamut {:.1f}% (too bright {:.1f}%, too dark {:.1f}%), no correction {:.1f}%; "
-            "wrote {}\n",
+            "design white {:.4g}, the {:g}th percentile of {} pixels: {}; wrote {}\n",
             100.0 * stats.out_of_gamut_fraction,
             100.0 * stats.clipped_high_fraction,
             100.0 * stats.clipped_low_fraction,
             100.0 * stats.invalid_fraction,
+            white_y,
+            arguments->design_white,
+            white_pixels,
+            target.has_coverage ? kCoverage : kNoCoverage,
             arguments->out);
+        if (!target.has_coverage) {
+            const std::string warning =
+                "the target has no coverage (channel A): whatever the projector lights, a table "
+                "too, counts for the design white, and a dark one makes the mock-up dim; write "
+                "the target with A, as livery render does";
+            outcome.figures["warnings"] = {warning};
+            outcome.text += "warning: " + warning + "\n";
+        }
         return outcome;
     };
     return command;

@@ -7,7 +7,7 @@
 
 namespace livery {
 
-ImageF read_target_picture(const std::filesystem::path& file, int width, int height) {
+TargetPicture read_target_picture(const std::filesystem::path& file, int width, int height) {
     const ImageFile picture = read_image(file);
     if (!picture.floating_point) {
         throw FileError(file, "pixels", "integers", "linear floating point (.exr)");
@@ -35,7 +35,7 @@ ImageF read_target_picture(const std::filesystem::path& file, int width, int hei
         }
         for (int c = 0; c < 3; ++c) out[c] = static_cast<float>(rgb[c]);
     }
-    return wanted;
+    return {std::move(wanted), alpha >= 0};
 }
 
 }  // namespace livery

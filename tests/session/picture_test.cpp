@@ -77,7 +77,9 @@ TEST(Picture, ExrIsMultipliedByItsCoverage) {
     }
     EXPECT_EQ(stored.at(1, 0, 3), 0.5f);
     // What a target asks of a pixel is the colour that covers it, as it was before it was written.
-    const ImageF wanted = read_target_picture(file, 4, 1);
+    const TargetPicture read = read_target_picture(file, 4, 1);
+    EXPECT_TRUE(read.has_coverage);
+    const ImageF& wanted = read.wanted;
     for (int x = 0; x < 3; ++x) {
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(wanted.at(x, 0, c), 0.64f, 1e-5f) << x;
     }
