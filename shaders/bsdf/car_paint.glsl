@@ -57,8 +57,7 @@ FN VEC3 car_paint_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
     VEC3 h = wi + wo;
     REAL hh = dot(h, h);
     if (hh < R(1e-8)) return VEC3(R(0.0));
-    REAL schlick = schlick_weight(hh);
-    REAL coat = coat_lobe(p, wi, wo, hh, schlick);
+    REAL coat = coat_lobe(p, wi, wo, hh);
     REAL eta = coat_inverse_index_squared(p);
     VEC3 passed = coat_passed(p, wi.z, wo.z, eta);
     VEC3 flakes = p.f0 * ggx_distribution_visibility(wi, wo, hh, p.alpha_x, p.alpha_x) +

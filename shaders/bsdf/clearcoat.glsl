@@ -13,7 +13,7 @@
 FN REAL coat_albedo(BsdfParameters p, REAL mu) {
     REAL white;
     REAL grazing;
-    ggx_albedo(mu, p.coat_alpha, white, grazing);
+    ggx_albedo(mu, p.coat_alpha, p.coat_f0, white, grazing);
     REAL f90 = grazing_reflectance(p.coat_f0);
     return p.coat_f0 * (white - grazing) + f90 * grazing;
 }
@@ -21,7 +21,7 @@ FN REAL coat_albedo(BsdfParameters p, REAL mu) {
 FN REAL coat_transmission(BsdfParameters p, REAL mu) {
     REAL loss;
     REAL rest;
-    ggx_transmission_fit(mu, p.coat_alpha, loss, rest);
+    ggx_transmission_fit(mu, p.coat_alpha, p.coat_f0, loss, rest);
     REAL f90 = grazing_reflectance(p.coat_f0);
     return (R(1.0) - f90) + f90 * loss + (f90 - p.coat_f0) * rest;
 }
@@ -29,7 +29,7 @@ FN REAL coat_transmission(BsdfParameters p, REAL mu) {
 FN REAL coat_average_transmission(BsdfParameters p) {
     REAL white;
     REAL grazing;
-    ggx_average_albedo(p.coat_alpha, white, grazing);
+    ggx_average_albedo(p.coat_alpha, p.coat_f0, white, grazing);
     REAL f90 = grazing_reflectance(p.coat_f0);
     return R(1.0) - p.coat_f0 * (white - grazing) - f90 * grazing;
 }
@@ -64,8 +64,9 @@ FN VEC3 coated_diffuse(BsdfParameters p, REAL inverse_index_squared) {
 }
 
 // The coat's own lobe. hh = |wi + wo|^2.
-FN REAL coat_lobe(BsdfParameters p, VEC3 wi, VEC3 wo, REAL hh, REAL schlick) {
-    REAL fresnel = p.coat_f0 * (R(1.0) - schlick) + grazing_reflectance(p.coat_f0) * schlick;
+FN REAL coat_lobe(BsdfParameters p, VEC3 wi, VEC3 wo, REAL hh) {
+    REAL weight = fresnel_weight(p.coat_f0, hh);
+    REAL fresnel = p.coat_f0 * (R(1.0) - weight) + grazing_reflectance(p.coat_f0) * weight;
     return fresnel * ggx_distribution_visibility(wi, wo, hh, p.coat_alpha, p.coat_alpha);
 }
 
@@ -80,13 +81,12 @@ FN VEC3 clearcoat_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
     VEC3 h = wi + wo;
     REAL hh = dot(h, h);
     if (hh < R(1e-8)) return VEC3(R(0.0));
-    REAL schlick = schlick_weight(hh);
-    REAL coat = coat_lobe(p, wi, wo, hh, schlick);
+    REAL coat = coat_lobe(p, wi, wo, hh);
     REAL eta = coat_inverse_index_squared(p);
     VEC3 passed = coat_passed(p, wi.z, wo.z, eta);
     VEC3 diffuse = coated_diffuse(p, eta) * ggx_interface_transmission(p, wi.z) *
                    ggx_interface_transmission(p, wo.z) * R(0.3183098861837907);
-    return VEC3(coat) + passed * (ggx_specular(p, wi, wo, hh, schlick) + diffuse);
+    return VEC3(coat) + passed * (ggx_specular(p, wi, wo, hh) + diffuse);
 }
 
 FN BsdfEnvironment clearcoat_environment(BsdfParameters p, REAL mu) {

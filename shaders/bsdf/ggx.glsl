@@ -18,8 +18,9 @@ FN REAL ggx_layer_alpha(BsdfParameters p) {
 FN VEC3 ggx_interface_transmission(BsdfParameters p, REAL mu) {
     REAL loss;
     REAL rest;
-    ggx_transmission_fit(mu, ggx_layer_alpha(p), loss, rest);
-    REAL f90 = grazing_reflectance(max_component(p.f0));
+    REAL f0_max = max_component(p.f0);
+    ggx_transmission_fit(mu, ggx_layer_alpha(p), f0_max, loss, rest);
+    REAL f90 = grazing_reflectance(f0_max);
     return VEC3(R(1.0) - f90 + f90 * loss) + (VEC3(f90) - p.f0) * rest;
 }
 
@@ -30,17 +31,20 @@ FN VEC3 ggx_interface_albedo(BsdfParameters p, REAL mu) {
 FN VEC3 ggx_interface_average(BsdfParameters p) {
     REAL white;
     REAL grazing;
-    ggx_average_albedo(ggx_layer_alpha(p), white, grazing);
-    REAL f90 = grazing_reflectance(max_component(p.f0));
+    REAL f0_max = max_component(p.f0);
+    ggx_average_albedo(ggx_layer_alpha(p), f0_max, white, grazing);
+    REAL f90 = grazing_reflectance(f0_max);
     // The layer under a stretched lobe would return up to 1.4e-4 too much.
     REAL stretch = min(p.alpha_x, p.alpha_y) / max(p.alpha_x, p.alpha_y);
     REAL in_hand = R(1.0) - R(0.006) * (R(1.0) - stretch);
     return min(p.f0 * (white - grazing) + VEC3(f90 * grazing), VEC3(R(0.999))) * in_hand;
 }
 
-FN VEC3 ggx_specular(BsdfParameters p, VEC3 wi, VEC3 wo, REAL hh, REAL schlick) {
-    REAL f90 = grazing_reflectance(max_component(p.f0));
-    VEC3 fresnel = p.f0 * (R(1.0) - schlick) + VEC3(f90 * schlick);
+FN VEC3 ggx_specular(BsdfParameters p, VEC3 wi, VEC3 wo, REAL hh) {
+    REAL f0_max = max_component(p.f0);
+    REAL f90 = grazing_reflectance(f0_max);
+    REAL weight = fresnel_weight(f0_max, hh);
+    VEC3 fresnel = p.f0 * (R(1.0) - weight) + VEC3(f90 * weight);
     return fresnel * ggx_distribution_visibility(wi, wo, hh, p.alpha_x, p.alpha_y);
 }
 
@@ -51,7 +55,7 @@ FN VEC3 ggx_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
     if (hh < R(1e-8)) return VEC3(R(0.0));
     VEC3 through = ggx_interface_transmission(p, wi.z) * ggx_interface_transmission(p, wo.z) /
                    (VEC3(R(1.0)) - ggx_interface_average(p));
-    return ggx_specular(p, wi, wo, hh, schlick_weight(hh)) +
+    return ggx_specular(p, wi, wo, hh) +
            p.diffuse * through * R(0.3183098861837907);
 }
 
@@ -80,8 +84,9 @@ FN REAL ggx_pdf(BsdfParameters p, VEC3 wi, VEC3 wo) {
 FN VEC3 ggx_environment_albedo(BsdfParameters p, REAL mu) {
     REAL white;
     REAL grazing;
-    ggx_albedo(mu, sqrt(p.alpha_x * p.alpha_y), white, grazing);
-    REAL f90 = grazing_reflectance(max_component(p.f0));
+    REAL f0_max = max_component(p.f0);
+    ggx_albedo(mu, sqrt(p.alpha_x * p.alpha_y), f0_max, white, grazing);
+    REAL f90 = grazing_reflectance(f0_max);
     return p.f0 * (white - grazing) + VEC3(f90 * grazing);
 }
 

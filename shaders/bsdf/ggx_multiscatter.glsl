@@ -21,9 +21,9 @@ FN REAL ggx_multiscatter_average_loss(REAL alpha) {
 
 // F_ms; `lost` is 1 - W_avg.
 FN VEC3 ggx_many_bounces(BsdfParameters p, REAL lost) {
-    REAL f90 = grazing_reflectance(max_component(p.f0));
-    // The mean of Schlick's weight over the cosine-weighted hemisphere is 1 / 21.
-    VEC3 f = p.f0 * R(0.9523809523809523) + VEC3(f90 * R(0.047619047619047616));
+    REAL f0_max = max_component(p.f0);
+    REAL weight = fresnel_average_weight(f0_max);
+    VEC3 f = p.f0 * (R(1.0) - weight) + VEC3(grazing_reflectance(f0_max) * weight);
     return f * f * (R(1.0) - lost) / (VEC3(R(1.0)) - f * lost);
 }
 
@@ -31,8 +31,9 @@ FN VEC3 ggx_many_bounces(BsdfParameters p, REAL lost) {
 // 1 - W at mu.
 FN VEC3 ggx_multiscatter_transmission(BsdfParameters p, VEC3 many, REAL mu, OUT(REAL) lost) {
     REAL rest;
-    ggx_transmission_fit(mu, p.alpha_x, lost, rest);
-    REAL f90 = grazing_reflectance(max_component(p.f0));
+    REAL f0_max = max_component(p.f0);
+    ggx_transmission_fit(mu, p.alpha_x, f0_max, lost, rest);
+    REAL f90 = grazing_reflectance(f0_max);
     VEC3 through =
         VEC3(R(1.0) - f90) + (VEC3(f90) - many) * lost + (VEC3(f90) - p.f0) * rest;
     return max(through, VEC3(R(0.0)));
@@ -57,7 +58,7 @@ FN VEC3 ggx_multiscatter_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
     VEC3 through = ggx_multiscatter_transmission(p, many, wi.z, lost_i) *
                    ggx_multiscatter_transmission(p, many, wo.z, lost_o) /
                    ggx_multiscatter_average_transmission(p, many, lost);
-    return ggx_specular(ggx_not_stretched(p), wi, wo, hh, schlick_weight(hh)) +
+    return ggx_specular(ggx_not_stretched(p), wi, wo, hh) +
            (many * (lost_i * lost_o / lost) + p.diffuse * through) * R(0.3183098861837907);
 }
 

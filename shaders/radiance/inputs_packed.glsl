@@ -46,13 +46,18 @@ vec3 sky_here() {
     return texelFetch(u_sky, ivec2(gl_FragCoord.xy), 0).rgb;
 }
 
-// Environment over a mirror lobe, between two layers.
-vec3 mirrored_here(vec2 layer, float alpha) {
-    int below = int(layer.x);
-    return u_mirror_unit *
-           mix(texelFetch(u_mirror, ivec3(gl_FragCoord.xy, below), 0).rgb,
-               texelFetch(u_mirror, ivec3(gl_FragCoord.xy, below + 1), 0).rgb,
-               layer.y);
+vec3 mirror_layer_here(int layer) {
+    return texelFetch(u_mirror, ivec3(gl_FragCoord.xy, layer), 0).rgb;
+}
+
+// Environment over a mirror lobe, between four layers. Their cubic may fall short of nothing beside
+// a lamp.
+vec3 mirrored_here(vec4 layers, float alpha) {
+    int first = int(layers.x);
+    vec3 sum = (1.0 - layers.y - layers.z - layers.w) * mirror_layer_here(first) +
+               layers.y * mirror_layer_here(first + 1) + layers.z * mirror_layer_here(first + 2) +
+               layers.w * mirror_layer_here(first + 3);
+    return u_mirror_unit * max(sum, vec3(0.0));
 }
 
 #endif

@@ -221,7 +221,7 @@ vec4 place_here() {
 }
 #endif
 
-vec3 mirrored_here(vec2 unused_layer, float alpha) {
+vec3 mirrored_here(vec4 unused_layers, float alpha) {
     vec3 d = reflect(-s_eye, s_normal);
     vec2 at = vec2((atan(d.x, -d.z) + u_rotation) * 0.15915494309189535 + 0.5,
                    atan(length(d.xz), d.y) * 0.3183098861837907);

@@ -39,7 +39,7 @@ UNIFORM BsdfParameters u_paint;
 // bsdf_environment under the cosines (k / (WEIGHTS - 1))^2, the base and the coat together
 UNIFORM VEC3 u_sky_weight[WEIGHTS];
 UNIFORM VEC3 u_mirror_weight[WEIGHTS];
-UNIFORM VEC2 u_base_layer;
+UNIFORM VEC4 u_base_layers;
 UNIFORM REAL u_lobe_alpha;
 #endif
 
@@ -70,7 +70,7 @@ FN VEC3 shaded() {
     sum += mix(u_sky_weight[below], u_sky_weight[below + 1], share) * sky_here();
 #if MIRRORS
     sum += mix(u_mirror_weight[below], u_mirror_weight[below + 1], share) *
-           mirrored_here(u_base_layer, u_lobe_alpha);
+           mirrored_here(u_base_layers, u_lobe_alpha);
 #endif
 #endif
     return exposed(sum);
@@ -82,8 +82,9 @@ UNIFORM VEC3 u_f0;
 UNIFORM VEC4 u_alpha;  // x, y, coat, coat's f0
 #if ENVIRONMENT
 UNIFORM VEC3 u_sky_diffuse;  // as u_diffuse, under light from everywhere
-UNIFORM VEC2 u_base_layer;   // of kMirrorAlphas: the lobe's lower layer and the weight of the next
-UNIFORM VEC2 u_coat_layer;
+// Of kMirrorAlphas: the first of four lobes between which the paint's lies, the shares of the others
+UNIFORM VEC4 u_base_layers;
+UNIFORM VEC4 u_coat_layers;
 #endif
 #if defined(CLEARCOAT) || defined(CAR_PAINT)
 #define COATED
@@ -97,7 +98,7 @@ UNIFORM VEC2 u_film;  // thickness in nm, index
 UNIFORM REAL u_glint_density;  // flakes on a mm^2 of the mock-up, as large as they are drawn
 #endif
 #if ENVIRONMENT
-UNIFORM VEC2 u_flake_layer;
+UNIFORM VEC4 u_flake_layers;
 #endif
 #endif
 
@@ -160,7 +161,8 @@ FN VEC3 shaded() {
     VEC4 place = place_here();
 #endif
 #else
-    REAL f90 = grazing_reflectance(max_component(p.f0));
+    REAL f0_max = max_component(p.f0);
+    REAL f90 = grazing_reflectance(f0_max);
 #endif
 #ifdef COATED
     REAL coat_f90 = grazing_reflectance(p.coat_f0);
@@ -174,7 +176,6 @@ FN VEC3 shaded() {
         VEC3 wi = VEC3(light.x, light.y, light.z);
         VEC3 h = wi + wo;
         REAL hh = max(dot(h, h), R(1e-8));
-        REAL schlick = schlick_weight(hh);
         REAL lobe = disc_distribution_visibility(
             wi, wo, hh, p.alpha_x, p.alpha_y, u_light_radius2[k], eye.w);
 #ifdef CAR_PAINT
@@ -189,12 +190,12 @@ FN VEC3 shaded() {
 #endif
         value += beside_base * flakes * flake_lobe;
 #else
-        VEC3 value = mix(p.f0, VEC3(f90), schlick) * lobe;
+        VEC3 value = mix(p.f0, VEC3(f90), fresnel_weight(f0_max, hh)) * lobe;
 #endif
         value += u_diffuse * layer_o * through_base(p, wi.z) * R(0.3183098861837907);
 #ifdef COATED
         value *= through_o * through_coat(p, wi.z);
-        value += VEC3(mix(p.coat_f0, coat_f90, schlick) *
+        value += VEC3(mix(p.coat_f0, coat_f90, fresnel_weight(p.coat_f0, hh)) *
                       disc_distribution_visibility(
                           wi, wo, hh, p.coat_alpha, p.coat_alpha, u_light_radius2[k], eye.w));
 #endif
@@ -210,15 +211,15 @@ FN VEC3 shaded() {
 #if ENVIRONMENT
     VEC3 diffuse = u_sky_diffuse * layer_o * sky_here();
 #ifdef CAR_PAINT
-    VEC3 base = p.f0 * mirrored_here(u_base_layer, p.alpha_x) * through_lobe(p, wo.z, p.alpha_x);
+    VEC3 base = p.f0 * mirrored_here(u_base_layers, p.alpha_x) * through_lobe(p, wo.z, p.alpha_x);
     VEC3 flakes = p.flake_f0;
     if (u_has_film) flakes = film_reflectance(p, car_paint_mirror_hh(wo.z, p.flake_alpha));
-    base += beside_base * flakes * mirrored_here(u_flake_layer, p.flake_alpha) *
+    base += beside_base * flakes * mirrored_here(u_flake_layers, p.flake_alpha) *
             through_lobe(p, wo.z, p.flake_alpha);
     sum += through_o * (base + diffuse);
 #else
     VEC3 base = ggx_environment_albedo(p, wo.z) *
-                mirrored_here(u_base_layer, sqrt(p.alpha_x * p.alpha_y));
+                mirrored_here(u_base_layers, sqrt(p.alpha_x * p.alpha_y));
 #ifdef CLEARCOAT
     // A rough base takes light from higher than the mirror direction (clearcoat_environment).
     REAL a2 = p.alpha_x * p.alpha_y;
@@ -229,7 +230,7 @@ FN VEC3 shaded() {
 #endif
 #endif
 #ifdef COATED
-    sum += coat_albedo(p, wo.z) * mirrored_here(u_coat_layer, p.coat_alpha);
+    sum += coat_albedo(p, wo.z) * mirrored_here(u_coat_layers, p.coat_alpha);
 #endif
 #endif
     return exposed(sum);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <ceres/ceres.h>
@@ -13,10 +14,15 @@ namespace {
 constexpr double kFloor = 0.01;       // of f cos: darker is not seen beside a highlight
 constexpr double kDifference = 1e-5;  // of a coordinate, whose natural scale is 1
 
+/// Of the model `clearcoat`. A coat of less (index 1.33) is none: the lobe of the base would stand
+/// for it, which samples cannot tell from a coat.
+constexpr double kLeastCoatF0 = 0.02;
+
 /// One number of a parameter, searched on a scale without ends.
 struct Coordinate {
     const ParameterInfo* info = nullptr;
     std::size_t component = 0;
+    double low = 0.0;
 
     double get(const f64::BsdfParameters& p) const {
         f64::BsdfParameters copy = p;
@@ -29,18 +35,18 @@ struct Coordinate {
         if (info->kind == ParameterKind::pair) *numbers[1] = value;
     }
     double share(double value) const {
-        return info->logarithmic ? std::log(value / info->low) / std::log(info->high / info->low)
-                                 : (value - info->low) / (info->high - info->low);
+        return info->logarithmic ? std::log(value / low) / std::log(info->high / low)
+                                 : (value - low) / (info->high - low);
     }
     double encode(double value) const {
         // Not at an end of the range, where no step changes anything.
-        const double t = std::clamp(share(std::clamp(value, info->low, info->high)), 0.005, 0.995);
+        const double t = std::clamp(share(std::clamp(value, low, info->high)), 0.005, 0.995);
         return std::log(t / (1.0 - t));
     }
     double decode(double x) const {
         const double t = 1.0 / (1.0 + std::exp(-x));
-        return info->logarithmic ? info->low * std::pow(info->high / info->low, t)
-                                 : info->low + (info->high - info->low) * t;
+        return info->logarithmic ? low * std::pow(info->high / low, t)
+                                 : low + (info->high - low) * t;
     }
 };
 
@@ -56,8 +62,11 @@ std::vector<Coordinate> coordinates_of(const ModelInfo& model,
     for (const char* name : model.parameters) {
         const ParameterInfo& info = parameter_info(name);
         if (is_fixed(info) || std::find(held.begin(), held.end(), name) != held.end()) continue;
+        const bool is_varnish =
+            model.model == ReflectanceModel::clearcoat && std::string_view(info.name) == "coat_f0";
+        const double low = is_varnish ? kLeastCoatF0 : info.low;
         const std::size_t count = info.kind == ParameterKind::colour ? 3 : 1;
-        for (std::size_t k = 0; k < count; ++k) coordinates.push_back({&info, k});
+        for (std::size_t k = 0; k < count; ++k) coordinates.push_back({&info, k, low});
     }
     return coordinates;
 }

@@ -47,12 +47,18 @@ FiveAngleLab lab_of_spectra(const MeasuredReflectance& measured) {
 
 double luminance_of(const glm::dvec3& working) { return (xyz_from_working() * working).y; }
 
-/// The paint with nothing but its outermost interface: the coat, or a base of f0.
+/// Models whose interface has Schlick's Fresnel term, as they were published.
+bool has_schlick(ReflectanceModel model) {
+    return model == ReflectanceModel::cook_torrance ||
+           model == ReflectanceModel::cook_torrance_v_cavity ||
+           model == ReflectanceModel::ashikhmin_shirley;
+}
+
+/// The paint with nothing but its interface.
 f64::BsdfParameters interface_alone(const ModelInfo& model, f64::BsdfParameters p) {
-    const std::string kept = model.has("coat_f0") ? "coat_transmittance" : "f0";
     for (const char* name : model.parameters) {
         const ParameterInfo& info = parameter_info(name);
-        if (info.kind != ParameterKind::colour || name == kept) continue;
+        if (info.kind != ParameterKind::colour || std::string(name) == "f0") continue;
         for (double* number : info.in_f64(p)) *number = 0.0;
     }
     return p;
@@ -99,13 +105,13 @@ double specular_gloss(const Material& material, double angle_deg) {
     }
     const ModelInfo& model = model_info(material.model);
     const f64::BsdfParameters p = parameters_of_f64(material);
-    const bool has_interface = model.has("coat_f0") || model.has("f0");
-    const f64::BsdfParameters alone = has_interface ? interface_alone(model, p) : p;
-    const double f0 = model.has("coat_f0") ? p.coat_f0 : std::clamp(luminance_of(p.f0), 0.0, 1.0);
+    const bool schlick = has_schlick(material.model);
+    const f64::BsdfParameters alone = schlick ? interface_alone(model, p) : p;
+    const double f0 = std::clamp(luminance_of(p.f0), 0.0, 1.0);
     return specular_gloss(
         [&](const glm::dvec3& wi, const glm::dvec3& wo) {
             double value = luminance_of(model.f64.eval(p, wi, wo));
-            if (has_interface && f0 > 0.0) {
+            if (schlick && f0 > 0.0) {
                 const double cosine = glm::dot(wi, glm::normalize(wi + wo));
                 value += luminance_of(model.f64.eval(alone, wi, wo)) *
                          (fresnel_over_schlick(f0, cosine) - 1.0);

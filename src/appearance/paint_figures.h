@@ -36,9 +36,9 @@ using LuminanceFunction = std::function<double(const glm::dvec3& wi, const glm::
 /// than 20, 60 and 85 degrees.
 double specular_gloss(const LuminanceFunction& luminance, double angle_deg);
 
-/// The same of a paint. A formula's interface has Schlick's Fresnel term, which gives index 1.5 at
-/// 60 degrees only 0.07 instead of 0.089; a glossmeter meets the real one, so the lobe counts by
-/// Fresnel's equations for the index that coat_f0 (or f0) stands for.
+/// The same of a paint. Cook-Torrance's and Ashikhmin-Shirley's interfaces have Schlick's Fresnel
+/// term, which gives index 1.5 at 60 degrees only 0.07 instead of 0.089; a glossmeter meets the
+/// real one, so their lobes count by Fresnel's equations for the index that f0 stands for.
 double specular_gloss(const Material& material, double angle_deg);
 
 struct PaintFigures {

@@ -66,10 +66,13 @@ struct Inputs {
     glm::vec4 eye_here() const { return four(job.eye); }
     glm::vec4 light_here(int k) const { return four(job.lights[k]); }
     glm::vec3 sky_here() const { return job.sky ? three(job.sky) : glm::vec3(0.0f); }
-    glm::vec3 mirrored_here(const glm::vec2& layer, float) const {
+    glm::vec3 mirrored_here(const glm::vec4& layers, float) const {
         if (!job.mirror) return glm::vec3(0.0f);
-        const std::uint16_t* const* below = job.mirror + static_cast<int>(layer.x);
-        return job.mirror_unit * mix(three(below[0]), three(below[1]), layer.y);
+        const std::uint16_t* const* first = job.mirror + static_cast<int>(layers.x);
+        const float left = 1.0f - layers.y - layers.z - layers.w;
+        const glm::vec3 sum = left * three(first[0]) + layers.y * three(first[1]) +
+                              layers.z * three(first[2]) + layers.w * three(first[3]);
+        return job.mirror_unit * max(sum, glm::vec3(0.0f));
     }
 };
 
@@ -80,7 +83,7 @@ struct Shader : Inputs {
         : Inputs(its_job, its_model, u.measured.get()),
           u_exposure(u.exposure),
           u_paint(u.paint),
-          u_base_layer(u.base_layer),
+          u_base_layers(u.base_layers),
           u_lobe_alpha(u.lobe_alpha) {
         std::copy(u.sky_weight.begin(), u.sky_weight.end(), u_sky_weight);
         std::copy(u.mirror_weight.begin(), u.mirror_weight.end(), u_mirror_weight);

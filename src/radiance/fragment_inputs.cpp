@@ -37,6 +37,22 @@ bool same_map(const std::shared_ptr<const Environment>& a,
            a->radiance_working.values == b->radiance_working.values;
 }
 
+/// Whether a draft mirrors at a fragment the mean of what it does on both sides in the same row:
+/// all three whole pixels of one surface that turns by less than a degree, so that no reflection
+/// moves by more than another one.
+bool lies_between(const SurfaceMap& map, std::size_t i) {
+    constexpr float kOneDegree = 0.99985f;
+    const Fragment &left = map.fragments[i - 1], &own = map.fragments[i],
+                   &right = map.fragments[i + 1];
+    const auto width = static_cast<std::uint32_t>(map.width);
+    const std::uint32_t x = own.pixel % width;
+    return x % 2 == 1 && x + 1 < width && left.pixel + 1 == own.pixel &&
+           own.pixel + 1 == right.pixel && left.part == own.part && right.part == own.part &&
+           left.coverage == 1.0f && own.coverage == 1.0f && right.coverage == 1.0f &&
+           glm::dot(left.normal, right.normal) > kOneDegree &&
+           glm::dot(left.normal, own.normal) > kOneDegree;
+}
+
 glm::vec3 radiance_working(const DirectionalLight& light) {
     return glm::vec3(working_from_rec709() * light.radiance_rec709);
 }
@@ -224,7 +240,11 @@ void FragmentInputs::fill_mirror(const Scene& scene, bool occluded, const Progre
     parallel_for(map_->fragments.size(), 1024, [&](std::size_t begin, std::size_t end) {
         progress.check_stop();
         MirroredEnvironment::Scratch scratch;
+        const auto is_mean = [&](std::size_t i) {
+            return !occluded && i > begin && i + 1 < end && lies_between(*map_, i);
+        };
         for (std::size_t i = begin; i < end; ++i) {
+            if (is_mean(i)) continue;
             const auto lobes = environment.at_fragment(i, scratch);
             // Who does not ask which lobes are hidden dims those of a joint like its diffuse light
             const bool joint = joints && map_->fragments[i].coverage < 1.0f;
@@ -233,6 +253,18 @@ void FragmentInputs::fill_mirror(const Scene& scene, bool occluded, const Progre
             for (std::size_t k = 0; k < lobes.size(); ++k) {
                 for (std::size_t c = 0; c < 3; ++c) {
                     texels[k][at + c] = lobes[k][static_cast<int>(c)] * scale;
+                }
+            }
+        }
+        for (std::size_t i = begin; i < end; ++i) {
+            if (!is_mean(i)) continue;
+            const auto address = [&](std::size_t j) {
+                return 4 * layout_.address(j, map_->fragments[j].part);
+            };
+            const std::size_t left = address(i - 1), at = address(i), right = address(i + 1);
+            for (std::vector<float>& layer : texels) {
+                for (std::size_t c = 0; c < 3; ++c) {
+                    layer[at + c] = 0.5f * (layer[left + c] + layer[right + c]);
                 }
             }
         }

@@ -14,8 +14,8 @@ inline constexpr std::size_t kLaneBlock = 8;
 
 /// The uniforms of shade.glsl.
 struct PaintUniforms {
-    float exposure, diffuse[3], sky_diffuse[3], f0[3], alpha[4], base_layer[2], coat_layer[2];
-    float flakes[4], flakes_most[3], flake_layer[2], film[2];  ///< film[0] > 0: it has one
+    float exposure, diffuse[3], sky_diffuse[3], f0[3], alpha[4], base_layers[4], coat_layers[4];
+    float flakes[4], flakes_most[3], flake_layers[4], film[2];  ///< film[0] > 0: it has one
     float coat_log_transmittance[3], coat_inverse_index_squared;
 };
 

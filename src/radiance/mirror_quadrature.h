@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "radiance/sphere_lookup.h"
@@ -18,10 +19,24 @@ namespace livery {
 inline constexpr std::array<float, 12> kMirrorAlphas{
     0.01f, 0.02f, 0.03f, 0.042f, 0.06f, 0.085f, 0.12f, 0.17f, 0.24f, 0.34f, 0.5f, 1.0f};
 
+/// A lobe between the tabulated ones: four that follow one another, and the share of each.
+struct MirrorMix {
+    int first = 0;
+    std::array<float, 4> share{};
+};
+MirrorMix mirror_mix(double alpha);
+
+/// What the lobe really returns of even light, over what ggx_albedo_fit() says (f0 = 1): the fit
+/// may be too large, by up to .7%, but never too small. Whoever shades multiplies by the fit.
+double mirror_correction(double cosine_to_eye, double alpha);
+
 /// How fine: nodes a ring, a multiple of four, and the logarithm of the ratio of two rings' radii.
+/// Gaussians as wide as their cells (overlap 1) would leave gaps between the nodes: how bright a
+/// lamp is would depend on where it lies among them.
 struct MirrorRings {
     int nodes = 0;
     double step = 0.0;
+    double overlap = 1.0;
 };
 /// As wide as long for so many nodes a ring; 0: the draft's, where nothing is hidden.
 MirrorRings mirror_rings(int nodes);
@@ -39,7 +54,7 @@ class MirrorQuadrature {
         /// Its half vector in its facet's frame (x the eye's projection, z the normal), of about
         /// unit length; then the variance of the Gaussian over its cell, rad^2 along each axis.
         Texel half_vector;
-        /// Share in each of kMirrorAlphas' lobes.
+        /// Share in each of kMirrorAlphas' lobes; all nodes together have mirror_correction().
         std::array<Texel, kMirrorAlphas.size() / 4> weight;
     };
 
@@ -71,18 +86,26 @@ class MirrorQuadrature {
     };
     static constexpr std::size_t kTurns = 8;
     const Ray& ray(std::size_t k) const { return rays_[k]; }
+    /// Those around it, among which its light is seen if any of them is hidden.
+    std::span<const std::uint16_t> beside(std::size_t k) const {
+        return {&beside_[k * kBeside], kBeside};
+    }
     /// The bit of a fragment of another turn that comes closest.
     std::uint8_t nearest(std::size_t k, std::size_t turn) const { return nearest_[k][turn]; }
     /// Nodes that a fragment of this turn traces, by bit; the straight ones are the same in all.
     const std::vector<std::size_t>& traced(std::size_t turn) const { return traced_[turn]; }
 
   private:
+    static constexpr std::size_t kBeside = 6;
+
+    void find_beside(std::size_t rings);
     void share_out_rays(std::size_t rings, const MirrorRings& size);
 
     int nodes_ = 0;
     std::size_t count_ = 0;
     std::vector<Node> rows_;
     std::vector<Ray> rays_;
+    std::vector<std::uint16_t> beside_;
     std::vector<std::array<std::uint8_t, kTurns>> nearest_;
     std::array<std::vector<std::size_t>, kTurns> traced_;
 };

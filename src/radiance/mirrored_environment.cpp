@@ -16,6 +16,10 @@ namespace {
 static_assert(MirrorQuadrature::kFacets == kSamplesAFragment);
 static_assert(MirrorQuadrature::kTurns == kNeighbourTurns);
 
+/// The variance that is left to the Gaussian of a node beside hidden ones: a lamp behind an edge of
+/// the product must not shine past it.
+constexpr float kBesideHidden = 0.4f;
+
 /// One of the normals of a pixel and the nodes around it.
 struct Facet {
     glm::vec3 x, y, normal, wo;
@@ -182,6 +186,14 @@ bool MirroredEnvironment::find_seen(std::size_t fragment, Scratch& scratch) cons
             scratch.seen[k] = is_seen(fragment, quadrature_.nearest(k, own_turn));
         }
     }
+    scratch.width.resize(scratch.seen.size());
+    for (std::size_t k = 0; k < scratch.width.size(); ++k) {
+        float least = 1.0f;
+        for (const std::uint16_t beside : quadrature_.beside(k)) {
+            least = std::min(least, scratch.seen[beside]);
+        }
+        scratch.width[k] = 1.0f - (1.0f - kBesideHidden) * (1.0f - least);
+    }
     return true;
 }
 
@@ -190,8 +202,9 @@ std::array<glm::vec3, kMirrorAlphas.size()> MirroredEnvironment::at_fragment(
     const bool hidden = visibility_ && find_seen(fragment, scratch);
     const Facets facets = visibility_ ? facets_of(mesh_, map_, fragment, eye_mm_, quadrature_)
                                       : even_facets(map_.fragments[fragment], eye_mm_, quadrature_);
-    std::array<Texel, kMirrorAlphas.size()> sum{};
-    std::array<Texel, kMirrorAlphas.size() / 4> whole{};
+    // Of each channel, four lobes side by side
+    using Sums = std::array<Texel, kMirrorAlphas.size() / 4>;
+    Sums red{}, green{}, blue{};
     for (std::size_t first = 0; first < quadrature_.count(); first += facets.size()) {
         std::array<MirrorQuadrature::Node, kSamplesAFragment> nodes;
         Texel x, y, z;
@@ -206,24 +219,24 @@ std::array<glm::vec3, kMirrorAlphas.size()> MirroredEnvironment::at_fragment(
         for (std::size_t k = 0; k < nodes.size(); ++k) {
             const MirrorQuadrature::Node& node = nodes[k];
             if (!any_weight(node)) continue;
-            for (std::size_t i = 0; i < whole.size(); ++i) whole[i] += node.weight[i];
             const float seen = hidden ? scratch.seen[first + k] : 1.0f;
             if (seen <= 0.0f) continue;
+            const float width = hidden ? scratch.width[first + k] : 1.0f;
+            const float variance = width * node.half_vector[3] + facets[k].variance;
             const Texel light =
-                Texel{seen, seen, seen, seen} *
-                layers_.at({place.u[k], place.v[k]}, node.half_vector[3] + facets[k].variance);
-            for (std::size_t i = 0; i < whole.size(); ++i) {
-                for (std::size_t lobe = 0; lobe < 4; ++lobe) {
-                    const float w = node.weight[i][lobe];
-                    sum[4 * i + lobe] += Texel{w, w, w, w} * light;
-                }
+                Texel{seen, seen, seen, seen} * layers_.at({place.u[k], place.v[k]}, variance);
+            for (std::size_t i = 0; i < node.weight.size(); ++i) {
+                const Texel& w = node.weight[i];
+                red[i] += w * light[0];
+                green[i] += w * light[1];
+                blue[i] += w * light[2];
             }
         }
     }
     std::array<glm::vec3, kMirrorAlphas.size()> result;
-    for (std::size_t lobe = 0; lobe < sum.size(); ++lobe) {
-        const float of_all = whole[lobe / 4][lobe % 4];
-        result[lobe] = of_all > 0.0f ? scale_ / of_all * rgb_of(sum[lobe]) : glm::vec3(0.0f);
+    for (std::size_t lobe = 0; lobe < result.size(); ++lobe) {
+        const std::size_t i = lobe / 4, k = lobe % 4;
+        result[lobe] = scale_ * glm::vec3(red[i][k], green[i][k], blue[i][k]);
     }
     return result;
 }

@@ -30,7 +30,8 @@ MirrorVisibility solve_mirror_visibility(const Mesh& mesh,
                                          int nodes,
                                          const Progress& progress = {});
 
-/// Mean radiance of the environment over fragments' mirror lobes, one for each of kMirrorAlphas.
+/// Mean radiance of the environment over fragments' mirror lobes, one for each of kMirrorAlphas,
+/// times mirror_correction().
 class MirroredEnvironment {
   public:
     /// Without `visibility` nothing is hidden, and a pixel has one normal.
@@ -45,7 +46,8 @@ class MirroredEnvironment {
     class Scratch {
         friend class MirroredEnvironment;
         std::vector<FragmentNeighbours::Neighbour> neighbours;
-        std::vector<float> seen;  ///< share of each node
+        std::vector<float> seen;   ///< share of each node
+        std::vector<float> width;  ///< of its Gaussian's variance
     };
     std::array<glm::vec3, kMirrorAlphas.size()> at_fragment(std::size_t fragment,
                                                             Scratch& scratch) const;

@@ -43,15 +43,10 @@ glm::vec3 average_through(const BsdfParameters& p) {
     return glm::vec3(1.0f) - f32::ggx_interface_average(p);
 }
 
-/// The lobe of kMirrorAlphas below alpha and the weight of the next: linear in log alpha, which
-/// splits the error evenly between a lobe's core (1 / alpha^2) and its tail (alpha^2).
-glm::vec2 mirror_layer(float alpha) {
-    std::size_t below = 0;
-    while (below + 2 < kMirrorAlphas.size() && kMirrorAlphas[below + 1] <= alpha) ++below;
-    const float past = alpha / kMirrorAlphas[below];
-    const float step = kMirrorAlphas[below + 1] / kMirrorAlphas[below];
-    return {static_cast<float>(below),
-            glm::clamp(std::log(std::max(past, 1.0f)) / std::log(step), 0.0f, 1.0f)};
+/// The first of four lobes and the shares of those after it.
+glm::vec4 mirror_layers(float alpha) {
+    const MirrorMix mix = mirror_mix(static_cast<double>(alpha));
+    return {static_cast<float>(mix.first), mix.share[1], mix.share[2], mix.share[3]};
 }
 
 }  // namespace
@@ -83,8 +78,8 @@ PaintUniforms uniforms_of(const Material& material, double exposure_ev) {
     PaintUniforms u{};
     u.exposure = static_cast<float>(std::exp2(exposure_ev));
     set(u.f0, p.f0);
-    set(u.base_layer, mirror_layer(std::sqrt(p.alpha_x * p.alpha_y)));
-    set(u.coat_layer, mirror_layer(p.coat_alpha));
+    set(u.base_layers, mirror_layers(std::sqrt(p.alpha_x * p.alpha_y)));
+    set(u.coat_layers, mirror_layers(p.coat_alpha));
     set(u.alpha, glm::vec4(p.alpha_x, p.alpha_y, p.coat_alpha, p.coat_f0));
     if (material.model == ReflectanceModel::ggx) {
         set(u.diffuse, p.diffuse / average_through(p));
@@ -101,7 +96,7 @@ PaintUniforms uniforms_of(const Material& material, double exposure_ev) {
                    f32::car_paint_share(p));
         set(u.flakes, glm::vec4(p.flake_f0, p.flake_alpha));
         set(u.flakes_most, f32::car_paint_most(p));
-        set(u.flake_layer, mirror_layer(p.flake_alpha));
+        set(u.flake_layers, mirror_layers(p.flake_alpha));
         set(u.film, glm::vec2(p.film_nm, p.film_eta));
     } else {
         set(u.diffuse, p.diffuse);
@@ -116,12 +111,26 @@ AnyModelUniforms any_model_uniforms_of(const Material& material, double exposure
     u.paint = bsdf.parameters;
     u.measured = bsdf.measured;
     u.lobe_alpha = lobe_alpha(bsdf);
-    u.base_layer = mirror_layer(u.lobe_alpha);
+    u.base_layers = mirror_layers(u.lobe_alpha);
+    // What is mirrored comes with GGX's own correction; it changes slowly with the cosine
+    constexpr int kApart = 4;
+    std::array<float, (kEnvironmentWeights - 1) / kApart + 1> correction;
+    const auto root_of = [](std::size_t k) {
+        return static_cast<float>(k) / static_cast<float>(kEnvironmentWeights - 1);
+    };
+    for (std::size_t i = 0; i < correction.size(); ++i) {
+        const auto root = static_cast<double>(root_of(i * kApart));
+        correction[i] = static_cast<float>(
+            mirror_correction(root * root, std::max(static_cast<double>(u.lobe_alpha), 0.01)));
+    }
     for (std::size_t k = 0; k < u.sky_weight.size(); ++k) {
-        const float t = static_cast<float>(k) / static_cast<float>(kEnvironmentWeights - 1);
+        const float t = root_of(k);
         const BsdfEnvironment weights = environment_weights(bsdf, std::max(t * t, kLowestCosine));
+        const std::size_t below = std::min(k / kApart, correction.size() - 2);
+        const float past = static_cast<float>(k) / kApart - static_cast<float>(below);
         u.sky_weight[k] = weights.diffuse;
-        u.mirror_weight[k] = weights.specular + weights.coat;
+        u.mirror_weight[k] = (weights.specular + weights.coat) /
+                             std::lerp(correction[below], correction[below + 1], past);
     }
     return u;
 }
@@ -140,7 +149,7 @@ void set_any_paint(Program& program,
     program.set("u_exposure", u.exposure);
     program.set("u_sky_weight", std::span<const glm::vec3>(u.sky_weight));
     program.set("u_mirror_weight", std::span<const glm::vec3>(u.mirror_weight));
-    program.set("u_base_layer", u.base_layer);
+    program.set("u_base_layers", u.base_layers);
     program.set("u_lobe_alpha", u.lobe_alpha);
     if (u.measured) {
         program.set("u_measured", kMeasuredUnit);
@@ -182,11 +191,11 @@ void set_paint(Program& program,
     program.set("u_sky_diffuse", glm::make_vec3(u.sky_diffuse));
     program.set("u_f0", glm::make_vec3(u.f0));
     program.set("u_alpha", glm::make_vec4(u.alpha));
-    program.set("u_base_layer", glm::make_vec2(u.base_layer));
-    program.set("u_coat_layer", glm::make_vec2(u.coat_layer));
+    program.set("u_base_layers", glm::make_vec4(u.base_layers));
+    program.set("u_coat_layers", glm::make_vec4(u.coat_layers));
     program.set("u_flakes", glm::make_vec4(u.flakes));
     program.set("u_flakes_most", glm::make_vec3(u.flakes_most));
-    program.set("u_flake_layer", glm::make_vec2(u.flake_layer));
+    program.set("u_flake_layers", glm::make_vec4(u.flake_layers));
     program.set("u_has_film", u.film[0] > 0.0f ? 1 : 0);
     program.set("u_film", glm::make_vec2(u.film));
     program.set("u_coat_log_transmittance", glm::make_vec3(u.coat_log_transmittance));

@@ -63,7 +63,7 @@ struct AnyModelUniforms {
     BsdfParameters paint{};
     std::shared_ptr<const MeasuredPaint> measured{};
     std::array<glm::vec3, kEnvironmentWeights> sky_weight{}, mirror_weight{};
-    glm::vec2 base_layer{};
+    glm::vec4 base_layers{};
     float lobe_alpha = 1.0f;
 };
 AnyModelUniforms any_model_uniforms_of(const Material& material, double exposure_ev);

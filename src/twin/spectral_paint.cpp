@@ -18,16 +18,14 @@ PaintBands::PaintBands(const SpectralPaint& paint) : paint_(paint) {
     bands_.coat_transmittance = glm::dvec3(1.0);
     largest_f0_ = *std::max_element(paint.f0.begin(), paint.f0.end());
 
-    // The diffuse layer's part depends on no direction: three bands in each call of the model.
+    // The diffuse layer's part depends on no direction. A band stands beside the largest, which
+    // decides for all how they behave at grazing light.
     const double index_squared = f64::coat_inverse_index_squared(bands_);
-    for (std::size_t k = 0; k < kSpectrumCount; k += 3) {
-        f64::BsdfParameters p = bands_;
-        for (std::size_t c = 0; c < 3; ++c) {
-            p.diffuse[static_cast<int>(c)] = paint.diffuse[k + c];
-            p.f0[static_cast<int>(c)] = paint.f0[k + c];
-        }
-        const glm::dvec3 coated = f64::coated_diffuse(p, index_squared);
-        for (std::size_t c = 0; c < 3; ++c) diffuse_[k + c] = coated[static_cast<int>(c)];
+    f64::BsdfParameters p = bands_;
+    for (std::size_t k = 0; k < kSpectrumCount; ++k) {
+        p.diffuse = glm::dvec3(paint.diffuse[k]);
+        p.f0 = glm::dvec3(paint.f0[k], largest_f0_, largest_f0_);
+        diffuse_[k] = f64::coated_diffuse(p, index_squared).x;
     }
 }
 
@@ -47,11 +45,11 @@ bool PaintBands::lobes_at(const glm::dvec3& wi, const glm::dvec3& wo, Lobes& lob
     const glm::dvec3 h = wi + wo;
     const double hh = glm::dot(h, h);
     if (wi.z <= 0.0 || wo.z <= 0.0 || hh < 1e-8) return false;
-    const double schlick = f64::schlick_weight(hh);
-    lobes.coat = f64::coat_lobe(bands_, wi, wo, hh, schlick);
+    const double weight = f64::fresnel_weight(largest_f0_, hh);
+    lobes.coat = f64::coat_lobe(bands_, wi, wo, hh);
     const double base = f64::ggx_distribution_visibility(wi, wo, hh, paint_.alpha, paint_.alpha);
-    lobes.f0 = base * (1.0 - schlick);
-    lobes.grazing = base * f64::grazing_reflectance(largest_f0_) * schlick;
+    lobes.f0 = base * (1.0 - weight);
+    lobes.grazing = base * f64::grazing_reflectance(largest_f0_) * weight;
     return true;
 }
 

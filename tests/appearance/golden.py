@@ -23,21 +23,53 @@ LOSS_OVER = [["-0.00336", "0.09317", "1.7552", "-0.54912"], ["1.65289", "-0.8105
              ["-3.43295", "0.70715"], ["1.78348"]]
 LOSS_UNDER = [["0.57679", "-0.80506", "0.80967", "-0.28165"], ["2.87614", "-0.62389", "0.21578"],
               ["-6.24262", "0.49333"], ["3.7214"]]
-COSINE_OVER = [["1.23986", "7.23334", "-3.24966"], ["-1.41008", "-12.0"], ["0.16083"]]
-COSINE_UNDER = [["0.31469", "8.29508", "3.67251"], ["-0.15546", "-8.71006"], ["0.29286"]]
+COSINE_OVER = [["2.47435", "2.9317", "-1.28922"], ["-3.84045", "-6.87772"], ["1.3444"]]
+COSINE_UNDER = [["1.08311", "6.9501", "1.08186"], ["-0.93321", "-8.6096"], ["0.19318"]]
 WHITE_MEAN = [["0.999962", "0.003956", "-2.884075", "5.08867", "-4.10955", "1.312381"]]
-GRAZING_MEAN = [["0.047628", "-0.083194", "-0.28277", "1.07906", "-1.220033", "0.464282"]]
+METAL_MEAN = [["0.047629", "-0.094853", "-0.349535", "1.842984", "-3.26051", "2.617805",
+               "-0.800612"]]
+SMOOTH_MEAN = [["0", "0.55538", "-2.09174", "4.26046", "-5.31541", "2.55192"]]
+ROUGHNESS_FACTOR = [["1.00019", "-1.86899", "-2.38278", "15.39787", "-26.61787", "20.95527",
+                     "-6.35636"]]
 
 
-def albedo_split(mu, alpha):
+def blend(f0, dielectric, metal):
+    """dielectric up to f0 = 0.2, metal from 0.4 on, Hermite's cubic between"""
+    t = min(max((f0 - mpf("0.2")) / mpf("0.2"), mpf(0)), mpf(1))
+    return dielectric + (metal - dielectric) * (3 * t**2 - 2 * t**3)
+
+
+def fresnel_weight(f0, cosine):
+    """How far F is from f0 (0) to f90 (1): Fresnel's equations by Snell's law, Schlick's for
+    metals"""
+    f = min(max(f0, mpf("0.02")), mpf("0.2"))
+    index = (1 + sqrt(f)) / (1 - sqrt(f))
+    outside = acos(min(cosine, mpf(1)))
+    inside = asin(sin(outside) / index)
+    s = (cos(outside) - index * cos(inside)) / (cos(outside) + index * cos(inside))
+    p = (index * cos(outside) - cos(inside)) / (index * cos(outside) + cos(inside))
+    return blend(f0, ((s**2 + p**2) / 2 - f) / (1 - f), (1 - cosine)**5)
+
+
+def smooth_mean(f0):
+    return poly2(SMOOTH_MEAN, mpf(0), sqrt(min(max(f0, mpf("0.02")), mpf("0.2"))))
+
+
+def mean_weight(f0):
+    return blend(f0, smooth_mean(f0), 1 / mpf(21))
+
+
+def albedo_split(mu, alpha, f0):
     t = mu / (mu + alpha)
     white = 1 - max(mpf(0), t * poly2(LOSS_OVER, t, alpha) / poly2(LOSS_UNDER, t, alpha))
     c = mu + alpha * poly2(COSINE_OVER, t, alpha) / poly2(COSINE_UNDER, t, alpha)
-    return white, white * (1 - min(max(c, mpf(0)), mpf(1)))**5
+    return white, white * fresnel_weight(f0, min(max(c, mpf(0)), mpf(1)))
 
 
-def mean_split(alpha):
-    return poly2(WHITE_MEAN, mpf(0), alpha), poly2(GRAZING_MEAN, mpf(0), alpha)
+def mean_split(alpha, f0):
+    rough = smooth_mean(f0) * poly2(ROUGHNESS_FACTOR, mpf(0), alpha)
+    mean = blend(f0, rough, poly2(METAL_MEAN, mpf(0), alpha)) - mpf("0.0001")
+    return poly2(WHITE_MEAN, mpf(0), alpha), mean
 
 
 def dot(a, b):
@@ -45,7 +77,7 @@ def dot(a, b):
 
 
 def microfacets(wi, wo, ax, ay):
-    """D G2 / (4 cos cos) and Schlick's weight"""
+    """D G2 / (4 cos cos) and the cosine between a direction and the half vector"""
     h = [a + b for a, b in zip(wi, wo)]
     length = sqrt(dot(h, h))
     h = [x / length for x in h]
@@ -59,7 +91,7 @@ def microfacets(wi, wo, ax, ay):
         return (-1 + sqrt(1 + a2 * tan(theta_w)**2)) / 2
 
     g = 1 / (1 + smith(wi) + smith(wo))
-    return d * g / (4 * wi[2] * wo[2]), (1 - dot(wo, h))**5
+    return d * g / (4 * wi[2] * wo[2]), dot(wo, h)
 
 
 def grazing(f0):
@@ -101,16 +133,18 @@ def lambert(p, wi, wo):
 
 
 def ggx_parts(p, wi, wo):
-    f90 = grazing(max(p["f0"]))
-    dgv, s = microfacets(wi, wo, p["ax"], p["ay"])
+    most = max(p["f0"])
+    f90 = grazing(most)
+    dgv, cosine = microfacets(wi, wo, p["ax"], p["ay"])
+    s = fresnel_weight(most, cosine)
     low = min(p["ax"], p["ay"])**mpf("1.5") / sqrt(max(p["ax"], p["ay"]))
     specular = [(f + (f90 - f) * s) * dgv for f in p["f0"]]
     through = []
     for f in p["f0"]:
-        e_i, e_o = (min(mpf(1), interface(f, f90, albedo_split(w[2], low))) for w in (wi, wo))
+        e_i, e_o = (min(mpf(1), interface(f, f90, albedo_split(w[2], low, most))) for w in (wi, wo))
         through.append((1 - e_i) * (1 - e_o))
     in_hand = 1 - mpf("0.006") * (1 - min(p["ax"], p["ay"]) / max(p["ax"], p["ay"]))
-    mean = [in_hand * min(mpf("0.999"), interface(f, f90, mean_split(low))) for f in p["f0"]]
+    mean = [in_hand * min(mpf("0.999"), interface(f, f90, mean_split(low, most))) for f in p["f0"]]
     return specular, through, mean
 
 
@@ -124,14 +158,15 @@ def clearcoat(p, wi, wo):
     specular, through, mean = ggx_parts(p, wi, wo)
     f0, alpha = p["coat_f0"], p["coat_alpha"]
     f90 = grazing(f0)
-    dgv, s = microfacets(wi, wo, alpha, alpha)
+    dgv, cosine = microfacets(wi, wo, alpha, alpha)
+    s = fresnel_weight(f0, cosine)
     coat = (f0 + (f90 - f0) * s) * dgv
     index = (1 + sqrt(f0)) / (1 - sqrt(f0))
     path, passed = mpf(0), mpf(1)
     for w in (wi, wo):
         path += 1 / cos(asin(sin(acos(w[2])) / index))
-        passed *= max(mpf(0), 1 - interface(f0, f90, albedo_split(w[2], alpha)))
-    mean_passed = 1 - interface(f0, f90, mean_split(alpha))
+        passed *= max(mpf(0), 1 - interface(f0, f90, albedo_split(w[2], alpha, f0)))
+    mean_passed = 1 - interface(f0, f90, mean_split(alpha, f0))
     inside = 1 - mean_passed / index**2
     values = []
     for c in range(3):
@@ -182,14 +217,15 @@ def car_paint(p, wi, wo):
     lobes = [microfacets(wi, wo, a, a)[0] for a in (low, wide)]
     f0, alpha = p["coat_f0"], p["coat_alpha"]
     f90 = grazing(f0)
-    dgv, s = microfacets(wi, wo, alpha, alpha)
+    dgv, cosine = microfacets(wi, wo, alpha, alpha)
+    s = fresnel_weight(f0, cosine)
     coat = (f0 + (f90 - f0) * s) * dgv
     index = (1 + sqrt(f0)) / (1 - sqrt(f0))
     path, passed = mpf(0), mpf(1)
     for w in (wi, wo):
         path += 1 / cos(asin(sin(acos(w[2])) / index))
-        passed *= max(mpf(0), 1 - interface(f0, f90, albedo_split(w[2], alpha)))
-    mean_passed = 1 - interface(f0, f90, mean_split(alpha))
+        passed *= max(mpf(0), 1 - interface(f0, f90, albedo_split(w[2], alpha, f0)))
+    mean_passed = 1 - interface(f0, f90, mean_split(alpha, f0))
     inside = 1 - mean_passed / index**2
     values = []
     for c in range(3):
@@ -201,8 +237,8 @@ def car_paint(p, wi, wo):
             return 1 - first * splits[0][0] - (1 - first) * most * splits[1][0]
         through = mpf(1)
         for w in (wi, wo):
-            through *= left([albedo_split(w[2], a) for a in (low, wide)])
-        share = min(max(left([mean_split(a) for a in (low, wide)]), mpf("0.001")), mean_passed)
+            through *= left([albedo_split(w[2], a, f0) for a in (low, wide)])
+        share = min(max(left([mean_split(a, f0) for a in (low, wide)]), mpf("0.001")), mean_passed)
         d = p["diffuse"][c]
         layer = d * (1 - inside) / (1 - d * inside) / share
         base = first * lobes[0] + second * lobes[1] + layer * through / pi
@@ -308,16 +344,18 @@ def ggx_multiscatter(p, wi, wo):
     """Kulla and Conty (2017) over the fitted albedo, which is part of the model"""
     low = p["ax"]
     specular, _, mean = ggx_parts({**p, "ay": low}, wi, wo)
-    f90 = grazing(max(p["f0"]))
-    white = min(mean_split(low)[0], mpf("0.999"))
-    lost = [1 - albedo_split(w[2], low)[0] for w in (wi, wo)]
+    most = max(p["f0"])
+    f90 = grazing(most)
+    white = min(mean_split(low, most)[0], mpf("0.999"))
+    lost = [1 - albedo_split(w[2], low, most)[0] for w in (wi, wo)]
     values = []
     for f, d, s, m in zip(p["f0"], p["diffuse"], specular, mean):
-        average = f + (f90 - f) / 21
+        average = f + (f90 - f) * mean_weight(most)
         many = average**2 * white / (1 - average * (1 - white))
         through = mpf(1)
         for w, one in zip((wi, wo), lost):
-            through *= max(mpf(0), 1 - interface(f, f90, albedo_split(w[2], low)) - many * one)
+            first = interface(f, f90, albedo_split(w[2], low, most))
+            through *= max(mpf(0), 1 - first - many * one)
         through /= max(mpf("0.001"), 1 - m - many * max(mpf(0), 1 - white - mpf("0.0024")))
         values.append(s + (many * lost[0] * lost[1] / (1 - white) + d * through) / pi)
     return values

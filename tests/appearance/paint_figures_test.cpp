@@ -129,7 +129,8 @@ TEST(Gloss, OfAMetalIsAboveTheGlass) {
     metal.diffuse = glm::dvec3(0.0);
     metal.f0 = glm::dvec3(0.914);
     metal.alpha = glm::dvec2(1e-4);
-    EXPECT_NEAR(specular_gloss(metal, 60.0), 100.0 * 0.90 / 0.10006, 15.0);
+    // Schlick's term, which metals have, is within 2% of it.
+    EXPECT_NEAR(specular_gloss(metal, 60.0) / (100.0 * 0.90 / 0.10006), 1.0, 0.02);
 }
 
 TEST(Gloss, RefusesOtherAngles) {
@@ -200,7 +201,8 @@ TEST(PaintFigures, OfMeasuredSpectraAreIntegrated) {
 
 TEST(PaintFigures, TellMetallicFromSolidPaint) {
     const Material solid = find_material("solid red"), metallic = find_material("silver metallic");
-    EXPECT_LT(*paint_figures(solid).flop, 1.0);
+    // Its coat throws back 4.4% of what comes at 25 degrees and 12% at 65: L* falls by that.
+    EXPECT_LT(*paint_figures(solid).flop, 1.5);
     EXPECT_GT(*paint_figures(metallic).flop, 5.0);
     EXPECT_GT(paint_figures(solid).gloss_60, 50.0);
     EXPECT_LT(paint_figures(find_material("matte grey")).gloss_60, 5.0);

@@ -12,7 +12,7 @@
 namespace livery {
 namespace {
 
-constexpr std::size_t kBlocks = 300, kLayers = 3;
+constexpr std::size_t kBlocks = 300, kLayers = 5;
 
 /// Inputs as they may be: lights below the horizon, denormal half floats, no light at all.
 struct Inputs {
@@ -65,8 +65,8 @@ std::vector<float> shaded(const LaneFunctions& functions,
     Inputs inputs;
     if (spoil) spoil(inputs);
     const std::array<const float*, 2> lights{inputs.first_light.data(), inputs.second_light.data()};
-    const std::array<const std::uint16_t*, kLayers> mirror{
-        inputs.mirror[0].data(), inputs.mirror[1].data(), inputs.mirror[2].data()};
+    std::array<const std::uint16_t*, kLayers> mirror;
+    for (std::size_t k = 0; k < kLayers; ++k) mirror[k] = inputs.mirror[k].data();
     const std::array<float, 6> irradiance{3.0f, 2.9f, 2.8f, 0.5f, 0.6f, 0.7f};
     const std::array<float, 2> radius2{7e-4f, 0.0f};
     std::vector<float> colours(kBlocks * kLaneBlock * 4);
@@ -76,11 +76,11 @@ std::vector<float> shaded(const LaneFunctions& functions,
                  {0.1f, 0.3f, 0.7f},
                  {0.3f, 0.1f, 0.05f},
                  {0.3f, 0.15f, 0.02f, 0.04f},
-                 {1.0f, 0.25f},
-                 {0.0f, 0.5f},
+                 {1.0f, 0.5f, 0.3f, -0.05f},
+                 {0.0f, 0.6f, 0.2f, -0.05f},
                  {0.1f, 0.2f, 0.5f, 0.1f},
                  {0.5f, 0.6f, 0.8f},
-                 {1.0f, 0.75f},
+                 {1.0f, 0.55f, 0.6f, -0.06f},
                  {320.0f, 2.3f},
                  {-0.1f, -2.0f, -19.9f},
                  0.44f};

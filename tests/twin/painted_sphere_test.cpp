@@ -25,16 +25,16 @@ TEST(SpectralPaint, EveryBandIsTheClearcoatModel) {
     Random random(5);
     for (const auto& name : spectral_paint_names()) {
         const SpectralPaint paint = read_spectral_paint(name);
+        const double largest = *std::max_element(paint.f0.begin(), paint.f0.end());
         for (int trial = 0; trial < 200; ++trial) {
             const glm::dvec3 wi = direction(random), wo = direction(random);
             const Spectrum all = evaluate_paint(paint, wi, wo);
             const std::size_t k = random.below(kSpectrumCount);
-            // One band as a grey paint. Its own f0 decides how it behaves at grazing light; the
-            // paint's largest f0 decides for all bands: .02 and more make no difference, nor does
-            // 0.
+            // One band beside the paint's largest, which decides for all how they behave at grazing
+            // light.
             f64::BsdfParameters p{};
             p.diffuse = glm::dvec3(paint.diffuse[k]);
-            p.f0 = glm::dvec3(paint.f0[k]);
+            p.f0 = glm::dvec3(paint.f0[k], largest, largest);
             p.alpha_x = p.alpha_y = paint.alpha;
             p.coat_alpha = paint.coat_alpha;
             p.coat_f0 = paint.coat_f0;
