@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "calibration/capture_evidence.h"
 #include "calibration/colour_report.h"
 #include "calibration/statistics.h"
 #include "core/error.h"
@@ -12,6 +13,7 @@ namespace livery {
 namespace {
 
 constexpr double kTargetPeak = 0.80, kHighestPeak = 0.85, kLowestPeak = 0.60;
+constexpr double kOtherExposure = 0.01;
 constexpr int kMostLatency = 6;
 constexpr double kProjectorFrame_s = 1.0 / 60.0;
 
@@ -79,6 +81,10 @@ Photograph BenchSession::photograph(const std::string& name) {
                         "a picture of 3 channels");
     photo.name = name;
     check_photograph(photo);
+    if (met_s_ > 0.0 && std::abs(photo.exposure_s / met_s_ - 1.0) > kOtherExposure)
+        throw Refused("automatic exposure: the photograph of " + name + " was exposed for " +
+                          seconds(photo.exposure_s) + ", those before it for " + seconds(met_s_),
+                      kManualExposure);
     return photo;
 }
 
@@ -109,6 +115,25 @@ void BenchSession::check_photograph(const Photograph& photo) {
             percent(1.0 - static_cast<double>(finite) / static_cast<double>(looked_at)) +
                 " not finite",
             "finite numbers");
+}
+
+double BenchSession::white_mean() const {
+    double sum = 0.0, count = 0.0;
+    for (const std::uint32_t i : lit_)
+        for (std::size_t c = 0; c < 3; ++c) {
+            const float value = white_.image.values[3 * static_cast<std::size_t>(i) + c];
+            if (!std::isfinite(value)) continue;
+            sum += static_cast<double>(value) - white_.black_level;
+            count += 1.0;
+        }
+    return sum / std::max(count, 1.0) / (white_.saturates_at - white_.black_level);
+}
+
+/// `asked`, `found`: the ratio of two exposures, and of the brightness of white that came of them.
+/// The flattest curve of a picture style, a camera's logarithm, still answers with a fifth of it.
+bool BenchSession::sets_its_own(double asked, double found) {
+    return std::abs(std::log(asked)) > 0.2 &&
+           std::abs(std::log(found)) < 0.1 * std::abs(std::log(asked));
 }
 
 double BenchSession::white_peak() const {
@@ -192,10 +217,13 @@ void BenchSession::meet(int width, int height) {
                 peak >= 0.97 ? 0.25 : std::clamp(kTargetPeak / std::max(peak, 1e-3), 0.1, 16.0);
         exposure_s_ = whole_frames(exposure_s_);
         if (exposure_s_ == before) break;
-        const double kept_s = white_.exposure_s;
+        const double kept_s = white_.exposure_s, mean = white_mean();
         white_ = photograph("white");
         find_lit();
         peak = white_peak();
+        // Where all of it is at full scale it cannot become brighter.
+        if (mean < 0.9 && sets_its_own(white_.exposure_s / kept_s, white_mean() / mean))
+            refuse_own_exposure(kept_s, white_.exposure_s);
         if (white_.exposure_s == kept_s) {  // whatever it is asked for
             exposure_s_ = kept_s;
             break;
@@ -209,6 +237,13 @@ void BenchSession::meet(int width, int height) {
             "camera so that nothing shines at it");
     refuse_curved_files();
     last_ = white_.image;
+    met_s_ = white_.exposure_s;
+}
+
+void BenchSession::refuse_own_exposure(double before_s, double after_s) {
+    throw Refused("automatic exposure: white is as bright at " + seconds(after_s) + " as at " +
+                      seconds(before_s) + ", so that the camera sets exposure or ISO by itself",
+                  kManualExposure);
 }
 
 /// Half the exposure must give half the numbers: a JPEG's or a picture style's curve does not.
@@ -230,6 +265,7 @@ void BenchSession::refuse_curved_files() {
         if (std::isfinite(bright + dark) && bright > 0.0f) ratio.push_back(dark / bright);
     }
     const double found = static_cast<double>(median(std::move(ratio)));
+    if (sets_its_own(asked, found)) refuse_own_exposure(white_.exposure_s, half.exposure_s);
     // An sRGB curve gives 0.73 for a half; a shutter is within a few percent.
     if (std::abs(found - asked) > 0.15 * asked)
         throw Refused("the camera's numbers are not proportional to light: " + percent(asked) +

@@ -19,8 +19,8 @@ class BenchSession {
 
     /// Finds how many photographs still see the picture before, and the exposure at which white
     /// peaks at about 80% of full scale (at most 85%) in every channel. Throws Refused when no
-    /// light of the projector reaches the camera, no exposure fits, or the camera's numbers are not
-    /// proportional to light.
+    /// light of the projector reaches the camera, no exposure fits, the camera sets its own, or its
+    /// numbers are not proportional to light.
     void meet(int width, int height);
 
     /// Shows and photographs. Where `compared_to_last`, the photograph must differ from the one
@@ -42,6 +42,9 @@ class BenchSession {
     bool see_white(int width, int height);
     void find_lit();
     double white_peak() const;
+    double white_mean() const;
+    static bool sets_its_own(double asked, double found);
+    [[noreturn]] static void refuse_own_exposure(double before_s, double after_s);
     bool differs(const Photograph& a, const Photograph& b) const;
 
     const BenchPorts& ports_;
@@ -49,6 +52,7 @@ class BenchSession {
     int width_ = 0, height_ = 0;  ///< of the photographs
     int expected_ = 0, photographs_ = 0, latency_ = 0;
     double exposure_s_ = 0.0;
+    double met_s_ = 0.0;              ///< what the camera says of it once it is found; it stays
     std::vector<std::uint32_t> lit_;  ///< some of the lit camera pixels
     ImageF last_;                     ///< what they were in the photograph before
     Photograph black_, white_;

@@ -99,24 +99,12 @@ void refuse_swapped(const Colours& c) {
                   "green and blue in this order");
 }
 
-std::string darker(double factor) {
-    return factor < 1.0 ? percent(1.0 - factor) + " darker" : percent(factor - 1.0) + " brighter";
-}
-
 /// Parts of the picture where white is not the sum of the channels.
 void refuse_shadowed(const Evidence& e, const Colours& c) {
     const auto light = [&](const CaptureSummary& s, std::size_t i) {
         return s.light.values[i] - e.dark->light.values[i];
     };
     // bright-gray against the stripes first: what they disagree about is a shadow in one or other
-    const auto explain = [&](const CaptureSummary& s, const Region& region) {
-        throw Refused(s.name + ": " + percent(region.share) + " of what is lit is " +
-                          darker(region.ratio) +
-                          " than the other photographs say: a shadow, a reflection or somebody in "
-                          "the light",
-                      "keep out of the light of the projector and of the camera's view, and "
-                      "repeat that photograph");
-    };
     ImageF bright = e.bright->light;
     for (std::size_t i = 0; i < bright.values.size(); ++i) bright.values[i] = light(*e.bright, i);
     const Region sum_off =
@@ -131,13 +119,13 @@ void refuse_shadowed(const Evidence& e, const Colours& c) {
     if (!sum_off.found()) {
         if (!bright_off.found()) return;
         throw Refused(e.bright->name + ", red, green and blue: " + percent(bright_off.share) +
-                          " of what is lit is " + darker(bright_off.ratio) +
+                          " of what is lit is " + times_of(bright_off.ratio) +
                           " than the stripes and white say: a shadow, a reflection or somebody in "
                           "the light",
                       "keep out of the light of the projector and of the camera's view, and "
                       "repeat these photographs");
     }
-    if (bright_off.found()) explain(*e.bright, bright_off);
+    if (bright_off.found()) refuse_region(e.bright->name, bright_off);
     // The one whose own camera channel departs from bright-gray's there
     const CaptureSummary* worst = nullptr;
     Region of_worst;
@@ -159,21 +147,30 @@ void refuse_shadowed(const Evidence& e, const Colours& c) {
             of_worst = region;
         }
     }
-    if (worst) explain(*worst, of_worst);
+    if (worst) refuse_region(worst->name, of_worst);
 }
 
 /// How much of each channel's photograph bright-gray holds: 1 each where all were exposed alike.
 void check_exposures(const Evidence& e,
                      const Colours& c,
                      const ShownDrives& drives,
-                     std::vector<std::string>& warnings) {
+                     CaptureVerdict& verdict) {
     constexpr double kAlike = 0.012;
     if (!(condition_number(c.of_channel) < 100.0)) return;
     const glm::dvec3 held = glm::inverse(c.of_channel) * c.bright;
     const auto off = [](double value) { return std::abs(value - 1.0); };
     const auto say = [&](const std::string& what, double error, const char* fix) {
         if (error > kAdditivityLimit) throw Refused(what, fix);
-        warnings.push_back(what + "; " + fix);
+        verdict.warnings.push_back(what + "; " + fix);
+    };
+    // A small slip of one photograph is undone, since the others say by how much.
+    const auto slipped = [&](const CaptureSummary& one, const std::string& than, double ratio) {
+        if (off(ratio) <= kAdditivityLimit) verdict.gains[one.role] = 1.0 / ratio;
+        say(one.name + " is " + times_of(ratio) + " than " + than +
+                ": it had another exposure, or the lamp another brightness" +
+                (off(ratio) <= kAdditivityLimit ? ", and is brought to theirs" : ""),
+            off(ratio),
+            kSameExposure);
     };
 
     // One of the three alone
@@ -182,11 +179,9 @@ void check_exposures(const Evidence& e,
         if (off(held[k]) < kAdditivityWarning || off(held[a]) > 0.4 * off(held[k]) ||
             off(held[b]) > 0.4 * off(held[k]))
             continue;
-        say(c.channel[static_cast<std::size_t>(k)]->name + " is " + darker(1.0 / held[k]) +
-                " than bright-gray and the other two say: it had another exposure, or the lamp "
-                "another brightness",
-            off(held[k]),
-            kSameExposure);
+        slipped(*c.channel[static_cast<std::size_t>(k)],
+                "bright-gray and the other two say",
+                1.0 / held[k]);
         return;
     }
     // bright-gray alone: white, which shows the same, tells it from a projector that is not
@@ -201,18 +196,15 @@ void check_exposures(const Evidence& e,
     const double ratio = against_white.typical;
     if (off(ratio) > kAlike && off(mean) > kAlike && spread < 0.5 * off(mean) &&
         std::abs(ratio - mean) < 0.5 * off(ratio)) {
-        say(e.bright->name + " is " + darker(ratio) +
-                " than white and than red, green and blue together: it had another exposure, or "
-                "the lamp another brightness",
-            off(ratio),
-            kSameExposure);
+        slipped(*e.bright, "white and than red, green and blue together", mean);
         return;
     }
     if (off(ratio) > 0.03 && off(mean) < kAlike)
-        warnings.push_back("the colour photographs are " + darker(ratio) +
-                           " than the stripes: another exposure, or a lamp that drifts");
-    // White less than its parts: the files' fault more often than the projector's
-    if (mean < 1.0 - kAdditivityWarning && off(ratio) < 0.05) {
+        verdict.warnings.push_back("the colour photographs are " + times_of(ratio) +
+                                   " than the stripes: another exposure, or a lamp that drifts");
+    // White less than its parts. The stripes have told already whether the files are linear; what
+    // is left then is the projector's own, and the solver's to judge.
+    if (e.pairs.empty() && mean < 1.0 - kAdditivityWarning && off(ratio) < 0.05) {
         const bool eight_bit = e.bright->saturates_at <= 255.0;
         say("white is " + percent(1.0 - mean) +
                 " less than red, green and blue together: the files are encoded for viewing (JPEG, "
@@ -221,15 +213,14 @@ void check_exposures(const Evidence& e,
                 "; or white is over-exposed; or the projector boosts pure colours",
             1.0 - mean,
             "use RAW or linear TIFF, or give \"transfer\": \"srgb\" or a response file in "
-            "manifest.json; check the exposure; switch colour enhancement off");
+            "manifest.json; check the exposure; photograph the stripes too, which tell these "
+            "apart");
     }
 }
 
 }  // namespace
 
-void check_colours(const Evidence& e,
-                   const ShownDrives& drives,
-                   std::vector<std::string>& warnings) {
+void check_colours(const Evidence& e, const ShownDrives& drives, CaptureVerdict& verdict) {
     if (!e.dark || !e.bright || !e.red || !e.green || !e.blue) return;
     const Colours colours = means_of(e);
     // Dark where it should be bright: the solver names that.
@@ -237,7 +228,7 @@ void check_colours(const Evidence& e,
     refuse_same(e, colours);
     refuse_swapped(colours);
     refuse_shadowed(e, colours);
-    check_exposures(e, colours, drives, warnings);
+    check_exposures(e, colours, drives, verdict);
 }
 
 }  // namespace livery

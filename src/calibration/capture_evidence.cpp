@@ -1,9 +1,10 @@
 #include "calibration/capture_evidence.h"
 
 #include <algorithm>
-#include <numeric>
 
+#include "calibration/colour_report.h"
 #include "calibration/statistics.h"
+#include "core/error.h"
 
 namespace livery {
 namespace {
@@ -74,14 +75,19 @@ Evidence gather_evidence(const std::vector<CaptureSummary>& captures, int block_
     const std::vector<float>& light = e.reference.values;
     e.lit.assign(light.size(), 0);
     if (light.empty()) return e;
+    // What is not a number in any photograph counts in none.
+    std::vector<std::uint8_t> known(light.size(), 1);
+    for (const CaptureSummary& capture : captures)
+        for (std::size_t i = 0; i < known.size(); ++i) known[i] = known[i] && !capture.unknown[i];
     const float peak = quantile(light, 0.995);
     e.peak = static_cast<double>(peak);
     for (std::size_t i = 0; i < light.size(); ++i) {
-        e.lit[i] = peak > 0.0f && light[i] > kLitShare * peak;
+        e.lit[i] = known[i] && peak > 0.0f && light[i] > kLitShare * peak;
         e.lit_count += e.lit[i];
     }
-    std::vector<std::size_t> order(light.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < light.size(); ++i)
+        if (known[i]) order.push_back(i);
     // Not by `reference`: it holds black's noise, which would choose the blocks.
     const std::vector<float>& chosen_by = !e.pairs.empty()
                                               ? e.pairs.front().first->light.values
@@ -130,27 +136,17 @@ Region region_of(const ImageF& ratio, double tolerance) {
     return region;
 }
 
-Trend trend_of(const std::vector<double>& order, const std::vector<double>& brightness) {
-    const auto n = static_cast<double>(order.size());
-    Trend trend;
-    if (order.size() < 3) return trend;
-    double sx = 0, sy = 0, sxx = 0, sxy = 0;
-    for (std::size_t k = 0; k < order.size(); ++k) {
-        sx += order[k];
-        sy += brightness[k];
-        sxx += order[k] * order[k];
-        sxy += order[k] * brightness[k];
-    }
-    const double mean = sy / n;
-    trend.slope = (n * sxy - sx * sy) / std::max(n * sxx - sx * sx, 1e-12);
-    double scatter = 0.0;
-    for (std::size_t k = 0; k < order.size(); ++k) {
-        const double off = brightness[k] - mean - trend.slope * (order[k] - sx / n);
-        scatter += off * off;
-    }
-    trend.scatter = std::sqrt(scatter / (n - 2.0)) / mean;
-    trend.slope /= mean;
-    return trend;
+std::string times_of(double ratio) {
+    return ratio < 1.0 ? percent(1.0 - ratio) + " darker" : percent(ratio - 1.0) + " brighter";
+}
+
+void refuse_region(const std::string& name, const Region& region) {
+    throw Refused(name + ": " + percent(region.share) + " of what is lit is " +
+                      times_of(region.ratio) +
+                      " than the other photographs say: a shadow, a reflection or somebody in the "
+                      "light",
+                  "keep out of the light of the projector and of the camera's view, and repeat "
+                  "that photograph");
 }
 
 }  // namespace livery

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -62,15 +61,28 @@ struct Region {
 };
 Region region_of(const ImageF& ratio, double tolerance = 0.1);
 
-/// A line through brightness over order, and the scatter around it.
-struct Trend {
-    double slope = 0.0, scatter = 0.0;
-};
-Trend trend_of(const std::vector<double>& order, const std::vector<double>& brightness);
+inline constexpr const char* kManualExposure =
+    "set exposure, ISO, aperture and white balance by hand, the same for all, and repeat";
+inline constexpr const char* kSteady =
+    "let the lamp warm up for 20 minutes, switch off eco and dynamic-contrast modes and automatic "
+    "exposure, expose for whole projector frames, and repeat";
+
+/// "30.0% darker".
+std::string times_of(double ratio);
+
+/// Photographs that differ from the others in a part of the picture.
+[[noreturn]] void refuse_region(const std::string& name, const Region& region);
+
+/// White at an exposure of its own, by the stripes.
+void refuse_other_white(const Evidence& evidence);
+
+/// Light that does not come from the projector, from the first photograph to the last.
+void check_room_light(const Evidence& evidence, const ShownDrives& drives);
+
+/// Each pair of stripes adds up to white and black, everywhere and every time.
+LampDrift check_stripes(const Evidence& evidence, std::vector<std::string>& warnings);
 
 /// The six colour photographs against one another: which stands out, and how.
-void check_colours(const Evidence& evidence,
-                   const ShownDrives& drives,
-                   std::vector<std::string>& warnings);
+void check_colours(const Evidence& evidence, const ShownDrives& drives, CaptureVerdict& verdict);
 
 }  // namespace livery

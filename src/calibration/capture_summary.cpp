@@ -21,7 +21,8 @@ constexpr double kPlateauShare = 0.002, kPlateauOverBelow = 3.0;
 /// Pixels exactly at the largest value, and in a range of 2% below it.
 void find_plateau(const Photograph& photo, CaptureSummary& summary) {
     float largest = -std::numeric_limits<float>::infinity();
-    for (const float value : photo.image.values) largest = std::max(largest, value);
+    for (const float value : photo.image.values)
+        if (std::isfinite(value)) largest = std::max(largest, value);
     const float below = largest - 0.02f * (largest - static_cast<float>(photo.black_level));
     double at = 0.0, under = 0.0;
     for (const float value : photo.image.values) {
@@ -43,10 +44,13 @@ CaptureSummary summary_of(const RoledPhotograph& capture, int block) {
     summary.name = capture.role;
     if (!photo.name.empty() && photo.name != capture.role) summary.name += " (" + photo.name + ")";
     summary.saturates_at = photo.saturates_at;
+    summary.full_light = (photo.saturates_at - photo.black_level) / photo.exposure_s;
+    summary.has_black_level = photo.black_level > 0.0;
     const int width = image.width / block, height = image.height / block;
     summary.colour = ImageF(width, height, 3);
     summary.light = ImageF(width, height, 1);
     summary.saturated.assign(summary.light.values.size(), 0);
+    summary.unknown = summary.saturated;
     const auto gain =
         static_cast<float>(1.0 / (photo.exposure_s * static_cast<double>(block) * block));
     const auto black = static_cast<float>(photo.black_level);
@@ -66,6 +70,9 @@ CaptureSummary summary_of(const RoledPhotograph& capture, int block) {
                             sum[c] += value - black;
                             over |= value >= limit;
                         }
+                const bool known = std::isfinite(sum[0] + sum[1] + sum[2]);
+                summary.unknown[summary.light.index(x, y)] = !known;
+                if (!known) std::fill_n(sum, 3, 0.0f);
                 float* const out = summary.colour.pixel(x, y);
                 for (int c = 0; c < 3; ++c) out[c] = gain * sum[c];
                 summary.light.at(x, y) = (out[0] + out[1] + out[2]) / 3.0f;

@@ -16,10 +16,14 @@ struct CaptureSummary {
     ImageF colour;                        ///< RGB
     ImageF light;                         ///< mean of the three
     std::vector<std::uint8_t> saturated;  ///< one a block: 1 where any of its pixels is
+    std::vector<std::uint8_t> unknown;    ///< one a block: 1 where any is not finite; 0 in light
     double mean = 0.0;                    ///< of light
+    double taken_at = 0.0;                ///< when, in photographs
     double plateau = 0.0;  ///< largest file value, where many pixels stop exactly there, else 0
     double plateau_share = 0.0;  ///< of the pixels
     double saturates_at = 0.0;   ///< file units
+    double full_light = 0.0;     ///< what full scale would be in light; infinite: not known
+    bool has_black_level = false;
 };
 
 /// Side of a block in camera pixels: about 240 lie across a picture.

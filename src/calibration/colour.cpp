@@ -297,16 +297,16 @@ ColourCalibration calibrate_colour(const std::vector<RoledPhotograph>& captures,
             }
         }
         if (options.mode == ColourMode::robust) {
-            calibration.warnings =
+            const LevelsVerdict verdict =
                 check_levels(samples, mixing, usable, levels, centre, scattered, curves);
+            calibration.warnings = verdict.warnings;
+            response_error = verdict.unexplained;
             for (std::size_t k = 0; k < 3; ++k) {
                 const double of_span = scattered.of_span[static_cast<int>(k)];
-                response_error = std::max({response_error,
-                                           std::abs(curves[k].n[0] + of_span),
-                                           std::abs(curves[k].n[255] + of_span - 1.0)});
-                if (response_error > 0.2)
-                    throw Refused("black and white blocks of gray-levels lie " +
-                                      percent(response_error) +
+                const double off = std::max(std::abs(curves[k].n[0] + of_span),
+                                            std::abs(curves[k].n[255] + of_span - 1.0));
+                if (off > 0.2)
+                    throw Refused("black and white blocks of gray-levels lie " + percent(off) +
                                       " from the dark and the bright picture",
                                   "check that the gray-levels photograph shows the gray-levels "
                                   "picture at the same exposure, and that the lamp is warm");

@@ -58,7 +58,7 @@ struct LiveOptions {
     ColourOptions colour;
     int shots = 1;  ///< photographs a colour picture
     /// Projector pixels that the mock-up itself takes, where its pose is known (non-zero: mock-up;
-    /// empty: not known). The colorimeter is held to these.
+    /// empty: not known). These alone are lit, and the colorimeter is held to them.
     Image8 mockup;
 };
 struct LiveResult {
@@ -70,7 +70,7 @@ struct LiveResult {
     double capture_seconds = 0.0, solve_seconds = 0.0;
     int colour_photographs = 0, latency_photographs = 0;
 };
-LiveResult calibrate_live(const BenchPorts& ports,
+LiveResult calibrate_live(const BenchPorts& bench,
                           const LiveOptions& options,
                           const Progress& progress = {});
 

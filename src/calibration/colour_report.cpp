@@ -186,10 +186,9 @@ void report(const PixelMixing& mixing,
                            "noise or too short an "
                            "exposure; more shots, or move the projector");
     if (!with_table && response_error > 0.01)
-        warnings.push_back("the grey levels' ends lie " + percent(response_error) +
-                           " from the dark and bright pictures: the lamp drifted, or light "
-                           "scatters in the lens or "
-                           "between parts; warm up the lamp, clean the lenses");
+        warnings.push_back("the grey levels' white blocks lie " + percent(response_error) +
+                           " from bright-gray, more than scattered light explains: the lamp "
+                           "changed, or the projector's focus is soft; warm up the lamp, focus");
     double violation = 0.0;
     for (const ResponseCurve& curve : calibration.response)
         violation = std::max(violation, curve.largest_violation);

@@ -21,15 +21,38 @@ constexpr double kFollows = 0.7;
 /// mean light of the picture is a fifth of white's.
 constexpr double kScatterShare = 0.1;
 
+/// Over this it is named; under it hardly tells itself from what blur takes from the blocks.
+constexpr double kOtherExposure = 0.02;
+
+/// Exposure of gray-levels over bright-gray's, as its white blocks tell. A share f of the light of
+/// each place comes from the places around it, by lens or room. In bright-gray all of them are
+/// white; here their mean is m. A black block then shows b = f m, a white one 1 - f + f m of white:
+/// both together, white + b (1 / m - 1) is 1 at any f. (The curve has had b taken off.)
+struct Exposure {
+    double over_bright = 1.0;
+    double doubt = 0.0;  ///< f is not the same for both kinds of block: half of what it explains
+    double off() const { return std::max(0.0, std::abs(over_bright - 1.0) - doubt); }
+};
+Exposure exposure_of(const Pattern& levels,
+                     std::size_t channel,
+                     const LevelCurve& curve,
+                     double black_block) {
+    double sum = 0.0;
+    for (std::size_t i = channel; i < levels.drive.values.size(); i += 3)
+        sum += static_cast<double>(curve.n[levels.drive.values[i]]);
+    const double mean = sum / static_cast<double>(levels.drive.pixel_count()) / curve.n[255];
+    return {curve.n[255] + black_block / mean, 0.5 * std::abs(black_block) * (1.0 / mean - 1.0)};
+}
+
 }  // namespace
 
-std::vector<std::string> check_levels(const ColourSamples& samples,
-                                      const PixelMixing& mixing,
-                                      const std::vector<std::uint8_t>& usable,
-                                      const Pattern& levels,
-                                      const std::vector<std::uint8_t>& centre,
-                                      const ScatteredLight& scattered,
-                                      const std::array<LevelCurve, 3>& curves) {
+LevelsVerdict check_levels(const ColourSamples& samples,
+                           const PixelMixing& mixing,
+                           const std::vector<std::uint8_t>& usable,
+                           const Pattern& levels,
+                           const std::vector<std::uint8_t>& centre,
+                           const ScatteredLight& scattered,
+                           const std::array<LevelCurve, 3>& curves) {
     const int columns = samples.width / kCell_px + 1, rows = samples.height / kCell_px + 1;
     std::vector<std::vector<float>> ratios(static_cast<std::size_t>(columns) *
                                            static_cast<std::size_t>(rows));
@@ -92,23 +115,27 @@ std::vector<std::string> check_levels(const ColourSamples& samples,
     if (share > 0.03) {
         const auto there_ratio = static_cast<double>(median(there));
         throw Refused(
-            "gray-levels: " + percent(share) + " of the mock-up is " +
-                (there_ratio < 1.0 ? percent(1.0 - there_ratio) + " darker"
-                                   : percent(there_ratio - 1.0) + " brighter") +
+            "gray-levels: " + percent(share) + " of the mock-up is " + times_of(there_ratio) +
                 " than the other photographs say: a shadow, a reflection or somebody in the light",
             "keep out of the light of the projector and of the camera's view, and repeat that "
             "photograph");
     }
 
-    std::vector<std::string> warnings;
-    const double missing = 1.0 - (curves[1].n[255] + scattered.of_span.y);
-    if (std::abs(missing) > 0.02 && scattered.of_span.y < kScatterShare * std::abs(missing))
-        warnings.push_back(
-            "gray-levels is " +
-            (missing > 0.0 ? percent(missing) + " darker" : percent(-missing) + " brighter") +
+    LevelsVerdict verdict;
+    Exposure exposure;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Exposure here =
+            exposure_of(levels, k, curves[k], scattered.of_span[static_cast<int>(k)]);
+        if (here.off() > exposure.off()) exposure = here;
+    }
+    if (exposure.off() > kOtherExposure)
+        verdict.warnings.push_back(
+            "gray-levels is " + times_of(exposure.over_bright) +
             " than bright-gray says: it had another exposure, or the lamp another brightness; its "
             "white blocks are taken for white; photograph all pictures at one exposure");
-    return warnings;
+    else
+        verdict.unexplained = exposure.off();
+    return verdict;
 }
 
 }  // namespace livery

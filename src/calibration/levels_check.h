@@ -13,14 +13,21 @@
 
 namespace livery {
 
+struct LevelsVerdict {
+    std::vector<std::string> warnings;
+    /// How far its white blocks lie from bright-gray, where neither scattered light nor an exposure
+    /// of its own explains it.
+    double unexplained = 0.0;
+};
+
 /// `curves`: N of each drive as fitted, one a channel. Throws Refused where the photograph does not
-/// follow its pattern, or a part of it lies in a shadow; returns warnings.
-std::vector<std::string> check_levels(const ColourSamples& samples,
-                                      const PixelMixing& mixing,
-                                      const std::vector<std::uint8_t>& usable,
-                                      const Pattern& levels,
-                                      const std::vector<std::uint8_t>& centre,
-                                      const ScatteredLight& scattered,
-                                      const std::array<LevelCurve, 3>& curves);
+/// follow its pattern, or a part of it lies in a shadow.
+LevelsVerdict check_levels(const ColourSamples& samples,
+                           const PixelMixing& mixing,
+                           const std::vector<std::uint8_t>& usable,
+                           const Pattern& levels,
+                           const std::vector<std::uint8_t>& centre,
+                           const ScatteredLight& scattered,
+                           const std::array<LevelCurve, 3>& curves);
 
 }  // namespace livery

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "calibration/bench_session.h"
+#include "calibration/captures.h"
 #include "calibration/colour.h"
 #include "calibration/colour_report.h"
 #include "calibration/colour_samples.h"
@@ -14,30 +15,9 @@
 namespace livery {
 namespace {
 
-constexpr int kMosaics = 6;  // with the six pictures of the method: twelve
-constexpr double kFlickerWarning = 0.003, kLargestFlicker = 0.01;
-constexpr const char* kSteadyLight =
-    "let the lamp warm up for 20 minutes, switch off automatic exposure, eco and dynamic-contrast "
-    "modes, expose for whole projector frames, and repeat";
-
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
-
-ImageF mean_of_channels(const ImageF& image) {
-    ImageF mean(image.width, image.height, 1);
-    for (std::size_t i = 0; i < mean.values.size(); ++i)
-        mean.values[i] =
-            (image.values[3 * i] + image.values[3 * i + 1] + image.values[3 * i + 2]) / 3.0f;
-    return mean;
-}
-
-struct Geometry {
-    ProjectorToCamera map;
-    ImageF light;                      ///< white - black, camera pixels
-    double lamp_per_photograph = 0.0;  ///< relative change of the lamp
-    double flicker = 0.0;              ///< its scatter around that, of one photograph
-};
 
 /// Share of the lit pixels on which a stripe picture and its inverse do not add up to white.
 double broken_share(const ImageF& stripes,
@@ -61,100 +41,102 @@ double broken_share(const ImageF& stripes,
     return static_cast<double>(broken) / static_cast<double>(std::max<std::size_t>(lit, 1));
 }
 
-struct Lamp {
-    double per_photograph = 0.0, flicker = 0.0;  ///< relative
+/// What is known of a session so far, and what went wrong with it: the cause that the photographs
+/// themselves tell comes before the one that the session ran into.
+class Session {
+  public:
+    Session(BenchSession& bench, const LiveOptions& options)
+        : bench_(bench),
+          options_(options),
+          drives_{options.colour.dark_drive, options.colour.bright_drive} {}
+
+    Captures captures;
+
+    CaptureVerdict judge(bool with_stripes) const {
+        return judge_captures(captures, options_.width, options_.height, drives_, with_stripes);
+    }
+    /// Taken just now, in the mean of so many shots.
+    void add(const std::string& role, Photograph photograph, int shots = 1) {
+        add_capture(captures,
+                    {role, std::move(photograph)},
+                    static_cast<double>(bench_.photographs()) - 0.5 * (shots + 1));
+    }
+    void photograph_geometry();
+
+  private:
+    void photograph_stripes(const Pattern& stripes, const Pattern& inverse);
+
+    BenchSession& bench_;
+    const LiveOptions& options_;
+    ShownDrives drives_;
+    Photograph white_, black_;
+    std::string broken_;  ///< the first pair of stripes that does not add up to white
 };
 
-/// How the lamp changes from photograph to photograph: each pair of stripes sums to white.
-Lamp lamp_of(const std::vector<ImageF>& pictures, const GrayCodeResult& decoded) {
-    const std::size_t pairs = (pictures.size() - 2) / 2;
-    const ImageF& white = pictures[pictures.size() - 2];
-    const ImageF& black = pictures[pictures.size() - 1];
-    std::vector<double> brightness(pairs);
-    double sx = 0, sy = 0, sxx = 0, sxy = 0;
-    for (std::size_t pair = 0; pair < pairs; ++pair) {
-        double sum = 0.0, expected = 0.0;
-        for (std::size_t i = 0; i < decoded.decoded.values.size(); i += 7) {
-            if (!decoded.decoded.values[i]) continue;
-            sum += static_cast<double>(pictures[2 * pair].values[i] +
-                                       pictures[2 * pair + 1].values[i] - 2.0f * black.values[i]);
-            expected += static_cast<double>(white.values[i] - black.values[i]);
-        }
-        const double x = static_cast<double>(2 * pair), y = brightness[pair] = sum / expected;
-        sx += x;
-        sy += y;
-        sxx += x * x;
-        sxy += x * y;
+/// Both again where a picture had not arrived, or somebody stood before it. After the first pair
+/// that fails for good the others are taken once: all together tell what is wrong.
+void Session::photograph_stripes(const Pattern& stripes, const Pattern& inverse) {
+    constexpr int kAttempts = 3;
+    for (int attempt = 1;; ++attempt) {
+        // A small mock-up may lie inside one stripe of two pictures in a row.
+        Photograph first = bench_.take(stripes.drive, stripes.role, false);
+        const auto first_at = static_cast<double>(bench_.photographs() - 1);
+        Photograph second = bench_.take(inverse.drive, inverse.role, true);
+        const bool broken =
+            broken_share(first.image, second.image, white_.image, black_.image) > 0.2;
+        if (broken && attempt < kAttempts && broken_.empty()) continue;
+        if (broken && broken_.empty()) broken_ = stripes.role;
+        add_capture(captures, {stripes.role, std::move(first)}, first_at);
+        add(inverse.role, std::move(second));
+        return;
     }
-    const auto n = static_cast<double>(pairs);
-    const double slope = (n * sxy - sx * sy) / (n * sxx - sx * sx), mean = sy / n;
-    double scatter = 0.0;
-    for (std::size_t pair = 0; pair < pairs; ++pair) {
-        const double off =
-            brightness[pair] - mean - slope * (static_cast<double>(2 * pair) - sx / n);
-        scatter += off * off;
-    }
-    // A pair holds half the light of each of two photographs.
-    return {slope / mean, std::sqrt(2.0 * scatter / std::max(n - 2.0, 1.0)) / mean};
 }
 
-Geometry photograph_geometry(BenchSession& session, const LiveOptions& options) {
-    const std::vector<Pattern> patterns = geometry_patterns(options.width, options.height);
-    std::vector<ImageF> pictures(patterns.size());
-    const auto take = [&](std::size_t i, bool compared) {
-        pictures[i] =
-            mean_of_channels(session.take(patterns[i].drive, patterns[i].role, compared).image);
-    };
-
-    // White and black first: they tell of each pair of stripes whether both had arrived.
+/// White and black first: they tell of each pair of stripes whether both had arrived.
+void Session::photograph_geometry() {
+    const std::vector<Pattern> patterns = geometry_patterns(options_.width, options_.height);
     const std::size_t white = patterns.size() - 2, black = patterns.size() - 1;
-    take(white, false);
-    take(black, true);
-    for (std::size_t i = 0; i < white; i += 2)
-        for (int attempt = 0;; ++attempt) {
-            take(i, false);  // a small mock-up may lie inside one stripe of two pictures in a row
-            take(i + 1, true);
-            if (broken_share(pictures[i], pictures[i + 1], pictures[white], pictures[black]) <= 0.2)
-                break;
-            if (attempt == 2)
-                throw Refused(
-                    patterns[i].role + " and its inverse do not add up to white",
-                    "the projector's picture arrives late or changes on its own, or the lamp's "
-                    "brightness does: let it warm up, wait longer after each picture, and switch "
-                    "off "
-                    "motion interpolation and dynamic contrast");
-        }
-    const GrayCodeResult decoded =
-        decode_gray_code(std::span<const ImageF>(pictures), options.width, options.height);
-    Geometry geometry;
-    const Lamp lamp = lamp_of(pictures, decoded);
-    geometry.lamp_per_photograph = lamp.per_photograph / (session.latency() + 1);
-    geometry.flicker = lamp.flicker;
-    if (geometry.flicker > kLargestFlicker)
-        throw Refused("the photographs differ by " + percent(geometry.flicker) +
-                          " in brightness from one to the next",
-                      kSteadyLight);
-    geometry.map = invert_map(decoded, options.width, options.height);
-    geometry.light = std::move(pictures[white]);
-    for (std::size_t i = 0; i < geometry.light.values.size(); ++i)
-        geometry.light.values[i] -= pictures[black].values[i];
-    return geometry;
+    white_ = bench_.take(patterns[white].drive, "white", false);
+    add("white", white_);
+    black_ = bench_.take(patterns[black].drive, "black", true);
+    add("black", black_);
+    for (std::size_t i = 0; i < white; i += 2) photograph_stripes(patterns[i], patterns[i + 1]);
+    judge(true);
+    if (!broken_.empty())
+        throw Refused(broken_ + " and its inverse do not add up to white",
+                      "the projector's picture arrives late or changes on its own, or the lamp's "
+                      "brightness does: let it warm up, wait longer after each picture, and switch "
+                      "off motion interpolation and dynamic contrast");
+}
+
+/// White - black in camera pixels, mean of the channels.
+ImageF light_of(const Captures& captures) {
+    const auto image_of = [&](const char* role) -> const ImageF& {
+        return std::find_if(captures.geometry.begin(),
+                            captures.geometry.end(),
+                            [&](const RoledPhotograph& one) { return one.role == role; })
+            ->photograph.image;
+    };
+    ImageF light = image_of("white");
+    const ImageF& black = image_of("black");
+    for (std::size_t i = 0; i < light.values.size(); ++i) light.values[i] -= black.values[i];
+    return light;
 }
 
 /// A well-lit place in the middle of an even neighbourhood, for the colorimeter.
-glm::dvec2 place_to_measure(const Geometry& geometry, const Image8& mockup) {
-    const ImageF& place = geometry.map.camera_px;
+glm::dvec2 place_to_measure(const ProjectorToCamera& map,
+                            const ImageF& seen,
+                            const Image8& mockup) {
+    const ImageF& place = map.camera_px;
     ImageF light(place.width, place.height, 1);
     std::vector<float> all;
     for (int y = 0; y < place.height; ++y)
         for (int x = 0; x < place.width; ++x) {
-            if (!std::isfinite(place.at(x, y)) || geometry.map.edge.at(x, y)) continue;
+            if (!std::isfinite(place.at(x, y)) || map.edge.at(x, y)) continue;
             if (!mockup.empty() && !mockup.at(x, y)) continue;
-            const int cx =
-                std::clamp(static_cast<int>(place.at(x, y, 0)), 0, geometry.light.width - 1);
-            const int cy =
-                std::clamp(static_cast<int>(place.at(x, y, 1)), 0, geometry.light.height - 1);
-            light.at(x, y) = std::max(geometry.light.at(cx, cy), 0.0f);
+            const int cx = std::clamp(static_cast<int>(place.at(x, y, 0)), 0, seen.width - 1);
+            const int cy = std::clamp(static_cast<int>(place.at(x, y, 1)), 0, seen.height - 1);
+            light.at(x, y) = std::max(seen.at(cx, cy), 0.0f);
             all.push_back(light.at(x, y));
         }
     const float low = quantile(all, 0.6), high = quantile(all, 0.97);
@@ -187,16 +169,41 @@ glm::dvec2 place_to_measure(const Geometry& geometry, const Image8& mockup) {
     return best;
 }
 
-/// Undoes a slow change of the lamp, `change` relative to the bright picture.
-void scale_light(Photograph& photo, double change) {
-    const auto gain = static_cast<float>(1.0 / (1.0 + change)),
-               black = static_cast<float>(photo.black_level);
-    for (float& value : photo.image.values) value = black + (value - black) * gain;
+/// Pixels within reach of the mock-up: a pose that is a little off, a lens that is a little soft.
+Image8 around(const Image8& mockup) {
+    const int reach = std::max(2, mockup.width / 200);
+    Image8 rows(mockup.width, mockup.height, 1), all = rows;
+    const auto spread = [&](const Image8& from, Image8& to, int dx, int dy) {
+        for (int y = 0; y < from.height; ++y)
+            for (int x = 0; x < from.width; ++x) {
+                if (!from.at(x, y)) continue;
+                for (int k = -reach; k <= reach; ++k) {
+                    const int u = x + k * dx, v = y + k * dy;
+                    if (u >= 0 && v >= 0 && u < to.width && v < to.height) to.at(u, v) = 255;
+                }
+            }
+    };
+    spread(mockup, rows, 1, 0);
+    spread(rows, all, 0, 1);
+    return all;
+}
+
+/// A port that lights the mock-up alone. What stands around it stays dark in the show; if it were
+/// lit here, its light on the mock-up would be taken for what the mock-up's own pixels send.
+ShowPicture shown_on(const Image8& mockup, const ShowPicture& show) {
+    return [lit = around(mockup), show](const Image8& drive) {
+        Image8 alone = drive;
+        for (std::size_t i = 0; i < alone.pixel_count(); ++i)
+            if (!lit.values[i])
+                std::fill_n(
+                    alone.values.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, std::uint8_t{0});
+        show(alone);
+    };
 }
 
 }  // namespace
 
-LiveResult calibrate_live(const BenchPorts& ports,
+LiveResult calibrate_live(const BenchPorts& bench,
                           const LiveOptions& options,
                           const Progress& progress) {
     check_argument(options.shots >= 1 && options.shots <= 1000,
@@ -205,6 +212,8 @@ LiveResult calibrate_live(const BenchPorts& ports,
                        (options.mockup.width == options.width &&
                         options.mockup.height == options.height && options.mockup.channels == 1),
                    "the mock-up's mask is not one channel of the projector's size");
+    BenchPorts ports = bench;
+    if (!options.mockup.empty() && ports.show) ports.show = shown_on(options.mockup, bench.show);
     const ColourOptions& colour = options.colour;
     LiveResult result;
     result.patterns =
@@ -218,10 +227,12 @@ LiveResult calibrate_live(const BenchPorts& ports,
         capturing.report = [&](double fraction, std::string_view stage) {
             progress.report(0.9 * fraction, stage);
         };
-    BenchSession session(ports, capturing, geometry_count + 6 * options.shots + 15);
+    BenchSession session(ports, capturing, geometry_count + 6 * options.shots + 17);
     session.meet(options.width, options.height);
-    const Geometry geometry = photograph_geometry(session, options);
-    result.map = geometry.map;
+    Session live(session, options);
+    live.photograph_geometry();
+    std::vector<std::string> odd_map;
+    result.map = map_of_captures(live.captures, options.width, options.height, odd_map);
     result.latency_photographs = session.latency();
 
     // The six pictures; the colorimeter reads each while it is known to be shown
@@ -233,7 +244,7 @@ LiveResult calibrate_live(const BenchPorts& ports,
     CameraToXyz& xyz = with_xyz.camera_to_xyz;
     if (measures) {
         xyz.has_primaries = true;
-        xyz.measured_at_px = place_to_measure(geometry, options.mockup);
+        xyz.measured_at_px = place_to_measure(result.map, light_of(live.captures), options.mockup);
     }
     const auto measure = [&](const std::string& role) {
         if (!measures) return;
@@ -246,34 +257,15 @@ LiveResult calibrate_live(const BenchPorts& ports,
         if (role == "green") xyz.primaries_xyz[1] = value_into();
         if (role == "blue") xyz.primaries_xyz[2] = value_into();
     };
-    int bright_at = 0;
     const auto photograph = [&](const Pattern& pattern) {
-        RoledPhotograph capture{pattern.role,
-                                session.take_mean(pattern.drive, pattern.role, options.shots)};
+        live.add(pattern.role,
+                 session.take_mean(pattern.drive, pattern.role, options.shots),
+                 options.shots);
         result.colour_photographs += options.shots;
-        if (pattern.role == "bright-gray") bright_at = session.photographs();
-        const double change = geometry.lamp_per_photograph * (session.photographs() - bright_at);
-        if (pattern.role != "dark-gray") {
-            if (std::abs(change) > 0.01)
-                throw Refused("the lamp changes by " + percent(std::abs(change)) +
-                                  " while the colours are photographed",
-                              "let the lamp warm up for 20 minutes and repeat");
-            scale_light(capture.photograph, change);
-        }
-        result.captures.push_back(std::move(capture));
         if (full_range) measure(pattern.role);
     };
     for (const Pattern& pattern : result.patterns) photograph(pattern);
 
-    // Is white the sum of the channels? If not, mosaics of colours
-    const double additivity =
-        pool_mixing(sample_colours(result.captures, result.map)).additivity_error;
-    if (additivity > kAdditivityWarning && colour.mode == ColourMode::robust) {
-        for (Pattern& pattern : mosaic_patterns(options.width, options.height, kMosaics)) {
-            photograph(pattern);
-            result.patterns.push_back(std::move(pattern));
-        }
-    }
     if (measures && !full_range)
         for (const Pattern& pattern : colour_patterns(options.width, options.height, 0, 255)) {
             if (pattern.role == "gray-levels") break;
@@ -281,9 +273,27 @@ LiveResult calibrate_live(const BenchPorts& ports,
                 pattern.drive, pattern.role + " for the colorimeter", pattern.role != "dark-gray");
             measure(pattern.role);
         }
+    // Again at the end: what moved or changed on the way
+    for (const std::uint8_t drive : {std::uint8_t{255}, std::uint8_t{0}}) {
+        const std::string role = drive ? "white" : "black";
+        live.add(role, session.take(Image8(options.width, options.height, 3, drive), role));
+    }
+    const auto judge_start = std::chrono::steady_clock::now();
+    CaptureVerdict verdict = live.judge(false);
+    verdict.warnings.insert(verdict.warnings.end(), odd_map.begin(), odd_map.end());
+    const double judge_seconds = seconds_since(judge_start);
+
+    // Is white the sum of the channels? If not, mosaics of colours
+    const double additivity =
+        pool_mixing(sample_colours(live.captures.colours, result.map)).additivity_error;
+    if (additivity > kAdditivityWarning && colour.mode == ColourMode::robust)
+        for (Pattern& pattern : mosaic_patterns(options.width, options.height, kMosaics)) {
+            photograph(pattern);
+            result.patterns.push_back(std::move(pattern));
+        }
     if (additivity <= kAdditivityWarning) xyz.white_xyz.reset();  // it would only add its noise
     ports.show(Image8(options.width, options.height, 3));
-    result.capture_seconds = seconds_since(start);
+    result.capture_seconds = seconds_since(start) - judge_seconds;
 
     const auto solve_start = std::chrono::steady_clock::now();
     Progress solving = progress;
@@ -291,21 +301,16 @@ LiveResult calibrate_live(const BenchPorts& ports,
         solving.report = [&](double fraction, std::string_view stage) {
             progress.report(0.9 + 0.1 * fraction, stage);
         };
-    result.calibration =
-        calibrate_colour(result.captures, result.patterns, result.map, with_xyz, solving);
-    if (geometry.flicker > kFlickerWarning) {
-        result.calibration.warnings.push_back(
-            "the photographs differ by " + percent(geometry.flicker) +
-            " in brightness from one to the next; " + kSteadyLight);
-        seal(result.calibration);
-    }
+    result.captures = live.captures.colours;
+    result.calibration = calibrate_judged(
+        std::move(live.captures), verdict, result.patterns, result.map, with_xyz, solving);
     if (session.latency() > 0) {
         result.calibration.warnings.push_back(
             "the projector's picture reaches the camera " + std::to_string(session.latency()) +
             " photographs late; each was awaited; a game mode shortens it");
         seal(result.calibration);
     }
-    result.solve_seconds = seconds_since(solve_start);
+    result.solve_seconds = judge_seconds + seconds_since(solve_start);
     return result;
 }
 

@@ -27,6 +27,9 @@ std::vector<Pattern> geometry_patterns(int width, int height);
 /// between, the denser the darker. Which is where is shuffled, so that all have neighbours alike.
 std::vector<Pattern> colour_patterns(int width, int height, int dark_drive, int bright_drive);
 
+/// Mosaics that are shown: with the six pictures of the method twelve.
+inline constexpr int kMosaics = 6;
+
 /// Mosaics of colours for projectors that are not additive, `count` pictures: ramps of one
 /// channel, of two and three equal channels, and colours spread evenly over the cube.
 std::vector<Pattern> mosaic_patterns(int width, int height, int count);

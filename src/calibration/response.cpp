@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 
 #include "calibration/statistics.h"
 #include "core/error.h"
@@ -14,48 +15,86 @@ namespace {
 constexpr int kLevels = 256;
 constexpr std::size_t kKnownScatter = 8;  // samples whose scatter says how sure their mean is
 
-/// Solves (W + strength D'D) x = W y for third differences D: a band of seven, by Cholesky.
-std::array<double, 256> solve_smooth(const LevelCurve& measured, double strength) {
-    constexpr int kBand = 3;
+constexpr int kOrder = 3;  // of the differences; also how many polynomials they do not see
+constexpr std::array<double, kOrder + 1> kDifference{-1.0, 3.0, -3.0, 1.0};
+
+using Levels = std::array<double, kLevels>;
+
+struct SmoothFit {
+    Levels x{};
+    /// Minus twice the logarithm of the restricted likelihood, but for a constant.
+    double unlikeliness = std::numeric_limits<double>::infinity();
+};
+
+/// Solves (W + strength D'D) x = W y for third differences D, a band of seven, by Cholesky; how
+/// likely the strength is, with the noise's unit unknown, is the restricted likelihood of Patterson
+/// and Thompson (Biometrika 58, 1971, "Recovery of inter-block information").
+SmoothFit solve_smooth(const Levels& y, const Levels& weight, double strength, double sampled) {
     // Lower band by rows: band[i][j] is the entry (i, i - j).
-    std::array<std::array<double, kBand + 1>, kLevels> band{};
-    for (int i = 0; i < kLevels; ++i)
-        band[static_cast<std::size_t>(i)][0] = measured.weight[static_cast<std::size_t>(i)];
-    constexpr std::array<double, 4> kThird{-1.0, 3.0, -3.0, 1.0};
-    for (int row = 0; row + kBand < kLevels; ++row)
-        for (int a = 0; a <= kBand; ++a)
+    std::array<std::array<double, kOrder + 1>, kLevels> band{};
+    const auto index = [](int i) { return static_cast<std::size_t>(i); };
+    for (int i = 0; i < kLevels; ++i) band[index(i)][0] = weight[index(i)];
+    for (int row = 0; row + kOrder < kLevels; ++row)
+        for (int a = 0; a <= kOrder; ++a)
             for (int b = 0; b <= a; ++b)
-                band[static_cast<std::size_t>(row + a)][static_cast<std::size_t>(a - b)] +=
-                    strength * kThird[static_cast<std::size_t>(a)] *
-                    kThird[static_cast<std::size_t>(b)];
+                band[index(row + a)][index(a - b)] +=
+                    strength * kDifference[index(a)] * kDifference[index(b)];
+    double log_determinant = 0.0;
     for (int i = 0; i < kLevels; ++i) {
-        auto& row = band[static_cast<std::size_t>(i)];
-        for (int j = std::min(kBand, i); j >= 0; --j) {
-            double sum = row[static_cast<std::size_t>(j)];
-            const auto& other = band[static_cast<std::size_t>(i - j)];
-            for (int k = j + 1; k <= std::min(kBand, i); ++k)
-                sum -= row[static_cast<std::size_t>(k)] * other[static_cast<std::size_t>(k - j)];
-            row[static_cast<std::size_t>(j)] =
-                j == 0 ? std::sqrt(std::max(sum, 1e-300)) : sum / other[0];
+        auto& row = band[index(i)];
+        for (int j = std::min(kOrder, i); j >= 0; --j) {
+            double sum = row[index(j)];
+            const auto& other = band[index(i - j)];
+            for (int k = j + 1; k <= std::min(kOrder, i); ++k)
+                sum -= row[index(k)] * other[index(k - j)];
+            row[index(j)] = j == 0 ? std::sqrt(std::max(sum, 1e-300)) : sum / other[0];
         }
+        log_determinant += 2.0 * std::log(row[0]);
     }
-    std::array<double, 256> x{};
+    SmoothFit fit;
+    Levels& x = fit.x;
     for (int i = 0; i < kLevels; ++i) {
-        const auto at = static_cast<std::size_t>(i);
-        double sum = measured.weight[at] * measured.n[at];
-        for (int k = 1; k <= std::min(kBand, i); ++k)
-            sum -= band[at][static_cast<std::size_t>(k)] * x[at - static_cast<std::size_t>(k)];
-        x[at] = sum / band[at][0];
+        double sum = weight[index(i)] * y[index(i)];
+        for (int k = 1; k <= std::min(kOrder, i); ++k)
+            sum -= band[index(i)][index(k)] * x[index(i - k)];
+        x[index(i)] = sum / band[index(i)][0];
     }
     for (int i = kLevels - 1; i >= 0; --i) {
-        const auto at = static_cast<std::size_t>(i);
-        double sum = x[at];
-        for (int k = 1; k <= kBand && i + k < kLevels; ++k)
-            sum -= band[at + static_cast<std::size_t>(k)][static_cast<std::size_t>(k)] *
-                   x[at + static_cast<std::size_t>(k)];
-        x[at] = sum / band[at][0];
+        double sum = x[index(i)];
+        for (int k = 1; k <= kOrder && i + k < kLevels; ++k)
+            sum -= band[index(i + k)][index(k)] * x[index(i + k)];
+        x[index(i)] = sum / band[index(i)][0];
     }
-    return x;
+
+    double misfit = 0.0;
+    for (std::size_t i = 0; i < kLevels; ++i) misfit += weight[i] * (x[i] - y[i]) * (x[i] - y[i]);
+    for (int row = 0; row + kOrder < kLevels; ++row) {
+        double bend = 0.0;
+        for (int a = 0; a <= kOrder; ++a) bend += kDifference[index(a)] * x[index(row + a)];
+        misfit += strength * bend * bend;
+    }
+    fit.unlikeliness = (sampled - kOrder) * std::log(std::max(misfit, 1e-300)) + log_determinant -
+                       (kLevels - kOrder) * std::log(strength);
+    return fit;
+}
+
+/// The likeliest of all strengths; the least, which passes through the samples, where there are
+/// too few of them to tell.
+Levels fit_smooth(const Levels& y, const Levels& weight) {
+    constexpr double kLow = -2.0, kHigh = 9.0, kStep = 0.125;  // powers of ten
+    constexpr double kToTell = 2.0 * kOrder;
+    std::vector<double> known;
+    for (const double w : weight)
+        if (w > 0.0) known.push_back(w);
+    const auto sampled = static_cast<double>(known.size());
+    const double usual = median(known);
+    SmoothFit best;
+    for (double power = kLow; power <= kHigh; power += kStep) {
+        SmoothFit fit = solve_smooth(y, weight, usual * std::pow(10.0, power), sampled);
+        if (fit.unlikeliness < best.unlikeliness) best = fit;
+        if (sampled < kToTell) break;
+    }
+    return best.x;
 }
 
 double largest_fall(std::span<const double> values) {
@@ -203,33 +242,34 @@ LevelCurve level_means(std::span<const ResponseSample> samples) {
 }
 
 LevelCurve smooth_levels(const LevelCurve& measured) {
-    double sampled = 0.0, total_weight = 0.0;
-    for (const double weight : measured.weight) {
-        sampled += weight > 0.0;
-        total_weight += weight;
-    }
-    check_argument(sampled >= 2.0, "a response needs samples of at least two drives");
+    constexpr int kRounds = 8;
+    constexpr double kHuber = 2.0;         // deviations from which a level counts less
+    constexpr double kDeviation = 1.4826;  // of a normal's median
+    std::vector<double> known;
+    for (const double weight : measured.weight)
+        if (weight > 0.0) known.push_back(weight);
+    check_argument(known.size() >= 2, "a response needs samples of at least two drives");
 
-    // Largest strength whose weighted misfit is what the noise explains
+    // What lies off the curve by more than most, as blocks in corners that others light do, is
+    // neither followed nor taken for noise that all levels have.
     LevelCurve smooth = measured;
-    const auto misfit = [&](const std::array<double, 256>& x) {
-        double sum = 0.0;
-        for (std::size_t i = 0; i < 256; ++i)
-            sum += measured.weight[i] * (x[i] - measured.n[i]) * (x[i] - measured.n[i]);
-        return sum / sampled;
-    };
-    const double mean_weight = total_weight / sampled;
-    double low = -6.0, high = 8.0;  // powers of ten over the mean weight
-    for (int step = 0; step < 30; ++step) {
-        const double middle = 0.5 * (low + high);
-        if (misfit(solve_smooth(measured, mean_weight * std::pow(10.0, middle))) <= 1.0)
-            low = middle;
-        else
-            high = middle;
+    Levels weight = measured.weight;
+    for (int round = 0; round < kRounds; ++round) {
+        smooth.n = fit_smooth(measured.n, weight);
+        const auto off = [&](std::size_t i) {
+            return std::sqrt(measured.weight[i]) * std::abs(measured.n[i] - smooth.n[i]);
+        };
+        std::vector<double> all;
+        for (std::size_t i = 0; i < kLevels; ++i)
+            if (measured.weight[i] > 0.0) all.push_back(off(i));
+        const double reach = kHuber * std::max(1.0, kDeviation * median(all));
+        for (std::size_t i = 0; i < kLevels; ++i)
+            weight[i] = measured.weight[i] * (off(i) > reach ? reach / off(i) : 1.0);
     }
-    smooth.n = solve_smooth(measured, mean_weight * std::pow(10.0, low));
     // Bridged drives count too from here on.
-    for (double& weight : smooth.weight) weight = std::max(weight, 1e-3 * mean_weight);
+    const double mean_weight =
+        std::accumulate(known.begin(), known.end(), 0.0) / static_cast<double>(known.size());
+    for (double& w : smooth.weight) w = std::max(w, 1e-3 * mean_weight);
     return smooth;
 }
 

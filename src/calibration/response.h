@@ -31,8 +31,9 @@ std::vector<double> isotonic_regression(std::span<const double> values,
 /// sure it is follows from the scatter of its samples or, where they lie in blocks, of the blocks.
 LevelCurve level_means(std::span<const ResponseSample> samples);
 
-/// The smoothest curve (smallest third differences) that stays within the samples' noise; drives
-/// without samples are bridged. Two samples at least.
+/// A curve with small third differences, as smooth as the samples say (restricted maximum
+/// likelihood) and little moved by single ones that lie off by more than their weight says (Huber);
+/// drives without samples are bridged. Two samples at least.
 LevelCurve smooth_levels(const LevelCurve& measured);
 
 /// Robust rho: `levels` made monotone with 0 at `dark_drive` and 1 at `bright_drive`, turned round

@@ -12,10 +12,6 @@ namespace livery {
 
 namespace {
 
-/// Mosaics in all: with the six colour pictures this makes the twelve captures that a projector
-/// that is not additive needs.
-constexpr int kMosaics = 6;
-
 void append(std::vector<Pattern>& all, std::vector<Pattern> more) {
     for (Pattern& pattern : more) all.push_back(std::move(pattern));
 }

@@ -3,12 +3,7 @@
 
 #include <filesystem>
 #include <optional>
-#include <set>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "calibration/capture_summary.h"
 #include "calibration/colour.h"
 #include "capture/captures_folder.h"
 #include "core/progress.h"
@@ -23,23 +18,6 @@ struct CapturedCalibrationRequest {
     std::optional<std::filesystem::path> camera_to_xyz;
     ColourMode mode = ColourMode::robust;
 };
-
-/// Photographs in the order in which they were taken, and what the checks keep of each.
-struct LoadedCaptures {
-    std::vector<RoledPhotograph> geometry;  ///< of one channel
-    std::vector<RoledPhotograph> colours;
-    std::vector<CaptureSummary> summaries;
-    std::set<std::pair<int, int>> sizes;  ///< width, height
-};
-void add_capture(LoadedCaptures& captures, RoledPhotograph photograph);
-
-/// Checks the photographs against one another, decodes the map unless there is one, and solves.
-/// Throws Refused, FileError, std::invalid_argument.
-ColourCalibration calibrate_from_captures(LoadedCaptures captures,
-                                          const std::vector<Pattern>& patterns,
-                                          const std::optional<ProjectorToCamera>& map,
-                                          const ColourOptions& options,
-                                          const Progress& progress = {});
 
 /// Throws FileError, Refused, std::invalid_argument.
 ColourCalibration calibrate_from_folder(const CapturedCalibrationRequest& request,

@@ -13,6 +13,7 @@
 #include "core/random.h"
 #include "tracing/tracer.h"
 #include "twin/interreflection.h"
+#include "twin/mishaps.h"
 #include "twin/projector_light.h"
 #include "twin/received.h"
 #include "twin/sensor.h"
@@ -53,6 +54,7 @@ struct Bench::State {
     Truth truth;
     ImageF clear_xyz;       ///< the clear segment at 1, as primary_xyz
     ImageF camera_ambient;  ///< empty: no ambient light
+    ImageF room_light;      ///< of mishaps, at 1; empty: none switches one on
 
     ShownPicture shown, before;
     int photographs_of_shown = 0;
@@ -101,6 +103,14 @@ void Bench::State::trace(const Progress& progress) {
         observer.blends = places.blend(observer.paths);
     }
     if (description.ambient > 0.0) camera_ambient = receive_ambient(camera);
+    if (has_room_light(description.mishaps)) {
+        BenchDescription lit = description;
+        lit.ambient = 1.0;
+        Factors own = fold(lit, surfaces, camera_sensor(description));
+        std::swap(own, camera.factors);
+        room_light = receive_ambient(camera);
+        std::swap(own, camera.factors);
+    }
     progress.update(1.0, "tracing done");
 }
 
@@ -185,6 +195,7 @@ ImageF Bench::State::camera_light(ShownPicture& picture) {
     }
     const double sagged = std::min(
         1.0, static_cast<double>(photographs) / std::max(1, description.camera.shift_photographs));
+    units = with_mishaps(std::move(units), room_light, description.mishaps, photographs);
     return optics(std::move(units), description.camera.shift_px * sagged);
 }
 
@@ -194,11 +205,13 @@ Photograph Bench::State::photograph(double wanted_exposure_s) {
     if (wanted_exposure_s > 0.0) exposure_s = wanted_exposure_s;
     const bool late = photographs_of_shown < description.projector.latency_photographs;
     Photograph photograph;
-    photograph.image = develop(description.camera,
-                               camera_light(late ? before : shown),
-                               exposure_s,
-                               description.seed,
-                               photographs);
+    const ImageF light = camera_light(late ? before : shown);
+    photograph.image = develop(
+        description.camera,
+        light,
+        true_exposure_s(exposure_s, description.camera, light, description.mishaps, photographs),
+        description.seed,
+        photographs);
     photograph.exposure_s = exposure_s;
     photograph.black_level = black_level(description.camera);
     photograph.saturates_at = saturates_at(description.camera);

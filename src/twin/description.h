@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "scene/view.h"
 #include "twin/spectra.h"
@@ -71,6 +73,20 @@ struct SurroundingDescription {
     glm::dvec3 corner_mm{0.0}, side_a_mm{0.0}, side_b_mm{0.0};
 };
 
+enum class MishapKind {
+    shadow,              ///< somebody in the light: `size` of it is lost in the shadow's middle
+    exposure,            ///< one that is `size` times what the camera says
+    automatic_exposure,  ///< the picture's mean held at `size` of full scale, and nothing said
+    room_light,          ///< switched on: luminance of a white diffuser in it, over projector white
+    camera_moved,        ///< by `size` pixels
+};
+/// What happens while photographs are taken, from the photograph `from` to `to`, counted from 0.
+struct MishapDescription {
+    MishapKind kind = MishapKind::shadow;
+    int from = 0, to = std::numeric_limits<int>::max();
+    double size = 0.0;
+};
+
 struct BenchDescription {
     std::string name;
     std::filesystem::path file;     ///< where it came from; empty: made in memory
@@ -83,6 +99,7 @@ struct BenchDescription {
     double ambient =
         0.0;  ///< luminance of a white diffuser in the room's light, over projector white
     Spectrum ambient_spectrum = illuminant_d65();
+    std::vector<MishapDescription> mishaps;
     int samples_a_side = 4;  ///< sub-samples a pixel, squared
     std::uint64_t seed = 1;
 };

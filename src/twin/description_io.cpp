@@ -315,6 +315,40 @@ MockupDescription read_mockup(const JsonReader& json) {
     return mockup;
 }
 
+std::vector<MishapDescription> read_mishaps(const JsonReader& json) {
+    struct Kind {
+        const char* name;
+        MishapKind kind;
+        double low, high;
+    };
+    static constexpr Kind kinds[] = {
+        {"shadow", MishapKind::shadow, 0.0, 1.0},
+        {"exposure", MishapKind::exposure, 0.01, 100.0},
+        {"automatic-exposure", MishapKind::automatic_exposure, 0.01, 0.9},
+        {"room-light", MishapKind::room_light, 0.0, 10.0},
+        {"camera-moved", MishapKind::camera_moved, 0.0, 100.0},
+    };
+    std::vector<MishapDescription> mishaps;
+    for (std::size_t k = 0; k < json.size(); ++k) {
+        const auto entry = json.at(k);
+        entry.allow_only({"what", "from", "to", "size"});
+        const std::string what = entry["what"].text();
+        const auto kind = std::find_if(
+            std::begin(kinds), std::end(kinds), [&](const Kind& one) { return one.name == what; });
+        if (kind == std::end(kinds)) {
+            entry["what"].fail("'" + what + "'",
+                               "shadow, exposure, automatic-exposure, room-light or camera-moved");
+        }
+        MishapDescription mishap;
+        mishap.kind = kind->kind;
+        mishap.size = entry["size"].number_between(kind->low, kind->high);
+        read_integer(entry, "from", 0, 1'000'000, mishap.from);
+        read_integer(entry, "to", mishap.from, 1'000'000, mishap.to);
+        mishaps.push_back(mishap);
+    }
+    return mishaps;
+}
+
 /// The file's own fields over those of its base, which must stand on its own.
 Json with_base(const std::string& text, const std::filesystem::path& file) {
     Json own = parse_json(text, file);
@@ -368,6 +402,7 @@ BenchDescription parse_bench(const std::string& text, const std::filesystem::pat
                      "eye_mm",
                      "ambient",
                      "ambient_spectrum",
+                     "mishaps",
                      "samples_a_side",
                      "seed"});
     if (const std::string kind = json["kind"].text(); kind != "bench") {
@@ -388,6 +423,7 @@ BenchDescription parse_bench(const std::string& text, const std::filesystem::pat
     if (json.has("ambient_spectrum")) {
         bench.ambient_spectrum = read_ambient_spectrum(json["ambient_spectrum"]);
     }
+    if (json.has("mishaps")) bench.mishaps = read_mishaps(json["mishaps"]);
     read_integer(json, "samples_a_side", 1, 16, bench.samples_a_side);
     if (json.has("seed"))
         bench.seed = static_cast<std::uint64_t>(json["seed"].integer(0, 2'000'000'000));

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <glm/vec2.hpp>
+
 #include "core/colour.h"
 #include "core/parallel.h"
 #include "core/random.h"
@@ -88,6 +90,22 @@ void sample(const ImageF& image, double x, double y, float* out) {
     }
 }
 
+/// `by(x)`: how far, of each column.
+template <typename By>
+ImageF displaced(const ImageF& light, const By& by) {
+    ImageF result(light.width, light.height, 3);
+    parallel_for(
+        static_cast<std::size_t>(light.height), 16, [&](std::size_t begin, std::size_t end) {
+            for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+                for (int x = 0; x < light.width; ++x) {
+                    const glm::dvec2 here = by(x);
+                    sample(light, x + 0.5 - here.x, y + 0.5 - here.y, result.pixel(x, y));
+                }
+            }
+        });
+    return result;
+}
+
 }  // namespace
 
 double saturates_at(const CameraDescription& camera) {
@@ -99,18 +117,14 @@ double black_level(const CameraDescription& camera) {
 }
 
 ImageF shifted(const ImageF& light, double shift_px) {
-    ImageF result(light.width, light.height, 3);
-    parallel_for(
-        static_cast<std::size_t>(light.height), 16, [&](std::size_t begin, std::size_t end) {
-            for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-                for (int x = 0; x < light.width; ++x) {
-                    // Between 60% and 100% of the shift, along (0.8, 0.6).
-                    const double here = shift_px * (0.6 + 0.4 * (x + 0.5) / light.width);
-                    sample(light, x + 0.5 - 0.8 * here, y + 0.5 - 0.6 * here, result.pixel(x, y));
-                }
-            }
-        });
-    return result;
+    // Between 60% and 100% of the shift, along (0.8, 0.6).
+    return displaced(light, [&](int x) {
+        return shift_px * (0.6 + 0.4 * (x + 0.5) / light.width) * glm::dvec2(0.8, 0.6);
+    });
+}
+
+ImageF moved(const ImageF& light, double right_px, double down_px) {
+    return displaced(light, [&](int) { return glm::dvec2(right_px, down_px); });
 }
 
 ImageF with_flare(const ImageF& light, double flare, double radius_of_width) {

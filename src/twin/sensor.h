@@ -12,6 +12,9 @@ namespace livery {
 /// a camera that sags on its tripod moves it. Bilinear.
 ImageF shifted(const ImageF& light, double shift_px);
 
+/// A picture displaced by so many pixels. Bilinear.
+ImageF moved(const ImageF& light, double right_px, double down_px);
+
 /// `flare` of the light of every pixel spread over its surroundings.
 ImageF with_flare(const ImageF& light, double flare, double radius_of_width);
 

@@ -165,6 +165,19 @@ TEST(CalibrateLive, ShowsMosaicsWhereWhiteIsNotTheSum) {
     EXPECT_NEAR(result.calibration.additivity_error, 0.8 / 1.8, 1e-3);
 }
 
+// A projector that boosts pure colours: its stripes say that the files are linear, so that neither
+// they nor white's exposure are blamed, and the mosaics describe it.
+TEST(CalibrateLive, ShowsMosaicsWhereWhiteIsLessThanItsParts) {
+    LiveBench live;
+    live.bench.white_segment = -0.1;
+    const LiveResult result = live.run();
+    EXPECT_EQ(result.colour_photographs, 12);
+    EXPECT_GT(result.calibration.table.grid, 0);
+    EXPECT_NEAR(result.calibration.additivity_error, 0.1 / 0.9, 1e-3);
+    ASSERT_EQ(result.calibration.warnings.size(), 1u);
+    EXPECT_HAS(result.calibration.warnings[0], "a table of mosaic colours is used");
+}
+
 TEST(CalibrateLive, FollowsASlowLampAndRefusesAFastOne) {
     LiveBench slow;
     slow.drift_per_photograph = -5e-4;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <csignal>
 #include <fstream>
+#include <functional>
 #include <sstream>
 
 #include <gtest/gtest.h>
@@ -10,6 +11,7 @@
 #include <sys/types.h>
 #include <unistd.h>
 
+#include "core/image_io.h"
 #include "scene/view.h"
 #include "support/run_program.h"
 
@@ -259,12 +261,81 @@ TEST(Program, GoesFromPatternsToProjectorInputThroughFiles) {
     EXPECT_LT(figures["additivity_error"].get<double>(), 0.02);
     EXPECT_EQ(livery_run({"check", calibration, captures}).exit_code, 0);
 
+    // What role, size and drive say needs no pattern file.
+    const auto calibrated_with = [&](const std::function<void(Json&)>& change) {
+        Json manifest = Json::parse(content(captures + "/manifest.json"));
+        for (Json& entry : manifest["captures"]) {
+            change(entry);
+            entry["file"] = captures + "/" + entry["file"].get<std::string>();
+        }
+        std::filesystem::create_directories(folder / "moved");
+        std::ofstream(folder / "moved" / "manifest.json") << manifest.dump();
+        return livery_run({"calibrate",
+                           "color",
+                           "--json",
+                           "--captures",
+                           (folder / "moved").string(),
+                           "--camera-to-xyz",
+                           captures + "/camera-to-xyz.json",
+                           "--out",
+                           (folder / "moved calibration").string()});
+    };
+    const ProgramRun moved =
+        calibrated_with([](Json& entry) { entry["pattern"] = "gone/pattern.png"; });
+    ASSERT_EQ(moved.exit_code, 0) << moved.err;
+    EXPECT_EQ(json_of(moved)["valid_fraction"], figures["valid_fraction"]);
+    EXPECT_EQ(json_of(moved)["response"], figures["response"]);
+    const std::string warned = json_of(moved)["warnings"].dump();
+    EXPECT_NE(warned.find("the pattern of gray-levels"), std::string::npos) << warned;
+    EXPECT_EQ(warned.find("the pattern of red"), std::string::npos) << warned;
+    // Without its drive nothing says how bright it was.
+    const ProgramRun unknown = calibrated_with([](Json& entry) {
+        if (entry["role"] != "bright-gray") return;
+        entry["pattern"] = "gone/pattern.png";
+        entry.erase("drive");
+    });
+    EXPECT_EQ(unknown.exit_code, 2);
+    EXPECT_NE(unknown.err.find("gone/pattern.png"), std::string::npos) << unknown.err;
+
     write_camera_file(folder / "camera.json",
                       look_at({-120.0, 150.0, 380.0}, {0.0, 25.0, 0.0}, 0.4, 320, 200));
     const std::string wanted = (folder / "wanted.exr").string();
     ASSERT_EQ(livery_run({"render", "--camera", (folder / "camera.json").string(), "--out", wanted})
                   .exit_code,
               0);
+    // Without coverage a table counts for the design white too, and the answer says so.
+    ImageFile bare = read_image(wanted);
+    ImageF colour(bare.image.width, bare.image.height, 3);
+    for (std::size_t i = 0; i < colour.pixel_count(); ++i) {
+        std::copy_n(bare.image.values.begin() + static_cast<std::ptrdiff_t>(4 * i),
+                    3,
+                    colour.values.begin() + static_cast<std::ptrdiff_t>(3 * i));
+    }
+    write_exr(folder / "bare.exr", colour, {"R", "G", "B"});
+    const auto compensated = [&](const std::string& target) {
+        return livery_run({"compensate",
+                           "--json",
+                           "--calibration",
+                           calibration,
+                           "--target",
+                           target,
+                           "--out",
+                           (folder / "input.png").string()});
+    };
+    const ProgramRun covered = compensated(wanted),
+                     uncovered = compensated((folder / "bare.exr").string());
+    ASSERT_EQ(covered.exit_code, 0) << covered.err;
+    ASSERT_EQ(uncovered.exit_code, 0) << uncovered.err;
+    EXPECT_EQ(json_of(covered)["design_white_mask"], "coverage");
+    EXPECT_FALSE(json_of(covered).contains("warnings"));
+    EXPECT_NE(covered.err.find("coverage"), std::string::npos) << covered.err;
+    EXPECT_EQ(json_of(uncovered)["design_white_mask"],
+              "every valid pixel: the target has no coverage");
+    EXPECT_GT(json_of(uncovered)["design_white_pixels"], json_of(covered)["design_white_pixels"]);
+    EXPECT_NE(json_of(uncovered)["warnings"].dump().find("no coverage"), std::string::npos);
+    EXPECT_NE(uncovered.err.find("warning: the target has no coverage"), std::string::npos)
+        << uncovered.err;
+
     for (const char* gamut : {"strict", "preserve"}) {
         const ProgramRun corrected = livery_run({"compensate",
                                                  "--json",
@@ -289,6 +360,19 @@ TEST(Program, GoesFromPatternsToProjectorInputThroughFiles) {
                                          (folder / "x.png").string()});
     EXPECT_EQ(small.exit_code, 2);
     EXPECT_NE(small.err.find("320x200"), std::string::npos) << small.err;
+}
+
+TEST(Program, ALiveSessionIsToldWhatHappenedToIt) {
+    const TemporaryFolder folder;
+    const std::string spoiled = small_bench(folder);
+    Json bench = Json::parse(content(spoiled));
+    bench["mishaps"] = {{{"what", "camera-moved"}, {"from", 40}, {"size", 2.0}}};
+    std::ofstream(spoiled) << bench.dump();
+    const ProgramRun run =
+        livery_run({"demo", "--json", "--bench", spoiled, "--out", (folder / "demo").string()});
+    EXPECT_EQ(run.exit_code, 1);
+    EXPECT_NE(run.err.find("camera, projector or mock-up moved: from gray-row-"), std::string::npos)
+        << run.err;
 }
 
 TEST(Program, StopsOnInterrupt) {

@@ -262,6 +262,34 @@ TEST_F(OnTheBench, ARefusalSaysWhyAndWhatToDo) {
     EXPECT_GT(mean_of(photograph->srgb).y, 60.0);
 }
 
+// The panel prints these words.
+TEST_F(OnTheBench, AMishapIsToldByCauseAndPicture) {
+    struct Case {
+        const char *mishap, *why, *fix;
+    };
+    const Case cases[] = {
+        {R"({"what": "automatic-exposure", "size": 0.18})", "automatic exposure", "by hand"},
+        {R"({"what": "camera-moved", "from": 40, "size": 2})",
+         "camera, projector or mock-up moved: from gray-row-",
+         "fix all three firmly"},
+        {R"({"what": "room-light", "from": 40, "size": 0.1})",
+         "the room's light changed before gray-row-",
+         "leave the room's light as it is"},
+    };
+    for (const Case& one : cases) {
+        std::string bench = kSmallBench;
+        bench.insert(bench.find("\"projector\""),
+                     "\"mishaps\": [" + std::string(one.mishap) + "], ");
+        Watched watched;
+        watched.thread->use(folder_.write("mishap.json", bench).string(), car_);
+        watched.thread->start_calibration();
+        const BenchThread::Calibrating refused = watched.end_of_calibration();
+        EXPECT_FALSE(refused.finished);
+        EXPECT_NE(refused.refused_why.find(one.why), std::string::npos) << refused.refused_why;
+        EXPECT_NE(refused.refused_fix.find(one.fix), std::string::npos) << refused.refused_fix;
+    }
+}
+
 TEST_F(OnTheBench, AMissingBenchEndsTheCalibrationWithAReason) {
     Watched watched;
     watched.thread->use((folder_ / "gone.json").string(), car_);

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "calibration/captures.h"
 #include "calibration/patterns.h"
-#include "session/captured_calibration.h"
 #include "session/small_session.h"
 
 namespace livery {
@@ -99,7 +99,7 @@ void move(RoledPhotograph& shot, int dx, int dy) {
 
 /// Why and fix of the refusal, else the warnings.
 std::string said_of(Shots shots) {
-    LoadedCaptures loaded;
+    Captures loaded;
     for (RoledPhotograph& shot : shots) add_capture(loaded, std::move(shot));
     try {
         const ColourCalibration calibration =
@@ -196,7 +196,7 @@ const std::vector<Fault> kFaults = {
              p.saturates_at = 255.0;
          }
      },
-     {"refused: white is", "encoded", "linear", "transfer"}},
+     {"refused: the files are encoded", "linear", "stripes", "transfer"}},
     {"OverExposed",
      [](Shots& shots) {
          for (RoledPhotograph& one : shots) expose(one, 2.2);

@@ -115,6 +115,25 @@ TEST_F(Files, EveryShippedBenchReadsAndStandsAsDocumented) {
     EXPECT_GT(read_bench_file("white-segment").projector.white_segment, 0.0);
 }
 
+TEST_F(Files, MishapsAreReadAndWrongOnesNamed) {
+    const auto bench_with = [&](const std::string& mishap) {
+        return read_bench_file(
+            write("b.json", with("\"camera\"", "\"mishaps\": [" + mishap + "], \"camera\"")));
+    };
+    const BenchDescription bench = bench_with(R"({"what": "room-light", "from": 3, "size": 0.25})");
+    ASSERT_EQ(bench.mishaps.size(), 1u);
+    EXPECT_EQ(bench.mishaps[0].kind, MishapKind::room_light);
+    EXPECT_EQ(bench.mishaps[0].from, 3);
+    EXPECT_GT(bench.mishaps[0].to, 1'000'000);
+    EXPECT_EQ(bench.mishaps[0].size, 0.25);
+    expect_refused([&] { bench_with(R"({"what": "rain", "size": 1})"); },
+                   "mishaps[0].what",
+                   "'rain'",
+                   "room-light");
+    expect_refused(
+        [&] { bench_with(R"({"what": "shadow", "size": 2})"); }, "mishaps[0].size", "2", "1");
+}
+
 TEST_F(Files, APlacedViewLooksWhereItSays) {
     const auto file = write("b.json",
                             with("\"at_mm\": [0, 0, 0]",
