@@ -486,6 +486,7 @@ class Desktop {
         MapState state = state_of_shell(shell_);
         state["clicks"] = std::to_string(imgui_->handed_out().clicks);
         state["notches"] = std::to_string(imgui_->handed_out().notches);
+        state["keys"] = std::to_string(imgui_->handed_out().keys);
         state["frame"] = std::to_string(++frames_drawn_);
         state["at_rest"] = frames_to_draw_ <= 0 && !imgui_->has_input() ? "true" : "false";
         mapped_ = {take_named_items(),

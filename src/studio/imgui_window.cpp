@@ -118,6 +118,7 @@ struct ImGuiWindow::State {
                 ++handed_out.notches;
                 break;
             case Kind::key:
+                if (!event.down && !is_modifier_key(event.code)) ++handed_out.keys;
                 if (filter(event)) break;
                 ImGui_ImplGlfw_KeyCallback(window.native(),
                                            event.code,

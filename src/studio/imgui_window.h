@@ -34,6 +34,7 @@ class ImGuiWindow {
     struct HandedOut {
         int clicks = 0;   ///< buttons let go
         int notches = 0;  ///< of the wheel
+        int keys = 0;     ///< let go, Shift and its like apart
     };
     const HandedOut& handed_out() const;
 

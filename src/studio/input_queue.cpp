@@ -10,7 +10,7 @@ constexpr int kFirstKeyWithoutCharacter = 256;  // GLFW: Esc, Enter, Tab, arrows
 constexpr int kFirstModifierKey = 340;          // GLFW: Shift, Ctrl, Alt, Super
 
 bool makes_no_character(int key) {
-    return key >= kFirstKeyWithoutCharacter && key < kFirstModifierKey;
+    return key >= kFirstKeyWithoutCharacter && !is_modifier_key(key);
 }
 
 /// What a frame has taken already, and whether one more event would be lost in it.
@@ -58,6 +58,8 @@ struct Portion {
 };
 
 }  // namespace
+
+bool is_modifier_key(int key) { return key >= kFirstModifierKey; }
 
 std::vector<InputEvent> InputQueue::take() {
     std::vector<InputEvent> taken;

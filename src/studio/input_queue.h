@@ -19,6 +19,9 @@ struct InputEvent {
     bool repeated = false;            ///< a held key
 };
 
+/// Whether a key of GLFW only changes what others mean: Shift, Ctrl, Alt, Super.
+bool is_modifier_key(int key);
+
 class InputQueue {
   public:
     void push(const InputEvent& event) { events_.push_back(event); }

@@ -158,6 +158,12 @@ void StudioProgram::double_click(const std::string& name) {
     wait_until_taken("clicks", before + 2);
 }
 
+void StudioProgram::press_key(const std::string& keys) {
+    const int before = state("keys");
+    desktop_.press_key(keys);
+    wait_until_taken("keys", before + 1);
+}
+
 void StudioProgram::scroll(glm::ivec2 at, int notches) {
     const int before = state("notches");
     desktop_.move_pointer(at.x, at.y);

@@ -56,9 +56,10 @@ class StudioProgram {
     void wait_for_state(const std::string& name, const nlohmann::json& value);
 
     void hover(const std::string& name);
-    /// A click and a notch are done when the window has drawn what came of them, as for a person.
+    /// A click, a key and a notch are done when the window has drawn what came of them, as for a person.
     void click(const std::string& name);
     void double_click(const std::string& name);
+    void press_key(const std::string& keys);
     /// Turns the wheel with the pointer at a place of the desktop.
     void scroll(glm::ivec2 at, int notches);
     /// The pointer to where nothing reacts to it.

@@ -81,31 +81,28 @@ TEST_F(OperatorsWindow, IsWorkedWithTheKeysAlone) {
     use_shared();
     const auto tab_to = [&](const std::string& name) {
         for (int k = 0; k < 200 && program->state("focused") != name; ++k) {
-            const auto frame = program->state("frame");
-            desktop->press_key("Tab");
-            wait_until([&] { return program->state("frame") != frame; });
-            sleep_ms(60);
+            program->press_key("Tab");
         }
         return program->state("focused") == name;
     };
     ASSERT_TRUE(tab_to("part:body"));
-    desktop->press_key("Return");
-    desktop->press_key("ctrl+Tab");
+    program->press_key("Return");
+    program->press_key("ctrl+Tab");
     program->wait_for_state("open_tab", 1);
-    desktop->press_key("ctrl+shift+Tab");
+    program->press_key("ctrl+shift+Tab");
     program->wait_for_state("open_tab", 0);
     const auto wears = drive_with_body("solid red");
-    desktop->press_key("ctrl+k");
+    program->press_key("ctrl+k");
     program->wait_for_state("focused", "paint-search");
     desktop->type("solid red");
-    desktop->press_key("Return");
+    program->press_key("Return");
     EXPECT_TRUE(projector_shows(wears));
-    desktop->press_key("Escape");
+    program->press_key("Escape");
     ASSERT_TRUE(tab_to("tab:Light"));
-    desktop->press_key("Return");
+    program->press_key("Return");
     program->wait_for_state("open_tab", 3);
     ASSERT_TRUE(tab_to("tab:Paints"));
-    desktop->press_key("Return");
+    program->press_key("Return");
     program->wait_for_state("open_tab", 0);
 }
 
