@@ -97,18 +97,15 @@ std::vector<PixelStatus> judge(const ColourSamples& samples, const PixelMixing& 
     return status;
 }
 
-std::vector<ResponseSample> response_samples(const ColourSamples& samples,
-                                             const PixelMixing& mixing,
-                                             const std::vector<PixelStatus>& status,
-                                             const Pattern& levels,
-                                             const std::vector<std::uint8_t>& centre,
+std::vector<ResponseSample> response_samples(const LevelsSamples& seen,
                                              const ScatteredLight& scattered,
                                              int channel) {
+    const auto& [samples, mixing, usable, levels, centre] = seen;
     std::vector<ResponseSample> found;
     const SampledPicture& picture = samples.pictures[kLevels];
     double span2 = 0.0, count = 0.0;
-    for (std::size_t i = 0; i < status.size(); ++i) {
-        if (status[i] != PixelStatus::measured) continue;
+    for (std::size_t i = 0; i < usable.size(); ++i) {
+        if (!usable[i]) continue;
         span2 += static_cast<double>(mixing.span[i][channel]) * mixing.span[i][channel];
         count += 1.0;
     }
@@ -116,7 +113,7 @@ std::vector<ResponseSample> response_samples(const ColourSamples& samples,
     const auto noise = static_cast<float>(
         std::max(samples.noise.read[channel] / picture.shots, 1e-8 * span2 / std::max(count, 1.0)));
     for (std::size_t i = 0; i < samples.pixels.size(); ++i) {
-        if (status[i] != PixelStatus::measured || !centre[samples.pixels[i]]) continue;
+        if (!usable[i] || !centre[samples.pixels[i]]) continue;
         const float span = mixing.span[i][channel], taken_off = scattered.separated[i][channel];
         const float n = invariant(mixing, i, picture.colour[i])[channel] - taken_off / span;
         // N's noise grows as the span falls, and so does what is not known of the scattered light.
@@ -271,12 +268,10 @@ ColourCalibration calibrate_colour(const std::vector<RoledPhotograph>& captures,
         std::vector<std::uint8_t> usable;
         for (const PixelStatus s : status) usable.push_back(s == PixelStatus::measured);
         std::array<LevelCurve, 3> curves;
-        if (options.mode == ColourMode::robust) {
-            scattered = scattered_light(samples, mixing, levels, usable, centre);
-        }
+        const LevelsSamples seen{samples, mixing, usable, levels, centre};
+        if (options.mode == ColourMode::robust) scattered = scattered_light(seen);
         for (int k = 0; k < 3; ++k) {
-            const auto channel =
-                response_samples(samples, mixing, status, levels, centre, scattered, k);
+            const auto channel = response_samples(seen, scattered, k);
             if (channel.size() < 256)
                 throw Refused(
                     "only " + std::to_string(channel.size()) +
@@ -297,8 +292,7 @@ ColourCalibration calibrate_colour(const std::vector<RoledPhotograph>& captures,
             }
         }
         if (options.mode == ColourMode::robust) {
-            const LevelsVerdict verdict =
-                check_levels(samples, mixing, usable, levels, centre, scattered, curves);
+            const LevelsVerdict verdict = check_levels(seen, scattered, curves);
             calibration.warnings = verdict.warnings;
             response_error = verdict.unexplained;
             for (std::size_t k = 0; k < 3; ++k) {

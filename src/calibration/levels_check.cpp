@@ -17,9 +17,6 @@ constexpr double kBrightN = 0.15;
 /// A photograph of another picture follows the levels not at all; one of the right picture by more
 /// than nine tenths even in a bright room.
 constexpr double kFollows = 0.7;
-/// Light that scatters from bright to dark blocks takes from the one what it adds to the other; the
-/// mean light of the picture is a fifth of white's.
-constexpr double kScatterShare = 0.1;
 
 /// Over this it is named; under it hardly tells itself from what blur takes from the blocks.
 constexpr double kOtherExposure = 0.02;
@@ -46,13 +43,10 @@ Exposure exposure_of(const Pattern& levels,
 
 }  // namespace
 
-LevelsVerdict check_levels(const ColourSamples& samples,
-                           const PixelMixing& mixing,
-                           const std::vector<std::uint8_t>& usable,
-                           const Pattern& levels,
-                           const std::vector<std::uint8_t>& centre,
+LevelsVerdict check_levels(const LevelsSamples& seen,
                            const ScatteredLight& scattered,
                            const std::array<LevelCurve, 3>& curves) {
+    const auto& [samples, mixing, usable, levels, centre] = seen;
     const int columns = samples.width / kCell_px + 1, rows = samples.height / kCell_px + 1;
     std::vector<std::vector<float>> ratios(static_cast<std::size_t>(columns) *
                                            static_cast<std::size_t>(rows));

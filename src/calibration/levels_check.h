@@ -5,9 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "calibration/colour_samples.h"
-#include "calibration/mixing.h"
-#include "calibration/patterns.h"
 #include "calibration/response.h"
 #include "calibration/scattered_light.h"
 
@@ -22,11 +19,7 @@ struct LevelsVerdict {
 
 /// `curves`: N of each drive as fitted, one a channel. Throws Refused where the photograph does not
 /// follow its pattern, or a part of it lies in a shadow.
-LevelsVerdict check_levels(const ColourSamples& samples,
-                           const PixelMixing& mixing,
-                           const std::vector<std::uint8_t>& usable,
-                           const Pattern& levels,
-                           const std::vector<std::uint8_t>& centre,
+LevelsVerdict check_levels(const LevelsSamples& seen,
                            const ScatteredLight& scattered,
                            const std::array<LevelCurve, 3>& curves);
 

@@ -57,11 +57,8 @@ Average average(const std::vector<Cell>& cells,
 
 }  // namespace
 
-ScatteredLight scattered_light(const ColourSamples& samples,
-                               const PixelMixing& mixing,
-                               const Pattern& levels,
-                               const std::vector<std::uint8_t>& usable,
-                               const std::vector<std::uint8_t>& centre) {
+ScatteredLight scattered_light(const LevelsSamples& seen) {
+    const auto& [samples, mixing, usable, levels, centre] = seen;
     const std::size_t count = samples.pixels.size();
     ScatteredLight light{std::vector<glm::vec3>(count, glm::vec3(0.0f)),
                          std::vector<glm::vec3>(count, glm::vec3(0.0f)),

@@ -100,29 +100,11 @@ TEST(Room, LeavesNoBlackSpecksOnSmoothPanels) {
 // nuisances (1.0, 2.5) leave over those for none (0.5, 1.5) at the 95th percentile.
 TEST(Room, LightFromTheTableIsNotTakenForTheMockupsOwn) {
     const auto error_of = [](const BenchDescription& description) {
-        const Mesh& mesh = small_bench_product()->mesh;
         Bench bench(description, small_bench_product());
-        const Image8 mockup = mockup_mask(mesh, description.projector.view);
-        const ColourCalibration calibration =
-            calibrate_through_ports(bench, *small_bench_product(), {}).calibration;
-        const double white_y = design_white_luminance(calibration, 20.0, mockup);
-        ImageF wanted = testing::smooth_colours(mockup.width, mockup.height, 7);
-        for (std::size_t i = 0; i < mockup.values.size(); ++i)
-            wanted.values[4 * i + 3] = mockup.values[i] ? 1.0f : 0.0f;
-        const Image8 drive = compensate(bake(calibration, white_y), wanted);
-        const ImageF wanted_xyz = xyz_from_wanted(wanted, white_y);
-        ComparisonMasks masks{bench.truth().lit,
-                              bench.truth().edge,
-                              Image8(mockup.width, mockup.height, 1),
-                              bench.reachable(wanted_xyz)};
-        for (std::size_t i = 0; i < mockup.values.size(); ++i)
-            masks.valid.values[i] =
-                is_valid(static_cast<PixelStatus>(calibration.status.values[i])) ? 255 : 0;
-        const Comparison found =
-            compare_xyz(wanted_xyz, bench.observe_xyz(drive), white_y * d65_xyz(), masks);
-        std::printf(
-            "    CIEDE2000 median %.3f, p95 %.3f\n", found.interior.median, found.interior.p95);
-        return found.interior;
+        const Image8 mockup = mockup_mask(small_bench_product()->mesh, description.projector.view);
+        LiveResult live;
+        live.calibration = calibrate_through_ports(bench, *small_bench_product(), {}).calibration;
+        return testing::judged(bench, std::move(live), &mockup).comparison.interior;
     };
     BenchDescription room = half_size("room");
     const auto with = error_of(room);

@@ -88,12 +88,16 @@ inline std::string all_warnings(const ColourCalibration& calibration) {
     return text;
 }
 
-inline Judged judged(const Bench& bench, LiveResult live) {
+/// In smooth colours over the whole picture, or over the mock-up's pixels alone.
+inline Judged judged(const Bench& bench, LiveResult live, const Image8* mockup = nullptr) {
     Judged result;
     bool masked_is_black = true;
     const ColourCalibration& calibration = live.calibration;
-    const double design_white_y = design_white_luminance(calibration, 20.0, bench.truth().lit);
-    const ImageF wanted = smooth_colours(calibration.width, calibration.height, 7);
+    const double design_white_y =
+        design_white_luminance(calibration, 20.0, mockup ? *mockup : bench.truth().lit);
+    ImageF wanted = smooth_colours(calibration.width, calibration.height, 7);
+    for (std::size_t i = 0; mockup && i < mockup->values.size(); ++i)
+        wanted.values[4 * i + 3] = mockup->values[i] ? 1.0f : 0.0f;
     const Image8 drive = compensate(bake(calibration, design_white_y), wanted);
     const ImageF wanted_xyz = xyz_from_wanted(wanted, design_white_y);
     ComparisonMasks masks{bench.truth().lit,
