@@ -69,40 +69,30 @@ FN VEC3 car_paint_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
     return VEC3(coat) + passed * (flakes + pigment);
 }
 
-// The cosine under which a lobe mostly takes light that leaves under mu: higher than the mirror
-// direction, the more so the wider it is (as clearcoat_environment).
-FN REAL car_paint_mirror_cosine(REAL mu, REAL alpha) {
-    REAL a2 = alpha * alpha;
-    return sqrt((mu * mu + a2) / (R(1.0) + a2));
-}
-
-// |wi + wo|^2 of that light, on the mirror's side.
+// |wi + wo|^2 of the light that a lobe mostly sends to mu: it enters from higher than the mirror
+// direction, the more so the wider the lobe is.
 FN REAL car_paint_mirror_hh(REAL mu, REAL alpha) {
-    REAL mu_in = car_paint_mirror_cosine(mu, alpha);
+    REAL a2 = alpha * alpha;
+    REAL mu_in = sqrt((mu * mu + a2) / (R(1.0) + a2));
     REAL sines = sqrt((R(1.0) - mu * mu) * (R(1.0) - mu_in * mu_in));
     return R(2.0) * (R(1.0) + mu * mu_in - sines);
 }
 
-// What the coat does to light that enters under mu_in and leaves under mu.
-FN VEC3 car_paint_through_coat(BsdfParameters p, REAL mu_in, REAL mu, REAL eta) {
-    return coat_absorption(p, coat_path(mu_in, eta) + coat_path(mu, eta)) *
-           (coat_transmission(p, mu_in) * coat_transmission(p, mu));
-}
-
-// Of light from all around through one lobe of flakes of reflectance 1.
+// Of light from all around through one lobe of flakes of reflectance 1, the coat passed both ways.
 FN VEC3 car_paint_lobe(BsdfParameters p, REAL mu, REAL alpha, REAL eta) {
     REAL loss;
     REAL cosine;
     ggx_albedo_fit(mu, alpha, loss, cosine);
-    return (R(1.0) - loss) *
-           car_paint_through_coat(p, car_paint_mirror_cosine(mu, alpha), mu, eta);
+    REAL passed = coat_transmission(p, mu) * coat_transmission(p, coat_entry_cosine(mu, alpha));
+    return coat_absorption(p, coat_path(mu, eta) + coat_entry_path(mu, alpha, eta)) *
+           ((R(1.0) - loss) * passed);
 }
 
 // Where the flakes reflect that much.
 FN BsdfEnvironment car_paint_parts(BsdfParameters p, VEC3 flakes, REAL mu) {
     REAL eta = coat_inverse_index_squared(p);
     BsdfEnvironment e;
-    e.coat = VEC3(coat_albedo(p, mu));
+    e.coat = VEC3(coat_albedo(p, mu, R(1.0)));
     e.specular = p.f0 * car_paint_lobe(p, mu, p.alpha_x, eta) +
                  (VEC3(R(1.0)) - p.f0) * flakes * car_paint_lobe(p, mu, p.flake_alpha, eta);
     // The pigment is lit from everywhere: absorbed along the path of the mean cosine, 2/3.

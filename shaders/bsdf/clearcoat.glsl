@@ -10,10 +10,12 @@
 // The base's mirror-like part is seen after one bounce; what the coat returns to it again is lost
 // (at most coat_f0 of it).
 
-FN REAL coat_albedo(BsdfParameters p, REAL mu) {
+// Of light of which so many times as much grazes as of even light.
+FN REAL coat_albedo(BsdfParameters p, REAL mu, REAL grazing_ratio) {
     REAL white;
     REAL grazing;
     ggx_albedo(mu, p.coat_alpha, p.coat_f0, white, grazing);
+    grazing = min(grazing * grazing_ratio, white);
     REAL f90 = grazing_reflectance(p.coat_f0);
     return p.coat_f0 * (white - grazing) + f90 * grazing;
 }
@@ -63,6 +65,37 @@ FN VEC3 coated_diffuse(BsdfParameters p, REAL inverse_index_squared) {
     return coated_diffuse_over(p, inverse_index_squared, share);
 }
 
+// Light from all around that a GGX lobe under the coat sends to mu enters under many cosines. One
+// stands for them all, by what the coat transmits of it on the mean, and another by the path: where
+// much arrives at grazing angles the mean direction would pass up to 5% too much. Squared, both are
+// smooth in mu; fits of our own quadrature of even light (index 1.5, alpha .01 to 1), of its
+// transmission within .4% and of its path within .3%, twice as much for mu < .15.
+FN REAL coat_entry_cosine(REAL mu, REAL alpha) {
+    REAL y = alpha / (alpha + R(0.3));
+    REAL c0 = y * (R(0.0045) + y * (R(1.3184) + y * (R(-1.3776) + y * R(-0.1443))));
+    REAL c1 = y * (R(-0.2752) + y * (R(-6.9299) + y * (R(23.2973) + y * R(-16.975))));
+    REAL c2 = y * (R(1.9661) + y * (R(4.1632) + y * (R(-40.2442) + y * R(36.8058))));
+    REAL c3 = y * (R(-4.1456) + y * (R(4.8188) + y * (R(15.85) + y * R(-19.0556))));
+    REAL squared = mu * mu + c0 + mu * (c1 + mu * (c2 + mu * c3));
+    return sqrt(clamp(squared, R(0.0), R(1.0)));
+}
+
+// What the coat transmits of it where so many times as much grazes as of even light.
+FN REAL coat_entry_transmission(BsdfParameters p, REAL mu, REAL alpha, REAL grazing_ratio) {
+    REAL even = coat_transmission(p, coat_entry_cosine(mu, alpha));
+    REAL grazing = R(1.0) - p.coat_f0 - even;
+    return clamp(even + grazing * (R(1.0) - grazing_ratio), R(0.0), R(1.0));
+}
+
+FN REAL coat_entry_path(REAL mu, REAL alpha, REAL inverse_index_squared) {
+    REAL y = alpha / (alpha + R(0.3));
+    REAL c0 = y * (R(0.1524) + y * (R(2.3192) + y * R(-2.5349)));
+    REAL c1 = y * (R(-1.2958) + y * (R(2.3516) + y * R(-0.4029)));
+    REAL c2 = y * (R(1.2878) + y * (R(-7.4003) + y * R(4.9449)));
+    REAL squared = mu * mu + c0 + mu * (c1 + mu * c2);
+    return coat_path(sqrt(clamp(squared, R(0.0), R(1.0))), inverse_index_squared);
+}
+
 // The coat's own lobe. hh = |wi + wo|^2.
 FN REAL coat_lobe(BsdfParameters p, VEC3 wi, VEC3 wo, REAL hh) {
     REAL weight = fresnel_weight(p.coat_f0, hh);
@@ -93,14 +126,12 @@ FN BsdfEnvironment clearcoat_environment(BsdfParameters p, REAL mu) {
     REAL eta = coat_inverse_index_squared(p);
     REAL path = coat_path(mu, eta);
     REAL passed = coat_transmission(p, mu);
-    // A rough base takes light from higher than the mirror direction.
-    REAL a2 = p.alpha_x * p.alpha_y;
-    REAL mu_in = sqrt((mu * mu + a2) / (R(1.0) + a2));
+    REAL alpha = sqrt(p.alpha_x * p.alpha_y);
     BsdfEnvironment e;
-    e.coat = VEC3(coat_albedo(p, mu));
-    e.specular = ggx_environment_albedo(p, mu) *
-                 coat_absorption(p, path + coat_path(mu_in, eta)) *
-                 (passed * coat_transmission(p, mu_in));
+    e.coat = VEC3(coat_albedo(p, mu, R(1.0)));
+    e.specular = ggx_environment_albedo(p, mu, R(1.0)) *
+                 coat_absorption(p, path + coat_entry_path(mu, alpha, eta)) *
+                 (passed * coat_transmission(p, coat_entry_cosine(mu, alpha)));
     // The diffuse layer is lit from everywhere: absorbed along the path of the mean cosine, 2/3.
     VEC3 one = VEC3(R(1.0));
     VEC3 share =

@@ -81,11 +81,13 @@ FN REAL ggx_pdf(BsdfParameters p, VEC3 wi, VEC3 wo) {
            chance.y * wi.z * R(0.3183098861837907);
 }
 
-FN VEC3 ggx_environment_albedo(BsdfParameters p, REAL mu) {
+// Of light of which so many times as much grazes as of even light.
+FN VEC3 ggx_environment_albedo(BsdfParameters p, REAL mu, REAL grazing_ratio) {
     REAL white;
     REAL grazing;
     REAL f0_max = max_component(p.f0);
     ggx_albedo(mu, sqrt(p.alpha_x * p.alpha_y), f0_max, white, grazing);
+    grazing = min(grazing * grazing_ratio, white);
     REAL f90 = grazing_reflectance(f0_max);
     return p.f0 * (white - grazing) + VEC3(f90 * grazing);
 }
@@ -93,7 +95,7 @@ FN VEC3 ggx_environment_albedo(BsdfParameters p, REAL mu) {
 FN BsdfEnvironment ggx_environment(BsdfParameters p, REAL mu) {
     BsdfEnvironment e;
     e.diffuse = p.diffuse * ggx_interface_transmission(p, mu);
-    e.specular = ggx_environment_albedo(p, mu);
+    e.specular = ggx_environment_albedo(p, mu, R(1.0));
     e.coat = VEC3(R(0.0));
     return e;
 }

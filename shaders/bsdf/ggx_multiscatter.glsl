@@ -68,7 +68,7 @@ FN BsdfEnvironment ggx_multiscatter_environment(BsdfParameters p, REAL mu) {
     VEC3 through = ggx_multiscatter_transmission(p, many, mu, lost);
     BsdfEnvironment e;
     e.diffuse = p.diffuse * through + many * lost;
-    e.specular = ggx_environment_albedo(ggx_not_stretched(p), mu);
+    e.specular = ggx_environment_albedo(ggx_not_stretched(p), mu, R(1.0));
     e.coat = VEC3(R(0.0));
     return e;
 }

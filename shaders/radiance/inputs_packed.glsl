@@ -50,6 +50,12 @@ vec3 mirror_layer_here(int layer) {
     return texelFetch(u_mirror, ivec3(gl_FragCoord.xy, layer), 0).rgb;
 }
 
+// How many times as much of what is mirrored grazes as does of even light, for three lobes each
+// (src/radiance/mirror_quadrature.h).
+vec3 grazing_here(int layer) {
+    return mirror_layer_here(MIRROR_LOBES + layer);
+}
+
 // Environment over a mirror lobe, between four layers. Their cubic may fall short of nothing beside
 // a lamp.
 vec3 mirrored_here(vec4 layers, float alpha) {

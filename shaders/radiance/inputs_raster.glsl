@@ -221,6 +221,11 @@ vec4 place_here() {
 }
 #endif
 
+// The preview takes all of it for even.
+vec3 grazing_here(int unused_layer) {
+    return vec3(1.0);
+}
+
 vec3 mirrored_here(vec4 unused_layers, float alpha) {
     vec3 d = reflect(-s_eye, s_normal);
     vec2 at = vec2((atan(d.x, -d.z) + u_rotation) * 0.15915494309189535 + 0.5,

@@ -129,6 +129,23 @@ FN VEC3 through_base(BsdfParameters p, REAL mu) {
 #endif
 }
 
+#if ENVIRONMENT
+// What three lobes have, for one in between.
+FN REAL between_lobes(REAL below, VEC3 at, REAL alpha, VEC4 alphas) {
+    VEC3 past = VEC3(alpha) - VEC3(alphas.x, alphas.y, alphas.z);
+    VEC3 width = VEC3(alphas.y, alphas.z, alphas.w) - VEC3(alphas.x, alphas.y, alphas.z);
+    VEC3 share = min(max(past / width, VEC3(R(0.0))), VEC3(R(1.0)));
+    return mix(mix(mix(below, at.x, share.x), at.y, share.y), at.z, share.z);
+}
+
+// A mirror takes light from one direction only.
+FN REAL grazing_fresnel(VEC3 narrow, VEC3 middle, VEC3 wide, REAL alpha) {
+    REAL value = between_lobes(R(1.0), narrow, alpha, VEC4(R(0.0), R(0.02), R(0.042), R(0.06)));
+    value = between_lobes(value, middle, alpha, VEC4(R(0.06), R(0.085), R(0.12), R(0.17)));
+    return between_lobes(value, wide, alpha, VEC4(R(0.17), R(0.24), R(0.5), R(1.0)));
+}
+#endif
+
 #ifdef COATED
 UNIFORM VEC3 u_coat_log_transmittance;  // base 2
 UNIFORM REAL u_coat_inverse_index_squared;
@@ -138,15 +155,25 @@ FN VEC3 through_coat(BsdfParameters p, REAL mu) {
     return coat_transmission(p, mu) *
            exp2(u_coat_log_transmittance * coat_path(mu, u_coat_inverse_index_squared));
 }
+
+#if ENVIRONMENT
+// The same for the light that a lobe under it mirrors, on its way in.
+FN VEC3 through_coat_into(BsdfParameters p, REAL mu, REAL alpha, VEC3 grazing_entry) {
+    VEC4 lobes = VEC4(R(0.0), R(0.06), R(0.17), R(0.5));
+    REAL ratio = between_lobes(R(1.0), grazing_entry, alpha, lobes);
+    REAL path = coat_entry_path(mu, alpha, u_coat_inverse_index_squared);
+    return coat_entry_transmission(p, mu, alpha, ratio) * exp2(u_coat_log_transmittance * path);
+}
+#endif
 #endif
 
-#ifdef CAR_PAINT
-// Of light from all around, what a lobe of flakes returns through the coat on the way in.
-FN VEC3 through_lobe(BsdfParameters p, REAL mu, REAL alpha) {
+#if ENVIRONMENT && defined(CAR_PAINT)
+// What a lobe of flakes returns of the light that it mirrors, through the coat on the way in.
+FN VEC3 through_lobe(BsdfParameters p, REAL mu, REAL alpha, VEC3 grazing_entry) {
     REAL loss;
     REAL cosine;
     ggx_albedo_fit(mu, alpha, loss, cosine);
-    return (R(1.0) - loss) * through_coat(p, car_paint_mirror_cosine(mu, alpha));
+    return (R(1.0) - loss) * through_coat_into(p, mu, alpha, grazing_entry);
 }
 #endif
 
@@ -210,27 +237,33 @@ FN VEC3 shaded() {
 
 #if ENVIRONMENT
     VEC3 diffuse = u_sky_diffuse * layer_o * sky_here();
+    VEC3 narrow = grazing_here(0);
+    VEC3 middle = grazing_here(1);
+    VEC3 wide = grazing_here(2);
+#ifdef COATED
+    VEC3 grazing_entry = grazing_here(3);
+#endif
 #ifdef CAR_PAINT
-    VEC3 base = p.f0 * mirrored_here(u_base_layers, p.alpha_x) * through_lobe(p, wo.z, p.alpha_x);
+    VEC3 base = p.f0 * mirrored_here(u_base_layers, p.alpha_x) *
+                through_lobe(p, wo.z, p.alpha_x, grazing_entry);
     VEC3 flakes = p.flake_f0;
     if (u_has_film) flakes = film_reflectance(p, car_paint_mirror_hh(wo.z, p.flake_alpha));
     base += beside_base * flakes * mirrored_here(u_flake_layers, p.flake_alpha) *
-            through_lobe(p, wo.z, p.flake_alpha);
+            through_lobe(p, wo.z, p.flake_alpha, grazing_entry);
     sum += through_o * (base + diffuse);
 #else
-    VEC3 base = ggx_environment_albedo(p, wo.z) *
-                mirrored_here(u_base_layers, sqrt(p.alpha_x * p.alpha_y));
+    REAL alpha = sqrt(p.alpha_x * p.alpha_y);
+    REAL more = grazing_fresnel(narrow, middle, wide, alpha);
+    VEC3 base = ggx_environment_albedo(p, wo.z, more) * mirrored_here(u_base_layers, alpha);
 #ifdef CLEARCOAT
-    // A rough base takes light from higher than the mirror direction (clearcoat_environment).
-    REAL a2 = p.alpha_x * p.alpha_y;
-    REAL mu_in = sqrt((wo.z * wo.z + a2) / (R(1.0) + a2));
-    sum += through_o * (base * through_coat(p, mu_in) + diffuse);
+    sum += through_o * (base * through_coat_into(p, wo.z, alpha, grazing_entry) + diffuse);
 #else
     sum += base + diffuse;
 #endif
 #endif
 #ifdef COATED
-    sum += coat_albedo(p, wo.z) * mirrored_here(u_coat_layers, p.coat_alpha);
+    REAL coat_more = grazing_fresnel(narrow, middle, wide, p.coat_alpha);
+    sum += coat_albedo(p, wo.z, coat_more) * mirrored_here(u_coat_layers, p.coat_alpha);
 #endif
 #endif
     return exposed(sum);

@@ -233,7 +233,7 @@ void FragmentInputs::fill_mirror(const Scene& scene, bool occluded, const Progre
     const MirroredEnvironment environment(
         *scene.environment, filtered_, mesh_, *map_, scene.eye_in_world_mm, visibility);
     const std::size_t layer_size = static_cast<std::size_t>(layout_.rows) * kPackedWidth * 4;
-    std::vector<std::vector<float>> texels(kMirrorAlphas.size());
+    std::vector<std::vector<float>> texels(kMirrorLayers);
     parallel_for(texels.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) texels[k].assign(layer_size, 0.0f);
     });
@@ -245,15 +245,19 @@ void FragmentInputs::fill_mirror(const Scene& scene, bool occluded, const Progre
         };
         for (std::size_t i = begin; i < end; ++i) {
             if (is_mean(i)) continue;
-            const auto lobes = environment.at_fragment(i, scratch);
+            const MirroredLight light = environment.at_fragment(i, scratch);
             // Who does not ask which lobes are hidden dims those of a joint like its diffuse light
             const bool joint = joints && map_->fragments[i].coverage < 1.0f;
             const float scale = (joint ? joints->openness(i) : 1.0f) / unit;
             const std::size_t at = 4 * layout_.address(i, map_->fragments[i].part);
-            for (std::size_t k = 0; k < lobes.size(); ++k) {
+            const auto store = [&](std::size_t layer, const glm::vec3& value) {
                 for (std::size_t c = 0; c < 3; ++c) {
-                    texels[k][at + c] = lobes[k][static_cast<int>(c)] * scale;
+                    texels[layer][at + c] = value[static_cast<int>(c)];
                 }
+            };
+            for (std::size_t k = 0; k < light.lobe.size(); ++k) store(k, light.lobe[k] * scale);
+            for (std::size_t k = 0; k < light.grazing.size(); ++k) {
+                store(light.lobe.size() + k, light.grazing[k]);
             }
         }
         for (std::size_t i = begin; i < end; ++i) {
@@ -302,7 +306,7 @@ FragmentInputs::Changed FragmentInputs::upload(const Scene& scene, StageClock& c
 }
 
 void FragmentInputs::upload_mirror() {
-    make(shading_.mirror, kMirrorAlphas.size(), InputLayers::Precision::half);
+    make(shading_.mirror, kMirrorLayers, InputLayers::Precision::half);
     for (std::size_t k = 0; k < mirror_texels_.size(); ++k) {
         shading_.mirror.upload(mirror_texels_[k], static_cast<int>(k));
     }

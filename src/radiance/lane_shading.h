@@ -30,6 +30,7 @@ struct LaneJob {
     const std::uint16_t* sky = nullptr;            ///< the same
     const std::uint16_t* const* mirror = nullptr;  ///< the same for each layer
     float mirror_unit = 1.0f;
+    const std::uint16_t* const* grazing = nullptr;  ///< after those layers: how much of it grazes
     const float* places = nullptr;  ///< 4 channels: position, side of a pixel there, in mm
     float glint_density = 0.0f;     ///< flakes on a mm^2 of the mock-up
     float* shaded = nullptr;        ///< R, G, B, 1 of each fragment

@@ -25,6 +25,17 @@ constexpr double kStraightSlope = 0.03;
 /// A Gaussian's width may be this share of its height over the surface's horizon: nothing is
 /// mirrored from below.
 constexpr double kWidthOverHorizon = 0.5;
+/// Of the dielectric whose Fresnel term stands for all others' between f0 and 1.
+constexpr double kDielectric = 0.04;
+constexpr bool are_alphas(const GrazingLobes& lobes, float a, float b, float c) {
+    return kMirrorAlphas[lobes[0]] == a && kMirrorAlphas[lobes[1]] == b &&
+           kMirrorAlphas[lobes[2]] == c;
+}
+static_assert(are_alphas(kHalfAngleLobes[0], 0.02f, 0.042f, 0.06f) &&
+                  are_alphas(kHalfAngleLobes[1], 0.085f, 0.12f, 0.17f) &&
+                  are_alphas(kHalfAngleLobes[2], 0.24f, 0.5f, 1.0f) &&
+                  are_alphas(kEntryLobes, 0.06f, 0.17f, 0.5f),
+              "shade.glsl interpolates between these");
 
 /// Rows of the table, even in the root of 1 - sine: that is linear in the cosine at grazing and in
 /// the sine at the normal, and so is what changes there.
@@ -105,6 +116,36 @@ Shares sharpened(const Cell& cell, const glm::dvec3& wi, const Cells& cells) {
     return weights;
 }
 
+/// Fresnel's weight under an angle; f64::fresnel_weight() takes |wi + wo|^2.
+double grazing_weight(double cosine) {
+    return f64::fresnel_weight(kDielectric, 4.0 * cosine * cosine);
+}
+
+MirrorQuadrature::Even even_under(double mu) {
+    const auto of = [&](const GrazingLobes& lobes, const auto& weight) {
+        Texel texel{};
+        for (int k = 0; k < 3; ++k) {
+            const float alpha = kMirrorAlphas[lobes[static_cast<std::size_t>(k)]];
+            texel[k] = static_cast<float>(weight(static_cast<double>(alpha)));
+        }
+        return texel;
+    };
+    const auto reflected = [&](double alpha) {
+        double white = 0.0, grazing = 0.0;
+        f64::ggx_albedo(mu, alpha, kDielectric, white, grazing);
+        return grazing / white;
+    };
+    const auto entering = [&](double alpha) {
+        return grazing_weight(f64::coat_entry_cosine(mu, alpha));
+    };
+    MirrorQuadrature::Even even;
+    for (std::size_t i = 0; i < kHalfAngleLobes.size(); ++i) {
+        even.of[i] = of(kHalfAngleLobes[i], reflected);
+    }
+    even.of.back() = of(kEntryLobes, entering);
+    return even;
+}
+
 /// A node around the slope (x, y); weights not yet normalised.
 MirrorQuadrature::Node node_at(double x, double y, const Cells& cells) {
     MirrorQuadrature::Node node{};
@@ -116,6 +157,10 @@ MirrorQuadrature::Node node_at(double x, double y, const Cells& cells) {
                              static_cast<float>(h.z),
                              static_cast<float>(cell.cut * cell.variance)};
     if (cell.variance <= 0.0) return node;
+    node.grazing = Texel{static_cast<float>(grazing_weight(glm::dot(cells.wo, h))),
+                         static_cast<float>(grazing_weight(wi.z)),
+                         0.0f,
+                         0.0f};
     const Shares weights = sharpened(cell, wi, cells);
     for (std::size_t k = 0; k < weights.size(); ++k) {
         node.weight[k / 4][k % 4] = static_cast<float>(weights[k]);
@@ -257,6 +302,7 @@ MirrorQuadrature::MirrorQuadrature(const MirrorRings& size) : nodes_(size.nodes)
         }
     });
     rows_.resize((kRows + 1) * count_);
+    for (std::size_t row = 0; row <= kRows; ++row) even_.push_back(even_under(cosine_of(row)));
     parallel_for(kRows + 1, 8, [&](std::size_t begin, std::size_t end) {
         for (std::size_t row = begin; row < end; ++row) {
             const std::size_t below = std::min(row / kAlbedoRows, returned.size() - 2);
@@ -359,6 +405,7 @@ MirrorQuadrature::Row MirrorQuadrature::seen_under(float sine) const {
     Row row;
     row.below_ = &rows_[below * count_];
     row.above_ = row.below_ + count_;
+    row.even_ = &even_[below];
     row.share_ = at - static_cast<float>(below);
     return row;
 }

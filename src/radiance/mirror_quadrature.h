@@ -19,6 +19,18 @@ namespace livery {
 inline constexpr std::array<float, 12> kMirrorAlphas{
     0.01f, 0.02f, 0.03f, 0.042f, 0.06f, 0.085f, 0.12f, 0.17f, 0.24f, 0.34f, 0.5f, 1.0f};
 
+/// Fresnel's term rises where light grazes, and a lobe at a slant takes light from grazing and from
+/// steep directions: how bright each is decides what is reflected. Some lobes (of kMirrorAlphas)
+/// keep that for each fragment, others interpolate (shade.glsl has the same): for the mirror's own
+/// Fresnel term, under the half angle, and for that of a coat above, under the angle of incidence.
+/// The former have more, since they make up for the errors of ggx_albedo_fit() as well.
+using GrazingLobes = std::array<std::size_t, 3>;
+inline constexpr std::array<GrazingLobes, 3> kHalfAngleLobes{{{1, 3, 4}, {5, 6, 7}, {8, 10, 11}}};
+inline constexpr GrazingLobes kEntryLobes{4, 7, 10};
+/// Layers of what is mirrored: the lobes, then how much of it grazes, three lobes a layer.
+inline constexpr std::size_t kGrazingLayers = kHalfAngleLobes.size() + 1;
+inline constexpr std::size_t kMirrorLayers = kMirrorAlphas.size() + kGrazingLayers;
+
 /// A lobe between the tabulated ones: four that follow one another, and the share of each.
 struct MirrorMix {
     int first = 0;
@@ -56,6 +68,12 @@ class MirrorQuadrature {
         Texel half_vector;
         /// Share in each of kMirrorAlphas' lobes; all nodes together have mirror_correction().
         std::array<Texel, kMirrorAlphas.size() / 4> weight;
+        /// Fresnel's weight under the half angle and under the angle of incidence; two unused.
+        Texel grazing;
+    };
+    /// What shade.glsl takes those weights to be on the mean over lobes of even light.
+    struct Even {
+        std::array<Texel, kGrazingLayers> of;  ///< kHalfAngleLobes, then kEntryLobes
     };
 
     explicit MirrorQuadrature(const MirrorRings& rings);
@@ -68,11 +86,13 @@ class MirrorQuadrature {
     class Row {
       public:
         Node node(std::size_t k) const;
+        Even even() const;
 
       private:
         friend class MirrorQuadrature;
         const Node* below_ = nullptr;
         const Node* above_ = nullptr;
+        const Even* even_ = nullptr;
         float share_ = 0.0f;
     };
     Row seen_under(float sine) const;
@@ -104,6 +124,7 @@ class MirrorQuadrature {
     int nodes_ = 0;
     std::size_t count_ = 0;
     std::vector<Node> rows_;
+    std::vector<Even> even_;
     std::vector<Ray> rays_;
     std::vector<std::uint16_t> beside_;
     std::vector<std::array<std::uint8_t, kTurns>> nearest_;
@@ -120,7 +141,18 @@ inline MirrorQuadrature::Node MirrorQuadrature::Row::node(std::size_t k) const {
     for (std::size_t i = 0; i < result.weight.size(); ++i) {
         result.weight[i] = between(below_[k].weight[i], above_[k].weight[i]);
     }
+    result.grazing = between(below_[k].grazing, above_[k].grazing);
     return result;
+}
+
+inline MirrorQuadrature::Even MirrorQuadrature::Row::even() const {
+    const Texel share{share_, share_, share_, share_};
+    const auto between = [&](const Texel& a, const Texel& b) { return a + share * (b - a); };
+    Even even;
+    for (std::size_t i = 0; i < even.of.size(); ++i) {
+        even.of[i] = between(even_[0].of[i], even_[1].of[i]);
+    }
+    return even;
 }
 
 }  // namespace livery

@@ -88,6 +88,21 @@ Facets facets_of(const Mesh& mesh,
     return {facet(0), facet(1), facet(2), facet(3)};
 }
 
+/// Of `sum`, what grazes of the light of three lobes; without light as of even light.
+glm::vec3 grazing_ratio(const std::array<glm::vec3, kMirrorAlphas.size()>& light,
+                        const GrazingLobes& lobes,
+                        const Texel& sum,
+                        const Texel& even) {
+    constexpr float kLargest = 8.0f;  // where the term is so small that no one sees it
+    glm::vec3 ratio(1.0f);
+    for (int k = 0; k < 3; ++k) {
+        const glm::vec3& all = light[lobes[static_cast<std::size_t>(k)]];
+        const float usual = (all.x + all.y + all.z) * even[k];
+        if (usual > 0.0f) ratio[k] = std::clamp(sum[k] / usual, 0.0f, kLargest);
+    }
+    return ratio;
+}
+
 bool any_weight(const MirrorQuadrature::Node& node) {
     // What the widest lobe has nothing of has nothing to give
     return node.weight.back()[3] > 0.0f;
@@ -197,14 +212,18 @@ bool MirroredEnvironment::find_seen(std::size_t fragment, Scratch& scratch) cons
     return true;
 }
 
-std::array<glm::vec3, kMirrorAlphas.size()> MirroredEnvironment::at_fragment(
-    std::size_t fragment, Scratch& scratch) const {
+MirroredLight MirroredEnvironment::at_fragment(std::size_t fragment, Scratch& scratch) const {
     const bool hidden = visibility_ && find_seen(fragment, scratch);
     const Facets facets = visibility_ ? facets_of(mesh_, map_, fragment, eye_mm_, quadrature_)
                                       : even_facets(map_.fragments[fragment], eye_mm_, quadrature_);
     // Of each channel, four lobes side by side
     using Sums = std::array<Texel, kMirrorAlphas.size() / 4>;
     Sums red{}, green{}, blue{};
+    std::array<Texel, kGrazingLayers> grazing{};
+    const auto weight_of = [](const MirrorQuadrature::Node& node, const GrazingLobes& lobes) {
+        const auto of = [&](std::size_t lobe) { return node.weight[lobe / 4][lobe % 4]; };
+        return Texel{of(lobes[0]), of(lobes[1]), of(lobes[2]), 0.0f};
+    };
     for (std::size_t first = 0; first < quadrature_.count(); first += facets.size()) {
         std::array<MirrorQuadrature::Node, kSamplesAFragment> nodes;
         Texel x, y, z;
@@ -231,13 +250,30 @@ std::array<glm::vec3, kMirrorAlphas.size()> MirroredEnvironment::at_fragment(
                 green[i] += w * light[1];
                 blue[i] += w * light[2];
             }
+            const float all = light[0] + light[1] + light[2];
+            const float half = all * node.grazing[0], incident = all * node.grazing[1];
+            for (std::size_t i = 0; i < kHalfAngleLobes.size(); ++i) {
+                grazing[i] += Texel{half, half, half, 0.0f} * weight_of(node, kHalfAngleLobes[i]);
+            }
+            grazing.back() +=
+                Texel{incident, incident, incident, 0.0f} * weight_of(node, kEntryLobes);
         }
     }
-    std::array<glm::vec3, kMirrorAlphas.size()> result;
-    for (std::size_t lobe = 0; lobe < result.size(); ++lobe) {
+    MirroredLight result;
+    for (std::size_t lobe = 0; lobe < result.lobe.size(); ++lobe) {
         const std::size_t i = lobe / 4, k = lobe % 4;
-        result[lobe] = scale_ * glm::vec3(red[i][k], green[i][k], blue[i][k]);
+        result.lobe[lobe] = glm::vec3(red[i][k], green[i][k], blue[i][k]);
     }
+    const Fragment& mean = map_.fragments[fragment];
+    const glm::vec3 wo = toward_eye(mean, eye_mm_);
+    const float cosine = std::clamp(glm::dot(wo, mean.normal), 0.0f, 1.0f);
+    const MirrorQuadrature::Even even =
+        quadrature_.seen_under(std::sqrt(1.0f - cosine * cosine)).even();
+    for (std::size_t i = 0; i < grazing.size(); ++i) {
+        const GrazingLobes& lobes = i < kHalfAngleLobes.size() ? kHalfAngleLobes[i] : kEntryLobes;
+        result.grazing[i] = grazing_ratio(result.lobe, lobes, grazing[i], even.of[i]);
+    }
+    for (glm::vec3& light : result.lobe) light *= scale_;
     return result;
 }
 

@@ -30,6 +30,13 @@ MirrorVisibility solve_mirror_visibility(const Mesh& mesh,
                                          int nodes,
                                          const Progress& progress = {});
 
+struct MirroredLight {
+    std::array<glm::vec3, kMirrorAlphas.size()> lobe;
+    /// Of kHalfAngleLobes, then kEntryLobes: how many times as much of the light stands where
+    /// Fresnel's term is high as does of even light.
+    std::array<glm::vec3, kGrazingLayers> grazing;
+};
+
 /// Mean radiance of the environment over fragments' mirror lobes, one for each of kMirrorAlphas,
 /// times mirror_correction().
 class MirroredEnvironment {
@@ -49,8 +56,7 @@ class MirroredEnvironment {
         std::vector<float> seen;   ///< share of each node
         std::vector<float> width;  ///< of its Gaussian's variance
     };
-    std::array<glm::vec3, kMirrorAlphas.size()> at_fragment(std::size_t fragment,
-                                                            Scratch& scratch) const;
+    MirroredLight at_fragment(std::size_t fragment, Scratch& scratch) const;
 
   private:
     /// Whether any node is hidden, and by how much each.

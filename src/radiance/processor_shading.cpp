@@ -80,11 +80,12 @@ void ProcessorShading::shade(const Material& material,
         job.light_radius2 = inputs.light_radius2.data();
         if (environment) job.sky = inputs.sky.halves(0);
         if (environment && model.mirrors()) {
-            for (std::size_t k = 0; k < kMirrorAlphas.size(); ++k) {
+            for (std::size_t k = 0; k < kMirrorLayers; ++k) {
                 mirror.push_back(inputs.mirror.halves(k));
             }
             job.mirror = mirror.data();
             job.mirror_unit = inputs.mirror_unit;
+            job.grazing = mirror.data() + kMirrorAlphas.size();
         }
     }
     std::function<void(const LaneJob&)> shade_blocks;

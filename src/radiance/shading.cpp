@@ -209,7 +209,8 @@ Program make_shading_program(const ShadingKey& key, ShadingSource source) {
         "#define {} 1\n#define LIGHTS {}\n#define LIGHT_COUNT LIGHTS\n#define ENVIRONMENT {}\n"
         "#define VEC4 vec4\n#define UNIFORM uniform\n"
         "#define LAYERS {}\n#define FIRST_ALPHA {:.8f}\n#define MESH_ROW {}\n"
-        "#define WEIGHTS {}\n#define MIRRORS {}\n#define BSDF_TURN2 R({:.1f})\n",
+        "#define WEIGHTS {}\n#define MIRRORS {}\n#define MIRROR_LOBES {}\n"
+        "#define BSDF_TURN2 R({:.1f})\n",
         define_of(model),
         lights,
         environment ? 1 : 0,
@@ -218,6 +219,7 @@ Program make_shading_program(const ShadingKey& key, ShadingSource source) {
         kMeshRow,
         kEnvironmentWeights,
         model_info(model).mirrors() ? 1 : 0,
+        kMirrorAlphas.size(),
         lobe_turn_squared(model_info(model)));
     std::string text = "#version 450 core\n" + bsdf_glsl(model) + defines;
     if (over) text += "#define OVER 1\n";

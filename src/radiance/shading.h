@@ -28,9 +28,10 @@ struct ShadingInputs {
     InputLayers eye;     ///< direction to the eye; mean squared slope
     InputLayers lights;  ///< one layer a light: direction, visibility
     InputLayers sky;     ///< environment on a white diffuser
-    InputLayers mirror;  ///< one layer for each of kMirrorAlphas: environment over the mirror lobe
-    InputLayers places;  ///< for glints: position, side of a pixel's square there, in mm
-    float mirror_unit = 1.0f;                 ///< radiance of a value of 1 in `mirror`
+    InputLayers
+        mirror;  ///< kMirrorLayers: environment over the mirror lobes, how much of it grazes
+    InputLayers places;        ///< for glints: position, side of a pixel's square there, in mm
+    float mirror_unit = 1.0f;  ///< radiance of a value of 1 in `mirror`
     std::vector<glm::vec3> light_irradiance;  ///< one a layer of `lights`, facing it
     std::vector<float> light_radius2;         ///< half of the disc's angle, squared
     double product_scale = 1.0;               ///< Product's

@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include "radiance/mirror_quadrature.h"
+
 namespace livery {
 namespace {
 
@@ -17,7 +19,7 @@ constexpr std::size_t kBlocks = 300, kLayers = 5;
 /// Inputs as they may be: lights below the horizon, denormal half floats, no light at all.
 struct Inputs {
     std::vector<float> eye, first_light, second_light, places;
-    std::vector<std::uint16_t> diffuse;
+    std::vector<std::uint16_t> diffuse, grazing;
     std::array<std::vector<std::uint16_t>, kLayers> mirror;
 
     Inputs() {
@@ -46,15 +48,17 @@ struct Inputs {
             float& side = places[i / kLaneBlock * 4 * kLaneBlock + i % kLaneBlock + 3 * kLaneBlock];
             side = std::max(0.02f * side, 0.0f);
         }
-        const auto halves = [&](std::vector<std::uint16_t>& values) {
-            std::uniform_int_distribution<int> finite(0, 0x7bff);
+        const auto halves = [&](std::vector<std::uint16_t>& values, int largest) {
+            std::uniform_int_distribution<int> finite(0, largest);
             values.resize(kBlocks * 3 * kLaneBlock);
             for (std::uint16_t& value : values) {
                 value = static_cast<std::uint16_t>(finite(random));
             }
         };
-        halves(diffuse);
-        for (auto& layer : mirror) halves(layer);
+        constexpr int kLargestHalf = 0x7bff, kTwo = 0x4000;
+        halves(diffuse, kLargestHalf);
+        for (auto& layer : mirror) halves(layer, kLargestHalf);
+        halves(grazing, kTwo);
     }
 };
 
@@ -92,6 +96,9 @@ std::vector<float> shaded(const LaneFunctions& functions,
     job.lit = job.sky = inputs.diffuse.data();
     job.mirror = mirror.data();
     job.mirror_unit = 1.25f;
+    std::array<const std::uint16_t*, kGrazingLayers> grazing;
+    grazing.fill(inputs.grazing.data());
+    job.grazing = grazing.data();
     job.places = inputs.places.data();
     job.glint_density = 200.0f;
     job.shaded = colours.data();

@@ -99,11 +99,11 @@ bool is_body(const Product& product, const SurfacePoint& point) {
 }
 
 /// Its middle, between the creases.
-Subject bonnet(int width, int margin) {
+Subject bonnet(int width, int margin, const glm::dvec3& eye_mm = {270, 250, 270}) {
     const Product car = load_product(shipped_path("assets/car.json"));
     return subject_of("bonnet",
                       car,
-                      look_at({270, 250, 270}, {60, 32, 0}, 0.09, width, width * 5 / 8),
+                      look_at(eye_mm, {60, 32, 0}, 0.09, width, width * 5 / 8),
                       margin,
                       [&](const SurfacePoint& p, double) {
                           return is_body(car, p) && p.position_mm.x > 46.0f &&
@@ -127,6 +127,21 @@ Subject doors(int width, int margin) {
 
 double green(const ImageF& image, std::size_t pixel) {
     return static_cast<double>(image.values[4 * pixel + 1]);
+}
+
+ImageF truth_of(Subject& subject, const Material& paint, const OracleOptions& options) {
+    for (Material& material : subject.scene.part_materials) material = paint;
+    return direct_light(subject.scene, subject.view, options);
+}
+
+/// Of the sum over pixels, relative.
+double bias_of(const ImageF& image, const ImageF& truth, const std::vector<std::size_t>& pixels) {
+    double sum = 0.0, true_sum = 0.0;
+    for (const std::size_t i : pixels) {
+        sum += green(image, i);
+        true_sum += green(truth, i);
+    }
+    return sum / true_sum - 1.0;
 }
 
 class Mirror : public Renderer {
@@ -177,16 +192,9 @@ TEST_P(Mirror, LobesOfAllWidthsAreAsBrightAsTheTruth) {
         Drawer draft(subject, Quality::draft), normal(subject, Quality::normal);
         Drawer high(subject, Quality::high);
         for (const double alpha : {0.03, 0.07, 0.2, 0.5}) {
-            for (Material& m : subject.scene.part_materials) m = mirror_of(alpha);
-            const ImageF truth = direct_light(subject.scene, subject.view, one.truth);
+            const ImageF truth = truth_of(subject, mirror_of(alpha), one.truth);
             const auto bias = [&](Drawer& drawer) {
-                const ImageF image = drawer(mirror_of(alpha));
-                double sum = 0.0, true_sum = 0.0;
-                for (const std::size_t i : subject.pixels) {
-                    sum += green(image, i);
-                    true_sum += green(truth, i);
-                }
-                return sum / true_sum - 1.0;
+                return bias_of(drawer(mirror_of(alpha)), truth, subject.pixels);
             };
             const double found[] = {bias(draft), bias(normal), bias(high)};
             std::printf("    %s alpha %.2f: draft %+.4f normal %+.4f high %+.4f of %zu pixels\n",
@@ -199,6 +207,62 @@ TEST_P(Mirror, LobesOfAllWidthsAreAsBrightAsTheTruth) {
             EXPECT_LT(std::abs(found[0]), one.draft) << subject.name << " alpha " << alpha;
             EXPECT_LT(std::abs(found[1]), 0.015) << subject.name << " alpha " << alpha;
             EXPECT_LT(std::abs(found[2]), 0.01) << subject.name << " alpha " << alpha;
+        }
+    }
+}
+
+/// Nothing under it, a metal, or two lobes of flakes.
+Material coat_over(const std::string& base, double coat_alpha, double alpha) {
+    Material material;
+    material.model = base == "flakes" ? ReflectanceModel::car_paint : ReflectanceModel::clearcoat;
+    material.diffuse = glm::dvec3(0.0);
+    material.f0 = glm::dvec3(base == "nothing" ? 0.0 : base == "metal" ? 0.6 : 0.3);
+    material.alpha = glm::dvec2(alpha);
+    material.coat_alpha = coat_alpha;
+    material.coat_f0 = 0.04;
+    if (base == "flakes") {
+        material.flake_f0 = glm::dvec3(0.4);
+        material.flake_alpha = 0.5 * alpha;
+    }
+    return material;
+}
+
+TEST_P(Mirror, CoatsAndWhatLiesUnderThemAreAsBrightAsTheTruth) {
+    // As asked of bare lobes. At a slant a coat's Fresnel term changes by as much over a lobe as
+    // the environment does: a mean of either alone would not do.
+    struct Paint {
+        std::string base;
+        double coat_alpha, alpha;
+    };
+    struct Case {
+        Subject subject;
+        OracleOptions truth;
+    };
+    std::vector<Case> cases;
+    cases.push_back({ring(0.15, 0.35), {2, 32}});
+    cases.push_back({ring(0.35, 1.0), {2, 16}});
+    cases.push_back({bonnet(144, 0, {270, 110, 370}), {2, 96}});
+    for (auto& [subject, options] : cases) {
+        ASSERT_GT(subject.pixels.size(), 500u) << subject.name;
+        Drawer normal(subject, Quality::normal), high(subject, Quality::high);
+        for (const Paint& paint : {Paint{"nothing", 0.02, 0.2},
+                                   Paint{"nothing", 0.1, 0.2},
+                                   Paint{"metal", 0.02, 0.12},
+                                   Paint{"metal", 0.02, 0.24},
+                                   Paint{"flakes", 0.02, 0.34},
+                                   Paint{"metal", 0.05, 0.5}}) {
+            const Material material = coat_over(paint.base, paint.coat_alpha, paint.alpha);
+            const ImageF truth = truth_of(subject, material, options);
+            const double found[] = {bias_of(normal(material), truth, subject.pixels),
+                                    bias_of(high(material), truth, subject.pixels)};
+            const std::string what = fmt::format("{}, coat alpha {} over {}, alpha {}",
+                                                 subject.name,
+                                                 paint.coat_alpha,
+                                                 paint.base,
+                                                 paint.alpha);
+            std::printf("    %s: normal %+.4f high %+.4f\n", what.c_str(), found[0], found[1]);
+            EXPECT_LT(std::abs(found[0]), 0.015) << what;
+            EXPECT_LT(std::abs(found[1]), 0.01) << what;
         }
     }
 }
