@@ -130,19 +130,40 @@ FN VEC3 through_base(BsdfParameters p, REAL mu) {
 }
 
 #if ENVIRONMENT
-// What three lobes have, for one in between.
-FN REAL between_lobes(REAL below, VEC3 at, REAL alpha, VEC4 alphas) {
-    VEC3 past = VEC3(alpha) - VEC3(alphas.x, alphas.y, alphas.z);
-    VEC3 width = VEC3(alphas.y, alphas.z, alphas.w) - VEC3(alphas.x, alphas.y, alphas.z);
-    VEC3 share = min(max(past / width, VEC3(R(0.0))), VEC3(R(1.0)));
+// What three lobes have, for one in between: each at the end of its interval.
+FN REAL between_lobes(REAL below, VEC3 at, REAL alpha, VEC3 begins, VEC3 inverse_widths) {
+    VEC3 share = (VEC3(alpha) - begins) * inverse_widths;
+    share = min(max(share, VEC3(R(0.0))), VEC3(R(1.0)));
     return mix(mix(mix(below, at.x, share.x), at.y, share.y), at.z, share.z);
 }
 
 // A mirror takes light from one direction only.
 FN REAL grazing_fresnel(VEC3 narrow, VEC3 middle, VEC3 wide, REAL alpha) {
-    REAL value = between_lobes(R(1.0), narrow, alpha, VEC4(R(0.0), R(0.02), R(0.042), R(0.06)));
-    value = between_lobes(value, middle, alpha, VEC4(R(0.06), R(0.085), R(0.12), R(0.17)));
-    return between_lobes(value, wide, alpha, VEC4(R(0.17), R(0.24), R(0.5), R(1.0)));
+    // Lobes of .02, .042, .06; .085, .12, .17; .24, .5 and 1
+    REAL value = between_lobes(R(1.0),
+                               narrow,
+                               alpha,
+                               VEC3(R(0.0), R(0.02), R(0.042)),
+                               VEC3(R(50.0), R(45.454545), R(55.555556)));
+    value = between_lobes(value,
+                          middle,
+                          alpha,
+                          VEC3(R(0.06), R(0.085), R(0.12)),
+                          VEC3(R(40.0), R(28.571429), R(20.0)));
+    return between_lobes(value,
+                         wide,
+                         alpha,
+                         VEC3(R(0.17), R(0.24), R(0.5)),
+                         VEC3(R(14.285714), R(3.8461538), R(2.0)));
+}
+
+// Lobes of .06, .17 and .5
+FN REAL grazing_entry(VEC3 at, REAL alpha) {
+    return between_lobes(R(1.0),
+                         at,
+                         alpha,
+                         VEC3(R(0.0), R(0.06), R(0.17)),
+                         VEC3(R(16.666667), R(9.0909091), R(3.030303)));
 }
 #endif
 
@@ -158,9 +179,8 @@ FN VEC3 through_coat(BsdfParameters p, REAL mu) {
 
 #if ENVIRONMENT
 // The same for the light that a lobe under it mirrors, on its way in.
-FN VEC3 through_coat_into(BsdfParameters p, REAL mu, REAL alpha, VEC3 grazing_entry) {
-    VEC4 lobes = VEC4(R(0.0), R(0.06), R(0.17), R(0.5));
-    REAL ratio = between_lobes(R(1.0), grazing_entry, alpha, lobes);
+FN VEC3 through_coat_into(BsdfParameters p, REAL mu, REAL alpha, VEC3 entry) {
+    REAL ratio = grazing_entry(entry, alpha);
     REAL path = coat_entry_path(mu, alpha, u_coat_inverse_index_squared);
     return coat_entry_transmission(p, mu, alpha, ratio) * exp2(u_coat_log_transmittance * path);
 }
@@ -169,11 +189,11 @@ FN VEC3 through_coat_into(BsdfParameters p, REAL mu, REAL alpha, VEC3 grazing_en
 
 #if ENVIRONMENT && defined(CAR_PAINT)
 // What a lobe of flakes returns of the light that it mirrors, through the coat on the way in.
-FN VEC3 through_lobe(BsdfParameters p, REAL mu, REAL alpha, VEC3 grazing_entry) {
+FN VEC3 through_lobe(BsdfParameters p, REAL mu, REAL alpha, VEC3 entry) {
     REAL loss;
     REAL cosine;
     ggx_albedo_fit(mu, alpha, loss, cosine);
-    return (R(1.0) - loss) * through_coat_into(p, mu, alpha, grazing_entry);
+    return (R(1.0) - loss) * through_coat_into(p, mu, alpha, entry);
 }
 #endif
 
@@ -241,22 +261,22 @@ FN VEC3 shaded() {
     VEC3 middle = grazing_here(1);
     VEC3 wide = grazing_here(2);
 #ifdef COATED
-    VEC3 grazing_entry = grazing_here(3);
+    VEC3 entry = grazing_here(3);
 #endif
 #ifdef CAR_PAINT
     VEC3 base = p.f0 * mirrored_here(u_base_layers, p.alpha_x) *
-                through_lobe(p, wo.z, p.alpha_x, grazing_entry);
+                through_lobe(p, wo.z, p.alpha_x, entry);
     VEC3 flakes = p.flake_f0;
     if (u_has_film) flakes = film_reflectance(p, car_paint_mirror_hh(wo.z, p.flake_alpha));
     base += beside_base * flakes * mirrored_here(u_flake_layers, p.flake_alpha) *
-            through_lobe(p, wo.z, p.flake_alpha, grazing_entry);
+            through_lobe(p, wo.z, p.flake_alpha, entry);
     sum += through_o * (base + diffuse);
 #else
     REAL alpha = sqrt(p.alpha_x * p.alpha_y);
     REAL more = grazing_fresnel(narrow, middle, wide, alpha);
     VEC3 base = ggx_environment_albedo(p, wo.z, more) * mirrored_here(u_base_layers, alpha);
 #ifdef CLEARCOAT
-    sum += through_o * (base * through_coat_into(p, wo.z, alpha, grazing_entry) + diffuse);
+    sum += through_o * (base * through_coat_into(p, wo.z, alpha, entry) + diffuse);
 #else
     sum += base + diffuse;
 #endif
