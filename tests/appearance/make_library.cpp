@@ -1,4 +1,5 @@
-// Fits the library's measured paints anew and writes them into a folder of material files:
+// Fits the library's measured paints anew and writes them into a folder of material files; one that
+// is there already and looks as near keeps its parameters:
 //   LIVERY_REFERENCE_DATA=<folder> livery_make_library materials [NAME ...]
 #include <algorithm>
 #include <cmath>
@@ -9,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "appearance/bsdf.h"
 #include "appearance/fit_brdf.h"
 #include "appearance/model_table.h"
 #include "appearance/paint_figures.h"
@@ -33,6 +35,14 @@ BrdfFit best_fit(const LibraryRecipe& recipe, const RecipeTruth& truth) {
     return best;
 }
 
+/// CIEDE2000: what the file rounds to.
+constexpr double kAsNear = 0.01;
+
+ReflectanceFunction function_of(const Material& material) {
+    return [model = material.model, p = parameters_of_f64(material)](
+               const glm::dvec3& wi, const glm::dvec3& wo) { return evaluate(model, p, wi, wo); };
+}
+
 /// No table says what flakes a paint has: one layer of discs of that size.
 void add_glints(int flake_um, Material& paint) {
     const double radius_mm = 0.5e-3 * flake_um;
@@ -46,29 +56,42 @@ void make(const LibraryRecipe& recipe,
           const std::filesystem::path& reference_data,
           const std::filesystem::path& folder) {
     const RecipeTruth truth = truth_of(recipe, reference_data);
+    std::string name = recipe.name;
+    std::replace(name.begin(), name.end(), ' ', '-');
+    const std::filesystem::path file = folder / (name + ".json");
+
     const BrdfFit fit = best_fit(recipe, truth);
     Material paint = fit.material;
+    ReflectanceDifference difference = fit.difference;
+    bool stands = false;
+    if (std::filesystem::exists(file)) {
+        const Material standing = read_material_file(file);
+        const ReflectanceDifference its = difference_of(function_of(standing), truth.value_working);
+        stands = its.de00_mean <= difference.de00_mean + kAsNear;
+        if (stands) {
+            paint = standing;
+            difference = its;
+        }
+    }
     paint.name = recipe.name;
     paint.family = recipe.family;
-    paint.provenance = fmt::format("{}; fitted to {}", truth.origin, stated_error(fit.difference));
+    paint.provenance = fmt::format("{}; fitted to {}", truth.origin, stated_error(difference));
     if (recipe.flake_um > 0) add_glints(recipe.flake_um, paint);
-    std::string file = paint.name;
-    std::replace(file.begin(), file.end(), ' ', '-');
-    write_material_file(folder / (file + ".json"), paint);
+    write_material_file(file, paint);
     const PaintFigures figures = paint_figures(paint);
     const glm::dvec3& face = figures.lab[kFaceAngle];
-    std::printf("%-24s %-10s %5.2f %5.1f  %5.1f %5.1f %5.1f  flop %5.2f  gloss %5.1f %5.1f  %.3f\n",
+    std::printf("%-24s %-10s %5.2f %5.1f  %5.1f %5.1f %5.1f  flop %5.2f  gloss %5.1f %5.1f%s\n",
                 recipe.name,
                 model_info(paint.model).name,
-                fit.difference.de00_mean,
-                fit.difference.de00_p95,
+                difference.de00_mean,
+                difference.de00_p95,
                 face.x,
                 face.y,
                 face.z,
                 figures.flop.value_or(-1.0),
                 figures.gloss_20,
                 figures.gloss_60,
-                fit.largest_albedo);
+                stands ? "  (as it was)" : "");
     std::fflush(stdout);
 }
 
