@@ -126,8 +126,8 @@ TEST(Environment, WeightsAddUpToTheAlbedo) {
     EXPECT_LT(worst_coat, 0.03);
 }
 
-// The fits may err by .8% in what the coat transmits at cosines of .15, by .3% in its path and by .7%
-// in the base's albedo.
+// The fits may err by .8% in what the coat transmits at cosines of .15, by .3% in its path and by
+// .7% in the base's albedo.
 TEST(Environment, WhatABaseSendsThroughItsCoatIsTheMeanOverItsLobe) {
     for (const auto model : {ReflectanceModel::clearcoat, ReflectanceModel::car_paint}) {
         double worst = 0.0;

@@ -56,7 +56,7 @@ class StudioProgram {
     void wait_for_state(const std::string& name, const nlohmann::json& value);
 
     void hover(const std::string& name);
-    /// A click, a key and a notch are done when the window has drawn what came of them, as for a person.
+    /// A click, a key and a notch are done when the window has drawn what came of them.
     void click(const std::string& name);
     void double_click(const std::string& name);
     void press_key(const std::string& keys);
