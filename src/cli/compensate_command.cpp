@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "cli/command.h"
+#include "cli/design_white.h"
 #include "compensation/compensation.h"
 #include "core/error.h"
 #include "core/image_io.h"
@@ -12,23 +13,6 @@
 #include "session/target_picture.h"
 
 namespace livery {
-
-namespace {
-
-constexpr const char* kCoverage = "coverage";
-constexpr const char* kNoCoverage = "every valid pixel: the target has no coverage";
-
-/// Of those that count (empty: all).
-std::size_t valid_pixels(const ColourCalibration& calibration, const Image8& counted) {
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < calibration.status.values.size(); ++i) {
-        const bool valid = is_valid(static_cast<PixelStatus>(calibration.status.values[i]));
-        count += valid && (counted.empty() || counted.values[i] != 0);
-    }
-    return count;
-}
-
-}  // namespace
 
 Command compensate_command() {
     struct Arguments {
@@ -78,10 +62,12 @@ Command compensate_command() {
             read_target_picture(arguments->target, calibration.width, calibration.height);
         const ImageF& wanted = target.wanted;
         const Image8 counted = target.has_coverage ? coverage_mask(wanted) : Image8();
-        const double white_y =
-            design_white_luminance(calibration, arguments->design_white, counted);
-        const std::size_t white_pixels = valid_pixels(calibration, counted);
-        const CompensationTable table = bake(calibration, white_y);
+        const DesignWhite white = design_white_of(
+            calibration,
+            arguments->design_white,
+            counted,
+            target.has_coverage ? "coverage" : "every valid pixel: the target has no coverage");
+        const CompensationTable table = bake(calibration, white.y);
         progress.update(0.5, "compensating");
         // The fractions speak of what was wanted, before any gamut mapping.
         CompensationStats stats;
@@ -96,22 +82,17 @@ Command compensate_command() {
                            {"clipped_high_fraction", stats.clipped_high_fraction},
                            {"clipped_low_fraction", stats.clipped_low_fraction},
                            {"gamut", arguments->gamut},
-                           {"design_white_y", white_y},
-                           {"design_white_mask", target.has_coverage ? kCoverage : kNoCoverage},
-                           {"design_white_pixels", white_pixels},
                            {"calibration", {{"id", calibration.id}}},
                            {"file", arguments->out}};
+        tell(white, outcome);
         outcome.text = fmt::format(
             "out of gamut {:.1f}% (too bright {:.1f}%, too dark {:.1f}%), no correction {:.1f}%; "
-            "design white {:.4g}, the {:g}th percentile of {} pixels: {}; wrote {}\n",
+            "{}; wrote {}\n",
             100.0 * stats.out_of_gamut_fraction,
             100.0 * stats.clipped_high_fraction,
             100.0 * stats.clipped_low_fraction,
             100.0 * stats.invalid_fraction,
-            white_y,
-            arguments->design_white,
-            white_pixels,
-            target.has_coverage ? kCoverage : kNoCoverage,
+            text_of(white),
             arguments->out);
         if (!target.has_coverage) {
             const std::string warning =

@@ -141,8 +141,12 @@ ResolvedFrame resolve_frame(const FrameArguments& arguments, const CommonOptions
         // A view of another size is refused where the projector's picture is asked for.
         const bool of_view = calibration.width == view->width && calibration.height == view->height;
         const Image8 mockup = of_view ? mockup_mask(product->mesh, *view) : Image8();
-        frame.compensation =
-            bake(calibration, design_white_luminance(calibration, arguments.design_white, mockup));
+        frame.design_white = design_white_of(
+            calibration,
+            arguments.design_white,
+            mockup,
+            of_view ? "the mock-up" : "every valid pixel: the view has another size");
+        frame.compensation = bake(calibration, frame.design_white->y);
     }
     if (!arguments.eye.empty()) {
         const auto numbers = parse_numbers("--eye", arguments.eye, 3);
@@ -165,6 +169,12 @@ ResolvedFrame resolve_frame(const FrameArguments& arguments, const CommonOptions
         request.quality = parse_quality(arguments.quality);
     }
     return frame;
+}
+
+void tell_design_white(const ResolvedFrame& frame, Outcome& outcome) {
+    if (!frame.design_white) return;
+    tell(*frame.design_white, outcome);
+    outcome.text += text_of(*frame.design_white) + "\n";
 }
 
 Json json_of(const FramePlan& plan) {

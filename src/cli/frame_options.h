@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "cli/design_white.h"
 #include "scene/frame_plan.h"
 #include "session/render.h"
 
@@ -25,10 +26,14 @@ std::vector<Option> frame_options(FrameArguments& arguments);
 struct ResolvedFrame {
     RenderRequest request;
     std::optional<CompensationTable> compensation;
+    std::optional<DesignWhite> design_white;  ///< of that correction
     std::vector<std::string> notes;  ///< what was assumed or repaired when loading the product
     std::string budget_note;         ///< how --budget-ms chose the quality
 };
 ResolvedFrame resolve_frame(const FrameArguments& arguments, const CommonOptions& common);
+
+/// What the correction is scaled to, where there is one: figures, and a line.
+void tell_design_white(const ResolvedFrame& frame, Outcome& outcome);
 
 /// passes[], skipped[] and ms_total.
 Json json_of(const FramePlan& plan);

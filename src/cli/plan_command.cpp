@@ -31,6 +31,7 @@ Command plan_command() {
         outcome.figures["predicted_ms_total"] = complete ? Json(total) : Json(nullptr);
         if (!note.empty()) outcome.figures["note"] = note;
         outcome.text = text_of(plan) + frame.budget_note + (note.empty() ? "" : note + "\n");
+        tell_design_white(frame, outcome);
         tell_notes(frame.notes, outcome);
         return outcome;
     };

@@ -113,6 +113,7 @@ Command render_command() {
                                    rendered.ms_total,
                                    rendered.renderer,
                                    arguments->out);
+        tell_design_white(frame, outcome);
         tell_notes(frame.notes, outcome);
         std::vector<std::string> warnings;
         if (covered == 0.0) warnings.push_back(nothing_seen(request.scene.product->mesh));

@@ -336,6 +336,22 @@ TEST(Program, GoesFromPatternsToProjectorInputThroughFiles) {
     EXPECT_NE(uncovered.err.find("warning: the target has no coverage"), std::string::npos)
         << uncovered.err;
 
+    for (const char* command : {"render", "plan"}) {
+        std::vector<std::string> words{
+            command, "--json", "--calibration", calibration, "--stage", "projector"};
+        words.insert(words.end(),
+                     {"--camera", (folder / "camera.json").string(), "--quality", "draft"});
+        if (command == std::string("render")) {
+            words.insert(words.end(), {"--out", (folder / "projector.png").string()});
+        }
+        const ProgramRun drawn = livery_run(words);
+        ASSERT_EQ(drawn.exit_code, 0) << drawn.err;
+        EXPECT_EQ(json_of(drawn)["design_white_mask"], "the mock-up") << command;
+        EXPECT_GT(json_of(drawn)["design_white_pixels"], 1000) << command;
+        EXPECT_GT(json_of(drawn)["design_white_y"], 0.0) << command;
+        EXPECT_NE(drawn.err.find("percentile of"), std::string::npos) << drawn.err;
+    }
+
     for (const char* gamut : {"strict", "preserve"}) {
         const ProgramRun corrected = livery_run({"compensate",
                                                  "--json",
