@@ -1,18 +1,16 @@
 #include "core/colour.h"
 
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include <gtest/gtest.h>
 
-#include "support/reference_data.h"
-
 namespace livery {
 namespace {
 
 TEST(Colour, Ciede2000MatchesSharmasPairs) {
-    LIVERY_NEEDS_REFERENCE_DATA(data);
-    std::ifstream file(data / "spectral/ciede2000_sharma34.csv");
+    std::ifstream file(std::filesystem::path(LIVERY_TEST_DATA) / "ciede2000-pairs.csv");
     std::string line;
     std::getline(file, line);
     int pairs = 0;

@@ -2,16 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "core/colour.h"
 #include "core/working_space_study.h"
-#include "support/reference_data.h"
 
 namespace livery {
 namespace {
+
+std::filesystem::path test_data(const char* file) {
+    return std::filesystem::path(LIVERY_TEST_DATA) / file;
+}
 
 TEST(Spectrum, InterpolatesLinearlyAndHoldsItsEnds) {
     const std::vector<double> nm = {400, 450, 700}, values = {1.0, 2.0, 7.0};
@@ -73,11 +77,10 @@ TEST(Spectrum, GreyIsAScaledWhiteAndLightAdds) {
 }
 
 TEST(Spectrum, TablesAreThePublishedOnes) {
-    LIVERY_NEEDS_REFERENCE_DATA(data);
-    const auto observer = data / "spectral/cie1931_2deg_cmf.csv";
+    const auto observer = test_data("cie1931-observer.csv");
     const auto x = read_spectrum_column(observer, "x"), y = read_spectrum_column(observer, "y"),
                z = read_spectrum_column(observer, "z"),
-               d65 = read_spectrum_column(data / "spectral/cie_illuminants.csv", "D65");
+               d65 = read_spectrum_column(test_data("cie-illuminants.csv"), "D65");
     for (std::size_t k = 0; k < x.size(); ++k) {
         EXPECT_NEAR(cie1931_x()[k], x[k], 1e-6);
         EXPECT_NEAR(cie1931_y()[k], y[k], 1e-6);
@@ -87,8 +90,7 @@ TEST(Spectrum, TablesAreThePublishedOnes) {
 }
 
 TEST(Spectrum, OtherIlluminantsHaveTheirWhitePoints) {
-    LIVERY_NEEDS_REFERENCE_DATA(data);
-    const auto file = data / "spectral/cie_illuminants.csv";
+    const auto file = test_data("cie-illuminants.csv");
     Spectrum white{};
     white.fill(1.0);
     // ASTM E308, 2 degrees, 1 nm; 5 nm tables differ from it by a few units of the fourth decimal.
@@ -101,7 +103,6 @@ TEST(Spectrum, OtherIlluminantsHaveTheirWhitePoints) {
 }
 
 TEST(Spectrum, ColorCheckerHasItsPublishedColours) {
-    LIVERY_NEEDS_REFERENCE_DATA(data);
     // The manufacturer's sRGB values, in the order of the chart. Charts differ from print to print
     // by one to three CIEDE2000, and cyan is clipped to sRGB.
     const struct {
@@ -131,7 +132,7 @@ TEST(Spectrum, ColorCheckerHasItsPublishedColours) {
                    {"neutral 5 (.70 D)", 122, 122, 121},
                    {"neutral 3.5 (1.05 D)", 85, 85, 85},
                    {"black 2 (1.5 D)", 52, 52, 52}};
-    const auto file = data / "spectral/colorchecker24_ohta1997.csv";
+    const auto file = test_data("colour-checker.csv");
     std::vector<double> differences;
     for (const auto& patch : patches) {
         const auto reflectance = read_spectrum_column(file, patch.name);
