@@ -29,6 +29,8 @@ void say(PictureError* error, std::string text) {
     while (!text.empty() && text.back() == '\n') text.pop_back();
     std::replace(text.begin(), text.end(), '\n', ' ');
     if (text.empty()) text = "a picture that cannot be read";
+    // Libraries pass on what C++ calls it.
+    if (text.find("bad_alloc") != std::string::npos) text = "a picture too large for the memory";
     text.copy(error->text, sizeof error->text - 1);
     error->text[std::min(text.size(), sizeof error->text - 1)] = '\0';
 }
