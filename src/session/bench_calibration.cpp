@@ -11,8 +11,8 @@ namespace livery {
 
 namespace {
 
-/// Of each of the six colour pictures: a second photograph takes a third of their noise away, and
-/// makes a calibration of some fifty photographs a tenth longer.
+/// Of each colour picture, mosaics included: a second photograph takes a third of their noise away,
+/// and makes a calibration of some fifty photographs a tenth longer.
 constexpr int kColourShots = 2;
 
 }  // namespace
