@@ -182,9 +182,9 @@ TEST_F(Looks, AreShownOnTheMockUpWhilePeopleVote) {
     EXPECT_TRUE(projector_shows(drive_of_place(3)));
     // Keys that would change a look rest.
     const auto undo = program->state("undo");
-    desktop->press_key("Delete");
-    desktop->press_key("b");  // design B, not black
-    desktop->press_key("a");
+    program->press_key("Delete");
+    program->press_key("b");  // design B, not black
+    program->press_key("a");
     program->click("ballot:name");
     desktop->type("Bo");
     desktop->press_key("Return");
