@@ -1,4 +1,4 @@
-// Measured reflectance on a grid (src/appearance/measured_grid.h), for GLSL alone: C++ has no
+// Measured reflectance on a grid (src/appearance/measured/measured_grid.h), for GLSL alone: C++ has no
 // textures. After half_difference.glsl. A layer is one theta_d, a row one theta_h, and columns go
 // round phi_d; texels are log2(XYZ + MEASURED_FLOOR). Read without the sampler's own filter,
 // which weighs with too few bits.

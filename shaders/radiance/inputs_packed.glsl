@@ -51,7 +51,7 @@ vec3 mirror_layer_here(int layer) {
 }
 
 // How many times as much of what is mirrored grazes as does of even light, for three lobes each
-// (src/radiance/mirror_quadrature.h).
+// (src/radiance/light/mirror_quadrature.h).
 vec3 grazing_here(int layer) {
     return mirror_layer_here(MIRROR_LOBES + layer);
 }

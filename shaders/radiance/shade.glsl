@@ -1,5 +1,5 @@
 // Shades one fragment, in the subset of GLSL and C++ (shaders/bsdf/prelude_glsl.glsl): the same lines
-// run in OpenGL and, eight fragments at a time, on the processor (src/radiance/lane_shading.inc).
+// run in OpenGL and, eight fragments at a time, on the processor (src/radiance/lanes/lane_shading.inc).
 // Comes after the model's reflectance functions, disc.glsl, these definitions
 //   LAMBERT, GGX, CLEARCOAT or  the part's model, with what does not depend on the fragment taken
 //   CAR_PAINT                   out of it; else ANY_MODEL, which is called as it is, with WEIGHTS,

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "appearance/measured_grid.h"
+#include "appearance/measured/measured_grid.h"
 #include "appearance/model_table.h"
 #include "core/colour.h"
 #include "core/paths.h"

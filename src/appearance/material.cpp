@@ -9,7 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "appearance/material_library.h"
-#include "appearance/measured_paint.h"
+#include "appearance/measured/measured_paint.h"
 #include "core/error.h"
 #include "core/paths.h"
 

@@ -4,7 +4,7 @@
 #include "appearance/bsdf.h"
 #include "appearance/material.h"
 #include "appearance/material_json.h"
-#include "appearance/measured_paint.h"
+#include "appearance/measured/measured_paint.h"
 #include "appearance/model_table.h"
 #include "core/error.h"
 #include "core/json.h"

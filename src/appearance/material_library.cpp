@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "appearance/measured_paint.h"
+#include "appearance/measured/measured_paint.h"
 #include "core/error.h"
 #include "core/paths.h"
 

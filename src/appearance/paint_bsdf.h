@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "appearance/bsdf.h"
-#include "appearance/measured_paint.h"
+#include "appearance/measured/measured_paint.h"
 
 namespace livery {
 

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "appearance/measured_paint.h"
+#include "appearance/measured/measured_paint.h"
 
 namespace livery {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "calibration/capture_evidence.h"
-#include "calibration/colour_report.h"
+#include "calibration/captures/capture_evidence.h"
+#include "calibration/colour/colour_report.h"
 #include "calibration/statistics.h"
 #include "core/error.h"
 

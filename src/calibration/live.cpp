@@ -4,11 +4,11 @@
 #include <optional>
 
 #include "calibration/bench_session.h"
-#include "calibration/captures.h"
-#include "calibration/colour.h"
-#include "calibration/colour_report.h"
-#include "calibration/colour_samples.h"
-#include "calibration/mixing.h"
+#include "calibration/captures/captures.h"
+#include "calibration/colour/colour.h"
+#include "calibration/colour/colour_report.h"
+#include "calibration/colour/colour_samples.h"
+#include "calibration/colour/mixing.h"
 #include "calibration/statistics.h"
 #include "core/error.h"
 

@@ -9,7 +9,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "calibration/colour_report.h"
+#include "calibration/colour/colour_report.h"
 #include "calibration/statistics.h"
 #include "core/error.h"
 #include "core/parallel.h"

@@ -8,10 +8,10 @@
 #include "core/error.h"
 #include "core/marked_block.h"
 #include "core/paths.h"
-#include "session/accuracy_bench.h"
-#include "session/bench_plot.h"
-#include "session/bench_table.h"
-#include "session/speed_bench.h"
+#include "ledger/accuracy.h"
+#include "ledger/speed.h"
+#include "ledger/speed_plot.h"
+#include "ledger/speed_table.h"
 
 namespace livery {
 

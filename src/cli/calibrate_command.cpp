@@ -6,7 +6,7 @@
 
 #include "cli/command.h"
 #include "core/error.h"
-#include "session/captured_calibration.h"
+#include "jobs/captured_calibration.h"
 
 namespace livery {
 

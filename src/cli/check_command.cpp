@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "cli/command.h"
-#include "session/file_check.h"
+#include "jobs/file_check.h"
 
 namespace livery {
 

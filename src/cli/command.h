@@ -12,7 +12,7 @@
 #include "core/json.h"
 #include "core/progress.h"
 #include "gl/context.h"
-#include "scene/length_unit.h"
+#include "mesh/length_unit.h"
 
 namespace livery {
 

@@ -9,8 +9,8 @@
 #include "compensation/compensation.h"
 #include "core/error.h"
 #include "core/image_io.h"
+#include "jobs/target_picture.h"
 #include "scene/mockup_mask.h"
-#include "session/target_picture.h"
 
 namespace livery {
 

@@ -3,8 +3,8 @@
 #include <memory>
 
 #include "cli/command.h"
-#include "session/demo.h"
-#include "session/report.h"
+#include "jobs/demo.h"
+#include "jobs/report.h"
 
 namespace livery {
 

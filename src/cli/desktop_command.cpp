@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "cli/command.h"
-#include "studio/app.h"
+#include "studio/window/app.h"
 
 namespace livery {
 

@@ -5,10 +5,10 @@
 
 #include <fmt/format.h>
 
-#include "appearance/fit_brdf.h"
-#include "appearance/fit_search.h"
+#include "appearance/fit/fit_brdf.h"
+#include "appearance/fit/fit_search.h"
 #include "appearance/material_json.h"
-#include "appearance/measured_reflectance.h"
+#include "appearance/measured/measured_reflectance.h"
 #include "appearance/model_table.h"
 #include "cli/command.h"
 

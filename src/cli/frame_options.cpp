@@ -7,9 +7,9 @@
 
 #include "core/error.h"
 #include "core/json_ranges.h"
+#include "ledger/predictions.h"
+#include "scene/library.h"
 #include "scene/mockup_mask.h"
-#include "session/library.h"
-#include "session/predictions.h"
 #include "twin/description.h"
 
 namespace livery {

@@ -7,8 +7,8 @@
 
 #include "cli/command.h"
 #include "cli/design_white.h"
+#include "jobs/render.h"
 #include "scene/frame_plan.h"
-#include "session/render.h"
 
 namespace livery {
 

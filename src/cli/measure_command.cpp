@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "cli/command.h"
-#include "session/sphere_measurement.h"
+#include "jobs/sphere_measurement.h"
 
 namespace livery {
 

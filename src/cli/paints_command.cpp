@@ -7,10 +7,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "appearance/fit/recolour.h"
 #include "appearance/material_library.h"
 #include "appearance/paint_colour.h"
 #include "appearance/paint_search.h"
-#include "appearance/recolour.h"
 #include "cli/command.h"
 #include "cli/paints_table.h"
 #include "core/error.h"

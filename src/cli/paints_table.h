@@ -9,7 +9,7 @@
 #include "appearance/paint_figures.h"
 #include "core/json.h"
 #include "core/progress.h"
-#include "session/paint_cost.h"
+#include "ledger/paint_cost.h"
 
 namespace livery {
 

@@ -6,8 +6,8 @@
 
 #include "appearance/material.h"
 #include "cli/command.h"
-#include "session/simulated_captures.h"
-#include "session/simulated_sphere.h"
+#include "jobs/simulated_captures.h"
+#include "jobs/simulated_sphere.h"
 
 namespace livery {
 

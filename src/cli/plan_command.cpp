@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "cli/frame_options.h"
-#include "session/predictions.h"
+#include "ledger/predictions.h"
 
 namespace livery {
 

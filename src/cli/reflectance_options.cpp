@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "appearance/measured_grid.h"
-#include "appearance/measured_paint.h"
+#include "appearance/measured/measured_grid.h"
+#include "appearance/measured/measured_paint.h"
 
 namespace livery {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "session/reflectance_values.h"
+#include "ledger/reflectance_values.h"
 
 namespace livery {
 

@@ -6,10 +6,10 @@
 
 #include "cli/command.h"
 #include "core/error.h"
-#include "session/library.h"
+#include "jobs/render.h"
+#include "live/projector_setup.h"
+#include "scene/library.h"
 #include "session/look_exchange.h"
-#include "session/projector_setup.h"
-#include "session/render.h"
 #include "session/session.h"
 #include "session/session_file.h"
 

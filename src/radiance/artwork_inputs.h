@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "radiance/artwork_footprint.h"
-#include "radiance/input_layers.h"
+#include "radiance/lanes/input_layers.h"
 #include "radiance/packed_fragments.h"
 #include "radiance/surface_map.h"
 #include "scene/artwork_cover.h"

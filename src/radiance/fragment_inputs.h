@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "radiance/environment_filter.h"
 #include "radiance/glints.h"
-#include "radiance/light_visibility.h"
-#include "radiance/mirrored_environment.h"
+#include "radiance/light/environment_filter.h"
+#include "radiance/light/light_visibility.h"
+#include "radiance/light/mirrored_environment.h"
+#include "radiance/light/sky_visibility.h"
 #include "radiance/packed_fragments.h"
 #include "radiance/shading.h"
-#include "radiance/sky_visibility.h"
 #include "scene/frame_plan.h"
 #include "scene/scene.h"
 

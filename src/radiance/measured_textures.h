@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "appearance/measured_paint.h"
+#include "appearance/measured/measured_paint.h"
 #include "gl/handles.h"
 
 namespace livery {

@@ -14,8 +14,8 @@
 #include "gl/draw.h"
 #include "gl/read_back.h"
 #include "radiance/artwork_textures.h"
-#include "radiance/environment_filter.h"
 #include "radiance/glints.h"
+#include "radiance/light/environment_filter.h"
 #include "radiance/shading.h"
 
 namespace livery {

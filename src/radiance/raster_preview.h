@@ -7,7 +7,7 @@
 
 #include "core/image.h"
 #include "core/progress.h"
-#include "radiance/vertex_light.h"
+#include "radiance/light/vertex_light.h"
 #include "scene/scene.h"
 #include "scene/view.h"
 

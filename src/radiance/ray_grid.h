@@ -8,7 +8,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "scene/mesh.h"
+#include "mesh/mesh.h"
 #include "scene/view.h"
 
 namespace livery {

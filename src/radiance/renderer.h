@@ -7,7 +7,7 @@
 
 #include "core/image.h"
 #include "core/progress.h"
-#include "radiance/input_layers.h"
+#include "radiance/lanes/input_layers.h"
 #include "radiance/surface_map.h"
 #include "scene/frame_plan.h"
 #include "scene/scene.h"

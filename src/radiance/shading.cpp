@@ -12,9 +12,9 @@
 
 #include "appearance/model_table.h"
 #include "core/paths.h"
-#include "radiance/environment_filter.h"
 #include "radiance/glints.h"
-#include "radiance/mirror_quadrature.h"
+#include "radiance/light/environment_filter.h"
+#include "radiance/light/mirror_quadrature.h"
 
 namespace livery {
 namespace {

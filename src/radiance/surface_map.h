@@ -9,7 +9,7 @@
 
 #include "core/image.h"
 #include "core/progress.h"
-#include "scene/mesh.h"
+#include "mesh/mesh.h"
 #include "scene/view.h"
 #include "tracing/tracer.h"
 

@@ -7,8 +7,8 @@
 #include <glm/geometric.hpp>
 
 #include "core/error.h"
+#include "mesh/beside.h"
 #include "scene/artwork_picture.h"
-#include "scene/beside.h"
 
 namespace livery {
 

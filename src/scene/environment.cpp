@@ -13,7 +13,7 @@
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/image_io.h"
-#include "scene/beside.h"
+#include "mesh/beside.h"
 #include "scene/look.h"
 
 namespace livery {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/image.h"
-#include "scene/mesh.h"
+#include "mesh/mesh.h"
 #include "scene/view.h"
 
 namespace livery {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/mesh.h"
+#include "mesh/mesh.h"
 #include "scene/view.h"
 
 namespace livery {

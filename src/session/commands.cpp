@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/error.h"
-#include "session/library.h"
+#include "scene/library.h"
 #include "session/naming.h"
 #include "session/paint_edit.h"
 #include "twin/description.h"

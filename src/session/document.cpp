@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 
 #include "appearance/material_library.h"
-#include "appearance/measured_paint.h"
+#include "appearance/measured/measured_paint.h"
 #include "core/error.h"
-#include "session/library.h"
+#include "scene/library.h"
 #include "session/naming.h"
 #include "twin/description.h"
 

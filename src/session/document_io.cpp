@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "appearance/material_json.h"
-#include "appearance/measured_paint.h"
+#include "appearance/measured/measured_paint.h"
 #include "core/error.h"
 #include "core/json_ranges.h"
 #include "scene/look_json.h"

@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
-#include "appearance/colour_record.h"
+#include "appearance/fit/colour_record.h"
 #include "appearance/material_library.h"
-#include "appearance/measured_paint.h"
+#include "appearance/measured/measured_paint.h"
 #include "appearance/parameter_table.h"
 #include "core/error.h"
 #include "session/naming.h"

@@ -16,11 +16,11 @@
 #include "core/error.h"
 #include "core/paths.h"
 #include "evaluation/tally.h"
+#include "studio/kit/theme.h"
+#include "studio/kit/widgets.h"
+#include "studio/kit/words.h"
 #include "studio/look_thumbnails.h"
 #include "studio/studio.h"
-#include "studio/theme.h"
-#include "studio/widgets.h"
-#include "studio/words.h"
 
 namespace livery {
 

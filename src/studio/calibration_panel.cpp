@@ -13,10 +13,10 @@
 #include "core/error.h"
 #include "core/paths.h"
 #include "studio/calibration_grade.h"
+#include "studio/kit/theme.h"
+#include "studio/kit/widgets.h"
+#include "studio/kit/words.h"
 #include "studio/studio.h"
-#include "studio/theme.h"
-#include "studio/widgets.h"
-#include "studio/words.h"
 
 namespace livery {
 

@@ -7,8 +7,8 @@
 #include "core/error.h"
 #include "scene/look.h"
 #include "session/look_exchange.h"
-#include "studio/shell.h"
-#include "studio/user_folders.h"
+#include "studio/kit/user_folders.h"
+#include "studio/window/shell.h"
 
 namespace livery {
 

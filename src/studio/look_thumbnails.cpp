@@ -8,11 +8,11 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "appearance/measured_paint.h"
+#include "appearance/measured/measured_paint.h"
 #include "gl/window.h"
-#include "session/orbit.h"
-#include "studio/theme.h"
-#include "studio/widgets.h"
+#include "live/orbit.h"
+#include "studio/kit/theme.h"
+#include "studio/kit/widgets.h"
 
 namespace livery {
 

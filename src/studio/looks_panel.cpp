@@ -3,8 +3,8 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "studio/kit/theme.h"
 #include "studio/studio.h"
-#include "studio/theme.h"
 
 namespace livery {
 

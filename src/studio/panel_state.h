@@ -14,21 +14,21 @@
 #include <utility>
 #include <vector>
 
+#include "appearance/fit/recolour.h"
 #include "appearance/lobe_curve.h"
 #include "appearance/material_library.h"
-#include "appearance/measured_grid.h"
-#include "appearance/measured_paint.h"
+#include "appearance/measured/measured_grid.h"
+#include "appearance/measured/measured_paint.h"
 #include "appearance/paint_colour.h"
 #include "appearance/paint_figures.h"
-#include "appearance/recolour.h"
 #include "core/image.h"
 #include "evaluation/ballots.h"
 #include "gl/handles.h"
+#include "ledger/predictions.h"
 #include "scene/frame_plan.h"
 #include "scene/look.h"
 #include "scene/product.h"
-#include "session/predictions.h"
-#include "studio/held.h"
+#include "studio/kit/held.h"
 
 namespace livery {
 

@@ -7,11 +7,11 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "studio/kit/theme.h"
+#include "studio/kit/widgets.h"
+#include "studio/kit/words.h"
 #include "studio/quality_costs.h"
 #include "studio/studio.h"
-#include "studio/theme.h"
-#include "studio/widgets.h"
-#include "studio/words.h"
 
 namespace livery {
 

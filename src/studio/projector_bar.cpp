@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "studio/actions.h"
+#include "studio/kit/theme.h"
+#include "studio/kit/widgets.h"
 #include "studio/projector_control.h"
-#include "studio/shell.h"
-#include "studio/theme.h"
-#include "studio/widgets.h"
+#include "studio/window/actions.h"
+#include "studio/window/shell.h"
 
 namespace livery {
 

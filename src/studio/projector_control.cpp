@@ -5,7 +5,7 @@
 #include "core/log.h"
 #include "gl/handles.h"
 #include "studio/results.h"
-#include "studio/shell.h"
+#include "studio/window/shell.h"
 
 namespace livery {
 

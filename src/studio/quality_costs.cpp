@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "studio/words.h"
+#include "studio/kit/words.h"
 
 namespace livery {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "ledger/predictions.h"
 #include "scene/frame_plan.h"
-#include "session/predictions.h"
 #include "studio/studio.h"
 
 namespace livery {

@@ -5,10 +5,10 @@
 #include <memory>
 #include <mutex>
 
+#include "live/frame_thread.h"
+#include "live/preview_thread.h"
 #include "projection/projector_screen.h"
-#include "session/frame_thread.h"
-#include "session/preview_thread.h"
-#include "studio/trace.h"
+#include "studio/window/trace.h"
 
 namespace livery {
 

@@ -12,11 +12,11 @@
 
 #include "core/image_io.h"
 #include "gl/read_back.h"
-#include "session/render.h"
+#include "jobs/render.h"
+#include "studio/kit/theme.h"
+#include "studio/kit/user_folders.h"
 #include "studio/look_files.h"
-#include "studio/shell.h"
-#include "studio/theme.h"
-#include "studio/user_folders.h"
+#include "studio/window/shell.h"
 
 namespace livery {
 

@@ -7,12 +7,12 @@
 #include <imgui.h>
 
 #include "gl/handles.h"
-#include "studio/artwork_edit.h"
-#include "studio/artwork_values.h"
-#include "studio/shell.h"
-#include "studio/theme.h"
-#include "studio/ui_map.h"
-#include "studio/widgets.h"
+#include "studio/artwork/artwork_edit.h"
+#include "studio/artwork/artwork_values.h"
+#include "studio/kit/theme.h"
+#include "studio/kit/ui_map.h"
+#include "studio/kit/widgets.h"
+#include "studio/window/shell.h"
 
 namespace livery {
 

@@ -6,9 +6,9 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
-#include "appearance/measured_paint.h"
+#include "appearance/measured/measured_paint.h"
 #include "core/log.h"
-#include "studio/theme.h"
+#include "studio/kit/theme.h"
 
 namespace livery {
 

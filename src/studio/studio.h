@@ -11,13 +11,13 @@
 
 #include "evaluation/ballots.h"
 #include "gl/window.h"
+#include "live/bench_thread.h"
+#include "live/frame_thread.h"
+#include "live/preview_thread.h"
 #include "projection/projector_screen.h"
-#include "session/bench_thread.h"
-#include "session/frame_thread.h"
-#include "session/preview_thread.h"
 #include "session/session.h"
-#include "studio/background.h"
-#include "studio/file_dialog.h"
+#include "studio/kit/background.h"
+#include "studio/kit/file_dialog.h"
 #include "studio/panel_state.h"
 
 namespace livery {

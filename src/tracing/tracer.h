@@ -11,7 +11,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
-#include "scene/mesh.h"
+#include "mesh/mesh.h"
 
 namespace livery {
 

@@ -10,7 +10,7 @@
 
 #include "core/image.h"
 #include "core/progress.h"
-#include "scene/mesh.h"
+#include "mesh/mesh.h"
 #include "tracing/tracer.h"
 #include "twin/description.h"
 

@@ -5,7 +5,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "scene/mesh.h"
+#include "mesh/mesh.h"
 #include "scene/view.h"
 #include "tracing/tracer.h"
 

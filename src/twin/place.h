@@ -3,7 +3,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "scene/mesh.h"
+#include "mesh/mesh.h"
 #include "tracing/tracer.h"
 
 namespace livery {

@@ -1,6 +1,6 @@
 // Fitting gives back parameters that are known, through noise, and is good enough on paints that
 // were measured.
-#include "appearance/fit_brdf.h"
+#include "appearance/fit/fit_brdf.h"
 
 #include <algorithm>
 #include <atomic>
@@ -11,8 +11,8 @@
 #include <gtest/gtest.h>
 
 #include "appearance/bsdf.h"
-#include "appearance/fit_search.h"
-#include "appearance/measured_reflectance.h"
+#include "appearance/fit/fit_search.h"
+#include "appearance/measured/measured_reflectance.h"
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/random.h"

@@ -11,8 +11,8 @@
 #include <gtest/gtest.h>
 
 #include "appearance/bsdf.h"
-#include "appearance/fit_brdf.h"
-#include "appearance/measured_reflectance.h"
+#include "appearance/fit/fit_brdf.h"
+#include "appearance/measured/measured_reflectance.h"
 #include "core/colour.h"
 #include "core/random.h"
 #include "support/merl_fits.h"

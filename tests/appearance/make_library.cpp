@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "appearance/bsdf.h"
-#include "appearance/fit_brdf.h"
+#include "appearance/fit/fit_brdf.h"
 #include "appearance/model_table.h"
 #include "appearance/paint_figures.h"
 #include "core/error.h"

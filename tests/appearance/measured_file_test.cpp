@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "appearance/measured_reflectance.h"
+#include "appearance/measured/measured_reflectance.h"
 #include "appearance/merl_bytes.h"
 #include "core/colour.h"
 #include "support/file_error.h"

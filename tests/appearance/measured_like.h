@@ -5,7 +5,7 @@
 #include <string>
 
 #include "appearance/bsdf.h"
-#include "appearance/measured_paint.h"
+#include "appearance/measured/measured_paint.h"
 #include "appearance/merl_bytes.h"
 #include "core/colour.h"
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "appearance/material.h"
-#include "appearance/measured_paint.h"
+#include "appearance/measured/measured_paint.h"
 #include "appearance/paint_bsdf.h"
 #include "appearance/parameter_table.h"
 #include "core/paths.h"

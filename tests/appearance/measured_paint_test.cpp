@@ -1,5 +1,5 @@
 // Measured reflectance as a paint: its samples, and what it does to light from all around.
-#include "appearance/measured_paint.h"
+#include "appearance/measured/measured_paint.h"
 
 #include <algorithm>
 #include <cmath>

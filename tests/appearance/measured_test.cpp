@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "appearance/bsdf.h"
-#include "appearance/half_difference.h"
-#include "appearance/measured_grid.h"
+#include "appearance/measured/half_difference.h"
+#include "appearance/measured/measured_grid.h"
 #include "appearance/merl_bytes.h"
 #include "appearance/models.h"
 #include "core/colour.h"

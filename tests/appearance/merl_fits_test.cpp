@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "appearance/measured_reflectance.h"
+#include "appearance/measured/measured_reflectance.h"
 #include "appearance/models.h"
 #include "core/colour.h"
 #include "support/reference_data.h"

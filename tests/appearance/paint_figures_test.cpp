@@ -10,7 +10,7 @@
 
 #include "appearance/bsdf.h"
 #include "appearance/gloss_optics.h"
-#include "appearance/measured_paint.h"
+#include "appearance/measured/measured_paint.h"
 #include "appearance/model_table.h"
 #include "core/spectrum.h"
 #include "core/ten_degree.h"

@@ -1,5 +1,5 @@
 // A paint's finish in another colour: reached where it can be, and said where it cannot.
-#include "appearance/recolour.h"
+#include "appearance/fit/recolour.h"
 
 #include <cmath>
 #include <limits>
@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "appearance/colour_record.h"
+#include "appearance/fit/colour_record.h"
 #include "appearance/material_library.h"
 #include "appearance/model_table.h"
 #include "appearance/paint_bsdf.h"

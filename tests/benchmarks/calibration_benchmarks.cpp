@@ -1,12 +1,12 @@
 // What a calibration computes, less the taking of photographs.
 #include "benchmarks/car.h"
-#include "calibration/colour.h"
-#include "calibration/colour_samples.h"
-#include "calibration/gray_code.h"
-#include "calibration/mixing.h"
-#include "calibration/patterns.h"
-#include "session/bench_calibration.h"
-#include "session/comparison.h"
+#include "calibration/colour/colour.h"
+#include "calibration/colour/colour_samples.h"
+#include "calibration/colour/mixing.h"
+#include "calibration/correspondence/gray_code.h"
+#include "calibration/correspondence/patterns.h"
+#include "jobs/bench_calibration.h"
+#include "jobs/comparison.h"
 #include "twin/bench.h"
 
 namespace livery::benchmarks {

@@ -3,7 +3,7 @@
 #include <map>
 
 #include "core/parallel.h"
-#include "session/library.h"
+#include "scene/library.h"
 #include "twin/description.h"
 
 namespace livery::benchmarks {

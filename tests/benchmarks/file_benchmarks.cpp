@@ -3,7 +3,7 @@
 #include "benchmarks/car.h"
 #include "core/json.h"
 #include "core/paths.h"
-#include "session/library.h"
+#include "scene/library.h"
 
 namespace livery::benchmarks {
 namespace {

@@ -6,7 +6,7 @@
 #include "compensation/compensation.h"
 #include "compensation/gpu_pass.h"
 #include "gl/context.h"
-#include "session/synthetic_calibration.h"
+#include "jobs/synthetic_calibration.h"
 
 namespace livery::benchmarks {
 namespace {

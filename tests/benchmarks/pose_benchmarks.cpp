@@ -1,9 +1,9 @@
 // What a pose and its light cost once.
 #include "benchmarks/car.h"
-#include "radiance/environment_filter.h"
-#include "radiance/light_visibility.h"
-#include "radiance/mirrored_environment.h"
-#include "radiance/sky_visibility.h"
+#include "radiance/light/environment_filter.h"
+#include "radiance/light/light_visibility.h"
+#include "radiance/light/mirrored_environment.h"
+#include "radiance/light/sky_visibility.h"
 #include "reference/path_tracer.h"
 
 namespace livery::benchmarks {

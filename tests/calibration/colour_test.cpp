@@ -1,4 +1,4 @@
-#include "calibration/colour.h"
+#include "calibration/colour/colour.h"
 
 #include <cmath>
 

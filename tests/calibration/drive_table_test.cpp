@@ -1,11 +1,11 @@
-#include "calibration/drive_table.h"
+#include "calibration/colour/drive_table.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "calibration/patterns.h"
+#include "calibration/correspondence/patterns.h"
 #include "calibration/support/messages.h"
 #include "core/error.h"
 #include "core/random.h"

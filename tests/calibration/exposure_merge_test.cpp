@@ -1,4 +1,4 @@
-#include "calibration/exposure_merge.h"
+#include "calibration/captures/exposure_merge.h"
 
 #include <algorithm>
 #include <cmath>

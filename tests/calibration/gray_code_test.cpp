@@ -1,4 +1,4 @@
-#include "calibration/gray_code.h"
+#include "calibration/correspondence/gray_code.h"
 
 #include <cmath>
 #include <limits>

@@ -5,7 +5,7 @@
 #include <glm/matrix.hpp>
 #include <gtest/gtest.h>
 
-#include "calibration/colour.h"
+#include "calibration/colour/colour.h"
 #include "calibration/support/messages.h"
 #include "calibration/support/synthetic_bench.h"
 #include "core/error.h"

@@ -1,12 +1,12 @@
-#include "calibration/mixing.h"
+#include "calibration/colour/mixing.h"
 
 #include <cmath>
 
 #include <glm/matrix.hpp>
 #include <gtest/gtest.h>
 
-#include "calibration/camera_xyz.h"
-#include "calibration/shrinkage.h"
+#include "calibration/colour/camera_xyz.h"
+#include "calibration/colour/shrinkage.h"
 #include "calibration/support/messages.h"
 #include "calibration/support/synthetic_bench.h"
 #include "core/error.h"

@@ -1,4 +1,4 @@
-#include "calibration/patterns.h"
+#include "calibration/correspondence/patterns.h"
 
 #include <algorithm>
 #include <set>

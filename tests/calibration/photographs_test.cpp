@@ -9,7 +9,7 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/structured_light.hpp>
 
-#include "calibration/gray_code.h"
+#include "calibration/correspondence/gray_code.h"
 #include "core/image_io.h"
 #include "support/reference_data.h"
 

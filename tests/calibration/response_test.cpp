@@ -1,4 +1,4 @@
-#include "calibration/response.h"
+#include "calibration/colour/response.h"
 
 #include <array>
 #include <cmath>

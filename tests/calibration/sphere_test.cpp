@@ -7,8 +7,8 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "calibration/sphere_outline.h"
-#include "calibration/sphere_reflectance.h"
+#include "calibration/sphere/sphere_outline.h"
+#include "calibration/sphere/sphere_reflectance.h"
 #include "core/random.h"
 #include "support/message_of.h"
 

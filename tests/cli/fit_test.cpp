@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "appearance/bsdf.h"
-#include "appearance/fit_brdf.h"
+#include "appearance/fit/fit_brdf.h"
 #include "appearance/material.h"
 #include "core/colour.h"
 #include "support/run_program.h"

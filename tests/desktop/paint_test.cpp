@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "appearance/fit/recolour.h"
 #include "appearance/paint_colour.h"
-#include "appearance/recolour.h"
 #include "desktop/prepared.h"
 #include "desktop/two_monitors.h"
 #include "session/commands.h"

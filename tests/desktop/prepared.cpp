@@ -12,10 +12,10 @@
 #include "core/hash.h"
 #include "core/image_io.h"
 #include "core/paths.h"
+#include "live/projector_setup.h"
 #include "scene/frame_plan.h"
 #include "session/commands.h"
 #include "session/look_exchange.h"
-#include "session/projector_setup.h"
 #include "session/session.h"
 #include "support/run_program.h"
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "desktop/two_monitors.h"
-#include "studio/window_place.h"
+#include "studio/window/window_place.h"
 #include "support/run_program.h"
 
 namespace livery {

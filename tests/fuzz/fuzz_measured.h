@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "appearance/half_difference.h"
-#include "appearance/measured_reflectance.h"
+#include "appearance/measured/half_difference.h"
+#include "appearance/measured/measured_reflectance.h"
 #include "fuzz/fuzz.h"
 
 namespace livery::fuzz {

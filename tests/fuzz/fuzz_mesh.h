@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "fuzz/fuzz.h"
-#include "scene/mesh.h"
+#include "mesh/mesh.h"
 
 namespace livery::fuzz {
 

@@ -1,4 +1,4 @@
-#include "appearance/measured_merl.h"
+#include "appearance/measured/measured_merl.h"
 #include "fuzz/fuzz.h"
 
 /// Every input is shorter than a table, so none may be taken for one.

@@ -1,5 +1,5 @@
 #include "fuzz/fuzz.h"
-#include "scene/obj_materials.h"
+#include "mesh/obj_materials.h"
 
 LIVERY_FUZZ(text) {
     livery::ObjColours colours;

@@ -1,4 +1,4 @@
 #include "fuzz/fuzz.h"
-#include "session/predictions.h"
+#include "ledger/predictions.h"
 
 LIVERY_FUZZ(text) { livery::parse_pass_costs(text, "bench.json"); }

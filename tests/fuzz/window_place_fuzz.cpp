@@ -1,5 +1,5 @@
 #include "fuzz/fuzz.h"
-#include "studio/window_place.h"
+#include "studio/window/window_place.h"
 
 LIVERY_FUZZ(text) {
     using namespace livery;

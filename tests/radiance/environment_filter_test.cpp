@@ -1,4 +1,4 @@
-#include "radiance/environment_filter.h"
+#include "radiance/light/environment_filter.h"
 
 #include <cmath>
 #include <numbers>
@@ -6,8 +6,8 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "radiance/sphere_lookup.h"
-#include "radiance/spherical_harmonics.h"
+#include "radiance/light/sphere_lookup.h"
+#include "radiance/light/spherical_harmonics.h"
 
 namespace livery {
 namespace {

@@ -1,4 +1,4 @@
-#include "radiance/lane_shading.h"
+#include "radiance/lanes/lane_shading.h"
 
 #include <array>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "radiance/mirror_quadrature.h"
+#include "radiance/light/mirror_quadrature.h"
 
 namespace livery {
 namespace {

@@ -16,7 +16,7 @@
 #include "gl/read_back.h"
 #include "radiance/accuracy.h"
 #include "radiance/direct_oracle.h"
-#include "radiance/mirror_quadrature.h"
+#include "radiance/light/mirror_quadrature.h"
 #include "radiance/renderer_fixture.h"
 #include "radiance/shading.h"
 

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/image_io.h"
-#include "scene/gltf_builder.h"
+#include "mesh/gltf_builder.h"
 #include "scene/scene.h"
 #include "support/file_error.h"
 #include "support/temporary_folder.h"

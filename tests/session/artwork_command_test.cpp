@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "core/image_io.h"
+#include "scene/library.h"
 #include "session/commands.h"
-#include "session/library.h"
 #include "session/look_exchange.h"
 #include "session/some_commands.h"
 #include "support/message_of.h"

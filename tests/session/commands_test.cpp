@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include "appearance/colour_record.h"
-#include "appearance/recolour.h"
+#include "appearance/fit/colour_record.h"
+#include "appearance/fit/recolour.h"
 #include "session/some_commands.h"
 #include "support/file_error.h"
 #include "support/message_of.h"

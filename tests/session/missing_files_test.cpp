@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/image_io.h"
-#include "session/library.h"
+#include "scene/library.h"
 #include "session/some_commands.h"
 #include "support/message_of.h"
 #include "support/temporary_folder.h"

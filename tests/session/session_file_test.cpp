@@ -9,9 +9,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "appearance/measured_paint.h"
+#include "appearance/measured/measured_paint.h"
 #include "core/database.h"
-#include "session/file_check.h"
+#include "jobs/file_check.h"
 #include "session/session.h"
 #include "session/some_commands.h"
 #include "support/bad_disk.h"

@@ -12,7 +12,7 @@
 
 #include "core/error.h"
 #include "core/json.h"
-#include "session/library.h"
+#include "scene/library.h"
 #include "session/session_file.h"
 #include "session/session_script.h"
 #include "support/file_error.h"

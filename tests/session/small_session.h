@@ -11,13 +11,13 @@
 
 #include <gtest/gtest.h>
 
-#include "calibration/colour.h"
+#include "calibration/colour/colour.h"
 #include "compensation/compensation.h"
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/random.h"
-#include "session/comparison.h"
-#include "session/library.h"
+#include "jobs/comparison.h"
+#include "scene/library.h"
 #include "twin/bench.h"
 
 namespace livery::testing {

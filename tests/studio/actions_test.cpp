@@ -1,11 +1,11 @@
-#include "studio/actions.h"
+#include "studio/window/actions.h"
 
 #include <set>
 
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
 
-#include "studio/shell.h"
+#include "studio/window/shell.h"
 
 namespace livery {
 namespace {

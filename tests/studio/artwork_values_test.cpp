@@ -1,5 +1,5 @@
 // Artwork in plain words: sides, turns, how new ones begin, the order of the list.
-#include "studio/artwork_values.h"
+#include "studio/artwork/artwork_values.h"
 
 #include <cmath>
 #include <set>
@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "session/library.h"
+#include "scene/library.h"
 
 namespace livery {
 namespace {

@@ -1,4 +1,4 @@
-#include "studio/input_queue.h"
+#include "studio/window/input_queue.h"
 
 #include <gtest/gtest.h>
 

@@ -12,16 +12,16 @@
 #include <imgui_internal.h>
 
 #include "core/paths.h"
-#include "session/library.h"
-#include "studio/file_dialog.h"
+#include "scene/library.h"
+#include "studio/kit/file_dialog.h"
+#include "studio/kit/tab_order.h"
+#include "studio/kit/theme.h"
+#include "studio/kit/ui_map.h"
+#include "studio/kit/user_settings.h"
 #include "studio/projector_control.h"
-#include "studio/shell.h"
-#include "studio/shell_state.h"
 #include "studio/studio.h"
-#include "studio/tab_order.h"
-#include "studio/theme.h"
-#include "studio/ui_map.h"
-#include "studio/user_settings.h"
+#include "studio/window/shell.h"
+#include "studio/window/shell_state.h"
 #include "support/temporary_folder.h"
 
 namespace livery {

@@ -1,5 +1,5 @@
 // Directions as angles, strengths as exposure values, and back.
-#include "studio/light_values.h"
+#include "studio/light/light_values.h"
 
 #include <cmath>
 #include <limits>

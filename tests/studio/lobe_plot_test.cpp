@@ -1,4 +1,4 @@
-#include "studio/lobe_plot.h"
+#include "studio/paint/lobe_plot.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "studio/paint_finder.h"
+#include "studio/paint/paint_finder.h"
 
 #include <gtest/gtest.h>
 

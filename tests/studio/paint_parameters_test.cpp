@@ -1,5 +1,5 @@
 // What the panel says of a paint's parameters, and colours as people type them.
-#include "studio/paint_parameters.h"
+#include "studio/paint/paint_parameters.h"
 
 #include <cmath>
 #include <string>

@@ -8,16 +8,16 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
-#include "appearance/colour_record.h"
-#include "appearance/recolour.h"
+#include "appearance/fit/colour_record.h"
+#include "appearance/fit/recolour.h"
 #include "core/error.h"
 #include "core/image_io.h"
 #include "core/paths.h"
-#include "session/library.h"
-#include "studio/artwork_edit.h"
+#include "scene/library.h"
+#include "studio/artwork/artwork_edit.h"
+#include "studio/kit/theme.h"
+#include "studio/kit/ui_map.h"
 #include "studio/studio.h"
-#include "studio/theme.h"
-#include "studio/ui_map.h"
 #include "support/temporary_folder.h"
 
 namespace livery {

@@ -1,5 +1,5 @@
 // A measured paint of the user's comes into the library without the window waiting for its file.
-#include "studio/users_library.h"
+#include "studio/paint/users_library.h"
 
 #include <condition_variable>
 #include <cstdlib>
@@ -10,7 +10,7 @@
 
 #include "appearance/merl_bytes.h"
 #include "session/document.h"
-#include "studio/background.h"
+#include "studio/kit/background.h"
 #include "support/temporary_folder.h"
 
 namespace livery {

@@ -6,11 +6,11 @@
 
 #include "core/error.h"
 #include "core/json.h"
-#include "studio/file_dialog.h"
+#include "studio/kit/file_dialog.h"
+#include "studio/kit/ui_map.h"
 #include "studio/look_files.h"
-#include "studio/trace.h"
-#include "studio/ui_map.h"
-#include "studio/window_place.h"
+#include "studio/window/trace.h"
+#include "studio/window/window_place.h"
 #include "support/temporary_folder.h"
 
 namespace livery {

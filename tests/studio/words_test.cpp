@@ -1,4 +1,4 @@
-#include "studio/words.h"
+#include "studio/kit/words.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "appearance/measured_reflectance.h"
+#include "appearance/measured/measured_reflectance.h"
 #include "core/colour.h"
 #include "support/merl_fits.h"
 

@@ -9,7 +9,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "appearance/measured_samples.h"
+#include "appearance/measured/measured_samples.h"
 
 namespace livery {
 

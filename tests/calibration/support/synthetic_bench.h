@@ -14,8 +14,8 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "calibration/gray_code.h"
-#include "calibration/patterns.h"
+#include "calibration/correspondence/gray_code.h"
+#include "calibration/correspondence/patterns.h"
 #include "core/bench_ports.h"
 #include "core/random.h"
 

@@ -1,0 +1,194 @@
+#include "appearance/fit/fit_starts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+#include "appearance/bsdf.h"
+#include "appearance/fit/fit_search.h"
+#include "appearance/parameter_table.h"
+
+namespace livery {
+namespace {
+
+constexpr std::array kStartAlphas{0.02, 0.06, 0.15, 0.35};
+constexpr std::array kStartCoatAlphas{0.01, 0.05, 0.2};
+/// A lobe in the place of two: reflectances and slope parameters of a narrow and a wide one.
+struct LobeSplit {
+    double f0, alpha, flake_f0, flake_alpha;
+};
+constexpr std::array kLobeSplits{
+    LobeSplit{0.5, 0.6, 1.0, 1.7}, LobeSplit{0.3, 0.4, 1.0, 1.2}, LobeSplit{0.8, 0.9, 1.0, 3.0}};
+// Of the searches of simpler forms.
+constexpr int kOneLobeSteps = 6, kTwoLobeSteps = 30;
+
+/// What the samples say at first sight.
+struct FirstSight {
+    glm::dvec3 diffuse{0.0};  ///< albedo, from the darker quarter
+    glm::dvec3 peak{0.0};     ///< reflectance with light and eye around the normal's mirror
+};
+
+FirstSight first_sight(const FitSamples& samples) {
+    FirstSight sight;
+    std::vector<std::size_t> by_half(samples.pairs.size());
+    for (std::size_t i = 0; i < by_half.size(); ++i) by_half[i] = i;
+    const auto height = [&](std::size_t i) {
+        const DirectionPair& pair = samples.pairs[i];
+        return glm::normalize(pair.wi + pair.wo).z;
+    };
+    const std::size_t near = std::max<std::size_t>(1, by_half.size() / 100);
+    std::partial_sort(by_half.begin(),
+                      by_half.begin() + static_cast<std::ptrdiff_t>(near),
+                      by_half.end(),
+                      [&](std::size_t a, std::size_t b) { return height(a) > height(b); });
+    for (int c = 0; c < 3; ++c) {
+        std::vector<double> values, peaks;
+        for (const glm::dvec3& value : samples.values_working) values.push_back(value[c]);
+        for (std::size_t k = 0; k < near; ++k) {
+            peaks.push_back(samples.values_working[by_half[k]][c]);
+        }
+        const auto quantile = [](std::vector<double>& of, double fraction) {
+            const auto at = of.begin() + static_cast<std::ptrdiff_t>(
+                                             fraction * static_cast<double>(of.size() - 1));
+            std::nth_element(of.begin(), at, of.end());
+            return *at;
+        };
+        sight.diffuse[c] = std::clamp(std::numbers::pi * quantile(values, 0.25), 1e-3, 0.95);
+        sight.peak[c] = std::max(quantile(peaks, 0.5) - sight.diffuse[c] / std::numbers::pi, 1e-3);
+    }
+    return sight;
+}
+
+/// Sets a parameter by its name, where the model has it.
+void start_with(const ModelInfo& model,
+                f64::BsdfParameters& p,
+                const char* name,
+                const glm::dvec3& value) {
+    if (!model.has(name)) return;
+    const ParameterInfo& info = parameter_info(name);
+    const auto numbers = info.in_f64(p);
+    for (int k = 0; k < info.count(); ++k) {
+        *numbers[static_cast<std::size_t>(k)] = std::clamp(value[k], info.low, info.high);
+    }
+}
+
+f64::BsdfParameters with_two_lobes(const ModelInfo& model,
+                                   const f64::BsdfParameters& one,
+                                   const LobeSplit& split) {
+    f64::BsdfParameters p = one;
+    start_with(model, p, "f0", split.f0 * one.f0);
+    start_with(model, p, "alpha", glm::dvec3(split.alpha * one.alpha_x));
+    start_with(model, p, "flake_f0", split.flake_f0 * one.f0);
+    start_with(model, p, "flake_alpha", glm::dvec3(split.flake_alpha * one.alpha_x));
+    return p;
+}
+
+std::vector<f64::BsdfParameters> starts_by_width(const ModelInfo& model, const FirstSight& sight) {
+    std::vector<f64::BsdfParameters> starts;
+    f64::BsdfParameters p = parameters_of_f64(Material{});
+    start_with(model, p, "diffuse", sight.diffuse);
+    for (const double alpha : kStartAlphas) {
+        // D V at its peak is 1 / (4 pi alpha^2).
+        const glm::dvec3 f0 = 4.0 * std::numbers::pi * alpha * alpha * sight.peak;
+        start_with(model, p, "f0", f0);
+        start_with(model, p, "specular", f0);
+        start_with(model, p, "alpha", glm::dvec3(alpha));
+        start_with(model, p, "exponent", glm::dvec3(2.0 / (alpha * alpha) - 2.0));
+        for (const double coat_alpha : kStartCoatAlphas) {
+            start_with(model, p, "coat_alpha", glm::dvec3(coat_alpha));
+            if (!model.has("flake_alpha")) {
+                starts.push_back(p);
+            } else {
+                for (const LobeSplit& split : kLobeSplits)
+                    starts.push_back(with_two_lobes(model, p, split));
+            }
+            if (!model.has("coat_alpha")) break;
+        }
+        if (!model.mirrors()) break;
+    }
+    return starts;
+}
+
+/// A simpler model's parameters where this one has them too.
+f64::BsdfParameters start_from(const ModelInfo& model,
+                               const BrdfFit& simpler,
+                               f64::BsdfParameters p) {
+    f64::BsdfParameters known = parameters_of_f64(simpler.material);
+    const ModelInfo& its_model = model_info(simpler.material.model);
+    for (const char* name : its_model.parameters) {
+        if (!model.has(name)) continue;
+        const ParameterInfo& info = parameter_info(name);
+        const auto from = info.in_f64(known), to = info.in_f64(p);
+        for (int k = 0; k < info.count(); ++k) {
+            *to[static_cast<std::size_t>(k)] = *from[static_cast<std::size_t>(k)];
+        }
+    }
+    return p;
+}
+
+/// For a coat over two lobes: from one lobe without a coat to two without, to two under coats of
+/// several widths. The larger model alone may end in a worse valley than the smaller.
+std::vector<f64::BsdfParameters> starts_by_lobes(const ModelInfo& model,
+                                                 const FitSamples& samples,
+                                                 const FirstSight& sight,
+                                                 std::size_t stride,
+                                                 const Progress& progress) {
+    const ModelInfo& one_lobe = model_info(ReflectanceModel::ggx);
+    const auto nearest = [](std::span<const Found> found) {
+        return *std::min_element(found.begin(), found.end(), [](const Found& a, const Found& b) {
+            return a.rms < b.rms;
+        });
+    };
+    std::vector<Found> found;
+    for (const f64::BsdfParameters& start : starts_by_width(one_lobe, sight)) {
+        found.push_back(search_from(
+            one_lobe, samples, start, {Metric::logarithm, stride, kOneLobeSteps}, progress));
+    }
+    f64::BsdfParameters p = nearest(found).parameters;
+    found.clear();
+    for (const LobeSplit& split : kLobeSplits) {
+        f64::BsdfParameters start = with_two_lobes(model, p, split);
+        start.coat_f0 = 0.0;
+        found.push_back(
+            search_from(model,
+                        samples,
+                        start,
+                        {Metric::logarithm, stride, kTwoLobeSteps, {"coat_f0", "coat_alpha"}},
+                        progress));
+    }
+    p = nearest(found).parameters;
+    std::vector<f64::BsdfParameters> starts;
+    p.coat_f0 = 0.04;
+    for (const double coat_alpha : kStartCoatAlphas) {
+        p.coat_alpha = coat_alpha;
+        starts.push_back(p);
+    }
+    return starts;
+}
+
+}  // namespace
+
+std::vector<f64::BsdfParameters> fit_starts(const ModelInfo& model,
+                                            const FitSamples& samples,
+                                            std::span<const BrdfFit> simpler,
+                                            std::size_t stride,
+                                            const Progress& progress) {
+    const FirstSight sight = first_sight(samples);
+    std::vector<f64::BsdfParameters> starts = starts_by_width(model, sight);
+    for (const BrdfFit& fit : simpler) {
+        if (fit.material.model != model.model) {
+            starts.push_back(start_from(model, fit, starts.front()));
+        }
+    }
+    if (model.has("flake_alpha")) {
+        for (const auto& start : starts_by_lobes(model, samples, sight, stride, progress)) {
+            starts.push_back(start);
+        }
+    }
+    return starts;
+}
+
+}  // namespace livery

@@ -1,0 +1,22 @@
+// Where searches for a model's parameters start.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "appearance/fit/fit_brdf.h"
+#include "appearance/model_table.h"
+
+namespace livery {
+
+/// From several widths of the lobes, and from `simpler` fits of the same samples. Two lobes also
+/// start from what one lobe finds and two without a coat, on every `stride`th sample. Throws
+/// Cancelled.
+std::vector<f64::BsdfParameters> fit_starts(const ModelInfo& model,
+                                            const FitSamples& samples,
+                                            std::span<const BrdfFit> simpler,
+                                            std::size_t stride,
+                                            const Progress& progress);
+
+}  // namespace livery

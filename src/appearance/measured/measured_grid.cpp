@@ -1,0 +1,186 @@
+#include "appearance/measured/measured_grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <glm/exponential.hpp>
+#include <glm/mat3x3.hpp>
+
+#include "appearance/measured/half_difference.h"
+#include "core/colour.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "core/paths.h"
+#include "core/random.h"
+
+namespace livery {
+
+namespace {
+
+constexpr int kRelativePairs = 20'000;
+
+double quantile(std::vector<double>& values, double fraction) {
+    if (values.empty()) return 0.0;
+    const auto at = values.begin() +
+                    static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+}
+
+glm::dvec3 lab_under_light(const glm::dvec3& reflectance, double cosine) {
+    const glm::dvec3 seen =
+        glm::clamp(reflectance * (std::numbers::pi * cosine), glm::dvec3(0.0), glm::dvec3(1.0));
+    return lab_from_xyz(xyz_from_working() * seen, d65_xyz());
+}
+
+glm::vec3 texel_at(const MeasuredGrid& grid, int theta_d, int theta_h, int phi_d) {
+    const int index = (theta_d * grid.size.theta_h + theta_h) * grid.size.phi_d + phi_d;
+    const float* texel = grid.texels.data() + 4 * static_cast<std::size_t>(index);
+    return {texel[0], texel[1], texel[2]};
+}
+
+}  // namespace
+
+MeasuredGrid resampled(const MeasuredReflectance& measured,
+                       MeasuredGridSize size,
+                       const Progress& progress) {
+    check_argument(size.theta_h >= 2 && size.theta_d >= 2 && size.phi_d >= 1,
+                   "resampled: a grid of 2 x 2 x 1 nodes or more");
+    MeasuredGrid grid;
+    grid.size = size;
+    const auto rows = static_cast<std::size_t>(size.theta_h);
+    const auto columns = static_cast<std::size_t>(size.phi_d);
+    grid.texels.resize(4 * rows * columns * static_cast<std::size_t>(size.theta_d));
+    for (int layer = 0; layer < size.theta_d; ++layer) {
+        progress.update(static_cast<double>(layer) / size.theta_d, "resampling");
+        const double theta_d = 0.5 * std::numbers::pi * layer / (size.theta_d - 1);
+        parallel_for(rows, 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t row = begin; row < end; ++row) {
+                const double root = static_cast<double>(row) / (size.theta_h - 1);
+                const double theta_h = 0.5 * std::numbers::pi * root * root;
+                for (std::size_t column = 0; column < columns; ++column) {
+                    const double phi_d =
+                        std::numbers::pi * static_cast<double>(column) / size.phi_d;
+                    const glm::dvec3 value = evaluate_at(measured, {theta_h, theta_d, phi_d});
+                    const glm::dvec3 xyz = glm::max(xyz_from_working() * value, glm::dvec3(0.0));
+                    const std::size_t at =
+                        4 * ((static_cast<std::size_t>(layer) * rows + row) * columns + column);
+                    for (glm::length_t c = 0; c < 3; ++c) {
+                        grid.texels[at + static_cast<std::size_t>(c)] = static_cast<float>(
+                            std::log2(xyz[c] + static_cast<double>(kMeasuredGridFloor)));
+                    }
+                }
+            }
+        });
+    }
+    return grid;
+}
+
+glm::vec3 evaluate(const MeasuredGrid& grid, glm::vec3 wi, glm::vec3 wo) {
+    if (!(wi.z > 0.0f && wo.z > 0.0f)) return glm::vec3(0.0f);
+    const MeasuredGridSize& size = grid.size;
+    const glm::vec3 at = f32::half_difference_nodes(
+        f32::half_difference(wi, wo), glm::vec3(size.theta_h, size.theta_d, size.phi_d));
+    const int column = std::min(static_cast<int>(at.z), size.phi_d - 1);
+    const int next = column + 1 == size.phi_d ? 0 : column + 1;
+    const int row = std::min(static_cast<int>(at.x), size.theta_h - 2);
+    const int layer = std::min(static_cast<int>(at.y), size.theta_d - 2);
+    const auto in_row = [&](int l, int r) {
+        return glm::mix(texel_at(grid, l, r, column),
+                        texel_at(grid, l, r, next),
+                        at.z - static_cast<float>(column));
+    };
+    const auto in_layer = [&](int l) {
+        return glm::mix(in_row(l, row), in_row(l, row + 1), at.x - static_cast<float>(row));
+    };
+    const glm::vec3 logarithm =
+        glm::mix(in_layer(layer), in_layer(layer + 1), at.y - static_cast<float>(layer));
+    return glm::mat3(working_from_xyz()) * (glm::exp2(logarithm) - glm::vec3(kMeasuredGridFloor));
+}
+
+std::string measured_glsl() {
+    const auto source = [](const char* name) {
+        return read_text_file(shipped_path(std::filesystem::path("shaders/bsdf") / name)) + "\n";
+    };
+    const glm::mat3 m(working_from_xyz());
+    std::string columns;
+    for (glm::length_t c = 0; c < 3; ++c) {
+        columns += fmt::format("{}{:.9e}, {:.9e}, {:.9e}", c ? ", " : "", m[c].x, m[c].y, m[c].z);
+    }
+    return source("prelude_glsl.glsl") + source("half_difference.glsl") +
+           fmt::format("#define MEASURED_FLOOR {:.9e}\n#define WORKING_FROM_XYZ mat3({})\n",
+                       kMeasuredGridFloor,
+                       columns) +
+           source("measured.glsl");
+}
+
+std::vector<DirectionPair> lit_sphere_pairs(int pixels_across) {
+    std::vector<DirectionPair> pairs;
+    for (const double light_deg : {10.0, 35.0, 60.0, 90.0}) {
+        const double angle = light_deg * std::numbers::pi / 180.0;
+        const glm::dvec3 light(std::sin(angle), 0.0, std::cos(angle));
+        for (int row = 0; row < pixels_across; ++row) {
+            for (int column = 0; column < pixels_across; ++column) {
+                const double x = 2.0 * (column + 0.5) / pixels_across - 1.0;
+                const double y = 2.0 * (row + 0.5) / pixels_across - 1.0;
+                const double z2 = 1.0 - x * x - y * y;
+                if (z2 <= 0.0) continue;
+                // The eye looks along -z; each pixel's own frame has its normal for z.
+                const glm::dvec3 n(x, y, std::sqrt(z2));
+                const glm::dvec3 t = glm::normalize(glm::dvec3(n.z, 0.0, -n.x));
+                const glm::dvec3 b = glm::cross(n, t);
+                const auto local = [&](const glm::dvec3& w) {
+                    return glm::dvec3(glm::dot(w, t), glm::dot(w, b), glm::dot(w, n));
+                };
+                const DirectionPair pair{local(light), local({0.0, 0.0, 1.0})};
+                if (pair.wi.z > 0.0) pairs.push_back(pair);
+            }
+        }
+    }
+    return pairs;
+}
+
+ReflectanceDifference difference_of(const ReflectanceFunction& value,
+                                    const ReflectanceFunction& truth) {
+    ReflectanceDifference difference;
+    std::vector<double> relative;
+    Random random(1);
+    constexpr double kLowest = 0.17;
+    const auto luminance = [](const glm::dvec3& v) { return (xyz_from_working() * v).y; };
+    for (int k = 0; k < kRelativePairs; ++k) {
+        const auto direction = [&] {
+            return direction_from_angles(std::acos(1.0 - (1.0 - kLowest) * random.uniform()),
+                                         2.0 * std::numbers::pi * random.uniform());
+        };
+        const glm::dvec3 wi = direction();
+        const glm::dvec3 wo = direction();
+        const double expected = luminance(truth(wi, wo));
+        if (expected <= 0.0) continue;
+        relative.push_back(std::abs(luminance(value(wi, wo)) - expected) / expected);
+    }
+    difference.relative_median = quantile(relative, 0.5);
+    difference.relative_p95 = quantile(relative, 0.95);
+    std::vector<double> colours;
+    double sum = 0.0;
+    for (const DirectionPair& pair : lit_sphere_pairs()) {
+        colours.push_back(ciede2000(lab_under_light(value(pair.wi, pair.wo), pair.wi.z),
+                                    lab_under_light(truth(pair.wi, pair.wo), pair.wi.z)));
+        sum += colours.back();
+    }
+    difference.de00_mean = sum / static_cast<double>(colours.size());
+    difference.de00_p95 = quantile(colours, 0.95);
+    return difference;
+}
+
+ReflectanceDifference resampling_error(const MeasuredGrid& grid,
+                                       const MeasuredReflectance& measured) {
+    return difference_of(
+        [&](const glm::dvec3& wi, const glm::dvec3& wo) {
+            return glm::dvec3(evaluate(grid, glm::vec3(wi), glm::vec3(wo)));
+        },
+        [&](const glm::dvec3& wi, const glm::dvec3& wo) { return evaluate(measured, wi, wo); });
+}
+
+}  // namespace livery

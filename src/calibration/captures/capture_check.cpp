@@ -1,0 +1,244 @@
+#include "calibration/captures/capture_check.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include "calibration/captures/capture_evidence.h"
+#include "calibration/colour/colour_report.h"
+#include "calibration/statistics.h"
+#include "core/error.h"
+
+namespace livery {
+namespace {
+
+using Warnings = std::vector<std::string>;
+/// Largest share of the lit blocks at the camera's limit that is still worth a calibration.
+constexpr double kMostSaturated = 0.05;
+
+void refuse_saturated(const Evidence& e) {
+    std::string names;
+    double worst = 0.0;
+    for (const CaptureSummary* c : {e.white, e.bright}) {
+        if (!c) continue;
+        double over = 0.0;
+        for (std::size_t i = 0; i < e.lit.size(); ++i) over += e.lit[i] && c->saturated[i];
+        over /= std::max(1.0, e.lit_count);
+        if (over <= kMostSaturated) continue;
+        names += (names.empty() ? "" : " and ") + c->name;
+        worst = std::max(worst, over);
+    }
+    if (!names.empty())
+        throw Refused(names + ": over-exposed, " + percent(worst) +
+                          " of what is lit is at the camera's limit (saturated)",
+                      "shorten the exposure until white on the mock-up stays under 85% of full "
+                      "scale, and repeat all photographs");
+    for (const CaptureSummary* c : {e.white, e.bright})
+        // A renderer may light an even wall evenly: one value everywhere is no limit.
+        if (c && c->plateau > 0.0 && c->plateau < 0.98 * c->saturates_at &&
+            c->plateau_share < 0.9 * e.lit_count / static_cast<double>(e.lit.size()))
+            throw Refused(c->name + ": over-exposed, " + percent(c->plateau_share) +
+                              " of its pixels stop exactly at " +
+                              std::to_string(std::lround(c->plateau)) +
+                              ", where the camera seems to be saturated",
+                          "shorten the exposure until white on the mock-up stays under 85% of full "
+                          "scale, and give that value as saturates_at in manifest.json");
+}
+
+/// Where full scale is known: white's peak in the better of the two photographs that show it.
+void check_too_dim(const Evidence& e, Warnings& warnings) {
+    // At a twentieth, a paint of 2% is 8 to 16 of a RAW file's levels over black, as much as the
+    // noise; the live calibration does with a fifth.
+    constexpr double kRefused = 0.05, kWarned = 0.2;
+    const CaptureSummary* best = nullptr;
+    double peak = 0.0;
+    for (const CaptureSummary* c : {e.white, e.bright}) {
+        if (!c || !std::isfinite(c->full_light)) continue;
+        std::vector<float> light;
+        for (std::size_t i = 0; i < e.lit.size(); ++i)
+            if (e.lit[i]) light.push_back(c->light.values[i]);
+        const double here = static_cast<double>(quantile(std::move(light), 0.99)) / c->full_light;
+        if (best && here <= peak) continue;
+        best = c;
+        peak = here;
+    }
+    if (!best || peak >= kWarned) return;
+    const std::string what = best->name + ": under-exposed, white on the mock-up reaches only " +
+                             percent(peak) + " of full scale: too dark to tell dark paints apart";
+    const std::string fix =
+        "expose longer, so that white on the mock-up reaches about 80% of full scale, and repeat "
+        "all photographs";
+    if (peak < kRefused) throw Refused(what, fix);
+    warnings.push_back(what + "; " + fix);
+}
+
+/// RAW and linear files carry a pedestal, which looks like room light where nobody takes it off.
+void check_black_level(const Evidence& e, Warnings& warnings) {
+    constexpr double kPedestal = 0.003;  // of white: less is no worse than a good projector's leak
+    if (!e.black || e.black->has_black_level || e.black->saturates_at <= 255.0) return;
+    const double darkest = static_cast<double>(quantile(e.black->light.values, 0.01)) / e.peak;
+    if (darkest > kPedestal)
+        warnings.push_back("the darkest place in " + e.black->name + " still has " +
+                           percent(darkest) +
+                           " of white, and manifest.json states no black_level: without light most "
+                           "cameras' RAW and linear files do not read 0; state black_level, else "
+                           "it counts as room light");
+}
+
+void refuse_late(const Evidence& e) {
+    if (!e.white || !e.black || e.black->mean <= 1.5 * e.white->mean) return;
+    throw Refused(e.black->name + " is brighter than " + e.white->name +
+                      ": the photographs show the picture before theirs, or the two are swapped",
+                  "photograph each picture only after it has arrived, and check which file has "
+                  "which role in manifest.json");
+}
+
+/// A fixed exposure cannot make white darker than black anywhere, nor red as bright as white.
+void refuse_automatic_exposure(const Evidence& e) {
+    if (!e.white || !e.black) return;
+    double darker = 0.0, brighter = 0.0;
+    for (std::size_t i = 0; i < e.white->light.values.size(); ++i) {
+        const float w = e.white->light.values[i], k = e.black->light.values[i];
+        darker += w < 0.9f * k && k > 0.05f * static_cast<float>(e.black->mean);
+        brighter += w > 1.1f * k;
+    }
+    const auto count = static_cast<double>(e.white->light.values.size());
+    const bool impossible = darker > 0.03 * count && brighter > 0.03 * count;
+    const bool alike = e.black->mean > 0.5 * e.white->mean;
+    bool colours_alike = e.bright != nullptr;
+    for (const CaptureSummary* c : {e.red, e.green, e.blue})
+        colours_alike = colours_alike && c && c->mean > 0.7 * e.bright->mean;
+    if (impossible && alike)
+        throw Refused("automatic exposure: " + e.black->name + " is as bright as " + e.white->name +
+                          (colours_alike ? ", and so is every other photograph" : "") +
+                          ", though what the projector does not light is darker in white",
+                      kManualExposure);
+}
+
+/// Where each photograph stands against white, in camera pixels; a pair of stripes by its sum.
+struct Placed {
+    std::string name;
+    glm::vec2 at_px;
+};
+
+void check_moved(const Evidence& e, Warnings& warnings) {
+    constexpr float kWarned_px = 0.3f, kRefused_px = 1.3f;
+    if (!e.white) return;
+    Image8 mask(e.white->light.width, e.white->light.height, 1);
+    for (std::size_t i = 0; i < mask.values.size(); ++i) mask.values[i] = e.lit[i] ? 255 : 0;
+    std::vector<Placed> placed;
+    for (const CaptureSummary& c : *e.all) {
+        ImageF light;
+        if (const StripePair* pair = e.pair_that_begins_with(c)) {
+            light = pair->first->light;
+            for (std::size_t i = 0; i < light.values.size(); ++i)
+                light.values[i] += pair->second->light.values[i];
+        } else if (&c == e.white) {
+            placed.push_back({c.name, glm::vec2(0.0f)});
+            continue;
+        } else if (&c == e.bright || &c == e.red || &c == e.green || &c == e.blue ||
+                   (c.role == "white" && &c != e.white)) {
+            light = c.light;
+        } else {
+            continue;
+        }
+        const glm::vec2 d = displacement(e.white->light, light, mask);
+        if (std::isfinite(d.x + d.y))
+            placed.push_back({c.name, d * static_cast<float>(e.block_px)});
+    }
+    for (std::size_t k = 1; k < placed.size(); ++k) {
+        const glm::vec2 moved = placed[k].at_px - placed.front().at_px;
+        if (glm::length(moved) < kWarned_px) continue;
+        // One photograph alone is misread more often than moved there and back.
+        const bool stays = k + 1 == placed.size() ||
+                           glm::length(placed[k + 1].at_px - placed.front().at_px) >= kWarned_px;
+        if (!stays) continue;
+        float farthest = 0.0f;
+        for (const Placed& p : placed)
+            farthest = std::max(farthest, glm::length(p.at_px - placed.front().at_px));
+        const std::string what = "camera, projector or mock-up moved: from " + placed[k].name +
+                                 " on, what is seen lies " + std::to_string(farthest).substr(0, 4) +
+                                 " camera pixels beside where " + placed.front().name + " has it";
+        const std::string fix =
+            "fix all three firmly, release the camera by cable or timer, and "
+            "repeat";
+        if (farthest >= kRefused_px) throw Refused(what, fix);
+        warnings.push_back(what + "; " + fix);
+        return;
+    }
+}
+
+/// The photographs of one role say the same.
+void check_repeats(const Evidence& e) {
+    for (std::size_t k = 1; k < e.all->size(); ++k) {
+        const CaptureSummary& again = (*e.all)[k];
+        const auto first = std::find_if(
+            e.all->begin(), e.all->end(), [&](const auto& c) { return c.role == again.role; });
+        if (&*first == &again || !e.black || again.role == "black" || again.role == "dark-gray")
+            continue;
+        const Region region = region_of(ratio_to(first->light, e.lit, [&](std::size_t i) {
+            return first->saturated[i] || again.saturated[i]
+                       ? std::numeric_limits<float>::quiet_NaN()
+                       : again.light.values[i];
+        }));
+        if (region.found()) refuse_region(again.name, region);
+        if (std::abs(region.typical - 1.0) > 0.02 && !again.role.starts_with("white"))
+            throw Refused(again.name + " is " + times_of(region.typical) + " than " + first->name +
+                              ", which shows the same picture",
+                          kSteady);
+    }
+}
+
+/// Each block's light over black as it was in the middle of the session.
+std::vector<CaptureSummary> without_drift(const Evidence& e, const LampDrift& drift) {
+    std::vector<CaptureSummary> steady = *e.all;
+    if (drift.slope == 0.0 || !e.black) return steady;
+    for (CaptureSummary& summary : steady) {
+        const auto gain = static_cast<float>(1.0 / drift.light_at(summary.taken_at));
+        for (std::size_t i = 0; i < summary.colour.values.size(); ++i) {
+            const float black = e.black->colour.values[i];
+            summary.colour.values[i] = black + (summary.colour.values[i] - black) * gain;
+        }
+        for (std::size_t i = 0; i < summary.light.values.size(); ++i) {
+            const float black = e.black->light.values[i];
+            summary.light.values[i] = black + (summary.light.values[i] - black) * gain;
+        }
+    }
+    return steady;
+}
+
+}  // namespace
+
+CaptureVerdict check_captures(const std::vector<CaptureSummary>& captures,
+                              int block_px,
+                              const ShownDrives& drives) {
+    CaptureVerdict verdict;
+    const Evidence evidence = gather_evidence(captures, block_px);
+    if (evidence.lit_count < 64.0) {
+        refuse_late(evidence);
+        refuse_automatic_exposure(evidence);
+        return verdict;  // too little light for more; the solver says where it is missing
+    }
+    refuse_saturated(evidence);
+    refuse_late(evidence);
+    check_too_dim(evidence, verdict.warnings);
+    refuse_automatic_exposure(evidence);
+    check_black_level(evidence, verdict.warnings);
+    refuse_other_white(evidence);
+    check_room_light(evidence, drives);
+    check_moved(evidence, verdict.warnings);
+    verdict.drift = check_stripes(evidence, verdict.warnings);
+    // The colours are judged as if the lamp had stood still.
+    const std::vector<CaptureSummary> steady = without_drift(evidence, verdict.drift);
+    const Evidence of_steady = gather_evidence(steady, block_px);
+    check_repeats(of_steady);
+    check_colours(of_steady, drives, verdict);
+    return verdict;
+}
+
+}  // namespace livery

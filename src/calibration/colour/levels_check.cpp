@@ -1,0 +1,135 @@
+#include "calibration/colour/levels_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "calibration/captures/capture_evidence.h"
+#include "calibration/colour/colour_report.h"
+#include "calibration/statistics.h"
+#include "core/error.h"
+
+namespace livery {
+namespace {
+
+constexpr int kCell_px = 24;  // projector pixels; one bright block at least in most
+constexpr double kBrightN = 0.15;
+/// A photograph of another picture follows the levels not at all; one of the right picture by more
+/// than nine tenths even in a bright room.
+constexpr double kFollows = 0.7;
+
+/// Over this it is named; under it hardly tells itself from what blur takes from the blocks.
+constexpr double kOtherExposure = 0.02;
+
+/// Exposure of gray-levels over bright-gray's, as its white blocks tell. A share f of the light of
+/// each place comes from the places around it, by lens or room. In bright-gray all of them are
+/// white; here their mean is m. A black block then shows b = f m, a white one 1 - f + f m of white:
+/// both together, white + b (1 / m - 1) is 1 at any f. (The curve has had b taken off.)
+struct Exposure {
+    double over_bright = 1.0;
+    double doubt = 0.0;  ///< f is not the same for both kinds of block: half of what it explains
+    double off() const { return std::max(0.0, std::abs(over_bright - 1.0) - doubt); }
+};
+Exposure exposure_of(const Pattern& levels,
+                     std::size_t channel,
+                     const LevelCurve& curve,
+                     double black_block) {
+    double sum = 0.0;
+    for (std::size_t i = channel; i < levels.drive.values.size(); i += 3)
+        sum += static_cast<double>(curve.n[levels.drive.values[i]]);
+    const double mean = sum / static_cast<double>(levels.drive.pixel_count()) / curve.n[255];
+    return {curve.n[255] + black_block / mean, 0.5 * std::abs(black_block) * (1.0 / mean - 1.0)};
+}
+
+}  // namespace
+
+LevelsVerdict check_levels(const LevelsSamples& seen,
+                           const ScatteredLight& scattered,
+                           const std::array<LevelCurve, 3>& curves) {
+    const auto& [samples, mixing, usable, levels, centre] = seen;
+    const int columns = samples.width / kCell_px + 1, rows = samples.height / kCell_px + 1;
+    std::vector<std::vector<float>> ratios(static_cast<std::size_t>(columns) *
+                                           static_cast<std::size_t>(rows));
+    double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0;
+    for (std::size_t i = 0; i < samples.pixels.size(); ++i) {
+        const std::uint32_t p = samples.pixels[i];
+        if (!usable[i] || !centre[p]) continue;
+        const glm::vec3 value = (mixing.unmixing[i] * samples.pictures[kLevels].colour[i] -
+                                 mixing.dark[i] - scattered.separated[i]) /
+                                mixing.span[i];
+        const std::uint8_t* const drive = levels.drive.values.data() + 3 * std::size_t{p};
+        const double x = drive[1] / 255.0 * (drive[1] / 255.0), y = static_cast<double>(value.y);
+        if (!std::isfinite(y)) continue;
+        n += 1.0;
+        sx += x;
+        sy += y;
+        sxx += x * x;
+        sxy += x * y;
+        syy += y * y;
+        const double expected = curves[1].n[drive[1]];
+        if (expected < kBrightN) continue;
+        const int cx = static_cast<int>(p) % samples.width / kCell_px,
+                  cy = static_cast<int>(p) / samples.width / kCell_px;
+        ratios[static_cast<std::size_t>(cy) * static_cast<std::size_t>(columns) +
+               static_cast<std::size_t>(cx)]
+            .push_back(static_cast<float>(y / expected));
+    }
+    const double follows =
+        (n * sxy - sx * sy) / std::sqrt(std::max((n * sxx - sx * sx) * (n * syy - sy * sy), 1e-30));
+    if (n > 0.0 && !(follows > kFollows))
+        throw Refused("the photograph of gray-levels does not show its pattern",
+                      "check that it shows the gray-levels picture that manifest.json names, not "
+                      "another, mirrored or late one, and that its exposure is that of the others");
+
+    ImageF ratio(columns, rows, 1, std::numeric_limits<float>::quiet_NaN());
+    for (std::size_t k = 0; k < ratios.size(); ++k)
+        if (ratios[k].size() >= 4) ratio.values[k] = median(ratios[k]);
+    // Pieces of 3 x 3 would be eighty pixels: here two neighbours along each axis are enough.
+    std::vector<float> known;
+    for (const float value : ratio.values)
+        if (std::isfinite(value)) known.push_back(value);
+    const float typical = median(known);
+    double off = 0.0;
+    std::vector<float> there;
+    for (int y = 0; y < rows; ++y)
+        for (int x = 0; x < columns; ++x) {
+            const auto is_off = [&](int u, int v) {
+                return u >= 0 && v >= 0 && u < columns && v < rows &&
+                       std::isfinite(ratio.at(u, v)) &&
+                       std::abs(ratio.at(u, v) - typical) > 0.15f * typical;
+            };
+            if (!is_off(x, y)) continue;
+            const int beside =
+                is_off(x - 1, y) + is_off(x + 1, y) + is_off(x, y - 1) + is_off(x, y + 1);
+            if (beside < 2) continue;
+            off += 1.0;
+            there.push_back(ratio.at(x, y) / typical);
+        }
+    const double share = off / std::max(1.0, static_cast<double>(known.size()));
+    if (share > 0.03) {
+        const auto there_ratio = static_cast<double>(median(there));
+        throw Refused(
+            "gray-levels: " + percent(share) + " of the mock-up is " + times_of(there_ratio) +
+                " than the other photographs say: a shadow, a reflection or somebody in the light",
+            "keep out of the light of the projector and of the camera's view, and repeat that "
+            "photograph");
+    }
+
+    LevelsVerdict verdict;
+    Exposure exposure;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Exposure here =
+            exposure_of(levels, k, curves[k], scattered.of_span[static_cast<int>(k)]);
+        if (here.off() > exposure.off()) exposure = here;
+    }
+    if (exposure.off() > kOtherExposure)
+        verdict.warnings.push_back(
+            "gray-levels is " + times_of(exposure.over_bright) +
+            " than bright-gray says: it had another exposure, or the lamp another brightness; its "
+            "white blocks are taken for white; photograph all pictures at one exposure");
+    else
+        verdict.unexplained = exposure.off();
+    return verdict;
+}
+
+}  // namespace livery

@@ -1,0 +1,392 @@
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <type_traits>
+
+#include "calibration/correspondence/gray_code.h"
+#include "calibration/correspondence/patterns.h"
+#include "core/error.h"
+#include "core/parallel.h"
+
+namespace livery {
+namespace {
+
+/// The pictures as planes; bit k of columns is at 2k, its inverse at 2k + 1; rows follow.
+template <typename T>
+struct Planes {
+    std::vector<const T*> stripes;
+    const T* white = nullptr;
+    const T* black = nullptr;
+    int width = 0, height = 0;
+    int column_bits = 0, row_bits = 0;
+    int projector_width = 0, projector_height = 0;
+};
+
+/// Wide enough for the sum of 28 absolute differences.
+template <typename T>
+using ContrastOf =
+    std::conditional_t<std::is_same_v<T, std::uint8_t>,
+                       std::uint16_t,
+                       std::conditional_t<std::is_same_v<T, std::uint16_t>, std::uint32_t, float>>;
+
+constexpr std::size_t kBlock = 1024;  // pixels; the working set stays in the first cache
+
+/// Stripes answered with less than this part of white - black say little of where the light came
+/// from. Blur weakens the two finest bits of an axis, a stripe's border one more.
+constexpr int kWeakPart = 5;
+constexpr std::uint8_t kMostWeakBits = 3;
+
+/// Binary number of each pixel from the signs of its bit pairs, and how many of them were weak;
+/// fixed trip counts vectorise.
+template <typename T>
+void decode_axis(const Planes<T>& planes,
+                 int first_bit,
+                 int bits,
+                 std::size_t offset,
+                 std::uint16_t* code,
+                 std::uint8_t* weak,
+                 ContrastOf<T>* contrast) {
+    std::fill_n(code, kBlock, std::uint16_t{0});
+    std::fill_n(weak, kBlock, std::uint8_t{0});
+    const T* const white = planes.white + offset;
+    const T* const black = planes.black + offset;
+    for (int bit = 0; bit < bits; ++bit) {
+        const T* const positive =
+            planes.stripes[static_cast<std::size_t>(2 * (first_bit + bit))] + offset;
+        const T* const negative =
+            planes.stripes[static_cast<std::size_t>(2 * (first_bit + bit) + 1)] + offset;
+        for (std::size_t i = 0; i < kBlock; ++i) {
+            // Gray to binary: each bit is the exclusive or of all Gray bits so far.
+            const auto gray = static_cast<std::uint16_t>(positive[i] > negative[i] ? 1 : 0);
+            const auto previous = code[i];
+            code[i] = static_cast<std::uint16_t>((previous << 1) | (gray ^ (previous & 1)));
+            const T high = positive[i] > negative[i] ? positive[i] : negative[i];
+            const T low = positive[i] > negative[i] ? negative[i] : positive[i];
+            const auto answer = static_cast<ContrastOf<T>>(high - low);
+            contrast[i] = static_cast<ContrastOf<T>>(contrast[i] + answer);
+            const auto dark = static_cast<ContrastOf<T>>(black[i]);
+            const bool is_weak = static_cast<ContrastOf<T>>(kWeakPart * answer + dark) < white[i];
+            weak[i] = static_cast<std::uint8_t>(weak[i] + (is_weak ? 1 : 0));
+        }
+    }
+}
+
+/// A block at the end of the picture is decoded from a copy, so that every block is full.
+template <typename T>
+struct Tail {
+    std::vector<std::vector<T>> storage;
+    Planes<T> planes;
+
+    Tail(const Planes<T>& source, std::size_t offset, std::size_t count) : planes(source) {
+        const auto copy = [&](const T* from) {
+            storage.emplace_back(kBlock, T{});
+            std::copy_n(from + offset, count, storage.back().begin());
+            return storage.back().data();
+        };
+        storage.reserve(source.stripes.size() + 2);
+        for (const T*& plane : planes.stripes) plane = copy(plane);
+        planes.white = copy(planes.white);
+        planes.black = copy(planes.black);
+    }
+};
+
+struct Counts {
+    std::size_t lit = 0, decoded = 0;
+};
+
+template <typename T>
+Counts decode_block(const Planes<T>& planes,
+                    std::size_t offset,
+                    std::size_t count,
+                    float threshold,
+                    float* projector_px,
+                    std::uint8_t* decoded) {
+    std::array<std::uint16_t, kBlock> column, row;
+    std::array<std::uint8_t, kBlock> weak_columns, weak_rows;
+    std::array<ContrastOf<T>, kBlock> contrast{};
+    decode_axis(
+        planes, 0, planes.column_bits, offset, column.data(), weak_columns.data(), contrast.data());
+    decode_axis(planes,
+                planes.column_bits,
+                planes.row_bits,
+                offset,
+                row.data(),
+                weak_rows.data(),
+                contrast.data());
+
+    // A third of the mean contrast: blur takes it from the two finest bits of each axis, light
+    // that arrives over other parts takes it from all. In a shadow such light still follows the
+    // coarse stripes, for it comes from somewhere, but none of the finer ones.
+    const float share = static_cast<float>(planes.column_bits + planes.row_bits) / 3.0f;
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const auto columns = static_cast<unsigned>(planes.projector_width);
+    const auto rows = static_cast<unsigned>(planes.projector_height);
+    Counts counts;
+    for (std::size_t i = 0; i < count; ++i) {
+        const float lit_by = static_cast<float>(planes.white[offset + i]) -
+                             static_cast<float>(planes.black[offset + i]);
+        const bool lit = lit_by > threshold;
+        const bool good = lit & (static_cast<float>(contrast[i]) >= share * lit_by) &
+                          (weak_columns[i] <= kMostWeakBits) & (weak_rows[i] <= kMostWeakBits) &
+                          (column[i] < columns) & (row[i] < rows);
+        counts.lit += lit;
+        counts.decoded += good;
+        decoded[i] = good ? 255 : 0;
+        projector_px[2 * i] = good ? static_cast<float>(column[i]) + 0.5f : nan;
+        projector_px[2 * i + 1] = good ? static_cast<float>(row[i]) + 0.5f : nan;
+    }
+    return counts;
+}
+
+/// Standard deviation of the noise, from second differences along rows (structure cancels).
+template <typename T>
+double noise_of(const T* picture, int width, int height) {
+    std::vector<float> samples;
+    const int step = std::max(1, width * height / 60000);
+    for (int y = 0; y < height; ++y)
+        for (int x = 1 + (y * 7) % step; x + 1 < width; x += step) {
+            const T* const p = picture +
+                               static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                               static_cast<std::size_t>(x);
+            const float difference = static_cast<float>(p[-1]) - 2.0f * static_cast<float>(p[0]) +
+                                     static_cast<float>(p[1]);
+            if (std::isfinite(difference)) samples.push_back(std::abs(difference));
+        }
+    if (samples.empty()) return 0.0;
+    const auto middle = samples.begin() + static_cast<std::ptrdiff_t>(samples.size() / 2);
+    std::nth_element(samples.begin(), middle, samples.end());
+    const double sigma = static_cast<double>(*middle) / (0.6745 * std::sqrt(6.0));
+    // Whole numbers hide noise under half a step.
+    return std::is_floating_point_v<T> ? sigma : std::max(sigma, 0.5);
+}
+
+/// Eight sigma of white - black, and at least half a percent of the brightest lit pixels.
+template <typename T>
+double automatic_threshold(const Planes<T>& planes) {
+    const std::size_t count =
+        static_cast<std::size_t>(planes.width) * static_cast<std::size_t>(planes.height);
+    std::vector<float> differences;
+    const std::size_t step = std::max<std::size_t>(1, count / 60000);
+    for (std::size_t i = 0; i < count; i += step) {
+        const float difference =
+            static_cast<float>(planes.white[i]) - static_cast<float>(planes.black[i]);
+        if (std::isfinite(difference)) differences.push_back(difference);
+    }
+    if (differences.empty()) return 0.0;
+    const auto high = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() - 1 -
+                                                                        differences.size() / 1000);
+    std::nth_element(differences.begin(), high, differences.end());
+    return std::max({8.0 * std::sqrt(2.0) * noise_of(planes.black, planes.width, planes.height),
+                     0.005 * static_cast<double>(*high),
+                     0.0});
+}
+
+template <typename T>
+GrayCodeResult decode_planes(const Planes<T>& planes, double lit_threshold) {
+    GrayCodeResult result;
+    result.projector_px = ImageF(planes.width, planes.height, 2);
+    result.decoded = Image8(planes.width, planes.height, 1);
+    result.lit_threshold = lit_threshold >= 0.0 ? lit_threshold : automatic_threshold(planes);
+    const auto threshold = static_cast<float>(result.lit_threshold);
+
+    const std::size_t pixels = result.decoded.pixel_count();
+    const std::size_t full_blocks = pixels / kBlock;
+    std::atomic<std::size_t> lit{0}, decoded{0};
+    const auto decode_one =
+        [&](const Planes<T>& from, std::size_t from_offset, std::size_t offset, std::size_t count) {
+            const Counts counts = decode_block(from,
+                                               from_offset,
+                                               count,
+                                               threshold,
+                                               result.projector_px.values.data() + 2 * offset,
+                                               result.decoded.values.data() + offset);
+            lit += counts.lit;
+            decoded += counts.decoded;
+        };
+    parallel_for(full_blocks, 16, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t block = begin; block < end; ++block)
+            decode_one(planes, block * kBlock, block * kBlock, kBlock);
+    });
+    if (const std::size_t rest = pixels - full_blocks * kBlock; rest > 0) {
+        const Tail<T> tail(planes, full_blocks * kBlock, rest);
+        decode_one(tail.planes, 0, full_blocks * kBlock, rest);
+    }
+
+    // Verdict
+    const auto percent = [](double fraction) {
+        std::string text = std::to_string(100.0 * fraction);
+        return text.substr(0, text.find('.') + 3) + "%";
+    };
+    result.lit_fraction = static_cast<double>(lit) / static_cast<double>(pixels);
+    result.decoded_fraction =
+        lit > 0 ? static_cast<double>(decoded) / static_cast<double>(lit) : 0.0;
+    if (lit < 64 || result.lit_fraction < 1e-4)
+        throw Refused(
+            "only " + percent(result.lit_fraction) +
+                " of the photograph is brighter under white than under black",
+            "check that the projector's picture falls on the mock-up, that the camera "
+            "sees it and is neither saturated nor far too dark, that its exposure is set by hand, "
+            "and that the room is dark");
+    if (decoded < 64 || result.decoded_fraction < 0.2)
+        throw Refused(
+            "only " + percent(result.decoded_fraction) + " of the lit pixels answer to the stripes",
+            "check that the photographs are in the order of the patterns, that camera and "
+            "projector did not move, that each picture had arrived before its photograph, "
+            "and the focus");
+    return result;
+}
+
+void check_projector_size(int width, int height) {
+    check_argument(width >= 2 && width <= 16384 && height >= 2 && height <= 16384,
+                   "projector size " + std::to_string(width) + "x" + std::to_string(height) +
+                       " is outside 2..16384");
+}
+
+/// Checks count and sizes, and lines the pictures up.
+template <typename T>
+GrayCodeResult decode_in_order(std::span<const Image<T>> pictures,
+                               int projector_width,
+                               int projector_height,
+                               double lit_threshold) {
+    check_projector_size(projector_width, projector_height);
+    Planes<T> planes;
+    planes.projector_width = projector_width;
+    planes.projector_height = projector_height;
+    planes.column_bits = gray_code_bits(projector_width);
+    planes.row_bits = gray_code_bits(projector_height);
+    const auto stripes = static_cast<std::size_t>(2 * (planes.column_bits + planes.row_bits));
+    check_argument(pictures.size() == stripes + 2,
+                   std::to_string(pictures.size()) + " pictures given, " +
+                       std::to_string(stripes + 2) + " expected for a " +
+                       std::to_string(projector_width) + "x" + std::to_string(projector_height) +
+                       " projector");
+    planes.width = pictures[0].width;
+    planes.height = pictures[0].height;
+    for (const Image<T>& picture : pictures)
+        check_argument(picture.channels == 1 && picture.width == planes.width &&
+                           picture.height == planes.height && !picture.empty(),
+                       "pictures of one channel and one size expected, found " +
+                           std::to_string(picture.width) + "x" + std::to_string(picture.height) +
+                           "x" + std::to_string(picture.channels));
+    for (std::size_t i = 0; i < stripes; ++i) planes.stripes.push_back(pictures[i].values.data());
+    planes.white = pictures[stripes].values.data();
+    planes.black = pictures[stripes + 1].values.data();
+    return decode_planes(planes, lit_threshold);
+}
+
+std::string size_of(const ImageF& image) {
+    return std::to_string(image.width) + "x" + std::to_string(image.height);
+}
+
+/// Mean of the colour channels, in file units as if exposed like `like`.
+ImageF mean_of_channels(const Photograph& photograph, const Photograph& like) {
+    const ImageF& image = photograph.image;
+    ImageF mean(image.width, image.height, 1);
+    const auto gain = static_cast<float>(like.exposure_s / photograph.exposure_s);
+    const auto black = static_cast<float>(photograph.black_level);
+    const auto offset = static_cast<float>(like.black_level);
+    const auto channels = static_cast<std::size_t>(image.channels);
+    const std::size_t used = std::min<std::size_t>(channels, 3);  // a fourth one is no light
+    for (std::size_t i = 0; i < mean.values.size(); ++i) {
+        float sum = 0.0f;
+        for (std::size_t c = 0; c < used; ++c) sum += image.values[i * channels + c];
+        mean.values[i] = (sum / static_cast<float>(used) - black) * gain + offset;
+    }
+    return mean;
+}
+
+}  // namespace
+
+GrayCodeResult decode_gray_code(std::span<const Image8> in_pattern_order,
+                                int projector_width,
+                                int projector_height,
+                                double lit_threshold) {
+    return decode_in_order(in_pattern_order, projector_width, projector_height, lit_threshold);
+}
+
+GrayCodeResult decode_gray_code(std::span<const Image16> in_pattern_order,
+                                int projector_width,
+                                int projector_height,
+                                double lit_threshold) {
+    return decode_in_order(in_pattern_order, projector_width, projector_height, lit_threshold);
+}
+
+GrayCodeResult decode_gray_code(std::span<const ImageF> in_pattern_order,
+                                int projector_width,
+                                int projector_height,
+                                double lit_threshold) {
+    return decode_in_order(in_pattern_order, projector_width, projector_height, lit_threshold);
+}
+
+GrayCodeResult decode_gray_code(const std::vector<RoledPhotograph>& photographs,
+                                int projector_width,
+                                int projector_height,
+                                double lit_threshold) {
+    check_projector_size(projector_width, projector_height);
+    const std::string projector =
+        std::to_string(projector_width) + "x" + std::to_string(projector_height) + " projector";
+    const auto all_of = [&](const std::string& role) {
+        std::vector<const RoledPhotograph*> found;
+        for (const RoledPhotograph& candidate : photographs)
+            if (candidate.role == role) found.push_back(&candidate);
+        return found;
+    };
+
+    // A finer code than expected means another projector.
+    const auto refuse_more = [&](const std::string& axis, int count) {
+        const std::string role = "gray-" + axis + "-" + std::to_string(gray_code_bits(count));
+        if (!all_of(role).empty())
+            throw FileError("captures", "role", role, "no such bit for a " + projector);
+    };
+    refuse_more("column", projector_width);
+    refuse_more("row", projector_height);
+
+    std::vector<std::string> roles;
+    for (const bool columns : {true, false}) {
+        const int bits = gray_code_bits(columns ? projector_width : projector_height);
+        for (int bit = 0; bit < bits; ++bit) {
+            const std::string role =
+                std::string(columns ? "gray-column-" : "gray-row-") + std::to_string(bit);
+            roles.push_back(role);
+            roles.push_back(role + "-inverse");
+        }
+    }
+    roles.insert(roles.end(), {"white", "black"});
+
+    std::vector<ImageF> pictures;
+    const RoledPhotograph* first = nullptr;
+    for (const std::string& role : roles) {
+        const auto found = all_of(role);
+        if (found.empty())
+            throw FileError(
+                "captures",
+                "role",
+                "no photograph of " + role,
+                std::to_string(roles.size()) + " Gray code photographs for a " + projector);
+        if (!first) first = found.front();
+        for (const RoledPhotograph* one : found) {
+            const ImageF& image = one->photograph.image;
+            if (image.empty() || image.width != first->photograph.image.width ||
+                image.height != first->photograph.image.height)
+                throw FileError(one->photograph.name.empty() ? role : one->photograph.name,
+                                "size",
+                                size_of(image),
+                                size_of(first->photograph.image) + " as " + first->role);
+        }
+        ImageF mean = mean_of_channels(found.front()->photograph, first->photograph);
+        for (std::size_t k = 1; k < found.size(); ++k) {
+            const ImageF next = mean_of_channels(found[k]->photograph, first->photograph);
+            const auto share = static_cast<float>(1.0 / static_cast<double>(k + 1));
+            for (std::size_t i = 0; i < mean.values.size(); ++i)
+                mean.values[i] += share * (next.values[i] - mean.values[i]);
+        }
+        pictures.push_back(std::move(mean));
+    }
+    return decode_in_order(
+        std::span<const ImageF>(pictures), projector_width, projector_height, lit_threshold);
+}
+
+}  // namespace livery

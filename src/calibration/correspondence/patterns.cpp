@@ -1,0 +1,211 @@
+#include "calibration/correspondence/patterns.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+#include "core/error.h"
+#include "core/random.h"
+
+namespace livery {
+namespace {
+
+using Drive = std::array<std::uint8_t, 3>;
+
+void check_size(int width, int height) {
+    check_argument(width >= 2 && width <= 16384 && height >= 2 && height <= 16384,
+                   "projector size " + std::to_string(width) + "x" + std::to_string(height) +
+                       " is outside 2..16384");
+}
+
+template <typename DriveOf>
+Image8 draw(int width, int height, const DriveOf& drive_of) {
+    Image8 picture(width, height, 3);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const Drive drive = drive_of(x, y);
+            std::copy(drive.begin(), drive.end(), picture.pixel(x, y));
+        }
+    return picture;
+}
+
+Pattern uniform(std::string role, int width, int height, int red, int green, int blue) {
+    const Drive drive{static_cast<std::uint8_t>(red),
+                      static_cast<std::uint8_t>(green),
+                      static_cast<std::uint8_t>(blue)};
+    return {
+        std::move(role), draw(width, height, [&](int, int) { return drive; }), {red, green, blue}};
+}
+
+/// Even, so that centres stay centred; forty blocks across the picture or more. A centre five
+/// pixels from the border is out of reach of the halo that a good lens throws around a bright
+/// block.
+int block_size(int width) { return std::clamp(width / 80 * 2, 8, 16); }
+
+/// A number for a block of the grey levels' picture: each of 0 to 255 once in 16 x 16, shuffled
+/// (Fisher and Yates), otherwise in each such tile.
+int shuffled_rank(int block_x, int block_y) {
+    std::array<std::uint8_t, 256> order{};
+    std::iota(order.begin(), order.end(), std::uint8_t{0});
+    const auto tile_x = static_cast<std::uint32_t>(block_x / 16);
+    const auto tile_y = static_cast<std::uint32_t>(block_y / 16);
+    for (std::uint32_t k = 255; k > 0; --k) {
+        std::swap(order[k], order[hash_3d(tile_x, tile_y, k) % (k + 1)]);
+    }
+    return order[static_cast<std::size_t>(block_y % 16 * 16 + block_x % 16)];
+}
+
+/// A quarter black, a sixteenth white; the rest rise with the power 1.5 from 1 to 254: light grows
+/// with the drive's square, so that dark levels need more samples for the same relative error.
+std::uint8_t level_of_block(int block_x, int block_y) {
+    constexpr int kBlack = 64, kWhite = 16, kBetween = 256 - kBlack - kWhite;
+    const int rank = shuffled_rank(block_x, block_y);
+    if (rank < kBlack) return 0;
+    if (rank >= kBlack + kBetween) return 255;
+    const double place = static_cast<double>(rank - kBlack) / (kBetween - 1);
+    return static_cast<std::uint8_t>(std::lround(1.0 + 253.0 * std::pow(place, 1.5)));
+}
+
+/// Order in which an ordered dither fills a 16 x 16 tile: any 2^k x 2^k blocks that touch hold
+/// evenly spread values.
+int dither_rank(int block_x, int block_y) {
+    int rank = 0;
+    for (int bit = 0; bit < 4; ++bit) {
+        const int x = (block_x >> bit) & 1, y = (block_y >> bit) & 1;
+        rank = rank * 4 + 2 * (x ^ y) + y;
+    }
+    return rank;
+}
+
+double radical_inverse(int index, int base) {
+    double value = 0.0, digit = 1.0;
+    for (; index > 0; index /= base) {
+        digit /= base;
+        value += digit * (index % base);
+    }
+    return value;
+}
+
+std::uint8_t level(double fraction) {
+    return static_cast<std::uint8_t>(std::clamp(std::lround(fraction * 255.0), 0L, 255L));
+}
+
+/// Colour of one block of a mosaic. Sixteen kinds share every 4 x 4 blocks; within a kind the
+/// colours follow a low-discrepancy sequence over all pictures.
+Drive mosaic_drive(int kind, int index) {
+    // Corners first: they are the ends of every ramp.
+    const std::uint8_t up = level(radical_inverse(index + 1, 2) * 1.0079);
+    switch (kind) {
+        case 0:
+            return {up, 0, 0};
+        case 1:
+            return {0, up, 0};
+        case 2:
+            return {0, 0, up};
+        case 3:
+            return {up, up, 0};
+        case 4:
+            return {0, up, up};
+        case 5:
+            return {up, 0, up};
+        case 6:
+            return {up, up, up};
+        case 7: {
+            const int corner = index % 8;
+            return {level(corner & 1), level((corner >> 1) & 1), level(corner >> 2)};
+        }
+        default:
+            break;
+    }
+    // Stretched beyond the cube, so that its faces are sampled and not only approached.
+    const auto stretched = [&](int base) {
+        return level(radical_inverse(index * 8 + kind - 7, base) * 1.2 - 0.1);
+    };
+    return {stretched(2), stretched(3), stretched(5)};
+}
+
+}  // namespace
+
+int gray_code_bits(int count) {
+    return std::max(1, static_cast<int>(std::bit_width(static_cast<unsigned>(count - 1))));
+}
+
+std::vector<Pattern> geometry_patterns(int width, int height) {
+    check_size(width, height);
+    std::vector<Pattern> patterns;
+    const auto add_axis = [&](const std::string& axis, int count, bool columns) {
+        const int bits = gray_code_bits(count);
+        for (int bit = 0; bit < bits; ++bit)
+            for (const bool inverse : {false, true}) {
+                const auto drive_of = [&](int x, int y) {
+                    const int place = columns ? x : y;
+                    const bool set = (((place ^ (place >> 1)) >> (bits - 1 - bit)) & 1) != 0;
+                    const std::uint8_t value = set != inverse ? 255 : 0;
+                    return Drive{value, value, value};
+                };
+                patterns.push_back(
+                    {"gray-" + axis + "-" + std::to_string(bit) + (inverse ? "-inverse" : ""),
+                     draw(width, height, drive_of),
+                     {}});
+            }
+    };
+    add_axis("column", width, true);
+    add_axis("row", height, false);
+    patterns.push_back(uniform("white", width, height, 255, 255, 255));
+    patterns.push_back(uniform("black", width, height, 0, 0, 0));
+    return patterns;
+}
+
+std::vector<Pattern> colour_patterns(int width, int height, int dark_drive, int bright_drive) {
+    check_size(width, height);
+    check_argument(dark_drive >= 0 && dark_drive < bright_drive && bright_drive <= 255,
+                   "drives s = " + std::to_string(dark_drive) +
+                       ", t = " + std::to_string(bright_drive) + " are not 0 <= s < t <= 255");
+    const int s = dark_drive, t = bright_drive;
+    std::vector<Pattern> patterns;
+    patterns.push_back(uniform("dark-gray", width, height, s, s, s));
+    patterns.push_back(uniform("bright-gray", width, height, t, t, t));
+    patterns.push_back(uniform("red", width, height, t, s, s));
+    patterns.push_back(uniform("green", width, height, s, t, s));
+    patterns.push_back(uniform("blue", width, height, s, s, t));
+    const int block = block_size(width);
+    const int columns = (width + block - 1) / block, rows = (height + block - 1) / block;
+    std::vector<std::uint8_t> levels;
+    for (int y = 0; y < rows; ++y)
+        for (int x = 0; x < columns; ++x) levels.push_back(level_of_block(x, y));
+    patterns.push_back(
+        {"gray-levels",
+         draw(width,
+              height,
+              [&](int x, int y) {
+                  const auto value =
+                      levels[static_cast<std::size_t>(y / block * columns + x / block)];
+                  return Drive{value, value, value};
+              }),
+         {}});
+    return patterns;
+}
+
+std::vector<Pattern> mosaic_patterns(int width, int height, int count) {
+    check_size(width, height);
+    check_argument(count >= 1 && count <= 64,
+                   "mosaic count " + std::to_string(count) + " is outside 1..64");
+    const int block = block_size(width);
+    std::vector<Pattern> patterns;
+    for (int picture = 0; picture < count; ++picture) {
+        const auto drive_of = [&](int x, int y) {
+            // The kinds move on from picture to picture: each place shows several.
+            const int rank = dither_rank(x / block, y / block);
+            const int kind = (rank / 16 + 3 * picture) % 16;
+            return mosaic_drive(kind, (rank % 16) * count + picture);
+        };
+        patterns.push_back(
+            {"colors-" + std::to_string(picture), draw(width, height, drive_of), {}});
+    }
+    return patterns;
+}
+
+}  // namespace livery

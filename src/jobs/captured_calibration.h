@@ -1,0 +1,33 @@
+// A colour calibration from a folder of photographs: what `livery calibrate color` does.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "calibration/colour/colour.h"
+#include "capture/captures_folder.h"
+#include "core/progress.h"
+#include "scene/colour_calibration.h"
+
+namespace livery {
+
+struct CapturedCalibrationRequest {
+    std::filesystem::path captures;
+    std::filesystem::path patterns_manifest;   ///< for folders without a manifest of their own
+    std::optional<std::filesystem::path> map;  ///< else decoded from the same folder
+    std::optional<std::filesystem::path> camera_to_xyz;
+    ColourMode mode = ColourMode::robust;
+};
+
+/// Throws FileError, Refused, std::invalid_argument.
+ColourCalibration calibrate_from_folder(const CapturedCalibrationRequest& request,
+                                        const Progress& progress = {});
+
+/// `--map` files: EXR in projector pixels, channels X,Y = camera pixel (OpenCV centres), NaN where
+/// unknown.
+ProjectorToCamera read_map(const std::filesystem::path& file,
+                           int projector_width,
+                           int projector_height);
+void write_map(const std::filesystem::path& file, const ProjectorToCamera& map);
+
+}  // namespace livery

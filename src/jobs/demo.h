@@ -1,0 +1,55 @@
+// `livery demo`: a whole session on the simulated bench, from photographs to the report.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+#include "core/progress.h"
+#include "gl/context.h"
+#include "jobs/comparison.h"
+#include "scene/colour_calibration.h"
+#include "twin/description.h"
+
+namespace livery {
+
+struct DemoOptions {
+    std::filesystem::path out;  ///< created
+    std::string bench = "default";
+    std::string product = "car";  ///< or "player", or "sphere": the paper's Fig. 10
+    glm::ivec2 size_px{0};        ///< projector resolution; 0: as the bench file says
+    GlDevice gl_device = GlDevice::automatic;
+    std::uint64_t seed = 1;
+    double design_white_percentile = 20.0;
+};
+
+/// One look or paint: what was wanted, and what the simulated audience saw.
+struct DesignResult {
+    std::string name;
+    Comparison corrected;
+    Comparison uncorrected;  ///< the wanted picture sRGB-encoded to 8 bit, same white
+    std::optional<Comparison> chart_corrected;  ///< camera matrix from a chart under daylight
+    double out_of_gamut_fraction = 0.0;         ///< of the valid pixels, as compensation saw it
+    double shade_ms = 0.0, compensate_ms = 0.0;
+    std::map<std::string, std::filesystem::path> pictures;  ///< by what they show, relative to out
+};
+
+struct DemoResult {
+    std::string bench_name, product_name, renderer;
+    ColourCalibration calibration;  ///< planes dropped after writing: id, residuals, warnings
+    double design_white_y = 0.0;
+    double covered_fraction = 0.0;  ///< of the projector's picture, lit mock-up
+    int mockup_length_px = 0;
+    std::vector<DesignResult> designs;
+    std::vector<std::pair<std::string, double>> seconds;  ///< stages in order, "total" last
+    std::filesystem::path report;
+};
+
+/// Calibrates from photographs, renders, compensates, projects, photographs, compares, reports.
+DemoResult run_demo(const DemoOptions& options, const Progress& progress = {});
+
+}  // namespace livery

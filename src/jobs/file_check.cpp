@@ -1,0 +1,365 @@
+#include "jobs/file_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <new>
+#include <set>
+
+#include "appearance/directions.h"
+#include "appearance/material.h"
+#include "appearance/measured/measured_paint.h"
+#include "appearance/measured/measured_reflectance.h"
+#include "capture/captures_folder.h"
+#include "capture/patterns_folder.h"
+#include "capture/sphere_folder.h"
+#include "core/csv.h"
+#include "core/error.h"
+#include "core/image_io.h"
+#include "core/json.h"
+#include "core/paths.h"
+#include "jobs/camera_to_xyz_file.h"
+#include "jobs/files_elsewhere.h"
+#include "scene/colour_calibration.h"
+#include "scene/look.h"
+#include "scene/product.h"
+#include "scene/view.h"
+#include "session/session_file.h"
+#include "twin/description.h"
+#include "twin/spectra.h"
+
+namespace livery {
+
+namespace {
+
+using Path = std::filesystem::path;
+
+struct Kind {
+    std::string name;
+    std::function<void(const Path&, FileCheck&)> read;
+};
+
+std::string suffix_of(const Path& file) {
+    std::string suffix = file.extension().string();
+    std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) {
+        return static_cast<char>(std::tolower(c));
+    });
+    return suffix;
+}
+
+bool is_there(const Path& file) {
+    std::error_code error;
+    return std::filesystem::exists(file, error);
+}
+
+/// As make_scene finds a look's paints.
+Path file_beside(const Path& folder, const std::string& name) {
+    std::error_code error;
+    const Path beside = folder / name;
+    return std::filesystem::is_regular_file(beside, error) ? beside : Path(name);
+}
+
+void check_mesh(const Path& file, FileCheck& check) { load_mesh(file, &check.notes); }
+
+void tell(const FilesElsewhere& elsewhere, FileCheck& check) {
+    if (const std::string note = elsewhere.note(); !note.empty()) check.notes.push_back(note);
+}
+
+void check_photographs(const std::vector<Capture>& captures,
+                       const Path& folder,
+                       FileCheck& check,
+                       const Progress& progress) {
+    double done = 0.0;
+    FilesElsewhere elsewhere(folder);
+    for (const Capture& capture : captures) {
+        elsewhere.add(capture.file);
+        elsewhere.add(capture.pattern);
+        const bool response = capture.transfer != "linear" && capture.transfer != "srgb";
+        if (response) elsewhere.add(capture.transfer);
+    }
+    tell(elsewhere, check);
+    for (const Capture& capture : captures) {
+        progress.update(done / static_cast<double>(captures.size()),
+                        "checking " + capture.file.string());
+        done += 1.0;
+        try {
+            load_photograph(capture);
+        } catch (const std::bad_alloc&) {
+            throw;
+        } catch (const std::exception& error) {
+            check.problems.emplace_back(error.what());
+        }
+    }
+}
+
+void read_captures(const Path& folder, FileCheck& check, const Progress& progress) {
+    check_photographs(read_captures_folder(folder).captures, folder, check, progress);
+}
+
+/// Photographs of a painted sphere.
+void read_sphere(const Path& manifest, FileCheck& check, const Progress& progress) {
+    const SphereFolder folder = read_sphere_folder(manifest.parent_path());
+    parse_camera(folder.camera, folder.camera_origin);
+    if (!folder.camera_to_xyz.empty()) read_camera_to_xyz(folder.camera_to_xyz);
+    std::vector<Capture> captures;
+    for (const auto* list : {&folder.captures, &folder.white}) {
+        for (const SphereCapture& capture : *list) captures.push_back(capture.photograph);
+    }
+    FilesElsewhere elsewhere(manifest.parent_path());
+    elsewhere.add(folder.camera_origin.starts_with(manifest.string()) ? Path()
+                                                                      : Path(folder.camera_origin));
+    elsewhere.add(folder.camera_to_xyz);
+    tell(elsewhere, check);
+    check_photographs(captures, manifest.parent_path(), check, progress);
+}
+
+void read_picture(const Path& file, FileCheck& check) {
+    const ImageFile picture = read_image(file);
+    const auto bad = std::count_if(picture.image.values.begin(),
+                                   picture.image.values.end(),
+                                   [](float value) { return !std::isfinite(value); });
+    if (bad > 0) {
+        check.problems.push_back(std::to_string(bad) + " values are not finite");
+    }
+}
+
+/// A map from projector to camera pixels says "unknown" with NaN: that is no problem.
+void read_map(const Path& file, FileCheck& check) {
+    const ImageFile map = read_image(file);
+    check.notes.push_back(std::to_string(map.image.width) + "x" + std::to_string(map.image.height) +
+                          " projector pixels");
+}
+
+/// Whether nobody has photographed these patterns yet: the manifest is as `livery patterns` wrote
+/// it, without any exposure and without any photograph's name of its own.
+bool is_unphotographed(const Json& manifest) {
+    const auto found = manifest.find("captures");
+    if (found == manifest.end()) return false;
+    const Json& captures = *found;
+    return captures.is_array() && !captures.empty() &&
+           std::all_of(captures.begin(), captures.end(), [](const Json& capture) {
+               return capture.is_object() && capture.contains("pattern") &&
+                      capture.contains("exposure_s") && capture["exposure_s"].is_null();
+           });
+}
+
+void read_patterns(const Path& manifest, FileCheck& check) {
+    const PatternsManifest patterns = read_patterns_manifest(manifest);
+    FilesElsewhere elsewhere(manifest.parent_path());
+    for (const PatternEntry& pattern : patterns.patterns) {
+        elsewhere.add(manifest.parent_path() / pattern.file);
+    }
+    tell(elsewhere, check);
+    for (const PatternEntry& pattern : patterns.patterns) {
+        read_picture(manifest.parent_path() / pattern.file, check);
+    }
+    check.notes.emplace_back("not photographed yet: every exposure_s is to be filled in");
+}
+
+void read_session(const Path& file, FileCheck& check) {
+    SessionFile session(file, SessionFile::Access::read);
+    session.check_all();
+    const std::int64_t steps = session.last_step();
+    const Document document = session.document(session.position());
+    check.notes.push_back(std::to_string(document.looks.size()) + " looks, " +
+                          std::to_string(steps) + (steps == 1 ? " step" : " steps"));
+    std::set<std::string> environments;
+    FilesElsewhere elsewhere(file.parent_path());
+    std::error_code error;
+    if (std::filesystem::is_regular_file(document.product, error)) elsewhere.add(document.product);
+    elsewhere.add(document.calibration);
+    for (const SessionLook& look : document.looks) {
+        Look look_here = look.look;
+        for_each_paint(look_here, [&](std::string& paint) {
+            const Material material = find_paint(document, paint);
+            elsewhere.add(material.file);
+            if (material.measured) elsewhere.add(material.measured->file);
+        });
+        for (const Artwork& artwork : look_here.artwork) elsewhere.add(artwork.picture);
+        const EnvironmentReference& environment = look.look.environment;
+        if (environments.insert(environment.file).second) {
+            elsewhere.add(load_environment(environment, {}).file);
+        }
+    }
+    tell(elsewhere, check);
+}
+
+Kind kind_of_manifest(const Path& manifest, const Progress& progress) {
+    if (is_unphotographed(read_json_file(manifest))) {
+        return {"patterns",
+                [manifest](const Path&, FileCheck& check) { read_patterns(manifest, check); }};
+    }
+    if (is_sphere_manifest(manifest)) {
+        return {"sphere captures", [manifest, progress](const Path&, FileCheck& check) {
+                    read_sphere(manifest, check, progress);
+                }};
+    }
+    return {"captures", [manifest, progress](const Path&, FileCheck& check) {
+                read_captures(manifest.parent_path(), check, progress);
+            }};
+}
+
+Kind kind_of_folder(const Path& folder, const Progress& progress) {
+    if (is_there(folder / "calibration.json")) {
+        return {"calibration", [](const Path& path, FileCheck&) { read_calibration(path); }};
+    }
+    if (is_there(folder / "manifest.json")) {
+        return kind_of_manifest(folder / "manifest.json", progress);
+    }
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+        if (has_picture_suffix(entry.path())) {
+            return {"captures", [progress](const Path& path, FileCheck& check) {
+                        read_captures(path, check, progress);
+                    }};
+        }
+    }
+    throw FileError(folder,
+                    "",
+                    error ? error.message() : "no calibration.json, manifest.json or picture in it",
+                    "a calibration, patterns or captures folder");
+}
+
+void check_look(const Path& file, FileCheck& check) {
+    Look look = read_look_file(file);
+    const Path folder = file.parent_path();
+    FilesElsewhere elsewhere(folder);
+    for_each_paint(look, [&](std::string& paint) {
+        const Material material = find_material(file_beside(folder, paint).string());
+        elsewhere.add(material.file);
+        if (material.measured) elsewhere.add(material.measured->file);
+    });
+    for (const Artwork& artwork : look.artwork) {
+        if (artwork.picture.empty()) continue;
+        const Path picture = find_artwork_picture(artwork.picture, folder);
+        elsewhere.add(picture);
+        load_artwork_picture(picture);
+    }
+    elsewhere.add(load_environment(look.environment, folder).file);
+    tell(elsewhere, check);
+}
+
+Kind kind_of_json(const Path& file, const Progress& progress) {
+    const Json json = read_json_file(file);
+    const auto has = [&](const char* key) { return json.contains(key); };
+    if (has("captures")) return kind_of_manifest(file, progress);
+    if (has("model") || has("parameters")) {
+        return {"material", [](const Path& path, FileCheck&) { read_material_file(path); }};
+    }
+    if (has("camera") || has("mockup") || has("base")) {
+        return {"bench", [](const Path& path, FileCheck&) { read_bench_file(path); }};
+    }
+    if (has("mesh")) {
+        return {"product", [](const Path& path, FileCheck& check) {
+                    check.notes = load_product(path).notes;
+                    FilesElsewhere elsewhere(path.parent_path());
+                    elsewhere.add(parse_product_file(read_text_file(path), path).mesh);
+                    tell(elsewhere, check);
+                }};
+    }
+    if (has("lights") || has("environment") || has("exposure_ev")) {
+        return {"look", check_look};
+    }
+    if (has("width") || has("distortion")) {
+        return {"camera", [](const Path& path, FileCheck&) { read_camera_file(path); }};
+    }
+    if (has("primaries_xyz") || has("matrix")) {
+        return {"camera-to-xyz", [](const Path& path, FileCheck&) { read_camera_to_xyz(path); }};
+    }
+    return {"unknown", [](const Path& path, FileCheck&) {
+                throw FileError(
+                    path,
+                    "",
+                    "a JSON object of no known kind",
+                    "a material, look, product, bench, camera, camera-to-xyz or captures file");
+            }};
+}
+
+void check_measured(const Path& file, FileCheck& check) {
+    const MeasuredCoverage coverage = coverage_of(read_measured_file(file));
+    check.notes.push_back(std::to_string(coverage.samples) + " samples");
+    if (coverage.masked > 0) {
+        check.notes.push_back(std::to_string(coverage.masked) +
+                              " left out: negative, so not measured");
+    }
+}
+
+/// By the names of its columns.
+Kind kind_of_csv(const Path& file) {
+    const std::string text = read_text_file(file, std::size_t{1} << 30u);
+    const CsvReader csv(text, file);
+    if (csv.find("wavelength") || csv.find("nm")) {
+        return {"spectra", [](const Path& path, FileCheck&) { read_spectra_csv(path); }};
+    }
+    if (csv.find("theta_i") && csv.names().size() == 4) {
+        return {"directions", [](const Path& path, FileCheck& check) {
+                    check.notes.push_back(std::to_string(read_directions_csv(path).size()) +
+                                          " pairs of directions");
+                }};
+    }
+    if (csv.find("theta_i")) return {"measured", check_measured};
+    throw FileError(file,
+                    "header",
+                    "'" + csv.names().front().substr(0, 40) + "', ...",
+                    "the columns of spectra, directions or measured reflectance");
+}
+
+Kind kind_of(const Path& file, const Progress& progress) {
+    if (!is_there(file)) throw FileError(file, "", "no such file", "a file or folder");
+    if (std::filesystem::is_directory(file)) return kind_of_folder(file, progress);
+    if (!std::filesystem::is_regular_file(file)) {
+        throw FileError(file, "", "a pipe or a device", "a file or folder");
+    }
+    const std::string suffix = suffix_of(file);
+    if (suffix == ".json") {
+        if (file.filename() == "calibration.json") {
+            return {"calibration",
+                    [](const Path& path, FileCheck&) { read_calibration(path.parent_path()); }};
+        }
+        return kind_of_json(file, progress);
+    }
+    if (suffix == ".csv") return kind_of_csv(file);
+    if (is_measured_file(file)) return {"measured", check_measured};
+    if (suffix == ".livery" || is_session_file(file)) return {"session", read_session};
+    if (suffix == ".glb" || suffix == ".gltf" || suffix == ".ply" || suffix == ".obj") {
+        return {"mesh", check_mesh};
+    }
+    if (suffix == ".exr") {
+        const auto names = read_image(file).channel_names;
+        if (names == std::vector<std::string>{"X", "Y"}) return {"map", read_map};
+        return {"picture", read_picture};
+    }
+    if (has_picture_suffix(file)) return {"picture", read_picture};
+    return {
+        "unknown", [](const Path& path, FileCheck&) {
+            throw FileError(
+                path,
+                "suffix",
+                path.extension().string().empty() ? "none" : path.extension().string(),
+                ".livery, .glb, .gltf, .ply, .obj, .json, .csv, .binary, .brdf, .exr, .hdr, .png, "
+                ".tif, .jpg, RAW or a folder");
+        }};
+}
+
+}  // namespace
+
+FileCheck check_file(const std::filesystem::path& file, const Progress& progress) {
+    FileCheck check;
+    check.file = file;
+    check.kind = "unknown";
+    try {
+        const Kind kind = kind_of(file, progress);
+        check.kind = kind.name;
+        kind.read(file, check);
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        check.problems.emplace_back(
+            "found no memory left for what it asks for, expected a smaller file");
+    } catch (const std::exception& error) {
+        check.problems.emplace_back(error.what());
+    }
+    return check;
+}
+
+}  // namespace livery

@@ -1,0 +1,143 @@
+#include "jobs/render.h"
+
+#include <chrono>
+
+#include "core/colour.h"
+#include "core/error.h"
+#include "core/image_io.h"
+#include "jobs/picture.h"
+#include "radiance/renderer.h"
+#include "reference/path_tracer.h"
+
+namespace livery {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+int reference_samples(Quality quality) {
+    switch (quality) {
+        case Quality::draft:
+            return 4;
+        case Quality::normal:
+            return 16;
+        case Quality::high:
+            return 64;
+        case Quality::reference:
+            return 256;
+    }
+    throw std::invalid_argument("reference_samples: unknown quality");
+}
+
+RenderedFrame render_by_reference(const RenderRequest& request, const Progress& progress) {
+    ReferenceOptions options;
+    options.samples_per_pixel = request.samples_per_pixel > 0 ? request.samples_per_pixel
+                                                              : reference_samples(request.quality);
+    // A time limit alone must not be cut short by a sample limit.
+    if (request.seconds > 0.0 && request.samples_per_pixel == 0)
+        options.samples_per_pixel = 1 << 20;
+    options.seconds = request.seconds;
+    options.bounces = request.bounces;
+    options.seed = request.seed;
+    ReferenceResult traced = trace_reference(request.scene, request.view, options, progress);
+
+    RenderedFrame frame;
+    frame.radiance_working = std::move(traced.radiance_working);
+    frame.renderer = "reference";
+    frame.samples_per_pixel = traced.samples_per_pixel;
+    frame.plan = plan_frame(request.scene, Quality::reference, request.stage);
+    PlannedPass& pass = *find_pass(frame.plan, kPathTracerPass);
+    pass.work_items = static_cast<double>(frame.radiance_working.pixel_count()) *
+                      static_cast<double>(traced.samples_per_pixel);
+    pass.ms = 1000.0 * traced.seconds;
+    return frame;
+}
+
+void compensate_frame(RenderedFrame& frame, const CompensationTable& table) {
+    const auto start = Clock::now();
+    frame.drive = compensate(table, frame.radiance_working, &frame.compensation);
+    PlannedPass& pass = *find_pass(frame.plan, kCompensationPass);
+    pass.ms = milliseconds_since(start);
+    pass.work_items = static_cast<double>(table.pixels.size());
+}
+
+}  // namespace
+
+RenderedFrame render_frame(const RenderRequest& request, const Progress& progress) {
+    if (request.stage == FrameStage::projector) {
+        check_argument(request.compensation != nullptr,
+                       "render_frame: the projector stage needs a calibration");
+        check_argument(request.compensation->width == request.view.width &&
+                           request.compensation->height == request.view.height,
+                       "render_frame: the calibration is for a projector of another size");
+    }
+    const auto start = Clock::now();
+    RenderedFrame frame;
+    if (request.backend == RenderBackend::reference) {
+        frame = render_by_reference(request, progress);
+    } else {
+        const HeadlessContext context(request.gl_device);
+        RadianceRenderer renderer(std::make_shared<const FrameGeometry>(
+            request.scene.product, request.view, progress, sub_samples_of(request.quality)));
+        frame.renderer = context.renderer();
+        frame.plan = plan_frame(request.scene, request.quality, request.stage);
+        renderer.render(request.scene, frame.plan, progress);
+        frame.radiance_working = renderer.read_back();
+    }
+    if (request.stage == FrameStage::projector) compensate_frame(frame, *request.compensation);
+    frame.ms_total = milliseconds_since(start);
+    return frame;
+}
+
+std::optional<View> projector_view_of(const std::filesystem::path& calibration_folder) {
+    const auto file = calibration_folder / "projector.json";
+    std::error_code error;
+    if (!std::filesystem::exists(file, error)) return std::nullopt;
+    return read_camera_file(file);
+}
+
+void check_frame_file(const std::filesystem::path& file, FrameStage stage) {
+    const auto suffix = file.extension();
+    const std::string found = suffix.empty() ? "none" : suffix.string();
+    if (stage == FrameStage::projector && suffix != ".png") {
+        throw FileError(file, "suffix", found, ".png for projector input");
+    }
+    if (suffix != ".png" && suffix != ".exr") {
+        throw FileError(file, "suffix", found, ".exr or .png");
+    }
+    const auto folder = file.parent_path();
+    if (std::error_code error; !folder.empty() && !std::filesystem::is_directory(folder, error)) {
+        throw FileError(file, "folder", "no folder " + folder.string(), "a folder that is there");
+    }
+}
+
+void write_frame(const std::filesystem::path& file, const RenderedFrame& frame, FrameStage stage) {
+    check_frame_file(file, stage);
+    const auto suffix = file.extension();
+    if (stage == FrameStage::projector) {
+        write_png(file, frame.drive);
+        return;
+    }
+    // Over black: what a pixel that the product half covers sends, and OpenEXR's associated alpha
+    ImageF over_black = frame.radiance_working;
+    for (std::size_t i = 0; i < over_black.pixel_count(); ++i) {
+        float* v = over_black.values.data() + 4 * i;
+        for (int c = 0; c < 3; ++c) v[c] *= v[3];
+    }
+    if (suffix == ".png") {
+        write_png(file, srgb_from_working(over_black));
+        return;
+    }
+    for (std::size_t i = 0; i < over_black.pixel_count(); ++i) {
+        float* v = over_black.values.data() + 4 * i;
+        const glm::dvec3 rgb = rec709_from_working() * glm::dvec3(v[0], v[1], v[2]);
+        for (int c = 0; c < 3; ++c) v[c] = static_cast<float>(rgb[c]);
+    }
+    write_exr(file, over_black, {"R", "G", "B", "A"});
+}
+
+}  // namespace livery

@@ -1,0 +1,117 @@
+#include "ledger/artwork_times.h"
+
+#include <chrono>
+
+#include "radiance/relief_map.h"
+#include "scene/product.h"
+
+namespace livery {
+
+namespace {
+
+constexpr int kRepeats = 7;
+
+struct Kind {
+    std::string name;
+    Artwork artwork;
+};
+
+std::vector<Kind> kinds() {
+    std::vector<Kind> list;
+    for (const ArtworkShape shape :
+         {ArtworkShape::half, ArtworkShape::stripes, ArtworkShape::dots}) {
+        Artwork artwork;
+        artwork.shape = shape;
+        artwork.place.centre_mm = {0.0, 30.0, 0.0};
+        list.push_back({kArtworkShapes[static_cast<std::size_t>(shape)], artwork});
+    }
+    for (const PictureUse use : {PictureUse::cover, PictureUse::colours, PictureUse::roughness}) {
+        Artwork artwork = list.front().artwork;
+        artwork.shape = ArtworkShape::picture;
+        artwork.picture = "assets/patterns/blossoms.png";
+        artwork.use = use;
+        artwork.repeat = true;
+        list.push_back(
+            {std::string("picture, ") + kPictureUses[static_cast<std::size_t>(use)], artwork});
+    }
+    return list;
+}
+
+double shading_ms(RadianceRenderer& renderer,
+                  const Scene& scene,
+                  Quality quality,
+                  double* cover_ms) {
+    FramePlan plan = plan_frame(scene, quality, FrameStage::radiance);
+    renderer.render(scene, plan);
+    double sum = 0.0;
+    for (const PlannedPass& pass : plan.passes) {
+        if (pass.name.starts_with("shade:")) sum += pass.ms.value_or(0.0);
+        if (pass.name == kArtworkPass && cover_ms) *cover_ms = pass.ms.value_or(0.0);
+    }
+    return sum;
+}
+
+double milliseconds(const auto& work) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+        .count();
+}
+
+}  // namespace
+
+ArtworkBench run_artwork_bench(RadianceRenderer& renderer,
+                               const Scene& scene,
+                               Quality quality,
+                               const Progress& progress) {
+    const auto body = static_cast<std::size_t>(part_index(*scene.product, "body"));
+    const Material& paint = scene.part_materials[body];
+    const SurfaceMap& map = renderer.surface_map();
+    ArtworkBench result;
+    result.body_fragments = static_cast<double>(map.part_begin[body + 1] - map.part_begin[body]);
+    const auto wearing = [&](const Artwork& artwork) {
+        const auto picture = artwork.picture.empty()
+                                 ? nullptr
+                                 : load_artwork_picture(find_artwork_picture(artwork.picture, ""));
+        return make_part_artwork(body, artwork, paint, picture);
+    };
+    for (const Kind& kind : kinds()) {
+        Scene with = scene;
+        std::vector<double> more;
+        for (int k = 0; k < kRepeats; ++k) {
+            progress.check_stop();
+            // Another place each time, so that its cover is solved; then another exposure, which
+            // shades both anew and solves nothing.
+            Artwork moved = kind.artwork;
+            moved.place.centre_mm.y += 0.1 * k;
+            with.artwork = {wearing(moved)};
+            with.exposure_ev = scene.exposure_ev;
+            double cover = 0.0;
+            shading_ms(renderer, with, quality, &cover);
+            result.cover_ms.push_back(cover);
+            Scene bare = scene;
+            bare.exposure_ev = with.exposure_ev = scene.exposure_ev + 0.01 * (k + 1);
+            const double covered_ms = shading_ms(renderer, with, quality, nullptr);
+            bare.exposure_ev += 0.005;
+            more.push_back(covered_ms - shading_ms(renderer, bare, quality, nullptr));
+        }
+        BenchLevel level = level_of(kind.name, more);
+        level.work_items = result.body_fragments;
+        result.frames.push_back(level);
+    }
+    Artwork relief;
+    relief.shape = ArtworkShape::picture;
+    relief.use = PictureUse::relief;
+    relief.picture = "assets/patterns/weave.png";
+    relief.repeat = true;
+    Scene tilted = scene;
+    tilted.relief = {wearing(relief)};
+    for (int k = 0; k < 3; ++k) {
+        progress.check_stop();
+        result.relief_ms.push_back(
+            milliseconds([&] { relieved(map, tilted, renderer.geometry()->view); }));
+    }
+    return result;
+}
+
+}  // namespace livery

@@ -1,0 +1,298 @@
+#include "ledger/desktop_times.h"
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdlib>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "appearance/material_library.h"
+#include "core/error.h"
+#include "core/shuffle.h"
+#include "jobs/bench_calibration.h"
+#include "jobs/synthetic_calibration.h"
+#include "live/frame_thread.h"
+#include "live/low_priority.h"
+#include "radiance/renderer.h"
+#include "scene/library.h"
+#include "session/session.h"
+#include "twin/description.h"
+
+namespace livery {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using FramePointer = std::shared_ptr<const FinishedFrame>;
+
+double milliseconds(Clock::duration duration) {
+    return std::chrono::duration<double, std::milli>(duration).count();
+}
+
+/// A folder of this run's own, gone with the object.
+class ScratchFolder {
+  public:
+    ScratchFolder() {
+        std::string name =
+            (std::filesystem::temp_directory_path() / "livery-bench-XXXXXX").string();
+        if (!::mkdtemp(name.data())) {
+            throw FileError(name, "", "no folder can be made", "a writable folder TMPDIR");
+        }
+        path_ = name;
+    }
+    ~ScratchFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    ScratchFolder(const ScratchFolder&) = delete;
+    ScratchFolder& operator=(const ScratchFolder&) = delete;
+    std::filesystem::path operator/(const char* name) const { return path_ / name; }
+
+  private:
+    std::filesystem::path path_;
+};
+
+/// Three contexts that share, as the desktop's windows and lanes do.
+struct Contexts {
+    explicit Contexts(GlDevice device)
+        : window(device), front(device, &window), back(device, &window) {
+        for (HeadlessContext* context : {&window, &front, &back}) context->release();
+    }
+    HeadlessContext window, front, back;
+};
+
+/// The newest finished frame, waited for.
+class Finished {
+  public:
+    void add(FramePointer frame) {
+        const std::scoped_lock lock(mutex_);
+        newest_ = std::move(frame);
+        changed_.notify_all();
+    }
+    /// Of this number or a later one. Throws what the frame's problem says.
+    FramePointer wait_for(std::uint64_t number, const Progress& progress) {
+        std::unique_lock lock(mutex_);
+        while (!newest_ || newest_->number < number) {
+            progress.check_stop();
+            changed_.wait_for(lock, std::chrono::milliseconds(200));
+        }
+        if (!newest_->problem.empty()) throw std::runtime_error(newest_->problem);
+        return newest_;
+    }
+
+  private:
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    FramePointer newest_;
+};
+
+/// Work that repeats on a thread that gives way, from now until the object ends.
+class Background {
+  public:
+    Background(int at_least, std::function<void(const Progress&)> work) : least_(at_least) {
+        if (!work) return;
+        thread_ = std::thread([this, work = std::move(work)] {
+            lower_priority_of_this_thread(Urgency::background);
+            try {
+                while (!stop_) {
+                    work(Progress{{}, &stop_});
+                    ++done_;
+                }
+            } catch (const Cancelled&) {
+            } catch (...) {
+                error_ = std::current_exception();
+                failed_ = true;
+            }
+        });
+    }
+    ~Background() {
+        stop_ = true;
+        if (thread_.joinable()) thread_.join();
+    }
+    Background(const Background&) = delete;
+    Background& operator=(const Background&) = delete;
+    bool done_enough() const {
+        if (failed_) std::rethrow_exception(error_);
+        return !thread_.joinable() || done_ >= least_;
+    }
+
+  private:
+    int least_;
+    std::atomic<bool> stop_{false}, failed_{false};
+    std::atomic<int> done_{0};
+    std::exception_ptr error_;
+    std::thread thread_;
+};
+
+/// The session, the frame thread and what they draw: the desktop less its windows.
+struct Desktop {
+    std::shared_ptr<const Product> product;
+    std::shared_ptr<const ProjectorSetup> setup;
+    Session session;
+    Contexts contexts;
+    Finished finished;
+    FrameThread thread;
+    std::uint64_t number = 0;
+
+    Desktop(GlDevice device,
+            const std::filesystem::path& session_file,
+            const std::filesystem::path& calibration)
+        : product(find_product("car")),
+          setup(load_setup(calibration, 20.0, product->mesh)),
+          session(Session::open(session_file)),
+          contexts(device),
+          thread(contexts.front, contexts.back, [this](FramePointer frame) {
+              finished.add(std::move(frame));
+          }) {}
+
+    int look() const { return session.document().looks.front().id; }
+    FrameDescription description(const std::shared_ptr<const Environment>& loaded) {
+        FrameDescription frame;
+        frame.number = ++number;
+        frame.scene = scene_of(session.document(), look(), product, loaded);
+        frame.setup = setup;
+        frame.asked_at = Clock::now();
+        return frame;
+    }
+    void wait_until_idle(const Progress& progress) {
+        while (!thread.is_idle()) {
+            progress.check_stop();
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        }
+    }
+};
+
+/// Paints on the car's largest part, one after the other as a designer clicks: the time from before
+/// the command to the finished frame with the new paint.
+struct Swaps {
+    Desktop& desktop;
+    std::vector<Material> paints;
+    Scene scene;  ///< as last shown
+    bool saving = false;
+
+    std::vector<double> run(int count,
+                            const Background& beside,
+                            const std::function<void(int, Scene&)>& change,
+                            const Progress& progress) {
+        std::vector<double> ms;
+        for (int k = 0; k < count || !beside.done_enough(); ++k) {
+            const auto start = Clock::now();
+            const Material& paint = paints[static_cast<std::size_t>(k) % paints.size()];
+            if (saving) {
+                desktop.session.execute(SetPaint{desktop.look(), "body", paint.name});
+            }
+            const auto body = static_cast<std::size_t>(part_index(*desktop.product, "body"));
+            scene.part_materials[body] = paint;
+            change(k, scene);
+            FrameDescription frame;
+            frame.number = ++desktop.number;
+            frame.scene = scene;
+            frame.setup = desktop.setup;
+            frame.asked_at = start;
+            desktop.thread.show(std::move(frame));
+            const FramePointer shown = desktop.finished.wait_for(desktop.number, progress);
+            ms.push_back(milliseconds(shown->done_at - start));
+            std::this_thread::sleep_for(std::chrono::milliseconds(60));
+        }
+        return ms;
+    }
+};
+
+/// One of each finish that the shipped looks have.
+std::vector<Material> usual_paints() {
+    std::vector<Material> paints;
+    for (const char* name : {"solid red", "silver metallic", "solid ivory", "blue metallic"}) {
+        paints.push_back(find_material(name));
+    }
+    return paints;
+}
+
+/// All shipped paints in an order that jumps between families.
+std::vector<Material> whole_library() {
+    std::vector<Material> paints = read_paint_library().shipped;
+    Random random(1);
+    shuffle(paints, random);
+    return paints;
+}
+
+/// A calibration that opens, as big as a real one.
+void write_calibration_of(const Product& product, const std::filesystem::path& folder) {
+    const View view = read_bench_file("default").projector.view;
+    const auto shared = std::make_shared<Product>(product);
+    const FrameGeometry geometry(shared, view);
+    ColourCalibration calibration = synthetic_calibration(geometry.map.coverage);
+    seal(calibration);
+    write_setup(folder, calibration, view);
+}
+
+}  // namespace
+
+std::vector<BenchEffect> run_desktop_bench(GlDevice device, const Progress& progress) {
+    progress.update(0.0, "timing the desktop");
+    const ScratchFolder folder;
+    write_calibration_of(*find_product("car"), folder / "calibration");
+
+    BenchEffect start_effect{"desktop: start to first frame, with a saved calibration", {}};
+    BenchEffect whole_effect{"desktop: start to the frame at normal quality", {}};
+    BenchEffect swap_effect{"desktop: paint swap to finished frame", {}};
+
+    const auto start = Clock::now();
+    Desktop desktop(device, folder / "session.livery", folder / "calibration");
+    Swaps swaps{desktop, usual_paints(), {}};
+    FrameDescription first = desktop.description(nullptr);
+    swaps.scene = first.scene;
+    desktop.thread.show(std::move(first));
+    FramePointer frame = desktop.finished.wait_for(1, progress);
+    start_effect.levels.push_back(waited_level_of("draft", {milliseconds(frame->done_at - start)}));
+    while (!(frame = desktop.finished.wait_for(1, progress))->unfinished.empty()) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    whole_effect.levels.push_back(
+        waited_level_of("normal", {milliseconds(frame->done_at - start)}));
+    desktop.wait_until_idle(progress);
+
+    constexpr int kSwaps = 80;
+    const auto nothing = [](int, Scene&) {};
+    const auto measure = [&](const std::string& name,
+                             const Background& beside,
+                             const std::function<void(int, Scene&)>& change) {
+        progress.update(0.0, "timing paint swaps, " + name);
+        swap_effect.levels.push_back(
+            waited_level_of(name, swaps.run(kSwaps, beside, change, progress)));
+        desktop.wait_until_idle(progress);
+    };
+    measure("alone", {0, {}}, nothing);
+    swaps.paints = whole_library();
+    progress.update(0.0, "timing every paint of the library");
+    swap_effect.levels.push_back(waited_level_of(
+        "every paint of the library, twice",
+        swaps.run(2 * static_cast<int>(swaps.paints.size()), {0, {}}, nothing, progress)));
+    swaps.paints = usual_paints();
+    {
+        Bench bench(read_bench_file("default"), desktop.product, progress);
+        const auto calibrate = [&](const Progress& stop) {
+            calibrate_through_ports(bench, *desktop.product, stop);
+        };
+        measure("while the bench calibrates", {1, calibrate}, nothing);
+    }
+    {
+        // Two of them in turn, so that a new one is always being solved.
+        const auto studio = swaps.scene.environment;
+        auto other = std::make_shared<Environment>(*studio);
+        other->rotation_rad += 1.0;
+        measure("while an environment is solved", {0, {}}, [&](int k, Scene& scene) {
+            if (k % 20 == 0) scene.environment = k % 40 == 0 ? other : studio;
+        });
+    }
+    swaps.saving = true;
+    measure("while the session is saved", {0, {}}, nothing);
+    swaps.saving = false;
+    measure("while a product loads", {3, [](const Progress&) { find_product("car"); }}, nothing);
+    return {start_effect, whole_effect, swap_effect};
+}
+
+}  // namespace livery

@@ -1,0 +1,15 @@
+// What a designer waits for, measured without a window: from a paint swap to the finished frame,
+// alone and beside everything that the desktop does in the background.
+#pragma once
+
+#include <vector>
+
+#include "core/progress.h"
+#include "gl/context.h"
+#include "ledger/level.h"
+
+namespace livery {
+
+std::vector<BenchEffect> run_desktop_bench(GlDevice device, const Progress& progress = {});
+
+}  // namespace livery

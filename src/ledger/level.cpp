@@ -1,0 +1,25 @@
+#include "ledger/level.h"
+
+#include <algorithm>
+
+namespace livery {
+
+BenchLevel level_of(const std::string& name, std::vector<double> ms) {
+    std::sort(ms.begin(), ms.end());
+    BenchLevel level;
+    level.name = name;
+    level.ms = ms[ms.size() / 2];
+    level.fastest_ms = ms.front();
+    level.repeats = static_cast<int>(ms.size());
+    return level;
+}
+
+BenchLevel waited_level_of(const std::string& name, std::vector<double> ms) {
+    std::sort(ms.begin(), ms.end());
+    BenchLevel level = level_of(name, ms);
+    level.p95_ms = ms[ms.size() * 95 / 100];
+    level.longest_ms = ms.back();
+    return level;
+}
+
+}  // namespace livery

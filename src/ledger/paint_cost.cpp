@@ -1,0 +1,22 @@
+#include "ledger/paint_cost.h"
+
+#include <fmt/format.h>
+
+#include "appearance/model_table.h"
+
+namespace livery {
+
+PaintCost paint_cost(const Material& material, const std::optional<std::vector<PassCost>>& costs) {
+    if (!costs) return {std::nullopt, "no bench has run on this machine"};
+    std::string name = model_info(material.model).name;
+    if (has_glints(material)) name += "+glints";
+    for (const PassCost& cost : *costs) {
+        if (cost.pass == "shade:" + name && cost.quality == Quality::normal &&
+            cost.work_items > 0.0) {
+            return {1e6 * cost.ms / cost.work_items, ""};
+        }
+    }
+    return {std::nullopt, fmt::format("the last bench shaded nothing with {}", name)};
+}
+
+}  // namespace livery

@@ -1,0 +1,289 @@
+#include "ledger/speed.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "compensation/compensation.h"
+#include "compensation/gpu_pass.h"
+#include "core/parallel.h"
+#include "jobs/synthetic_calibration.h"
+#include "ledger/artwork_times.h"
+#include "ledger/desktop_times.h"
+#include "ledger/first_frame_times.h"
+#include "radiance/accuracy.h"
+#include "radiance/renderer.h"
+#include "reference/path_tracer.h"
+#include "scene/library.h"
+#include "twin/description.h"
+
+namespace livery {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+BenchLevel worked_level_of(const std::string& name, std::vector<double> ms, double work_items) {
+    BenchLevel level = level_of(name, std::move(ms));
+    level.work_items = work_items;
+    return level;
+}
+
+template <typename Work>
+std::vector<double> repeat(int count, const Progress& progress, const Work& work) {
+    std::vector<double> ms;
+    for (int k = 0; k < count; ++k) {
+        progress.check_stop();
+        const auto start = Clock::now();
+        work(k);
+        ms.push_back(milliseconds_since(start));
+    }
+    return ms;
+}
+
+/// The effect of that name, added when it is new.
+BenchEffect& effect(SpeedBenchResult& result, const std::string& name) {
+    const auto known = std::find_if(result.effects.begin(),
+                                    result.effects.end(),
+                                    [&](const BenchEffect& entry) { return entry.name == name; });
+    if (known != result.effects.end()) return *known;
+    return result.effects.emplace_back(BenchEffect{name, {}});
+}
+
+/// Milliseconds of every pass over the repeats of one quality.
+struct PassTimes {
+    std::map<std::string, std::vector<double>> ms;
+    std::map<std::string, double> work_items;
+};
+
+void collect(PassTimes& times, const FramePlan& plan) {
+    // A prediction knows how much of the picture the mock-up fills, not how many rays that takes:
+    // all but shading is kept for its pixels.
+    double pixels = 0.0;
+    for (const PlannedPass& pass : plan.passes) {
+        if (pass.name == kResolvePass) pixels = pass.work_items;
+    }
+    std::map<std::string, double> ms, items;
+    for (const PlannedPass& pass : plan.passes) {
+        if (!pass.ms) continue;
+        ms[cost_key(pass.name)] += *pass.ms;
+        items[cost_key(pass.name)] += pass.name.starts_with("shade:") ? pass.work_items : pixels;
+    }
+    for (const auto& [key, value] : ms) {
+        if (value <= 0.0) continue;
+        times.ms[key].push_back(value);
+        times.work_items[key] = items[key];
+    }
+}
+
+/// Car paint with glints and without, which no shipped look wears.
+void collect_car_paint(PassTimes& times,
+                       RadianceRenderer& renderer,
+                       const Scene& look,
+                       Quality quality,
+                       const Progress& progress) {
+    constexpr int kRepeats = 22;
+    Scene scene = look;
+    Material& paint =
+        scene.part_materials.at(static_cast<std::size_t>(part_index(*scene.product, "body")));
+    paint.model = ReflectanceModel::car_paint;
+    for (int k = 0; k < kRepeats; ++k) {
+        progress.check_stop();
+        paint.diffuse = glm::dvec3(k % 4 < 2 ? 0.05 : 0.06);
+        paint.glint_density_per_mm2 = k % 2 == 0 ? 0.0 : 1000.0;
+        FramePlan plan = plan_frame(scene, quality, FrameStage::radiance);
+        renderer.render(scene, plan, progress);
+        // The first of each compiles and touches what is kept
+        if (k >= 2) collect(times, plan);
+    }
+}
+
+struct BenchScene {
+    std::shared_ptr<const Product> product;
+    std::vector<Scene> looks;  ///< swapped in turn
+    View projector;
+};
+
+BenchScene load_scene(SpeedBenchResult& result, const Progress& progress) {
+    BenchScene scene;
+    const auto loads = repeat(3, progress, [&](int) { scene.product = find_product("car"); });
+    effect(result, "load the car").levels.push_back(worked_level_of("car.glb", loads, 0.0));
+    const BenchDescription bench = read_bench_file("default");
+    scene.projector = bench.projector.view;
+    for (const std::string& name : shipped_looks()) {
+        const auto loaded = scene.looks.empty() ? nullptr : scene.looks.back().environment;
+        scene.looks.push_back(make_scene(scene.product, find_look(name), bench.eye_mm, loaded));
+    }
+    return scene;
+}
+
+/// One resolution and quality: the first frame, then paint swaps, with the compensation after each.
+void bench_frames(SpeedBenchResult& result,
+                  const BenchScene& scene,
+                  const View& view,
+                  Quality quality,
+                  const Progress& progress) {
+    const std::string name = fmt::format("{}x{}, {}", view.width, view.height, to_string(quality));
+    const auto start = Clock::now();
+    RadianceRenderer renderer(std::make_shared<const FrameGeometry>(
+        scene.product, view, progress, sub_samples_of(quality)));
+    PassTimes passes;
+    FramePlan first = plan_frame(scene.looks.front(), quality, FrameStage::radiance);
+    renderer.render(scene.looks.front(), first, progress);
+    const auto fragments = static_cast<double>(renderer.surface_map().fragments.size());
+    effect(result, "first frame")
+        .levels.push_back(worked_level_of(name, {milliseconds_since(start)}, fragments));
+    collect(passes, first);
+    const auto& map = renderer.surface_map();
+    if (view.width == 1280) {
+        result.covered_fraction = static_cast<double>(map.covered_pixels) /
+                                  static_cast<double>(map.coverage.pixel_count());
+    }
+
+    const ColourCalibration calibration = synthetic_calibration(map.coverage);
+    const CompensationTable table =
+        bake(calibration, design_white_luminance(calibration, 20.0, {}));
+    GpuCompensation gpu(table);
+    // Programs and textures of every look are made before anything is timed.
+    for (const Scene& look : scene.looks) {
+        FramePlan plan = plan_frame(look, quality, FrameStage::projector);
+        renderer.render(look, plan, progress);
+        gpu.run(renderer.texture());
+        gpu.read_back();
+    }
+    const std::size_t covered = count_covered(*renderer.picture());
+
+    constexpr int kSwaps = 31;
+    std::vector<double> shade, gpu_ms, cpu_ms, gpu_frame, cpu_frame;
+    Image8 drive;
+    for (int k = 0; k < kSwaps; ++k) {
+        progress.update(static_cast<double>(k) / kSwaps, "timing " + name);
+        const Scene& look = scene.looks[static_cast<std::size_t>(k) % scene.looks.size()];
+        FramePlan plan = plan_frame(look, quality, FrameStage::radiance);
+
+        auto began = Clock::now();
+        renderer.render(look, plan, progress);
+        const auto wanted = renderer.picture();
+        shade.push_back(milliseconds_since(began));
+        collect(passes, plan);
+        const auto before_cpu = Clock::now();
+        CompensationStats stats;
+        compensate_again(table, *wanted, covered, &drive, &stats);
+        cpu_ms.push_back(milliseconds_since(before_cpu));
+        cpu_frame.push_back(milliseconds_since(began));
+
+        // The same with the correction in OpenGL; reading back waits until it is done.
+        const auto before_gpu = Clock::now();
+        gpu.run(renderer.texture());
+        const Image8 from_gpu = gpu.read_back();
+        gpu_ms.push_back(milliseconds_since(before_gpu));
+        gpu_frame.push_back(shade.back() + gpu_ms.back());
+    }
+    const auto pixels = static_cast<double>(table.pixels.size());
+    effect(result, "paint swap: shading and mixing")
+        .levels.push_back(worked_level_of(name, shade, fragments));
+    effect(result, "paint swap to projector input")
+        .levels.push_back(worked_level_of(name, cpu_frame, fragments));
+    effect(result, "paint swap to projector input, correction in OpenGL")
+        .levels.push_back(worked_level_of(name, gpu_frame, fragments));
+    if (quality == Quality::normal) {
+        const std::string size = fmt::format("{}x{}", view.width, view.height);
+        effect(result, "correction").levels.push_back(worked_level_of(size, cpu_ms, pixels));
+        effect(result, "correction in OpenGL, read back")
+            .levels.push_back(worked_level_of(size, gpu_ms, pixels));
+    }
+    if (view.width != 1280) return;
+    collect_car_paint(passes, renderer, scene.looks.front(), quality, progress);
+    ArtworkBench artwork = run_artwork_bench(renderer, scene.looks.front(), quality, progress);
+    if (quality == Quality::normal) {
+        for (BenchLevel& level : artwork.frames) {
+            effect(result, "artwork over the body, shading beside a frame without")
+                .levels.push_back(std::move(level));
+        }
+    }
+    // A prediction scales both by the fragments of the parts that wear it.
+    passes.ms[kArtworkPass] = artwork.cover_ms;
+    passes.ms[kReliefPass] = artwork.relief_ms;
+    passes.work_items[kArtworkPass] = passes.work_items[kReliefPass] = artwork.body_fragments;
+    passes.ms[kCompensationPass] = cpu_ms;
+    passes.work_items[kCompensationPass] = pixels;
+    for (const auto& [key, ms] : passes.ms) {
+        const BenchLevel level = worked_level_of(name, ms, passes.work_items[key]);
+        effect(result, "pass " + key).levels.push_back(level);
+        result.pass_costs.push_back(
+            {key, quality, level.ms, key == kFilterPass ? 0.0 : level.work_items, std::nullopt});
+    }
+}
+
+/// What each quality level is worth: the same look by the path tracer, on a part of the picture at
+/// its own scale (the car's bonnet and wing), direct light.
+void bench_accuracy(SpeedBenchResult& result, const BenchScene& scene, const Progress& progress) {
+    const Scene& look = scene.looks.front();
+    const View part = cropped(scene.projector, 680, 470, 160, 100);
+    ReferenceOptions options;
+    options.samples_per_pixel = 400;
+    progress.update(0.0, "tracing the truth");
+    const ReferenceResult truth = trace_reference(look, part, options, progress);
+    for (const Quality quality : {Quality::draft, Quality::normal, Quality::high}) {
+        RadianceRenderer renderer(std::make_shared<const FrameGeometry>(
+            scene.product, part, progress, sub_samples_of(quality)));
+        FramePlan plan = plan_frame(look, quality, FrameStage::radiance);
+        renderer.render(look, plan, progress);
+        const RadianceError error = radiance_error(renderer.read_back(), truth.radiance_working);
+
+        const auto& frames = effect(result, "first frame").levels;
+        const std::string name = fmt::format("1280x800, {}", to_string(quality));
+        const auto frame = std::find_if(frames.begin(), frames.end(), [&](const BenchLevel& level) {
+            return level.name == name;
+        });
+        BenchLevel level = *frame;
+        level.error = error.median;
+        level.unit = "of design white, median difference from the path tracer";
+        effect(result, "quality level: first frame, and its error").levels.push_back(level);
+        for (PassCost& cost : result.pass_costs) {
+            if (cost.pass == kResolvePass && cost.quality == quality) cost.error = error.median;
+        }
+    }
+}
+
+}  // namespace
+
+SpeedBenchResult run_speed_bench(GlDevice device, bool quick, const Progress& progress) {
+    SpeedBenchResult result;
+    // Zero where the system does not say.
+    ::getloadavg(&result.load_before, 1);
+    const HeadlessContext context(device);
+    result.renderer = context.renderer();
+    result.threads = thread_count();
+    const BenchScene scene = load_scene(result, progress);
+    result.sweep = run_speed_sweep(scene.product, scene.looks, scene.projector, quick, progress);
+    const std::vector<Quality> qualities =
+        quick ? std::vector{Quality::normal}
+              : std::vector{Quality::draft, Quality::normal, Quality::high};
+    for (const auto& [width, height] : {std::pair(640, 400), std::pair(1280, 800)}) {
+        const View view = resized(scene.projector, width, height);
+        for (const Quality quality : qualities) {
+            bench_frames(result, scene, view, quality, progress);
+        }
+    }
+    if (quick) {
+        result.pass_costs.clear();
+        return result;
+    }
+    bench_accuracy(result, scene, progress);
+    result.effects.push_back(run_first_frame_bench(progress));
+    // Last: it lowers the priority of helping threads for good.
+    for (BenchEffect& desktop : run_desktop_bench(device, progress)) {
+        result.effects.push_back(std::move(desktop));
+    }
+    return result;
+}
+
+}  // namespace livery

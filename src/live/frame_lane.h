@@ -1,0 +1,133 @@
+// One of the frame thread's two lanes: renderers in one context, what they have solved, and how a
+// description becomes a finished frame with it.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "core/progress.h"
+#include "core/recycler.h"
+#include "live/frame_thread.h"
+#include "live/low_priority.h"
+#include "live/solve_key.h"
+#include "live/texture_pool.h"
+#include "radiance/renderer.h"
+
+namespace livery {
+
+/// The column where the right scene of a wipe begins: a fraction of the mock-up's width.
+int wipe_column(const SurfaceMap& map, double wipe_at);
+
+/// What a part that was clicked in the preview is painted with for a moment.
+Material glow_paint();
+
+/// The surface map of the newest product and view, for both lanes: with as many sub-samples as a
+/// quality is worth, or more.
+class GeometryCache {
+  public:
+    std::shared_ptr<const FrameGeometry> get(const SolveKey& key, const Progress& progress);
+
+  private:
+    std::mutex mutex_;
+    std::shared_ptr<const FrameGeometry> newest_;
+};
+
+/// For one thread, with its context current from creation to destruction.
+class FrameLane {
+  public:
+    explicit FrameLane(std::shared_ptr<GeometryCache> geometries,
+                       ShadingDevice device = ShadingDevice::automatic);
+
+    /// Solves the description's light at this quality; rays are traced on threads that give way as
+    /// `urgency` says (none: on this thread, at its own priority). After a stop nothing can be
+    /// drawn until a solve went through, which takes up what is there.
+    void solve(const FrameDescription& description,
+               Quality quality,
+               std::optional<Urgency> urgency,
+               const Progress& progress);
+    /// What any other paint may need in the light that is solved, so that none has to wait.
+    void prepare(const FrameDescription& description, const Progress& progress);
+
+    const SolveKeys& solved() const { return solved_; }
+    bool is_prepared() const { return prepared_; }
+    /// Whether draw() has nothing to solve: the same pose, and no first paint that mirrors.
+    bool can_draw(const FrameDescription& description) const;
+
+    /// The description's paints in the light that is solved; only what changed since the last one
+    /// is drawn. Throws what goes wrong; after anything but std::invalid_argument the lane starts
+    /// anew.
+    std::shared_ptr<FinishedFrame> draw(const FrameDescription& description);
+    /// The same ahead of draw(), which then tells what it cost.
+    void draw_ahead(const FrameDescription& description);
+
+    /// Of all its renderers together.
+    RadianceRenderer::Counters counters() const;
+
+  private:
+    /// One scene as last drawn.
+    struct Side {
+        std::vector<Material> paints;  ///< with the glow
+        std::vector<PartArtwork> artwork;
+        double exposure_ev = 0.0;
+        std::size_t light = 0;  ///< of lights_
+        std::shared_ptr<const ProjectorSetup> setup;
+        std::shared_ptr<const ImageF> radiance_working;  ///< null: not drawn
+        std::shared_ptr<const Image8> drive;
+        FramePlan plan;
+        CompensationStats compensation;
+        double shade_ms = 0.0, compensate_ms = 0.0;
+        bool told = true;  ///< false: drawn ahead, no frame's plan has said so
+    };
+    /// The picture of all sides.
+    struct Composed {
+        std::array<std::shared_ptr<const Image8>, 2> from;
+        int column = 0;
+        std::shared_ptr<const Image8> drive;
+        std::shared_ptr<const ImageF> radiance_working;
+        std::shared_ptr<const TexturePool::Slot> slot;
+    };
+
+    void solve_light(std::size_t index,
+                     const Scene& scene,
+                     const SolveKey& key,
+                     std::optional<Urgency> urgency,
+                     const Progress& progress);
+    std::shared_ptr<FinishedFrame> draw_picture(const FrameDescription& description);
+    Scene scene_of(const FrameDescription& description, std::size_t side) const;
+    void draw_side(const FrameDescription& description, std::size_t side);
+    void compensate_side(const std::shared_ptr<const ProjectorSetup>& setup, Side& side);
+    void compose(const FrameDescription& description);
+    std::shared_ptr<const TexturePool::Slot> upload(const Image8& drive);
+    FramePlan told_plan(bool wiped);
+
+    std::shared_ptr<GeometryCache> geometries_;
+    ShadingDevice device_;
+
+    struct Solved {
+        std::unique_ptr<RadianceRenderer> renderer;
+        std::optional<FramePlan> untold;            ///< milliseconds that no frame's plan told yet
+        std::optional<std::size_t> covered_pixels;  ///< as compensate_again() asks
+    };
+    std::array<Solved, 2> lights_;
+    SolveKeys solved_;
+    bool prepared_ = false, mirrors_solved_ = false;
+    std::vector<PlannedPass> prepare_passes_;
+
+    std::array<Side, 2> sides_;
+    Composed composed_;
+    /// Corrected pictures of one setup: what lies beside the mock-up stays black in them.
+    struct Corrected {
+        std::shared_ptr<const ProjectorSetup> of;
+        std::unique_ptr<Recycler<Image8>> pictures;
+    };
+    Corrected corrected_;
+    Recycler<ImageF> radiances_;  ///< of both sides of a wipe
+    Recycler<Image8> drives_;     ///< the same, and those that nothing corrects
+    std::vector<std::uint8_t> rgba_;
+    TexturePool textures_;
+};
+
+}  // namespace livery

@@ -1,0 +1,87 @@
+// Frame descriptions in, projector pictures out, on a thread of its own: nothing else waits for it.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/image.h"
+#include "gl/context.h"
+#include "gl/fence.h"
+#include "live/projector_setup.h"
+#include "scene/frame_plan.h"
+#include "scene/scene.h"
+
+namespace livery {
+
+/// What the mock-up is to show: one immutable value.
+struct FrameDescription {
+    std::uint64_t number = 0;  ///< rises
+    Scene scene;
+    std::optional<Scene> wipe_to;  ///< shown right of `wipe_at`
+    double wipe_at = 0.5;          ///< fraction of the mock-up's width in the projector's picture
+    std::optional<int> glowing_part;  ///< clicked in the preview: glows on the mock-up
+    Quality quality = Quality::normal;
+    std::shared_ptr<const ProjectorSetup> setup;
+    std::chrono::steady_clock::time_point asked_at{};  ///< of the input that caused it
+};
+
+/// A finished one. Textures belong to the share group and live as long as this value, which may be
+/// let go of on any thread, and end with the FrameThread. A number comes again when more of the
+/// same description is there.
+struct FinishedFrame {
+    std::uint64_t number = 0;
+    unsigned drive_texture = 0;  ///< RGBA8 projector input; 0 before the first good frame
+    std::shared_ptr<const Fence> ready;
+    std::shared_ptr<const Image8> drive;  ///< the same for the bench and for files, 3 channels
+    std::shared_ptr<const ImageF> radiance_working;  ///< what is wanted
+    FramePlan plan;  ///< measured milliseconds, and "prepare:..." passes that ran ahead
+    CompensationStats compensation;
+    double shade_ms = 0.0, compensate_ms = 0.0, ms_total = 0.0;
+    /// While light, environment, eye or quality are still being solved the last solved ones are
+    /// shown with the new paints: what it is not yet; empty when it is all there.
+    std::string unfinished;
+    /// Why a description could not be drawn; everything but number and times is the last good
+    /// frame's, if there was one.
+    std::string problem;
+    std::chrono::steady_clock::time_point asked_at{}, done_at{};
+    std::shared_ptr<const void> owner;
+};
+
+/// Two lanes, each a thread with a context and a renderer. The front lane answers paint swaps at
+/// once with the light that it has solved; a change of light, environment, eye, quality or
+/// projector is solved on the back lane, at draft first, and the lanes change places when it is
+/// done. So nothing slow ever delays a paint. The newest description wins; those in between are
+/// dropped. Before a lane comes to the front for good it compiles what any paint of the library may
+/// need (listed passes), and while idle the back lane follows the front's light.
+class FrameThread {
+  public:
+    /// Contexts of one share group, current nowhere; they must outlive this. `on_finished` is
+    /// called on a lane's thread, one call at a time; it may call show().
+    FrameThread(GlContext& front,
+                GlContext& back,
+                std::function<void(std::shared_ptr<const FinishedFrame>)> on_finished);
+    ~FrameThread();
+    FrameThread(const FrameThread&) = delete;
+    FrameThread& operator=(const FrameThread&) = delete;
+
+    void show(FrameDescription description);  ///< any thread, returns at once
+    /// How far a slow solve is; nothing when none runs.
+    struct Solving {
+        double fraction = 0.0;
+        std::string stage;
+    };
+    std::optional<Solving> solving() const;
+    /// Nothing is drawn, solved or prepared until something is shown.
+    bool is_idle() const;
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace livery

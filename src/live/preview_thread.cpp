@@ -1,0 +1,415 @@
+#include "live/preview_thread.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/log.h"
+#include "gl/read_back.h"
+#include "live/light_thread.h"
+#include "live/low_priority.h"
+#include "live/preview_picture.h"
+#include "live/texture_pool.h"
+#include "radiance/raster_preview.h"
+
+namespace livery {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int kWhileMoving = 1, kAtRest = 2;  // supersampling
+/// Descriptions closer than this are a movement; after such a pause it has ended.
+constexpr auto kPause = std::chrono::milliseconds(250);
+
+struct Thumbnail {
+    Scene scene;
+    View view;
+};
+
+/// A paint on a sphere, or a look.
+struct SwatchRequest {
+    Material material;
+    int size_px = 0;
+    std::function<void(const Image8&)> on_drawn;
+    std::optional<Thumbnail> look;
+};
+
+double milliseconds_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+void check(const PreviewDescription& description) {
+    const Scene& scene = description.scene;
+    const View& view = description.view;
+    check_argument(scene.product != nullptr, "a preview of no product");
+    check_argument(view.width > 0 && view.height > 0 && view.width <= 16384 && view.height <= 16384,
+                   fmt::format("a preview of {} x {} pixels", view.width, view.height));
+    const auto parts = static_cast<int>(scene.product->mesh.parts.size());
+    const int highlighted = description.highlighted_part.value_or(0);
+    check_argument(highlighted >= 0 && highlighted < std::max(parts, 1),
+                   fmt::format("part {} of {}, counted from 0", highlighted, parts));
+}
+
+/// All that lives in the context; made and destroyed with it current.
+struct Drawing {
+    TexturePool pool;
+    PreviewEncoder encoder;
+    std::shared_ptr<const GroundShadow> ground;  ///< that the encoder has
+    std::unique_ptr<RasterPreview> preview;
+    std::shared_ptr<const Product> product;    ///< that `preview` draws
+    std::shared_ptr<const VertexLight> light;  ///< that `preview` has
+    std::unique_ptr<SwatchPainter> swatches;
+};
+
+}  // namespace
+
+struct PreviewThread::Implementation {
+    GlContext& context;
+    std::function<void(std::shared_ptr<const PreviewPicture>)> on_finished;
+
+    std::mutex mutex;
+    std::condition_variable wake;
+    bool stop = false;
+    bool light_changed = false;
+    std::optional<PreviewDescription> newest;
+    Clock::time_point asked_at{}, asked_before{};
+    std::deque<SwatchRequest> swatch_requests;  ///< the newest first
+
+    std::unique_ptr<LightThread> lights;
+    std::thread thread;
+
+    // Of the thread only
+    std::optional<PreviewDescription> shown;
+    int drawn_supersampling = 0;  ///< of `shown`; 0: not yet
+    bool swatch_light_asked = false;
+
+    explicit Implementation(GlContext& its_context) : context(its_context) {}
+    void run();
+    void loop(Drawing& drawing);
+    void draw(Drawing& drawing, int supersampling);
+    void draw_or_tell(Drawing& drawing, int supersampling);
+    void ask_for_light(const Drawing& drawing);
+    bool take_light(Drawing& drawing);
+    bool answer(Drawing& drawing, const SwatchRequest& request);
+    bool answer_look(Drawing& drawing, const SwatchRequest& request);
+    void tell(const std::string& problem);
+
+    std::vector<DirectionalLight> asked_lights;
+    std::shared_ptr<const Environment> asked_environment;
+    std::shared_ptr<const Product> asked_product;
+    std::shared_ptr<const PreviewPicture> last_good;
+};
+
+void PreviewThread::Implementation::tell(const std::string& problem) {
+    auto picture = last_good ? std::make_shared<PreviewPicture>(*last_good)
+                             : std::make_shared<PreviewPicture>();
+    picture->problem = problem;
+    if (shown) picture->number = shown->number;
+    on_finished(std::move(picture));
+}
+
+/// The light thread's newest, into the preview. True when something changed.
+bool PreviewThread::Implementation::take_light(Drawing& drawing) {
+    const LightThread::Results results = lights->newest();
+    if (!results.problem.empty()) tell("The light could not be solved: " + results.problem);
+    if (!drawing.preview || results.solved.product != drawing.product) return false;
+    bool changed = false;
+    if (results.solved.light != drawing.light) {
+        drawing.preview->take(results.solved.light);
+        drawing.light = results.solved.light;
+        changed = true;
+    }
+    if (results.solved.ground && results.solved.ground != drawing.ground) {
+        drawing.ground = results.solved.ground;
+        drawing.encoder.set_ground(drawing.ground.get());
+        changed = true;
+    }
+    return changed;
+}
+
+void PreviewThread::Implementation::ask_for_light(const Drawing& drawing) {
+    const Scene& scene = shown->scene;
+    const VertexLight asked{asked_lights, asked_environment, {}, {}, {}};
+    if (asked_product == scene.product &&
+        is_solved_for(asked, scene.lights, scene.environment.get())) {
+        return;
+    }
+    if (drawing.light && is_solved_for(*drawing.light, scene.lights, scene.environment.get())) {
+        return;
+    }
+    asked_product = scene.product;
+    asked_lights = scene.lights;
+    asked_environment = scene.environment;
+    lights->solve(scene.product, scene.lights, scene.environment);
+}
+
+/// The first time in a guess of the light, so that there is a picture at once.
+void PreviewThread::Implementation::draw(Drawing& drawing, int supersampling) {
+    const auto start = Clock::now();
+    check(*shown);
+    if (drawing.product != shown->scene.product) {
+        drawing.preview.reset();
+        drawing.light.reset();
+        drawing.ground.reset();
+        drawing.encoder.set_ground(nullptr);
+        drawing.preview = std::make_unique<RasterPreview>(shown->scene.product, kAtRest);
+        drawing.product = shown->scene.product;
+        take_light(drawing);
+    }
+    const bool guess = !drawing.light;
+    if (guess) {
+        drawing.light =
+            guessed_light(*drawing.product, shown->scene.lights, shown->scene.environment.get());
+        drawing.preview->take(drawing.light);
+    } else {
+        ask_for_light(drawing);
+    }
+    drawing.preview->set_supersampling(supersampling);
+    drawing.preview->set_glint_view(shown->projector);
+    const View& view = shown->view;
+    const auto slot = drawing.pool.lend(view.width, view.height);
+    const auto draw_columns = [&](const Scene& scene, int begin, int end) {
+        if (begin >= end) return;
+        drawing.preview->draw(scene, view);
+        drawing.encoder.encode(*drawing.preview,
+                               view,
+                               shown->highlighted_part,
+                               shown->ground,
+                               slot->framebuffer,
+                               PixelRect{begin, 0, end - begin, view.height});
+    };
+    const int column =
+        shown->wipe_to
+            ? static_cast<int>(std::lround(std::clamp(shown->wipe_at, 0.0, 1.0) * view.width))
+            : view.width;
+    draw_columns(shown->scene, 0, column);
+    if (shown->wipe_to) {
+        Scene other = *shown->wipe_to;
+        other.lights = shown->scene.lights;
+        other.environment = shown->scene.environment;
+        draw_columns(other, column, view.width);
+    }
+    // Waited for here, so that the time is the drawing's own and no reader ever waits.
+    finish_gl();
+    slot->ready = Fence::after_everything_so_far();
+
+    auto picture = std::make_shared<PreviewPicture>();
+    picture->number = shown->number;
+    picture->texture = slot->texture.name();
+    picture->size_px = {shown->view.width, shown->view.height};
+    picture->ready = std::shared_ptr<const Fence>(slot, &slot->ready);
+    picture->ms = milliseconds_since(start);
+    picture->supersampling = supersampling;
+    const bool lit =
+        is_solved_for(*drawing.light, shown->scene.lights, shown->scene.environment.get());
+    picture->unfinished = !lit || (shown->ground && !drawing.ground);
+    picture->owner = slot;
+    last_good = picture;
+    on_finished(std::move(picture));
+    // Rays are traced when there is a picture to look at.
+    if (guess) ask_for_light(drawing);
+}
+
+void PreviewThread::Implementation::draw_or_tell(Drawing& drawing, int supersampling) {
+    // The first picture is what one waits for when the program opens; it takes turns with nothing.
+    const bool first = !last_good;
+    drawn_supersampling = kAtRest;  // unless it turns out that there is more to do
+    try {
+        draw(drawing, supersampling);
+        drawn_supersampling = supersampling;
+    } catch (const std::exception& error) {
+        tell(error.what());
+    }
+    if (first) lower_priority_of_this_thread(Urgency::watched);
+}
+
+/// False while there is no light to draw it in.
+bool PreviewThread::Implementation::answer_look(Drawing& drawing, const SwatchRequest& request) {
+    const auto& [scene, view] = *request.look;
+    if (!drawing.light || drawing.product != scene.product) return false;
+    Image8 rgba;
+    try {
+        drawing.preview->set_supersampling(kAtRest);
+        drawing.preview->set_glint_view(std::nullopt);
+        const auto slot = drawing.pool.lend(view.width, view.height);
+        Scene lit = scene;
+        lit.lights = drawing.light->lights;
+        lit.environment = drawing.light->environment;
+        drawing.preview->draw(lit, view);
+        drawing.encoder.encode(*drawing.preview, view, std::nullopt, false, slot->framebuffer);
+        rgba = read_bytes(slot->texture, 4);
+    } catch (const std::exception& error) {
+        log_line(LogLevel::warning, fmt::format("no picture of a look: {}", error.what()));
+    }
+    request.on_drawn(rgba);
+    return true;
+}
+
+/// False when its light is still being solved.
+bool PreviewThread::Implementation::answer(Drawing& drawing, const SwatchRequest& request) {
+    if (request.look) return answer_look(drawing, request);
+    Image8 swatch;
+    try {
+        if (const auto kept = kept_swatch(request.material, request.size_px)) {
+            swatch = *kept;
+        } else {
+            if (!drawing.swatches) {
+                const LightThread::Results results = lights->newest();
+                if (!results.swatch_problem.empty()) {
+                    throw std::runtime_error(results.swatch_problem);
+                }
+                if (!results.swatches) {
+                    if (!swatch_light_asked) lights->prepare_swatches();
+                    swatch_light_asked = true;
+                    return false;
+                }
+                drawing.swatches = std::make_unique<SwatchPainter>(*results.swatches);
+            }
+            swatch = drawing.swatches->paint(request.material, request.size_px);
+            keep_swatch(request.material, swatch);
+        }
+    } catch (const std::exception& error) {
+        log_line(LogLevel::warning,
+                 fmt::format("no swatch of {}: {}", request.material.name, error.what()));
+        swatch = Image8();
+    }
+    request.on_drawn(swatch);
+    return true;
+}
+
+void PreviewThread::Implementation::loop(Drawing& drawing) {
+    bool swatches_wait = false;  // for their light
+    std::unique_lock lock(mutex);
+    while (true) {
+        const auto urgent = [&] { return stop || newest || light_changed; };
+        const auto ready = [&] { return urgent() || (!swatch_requests.empty() && !swatches_wait); };
+        const bool to_refine = shown && drawn_supersampling < kAtRest;
+        if (to_refine) {
+            wake.wait_until(lock, asked_at + kPause, urgent);
+        } else {
+            wake.wait(lock, ready);
+        }
+        if (stop) return;
+        if (newest) {
+            shown = std::move(*newest);
+            newest.reset();
+            const bool moving = asked_at - asked_before < kPause;
+            lock.unlock();
+            draw_or_tell(drawing, moving || !drawing.light ? kWhileMoving : kAtRest);
+        } else if (light_changed) {
+            light_changed = false;
+            swatches_wait = false;
+            lock.unlock();
+            if (take_light(drawing) && shown) {
+                draw_or_tell(drawing, std::max(drawn_supersampling, kWhileMoving));
+            }
+        } else if (to_refine) {
+            lock.unlock();
+            draw_or_tell(drawing, kAtRest);
+        } else {
+            const SwatchRequest request = std::move(swatch_requests.front());
+            swatch_requests.pop_front();
+            lock.unlock();
+            swatches_wait = !answer(drawing, request);
+            lock.lock();
+            if (swatches_wait) swatch_requests.push_back(request);
+            continue;
+        }
+        lock.lock();
+    }
+}
+
+void PreviewThread::Implementation::run() {
+    try {
+        context.make_current();
+        {
+            Drawing drawing;
+            loop(drawing);
+        }
+        last_good.reset();
+        context.release();
+    } catch (const std::exception& error) {
+        log_line(LogLevel::error, fmt::format("the preview ended: {}", error.what()));
+        tell(error.what());
+    }
+}
+
+PreviewThread::PreviewThread(GlContext& context,
+                             std::function<void(std::shared_ptr<const PreviewPicture>)> on_finished)
+    : implementation_(std::make_unique<Implementation>(context)) {
+    Implementation& it = *implementation_;
+    it.on_finished = std::move(on_finished);
+    it.lights = std::make_unique<LightThread>([&it] {
+        {
+            const std::scoped_lock lock(it.mutex);
+            it.light_changed = true;
+        }
+        it.wake.notify_all();
+    });
+    it.thread = std::thread([&it] { it.run(); });
+}
+
+PreviewThread::~PreviewThread() {
+    {
+        const std::scoped_lock lock(implementation_->mutex);
+        implementation_->stop = true;
+    }
+    implementation_->wake.notify_all();
+    implementation_->thread.join();
+    implementation_->lights.reset();
+}
+
+void PreviewThread::show(PreviewDescription description) {
+    {
+        const std::scoped_lock lock(implementation_->mutex);
+        implementation_->newest = std::move(description);
+        implementation_->asked_before = implementation_->asked_at;
+        implementation_->asked_at = Clock::now();
+    }
+    implementation_->wake.notify_all();
+}
+
+void PreviewThread::request_swatch(const Material& material,
+                                   int size_px,
+                                   std::function<void(const Image8& rgba)> on_drawn) {
+    check_argument(size_px >= kSmallestSwatch_px && size_px <= kLargestSwatch_px,
+                   fmt::format("a swatch of {} px, {} to {} are possible",
+                               size_px,
+                               kSmallestSwatch_px,
+                               kLargestSwatch_px));
+    {
+        const std::scoped_lock lock(implementation_->mutex);
+        implementation_->swatch_requests.push_front(
+            {material, size_px, std::move(on_drawn), std::nullopt});
+    }
+    implementation_->wake.notify_all();
+}
+
+void PreviewThread::request_thumbnail(const Scene& scene,
+                                      const View& view,
+                                      std::function<void(const Image8& rgba)> on_drawn) {
+    check_argument(scene.product != nullptr, "a thumbnail of no product");
+    const int largest = std::max(view.width, view.height);
+    check_argument(std::min(view.width, view.height) > 0 && largest <= kLargestSwatch_px,
+                   fmt::format("a thumbnail of {} x {} px, {} a side are possible",
+                               view.width,
+                               view.height,
+                               kLargestSwatch_px));
+    {
+        const std::scoped_lock lock(implementation_->mutex);
+        implementation_->swatch_requests.push_front(
+            {{}, 0, std::move(on_drawn), Thumbnail{scene, view}});
+    }
+    implementation_->wake.notify_all();
+}
+
+}  // namespace livery

@@ -1,0 +1,134 @@
+#include "live/projector_setup.h"
+
+#include <algorithm>
+#include <ctime>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/paths.h"
+#include "core/replace_folder.h"
+#include "jobs/bench_calibration.h"
+#include "live/setup_cache.h"
+#include "scene/mockup_mask.h"
+#include "twin/description.h"
+
+namespace livery {
+
+namespace {
+
+std::filesystem::path calibrations_folder() { return user_folder() / "calibrations"; }
+
+/// Gone with the object unless it was moved away: what a stop or a full disk leaves half written.
+class UnfinishedFolder {
+  public:
+    explicit UnfinishedFolder(std::filesystem::path path) : path_(std::move(path)) {}
+    ~UnfinishedFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    UnfinishedFolder(const UnfinishedFolder&) = delete;
+    UnfinishedFolder& operator=(const UnfinishedFolder&) = delete;
+    const std::filesystem::path& path() const { return path_; }
+
+  private:
+    std::filesystem::path path_;
+};
+
+}  // namespace
+
+std::shared_ptr<const ProjectorSetup> load_setup(const std::filesystem::path& folder,
+                                                 double design_white_percentile,
+                                                 const Mesh& mesh) {
+    std::error_code error;
+    const auto camera_file = folder / "projector.json";
+    // Folders without a projector are found out below, after what names them better.
+    const bool there = std::filesystem::exists(folder / "calibration.json", error) &&
+                       std::filesystem::exists(camera_file, error);
+    std::string kept;
+    Image8 mockup;
+    if (there) {
+        const View view = read_camera_file(camera_file);
+        mockup = mockup_mask(mesh, view);
+        kept = setup_cache_name(folder, design_white_percentile, mockup);
+        if (auto setup = read_kept_setup(kept)) {
+            setup->view = view;
+            return setup;
+        }
+    }
+    auto setup = std::make_shared<ProjectorSetup>();
+    ColourCalibration calibration = read_calibration(folder);
+    setup->view = read_camera_file(camera_file);
+    if (setup->view.width != calibration.width || setup->view.height != calibration.height) {
+        throw FileError(
+            camera_file,
+            "width, height",
+            fmt::format("{} x {}", setup->view.width, setup->view.height),
+            fmt::format("{} x {}, as the calibration", calibration.width, calibration.height));
+    }
+    setup->design_white_y = design_white_luminance(calibration, design_white_percentile, mockup);
+    setup->table = bake(calibration, setup->design_white_y);
+    for (ImageF* plane :
+         {&calibration.unmixing, &calibration.dark, &calibration.span, &calibration.camera_px}) {
+        *plane = ImageF();
+    }
+    setup->calibration = std::move(calibration);
+    keep_setup(kept, *setup);
+    return setup;
+}
+
+std::shared_ptr<const ProjectorSetup> uncorrected_setup(const std::string& bench) {
+    auto setup = std::make_shared<ProjectorSetup>();
+    setup->view = read_bench_file(bench).projector.view;
+    setup->why_uncorrected =
+        "no calibration: colours go out as they are and will look wrong; calibrate to correct them";
+    return setup;
+}
+
+std::filesystem::path calibrate_on_bench(const std::string& bench,
+                                         std::shared_ptr<const Product> product,
+                                         const Progress& progress) {
+    Bench traced(read_bench_file(bench), product, progress);
+    return calibrate_on_bench(traced, *product, progress);
+}
+
+std::filesystem::path calibrate_on_bench(Bench& bench,
+                                         const Product& product,
+                                         const Progress& progress) {
+    // Before the work: a folder that cannot be written is said at once.
+    const auto all = calibrations_folder();
+    make_output_folder(all);
+    const ColourCalibration calibration =
+        calibrate_through_ports(bench, product, progress).calibration;
+    progress.update(1.0, "keeping the calibration");
+    const std::string name = fmt::format(
+        "{:%Y-%m-%dT%H-%M-%SZ}-{}", fmt::gmtime(std::time(nullptr)), calibration.id.substr(0, 8));
+    const UnfinishedFolder unfinished(all / ("." + name));
+    write_setup(unfinished.path(), calibration, bench.description().projector.view);
+    std::error_code error;
+    std::filesystem::rename(unfinished.path(), all / name, error);
+    if (error) throw FileError(all / name, "", error.message(), "a folder that can be made");
+    sync_folder(all);
+    return all / name;
+}
+
+std::vector<std::filesystem::path> kept_calibrations() {
+    std::vector<std::filesystem::path> kept;
+    std::error_code error;
+    for (std::filesystem::directory_iterator entry(calibrations_folder(), error), end;
+         !error && entry != end;
+         entry.increment(error)) {
+        const auto& folder = entry->path();
+        if (folder.filename().string().starts_with(".")) continue;
+        std::error_code unreadable;
+        if (std::filesystem::exists(folder / "calibration.json", unreadable)) {
+            kept.push_back(folder);
+        }
+    }
+    // Names begin with the date.
+    std::sort(kept.begin(), kept.end(), std::greater<>());
+    return kept;
+}
+
+}  // namespace livery

@@ -1,0 +1,46 @@
+// What of a frame description takes long to solve, and stands while paints change.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "live/frame_thread.h"
+#include "scene/frame_plan.h"
+
+namespace livery {
+
+struct SolveKey {
+    std::shared_ptr<const Product> product;
+    View view;
+    std::shared_ptr<const Environment> environment;
+    std::vector<DirectionalLight> lights;
+    glm::dvec3 eye_mm{0.0};
+    Quality quality = Quality::normal;
+    std::vector<PartArtwork> relief{};
+};
+/// Of the scene left of a wipe's line (or of all) and of the one right of it. What is solved has a
+/// right one only where its light differs from the left one's.
+using SolveKeys = std::array<std::optional<SolveKey>, 2>;
+
+/// Throws std::invalid_argument when the description lacks a product or a projector, or wipes
+/// between two products.
+SolveKeys keys_of(const FrameDescription& description);
+SolveKeys with_quality(SolveKeys keys, Quality quality);
+
+bool same_pose(const SolveKey& a, const SolveKey& b);   ///< product and projector
+bool same_light(const SolveKey& a, const SolveKey& b);  ///< all but the quality
+
+/// Which of `solved` to draw a side of `wanted` with: its own light if that is there, else the
+/// nearest thing. `solved` has at least a left one.
+std::size_t nearest_of(const SolveKeys& solved, const SolveKeys& wanted, std::size_t side);
+
+/// What is solved otherwise than it is wanted: "light", "environment", "eye", "normal quality", ...
+/// Empty when nothing is.
+std::string missing_of(const SolveKeys& solved, const SolveKeys& wanted);
+/// The same, quality aside.
+bool covers_light(const SolveKeys& solved, const SolveKeys& wanted);
+
+}  // namespace livery

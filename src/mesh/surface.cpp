@@ -1,0 +1,103 @@
+#include "mesh/surface.h"
+
+#include <algorithm>
+#include <bit>
+
+#include <glm/geometric.hpp>
+
+namespace livery {
+
+namespace {
+
+std::uint64_t hash_of(const glm::vec3& point) {
+    const auto bits = [](float value) {
+        // -0 is 0.
+        return std::uint64_t{std::bit_cast<std::uint32_t>(value + 0.0f)};
+    };
+    std::uint64_t hash = bits(point.x) | (bits(point.y) << 32u);
+    hash = (hash ^ (bits(point.z) * 0x9e3779b97f4a7c15ull)) * 0xd6e8feb86659fd93ull;
+    hash = (hash ^ (hash >> 32u)) * 0xd6e8feb86659fd93ull;
+    return hash ^ (hash >> 32u);
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> weld(const std::vector<glm::vec3>& points,
+                                std::vector<glm::vec3>& distinct) {
+    const std::size_t slots = std::bit_ceil(2 * points.size() + 1);
+    std::vector<std::uint32_t> table(slots, Surface::none), place(points.size());
+    distinct.clear();
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        std::size_t slot = hash_of(points[k]) & (slots - 1);
+        while (table[slot] != Surface::none && distinct[table[slot]] != points[k]) {
+            slot = (slot + 1) & (slots - 1);
+        }
+        if (table[slot] == Surface::none) {
+            table[slot] = static_cast<std::uint32_t>(distinct.size());
+            distinct.push_back(points[k]);
+        }
+        place[k] = table[slot];
+    }
+    return place;
+}
+
+void find_neighbours(Surface& surface) {
+    const std::size_t count = surface.triangles.size();
+    surface.neighbours.assign(count, {Surface::none, Surface::none, Surface::none});
+    surface.lone.assign(count, false);
+
+    // Every edge stands at its lower point, sorted by the other; equal ones are one edge.
+    struct Edge {
+        std::uint32_t other, at;  ///< at: 3 triangle + corner
+    };
+    std::vector<std::uint32_t> first(surface.points.size() + 1, 0);
+    const auto edge_points = [&](std::size_t triangle, int corner) {
+        const glm::uvec3& t = surface.triangles[triangle];
+        return std::minmax({t[corner], t[(corner + 1) % 3]});
+    };
+    for (std::size_t t = 0; t < count; ++t) {
+        for (int k = 0; k < 3; ++k) ++first[edge_points(t, k).first + 1];
+    }
+    for (std::size_t p = 0; p + 1 < first.size(); ++p) first[p + 1] += first[p];
+    std::vector<Edge> edges(3 * count);
+    std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+    for (std::size_t t = 0; t < count; ++t) {
+        for (int k = 0; k < 3; ++k) {
+            const auto [low, high] = edge_points(t, k);
+            edges[next[low]++] = {high,
+                                  static_cast<std::uint32_t>(3 * t) + static_cast<unsigned>(k)};
+        }
+    }
+    for (std::size_t p = 0; p + 1 < first.size(); ++p) {
+        const auto begin = edges.begin() + first[p], end = edges.begin() + first[p + 1];
+        std::sort(begin, end, [](const Edge& a, const Edge& b) {
+            return a.other != b.other ? a.other < b.other : a.at < b.at;
+        });
+        for (auto run = begin; run != end;) {
+            const auto stop =
+                std::find_if(run, end, [&](const Edge& one) { return one.other != run->other; });
+            if (stop - run == 2) {
+                surface.neighbours[run[0].at / 3][run[0].at % 3] = run[1].at / 3;
+                surface.neighbours[run[1].at / 3][run[1].at % 3] = run[0].at / 3;
+            } else {
+                for (auto one = run; one != stop; ++one) surface.lone[one->at / 3] = true;
+            }
+            run = stop;
+        }
+    }
+}
+
+glm::dvec3 area_vector(const Surface& surface, std::size_t triangle) {
+    const glm::uvec3& t = surface.triangles[triangle];
+    const glm::dvec3 a(surface.points[t.x]);
+    return glm::cross(glm::dvec3(surface.points[t.y]) - a, glm::dvec3(surface.points[t.z]) - a);
+}
+
+bool has_area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    const glm::dvec3 ab = b - a, ac = c - a, bc = c - b;
+    const double longest = std::max({glm::dot(ab, ab), glm::dot(ac, ac), glm::dot(bc, bc)});
+    // A needle a million times longer than wide is below the resolution of float coordinates.
+    return glm::length(glm::cross(ab, ac)) > 1e-7 * longest;
+}
+
+}  // namespace livery

@@ -1,0 +1,187 @@
+// orient: one winding for each connected surface, and its outside out.
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "mesh/surface.h"
+
+namespace livery {
+
+namespace {
+
+/// Fractions of a surface's area from where on votes decide.
+constexpr double kClearVote = 0.5;
+/// How much a surface bulges, from 0 (flat, saddle) to 1 (sphere): enough to tell its outside, and
+/// enough to do so against a winding that is at least consistent.
+constexpr double kBulges = 0.1, kBulgesClearly = 0.5;
+
+/// Sums over one connected surface, wound as its first triangle is.
+struct Patch {
+    std::size_t turned = 0;  ///< triangles wound against the first
+    bool closed = true, one_sided = false;
+    glm::dvec3 origin{0.0};  ///< a point of it; sums count from there
+    glm::dvec3 weighted_centre{0.0};
+    double area = 0.0, volume = 0.0;
+    double wound = 0.0;    ///< area wound as the patch less area wound against it
+    double normals = 0.0;  ///< area whose normals agree less area whose normals do not
+    double flux = 0.0, reach = 0.0;
+    bool consistent() const { return turned == 0; }
+};
+
+class Orienter {
+  public:
+    Orienter(Surface& surface, const std::vector<glm::vec3>& normals)
+        : surface_(surface),
+          normals_(normals),
+          patch_of_(surface.triangles.size(), Surface::none),
+          against_(surface.triangles.size(), false) {}
+    Orientation run();
+
+  private:
+    void spread(std::uint32_t first);
+    void sum_up();
+    bool faces_inward(const Patch& patch) const;
+    /// Area times normal, as the patch winds it.
+    glm::dvec3 vector_of(std::size_t triangle) const {
+        return (against_[triangle] ? -0.5 : 0.5) * area_vector(surface_, triangle);
+    }
+    glm::dvec3 centre_of(std::size_t triangle) const {
+        const glm::uvec3& t = surface_.triangles[triangle];
+        return (glm::dvec3(surface_.points[t.x]) + glm::dvec3(surface_.points[t.y]) +
+                glm::dvec3(surface_.points[t.z])) /
+               3.0;
+    }
+
+    Surface& surface_;
+    const std::vector<glm::vec3>& normals_;
+    std::vector<std::uint32_t> patch_of_;
+    std::vector<bool> against_;  ///< wound against the first triangle of its patch
+    std::vector<Patch> patches_;
+    std::vector<std::uint32_t> pending_;
+};
+
+/// Whether two triangles that share an edge run along it in the same direction, as only those of
+/// different winding do.
+bool run_alike(const glm::uvec3& t, int corner, const glm::uvec3& other) {
+    const std::uint32_t from = t[corner], to = t[(corner + 1) % 3];
+    for (int k = 0; k < 3; ++k) {
+        if (other[k] == from && other[(k + 1) % 3] == to) return true;
+    }
+    return false;
+}
+
+void Orienter::spread(std::uint32_t first) {
+    const auto number = static_cast<std::uint32_t>(patches_.size());
+    Patch patch;
+    patch.origin = centre_of(first);
+    patch_of_[first] = number;
+    pending_.assign(1, first);
+    while (!pending_.empty()) {
+        const std::uint32_t t = pending_.back();
+        pending_.pop_back();
+        if (surface_.lone[t]) patch.closed = false;
+        for (int k = 0; k < 3; ++k) {
+            const std::uint32_t other = surface_.neighbours[t][static_cast<std::size_t>(k)];
+            if (other == Surface::none) continue;
+            const bool alike = run_alike(surface_.triangles[t], k, surface_.triangles[other]);
+            const bool against = against_[t] != alike;
+            if (patch_of_[other] == Surface::none) {
+                patch_of_[other] = number;
+                against_[other] = against;
+                pending_.push_back(other);
+            } else if (against_[other] != against) {
+                patch.one_sided = true;
+            }
+        }
+    }
+    patches_.push_back(patch);
+}
+
+void Orienter::sum_up() {
+    for (std::size_t t = 0; t < patch_of_.size(); ++t) {
+        Patch& patch = patches_[patch_of_[t]];
+        const glm::dvec3 vector = vector_of(t), centre = centre_of(t) - patch.origin;
+        const double area = glm::length(vector);
+        if (against_[t]) ++patch.turned;
+        patch.area += area;
+        patch.weighted_centre += area * centre;
+        patch.volume += glm::dot(centre, vector) / 3.0;
+        patch.wound += against_[t] ? -area : area;
+        const double agrees = glm::dot(vector, glm::dvec3(normals_[t]));
+        if (agrees != 0.0) patch.normals += agrees > 0.0 ? area : -area;
+    }
+    for (std::size_t t = 0; t < patch_of_.size(); ++t) {
+        Patch& patch = patches_[patch_of_[t]];
+        if (patch.closed || !(patch.area > 0.0)) continue;
+        const glm::dvec3 vector = vector_of(t);
+        const glm::dvec3 arm = centre_of(t) - patch.origin - patch.weighted_centre / patch.area;
+        patch.flux += glm::dot(arm, vector);
+        patch.reach += glm::length(arm) * glm::length(vector);
+    }
+}
+
+bool Orienter::faces_inward(const Patch& patch) const {
+    if (patch.closed && !patch.one_sided) return patch.volume < 0.0;
+    const double wound = patch.wound / patch.area, normals = patch.normals / patch.area;
+    const double bulge = patch.reach > 0.0 ? patch.flux / patch.reach : 0.0;
+    // Scanners know where they stood: normals and winding that agree are right.
+    if (std::abs(normals) >= kClearVote && wound * normals > 0.0) return normals < 0.0;
+    if (std::abs(bulge) >= (patch.consistent() ? kBulgesClearly : kBulges)) return bulge < 0.0;
+    if (std::abs(normals) >= kClearVote) return normals < 0.0;
+    return wound < 0.0;
+}
+
+Orientation Orienter::run() {
+    const auto count = static_cast<std::uint32_t>(surface_.triangles.size());
+    for (std::uint32_t t = 0; t < count; ++t) {
+        if (patch_of_[t] == Surface::none) spread(t);
+    }
+    sum_up();
+
+    std::vector<bool> closed, inward;
+    for (const Patch& patch : patches_) {
+        closed.push_back(patch.closed && !patch.one_sided);
+        inward.push_back(faces_inward(patch));
+    }
+    Orientation result;
+    // A closed surface that faces inward may be the inner side of a hollow thing.
+    std::optional<Insideness> insideness;
+    for (std::uint32_t number = 0; number < patches_.size(); ++number) {
+        const Patch& patch = patches_[number];
+        if (patch.one_sided) ++result.one_sided;
+        if (!inward[number] || !closed[number] || !patch.consistent()) continue;
+        if (!insideness) insideness.emplace(surface_, patch_of_, closed);
+        if (!insideness->inside_others(patch.origin, number)) continue;
+        inward[number] = false;
+        ++result.cavities;
+    }
+
+    result.turned.assign(count, false);
+    std::vector<std::size_t> turned_in(patches_.size(), 0);
+    for (std::uint32_t t = 0; t < count; ++t) {
+        result.turned[t] = against_[t] != inward[patch_of_[t]];
+        if (!result.turned[t]) continue;
+        ++turned_in[patch_of_[t]];
+        std::swap(surface_.triangles[t].y, surface_.triangles[t].z);
+        std::swap(surface_.neighbours[t][0], surface_.neighbours[t][2]);
+    }
+    for (std::size_t number = 0; number < patches_.size(); ++number) {
+        if (!patches_[number].consistent()) {
+            result.against += turned_in[number];
+        } else if (turned_in[number] > 0) {
+            ++result.inward;
+            result.inward_triangles += turned_in[number];
+        }
+    }
+    return result;
+}
+
+}  // namespace
+
+Orientation orient(Surface& surface, const std::vector<glm::vec3>& normals) {
+    return Orienter(surface, normals).run();
+}
+
+}  // namespace livery

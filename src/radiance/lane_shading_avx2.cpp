@@ -1,4 +1,0 @@
-#if defined(__x86_64__)
-#define LIVERY_LANES avx2
-#include "radiance/lane_shading.inc"
-#endif

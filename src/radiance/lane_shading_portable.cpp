@@ -1,2 +1,0 @@
-#define LIVERY_LANES portable
-#include "radiance/lane_shading.inc"

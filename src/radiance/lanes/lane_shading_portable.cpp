@@ -1,0 +1,2 @@
+#define LIVERY_LANES portable
+#include "radiance/lanes/lane_shading.inc"

@@ -1,0 +1,231 @@
+#include "radiance/light/sky_visibility.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "radiance/light/light_visibility.h"
+#include "radiance/light/spiral.h"
+
+namespace livery {
+namespace {
+
+double turn_of(std::size_t fragment, std::uint32_t purpose) {
+    return turn_of_fragment_rad(fragment, purpose, 11u);
+}
+
+/// Cosine-weighted directions around a normal (Vogel's spiral on the projected disc).
+class SkyDirections {
+  public:
+    explicit SkyDirections(int count) {
+        for (int k = 0; k < count; ++k) {
+            const double u = (k + 0.5) / count;
+            const double angle = kGoldenAngle_rad * k;
+            points_.emplace_back(
+                std::sqrt(u) * std::cos(angle), std::sqrt(u) * std::sin(angle), std::sqrt(1.0 - u));
+        }
+    }
+
+    std::size_t count() const { return points_.size(); }
+
+    /// The spiral turned around the normal.
+    void around(const glm::vec3& n, double turn_rad, std::span<glm::vec3> directions) const {
+        turn_around(points_, n, basis_around(n), turn_rad, directions);
+    }
+
+  private:
+    std::vector<glm::vec3> points_;  ///< around the z axis
+};
+
+/// Directions of a fragment that looks again: k-th from the sub-sample k % kSamplesAFragment.
+void more_directions_of(const Mesh& mesh,
+                        const SurfaceMap& map,
+                        std::size_t fragment,
+                        const SkyDirections& sky,
+                        std::span<glm::vec3> directions) {
+    std::vector<glm::vec3> around(directions.size());
+    for (std::size_t s = 0; s < kSamplesAFragment; ++s) {
+        sky.around(sample_normal(mesh, map, fragment, s), turn_of(fragment, 5u), around);
+        for (std::size_t k = s; k < directions.size(); k += kSamplesAFragment) {
+            directions[k] = around[k];
+        }
+    }
+}
+
+/// Whether light from the share of a few directions that is open may err by 15%: a standard error
+/// of directions that know nothing of one another, which a spiral's are better than.
+bool is_noisy(float open, int directions) {
+    constexpr float kNoise = 0.15f;
+    return 1.0f - open > kNoise * kNoise * open * static_cast<float>(directions);
+}
+
+/// Fills again and more.
+void look_again(const Mesh& mesh,
+                const Tracer& tracer,
+                const SurfaceMap& map,
+                const Progress& progress,
+                SkyVisibility& visibility) {
+    for (std::size_t i = 0; i < visibility.blocked.size(); ++i) {
+        if (is_noisy(visibility.openness(i), visibility.rays.first)) {
+            visibility.again.push_back(static_cast<std::uint32_t>(i));
+        }
+    }
+    const SkyDirections sky(visibility.rays.more);
+    const std::size_t count = sky.count(), words = count / 64;
+    visibility.more.assign(visibility.again.size() * words, 0);
+    parallel_for(visibility.again.size(), 128, [&](std::size_t begin, std::size_t end) {
+        progress.check_stop();
+        std::vector<glm::vec3> toward(count);
+        std::vector<TraceRay> rays(count);
+        std::vector<std::uint8_t> blocked(count);
+        std::array<glm::vec3, kSamplesAFragment> origins;
+        for (std::size_t at = begin; at < end; ++at) {
+            const std::size_t i = visibility.again[at];
+            more_directions_of(mesh, map, i, sky, toward);
+            ray_origins(mesh, map, i, origins);
+            for (std::size_t k = 0; k < count; ++k) {
+                rays[k].origin = origins[k % kSamplesAFragment];
+                rays[k].direction = toward[k];
+            }
+            tracer.occluded(rays, blocked, RayOrder::scattered);
+            for (std::size_t k = 0; k < count; ++k) {
+                if (blocked[k])
+                    visibility.more[at * words + k / 64] |= std::uint64_t{1} << (k % 64);
+            }
+        }
+    });
+}
+
+}  // namespace
+
+glm::vec3 sample_normal(const Mesh& mesh,
+                        const SurfaceMap& map,
+                        std::size_t fragment,
+                        std::size_t k) {
+    const SurfaceSample& s = map.samples[fragment * kSamplesAFragment + k];
+    const glm::uvec3 corners = mesh.triangles[s.triangle];
+    const glm::vec3 normal = glm::normalize(
+        (1.0f - s.barycentric.x - s.barycentric.y) * mesh.normals[corners.x] +
+        s.barycentric.x * mesh.normals[corners.y] + s.barycentric.y * mesh.normals[corners.z]);
+    const glm::vec3 mean = map.fragments[fragment].normal;
+    if (map.flat_normals.empty()) return glm::dot(normal, mean) < 0.0f ? -normal : normal;
+    // A relief turns all of a fragment's normals as it turns their mean
+    const glm::vec3 flat = map.flat_normals[fragment];
+    const glm::vec3 outward = glm::dot(normal, flat) < 0.0f ? -normal : normal;
+    const glm::vec3 turn = glm::cross(flat, mean), turned = glm::cross(turn, outward);
+    return glm::normalize(outward + turned +
+                          glm::cross(turn, turned) / (1.0f + glm::dot(flat, mean)));
+}
+
+glm::vec3 toward_eye(const Fragment& fragment, glm::dvec3 eye_mm) {
+    constexpr float kLowest = 1e-4f;
+    const glm::vec3 n = fragment.normal;
+    const auto wo = glm::vec3(glm::normalize(eye_mm - glm::dvec3(fragment.position_mm)));
+    const float cosine = glm::dot(n, wo);
+    if (cosine >= kLowest) return wo;
+    return glm::normalize(wo + (kLowest - cosine) * n);
+}
+
+float SkyVisibility::openness(std::size_t fragment) const {
+    return 1.0f -
+           static_cast<float>(std::popcount(blocked[fragment])) / static_cast<float>(rays.first);
+}
+
+SkyVisibility solve_sky_visibility(const Mesh& mesh,
+                                   const Tracer& tracer,
+                                   const SurfaceMap& map,
+                                   const SkyRays& sky_rays,
+                                   const Progress& progress) {
+    check_argument(
+        sky_rays.first > 0 && sky_rays.first <= 64,
+        fmt::format("{} sky directions a fragment, 1 to 64 are possible", sky_rays.first));
+    check_argument(sky_rays.more >= 0 && sky_rays.more % 64 == 0,
+                   fmt::format("{} more sky directions, no multiple of 64", sky_rays.more));
+    SkyVisibility result;
+    result.rays = sky_rays;
+    result.blocked.assign(map.fragments.size(), 0);
+    const SkyDirections sky(sky_rays.first);
+    parallel_for(map.fragments.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        progress.check_stop();
+        const std::size_t count = sky.count();
+        std::vector<glm::vec3> toward(count);
+        std::vector<TraceRay> rays(count);
+        std::vector<std::uint8_t> blocked(count);
+        std::array<glm::vec3, kSamplesAFragment> origins;
+        for (std::size_t i = begin; i < end; ++i) {
+            if (sky_rays.joints_only && map.fragments[i].coverage >= 1.0f) continue;
+            sky.around(map.fragments[i].normal, turn_of(i, 5u), toward);
+            ray_origins(mesh, map, i, origins);
+            for (std::size_t k = 0; k < count; ++k) {
+                rays[k].origin = origins[k % kSamplesAFragment];
+                rays[k].direction = toward[k];
+            }
+            tracer.occluded(rays, blocked, RayOrder::scattered);
+            for (std::size_t k = 0; k < count; ++k) {
+                if (blocked[k]) result.blocked[i] |= std::uint64_t{1} << k;
+            }
+        }
+    });
+    if (sky_rays.more > 0) look_again(mesh, tracer, map, progress, result);
+    return result;
+}
+
+std::vector<glm::vec3> sky_at_fragments(const Mesh& mesh,
+                                        const SurfaceMap& map,
+                                        const Environment& environment,
+                                        const FilteredEnvironment& filtered,
+                                        const SkyVisibility* visibility) {
+    const auto scale = static_cast<float>(environment.scale);
+    const SpherePlaces places(environment);
+    const SphereStack diffuse({&filtered.diffuse, 1});
+    const SphereStack blurred = visibility ? SphereStack({&filtered.blurred, 1}) : SphereStack();
+    const auto open_sky = [&](const glm::vec3& n) {
+        return scale * rgb_of(diffuse.at(places.of(n)).in(0));
+    };
+    // The same directions estimate the whole: the ratio is kinder to bright lamps
+    const auto share_seen = [&](std::span<const glm::vec3> directions, const std::uint64_t* words) {
+        Texel hidden{}, seen{};
+        for (std::size_t k = 0; k < directions.size(); ++k) {
+            const bool blocked = ((words[k / 64] >> (k % 64)) & 1u) != 0;
+            (blocked ? hidden : seen) += blurred.at(places.of(directions[k])).in(0);
+        }
+        return rgb_of(seen) / glm::max(rgb_of(hidden + seen), glm::vec3(1e-20f));
+    };
+    const SkyDirections sky(visibility ? visibility->rays.first : 0);
+    const SkyDirections more(visibility ? visibility->rays.more : 0);
+    std::vector<glm::vec3> result(map.fragments.size());
+    parallel_for(result.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        std::vector<glm::vec3> directions(sky.count());
+        for (std::size_t i = begin; i < end; ++i) {
+            const glm::vec3 n = map.fragments[i].normal;
+            result[i] = open_sky(n);
+            if (!visibility || visibility->blocked[i] == 0) continue;
+            sky.around(n, turn_of(i, 5u), directions);
+            result[i] *= share_seen(directions, &visibility->blocked[i]);
+        }
+    });
+    if (more.count() == 0) return result;
+    // Who looked again knows better
+    parallel_for(visibility->again.size(), 256, [&](std::size_t begin, std::size_t end) {
+        std::vector<glm::vec3> directions(more.count());
+        for (std::size_t at = begin; at < end; ++at) {
+            const std::size_t i = visibility->again[at];
+            more_directions_of(mesh, map, i, more, directions);
+            glm::vec3 light(0.0f);
+            for (std::size_t k = 0; k < kSamplesAFragment; ++k) {
+                light += open_sky(sample_normal(mesh, map, i, k));
+            }
+            result[i] = light / static_cast<float>(kSamplesAFragment) *
+                        share_seen(directions, &visibility->more[at * (more.count() / 64)]);
+        }
+    });
+    return result;
+}
+
+}  // namespace livery

@@ -1,0 +1,94 @@
+#include "radiance/light/sphere_lookup.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/parallel.h"
+
+namespace livery {
+namespace {
+
+using Mask = int __attribute__((vector_size(16)));
+
+Texel each(float value) { return Texel{value, value, value, value}; }
+
+Texel absolute(const Texel& v) {
+    constexpr int kAllButSign = 0x7fffffff;
+    return reinterpret_cast<Texel>(reinterpret_cast<Mask>(v) &
+                                   Mask{kAllButSign, kAllButSign, kAllButSign, kAllButSign});
+}
+
+/// Of the quotients of numbers that are not negative; 0 of two zeros. A polynomial on [0, 1],
+/// within 2e-6 rad.
+Texel first_quadrant_angle(const Texel& y, const Texel& x) {
+    const Texel larger = y > x ? y : x, smaller = y > x ? x : y;
+    const Texel t = smaller / (larger > 1e-30f ? larger : each(1e-30f));
+    const Texel t2 = t * t;
+    Texel p = each(-0.01172120f);
+    p = p * t2 + 0.05265332f;
+    p = p * t2 - 0.11643287f;
+    p = p * t2 + 0.19354346f;
+    p = p * t2 - 0.33262347f;
+    p = p * t2 + 0.99997726f;
+    const Texel angle = p * t;
+    return y > x ? 0.5f * std::numbers::pi_v<float> - angle : angle;
+}
+
+}  // namespace
+
+SpherePlaces::SpherePlaces(const Environment& environment)
+    : turns_([&] {
+          const double turns = environment.rotation_rad / (2.0 * std::numbers::pi) + 0.5;
+          return static_cast<float>(turns - std::floor(turns));
+      }()) {}
+
+SpherePlaces::Four SpherePlaces::of(const Texel& x, const Texel& y, const Texel& z) const {
+    constexpr float kPi = std::numbers::pi_v<float>;
+    constexpr float kTurn = 0.5f * std::numbers::inv_pi_v<float>;
+    // Clockwise from -z
+    Texel azimuth = first_quadrant_angle(absolute(x), absolute(z));
+    azimuth = z > 0.0f ? kPi - azimuth : azimuth;
+    Texel u = (x < 0.0f ? -azimuth : azimuth) * kTurn + turns_;
+    u = u >= 1.0f ? u - 1.0f : u;
+    u = u < 0.0f ? u + 1.0f : u;
+    const Texel level2 = x * x + z * z;
+    const Texel level{
+        std::sqrt(level2[0]), std::sqrt(level2[1]), std::sqrt(level2[2]), std::sqrt(level2[3])};
+    Texel polar = first_quadrant_angle(level, absolute(y));
+    polar = y < 0.0f ? kPi - polar : polar;
+    return {u, polar * std::numbers::inv_pi_v<float>};
+}
+
+glm::vec2 SpherePlaces::of(const glm::vec3& d) const {
+    const Four four = of(each(d.x), each(d.y), each(d.z));
+    return {four.u[0], four.v[0]};
+}
+
+SphereStack::SphereStack(std::span<const ImageF> pictures)
+    : width_(pictures.front().width), height_(pictures.front().height), count_(pictures.size()) {
+    texels_.resize(pictures.front().pixel_count() * count_);
+    parallel_for(static_cast<std::size_t>(height_), 16, [&](std::size_t begin, std::size_t end) {
+        const auto columns = static_cast<std::size_t>(width_);
+        for (std::size_t i = begin * columns; i < end * columns; ++i) {
+            for (std::size_t k = 0; k < count_; ++k) {
+                const float* rgb = &pictures[k].values[3 * i];
+                texels_[i * count_ + k] = Texel{rgb[0], rgb[1], rgb[2], 0.0f};
+            }
+        }
+    });
+}
+
+GaussianLayers::GaussianLayers(const FilteredEnvironment& filtered) {
+    const auto& all = filtered.gaussians;
+    count_ = all.size();
+    const auto other_size = std::find_if(all.begin(), all.end(), [&](const ImageF& picture) {
+        return picture.width != all.front().width;
+    });
+    sharp_count_ = static_cast<std::size_t>(other_size - all.begin());
+    const std::span<const ImageF> pictures(all);
+    sharp_ = SphereStack(pictures.first(sharp_count_));
+    wide_ = SphereStack(pictures.subspan(sharp_count_));
+}
+
+}  // namespace livery

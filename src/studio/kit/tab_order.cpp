@@ -1,0 +1,134 @@
+#include "studio/kit/tab_order.h"
+
+#include <algorithm>
+#include <vector>
+
+#include <imgui.h>
+#include <imgui_internal.h>
+
+namespace livery {
+
+namespace {
+
+struct Stop {
+    ImGuiID id = 0;
+    std::string name;
+    ImGuiWindow* window = nullptr;
+    ImGuiNavLayer layer = ImGuiNavLayer_Main;
+    ImGuiID focus_scope = 0;
+    ImRect rectangle;  ///< of the window's content
+    bool is_field = false;
+};
+
+// Panels name items deep inside their drawing; Dear ImGui's state is just as global.
+std::vector<Stop> stops;
+std::optional<std::size_t> group_start;
+
+/// The window that has the keyboard to itself: the topmost dialog or list, or none.
+const ImGuiWindow* keyboard_window() {
+    const ImGuiContext& g = *ImGui::GetCurrentContext();
+    for (int i = g.OpenPopupStack.Size - 1; i >= 0; --i) {
+        const ImGuiWindow* window = g.OpenPopupStack[i].Window;
+        if (window && !(window->Flags & ImGuiWindowFlags_Tooltip)) return window;
+    }
+    return nullptr;
+}
+
+bool is_inside(const ImGuiWindow* window, const ImGuiWindow* outer) {
+    for (; window; window = window->ParentWindow) {
+        if (window == outer) return true;
+        if (!(window->Flags & ImGuiWindowFlags_ChildWindow)) return false;
+    }
+    return false;
+}
+
+}  // namespace
+
+void start_tab_order() {
+    stops.clear();
+    group_start.reset();
+}
+
+void note_tab_stop(const std::string& name) {
+    const ImGuiContext& g = *ImGui::GetCurrentContext();
+    const ImGuiLastItemData& item = g.LastItemData;
+    ImGuiWindow* window = g.CurrentWindow;
+    const ImGuiItemFlags inert =
+        ImGuiItemFlags_Disabled | ImGuiItemFlags_NoNav | ImGuiItemFlags_NoTabStop;
+    if (item.ID == 0 || (item.InFlags & inert) != 0 || window->Hidden ||
+        (window->Flags & ImGuiWindowFlags_NoNavFocus) != 0) {
+        return;
+    }
+    // A group has the id of what is active in it.
+    const bool known =
+        std::any_of(stops.begin(), stops.end(), [&](const Stop& s) { return s.id == item.ID; });
+    if (known) return;
+    Stop stop;
+    stop.id = item.ID;
+    stop.name = name;
+    stop.window = window;
+    stop.layer = window->DC.NavLayerCurrent;
+    stop.focus_scope = window->DC.NavFocusScopeIdCurrent;
+    stop.rectangle = item.NavRect;
+    stop.rectangle.Translate({-window->Pos.x, -window->Pos.y});
+    stop.is_field = (item.InFlags & ImGuiItemFlags_Inputable) != 0;
+    stops.push_back(std::move(stop));
+}
+
+void begin_tab_group() { group_start = stops.size(); }
+
+void end_tab_group(std::optional<unsigned> preferred) {
+    if (!group_start) return;
+    const auto begin = stops.begin() + static_cast<std::ptrdiff_t>(*group_start);
+    group_start.reset();
+    if (begin == stops.end()) return;
+    const auto found =
+        std::find_if(begin, stops.end(), [&](const Stop& stop) { return stop.id == preferred; });
+    if (found != stops.end()) std::swap(*begin, *found);
+    stops.erase(begin + 1, stops.end());
+}
+
+void move_focus(int step) {
+    ImGuiContext& g = *ImGui::GetCurrentContext();
+    const ImGuiWindow* only = keyboard_window();
+    std::vector<Stop*> order;
+    for (Stop& stop : stops) {
+        // Without a dialog: the program's own window, which is where all begins.
+        const ImGuiWindow* outer = only ? only : stops.front().window->RootWindow;
+        if (is_inside(stop.window, outer)) order.push_back(&stop);
+    }
+    if (order.empty()) return;
+    const ImGuiID at = g.ActiveId != 0 ? g.ActiveId : g.NavId;
+    const auto now =
+        std::find_if(order.begin(), order.end(), [&](const Stop* stop) { return stop->id == at; });
+    const auto count = static_cast<std::ptrdiff_t>(order.size());
+    std::ptrdiff_t next = step > 0 ? 0 : count - 1;
+    if (now != order.end()) next = (now - order.begin() + step + count) % count;
+    const Stop& stop = *order[static_cast<std::size_t>(next)];
+    if (g.ActiveId != 0) ImGui::ClearActiveID();
+    ImGui::FocusWindow(stop.window);
+    ImGui::SetNavID(stop.id, stop.layer, stop.focus_scope, stop.rectangle);
+    g.NavDisableHighlight = false;
+    g.NavDisableMouseHover = true;
+    g.NavInputSource = ImGuiInputSource_Keyboard;
+    ImRect on_screen = stop.rectangle;
+    on_screen.Translate(stop.window->Pos);
+    ImGui::ScrollToBringRectIntoView(stop.window, on_screen);
+    if (stop.is_field) {
+        g.NavNextActivateId = stop.id;
+        g.NavNextActivateFlags = ImGuiActivateFlags_PreferInput;
+    }
+}
+
+std::string focused_item() {
+    const ImGuiContext& g = *ImGui::GetCurrentContext();
+    const bool reads_its_own_keys =
+        g.NavWindow && (g.NavWindow->Flags & ImGuiWindowFlags_NoNavInputs) != 0;
+    if (g.NavDisableHighlight && g.ActiveId == 0 && !reads_its_own_keys) return "";
+    const ImGuiID at = g.ActiveId != 0 ? g.ActiveId : g.NavId;
+    const auto found =
+        std::find_if(stops.begin(), stops.end(), [&](const Stop& stop) { return stop.id == at; });
+    return found == stops.end() ? std::string() : found->name;
+}
+
+}  // namespace livery

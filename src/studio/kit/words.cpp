@@ -1,0 +1,76 @@
+#include "studio/kit/words.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <string_view>
+
+#include <fmt/format.h>
+
+namespace livery {
+
+namespace {
+
+/// Whether a text is like a pattern in which 0 stands for any digit.
+bool is_like(const std::string& text, std::string_view pattern) {
+    if (text.size() != pattern.size()) return false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const bool digit = std::isdigit(static_cast<unsigned char>(text[i])) != 0;
+        if (pattern[i] == '0' ? !digit : text[i] != pattern[i]) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+std::string readable_number(double value) {
+    const double size = std::abs(value);
+    if (!std::isfinite(value)) return fmt::format("{}", value);
+    if (size >= 1e15 || (size > 0.0 && size < 1e-6)) return fmt::format("{:.3g}", value);
+    if (size < 999.95) {
+        // Four digits that count, without zeros at the end.
+        const int whole = size < 1.0 ? 0 : static_cast<int>(std::floor(std::log10(size))) + 1;
+        const int leading =
+            size > 0.0 && size < 1.0 ? -static_cast<int>(std::floor(std::log10(size))) - 1 : 0;
+        std::string text = fmt::format("{:.{}f}", value, std::max(0, 4 - whole + leading));
+        if (text.find('.') == std::string::npos) return text;
+        text.erase(text.find_last_not_of('0') + 1);
+        if (text.back() == '.') text.pop_back();
+        return text == "-0" ? "0" : text;
+    }
+    std::string text = fmt::format("{:.0f}", value);
+    const std::size_t first = text.front() == '-' ? 1 : 0;
+    for (std::size_t at = text.size(); at > first + 3;) {
+        at -= 3;
+        text.insert(at, 1, ',');
+    }
+    return text;
+}
+
+std::string milliseconds(double ms) {
+    if (ms >= 1000.0) return fmt::format("{:.2f} s", 1e-3 * ms);
+    return ms >= 100.0 ? fmt::format("{:.0f} ms", ms) : fmt::format("{:.1f} ms", ms);
+}
+
+std::string sentence(std::string text) {
+    if (text.empty()) return text;
+    text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+    if (std::string_view(".!?:").find(text.back()) == std::string_view::npos) text += '.';
+    return text;
+}
+
+std::string readable_time(const std::string& iso_8601) {
+    if (!is_like(iso_8601, "0000-00-00T00:00:00Z")) return iso_8601;
+    return fmt::format("{} {} UTC", iso_8601.substr(0, 10), iso_8601.substr(11, 5));
+}
+
+std::string readable_calibration(const std::string& folder_name) {
+    if (!is_like(folder_name.substr(0, 21), "0000-00-00T00-00-00Z-")) return folder_name;
+    return fmt::format("{} {}:{} · {}",
+                       folder_name.substr(0, 10),
+                       folder_name.substr(11, 2),
+                       folder_name.substr(14, 2),
+                       folder_name.substr(21));
+}
+
+}  // namespace livery

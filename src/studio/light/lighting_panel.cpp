@@ -1,0 +1,343 @@
+// Lights, environment, eye, exposure and quality: how the look is lit and seen.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <imgui.h>
+
+#include "core/error.h"
+#include "mesh/mesh.h"
+#include "studio/kit/theme.h"
+#include "studio/kit/ui_map.h"
+#include "studio/kit/widgets.h"
+#include "studio/light/environment_choice.h"
+#include "studio/light/light_pad.h"
+#include "studio/light/light_values.h"
+#include "studio/quality_costs.h"
+#include "studio/studio.h"
+#include "twin/description.h"
+
+namespace livery {
+
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr std::size_t kMostLights = 8;
+
+bool same_light(const DirectionalLight& a, const DirectionalLight& b) {
+    return a.direction == b.direction && a.radiance_rec709 == b.radiance_rec709 &&
+           a.angle_rad == b.angle_rad;
+}
+
+bool same_lighting(const Look& a, const Look& b) {
+    return std::equal(
+               a.lights.begin(), a.lights.end(), b.lights.begin(), b.lights.end(), same_light) &&
+           a.environment.file == b.environment.file &&
+           a.environment.rotation_rad == b.environment.rotation_rad &&
+           a.environment.scale == b.environment.scale;
+}
+
+const glm::dvec3& product_centre(Studio& studio) {
+    LightingPanelState& state = studio.panels.lighting;
+    if (studio.product && state.centre_of != studio.product) {
+        const Bounds bounds = bounds_of(studio.product->mesh);
+        state.centre_mm = 0.5 * (bounds.low + bounds.high);
+        state.centre_of = studio.product;
+    }
+    return state.centre_mm;
+}
+
+/// Along the panel's upper edge and over it: what the pointer is on stays where it is when solving
+/// begins or ends, as it does with every light and environment that is tried.
+void draw_solving(const Studio& studio) {
+    if (!studio.frames) return;
+    const auto solving = studio.frames->solving();
+    if (!solving) return;
+    const auto done = static_cast<float>(std::clamp(solving->fraction, 0.0, 1.0));
+    const ImVec2 low = ImGui::GetWindowPos();
+    const float width = ImGui::GetWindowWidth(), height = std::max(2.0f, em(0.2f));
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddRectFilled(
+        low, {low.x + width, low.y + height}, ImGui::GetColorU32(ImGuiCol_FrameBgHovered));
+    list.AddRectFilled(
+        low, {low.x + done * width, low.y + height}, ImGui::GetColorU32(ImGuiCol_PlotHistogram));
+    name_rectangle("solving", low.x, low.y, width, height);
+}
+
+/// One control of one light, the value taken over while it is held.
+class LightRows {
+  public:
+    LightRows(Studio& studio, Look& edited, std::size_t light)
+        : studio_(studio), edited_(edited), light_(light) {}
+
+    void after_item(const char* name, const std::string& meaning) {
+        name_last_item(fmt::format("light:{}:{}", light_, name));
+        tooltip(meaning);
+        studio_.panels.lighting.held.after_item();
+        edit_with_last_item(studio_, SetLights{studio_.shown_look, edited_.lights});
+    }
+
+  private:
+    Studio& studio_;
+    Look& edited_;
+    std::size_t light_;
+};
+
+void draw_direction(LightRows& rows, DirectionalLight& light) {
+    Angles angles = angles_of(light.direction);
+    row_label("Azimuth");
+    number_slider("##azimuth", angles.azimuth_deg, -180.0, 180.0, "%.1f°");
+    if (last_item_is_held()) light.direction = direction_of(angles);
+    rows.after_item("azimuth", "0° is behind the product (-z), 90° on its right (+x).");
+    row_label("Elevation");
+    // Straight above and below the azimuth would be lost.
+    number_slider("##elevation", angles.elevation_deg, -89.9, 89.9, "%.1f°");
+    if (last_item_is_held()) light.direction = direction_of(angles);
+    rows.after_item("elevation", "0° is the horizon, 90° straight above.");
+}
+
+/// `before` keeps the colour while the light is dragged to nothing and back.
+void draw_strength(LightRows& rows, DirectionalLight& light, const DirectionalLight& before) {
+    StrengthColour now = split_radiance(light.radiance_rec709);
+    if (now.strength == 0.0)
+        now.colour_rec709 = split_radiance(before.radiance_rec709).colour_rec709;
+    double ev = ev_of(now.strength);
+    row_label("Strength");
+    number_slider("##strength", ev, kOffEv, 6.0, ev <= kOffEv ? "off" : "%+.2f EV");
+    if (last_item_is_held()) light.radiance_rec709 = strength_of(ev) * now.colour_rec709;
+    rows.after_item(
+        "intensity",
+        fmt::format("A white card that faces this light has radiance {:.3g}; at 0 EV it has 1.",
+                    now.strength));
+    row_label("Colour");
+    glm::dvec3 colour = now.colour_rec709;
+    colour_control("light-colour", colour);
+    const double largest = std::max({colour.x, colour.y, colour.z});
+    if (colour != now.colour_rec709 && largest > 0.0 && now.strength > 0.0) {
+        light.radiance_rec709 = (now.strength / largest) * colour;
+    }
+    rows.after_item("colour", "Only hue and saturation count: its brightness is the strength.");
+}
+
+void draw_angle(LightRows& rows, DirectionalLight& light) {
+    double degrees = kDegrees * light.angle_rad;
+    row_label("Size");
+    ratio_slider("##angle", degrees, 0.0, 180.0, degrees <= 0.0 ? "a point" : "%.1f°");
+    if (last_item_is_held()) light.angle_rad = degrees / kDegrees;
+    rows.after_item("angle",
+                    "Angular diameter: 0 casts sharp shadows, 0.5° is the sun's, 3° a "
+                    "lamp's, 30° a large soft box's.");
+}
+
+void draw_light(Studio& studio, Look& edited, const Look& before, std::size_t i) {
+    ImGui::PushID(static_cast<int>(i));
+    const std::string title = fmt::format("{}  {}###light", i + 1, light_name(i));
+    bool keep = true;
+    ImGui::SetNextItemOpen(i < 2, ImGuiCond_Once);
+    const bool open = section_header(title.c_str(), &keep);
+    name_last_item(fmt::format("light:{}", i));
+    if (!keep) {
+        auto lights = before.lights;
+        lights.erase(lights.begin() + static_cast<std::ptrdiff_t>(i));
+        commit(studio, SetLights{studio.shown_look, lights});
+    }
+    if (open && keep) {
+        LightRows rows(studio, edited, i);
+        draw_direction(rows, edited.lights[i]);
+        draw_strength(rows, edited.lights[i], before.lights[i]);
+        draw_angle(rows, edited.lights[i]);
+    }
+    ImGui::PopID();
+}
+
+void draw_lights(Studio& studio, Look& edited, const Look& before) {
+    heading("Lights");
+    const glm::dvec3 toward_eye = studio.session.document().eye_mm - product_centre(studio);
+    const float side = std::min(em(9.5f), ImGui::GetContentRegionAvail().x);
+    light_pad(edited.lights, toward_eye, side, [&] {
+        studio.panels.lighting.held.after_item();
+        edit_with_last_item(studio, SetLights{studio.shown_look, edited.lights});
+    });
+    ImGui::SameLine();
+    ImGui::BeginGroup();
+    begin_disabled(before.lights.size() >= kMostLights);
+    if (ImGui::Button("Add light")) {
+        auto lights = before.lights;
+        DirectionalLight light;
+        light.direction = glm::normalize(glm::dvec3(0.3, 1.0, 0.6));
+        light.radiance_rec709 = glm::dvec3(0.25);
+        light.angle_rad = 3.0 / kDegrees;
+        lights.push_back(light);
+        commit(studio, SetLights{studio.shown_look, lights});
+    }
+    name_last_item("add-light");
+    end_disabled();
+    dim_text(before.lights.empty() ? "This look has no lights."
+                                   : "Pull a dot: the middle is straight above, the rim the "
+                                     "horizon.");
+    ImGui::EndGroup();
+    for (std::size_t i = 0; i < edited.lights.size() && i < before.lights.size(); ++i) {
+        draw_light(studio, edited, before, i);
+    }
+}
+
+void draw_sharing(Studio& studio, const Look& look) {
+    const auto& looks = studio.session.document().looks;
+    const bool shared = std::all_of(looks.begin(), looks.end(), [&](const SessionLook& other) {
+        return same_lighting(other.look, look);
+    });
+    begin_disabled(shared);
+    if (ImGui::Button("Same light for all looks")) commit(studio, ShareLighting{studio.shown_look});
+    name_last_item("share-lighting");
+    tooltip("Gives every look these lights and this environment, so that only the paints differ.");
+    end_disabled();
+    if (looks.size() > 1) {
+        dim_text(shared ? "All looks have this light." : "Other looks have another light.");
+    }
+}
+
+void draw_eye_angles(Studio& studio, glm::dvec3& eye_mm) {
+    const glm::dvec3 centre = product_centre(studio);
+    Held<glm::dvec3>& held = studio.panels.lighting.held_eye_mm;
+    const auto row = [&](const char* label, const char* name, const char* meaning, auto change) {
+        Polar polar = polar_of(eye_mm, centre);
+        row_label(label);
+        change(polar);
+        if (last_item_is_held()) eye_mm = point_of(polar, centre);
+        name_last_item(name);
+        tooltip(meaning);
+        held.after_item();
+        edit_with_last_item(studio, SetEye{eye_mm});
+    };
+    row("Distance", "eye:distance", "From the middle of the mock-up.", [](Polar& polar) {
+        ratio_slider("##distance", polar.distance_mm, 100.0, 10000.0, "%.0f mm");
+    });
+    row("Azimuth",
+        "eye:azimuth",
+        "0° is behind the product (-z), 90° on its right (+x).",
+        [](Polar& polar) {
+            number_slider("##azimuth", polar.angles.azimuth_deg, -180.0, 180.0, "%.1f°");
+        });
+    row("Elevation", "eye:elevation", "0° is level with the mock-up's middle.", [](Polar& polar) {
+        number_slider("##elevation", polar.angles.elevation_deg, -89.9, 89.9, "%.1f°");
+    });
+    vector_row(
+        "x, y, z (mm)", "eye", eye_mm, 2.0f, "%.0f", "In the product's frame: y is up.", [&] {
+            held.after_item();
+            edit_with_last_item(studio, SetEye{eye_mm});
+        });
+}
+
+/// Read once a bench: a panel is drawn sixty times a second.
+std::optional<glm::dvec3> observer_mm(Studio& studio) {
+    LightingPanelState& state = studio.panels.lighting;
+    const std::string& bench = studio.session.document().bench;
+    if (state.observer_of == bench) return state.observer_mm;
+    state.observer_of = bench;
+    state.observer_mm.reset();
+    try {
+        state.observer_mm = read_bench_file(bench).eye_mm;
+    } catch (const FileError&) {
+        // The calibration's tab says what is wrong with the bench.
+    }
+    return state.observer_mm;
+}
+
+void draw_eye_at_observer(Studio& studio) {
+    const auto observer = observer_mm(studio);
+    const bool there = observer && *observer == studio.session.document().eye_mm;
+    begin_disabled(!observer || there);
+    if (ImGui::Button("Eye at the bench's observer") && observer) {
+        commit(studio, SetEye{*observer});
+    }
+    end_disabled();
+    name_last_item("eye-at-observer");
+    tooltip(there ? "The eye stands there: where the bench measures what an observer sees."
+                  : "Puts the eye back where the bench measures what an observer sees. The "
+                    "photograph is taken from the eye, wherever it stands.");
+}
+
+void draw_eye(Studio& studio) {
+    LightingPanelState& state = studio.panels.lighting;
+    heading("Eye");
+    tooltip(
+        "Where the audience looks from: highlights sit where this eye sees them, and the "
+        "photograph is taken from here.");
+    ImGui::PushID("eye");
+    glm::dvec3& eye_mm = state.held_eye_mm.start(studio.session.document().eye_mm);
+    draw_eye_angles(studio, eye_mm);
+    state.held_eye_mm.finish();
+    draw_eye_at_observer(studio);
+    ImGui::PopID();
+}
+
+void draw_exposure(Studio& studio) {
+    LightingPanelState& state = studio.panels.lighting;
+    heading("Exposure");
+    double& ev = state.held_ev.start(studio.session.document().exposure_ev);
+    row_label("Exposure");
+    number_slider("##exposure", ev, -6.0, 6.0, "%+.2f EV");
+    name_last_item("exposure");
+    tooltip("Brightness of all looks alike; +1 doubles it.");
+    state.held_ev.after_item();
+    edit_with_last_item(studio, SetExposure{ev});
+    state.held_ev.finish();
+}
+
+void draw_quality(Studio& studio) {
+    heading("Quality");
+    const Quality chosen = studio.session.document().quality;
+    const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
+    const float width = std::floor((ImGui::GetContentRegionAvail().x - 2.0f * gap) / 3.0f);
+    constexpr std::array qualities{Quality::draft, Quality::normal, Quality::high};
+    for (const Quality quality : qualities) {
+        if (quality != Quality::draft) ImGui::SameLine(0.0f, gap);
+        const std::string name = to_string(quality);
+        if (toggle_button(name.c_str(), quality == chosen, width) && quality != chosen) {
+            commit(studio, SetQuality{quality});
+        }
+        name_last_item("quality:" + name);
+        tooltip(quality_text(studio, quality));
+    }
+    dim_text(quality_text(studio, chosen));
+}
+
+}  // namespace
+
+void draw_lighting_panel(Studio& studio) {
+    LightingPanelState& state = studio.panels.lighting;
+    const SessionLook* shown = find_look(studio.session.document(), studio.shown_look);
+    if (!shown) {
+        dim_text("There is no look to light.");
+        return;
+    }
+    draw_solving(studio);
+    const Look before = shown->look;
+    // Another look, or undo while a control is held: its lights count, not the held ones.
+    if (state.lit_look != studio.shown_look) state.held = {};
+    state.lit_look = studio.shown_look;
+    Look& edited = state.held.start(before);
+    if (edited.lights.size() != before.lights.size()) edited = before;
+    draw_lights(studio, edited, before);
+    ImGui::Spacing();
+    heading("Environment");
+    draw_environment_choice(studio, edited.environment, [&] {
+        state.held.after_item();
+        edit_with_last_item(studio, SetEnvironment{studio.shown_look, edited.environment});
+    });
+    state.held.finish();
+    draw_sharing(studio, before);
+    ImGui::Spacing();
+    draw_eye(studio);
+    ImGui::Spacing();
+    draw_exposure(studio);
+    ImGui::Spacing();
+    draw_quality(studio);
+}
+
+}  // namespace livery

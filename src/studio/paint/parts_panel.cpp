@@ -1,0 +1,54 @@
+// The product's parts, and the paint that the shown look gives each.
+#include <imgui.h>
+
+#include "studio/kit/theme.h"
+#include "studio/paint/chosen_part.h"
+#include "studio/studio.h"
+
+namespace livery {
+
+void draw_parts_panel(Studio& studio) {
+    heading("Parts");
+    const Document document = shown_document(studio);
+    const SessionLook* look = find_look(document, studio.shown_look);
+    if (!look || !studio.product) return;
+    studio.hovered_part.reset();
+    const auto& parts = studio.product->mesh.parts;
+    for (int i = 0; i < static_cast<int>(parts.size()); ++i) {
+        const std::string& name = parts[static_cast<std::size_t>(i)].name;
+        ImGui::PushID(i);
+        const ImVec2 from = ImGui::GetCursorScreenPos();
+        const float width = ImGui::GetContentRegionAvail().x;
+        const float height = 2.0f * ImGui::GetTextLineHeight() + em(0.45f);
+        if (ImGui::Selectable("##part", studio.selected_part == i, 0, {width, height})) {
+            select_part(studio, i);
+        }
+        name_last_item("part:" + name);
+        if (ImGui::IsItemHovered()) studio.hovered_part = i;
+        ImDrawList& list = *ImGui::GetWindowDrawList();
+        const ImVec4 clip(from.x, from.y, from.x + width, from.y + height);
+        const ImVec2 at(from.x + em(0.5f), from.y + em(0.15f));
+        list.AddText(nullptr,
+                     0.0f,
+                     at,
+                     ImGui::GetColorU32(colours::text),
+                     name.c_str(),
+                     nullptr,
+                     0.0f,
+                     &clip);
+        const std::string own = worn_paint(look->look, name);
+        const std::string paint = own.empty() ? "as in its file" : own;
+        list.AddText(
+            small_font(),
+            small_font()->FontSize,
+            {at.x, at.y + ImGui::GetTextLineHeight() + em(0.1f)},
+            ImGui::GetColorU32(studio.selected_part == i ? colours::text : colours::dim_text),
+            paint.c_str(),
+            nullptr,
+            0.0f,
+            &clip);
+        ImGui::PopID();
+    }
+}
+
+}  // namespace livery

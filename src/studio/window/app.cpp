@@ -1,0 +1,569 @@
+#include "studio/window/app.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <csignal>
+#include <future>
+#include <utility>
+#include <vector>
+
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+#include <glm/common.hpp>
+#include <imgui.h>
+#include <imgui_internal.h>
+
+#include "core/freed_memory.h"
+#include "core/log.h"
+#include "core/paths.h"
+#include "scene/library.h"
+#include "studio/kit/tab_order.h"
+#include "studio/kit/theme.h"
+#include "studio/kit/ui_map.h"
+#include "studio/projector_control.h"
+#include "studio/quality_costs.h"
+#include "studio/window/actions.h"
+#include "studio/window/imgui_window.h"
+#include "studio/window/running_window.h"
+#include "studio/window/shell.h"
+#include "studio/window/shell_state.h"
+#include "studio/window/window_icon.h"
+#include "studio/window/window_place.h"
+#include "studio/window/wiring.h"
+
+namespace livery {
+
+namespace {
+
+// Dear ImGui settles within this many frames after an input.
+constexpr int kFramesAfterInput = 3;
+constexpr double kShortestFrame_s = 1.0 / 60.0;
+constexpr double kLongestFrame_s = 0.1;  // While input comes in faster than it can be drawn.
+constexpr double kLongestOpening_s = 1.2;
+// What waits for the opening's end loads libraries, which holds up every thread that draws.
+constexpr double kOnItsWayToTheScreen_s = 0.15;
+constexpr double kGiveWay_s = 0.004;
+
+// Not Caps Lock and Num Lock.
+constexpr int kRealModifiers = GLFW_MOD_CONTROL | GLFW_MOD_SHIFT | GLFW_MOD_ALT | GLFW_MOD_SUPER;
+
+bool monitors_have_changed = false;  // Set by GLFW's callback, which carries no pointer.
+
+/// GLFW tells of monitors that come and go, not of those that move.
+std::vector<std::array<int, 4>> places_of_monitors() {
+    std::vector<std::array<int, 4>> places;
+    int count = 0;
+    GLFWmonitor** const monitors = glfwGetMonitors(&count);
+    for (int i = 0; i < count; ++i) {
+        auto& place = places.emplace_back();
+        glfwGetMonitorPos(monitors[i], &place[0], &place[1]);
+        if (const GLFWvidmode* mode = glfwGetVideoMode(monitors[i])) {
+            place[2] = mode->width;
+            place[3] = mode->height;
+        }
+    }
+    return places;
+}
+
+double now_s() { return seconds_of(std::chrono::steady_clock::now()); }
+
+std::filesystem::path session_file(const DesktopOptions& options) {
+    return options.session.empty() ? default_session_file() : options.session;
+}
+
+Session open_session(const DesktopOptions& options) {
+    const auto file = session_file(options);
+    const std::string product = options.product.empty() ? "car" : options.product;
+    try {
+        Session session = Session::open(file, product, options.unit);
+        if (!options.product.empty() && session.document().product != product_reference(product)) {
+            throw Refused(fmt::format("the session {} shows the product {}, not {}",
+                                      file.string(),
+                                      session.document().product,
+                                      options.product),
+                          "name another file with --session, which will be made");
+        }
+        return session;
+    } catch (const FileError& error) {
+        log_line(LogLevel::error, std::string("session: ") + error.what());
+        return Session::unsaved(new_document(product, options.unit), error.what());
+    }
+}
+
+void tell_product_notes(Studio& studio) {
+    std::string notes;
+    for (const std::string& note : studio.product->notes) {
+        notes += (notes.empty() ? "" : "\n") + note;
+    }
+    if (notes.empty()) return;
+    notify(studio,
+           {Notice::Level::warning, "The product's file was not used as it is:", notes, ""});
+}
+
+void tell_drawing_problems(Studio& studio) {
+    for (const std::string& problem : drawing_problems(studio.session.document())) {
+        notify(studio,
+               {Notice::Level::warning,
+                problem,
+                "",
+                "Put the file back, or choose another; then change something to draw it again."});
+    }
+}
+
+/// A monitor's part of the desktop that the window lies on, and its scale.
+float screen_scale(GLFWwindow* window, const std::vector<Monitor>& monitors) {
+    float content_scale = 1.0f;
+    glfwGetWindowContentScale(window, &content_scale, nullptr);
+    int x = 0, y = 0;
+    glfwGetWindowPos(window, &x, &y);
+    glm::ivec2 size{0};
+    for (const Monitor& m : monitors) {
+        if (x >= m.x && y >= m.y && x < m.x + m.width && y < m.y + m.height)
+            size = {m.width, m.height};
+    }
+    return static_cast<float>(default_scale(content_scale, size));
+}
+
+WindowPlace place_of(GLFWwindow* window) {
+    WindowPlace place;
+    glfwGetWindowPos(window, &place.position.x, &place.position.y);
+    glfwGetWindowSize(window, &place.size_px.x, &place.size_px.y);
+    place.maximised = glfwGetWindowAttrib(window, GLFW_MAXIMIZED) != 0;
+    return place;
+}
+
+glm::ivec2 least_size(const Shell& shell,
+                      const std::vector<Monitor>& monitors,
+                      const glm::ivec2& position) {
+    double scale = 1.0;
+    for (const Monitor& m : monitors) {
+        if (position.x >= m.x && position.y >= m.y && position.x < m.x + m.width &&
+            position.y < m.y + m.height) {
+            scale = default_scale(1.0f, {m.width, m.height});
+        }
+    }
+    scale = shell.fixed_scale.value_or(scale * shell.user_scale);
+    return glm::ivec2(glm::dvec2(kLeastSize_px) * scale);
+}
+
+/// Where the window was left, or in the middle of the main monitor.
+WindowPlace first_place(const Shell& shell, const DesktopOptions& options) {
+    const auto& monitors = shell.studio.monitors;
+    const auto remembered = shell.studio.session.workspace().find(kWindowKey);
+    std::optional<WindowPlace> place;
+    if (remembered != shell.studio.session.workspace().end()) {
+        place = parse_window_place(remembered->second);
+    }
+    if (!place) {
+        place = WindowPlace{};
+        const auto main = std::find_if(
+            monitors.begin(), monitors.end(), [](const Monitor& m) { return m.primary; });
+        if (main != monitors.end()) {
+            const double scale = default_scale(1.0f, {main->width, main->height});
+            place->size_px = {std::min(main->width, static_cast<int>(1280 * scale)),
+                              std::min(main->height, static_cast<int>(800 * scale))};
+            place->position = {main->x + (main->width - place->size_px.x) / 2,
+                               main->y + (main->height - place->size_px.y) / 2};
+        }
+    }
+    // It may have been left on a screen with larger pixels.
+    place->size_px = glm::max(place->size_px, least_size(shell, monitors, place->position));
+    if (options.size_px) {
+        place->size_px = *options.size_px;
+        place->maximised = false;
+    }
+    return place_beside_projector(*place, monitors, shell.projector_monitor).value_or(*place);
+}
+
+void put_window(GLFWwindow* window, const WindowPlace& place) {
+    glfwSetWindowSize(window, place.size_px.x, place.size_px.y);
+    glfwSetWindowPos(window, place.position.x, place.position.y);
+    if (place.maximised) glfwMaximizeWindow(window);
+}
+
+/// Off the projector, when the projector was chosen or monitors came and went.
+void move_off_projector(Shell& shell, GLFWwindow* window) {
+    shell.window_must_move = false;
+    const WindowPlace now = place_of(window);
+    if (!must_move(now, shell.studio.monitors, shell.projector_monitor)) return;
+    const auto place = place_beside_projector(now, shell.studio.monitors, shell.projector_monitor);
+    if (!place || *place == now) return;
+    if (now.maximised) glfwRestoreWindow(window);
+    put_window(window, *place);
+}
+
+KeyboardOwner keyboard_owner(const Shell& shell) {
+    const ImGuiContext& g = *ImGui::GetCurrentContext();
+    KeyboardOwner owner;
+    // As of the last frame; WantTextInput is older by one.
+    owner.text_field = g.ActiveId != 0 && g.ActiveId == g.InputTextState.ID;
+    owner.dialog = ImGui::GetTopMostPopupModal() != nullptr;
+    owner.ballot_letters = ballot_letters(shell.studio);
+    owner.keyboard_navigation =
+        g.IO.NavVisible || g.OpenPopupStack.Size > 0 || shell.studio.panels.library.owns_arrows;
+    return owner;
+}
+
+/// Runs what a key means; true when it meant something.
+bool handle_key(Shell& shell, const InputEvent& event) {
+    if (event.kind == InputEvent::Kind::focus) {
+        if (!event.down) shell.studio.showing_b = false;
+        return false;
+    }
+    if (event.code == GLFW_KEY_TAB && (event.modifiers & ~GLFW_MOD_SHIFT & kRealModifiers) == 0) {
+        if (event.down) shell.tab_step = (event.modifiers & GLFW_MOD_SHIFT) != 0 ? -1 : 1;
+        return true;
+    }
+    const KeyChord chord{event.code,
+                         (event.modifiers & GLFW_MOD_CONTROL) != 0,
+                         (event.modifiers & GLFW_MOD_SHIFT) != 0};
+    if (!event.down) {
+        // Whatever the modifiers are by now: what was held is let go.
+        for (const Action& action : all_actions()) {
+            const bool its_key =
+                std::any_of(action.chords.begin(), action.chords.end(), [&](const KeyChord& c) {
+                    return c.key == event.code;
+                });
+            if (action.released && its_key) action.released(shell);
+        }
+        return false;
+    }
+    if ((event.modifiers & (GLFW_MOD_ALT | GLFW_MOD_SUPER)) != 0) return false;
+    const KeyboardOwner owner = keyboard_owner(shell);
+    const Action* action = action_for(chord, owner);
+    // Dear ImGui has a meaning of its own for Tab and would use it for its list of windows.
+    if (!action && chord.key == GLFW_KEY_TAB) return true;
+    if (!action) return chord.key == GLFW_KEY_SPACE && !owner.text_field && !owner.dialog;
+    // Esc closes an open menu, and that is all it does then.
+    ImGuiContext& g = *ImGui::GetCurrentContext();
+    if (action->id == "give-up" && !owner.dialog && g.OpenPopupStack.Size > 0) {
+        ImGui::ClosePopupToLevel(0, false);
+        g.NavDisableHighlight = true;
+        g.NavLayer = ImGuiNavLayer_Main;
+        return true;
+    }
+    const bool repeats = action->id == "undo" || action->id == "redo" || action->id == "larger" ||
+                         action->id == "smaller" || action->id == "next-look" ||
+                         action->id == "previous-look" || action->id == "next-tab" ||
+                         action->id == "previous-tab";
+    if (event.repeated && !repeats) return true;
+    run_action(*action, shell);
+    if (action->id != "give-up") return true;
+    if (ImGui::IsAnyItemActive()) ImGui::ClearActiveID();
+    return false;  // Panels may have something of their own to give up.
+}
+
+/// The earliest moment at which something on the window changes by itself.
+std::optional<double> next_change_s(const Shell& shell) {
+    std::optional<double> next;
+    const auto consider = [&](double when_s) {
+        if (when_s > 0.0 && (!next || when_s < *next)) next = when_s;
+    };
+    for (const Notice& notice : shell.studio.notices) consider(notice.shown_until_s);
+    consider(shell.layout_rests_at_s);
+    if (shell.studio.glowing_part) consider(shell.studio.glowing_until_s);
+    if (shell.monitor_numbers) consider(shell.monitor_numbers_until_s);
+    const ImGuiContext& g = *ImGui::GetCurrentContext();
+    if (g.HoveredId != 0 && g.HoveredIdTimer < kTooltipAfter_s) {
+        consider(shell.studio.now_s + static_cast<double>(kTooltipAfter_s - g.HoveredIdTimer) +
+                 0.02);
+    }
+    if (shell.save_again_at_s > 0.0) consider(shell.save_again_at_s);
+    if (shell.studio.opening) consider(shell.studio.now_s + kOnItsWayToTheScreen_s);
+    if (shell.preview_waits_until_s > 0.0) consider(shell.preview_waits_until_s);
+    const double spoken_of_s = shell.frame_asked_s + kUnspokenWait_s;
+    if (spoken_of_s > shell.studio.now_s) consider(spoken_of_s);
+    // A blinking text cursor.
+    if (ImGui::GetIO().WantTextInput) consider(shell.studio.now_s + 0.4);
+    // Progress is read, not told.
+    if (shell.studio.frames->solving() || shell.studio.bench->calibrating().running) {
+        consider(shell.studio.now_s + 0.25);
+    }
+    return next;
+}
+
+class Desktop {
+  public:
+    Desktop(const DesktopOptions& options, Session session)
+        : options_(options), shell_(std::move(session)) {
+        // Beside the making of windows, which takes as long.
+        const Document& document = shell_.studio.session.document();
+        product_ =
+            std::async(std::launch::async, [name = document.product, unit = document.product_unit] {
+                return find_product(name, unit);
+            });
+    }
+
+    int run() {
+        prepare();
+        while (!shell_.quit && !glfwWindowShouldClose(window_->native())) {
+            wait_for_something();
+            draw_frame();
+        }
+        finish();
+        return 0;
+    }
+
+  private:
+    void prepare() {
+        Studio& studio = shell_.studio;
+        if (!options_.trace.empty()) shell_.trace = std::make_shared<Trace>(options_.trace);
+        if (!options_.ui_map.empty()) ui_map_.emplace(options_.ui_map);
+        shell_.fixed_scale = options_.ui_scale;
+        studio.settings = read_user_settings();
+        restore_workspace(shell_);
+        studio.monitors = list_monitors();
+        const WindowPlace place = first_place(shell_, options_);
+        WindowOptions window_options;
+        window_options.size_px = place.size_px;
+        window_options.visible = false;
+        window_ = std::make_unique<Window>(window_options);
+        put_window(window_->native(), place);
+        window_->make_current();
+        glfwSwapInterval(0);
+        log_line(LogLevel::info, "drawing with " + window_->renderer());
+        imgui_ = std::make_unique<ImGuiWindow>(*window_);
+        glfwSetMonitorCallback([](GLFWmonitor*, int) { monitors_have_changed = true; });
+        studio.product = product_.get();
+        shell_.product_bounds = bounds_of(studio.product->mesh);
+        studio.picker = std::make_unique<PartPicker>(studio.product);
+        studio.file_dialog = std::make_unique<FileDialog>(studio.settings);
+        // What is told before the first frame is shown for as long as the rest.
+        studio.now_s = now_s();
+        open_ballots(shell_);
+        keep_shown_looks_valid(studio);
+        contexts_ = start_threads(shell_, *window_);
+        tell_product_notes(studio);
+        tell_drawing_problems(studio);
+        tell_unsaved(shell_);
+        monitors_changed(shell_);
+        glfwShowWindow(window_->native());
+        if (const auto file = studio.session.file()) {
+            running_window_.emplace(*file, [this] {
+                asked_for_ = true;
+                wake_main_thread();
+            });
+        }
+        frames_to_draw_ = kFramesAfterInput;
+    }
+
+    void wait_for_something() {
+        if (frames_to_draw_ > 0 || imgui_->has_input()) {
+            // Not faster than a screen can show; input comes in while waiting.
+            double rest = last_drawn_s_ + kShortestFrame_s - now_s();
+            // Whoever is given way to has this processor as well.
+            if (std::exchange(gave_way_, false)) rest = std::max(rest, kGiveWay_s);
+            if (rest > 0.0 && !imgui_->has_input()) {
+                glfwWaitEventsTimeout(rest);
+            } else {
+                glfwPollEvents();
+            }
+        } else if (const auto next = next_change_s(shell_)) {
+            glfwWaitEventsTimeout(std::max(0.001, *next - now_s()));
+            frames_to_draw_ = 1;
+        } else {
+            glfwWaitEvents();
+            frames_to_draw_ = 1;  // A thread's result; input adds its own below.
+        }
+        if (imgui_->has_input()) frames_to_draw_ = kFramesAfterInput;
+        if (!imgui_->has_input()) {
+            auto places = places_of_monitors();
+            if (places != monitor_places_) monitors_have_changed = true;
+            monitor_places_ = std::move(places);
+        }
+        if (std::exchange(monitors_have_changed, false)) {
+            monitors_changed(shell_);
+            frames_to_draw_ = kFramesAfterInput;
+        }
+    }
+
+    void draw_frame() {
+        Studio& studio = shell_.studio;
+        const double start_s = now_s();
+        studio.now_s = start_s;
+        GLFWwindow* native = window_->native();
+        studio.ui_scale = static_cast<float>(
+            shell_.fixed_scale.value_or(screen_scale(native, studio.monitors) * shell_.user_scale));
+        imgui_->use_scale(studio.ui_scale);
+        limit_size();
+        if (asked_for_.exchange(false)) come_to_the_front();
+        const auto frame_before = studio.frame;  // Until this frame is drawn: textures are read.
+        const auto preview_before = studio.preview;
+        take_results(shell_);
+        if (studio.opening && has_opened()) {
+            studio.opening = false;
+            give_icon(studio, native);
+        }
+        save_again_now_and_then(shell_);
+        if (studio.frame) remember_costs(studio.panels.plan.measured, *studio.frame);
+        if (shell_.monitor_numbers && studio.now_s >= shell_.monitor_numbers_until_s) {
+            shell_.monitor_numbers.reset();
+        }
+        const std::uint64_t revision_before = studio.session.revision();
+        begin_trials(studio);
+        start_naming_items(ui_map_.has_value());
+        const bool had_input = imgui_->has_input();
+        shell_.input_at = imgui_->begin_frame(
+            [this](const InputEvent& event) { return handle_key(shell_, event); });
+        if (had_input) {
+            shell_.trace->write("input", 0, {}, shell_.input_at);
+            tell_unrest();
+        }
+        draw_everything();
+        end_trials(studio);
+        if (const int step = std::exchange(shell_.tab_step, 0)) move_focus(step);
+        imgui_->end_frame();
+        if (studio.session.revision() != revision_before) {
+            shell_.trace->write("commit", studio.session.revision());
+            frames_to_draw_ = std::max(frames_to_draw_, 2);
+        }
+        // Before anything is drawn here: the mock-up comes first.
+        ask_for_changes(shell_);
+        // Input that waits is taken first, so that it does not wait for pictures of what was
+        // before.
+        // Where one processor draws everything, the mock-up has it first.
+        const bool mock_up_first = shell_.draws_in_software && !preview_goes_first(shell_) &&
+                                   (studio.opening || is_frame_under_way(shell_));
+        const bool patient = last_drawn_s_ == 0.0 ? studio.opening && !studio.frame
+                                                  : start_s - last_drawn_s_ < kLongestFrame_s;
+        gave_way_ = (imgui_->has_input() || mock_up_first) && patient;
+        if (gave_way_) return;
+        imgui_->draw();
+        --frames_to_draw_;
+        last_drawn_s_ = now_s();
+        shell_.frame_ms = 1000.0 * (last_drawn_s_ - start_s);
+        if (shell_.window_must_move) move_off_projector(shell_, native);
+        remember_workspace(shell_, text_of(place_of(native)), false);
+        write_ui_map();
+    }
+
+    /// Nothing overlaps in the least size; a screen that is smaller than that sets its own.
+    void limit_size() {
+        GLFWwindow* native = window_->native();
+        const glm::ivec2 position = place_of(native).position;
+        glm::ivec2 least(glm::vec2(kLeastSize_px) * shell_.studio.ui_scale);
+        for (const Monitor& m : shell_.studio.monitors) {
+            const bool here = position.x >= m.x && position.y >= m.y &&
+                              position.x < m.x + m.width && position.y < m.y + m.height;
+            if (here) least = glm::min(least, glm::ivec2(m.width, m.height));
+        }
+        if (std::exchange(least_size_px_, least) == least) return;
+        glfwSetWindowSizeLimits(native, least.x, least.y, GLFW_DONT_CARE, GLFW_DONT_CARE);
+    }
+
+    /// The program was started again on this session.
+    void come_to_the_front() {
+        GLFWwindow* native = window_->native();
+        if (glfwGetWindowAttrib(native, GLFW_ICONIFIED) != 0) glfwRestoreWindow(native);
+        glfwFocusWindow(native);
+        // For a window manager that does not let windows come to the front by themselves.
+        if (glfwGetWindowAttrib(native, GLFW_FOCUSED) == 0) glfwRequestWindowAttention(native);
+        log_line(LogLevel::info, "the window was asked for by another start");
+    }
+
+    /// The mock-up's first picture is on the projector, or takes too long.
+    bool has_opened() const {
+        const Studio& studio = shell_.studio;
+        if (preview_goes_first(shell_)) return false;
+        const double limit_s = shell_.opened_s + kLongestOpening_s;
+        if (!studio.frame) return studio.now_s >= limit_s;
+        const double shown_s = seconds_of(studio.frame->done_at) + kOnItsWayToTheScreen_s;
+        return studio.now_s >= std::min(limit_s, shown_s);
+    }
+
+    void draw_everything() {
+        draw_layout(shell_);
+        draw_notices(shell_);
+        draw_help(shell_);
+        shell_.studio.file_dialog->draw();
+    }
+
+    void write_ui_map() {
+        if (!ui_map_) return;
+        const WindowPlace place = place_of(window_->native());
+        MapState state = state_of_shell(shell_);
+        state["clicks"] = std::to_string(imgui_->handed_out().clicks);
+        state["notches"] = std::to_string(imgui_->handed_out().notches);
+        state["keys"] = std::to_string(imgui_->handed_out().keys);
+        state["frame"] = std::to_string(++frames_drawn_);
+        state["at_rest"] = frames_to_draw_ <= 0 && !imgui_->has_input() ? "true" : "false";
+        mapped_ = {take_named_items(),
+                   state,
+                   {place.position.x, place.position.y, place.size_px.x, place.size_px.y}};
+        ui_map_->update(mapped_.items, mapped_.state, mapped_.window);
+    }
+
+    /// Before the mock-up answers to input, so that nobody takes the map for what came of it.
+    void tell_unrest() {
+        if (!ui_map_ || mapped_.state.empty()) return;
+        mapped_.state["at_rest"] = "false";
+        ui_map_->update(mapped_.items, mapped_.state, mapped_.window);
+    }
+
+    void finish() {
+        log_line(LogLevel::info, "closing");
+        running_window_.reset();
+        remember_workspace(shell_, text_of(place_of(window_->native())), true);
+        glfwSetMonitorCallback(nullptr);
+        glfwHideWindow(window_->native());
+        window_->make_current();
+        shell_.monitor_numbers.reset();
+        stop_threads(shell_);
+        shell_.stage.photograph_texture = {};
+        const auto no_textures = std::make_unique<PanelStates>();
+        shell_.studio.panels = std::move(*no_textures);
+        imgui_.reset();
+    }
+
+    DesktopOptions options_;
+    std::future<std::shared_ptr<const Product>> product_;
+    std::unique_ptr<Window> window_;
+    Contexts contexts_;
+    std::unique_ptr<ImGuiWindow> imgui_;
+    Shell shell_;
+    std::optional<UiMapFile> ui_map_;
+    struct Mapped {
+        ItemPlaces items;
+        MapState state;
+        ItemPlace window;
+    };
+    Mapped mapped_;  ///< as last written
+    glm::ivec2 least_size_px_{0};
+    std::atomic<bool> asked_for_{false};  ///< by another start
+    std::optional<RunningWindow> running_window_;
+    int frames_drawn_ = 0;
+    int frames_to_draw_ = 0;
+    std::vector<std::array<int, 4>> monitor_places_;
+    double last_drawn_s_ = 0.0;
+    bool gave_way_ = false;  ///< the last frame of the window was not drawn
+};
+
+}  // namespace
+
+/// The session, or nothing where another start has it open and has shown its window.
+std::optional<Session> session_or_running_window(const DesktopOptions& options) {
+    try {
+        return open_session(options);
+    } catch (const Refused&) {
+        if (!ask_running_window(session_file(options))) throw;
+        log_line(LogLevel::info, "the session is open already; its window was asked for");
+        return std::nullopt;
+    }
+}
+
+int run_desktop(const DesktopOptions& options) {
+    keep_large_blocks_apart();
+    // Everything is saved as it happens, so Ctrl-C in the terminal may end the program at once.
+    std::signal(SIGINT, SIG_DFL);
+    std::signal(SIGTERM, SIG_DFL);
+    const WindowSystem window_system;
+    open_log(user_folder() / "log" / "livery.log");
+    log_line(LogLevel::info, "Livery " LIVERY_VERSION " opens");
+    auto session = session_or_running_window(options);
+    if (!session) return 0;
+    return Desktop(options, std::move(*session)).run();
+}
+
+}  // namespace livery

@@ -1,0 +1,46 @@
+// Dear ImGui in a window: its input, its drawing, its scale.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+
+#include "gl/window.h"
+#include "studio/window/input_queue.h"
+
+namespace livery {
+
+/// One a program, main thread.
+class ImGuiWindow {
+  public:
+    /// The window's context is current and stays so.
+    explicit ImGuiWindow(Window& window);
+    ~ImGuiWindow();
+    ImGuiWindow(const ImGuiWindow&) = delete;
+    ImGuiWindow& operator=(const ImGuiWindow&) = delete;
+
+    void use_scale(float scale);  ///< between frames; cheap when it is the same
+
+    /// Hears of keys and of focus first. True when a key is used up: Dear ImGui does not get it.
+    using KeyFilter = std::function<bool(const InputEvent& key)>;
+    /// Hands the next portion of input to Dear ImGui and starts a frame. The newest input's time.
+    std::chrono::steady_clock::time_point begin_frame(const KeyFilter& filter);
+    void end_frame();  ///< ends the frame; nothing is drawn yet
+    void draw();       ///< and swaps
+
+    bool has_input() const;
+
+    /// What was handed out since the start: a driver of the program (--ui-map) goes by it.
+    struct HandedOut {
+        int clicks = 0;   ///< buttons let go
+        int notches = 0;  ///< of the wheel
+        int keys = 0;     ///< let go, Shift and its like apart
+    };
+    const HandedOut& handed_out() const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace livery

@@ -1,0 +1,412 @@
+#include "studio/window/wiring.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "appearance/measured/measured_paint.h"
+#include "core/log.h"
+#include "live/calibration_reuse.h"
+#include "scene/library.h"
+#include "scene/view.h"
+#include "studio/kit/words.h"
+#include "studio/paint/users_library.h"
+#include "studio/results.h"
+#include "studio/window/shell.h"
+
+namespace livery {
+
+namespace {
+
+constexpr double kPreviewPatience_s = 0.3;
+constexpr double kPreviewFirst_s = 20.0;  // nobody looks at the mock-up yet
+constexpr const char* kCalibrating = "Calibrating the simulated bench.";
+constexpr const char* kCalibratedKey = "calibrated-once";
+
+std::string text_of_trial(const Studio& studio) {
+    return studio.tried ? text_of(*studio.tried) : std::string();
+}
+
+/// Keeps maps that were read; a scene that names one of them shares it.
+Scene scene_for(Shell& shell, const Document& document, int look) {
+    const auto& reference = find_look(document, look)->look.environment;
+    auto& kept = shell.environments[{reference.file, reference.rotation_rad, reference.scale}];
+    const OnlyMeasuredInMemory no_waiting;
+    Scene scene = scene_of(document, look, shell.studio.product, kept);
+    kept = scene.environment;
+    constexpr std::size_t most_kept = 16;
+    if (shell.environments.size() > most_kept) shell.environments.clear();
+    return scene;
+}
+
+int look_on_show(const Studio& studio) {
+    return studio.showing_b && studio.compared_look ? *studio.compared_look : studio.shown_look;
+}
+
+/// Where the mock-up lies in the projector's picture: what a wipe goes across.
+std::optional<std::pair<double, double>> columns_of(const Product& product, const View& view) {
+    double low = view.width, high = 0.0;
+    for (const glm::vec3& x : product.mesh.positions_mm) {
+        const auto pixel = project(view, glm::dvec3(x));
+        if (!pixel) continue;
+        low = std::min(low, pixel->x);
+        high = std::max(high, pixel->x);
+    }
+    if (high <= low) return {};
+    return std::pair{std::max(low, 0.0), std::min(high, static_cast<double>(view.width))};
+}
+
+void tell_failure(Shell& shell, const std::string& what, std::exception_ptr why) {
+    try {
+        std::rethrow_exception(why);
+    } catch (const Cancelled&) {
+        return;
+    } catch (const Refused& refused) {
+        notify(shell.studio, {Notice::Level::error, what, refused.why(), refused.fix()});
+    } catch (const std::exception& error) {
+        notify(shell.studio, {Notice::Level::error, what, error.what(), ""});
+    }
+}
+
+void take_setup(Shell& shell, std::shared_ptr<const ProjectorSetup> setup) {
+    shell.studio.setup = std::move(setup);
+    shell.mock_up_columns = columns_of(*shell.studio.product, shell.studio.setup->view);
+    shell.photographed.reset();
+    shell.asked_preview.reset();  // it shows glints in this projector's pixels
+}
+
+/// A new calibration, bench or design white is loaded beside the frames, which go on as they were.
+void ask_for_setup(Shell& shell) {
+    const Document document = shown_document(shell.studio);
+    const SetupKey key{document.calibration, document.bench, document.design_white_percentile};
+    if (shell.asked_setup == key) return;
+    if (!shell.asked_setup || shell.asked_setup->bench != key.bench) {
+        shell.studio.bench->use(key.bench, shell.studio.product);
+    }
+    shell.asked_setup = key;
+    const auto still_wanted = [&shell, key] { return shell.asked_setup == key; };
+    shell.studio.background->run(
+        [&shell, key, still_wanted, product = shell.studio.product](
+            const Progress&) -> Background::Then {
+            const auto setup =
+                key.calibration.empty()
+                    ? uncorrected_setup(key.bench)
+                    : load_setup(key.calibration, key.design_white_percentile, product->mesh);
+            return [&shell, setup, still_wanted] {
+                if (still_wanted()) take_setup(shell, setup);
+            };
+        },
+        [&shell, key, still_wanted](std::exception_ptr why) {
+            if (!still_wanted()) return;
+            tell_failure(shell,
+                         key.calibration.empty() ? "There is no projector to draw for."
+                                                 : "The calibration could not be loaded.",
+                         why);
+            // Something must be shown: the same projector, uncorrected, and the panel says so.
+            if (key.calibration.empty() || shell.studio.setup) return;
+            shell.studio.background->run(
+                [&shell, key](const Progress&) -> Background::Then {
+                    return [&shell, setup = uncorrected_setup(key.bench)] {
+                        take_setup(shell, setup);
+                    };
+                },
+                [&shell](std::exception_ptr again) {
+                    tell_failure(shell, "There is no projector to draw for.", again);
+                });
+        });
+}
+
+/// A file that a look needs may go bad at any time.
+void tell_drawing_problems(Shell& shell, const Document& document, int look) {
+    const SessionLook* shown = find_look(document, look);
+    if (!shown) return;
+    std::vector<std::string> problems = drawing_problems(document, *shown);
+    std::vector<std::string>& told = shell.told_problems[look];
+    for (const std::string& problem : problems) {
+        if (std::find(told.begin(), told.end(), problem) != told.end()) continue;
+        notify(shell.studio,
+               {Notice::Level::warning,
+                problem,
+                "",
+                "Put the file back, or choose another; then change something to draw it again."});
+    }
+    told = std::move(problems);
+}
+
+std::optional<int> look_to_wipe_to(const Studio& studio) {
+    return studio.wiping && !studio.showing_b ? studio.compared_look : std::nullopt;
+}
+
+void ask_for_frame(Shell& shell) {
+    Studio& studio = shell.studio;
+    if (!studio.setup || preview_goes_first(shell)) return;
+    FrameKey key;
+    key.revision = studio.session.revision();
+    key.tried = text_of_trial(studio);
+    key.look = look_on_show(studio);
+    key.wipe_to = look_to_wipe_to(studio);
+    if (key.wipe_to) key.wipe_at = studio.wipe_at;
+    key.glowing_part = studio.glowing_part;
+    key.setup = studio.setup;
+    if (shell.asked_frame == key) return;
+    const Document document = shown_document(studio);
+    FrameDescription description;
+    try {
+        description.scene = scene_for(shell, document, key.look);
+        if (key.wipe_to) description.wipe_to = scene_for(shell, document, *key.wipe_to);
+    } catch (const MeasuredFileUnread& unread) {
+        // Asked for again when it is read; the last picture stays until then.
+        read_measured_behind(studio, unread.file());
+        shell.not_drawn = "Reading " + unread.file().filename().string() + ".";
+        return;
+    } catch (const std::exception& error) {
+        shell.asked_frame = key;
+        shell.not_drawn = error.what();
+        notify(studio, {Notice::Level::error, "The look cannot be drawn.", error.what(), ""});
+        return;
+    }
+    tell_drawing_problems(shell, document, key.look);
+    if (key.wipe_to) tell_drawing_problems(shell, document, *key.wipe_to);
+    shell.not_drawn.clear();
+    shell.asked_frame = key;
+    shell.frame_asked_s = studio.now_s;
+    description.number = ++shell.frame_number;
+    description.wipe_at = key.wipe_at;
+    description.glowing_part = key.glowing_part;
+    description.quality = document.quality;
+    description.setup = studio.setup;
+    description.asked_at = shell.input_at;
+    shell.trace->write("frame-asked", description.number, key.tried);
+    studio.frames->show(std::move(description));
+}
+
+void ask_for_preview(Shell& shell) {
+    Studio& studio = shell.studio;
+    const StageState& stage = shell.stage;
+    const bool seen = studio.view == StageView::preview || studio.view == StageView::eye;
+    if (!seen || stage.width <= 0 || stage.height <= 0) return;
+    PreviewKey key;
+    key.revision = studio.session.revision();
+    key.tried = text_of_trial(studio);
+    key.look = look_on_show(studio);
+    key.view = studio.view;
+    const Orbit orbit = stage_orbit(shell);
+    key.camera = {orbit.azimuth_rad,
+                  orbit.elevation_rad,
+                  orbit.distance_mm,
+                  orbit.target_mm.x,
+                  orbit.target_mm.y,
+                  orbit.target_mm.z,
+                  stage.eye_zoom};
+    key.width = stage.width;
+    key.height = stage.height;
+    key.highlighted_part = studio.hovered_part ? studio.hovered_part : studio.glowing_part;
+    key.wipe_to = look_to_wipe_to(studio);
+    if (key.wipe_to) key.wipe_at = studio.wipe_at;
+    if (shell.asked_preview == key) return;
+    // The mock-up goes first where both are drawn by the same processor, but not for long.
+    shell.preview_waits_until_s = 0.0;
+    const bool same_scene =
+        shell.asked_preview && shell.asked_preview->revision == key.revision &&
+        shell.asked_preview->tried == key.tried && shell.asked_preview->look == key.look &&
+        shell.asked_preview->wipe_to == key.wipe_to && shell.asked_preview->wipe_at == key.wipe_at;
+    if (shell.draws_in_software && studio.opening && !preview_goes_first(shell)) return;
+    const double patience_until_s = shell.frame_asked_s + kPreviewPatience_s;
+    if (shell.draws_in_software && !same_scene && is_frame_under_way(shell) &&
+        studio.now_s < patience_until_s) {
+        shell.preview_waits_until_s = patience_until_s;
+        return;
+    }
+    const Document document = shown_document(studio);
+    PreviewDescription description;
+    try {
+        description.scene = scene_for(shell, document, key.look);
+        if (key.wipe_to) description.wipe_to = scene_for(shell, document, *key.wipe_to);
+    } catch (const std::exception&) {
+        return;  // Told when the frame was asked for.
+    }
+    shell.asked_preview = key;
+    description.number = ++shell.preview_number;
+    description.view = stage_view(shell, document.eye_mm);
+    if (studio.setup) description.projector = studio.setup->view;
+    description.highlighted_part = key.highlighted_part;
+    description.wipe_at = key.wipe_at;
+    studio.previews->show(std::move(description));
+}
+
+void ask_for_photograph(Shell& shell) {
+    const Studio& studio = shell.studio;
+    if (studio.view != StageView::photograph || !studio.frame || !studio.setup) return;
+    const glm::dvec3 eye_mm = shown_document(studio).eye_mm;
+    // Not by its number: a frame comes again when more of it is there.
+    const bool same =
+        studio.frame->drive == shell.photographed && eye_mm == shell.photographed_from_mm;
+    if (same || !studio.frame->drive) return;
+    shell.photographed = studio.frame->drive;
+    shell.photographed_from_mm = eye_mm;
+    studio.bench->photograph(
+        studio.frame->number, studio.frame->drive, eye_mm, studio.setup->design_white_y);
+}
+
+bool needs_first_calibration(const Session& session) {
+    return session.document().calibration.empty() && !session.workspace().contains(kCalibratedKey);
+}
+
+/// A new session of a product that was calibrated on this bench before takes that calibration; if
+/// there is none, it is made after the first picture.
+void find_first_calibration(Shell& shell) {
+    Studio& studio = shell.studio;
+    if (!needs_first_calibration(studio.session)) return;
+    studio.background->run(
+        [&shell, bench = studio.session.document().bench, product = studio.product](
+            const Progress&) -> Background::Then {
+            const auto kept = kept_calibration_of(bench_key(bench, *product));
+            return [&shell, kept] {
+                Studio& there = shell.studio;
+                shell.calibrates_after_first_frame = !kept;
+                if (!kept || !needs_first_calibration(there.session)) return;
+                there.session.set_workspace(kCalibratedKey, "yes");
+                commit(there, SetCalibration{kept->string()});
+            };
+        },
+        [&shell](std::exception_ptr why) {
+            shell.calibrates_after_first_frame = true;
+            tell_failure(shell, "Calibrations made before could not be looked through.", why);
+        });
+}
+
+/// A newcomer has no calibration: the simulated bench is measured as soon as there is a first
+/// picture, while everything works uncorrected.
+void start_first_calibration(Shell& shell) {
+    Studio& studio = shell.studio;
+    if (!shell.calibrates_after_first_frame || !studio.frame) return;
+    shell.calibrates_after_first_frame = false;
+    if (!needs_first_calibration(studio.session)) return;
+    studio.bench->start_calibration();
+    shell.calibrates_by_itself = true;
+    notify(studio,
+           {Notice::Level::info,
+            kCalibrating,
+            "There is no calibration yet. This happens beside your work: a minute or two where "
+            "nothing else is done, longer while you work.",
+            "Until it is done, pictures go to the projector uncorrected.",
+            studio.now_s + 3600.0});
+}
+
+void take_calibration(Shell& shell) {
+    Studio& studio = shell.studio;
+    const auto calibrating = studio.bench->calibrating();
+    // The panel tells the person who asked; nobody asked for this one.
+    if (!calibrating.refused_why.empty() && std::exchange(shell.calibrates_by_itself, false)) {
+        std::erase_if(studio.notices, [](const Notice& n) { return n.what == kCalibrating; });
+        notify(studio,
+               {Notice::Level::error,
+                "The simulated bench could not be calibrated; pictures stay uncorrected.",
+                sentence(calibrating.refused_why),
+                sentence(calibrating.refused_fix)});
+    }
+    if (!calibrating.finished || *calibrating.finished == studio.panels.calibration.taken) return;
+    studio.panels.calibration.taken = *calibrating.finished;
+    studio.session.set_workspace(kCalibratedKey, "yes");
+    stop_trying(studio);
+    std::erase_if(studio.notices, [](const Notice& n) { return n.what == kCalibrating; });
+    commit(studio, SetCalibration{calibrating.finished->string()});
+    Notice notice{Notice::Level::info, "The bench is calibrated.", "", ""};
+    if (studio.view != StageView::photograph) {
+        notice.fix = "Choose Photograph above the picture to see what an audience would see.";
+        notice.shown_until_s = studio.now_s + 30.0;
+    }
+    notify(studio, notice);
+}
+
+}  // namespace
+
+bool preview_goes_first(const Shell& shell) {
+    const Studio& studio = shell.studio;
+    const bool in_window = studio.view == StageView::preview || studio.view == StageView::eye;
+    const bool drawn =
+        studio.preview && (studio.preview->texture || !studio.preview->problem.empty());
+    return shell.draws_in_software && studio.opening && in_window && !drawn &&
+           shell.projector_monitor.empty() && studio.now_s < shell.opened_s + kPreviewFirst_s;
+}
+
+bool is_frame_under_way(const Shell& shell) {
+    if (!shell.studio.setup) return false;
+    const auto newest = shell.results->newest_frame();
+    if (!newest || newest->number < shell.frame_number) return true;
+    // What is drawn here now would stand before the projector's swap in the driver's queue.
+    return newest->problem.empty() && shell.results->awaits_projector();
+}
+
+Contexts start_threads(Shell& shell, const Window& window) {
+    Studio& studio = shell.studio;
+    shell.draws_in_software = window.is_software();
+    shell.opened_s = studio.now_s;
+    Contexts contexts;
+    WindowOptions hidden;
+    hidden.title = "Livery (drawing)";
+    hidden.size_px = {16, 16};
+    hidden.visible = false;
+    for (int i = 0; i < 3; ++i) contexts.push_back(std::make_unique<Window>(hidden, &window));
+    shell.results = std::make_shared<Results>(shell.trace);
+    Results* results = shell.results.get();
+    studio.background = std::make_unique<Background>(wake_main_thread);
+    studio.bench = std::make_unique<BenchThread>(wake_main_thread);
+    studio.previews = std::make_unique<PreviewThread>(
+        *contexts[2], [results](auto picture) { results->take(std::move(picture)); });
+    studio.frames = std::make_unique<FrameThread>(
+        *contexts[0], *contexts[1], [results](auto frame) { results->take(std::move(frame)); });
+    studio.projector = std::make_unique<ProjectorScreen>(
+        window, [results](const ShownPicture& picture) { results->shown(picture); });
+    results->use(studio.projector.get());
+    studio.bench->use(studio.session.document().bench, studio.product);
+    find_first_calibration(shell);
+    ask_for_setup(shell);
+    return contexts;
+}
+
+void stop_threads(Shell& shell) {
+    Studio& studio = shell.studio;
+    studio.background.reset();
+    studio.frames.reset();
+    studio.previews.reset();
+    studio.bench.reset();
+    if (shell.results) shell.results->use(nullptr);
+    studio.projector.reset();
+    studio.frame.reset();
+    studio.preview.reset();
+    studio.photograph.reset();
+    if (shell.results) shell.results->clear();
+}
+
+void take_results(Shell& shell) {
+    Studio& studio = shell.studio;
+    studio.background->take_results();
+    studio.frame = shell.results->newest_drawn();
+    studio.preview = shell.results->newest_preview();
+    studio.photograph = studio.bench->newest_photograph();
+    start_first_calibration(shell);
+    take_calibration(shell);
+    if (studio.glowing_part && studio.now_s >= studio.glowing_until_s) studio.glowing_part.reset();
+    const auto newest = shell.results->newest_frame();
+    if (newest && !newest->problem.empty() && newest->number > shell.problem_number) {
+        shell.problem_number = newest->number;
+        notify(studio,
+               {Notice::Level::error,
+                "The picture could not be drawn; the last good one stays.",
+                newest->problem,
+                ""});
+    }
+}
+
+void ask_for_changes(Shell& shell) {
+    ask_for_setup(shell);
+    ask_for_frame(shell);
+    ask_for_preview(shell);
+    ask_for_photograph(shell);
+    shell.studio.panels.library.just_read.clear();
+}
+
+}  // namespace livery

@@ -1,0 +1,57 @@
+#include <gtest/gtest.h>
+
+#include "ledger/paint_cost.h"
+#include "ledger/predictions.h"
+#include "support/file_error.h"
+#include "support/temporary_folder.h"
+
+namespace livery {
+namespace {
+
+TEST(PassCosts, ComeBackAsTheyWereWritten) {
+    const TemporaryFolder folder;
+    const auto file = folder / "bench.json";
+    EXPECT_EQ(read_pass_costs(file), std::nullopt);
+    write_pass_costs(file, "a renderer", {{"dither", Quality::high, 1.5, 1000.0, 0.25}});
+    const auto costs = read_pass_costs(file);
+    ASSERT_TRUE(costs && costs->size() == 1);
+    EXPECT_EQ(costs->at(0).pass, "dither");
+    EXPECT_EQ(costs->at(0).quality, Quality::high);
+    EXPECT_EQ(costs->at(0).ms, 1.5);
+    EXPECT_EQ(costs->at(0).error, 0.25);
+}
+
+TEST(PassCosts, AQualityThatIsNoneIsNamed) {
+    EXPECT_TRUE(fails_with(
+        [] {
+            parse_pass_costs(R"({"format_version": 1, "passes": [
+                                 {"pass": "a", "quality": "best", "ms": 1, "work_items": 1}]})",
+                             "bench.json");
+        },
+        {"bench.json: passes[0].quality: found \"best\", expected draft, normal, high or"}));
+}
+
+TEST(PassCosts, SayWhatAPaintCosts) {
+    const std::vector<PassCost> costs{{"shade:ggx", Quality::high, 9.0, 1e6, {}},
+                                      {"shade:ggx", Quality::normal, 3.0, 1e6, {}},
+                                      {"shade:car-paint+glints", Quality::normal, 8.0, 1e6, {}},
+                                      {"shade:eon", Quality::normal, 3.0, 0.0, {}}};
+    Material paint;
+    paint.model = ReflectanceModel::ggx;
+    const PaintCost ggx = paint_cost(paint, costs);
+    ASSERT_TRUE(ggx.ns_a_pixel);
+    EXPECT_DOUBLE_EQ(*ggx.ns_a_pixel, 3.0);
+    EXPECT_TRUE(ggx.why_not.empty());
+    EXPECT_EQ(paint_cost(paint, std::nullopt).why_not, "no bench has run on this machine");
+    paint.model = ReflectanceModel::eon;
+    const PaintCost eon = paint_cost(paint, costs);
+    EXPECT_FALSE(eon.ns_a_pixel);
+    EXPECT_EQ(eon.why_not, "the last bench shaded nothing with eon");
+    paint.model = ReflectanceModel::car_paint;
+    EXPECT_EQ(paint_cost(paint, costs).why_not, "the last bench shaded nothing with car-paint");
+    paint.glint_density_per_mm2 = 100.0;
+    EXPECT_DOUBLE_EQ(paint_cost(paint, costs).ns_a_pixel.value_or(0.0), 8.0);
+}
+
+}  // namespace
+}  // namespace livery

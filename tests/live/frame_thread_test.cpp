@@ -1,0 +1,329 @@
+#include "live/frame_thread.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <condition_variable>
+#include <ctime>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "core/random.h"
+#include "gl/read_back.h"
+#include "jobs/picture.h"
+#include "live/frame_lane.h"
+#include "live/frame_thread_fixture.h"
+
+namespace livery {
+namespace {
+
+TEST_F(FrameThreadTest, FramesAreRenderFramesOwn) {
+    start();
+    const auto first = gallery_.whole(show());
+    ASSERT_TRUE(first);
+    EXPECT_EQ(first->problem, "");
+    EXPECT_EQ(first->drive->values, from_scratch(description_.scene).drive.values);
+    EXPECT_GT(*std::max_element(first->drive->values.begin(), first->drive->values.end()), 50);
+
+    paint(description_.scene, 0, ReflectanceModel::ggx, {0.1, 0.2, 0.7});
+    const auto second = gallery_.whole(show());
+    ASSERT_TRUE(second);
+    const RenderedFrame truth = from_scratch(description_.scene);
+    EXPECT_EQ(second->drive->values, truth.drive.values);
+    EXPECT_EQ(second->radiance_working->values, truth.radiance_working.values);
+    EXPECT_EQ(second->compensation.out_of_gamut_fraction, truth.compensation.out_of_gamut_fraction);
+    EXPECT_NE(second->drive->values, first->drive->values);
+}
+
+TEST_F(FrameThreadTest, TheTextureIsTheDriveInTheShareGroup) {
+    start();
+    const auto frame = gallery_.whole(show());
+    ASSERT_TRUE(frame);
+    window_.make_current();
+    frame->ready->wait_on_device();
+    const View& view = description_.setup->view;
+    const ImageF texels = read_floats(frame->drive_texture, view.width, view.height, 4);
+    for (std::size_t i = 0; i < texels.pixel_count(); ++i) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            ASSERT_EQ(std::lround(255.0f * texels.values[4 * i + c]),
+                      frame->drive->values[3 * i + c])
+                << i;
+        }
+        ASSERT_EQ(texels.values[4 * i + 3], 1.0f);
+    }
+    window_.release();
+}
+
+TEST_F(FrameThreadTest, UncorrectedIsSrgb) {
+    auto setup = std::make_shared<ProjectorSetup>();
+    setup->view = description_.setup->view;
+    setup->why_uncorrected = "no calibration";
+    description_.setup = setup;
+    start();
+    const auto frame = gallery_.whole(show());
+    ASSERT_TRUE(frame);
+    EXPECT_EQ(frame->drive->values,
+              srgb_from_working(from_scratch(description_.scene).radiance_working).values);
+}
+
+TEST_F(FrameThreadTest, PaintsDuringASlowSolveShowInTheOldLightAndThenInTheNew) {
+    description_.scene.environment = sky(0.8);
+    start();
+    ASSERT_TRUE(gallery_.whole(show()));
+    const auto old = description_.scene.environment;
+    // A big map takes long to filter.
+    description_.scene.environment = sky(0.1, 2048);
+    show();
+    paint(description_.scene, 0, ReflectanceModel::clearcoat, {0.1, 0.5, 0.1});
+    const auto painted = show();
+
+    const auto between = gallery_.wait_for([&](const FinishedFrame& frame) {
+        return frame.number == painted && frame.unfinished.starts_with("environment: solving, ");
+    });
+    ASSERT_TRUE(between);
+    Scene in_old_light = description_.scene;
+    in_old_light.environment = old;
+    EXPECT_EQ(between->drive->values, from_scratch(in_old_light).drive.values);
+
+    const auto end = gallery_.whole(painted);
+    ASSERT_TRUE(end);
+    EXPECT_EQ(end->drive->values, from_scratch(description_.scene).drive.values);
+    std::uint64_t before = 0;
+    for (const FramePointer& frame : gallery_.all()) {
+        EXPECT_GE(frame->number, before);
+        before = frame->number;
+    }
+}
+
+TEST_F(FrameThreadTest, ADraftComesFirstAndSaysSo) {
+    description_.scene.environment = sky(0.8);
+    start();
+    const auto number = show();
+    const auto end = gallery_.whole(number);
+    ASSERT_TRUE(end);
+    const auto frames = gallery_.all();
+    ASSERT_GE(frames.size(), 2u);
+    EXPECT_EQ(frames.front()->plan.quality, Quality::draft);
+    EXPECT_TRUE(frames.front()->unfinished.starts_with("normal quality: solving"))
+        << frames.front()->unfinished;
+    EXPECT_EQ(end->plan.quality, Quality::normal);
+    EXPECT_GT(*find_pass(frames.front()->plan, kSurfaceMapPass)->ms, 0.0);
+    EXPECT_GT(*find_pass(end->plan, kReflectionPass)->ms, 0.0);
+    EXPECT_GT(end->shade_ms, 0.0);
+}
+
+TEST_F(FrameThreadTest, PreparingIsAListedPass) {
+    start();
+    const auto number = show();
+    const auto end = gallery_.whole(number);
+    ASSERT_TRUE(end);
+    for (const char* name : {"prepare:lambert", "prepare:ggx"}) {
+        const PlannedPass* pass = find_pass(end->plan, name);
+        ASSERT_TRUE(pass) << name;
+        EXPECT_GT(*pass->ms, 0.0);
+        EXPECT_NE(pass->why, "");
+    }
+    // All parts wear it: no preparing is needed.
+    EXPECT_FALSE(find_pass(end->plan, "prepare:clearcoat"));
+}
+
+TEST_F(FrameThreadTest, TheNewestWins) {
+    start();
+    std::uint64_t last = 0;
+    for (int k = 0; k < 200; ++k) {
+        paint(description_.scene, 0, ReflectanceModel::ggx, {0.004 * k, 0.3, 0.2});
+        last = show();
+    }
+    const auto end = gallery_.whole(last);
+    ASSERT_TRUE(end);
+    EXPECT_EQ(end->drive->values, from_scratch(description_.scene).drive.values);
+    EXPECT_LT(gallery_.all().size(), 100u);
+}
+
+TEST_F(FrameThreadTest, ANewerLightStopsASlowSolve) {
+    start();
+    ASSERT_TRUE(gallery_.whole(show()));
+    description_.scene.environment = sky(0.1, 2048);
+    const auto first = show();
+    ASSERT_TRUE(
+        gallery_.wait_for([&](const FinishedFrame& frame) { return frame.number == first; }));
+    description_.scene.environment = sky(0.5);
+    const auto second = show();
+    const auto end = gallery_.whole(second);
+    ASSERT_TRUE(end);
+    EXPECT_EQ(end->drive->values, from_scratch(description_.scene).drive.values);
+    for (const FramePointer& frame : gallery_.all()) {
+        EXPECT_FALSE(frame->number == first && frame->unfinished.empty());
+    }
+}
+
+TEST_F(FrameThreadTest, SolvingTellsHowFarItIs) {
+    start();
+    ASSERT_TRUE(gallery_.whole(show()));
+    description_.scene.environment = sky(0.1);
+    const auto number = show();
+    std::optional<FrameThread::Solving> seen;
+    while (!gallery_.wait_for([&](const FinishedFrame& frame) { return frame.number == number; })) {
+    }
+    while (!seen && !thread_->is_idle()) {
+        const auto solving = thread_->solving();
+        if (solving && solving->fraction > 0.0) seen = solving;
+    }
+    ASSERT_TRUE(seen);
+    EXPECT_LE(seen->fraction, 1.0);
+    EXPECT_NE(seen->stage, "");
+    ASSERT_TRUE(gallery_.whole(number));
+    wait_until_idle();
+    EXPECT_FALSE(thread_->solving());
+}
+
+TEST_F(FrameThreadTest, WipeShowsEachLookInItsColumns) {
+    for (const bool same_light : {true, false}) {
+        Scene right = description_.scene;
+        paint(right, 0, ReflectanceModel::ggx, {0.1, 0.1, 0.7});
+        if (!same_light) right.lights = {light_from({-0.5, 0.6, 0.4}, 0.0)};
+        description_.wipe_to = right;
+        description_.wipe_at = 0.4;
+        if (!thread_) start();
+        const auto frame = gallery_.whole(show());
+        ASSERT_TRUE(frame);
+        expect_wiped(*frame, right);
+
+        // Moving the line composes, and shades nothing.
+        description_.wipe_at = 0.8;
+        const auto moved = gallery_.whole(show());
+        ASSERT_TRUE(moved);
+        expect_wiped(*moved, right);
+        EXPECT_EQ(moved->shade_ms + moved->compensate_ms, 0.0);
+
+        // A paint shades its own look only.
+        paint(*description_.wipe_to, 1, ReflectanceModel::clearcoat, {0.6, 0.6, 0.1});
+        const auto painted = gallery_.whole(show());
+        ASSERT_TRUE(painted);
+        expect_wiped(*painted, *description_.wipe_to);
+    }
+    description_.wipe_to.reset();
+    const auto alone = gallery_.whole(show());
+    ASSERT_TRUE(alone);
+    EXPECT_EQ(alone->drive->values, from_scratch(description_.scene).drive.values);
+}
+
+TEST_F(FrameThreadTest, AGlowingPartGlowsAndStops) {
+    start();
+    const auto before = gallery_.whole(show());
+    ASSERT_TRUE(before);
+    description_.glowing_part = 1;
+    const auto glowing = gallery_.whole(show());
+    ASSERT_TRUE(glowing);
+    Scene painted = description_.scene;
+    painted.part_materials[1] = glow_paint();
+    EXPECT_EQ(glowing->drive->values, from_scratch(painted).drive.values);
+    EXPECT_NE(glowing->drive->values, before->drive->values);
+    description_.glowing_part.reset();
+    const auto after = gallery_.whole(show());
+    ASSERT_TRUE(after);
+    EXPECT_EQ(after->drive->values, before->drive->values);
+}
+
+TEST_F(FrameThreadTest, AnotherCalibrationOfTheSameProjectorOnlyCorrectsAgain) {
+    start();
+    const auto before = gallery_.whole(show());
+    ASSERT_TRUE(before);
+    auto dimmer = std::make_shared<ProjectorSetup>(*description_.setup);
+    auto calibration =
+        synthetic_calibration(FrameGeometry(description_.scene.product, dimmer->view).map.coverage);
+    dimmer->design_white_y *= 0.5;
+    dimmer->table = bake(calibration, dimmer->design_white_y);
+    description_.setup = dimmer;
+    const auto after = gallery_.whole(show());
+    ASSERT_TRUE(after);
+    EXPECT_EQ(after->drive->values, from_scratch(description_.scene).drive.values);
+    EXPECT_NE(after->drive->values, before->drive->values);
+    EXPECT_EQ(after->shade_ms, 0.0);
+}
+
+TEST_F(FrameThreadTest, AnotherProjectorAndAnotherProductAreSolvedFromTheStart) {
+    start();
+    ASSERT_TRUE(gallery_.whole(show()));
+    description_.setup = setup_of(test_view(96, 80), description_.scene);
+    const auto smaller = gallery_.whole(show());
+    ASSERT_TRUE(smaller);
+    EXPECT_EQ(smaller->drive->width, 96);
+    EXPECT_EQ(smaller->drive->values, from_scratch(description_.scene).drive.values);
+
+    const Scene other = scene_of(make_sphere({0, 0, 0}, 30.0, 64, "body"),
+                                 paint_of(ReflectanceModel::lambert, 0.1));
+    description_.scene.product = other.product;
+    description_.scene.part_materials = other.part_materials;
+    const auto sphere = gallery_.whole(show());
+    ASSERT_TRUE(sphere);
+    EXPECT_EQ(sphere->drive->values, from_scratch(description_.scene).drive.values);
+}
+
+TEST_F(FrameThreadTest, TheFirstPaintThatMirrorsIsDrawnRight) {
+    description_.scene.environment = sky(0.8);
+    description_.scene.part_materials.assign(2, paint_of(ReflectanceModel::lambert, 0.1));
+    start();
+    const auto number = show();
+    ASSERT_TRUE(
+        gallery_.wait_for([&](const FinishedFrame& frame) { return frame.number == number; }));
+    paint(description_.scene, 0, ReflectanceModel::clearcoat, {0.5, 0.1, 0.1});
+    const auto mirroring = gallery_.whole(show());
+    ASSERT_TRUE(mirroring);
+    EXPECT_EQ(mirroring->drive->values, from_scratch(description_.scene).drive.values);
+}
+
+TEST_F(FrameThreadTest, IdleMeansThatNothingIsDone) {
+    start();
+    ASSERT_TRUE(gallery_.whole(show()));
+    wait_until_idle();
+    const std::size_t frames = gallery_.all().size();
+    const std::clock_t before = std::clock();
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    // Processor time of the whole program; a draft of this picture alone takes more.
+    EXPECT_LT(std::clock() - before, CLOCKS_PER_SEC / 50);
+    EXPECT_EQ(gallery_.all().size(), frames);
+    EXPECT_TRUE(thread_->is_idle());
+}
+
+TEST_F(FrameThreadTest, AThousandSwapsUseAFewTextures) {
+    start();
+    ASSERT_TRUE(gallery_.whole(show()));
+    std::set<unsigned> textures;
+    std::set<const Image8*> pictures;
+    for (int k = 0; k < 1000; ++k) {
+        gallery_.clear();
+        paint(description_.scene, 1, ReflectanceModel::ggx, {0.001 * k, 0.3, 0.2});
+        const auto frame = gallery_.whole(show());
+        ASSERT_TRUE(frame);
+        textures.insert(frame->drive_texture);
+        pictures.insert(frame->drive.get());
+    }
+    EXPECT_LE(textures.size(), 12u);
+    EXPECT_LE(pictures.size(), 12u);
+}
+
+TEST_F(FrameThreadTest, EndsAtAnyMoment) {
+    Random random(7, 1);
+    for (int round = 0; round < 25; ++round) {
+        start();
+        const int shows = static_cast<int>(random.uniform() * 6.0);
+        for (int k = 0; k < shows; ++k) {
+            paint(description_.scene, 0, ReflectanceModel::ggx, {0.1 * k, 0.3, 0.2});
+            if (random.uniform() < 0.4) description_.scene.environment = sky(random.uniform());
+            show();
+            std::this_thread::sleep_for(
+                std::chrono::microseconds(static_cast<int>(random.uniform() * 60000.0)));
+        }
+        thread_.reset();
+        gallery_.clear();
+    }
+}
+
+}  // namespace
+}  // namespace livery

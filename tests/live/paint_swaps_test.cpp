@@ -1,0 +1,106 @@
+// From any paint of the library to any other: the very next picture, and nothing made for it.
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "appearance/material_library.h"
+#include "core/shuffle.h"
+#include "live/frame_lane.h"
+#include "live/frame_thread_fixture.h"
+
+namespace livery {
+namespace {
+
+/// Every shipped paint in an order of chance, and from each to the next a second time both ways.
+std::vector<Material> walk_through_the_library() {
+    std::vector<Material> paints = read_paint_library().shipped;
+    Random random(63, 1);
+    shuffle(paints, random);
+    std::vector<Material> walk = paints;
+    for (std::size_t k = 0; k + 1 < paints.size(); k += 4) {
+        walk.insert(walk.end(), {paints[k], paints[k + 1], paints[k]});
+    }
+    return walk;
+}
+
+/// What a swap may cost: the part is shaded, its pixels are mixed and corrected.
+bool belongs_to_a_swap(const std::string& pass) {
+    return pass.starts_with("shade:") || pass == kResolvePass || pass == kCompensationPass;
+}
+
+using PaintSwaps = FrameThreadTest;
+
+TEST_F(PaintSwaps, EachIsTheVeryNextFrameAndSolvesNothing) {
+    description_.scene.environment = sky(0.8);
+    start();
+    ASSERT_TRUE(gallery_.whole(show()));
+    wait_until_idle();
+    gallery_.clear();
+    const std::uint64_t first = description_.number;
+    std::set<std::string> worn;
+    std::size_t k = 0;
+    for (const Material& paint : walk_through_the_library()) {
+        SCOPED_TRACE(paint.name);
+        worn.insert(paint.name);
+        description_.scene.part_materials[k++ % 2] = paint;
+        const std::uint64_t number = show();
+        const auto frame =
+            gallery_.wait_for([&](const auto& shown) { return shown.number >= number; });
+        ASSERT_TRUE(frame);
+        EXPECT_EQ(frame->number, number);
+        EXPECT_EQ(frame->problem, "");
+        EXPECT_EQ(frame->unfinished, "");
+        EXPECT_FALSE(thread_->solving());
+        for (const PlannedPass& pass : frame->plan.passes) {
+            EXPECT_TRUE(pass.ms.value_or(0.0) == 0.0 || belongs_to_a_swap(pass.name)) << pass.name;
+        }
+        if (k % 12 == 0) {
+            EXPECT_EQ(frame->drive->values, from_scratch(description_.scene).drive.values);
+        }
+    }
+    EXPECT_EQ(worn.size(), read_paint_library().shipped.size());
+    // One picture a swap, in their order, and none besides.
+    std::uint64_t expected = first;
+    for (const FramePointer& frame : gallery_.all()) EXPECT_EQ(frame->number, expected++);
+    EXPECT_EQ(expected, description_.number);
+}
+
+class PaintSwapsOnADevice : public testing::TestWithParam<ShadingDevice> {};
+
+INSTANTIATE_TEST_SUITE_P(Devices,
+                         PaintSwapsOnADevice,
+                         testing::Values(ShadingDevice::gl, ShadingDevice::processor),
+                         [](const auto& device) {
+                             return device.param == ShadingDevice::gl ? "OpenGl" : "Processor";
+                         });
+
+TEST_P(PaintSwapsOnADevice, CompileAndAllocateNothing) {
+    HeadlessContext context(GlDevice::software);
+    FrameDescription description;
+    description.scene = scene_of(two_spheres(), paint_of(ReflectanceModel::clearcoat, 0.05));
+    description.scene.lights = {light_from({0.4, 0.8, 0.5}, 3.0 * kDegree_rad)};
+    description.scene.environment = sky(0.8);
+    description.setup = setup_of(test_view(128, 96), description.scene);
+    FrameLane lane(std::make_shared<GeometryCache>(), GetParam());
+    lane.solve(description, description.quality, {}, {});
+    lane.prepare(description, {});
+    lane.draw(description);
+    const RadianceRenderer::Counters warm = lane.counters();
+    EXPECT_EQ(warm.programs > 0, GetParam() == ShadingDevice::gl);
+    EXPECT_GT(warm.textures, 0);
+    int swaps = 0;
+    for (const Material& paint : walk_through_the_library()) {
+        SCOPED_TRACE(paint.name);
+        description.scene.part_materials[0] = paint;
+        ASSERT_TRUE(lane.can_draw(description));
+        lane.draw(description);
+        ++swaps;
+        const RadianceRenderer::Counters now = lane.counters();
+        ASSERT_EQ(now.programs, warm.programs);
+        ASSERT_EQ(now.textures, warm.textures);
+        ASSERT_EQ(now.passes_run, warm.passes_run + 2 * swaps) << "shading of its part, mixing";
+    }
+}
+
+}  // namespace
+}  // namespace livery

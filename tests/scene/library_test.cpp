@@ -1,0 +1,56 @@
+// Names that people type for products and looks.
+#include "scene/library.h"
+
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include "core/paths.h"
+#include "support/file_error.h"
+#include "twin/description.h"
+
+namespace livery {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(Library, EveryShippedProductStandsOnABenchOfItsOwn) {
+    int products = 0;
+    for (const auto& entry : fs::directory_iterator(shipped_path("assets"))) {
+        if (entry.path().extension() != ".json") continue;
+        ++products;
+        const std::string name = entry.path().stem().string();
+        const auto bench = bench_of_shipped_product(name);
+        ASSERT_TRUE(bench) << name;
+        const BenchDescription description = read_bench_file(*bench);
+        EXPECT_EQ(fs::path(description.product).stem(), name) << "bench " << *bench;
+    }
+    EXPECT_GE(products, 3);
+    EXPECT_FALSE(bench_of_shipped_product("teapot"));
+    EXPECT_FALSE(bench_of_shipped_product(""));
+}
+
+TEST(Library, SaysWhichNamesThereAre) {
+    EXPECT_TRUE(fails_with([] { find_product("teapot"); },
+                           {"teapot", "no such file or shipped product", "car, player or sphere"}));
+    EXPECT_TRUE(fails_with([] { find_look("chrome dream"); },
+                           {"chrome dream", "no such file or shipped look", "blue-metallic"}));
+    EXPECT_TRUE(fails_with([] { find_product("car", LengthUnit::m); }, {"car", "unit"}));
+}
+
+TEST(Library, AShippedLookLeavesOutWhatAProductLacks) {
+    const std::string name = shipped_looks().front();
+    const Look car = find_look_for(name, part_names("car"));
+    EXPECT_TRUE(car.parts.contains("body"));
+    EXPECT_FALSE(car.parts.contains("*"));
+    // A player has no body: all of it wears the body's paint, and keeps what it shares.
+    const Look player = find_look_for(name, part_names("player"));
+    EXPECT_FALSE(player.parts.contains("body"));
+    EXPECT_FALSE(player.parts.contains("tyres"));
+    ASSERT_TRUE(player.parts.contains("*"));
+    EXPECT_EQ(player.parts.at("*"), car.parts.at("body"));
+    EXPECT_EQ(player.parts.at("glass"), car.parts.at("glass"));
+}
+
+}  // namespace
+}  // namespace livery
