@@ -59,9 +59,9 @@ std::vector<Node> quadrature(int points) {
 }
 
 /// A rectangle of directions around an axis in the plane of incidence, by its tangents.
-class Window {
+class ApertureWindow {
   public:
-    Window(double angle_rad, Aperture aperture)
+    ApertureWindow(double angle_rad, Aperture aperture)
         : axis_(std::sin(angle_rad), 0.0, std::cos(angle_rad)),
           along_(std::cos(angle_rad), 0.0, -std::sin(angle_rad)),
           half_(std::tan(0.5 * glm::radians(aperture.along_deg)),
@@ -88,7 +88,9 @@ class Window {
 /// with points ever denser toward that corner and toward the edge's nearest point, so that lobes
 /// much narrower and much wider than the window are met alike. Lobes are 1 / cosine times as long
 /// as wide; the window is squeezed until they are round.
-double received(const LuminanceFunction& luminance, const Window& receptor, const glm::dvec3& wi) {
+double received(const LuminanceFunction& luminance,
+                const ApertureWindow& receptor,
+                const glm::dvec3& wi) {
     static const std::vector<Node> along_edge = quadrature(10), outward = quadrature(24);
     constexpr double kNearest = 1e-4;
     const double steps = std::log1p(1.0 / kNearest);
@@ -117,7 +119,7 @@ double received(const LuminanceFunction& luminance, const Window& receptor, cons
                 if (!(wo.z > 0.0)) continue;
                 const double area = s.weight * steps * (reach + kNearest) * reach * distance *
                                     base / (squeeze.x * squeeze.y);
-                sum += area * Window::solid_angle(at) * wo.z * luminance(wi, wo);
+                sum += area * ApertureWindow::solid_angle(at) * wo.z * luminance(wi, wo);
             }
         }
     }
@@ -145,8 +147,8 @@ double fresnel_over_schlick(double f0, double cosine) {
 
 double specular_gloss(const LuminanceFunction& luminance, double angle_deg) {
     static const std::vector<Node> over_source = quadrature(3);
-    const Window receptor(-glm::radians(angle_deg), receptor_at(angle_deg));
-    const Window source(glm::radians(angle_deg), kSource);
+    const ApertureWindow receptor(-glm::radians(angle_deg), receptor_at(angle_deg));
+    const ApertureWindow source(glm::radians(angle_deg), kSource);
     double paint = 0.0, standard = 0.0;
     for (const Node& x : over_source) {
         for (const Node& y : over_source) {
@@ -156,7 +158,8 @@ double specular_gloss(const LuminanceFunction& luminance, double angle_deg) {
             // Both sides of the plane are alike: one of them counts twice.
             if (at.y < -1e-12) continue;
             const double sides = at.y > 1e-12 ? 2.0 : 1.0;
-            const double light = sides * x.weight * y.weight * Window::solid_angle(at) * wi.z;
+            const double light =
+                sides * x.weight * y.weight * ApertureWindow::solid_angle(at) * wi.z;
             paint += light * received(luminance, receptor, wi);
             standard += light * dielectric_reflectance(wi.z, kGlossStandardIndex);
         }

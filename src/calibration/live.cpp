@@ -9,8 +9,8 @@
 #include "calibration/colour/colour_report.h"
 #include "calibration/colour/colour_samples.h"
 #include "calibration/colour/mixing.h"
-#include "calibration/statistics.h"
 #include "core/error.h"
+#include "core/statistics.h"
 
 namespace livery {
 namespace {
@@ -43,9 +43,9 @@ double broken_share(const ImageF& stripes,
 
 /// What is known of a session so far, and what went wrong with it: the cause that the photographs
 /// themselves tell comes before the one that the session ran into.
-class Session {
+class LiveCalibration {
   public:
-    Session(BenchSession& bench, const LiveOptions& options)
+    LiveCalibration(BenchSession& bench, const LiveOptions& options)
         : bench_(bench),
           options_(options),
           drives_{options.colour.dark_drive, options.colour.bright_drive} {}
@@ -75,7 +75,7 @@ class Session {
 
 /// Both again where a picture had not arrived, or somebody stood before it. After the first pair
 /// that fails for good the others are taken once: all together tell what is wrong.
-void Session::photograph_stripes(const Pattern& stripes, const Pattern& inverse) {
+void LiveCalibration::photograph_stripes(const Pattern& stripes, const Pattern& inverse) {
     constexpr int kAttempts = 3;
     for (int attempt = 1;; ++attempt) {
         // A small mock-up may lie inside one stripe of two pictures in a row.
@@ -93,7 +93,7 @@ void Session::photograph_stripes(const Pattern& stripes, const Pattern& inverse)
 }
 
 /// White and black first: they tell of each pair of stripes whether both had arrived.
-void Session::photograph_geometry() {
+void LiveCalibration::photograph_geometry() {
     const std::vector<Pattern> patterns = geometry_patterns(options_.width, options_.height);
     const std::size_t white = patterns.size() - 2, black = patterns.size() - 1;
     white_ = bench_.take(patterns[white].drive, "white", false);
@@ -229,7 +229,7 @@ LiveResult calibrate_live(const BenchPorts& bench,
         };
     BenchSession session(ports, capturing, geometry_count + 6 * options.shots + 17);
     session.meet(options.width, options.height);
-    Session live(session, options);
+    LiveCalibration live(session, options);
     live.photograph_geometry();
     std::vector<std::string> odd_map;
     result.map = map_of_captures(live.captures, options.width, options.height, odd_map);

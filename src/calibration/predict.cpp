@@ -10,9 +10,9 @@
 #include <glm/vec3.hpp>
 
 #include "calibration/colour/colour_report.h"
-#include "calibration/statistics.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/statistics.h"
 
 namespace livery {
 namespace {

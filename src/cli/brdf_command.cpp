@@ -16,21 +16,21 @@ namespace livery {
 
 namespace {
 
-struct Table {
+struct BrdfTable {
     fmt::memory_buffer text;
     std::size_t invalid = 0;  ///< rows that are no reflectance
 };
 
-Table colours_of(const AnyReflectance& reflectance,
-                 std::span<const DirectionPair> pairs,
-                 const ReflectanceSettings& settings,
-                 const Progress& progress) {
+BrdfTable colours_of(const AnyReflectance& reflectance,
+                     std::span<const DirectionPair> pairs,
+                     const ReflectanceSettings& settings,
+                     const Progress& progress) {
     const auto values = std::visit(
         [&](const auto& any) { return reflectance_values(any, pairs, settings, progress); },
         reflectance);
     // A saturated measured colour lies outside the working space too.
     const bool measured = std::holds_alternative<MeasuredReflectance>(reflectance);
-    Table table;
+    BrdfTable table;
     fmt::format_to(std::back_inserter(table.text), "r,g,b\n");
     for (const glm::dvec3& working : values) {
         const bool finite =
@@ -44,10 +44,10 @@ Table colours_of(const AnyReflectance& reflectance,
     return table;
 }
 
-Table spectra_of(const AnyReflectance& reflectance,
-                 std::span<const DirectionPair> pairs,
-                 const ReflectanceSettings& settings,
-                 const Progress& progress) {
+BrdfTable spectra_of(const AnyReflectance& reflectance,
+                     std::span<const DirectionPair> pairs,
+                     const ReflectanceSettings& settings,
+                     const Progress& progress) {
     const auto* measured = std::get_if<MeasuredReflectance>(&reflectance);
     if (!measured || !measured->is_spectral()) {
         throw std::invalid_argument(fmt::format(
@@ -58,7 +58,7 @@ Table spectra_of(const AnyReflectance& reflectance,
     if (settings.precision != Precision::f64) {
         throw std::invalid_argument("--spectral: expected --precision f64; shaders know colours");
     }
-    Table table;
+    BrdfTable table;
     const auto out = std::back_inserter(table.text);
     fmt::format_to(out, "{}\n", fmt::join(measured->samples.wavelengths_nm, ","));
     for (const DirectionPair& pair : pairs) {
@@ -110,9 +110,9 @@ Command brdf_command() {
         const AnyReflectance reflectance = find_reflectance(arguments->material);
         const auto settings = reflectance_settings(*arguments, common);
         const auto pairs = read_directions_csv(arguments->in);
-        const Table table = arguments->spectral
-                                ? spectra_of(reflectance, pairs, settings, progress)
-                                : colours_of(reflectance, pairs, settings, progress);
+        const BrdfTable table = arguments->spectral
+                                    ? spectra_of(reflectance, pairs, settings, progress)
+                                    : colours_of(reflectance, pairs, settings, progress);
         progress.check_stop();
         write_text_file(arguments->out, {table.text.data(), table.text.size()});
         Outcome outcome;

@@ -28,14 +28,14 @@ GlDevice CommonOptions::gl_device() const {
     return GlDevice::automatic;
 }
 
-PixelSize parse_size(const std::string& option, const std::string& text) {
-    PixelSize size;
+glm::ivec2 parse_size(const std::string& option, const std::string& text) {
+    glm::ivec2 size{0};
     const char* end = text.data() + text.size();
-    const auto first = std::from_chars(text.data(), end, size.width);
+    const auto first = std::from_chars(text.data(), end, size.x);
     const bool has_cross = first.ec == std::errc() && first.ptr != end && *first.ptr == 'x';
-    const auto second = has_cross ? std::from_chars(first.ptr + 1, end, size.height) : first;
-    if (!has_cross || second.ec != std::errc() || second.ptr != end || size.width < 16 ||
-        size.height < 16 || size.width > 16384 || size.height > 16384) {
+    const auto second = has_cross ? std::from_chars(first.ptr + 1, end, size.y) : first;
+    if (!has_cross || second.ec != std::errc() || second.ptr != end || size.x < 16 || size.y < 16 ||
+        size.x > 16384 || size.y > 16384) {
         throw std::invalid_argument(option + ": found \"" + text +
                                     "\", expected WIDTHxHEIGHT in pixels, 16 to 16384 a side");
     }

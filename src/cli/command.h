@@ -9,6 +9,8 @@
 #include <variant>
 #include <vector>
 
+#include <glm/vec2.hpp>
+
 #include "core/json.h"
 #include "core/progress.h"
 #include "gl/context.h"
@@ -72,10 +74,7 @@ std::vector<Command> session_commands();
 
 /// Numbers as cli options write them: "1280x800" and "10,20.5,-3". Throw std::invalid_argument that
 /// names the option, what was found and what was expected.
-struct PixelSize {
-    int width = 0, height = 0;
-};
-PixelSize parse_size(const std::string& option, const std::string& text);
+glm::ivec2 parse_size(const std::string& option, const std::string& text);
 /// The unit of a mesh file's numbers; nothing for an empty text.
 std::optional<LengthUnit> parse_unit(const std::string& text);
 Option unit_option(std::string& target);

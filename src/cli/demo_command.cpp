@@ -62,8 +62,8 @@ Command demo_command() {
         options.seed = static_cast<std::uint64_t>(common.seed);
         options.design_white_percentile = arguments->design_white;
         if (!arguments->size.empty()) {
-            const PixelSize size = parse_size("--size", arguments->size);
-            options.size_px = {size.width, size.height};
+            const glm::ivec2 size = parse_size("--size", arguments->size);
+            options.size_px = size;
         }
         const DemoResult result = run_demo(options, progress);
         return Outcome{figures_of(result), summary_of(result), 0};

@@ -71,8 +71,8 @@ Command desktop_command() {
             options.ui_scale = arguments->ui_scale;
         }
         if (!arguments->size.empty()) {
-            const PixelSize size = parse_size("--size", arguments->size);
-            options.size_px = glm::ivec2(size.width, size.height);
+            const glm::ivec2 size = parse_size("--size", arguments->size);
+            options.size_px = size;
         }
         Outcome outcome;
         outcome.exit_code = run_desktop(options);

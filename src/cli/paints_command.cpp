@@ -20,7 +20,7 @@ namespace livery {
 
 namespace {
 
-struct Arguments {
+struct PaintsArguments {
     std::string name, search, family, near, chip, tint, out, markdown;
 };
 
@@ -35,7 +35,7 @@ glm::dvec3 colour_of(const std::string& option, const std::string& text, const s
     return parse_colour(text);
 }
 
-void check_arguments(const Arguments& arguments) {
+void check_arguments(const PaintsArguments& arguments) {
     const bool one = !arguments.name.empty();
     const bool filtered = !arguments.search.empty() || !arguments.family.empty();
     check_argument(!one || !filtered, "NAME is one paint: leave --search and --family out");
@@ -65,7 +65,7 @@ std::set<std::string> families_of(const std::vector<Material>& paints) {
     return families;
 }
 
-std::vector<ListedPaint> found(const Arguments& arguments,
+std::vector<ListedPaint> found(const PaintsArguments& arguments,
                                const std::vector<Material>& all,
                                const Progress& progress) {
     const auto families = families_of(all);
@@ -90,7 +90,7 @@ std::vector<ListedPaint> found(const Arguments& arguments,
     return sorted;
 }
 
-Outcome list_paints(const Arguments& arguments, const Progress& progress) {
+Outcome list_paints(const PaintsArguments& arguments, const Progress& progress) {
     const PaintLibrary library = read_paint_library();
     const std::vector<Material> all = all_of(library);
     const auto list = found(arguments, all, progress);
@@ -105,7 +105,7 @@ Outcome list_paints(const Arguments& arguments, const Progress& progress) {
     return outcome;
 }
 
-Outcome write_table(const Arguments& arguments, const Progress& progress) {
+Outcome write_table(const PaintsArguments& arguments, const Progress& progress) {
     check_marked_block(arguments.markdown, "paints");
     const auto shipped = read_paint_library().shipped;
     replace_marked_block(arguments.markdown, "paints", markdown_of(listed(shipped, progress)));
@@ -115,7 +115,7 @@ Outcome write_table(const Arguments& arguments, const Progress& progress) {
     return outcome;
 }
 
-Outcome make_paint(const Arguments& arguments, const Progress& progress) {
+Outcome make_paint(const PaintsArguments& arguments, const Progress& progress) {
     const Recoloured made = with_colour(find_material(arguments.name),
                                         colour_of("--tint", arguments.tint, arguments.chip));
     if (!made.reached) {
@@ -134,7 +134,7 @@ Outcome make_paint(const Arguments& arguments, const Progress& progress) {
             page_of(paint) + fmt::format("wrote {}\n", arguments.out)};
 }
 
-Outcome show_paint(const Arguments& arguments, const Progress& progress) {
+Outcome show_paint(const PaintsArguments& arguments, const Progress& progress) {
     ListedPaint paint = listed({find_material(arguments.name)}, progress).front();
     if (!arguments.near.empty()) {
         const glm::dvec3 wanted = colour_of("--near", arguments.near, arguments.chip);
@@ -146,7 +146,7 @@ Outcome show_paint(const Arguments& arguments, const Progress& progress) {
 }  // namespace
 
 Command paints_command() {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<PaintsArguments>();
     Command command;
     command.name = "paints";
     command.summary =

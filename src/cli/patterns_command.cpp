@@ -46,7 +46,7 @@ Command patterns_command() {
          {}},
     };
     command.run = [arguments](const CommonOptions&, const Progress& progress) {
-        const PixelSize size = parse_size("--projector", arguments->projector);
+        const glm::ivec2 size = parse_size("--projector", arguments->projector);
         if (arguments->dark < 0 || arguments->bright > 255 ||
             arguments->dark >= arguments->bright) {
             throw std::invalid_argument(
@@ -55,16 +55,14 @@ Command patterns_command() {
                             arguments->bright));
         }
         std::vector<Pattern> patterns;
-        if (arguments->kind != "color")
-            append(patterns, geometry_patterns(size.width, size.height));
+        if (arguments->kind != "color") append(patterns, geometry_patterns(size.x, size.y));
         if (arguments->kind != "geometry") {
-            append(patterns,
-                   colour_patterns(size.width, size.height, arguments->dark, arguments->bright));
-            append(patterns, mosaic_patterns(size.width, size.height, kMosaics));
+            append(patterns, colour_patterns(size.x, size.y, arguments->dark, arguments->bright));
+            append(patterns, mosaic_patterns(size.x, size.y, kMosaics));
         }
         // White and black again at the end: what moved or changed on the way shows between the two.
         if (arguments->kind == "all") {
-            for (Pattern& pattern : geometry_patterns(size.width, size.height)) {
+            for (Pattern& pattern : geometry_patterns(size.x, size.y)) {
                 if (pattern.role == "white" || pattern.role == "black") {
                     patterns.push_back(std::move(pattern));
                 }
@@ -75,7 +73,7 @@ Command patterns_command() {
             progress.check_stop();
             files.push_back({pattern.role, std::move(pattern.drive), pattern.drive_values});
         }
-        write_patterns_folder(arguments->out, size.width, size.height, files, progress);
+        write_patterns_folder(arguments->out, size.x, size.y, files, progress);
         Outcome outcome;
         Json list = Json::array();
         for (std::size_t k = 0; k < files.size(); ++k) {

@@ -33,9 +33,9 @@ Outcome photograph_patterns(const PhotographArguments& arguments,
     SimulatedCapturesRequest request;
     request.bench = read_bench_file(arguments.bench);
     if (!arguments.size.empty()) {
-        const PixelSize size = parse_size("--size", arguments.size);
+        const glm::ivec2 size = parse_size("--size", arguments.size);
         View& projector = request.bench.projector.view;
-        projector = resized(projector, size.width, size.height);
+        projector = resized(projector, size.x, size.y);
     }
     request.bench.seed = static_cast<std::uint64_t>(common.seed);
     request.patterns = arguments.patterns;
@@ -61,11 +61,10 @@ Outcome photograph_sphere(const PhotographArguments& arguments,
         throw std::invalid_argument(
             "--exposure-s: found with --sphere, whose photographs are bracketed; leave it out");
     }
-    const PixelSize size =
+    const glm::ivec2 size =
         parse_size("--size", arguments.size.empty() ? "512x512" : arguments.size);
     SimulatedSphereRequest request;
-    request.stand =
-        usual_sphere_stand(read_bench_file(arguments.bench).camera, size.width, size.height);
+    request.stand = usual_sphere_stand(read_bench_file(arguments.bench).camera, size.x, size.y);
     request.paint = find_material(arguments.sphere);
     request.out = arguments.out;
     request.seed = static_cast<std::uint64_t>(common.seed);

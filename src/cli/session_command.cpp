@@ -114,12 +114,12 @@ void step(Session& session, int steps, bool back) {
     }
 }
 
-struct Arguments {
+struct SessionArguments {
     std::string file, product = "car", unit, out, look_file, stage = "radiance";
     std::vector<std::string> commands;
     int steps = 1, look = 0;
 };
-using SharedArguments = std::shared_ptr<Arguments>;
+using SharedArguments = std::shared_ptr<SessionArguments>;
 
 Command session_command(const std::string& name,
                         const std::string& summary,
@@ -136,7 +136,7 @@ Command session_command(const std::string& name,
 }
 
 Command new_command() {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<SessionArguments>();
     Command command =
         session_command("new",
                         "begin a session with the shipped looks",
@@ -165,7 +165,7 @@ Command new_command() {
 }
 
 Command show_command() {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<SessionArguments>();
     Command command = session_command("show", "what a session holds", "show.livery", arguments, {});
     command.run = [arguments](const CommonOptions&, const Progress&) {
         return told(arguments->file, read_summary(arguments->file));
@@ -174,7 +174,7 @@ Command show_command() {
 }
 
 Command apply_command() {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<SessionArguments>();
     Command command = session_command(
         "apply",
         "change a session as the desktop does: all of the commands, or none",
@@ -197,7 +197,7 @@ Command apply_command() {
 }
 
 Command step_command(bool back) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<SessionArguments>();
     Command command =
         session_command(back ? "undo" : "redo",
                         back ? "take back the last changes" : "do again what was taken back",
@@ -216,7 +216,7 @@ Command step_command(bool back) {
 }
 
 Command export_command() {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<SessionArguments>();
     Command command =
         session_command("export",
                         "write a look as a file, its own paints beside it",
@@ -238,7 +238,7 @@ Command export_command() {
 }
 
 Command import_command() {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<SessionArguments>();
     Command command =
         session_command("import",
                         "add a look from a file",
@@ -259,7 +259,7 @@ std::shared_ptr<const ProjectorSetup> setup_of(const Document& document, const P
 }
 
 Command picture_command() {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<SessionArguments>();
     Command command = session_command(
         "render",
         "draw a look as its projector shows it",

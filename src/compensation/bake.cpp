@@ -170,6 +170,7 @@ double design_white_luminance(const ColourCalibration& calibration,
             }
         }
     });
+    // That share of the pixels may be darker: a rank of its own, not the nearest value.
     const auto rank =
         std::min(static_cast<std::size_t>(percentile / 100.0 * static_cast<double>(counted.size())),
                  counted.size() - 1);

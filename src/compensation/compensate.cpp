@@ -116,7 +116,7 @@ float dither_of(std::uint32_t x, std::uint32_t y) {
 namespace {
 
 /// What blocks share.
-struct Frame {
+struct FrameCorrection {
     const kernel::Functions& functions;
     const CompensationTable& table;
     const ImageF& wanted;
@@ -125,7 +125,7 @@ struct Frame {
 };
 
 /// The table's pixels from `begin` to `end`.
-kernel::Counts compensate_range(const Frame& frame, std::size_t begin, std::size_t end) {
+kernel::Counts compensate_range(const FrameCorrection& frame, std::size_t begin, std::size_t end) {
     const CompensationTable& table = frame.table;
     const std::size_t total = table.pixels.size();
     const auto width = static_cast<std::uint32_t>(table.width);
@@ -192,7 +192,7 @@ void compensate_with(const kernel::Functions& functions,
     if (drive->width != table.width || drive->height != table.height || drive->channels != 3) {
         *drive = Image8(table.width, table.height, 3);
     }
-    const Frame frame{functions, table, wanted, drive, stats != nullptr};
+    const FrameCorrection frame{functions, table, wanted, drive, stats != nullptr};
     std::mutex mutex;
     kernel::Counts counts;
     parallel_for(table.pixels.size(), kPixelsAtOnce, [&](std::size_t begin, std::size_t end) {

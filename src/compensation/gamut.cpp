@@ -13,6 +13,7 @@
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/statistics.h"
 
 namespace livery {
 namespace {
@@ -179,12 +180,7 @@ GamutMap::GamutMap(const CompensationTable& table) : table_(table) {
             if (range) floors[i] = range->low;
         }
     });
-    if (count > 0) {
-        const auto rank =
-            static_cast<std::ptrdiff_t>(kFloorPercentile * static_cast<double>(count - 1));
-        std::nth_element(floors.begin(), floors.begin() + rank, floors.end());
-        floor_lightness_ = floors[static_cast<std::size_t>(rank)];
-    }
+    if (count > 0) floor_lightness_ = quantile(std::move(floors), kFloorPercentile);
 }
 
 void GamutMap::store(std::size_t pixel, const glm::dmat3& matrix, const glm::dvec3& vector) {

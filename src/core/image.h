@@ -1,6 +1,7 @@
 // A picture as a plain value.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -44,5 +45,24 @@ struct Image {
 using ImageF = Image<float>;
 using Image8 = Image<std::uint8_t>;
 using Image16 = Image<std::uint16_t>;
+
+/// A rectangle of pixels, [left, right) x [top, bottom).
+struct PixelRectangle {
+    int left = 0, top = 0, right = 0, bottom = 0;
+};
+
+/// The rectangle must lie inside the picture.
+template <typename T>
+Image<T> crop(const Image<T>& image, const PixelRectangle& rectangle) {
+    Image<T> result(
+        rectangle.right - rectangle.left, rectangle.bottom - rectangle.top, image.channels);
+    for (int y = 0; y < result.height; ++y) {
+        const T* from = image.pixel(rectangle.left, rectangle.top + y);
+        std::copy(from,
+                  from + static_cast<std::ptrdiff_t>(result.width) * image.channels,
+                  result.pixel(0, y));
+    }
+    return result;
+}
 
 }  // namespace livery

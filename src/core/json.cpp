@@ -27,14 +27,14 @@ std::string place_in(const std::string& text, std::size_t byte) {
 constexpr double kLargest = 1e12;
 
 /// What reading would have to build, found before anything of it is built.
-struct Extent {
+struct JsonExtent {
     std::size_t depth =
         0;  ///< brackets open at the deepest place; whoever prints recurses this far
     std::size_t values = 1;  ///< at most
 };
 
-Extent extent_of(const std::string& text) {
-    Extent extent;
+JsonExtent extent_of(const std::string& text) {
+    JsonExtent extent;
     std::size_t depth = 0;
     bool in_text = false;
     for (std::size_t k = 0; k < text.size(); ++k) {
@@ -78,7 +78,7 @@ Json parse_json(const std::string& text, const std::filesystem::path& file) {
         throw FileError(file, "", "an empty file", "a JSON object");
     }
     constexpr std::size_t max_depth = 200, max_values = 4'000'000;
-    const Extent extent = extent_of(text);
+    const JsonExtent extent = extent_of(text);
     if (extent.depth > max_depth) {
         throw FileError(file,
                         "",

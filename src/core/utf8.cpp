@@ -24,6 +24,25 @@ std::optional<char32_t> take_code_point(std::string_view& text) {
     return point;
 }
 
+void append_code_point(std::string& text, char32_t point) {
+    const auto byte = [&](char32_t value) { text += static_cast<char>(value); };
+    if (point < 0x80) {
+        byte(point);
+    } else if (point < 0x800) {
+        byte(0xc0 | (point >> 6u));
+        byte(0x80 | (point & 0x3f));
+    } else if (point < 0x10000) {
+        byte(0xe0 | (point >> 12u));
+        byte(0x80 | ((point >> 6u) & 0x3f));
+        byte(0x80 | (point & 0x3f));
+    } else {
+        byte(0xf0 | (point >> 18u));
+        byte(0x80 | ((point >> 12u) & 0x3f));
+        byte(0x80 | ((point >> 6u) & 0x3f));
+        byte(0x80 | (point & 0x3f));
+    }
+}
+
 std::string printable(std::string_view text, std::size_t longest) {
     std::string out;
     for (std::size_t characters = 0; !text.empty(); ++characters) {

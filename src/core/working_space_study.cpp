@@ -15,12 +15,12 @@ namespace livery {
 
 namespace {
 
-struct Table {
+struct StudyTable {
     std::vector<std::string> names;
     std::vector<std::vector<double>> columns;  // empty cells are NaN
 };
 
-Table read_table(const std::filesystem::path& csv) {
+StudyTable read_table(const std::filesystem::path& csv) {
     std::istringstream lines(read_text_file(csv));
     const auto cells_of = [](std::string line) {
         if (line.ends_with('\r')) line.pop_back();
@@ -29,7 +29,7 @@ Table read_table(const std::filesystem::path& csv) {
         for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
         return cells;
     };
-    Table table;
+    StudyTable table;
     std::string line;
     std::getline(lines, line);
     table.names = cells_of(line);
@@ -51,7 +51,7 @@ Table read_table(const std::filesystem::path& csv) {
     return table;
 }
 
-Spectrum spectrum_of_column(const Table& table, std::size_t column) {
+Spectrum spectrum_of_column(const StudyTable& table, std::size_t column) {
     std::vector<double> wavelengths_nm, values;
     for (std::size_t row = 0; row < table.columns[column].size(); ++row) {
         if (std::isnan(table.columns[column][row])) continue;

@@ -23,25 +23,6 @@ std::optional<std::vector<char32_t>> decoded(std::string_view text) {
     return points;
 }
 
-void append_utf8(std::string& text, char32_t point) {
-    const auto byte = [&](char32_t value) { text += static_cast<char>(value); };
-    if (point < 0x80) {
-        byte(point);
-    } else if (point < 0x800) {
-        byte(0xc0 | (point >> 6u));
-        byte(0x80 | (point & 0x3f));
-    } else if (point < 0x10000) {
-        byte(0xe0 | (point >> 12u));
-        byte(0x80 | ((point >> 6u) & 0x3f));
-        byte(0x80 | (point & 0x3f));
-    } else {
-        byte(0xf0 | (point >> 18u));
-        byte(0x80 | ((point >> 12u) & 0x3f));
-        byte(0x80 | ((point >> 6u) & 0x3f));
-        byte(0x80 | (point & 0x3f));
-    }
-}
-
 bool is_space(char32_t point) {
     return point == ' ' || point == '\t' || point == 0xa0 || point == 0x1680 ||
            (point >= 0x2000 && point <= 0x200b) || point == 0x202f || point == 0x205f ||
@@ -104,7 +85,7 @@ std::vector<char32_t> tidy_points(std::string_view name) {
 
 std::string encoded(const std::vector<char32_t>& points) {
     std::string text;
-    for (const char32_t point : points) append_utf8(text, point);
+    for (const char32_t point : points) append_code_point(text, point);
     return text;
 }
 

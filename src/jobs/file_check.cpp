@@ -34,7 +34,7 @@ namespace {
 
 using Path = std::filesystem::path;
 
-struct Kind {
+struct FileKind {
     std::string name;
     std::function<void(const Path&, FileCheck&)> read;
 };
@@ -184,7 +184,7 @@ void read_session(const Path& file, FileCheck& check) {
     tell(elsewhere, check);
 }
 
-Kind kind_of_manifest(const Path& manifest, const Progress& progress) {
+FileKind kind_of_manifest(const Path& manifest, const Progress& progress) {
     if (is_unphotographed(read_json_file(manifest))) {
         return {"patterns",
                 [manifest](const Path&, FileCheck& check) { read_patterns(manifest, check); }};
@@ -199,7 +199,7 @@ Kind kind_of_manifest(const Path& manifest, const Progress& progress) {
             }};
 }
 
-Kind kind_of_folder(const Path& folder, const Progress& progress) {
+FileKind kind_of_folder(const Path& folder, const Progress& progress) {
     if (is_there(folder / "calibration.json")) {
         return {"calibration", [](const Path& path, FileCheck&) { read_calibration(path); }};
     }
@@ -239,7 +239,7 @@ void check_look(const Path& file, FileCheck& check) {
     tell(elsewhere, check);
 }
 
-Kind kind_of_json(const Path& file, const Progress& progress) {
+FileKind kind_of_json(const Path& file, const Progress& progress) {
     const Json json = read_json_file(file);
     const auto has = [&](const char* key) { return json.contains(key); };
     if (has("captures")) return kind_of_manifest(file, progress);
@@ -285,7 +285,7 @@ void check_measured(const Path& file, FileCheck& check) {
 }
 
 /// By the names of its columns.
-Kind kind_of_csv(const Path& file) {
+FileKind kind_of_csv(const Path& file) {
     const std::string text = read_text_file(file, std::size_t{1} << 30u);
     const CsvReader csv(text, file);
     if (csv.find("wavelength") || csv.find("nm")) {
@@ -304,7 +304,7 @@ Kind kind_of_csv(const Path& file) {
                     "the columns of spectra, directions or measured reflectance");
 }
 
-Kind kind_of(const Path& file, const Progress& progress) {
+FileKind kind_of(const Path& file, const Progress& progress) {
     if (!is_there(file)) throw FileError(file, "", "no such file", "a file or folder");
     if (std::filesystem::is_directory(file)) return kind_of_folder(file, progress);
     if (!std::filesystem::is_regular_file(file)) {
@@ -348,7 +348,7 @@ FileCheck check_file(const std::filesystem::path& file, const Progress& progress
     check.file = file;
     check.kind = "unknown";
     try {
-        const Kind kind = kind_of(file, progress);
+        const FileKind kind = kind_of(file, progress);
         check.kind = kind.name;
         kind.read(file, check);
     } catch (const Cancelled&) {

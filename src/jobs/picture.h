@@ -9,26 +9,8 @@
 
 namespace livery {
 
-/// A rectangle of pixels, [left, right) x [top, bottom).
-struct PixelRectangle {
-    int left = 0, top = 0, right = 0, bottom = 0;
-};
-
 /// Around all non-zero pixels of a mask, `margin_px` wider and inside the picture.
 PixelRectangle bounds_of_mask(const Image8& mask, int margin_px);
-
-template <typename T>
-Image<T> crop(const Image<T>& image, const PixelRectangle& rectangle) {
-    Image<T> result(
-        rectangle.right - rectangle.left, rectangle.bottom - rectangle.top, image.channels);
-    for (int y = 0; y < result.height; ++y) {
-        const T* from = image.pixel(rectangle.left, rectangle.top + y);
-        std::copy(from,
-                  from + static_cast<std::ptrdiff_t>(result.width) * image.channels,
-                  result.pixel(0, y));
-    }
-    return result;
-}
 
 /// A photograph's linear camera colour through `xyz_from_camera`, for showing it to people.
 ImageF developed(const Photograph& photograph, const glm::dmat3& xyz_from_camera);

@@ -11,13 +11,13 @@ namespace {
 
 constexpr int kRepeats = 7;
 
-struct Kind {
+struct ArtworkKind {
     std::string name;
     Artwork artwork;
 };
 
-std::vector<Kind> kinds() {
-    std::vector<Kind> list;
+std::vector<ArtworkKind> kinds() {
+    std::vector<ArtworkKind> list;
     for (const ArtworkShape shape :
          {ArtworkShape::half, ArtworkShape::stripes, ArtworkShape::dots}) {
         Artwork artwork;
@@ -75,7 +75,7 @@ ArtworkBench run_artwork_bench(RadianceRenderer& renderer,
                                  : load_artwork_picture(find_artwork_picture(artwork.picture, ""));
         return make_part_artwork(body, artwork, paint, picture);
     };
-    for (const Kind& kind : kinds()) {
+    for (const ArtworkKind& kind : kinds()) {
         Scene with = scene;
         std::vector<double> more;
         for (int k = 0; k < kRepeats; ++k) {

@@ -91,9 +91,9 @@ class Finished {
 };
 
 /// Work that repeats on a thread that gives way, from now until the object ends.
-class Background {
+class BackgroundWork {
   public:
-    Background(int at_least, std::function<void(const Progress&)> work) : least_(at_least) {
+    BackgroundWork(int at_least, std::function<void(const Progress&)> work) : least_(at_least) {
         if (!work) return;
         thread_ = std::thread([this, work = std::move(work)] {
             lower_priority_of_this_thread(Urgency::background);
@@ -109,12 +109,12 @@ class Background {
             }
         });
     }
-    ~Background() {
+    ~BackgroundWork() {
         stop_ = true;
         if (thread_.joinable()) thread_.join();
     }
-    Background(const Background&) = delete;
-    Background& operator=(const Background&) = delete;
+    BackgroundWork(const BackgroundWork&) = delete;
+    BackgroundWork& operator=(const BackgroundWork&) = delete;
     bool done_enough() const {
         if (failed_) std::rethrow_exception(error_);
         return !thread_.joinable() || done_ >= least_;
@@ -129,7 +129,7 @@ class Background {
 };
 
 /// The session, the frame thread and what they draw: the desktop less its windows.
-struct Desktop {
+struct MeasuredDesktop {
     std::shared_ptr<const Product> product;
     std::shared_ptr<const ProjectorSetup> setup;
     Session session;
@@ -138,9 +138,9 @@ struct Desktop {
     FrameThread thread;
     std::uint64_t number = 0;
 
-    Desktop(GlDevice device,
-            const std::filesystem::path& session_file,
-            const std::filesystem::path& calibration)
+    MeasuredDesktop(GlDevice device,
+                    const std::filesystem::path& session_file,
+                    const std::filesystem::path& calibration)
         : product(find_product("car")),
           setup(load_setup(calibration, 20.0, product->mesh)),
           session(Session::open(session_file)),
@@ -169,13 +169,13 @@ struct Desktop {
 /// Paints on the car's largest part, one after the other as a designer clicks: the time from before
 /// the command to the finished frame with the new paint.
 struct Swaps {
-    Desktop& desktop;
+    MeasuredDesktop& desktop;
     std::vector<Material> paints;
     Scene scene;  ///< as last shown
     bool saving = false;
 
     std::vector<double> run(int count,
-                            const Background& beside,
+                            const BackgroundWork& beside,
                             const std::function<void(int, Scene&)>& change,
                             const Progress& progress) {
         std::vector<double> ms;
@@ -241,7 +241,7 @@ std::vector<BenchEffect> run_desktop_bench(GlDevice device, const Progress& prog
     BenchEffect swap_effect{"desktop: paint swap to finished frame", {}};
 
     const auto start = Clock::now();
-    Desktop desktop(device, folder / "session.livery", folder / "calibration");
+    MeasuredDesktop desktop(device, folder / "session.livery", folder / "calibration");
     Swaps swaps{desktop, usual_paints(), {}};
     FrameDescription first = desktop.description(nullptr);
     swaps.scene = first.scene;
@@ -258,7 +258,7 @@ std::vector<BenchEffect> run_desktop_bench(GlDevice device, const Progress& prog
     constexpr int kSwaps = 80;
     const auto nothing = [](int, Scene&) {};
     const auto measure = [&](const std::string& name,
-                             const Background& beside,
+                             const BackgroundWork& beside,
                              const std::function<void(int, Scene&)>& change) {
         progress.update(0.0, "timing paint swaps, " + name);
         swap_effect.levels.push_back(

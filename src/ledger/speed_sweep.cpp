@@ -57,12 +57,12 @@ double coverage_of(const SurfaceMap& map) {
            static_cast<double>(map.coverage.pixel_count());
 }
 
-struct Extent {
+struct AxisExtent {
     glm::dvec2 middle_px{0.0};
     double area = 0.0;  ///< of the picture, whatever its pixels' size
 };
 
-Extent extent_of(const SurfaceMap& map) {
+AxisExtent extent_of(const SurfaceMap& map) {
     glm::dvec2 sum(0.0);
     double weight = 0.0;
     for (int y = 0; y < map.height; ++y) {

@@ -7,6 +7,7 @@
 #include <glm/matrix.hpp>
 
 #include "core/colour.h"
+#include "core/statistics.h"
 #include "twin/factors.h"
 
 namespace livery {
@@ -28,9 +29,7 @@ double brightest(const ImageF& xyz) {
     std::vector<float> y;
     for (std::size_t i = 0; i < xyz.pixel_count(); ++i) y.push_back(xyz.values[3 * i + 1]);
     if (y.empty()) return 1.0;
-    const auto at = y.begin() + static_cast<std::ptrdiff_t>(0.999 * static_cast<double>(y.size()));
-    std::nth_element(y.begin(), at, y.end());
-    return std::max(static_cast<double>(*at), 1e-6);
+    return std::max(static_cast<double>(quantile(std::move(y), 0.999)), 1e-6);
 }
 
 }  // namespace
@@ -43,23 +42,6 @@ glm::dmat3 xyz_from_bench_camera(const BenchDescription& bench) {
     const auto camera = fold(bench, white, camera_sensor(bench)).direct.front();
     return glm::dmat3(xyz[0], xyz[1], xyz[2]) *
            glm::inverse(glm::dmat3(camera[0], camera[1], camera[2]));
-}
-
-PixelRectangle bounds_in_view(const Mesh& mesh, const View& view, int margin_px) {
-    glm::dvec2 low(view.width, view.height), high(0.0);
-    for (const glm::vec3& position : mesh.positions_mm) {
-        const auto pixel = project(view, glm::dvec3(position));
-        if (!pixel) continue;
-        low = glm::min(low, *pixel);
-        high = glm::max(high, *pixel);
-    }
-    const PixelRectangle box{
-        std::max(0, static_cast<int>(std::floor(low.x)) - margin_px),
-        std::max(0, static_cast<int>(std::floor(low.y)) - margin_px),
-        std::min(view.width, static_cast<int>(std::ceil(high.x)) + margin_px),
-        std::min(view.height, static_cast<int>(std::ceil(high.y)) + margin_px)};
-    if (box.right <= box.left || box.bottom <= box.top) return {0, 0, view.width, view.height};
-    return box;
 }
 
 Image8 srgb_from_photograph(const Photograph& photograph,

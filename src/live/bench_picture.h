@@ -14,10 +14,6 @@ namespace livery {
 /// primaries; a white diffuser that faces full red + green + blue has Y = 1.
 glm::dmat3 xyz_from_bench_camera(const BenchDescription& bench);
 
-/// Where a mesh may be seen in a camera's picture, `margin_px` wider and inside the picture; the
-/// whole picture when it is nowhere.
-PixelRectangle bounds_in_view(const Mesh& mesh, const View& view, int margin_px);
-
 /// A photograph as sRGB where `white_y` is white; 0: its 99.9th percentile.
 Image8 srgb_from_photograph(const Photograph& photograph,
                             const BenchDescription& bench,

@@ -15,6 +15,7 @@
 #include "live/orbit.h"
 #include "live/projector_setup.h"
 #include "twin/bench.h"
+#include "twin/pixel_rays.h"
 
 namespace livery {
 
@@ -96,7 +97,7 @@ void BenchThread::Implementation::trace(const Traced& with, const Progress& prog
     View& view = description.camera.view;
     if (with.eye_mm) view = eye_view(*with.eye_mm, bounds_of(mesh), view.width, view.height);
     bench = std::make_unique<Bench>(description, with.choice.product, progress);
-    mockup = bounds_in_view(mesh, view, kMargin_px);
+    mockup = pixels_that_see(view, mesh, kMargin_px);
     traced = with;
 }
 

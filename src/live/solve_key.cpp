@@ -8,30 +8,11 @@ namespace livery {
 
 namespace {
 
-bool same_view(const View& a, const View& b) {
-    return a.width == b.width && a.height == b.height && a.focal_px == b.focal_px &&
-           a.principal_px == b.principal_px && a.distortion == b.distortion &&
-           a.view_from_world.rotation == b.view_from_world.rotation &&
-           a.view_from_world.translation == b.view_from_world.translation;
-}
-
-bool same_lights(const std::vector<DirectionalLight>& a, const std::vector<DirectionalLight>& b) {
-    return std::equal(a.begin(),
-                      a.end(),
-                      b.begin(),
-                      b.end(),
-                      [](const DirectionalLight& x, const DirectionalLight& y) {
-                          return x.direction == y.direction &&
-                                 x.radiance_rec709 == y.radiance_rec709 &&
-                                 x.angle_rad == y.angle_rad;
-                      });
-}
-
 std::string difference(const SolveKey& solved, const SolveKey& wanted) {
     if (solved.product != wanted.product) return "product";
-    if (!same_view(solved.view, wanted.view)) return "projector";
+    if (solved.view != wanted.view) return "projector";
     if (solved.environment != wanted.environment) return "environment";
-    if (!same_lights(solved.lights, wanted.lights)) return "light";
+    if (solved.lights != wanted.lights) return "light";
     if (solved.eye_mm != wanted.eye_mm) return "eye";
     if (!same_relief(solved.relief, wanted.relief)) return "relief";
     if (solved.quality != wanted.quality) return to_string(wanted.quality) + " quality";
@@ -69,11 +50,11 @@ SolveKeys with_quality(SolveKeys keys, Quality quality) {
 }
 
 bool same_pose(const SolveKey& a, const SolveKey& b) {
-    return a.product == b.product && same_view(a.view, b.view);
+    return a.product == b.product && a.view == b.view;
 }
 
 bool same_light(const SolveKey& a, const SolveKey& b) {
-    return same_pose(a, b) && a.environment == b.environment && same_lights(a.lights, b.lights) &&
+    return same_pose(a, b) && a.environment == b.environment && a.lights == b.lights &&
            a.eye_mm == b.eye_mm && same_relief(a.relief, b.relief);
 }
 

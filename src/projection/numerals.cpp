@@ -107,13 +107,13 @@ const Digit& digit(char name) {
 }
 
 /// From the left edge of the ink to the right one.
-struct Extent {
+struct NumeralExtent {
     double left = 1e9, right = -1e9;
     double width() const { return right - left; }
 };
 
-Extent extent(const Digit& digit_strokes) {
-    Extent ink;
+NumeralExtent extent(const Digit& digit_strokes) {
+    NumeralExtent ink;
     for (const auto& stroke : digit_strokes) {
         for (const auto& point : stroke) {
             ink.left = std::min(ink.left, point.x - kPen);
@@ -154,7 +154,7 @@ void draw_number(Image8& picture,
         centre_px - 0.5 * glm::dvec2(number_width_px(number, height_px), height_px);
     double left = 0.0;
     for (const char name : std::to_string(number)) {
-        const Extent ink = extent(digit(name));
+        const NumeralExtent ink = extent(digit(name));
         const glm::dvec2 from = corner + height_px * glm::dvec2(left, 0.0);
         const glm::dvec2 to = from + height_px * glm::dvec2(ink.width(), 1.0);
         left += ink.width() + kGap;

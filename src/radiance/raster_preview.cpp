@@ -106,13 +106,6 @@ PixelRect scaled(const PixelRect& rect, int factor) {
     return {factor * rect.x, factor * rect.y, factor * rect.width, factor * rect.height};
 }
 
-bool same_view(const View& a, const View& b) {
-    return a.width == b.width && a.height == b.height && a.focal_px == b.focal_px &&
-           a.principal_px == b.principal_px && a.distortion == b.distortion &&
-           a.view_from_world.rotation == b.view_from_world.rotation &&
-           a.view_from_world.translation == b.view_from_world.translation;
-}
-
 /// What a picture is drawn into: the triangle that each sample shows, its part as a depth, its
 /// radiance; and pixels that are the mean of their samples.
 struct Targets {
@@ -289,7 +282,7 @@ Program& RasterPreview::State::shading_program(const ShadingKey& key) {
 /// Which triangle and which part each sample shows: nothing is shaded that is not seen, and no
 /// sample twice.
 void RasterPreview::State::find_samples(const View& new_view) {
-    if (samples_found && target.factor == factor && same_view(view, new_view)) return;
+    if (samples_found && target.factor == factor && view == new_view) return;
     samples_found = false;
     view = new_view;
     target.resize(view.width, view.height, factor);

@@ -22,6 +22,8 @@ struct DirectionalLight {
     glm::dvec3 direction{0.0, 1.0, 0.0};  ///< toward the light, normalised on reading
     glm::dvec3 radiance_rec709{1.0};
     double angle_rad = 0.0;  ///< angular diameter of its disc; 0: a point at infinity
+
+    bool operator==(const DirectionalLight&) const = default;
 };
 
 /// Of length 1. What already is, to rounding, comes back as it is: writing and reading a light

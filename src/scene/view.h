@@ -17,6 +17,7 @@ struct Rigid3 {
     glm::dmat3 rotation{1.0};
     glm::dvec3 translation{0.0};
 
+    bool operator==(const Rigid3&) const = default;
     glm::dvec3 operator*(const glm::dvec3& x_in_source) const {
         return rotation * x_in_source + translation;
     }
@@ -36,6 +37,8 @@ struct View {
     glm::dvec2 principal_px{0.0};
     std::array<double, 5> distortion{};
     Rigid3 view_from_world;
+
+    bool operator==(const View&) const = default;
 };
 
 struct Ray {

@@ -1,8 +1,10 @@
 #include "session/naming.h"
 
 #include <algorithm>
+#include <string_view>
 
 #include "core/error.h"
+#include "core/utf8.h"
 
 namespace livery {
 
@@ -10,25 +12,6 @@ namespace {
 
 constexpr std::size_t kLongestName = 200;
 constexpr std::size_t kLongestText = 16'384;
-
-bool is_continuation(unsigned char c) { return (c & 0xC0u) == 0x80u; }
-
-/// Bytes of the UTF-8 character at `k`; 0 when there is none.
-std::size_t character_length(const std::string& text, std::size_t k) {
-    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-    const unsigned char first = byte(k);
-    if (first < 0x80u) return 1;
-    const std::size_t length = first >= 0xF0u ? 4 : first >= 0xE0u ? 3 : 2;
-    if (first < 0xC2u || first > 0xF4u || k + length > text.size()) return 0;
-    for (std::size_t i = 1; i < length; ++i) {
-        if (!is_continuation(byte(k + i))) return 0;
-    }
-    const unsigned char second = byte(k + 1);
-    const bool overlong = (first == 0xE0u && second < 0xA0u) || (first == 0xF0u && second < 0x90u);
-    const bool surrogate = first == 0xEDu && second > 0x9Fu;
-    const bool too_large = first == 0xF4u && second > 0x8Fu;
-    return overlong || surrogate || too_large ? 0 : length;
-}
 
 /// "solid red 2" -> "solid red"; a name without such a number comes back as it is.
 std::string without_number(const std::string& name) {
@@ -46,12 +29,10 @@ void check_text(const std::string& text, const std::string& what) {
     check_argument(text.size() <= kLongestText,
                    what + " has " + std::to_string(text.size()) + " bytes; at most " +
                        std::to_string(kLongestText) + " are possible");
-    for (std::size_t k = 0; k < text.size();) {
-        const std::size_t length = character_length(text, k);
-        check_argument(length != 0, what + " is not UTF-8 text");
-        const auto c = static_cast<unsigned char>(text[k]);
-        check_argument(c >= 0x20u && c != 0x7Fu, what + " contains a control character");
-        k += length;
+    for (std::string_view rest = text; !rest.empty();) {
+        const auto point = take_code_point(rest);
+        check_argument(point.has_value(), what + " is not UTF-8 text");
+        check_argument(*point >= 0x20 && *point != 0x7F, what + " contains a control character");
     }
 }
 

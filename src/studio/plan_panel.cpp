@@ -17,11 +17,11 @@ namespace livery {
 
 namespace {
 
-enum class Kind { every_frame, solved_once, prepared };
+enum class CostKind { every_frame, solved_once, prepared };
 
-Kind kind_of(const PlannedPass& pass) {
-    if (pass.name.starts_with("prepare")) return Kind::prepared;
-    return runs_every_frame(pass.name) ? Kind::every_frame : Kind::solved_once;
+CostKind kind_of(const PlannedPass& pass) {
+    if (pass.name.starts_with("prepare")) return CostKind::prepared;
+    return runs_every_frame(pass.name) ? CostKind::every_frame : CostKind::solved_once;
 }
 
 void right_aligned(const std::string& text, const ImVec4& colour) {
@@ -37,7 +37,7 @@ void draw_totals(const Studio& studio, const FinishedFrame& frame) {
     double predicted = 0.0;
     bool complete = true;
     for (const PlannedPass& pass : frame.plan.passes) {
-        if (kind_of(pass) != Kind::every_frame) continue;
+        if (kind_of(pass) != CostKind::every_frame) continue;
         complete = complete && pass.predicted_ms.has_value();
         predicted += pass.predicted_ms.value_or(0.0);
     }
@@ -113,7 +113,7 @@ void draw_pass(const PlannedPass& pass, double longest_ms) {
 
 /// `beside_ms`: what goes with them and is none of them; none: they are the whole.
 void draw_passes(const FramePlan& plan,
-                 Kind kind,
+                 CostKind kind,
                  const char* title,
                  std::optional<double> beside_ms = std::nullopt) {
     double longest_ms = beside_ms.value_or(0.0);
@@ -171,11 +171,11 @@ void draw_plan_panel(Studio& studio) {
     }
     draw_totals(studio, frame);
     draw_passes(frame.plan,
-                Kind::every_frame,
+                CostKind::every_frame,
                 "With every paint",
                 time_beside_passes_ms(studio.panels.plan.measured, frame.plan));
-    draw_passes(frame.plan, Kind::solved_once, "Once for light, eye and pose");
-    draw_passes(frame.plan, Kind::prepared, "Prepared while idle");
+    draw_passes(frame.plan, CostKind::solved_once, "Once for light, eye and pose");
+    draw_passes(frame.plan, CostKind::prepared, "Prepared while idle");
     draw_skipped(frame.plan);
     ImGui::Spacing();
     if (studio.setup && studio.setup->table) {

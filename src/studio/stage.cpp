@@ -18,7 +18,7 @@ namespace livery {
 
 namespace {
 
-struct Frame {
+struct StageFrame {
     float x = 0.0f, y = 0.0f, width = 0.0f, height = 0.0f;
 };
 
@@ -94,11 +94,11 @@ void draw_compare_buttons(Shell& shell) {
 }
 
 /// Fitted, in whole pixels, then zoomed about a point of the picture.
-Frame place_picture(const Frame& stage, int width, int height, const PictureZoom& zoom) {
+StageFrame place_picture(const StageFrame& stage, int width, int height, const PictureZoom& zoom) {
     const double fit = std::min(static_cast<double>(stage.width) / width,
                                 static_cast<double>(stage.height) / height);
     const double scale = fit * zoom.factor;
-    Frame frame;
+    StageFrame frame;
     frame.width = static_cast<float>(std::round(width * scale));
     frame.height = static_cast<float>(std::round(height * scale));
     const auto at = [](float from, float size, double point, float picture) {
@@ -109,13 +109,13 @@ Frame place_picture(const Frame& stage, int width, int height, const PictureZoom
     return frame;
 }
 
-void draw_texture(unsigned texture, const Frame& frame) {
+void draw_texture(unsigned texture, const StageFrame& frame) {
     ImGui::GetWindowDrawList()->AddImage(imgui_texture(texture),
                                          {frame.x, frame.y},
                                          {frame.x + frame.width, frame.y + frame.height});
 }
 
-void draw_message(const Frame& stage, const std::string& text) {
+void draw_message(const StageFrame& stage, const std::string& text) {
     const ImVec2 size = ImGui::CalcTextSize(text.c_str(), nullptr, false, stage.width * 0.8f);
     ImGui::SetCursorScreenPos(
         {stage.x + 0.5f * (stage.width - size.x), stage.y + 0.5f * (stage.height - size.y)});
@@ -125,7 +125,7 @@ void draw_message(const Frame& stage, const std::string& text) {
 }
 
 /// Words over the picture's lower left corner; what is not as it will be comes last.
-void draw_caption(const Shell& shell, const Frame& stage, std::string text) {
+void draw_caption(const Shell& shell, const StageFrame& stage, std::string text) {
     const auto& frame = shell.studio.frame;
     const std::string unfinished =
         frame && !frame->unfinished.empty() ? "Not all there yet: " + frame->unfinished : "";
@@ -153,7 +153,7 @@ void draw_caption(const Shell& shell, const Frame& stage, std::string text) {
 }
 
 /// The point under the pointer stays there.
-void zoom_picture(PictureZoom& zoom, const Frame& picture, float notches) {
+void zoom_picture(PictureZoom& zoom, const StageFrame& picture, float notches) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const double factor =
         std::clamp(zoom.factor * std::pow(1.15, static_cast<double>(notches)), 1.0, 32.0);
@@ -165,7 +165,7 @@ void zoom_picture(PictureZoom& zoom, const Frame& picture, float notches) {
 }
 
 /// Wheel, drag and double click for a picture that is only looked at.
-void handle_picture(PictureZoom& zoom, const Frame& picture, const Pointer& pointer) {
+void handle_picture(PictureZoom& zoom, const StageFrame& picture, const Pointer& pointer) {
     if (picture.width <= 0.0f) return;
     const ImGuiIO& io = ImGui::GetIO();
     if (pointer.hovered && io.MouseWheel != 0.0f) zoom_picture(zoom, picture, io.MouseWheel);
@@ -179,7 +179,7 @@ void handle_picture(PictureZoom& zoom, const Frame& picture, const Pointer& poin
     }
 }
 
-void choose_part_at_pointer(Shell& shell, const Frame& stage) {
+void choose_part_at_pointer(Shell& shell, const StageFrame& stage) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const View view = stage_view(shell, shell.studio.session.document().eye_mm);
     const auto part = shell.studio.picker->part_at(
@@ -207,7 +207,7 @@ bool handle_placing(Shell& shell, const Pointer& pointer, const glm::dvec2& at) 
 }
 
 /// Turning, zooming and choosing parts in a picture drawn for this stage.
-void handle_view(Shell& shell, const Frame& stage, const Pointer& pointer) {
+void handle_view(Shell& shell, const StageFrame& stage, const Pointer& pointer) {
     StageState& state = shell.stage;
     const ImGuiIO& io = ImGui::GetIO();
     const bool orbiting = shell.studio.view == StageView::preview;
@@ -240,13 +240,13 @@ void handle_view(Shell& shell, const Frame& stage, const Pointer& pointer) {
     if (pointer.released && pointer.hovered && !state.dragged) choose_part_at_pointer(shell, stage);
 }
 
-Frame projector_picture(const Shell& shell, const Frame& stage) {
+StageFrame projector_picture(const Shell& shell, const StageFrame& stage) {
     const auto& frame = shell.studio.frame;
     if (!frame) return stage;
     return place_picture(stage, frame->drive->width, frame->drive->height, shell.stage.projector);
 }
 
-Frame photograph_picture(const Shell& shell, const Frame& stage) {
+StageFrame photograph_picture(const Shell& shell, const StageFrame& stage) {
     const auto& photograph = shell.studio.photograph;
     if (!photograph || photograph->srgb.empty()) return stage;
     return place_picture(
@@ -260,9 +260,9 @@ bool has_wipe_line(const Studio& studio) {
 
 /// Where the wipe's line lies: across the mock-up in the projector's picture, across the stage in
 /// the others, which have no columns of the projector.
-std::pair<float, float> wipe_range(const Shell& shell, const Frame& stage) {
+std::pair<float, float> wipe_range(const Shell& shell, const StageFrame& stage) {
     const Studio& studio = shell.studio;
-    const Frame picture = projector_picture(shell, stage);
+    const StageFrame picture = projector_picture(shell, stage);
     if (studio.view != StageView::projector || !shell.mock_up_columns || !studio.setup) {
         return {stage.x, stage.x + stage.width};
     }
@@ -273,13 +273,13 @@ std::pair<float, float> wipe_range(const Shell& shell, const Frame& stage) {
     return {at(shell.mock_up_columns->first), at(shell.mock_up_columns->second)};
 }
 
-float wipe_line(const Shell& shell, const Frame& stage) {
+float wipe_line(const Shell& shell, const StageFrame& stage) {
     const auto [left, right] = wipe_range(shell, stage);
     return std::round(left + (right - left) * static_cast<float>(shell.studio.wipe_at));
 }
 
 /// True while the line has the pointer.
-bool handle_wipe(Shell& shell, const Frame& stage, const Pointer& pointer) {
+bool handle_wipe(Shell& shell, const StageFrame& stage, const Pointer& pointer) {
     Studio& studio = shell.studio;
     StageState& state = shell.stage;
     if (!pointer.held) state.dragging_wipe = false;
@@ -298,7 +298,7 @@ bool handle_wipe(Shell& shell, const Frame& stage, const Pointer& pointer) {
     return state.wipe_lit || (near && pointer.released);
 }
 
-void draw_wipe(const Shell& shell, const Frame& stage) {
+void draw_wipe(const Shell& shell, const StageFrame& stage) {
     const Studio& studio = shell.studio;
     if (!has_wipe_line(studio)) return;
     const float x = wipe_line(shell, stage);
@@ -324,7 +324,7 @@ void draw_wipe(const Shell& shell, const Frame& stage) {
 }
 
 /// While B is held everything else in the window is about A.
-void draw_held_name(const Studio& studio, const Frame& stage) {
+void draw_held_name(const Studio& studio, const StageFrame& stage) {
     if (!studio.showing_b || !studio.compared_look) return;
     const SessionLook* look = find_look(studio.session.document(), *studio.compared_look);
     if (!look) return;
@@ -348,7 +348,7 @@ void draw_held_name(const Studio& studio, const Frame& stage) {
 }
 
 /// Over the picture's upper edge, while the next click means something else than usual.
-void draw_placing(const Studio& studio, const Frame& stage) {
+void draw_placing(const Studio& studio, const StageFrame& stage) {
     if (!is_placing(studio)) return;
     const std::string text =
         fmt::format("Click where \"{}\" goes. Esc takes it back.",
@@ -365,7 +365,7 @@ void draw_placing(const Studio& studio, const Frame& stage) {
     centred_lines(lines, {low.x, low.y + pad}, width, colours::text);
 }
 
-void draw_drawn_view(Shell& shell, const Frame& stage) {
+void draw_drawn_view(Shell& shell, const StageFrame& stage) {
     shell.stage.width = static_cast<int>(stage.width);
     shell.stage.height = static_cast<int>(stage.height);
     const auto& preview = shell.studio.preview;
@@ -375,7 +375,7 @@ void draw_drawn_view(Shell& shell, const Frame& stage) {
         return;
     }
     preview->ready->wait_on_device();
-    Frame picture = stage;
+    StageFrame picture = stage;
     if (preview->size_px != glm::ivec2(shell.stage.width, shell.stage.height)) {
         picture = place_picture(stage, preview->size_px.x, preview->size_px.y, {});
     }
@@ -384,7 +384,7 @@ void draw_drawn_view(Shell& shell, const Frame& stage) {
     draw_placing(shell.studio, stage);
 }
 
-void draw_projector_view(Shell& shell, const Frame& stage) {
+void draw_projector_view(Shell& shell, const StageFrame& stage) {
     const Studio& studio = shell.studio;
     if (!studio.frame) {
         draw_message(stage, "Preparing the projector's picture…");
@@ -392,7 +392,7 @@ void draw_projector_view(Shell& shell, const Frame& stage) {
     }
     const FinishedFrame& frame = *studio.frame;
     frame.ready->wait_on_device();
-    const Frame picture = projector_picture(shell, stage);
+    const StageFrame picture = projector_picture(shell, stage);
     draw_texture(frame.drive_texture, picture);
     std::string caption = fmt::format("{} × {} pixels, ", frame.drive->width, frame.drive->height);
     caption += studio.setup && studio.setup->table
@@ -405,7 +405,7 @@ void draw_projector_view(Shell& shell, const Frame& stage) {
     draw_caption(shell, stage, caption);
 }
 
-void draw_photograph(Shell& shell, const Frame& stage) {
+void draw_photograph(Shell& shell, const StageFrame& stage) {
     const auto& photograph = shell.studio.photograph;
     if (!photograph || photograph->srgb.empty()) {
         std::string text =
@@ -434,7 +434,7 @@ void draw_photograph(Shell& shell, const Frame& stage) {
         }
         state.photograph_texture.upload(std::span<const std::uint8_t>(rgba.values));
     }
-    const Frame picture = photograph_picture(shell, stage);
+    const StageFrame picture = photograph_picture(shell, stage);
     draw_texture(state.photograph_texture.name(), picture);
     const bool behind = shell.studio.frame && photograph->number < shell.studio.frame->number;
     std::string caption = "The mock-up on the simulated bench, from the audience's eye";
@@ -470,10 +470,10 @@ void draw_stage(Shell& shell) {
     draw_view_buttons(shell);
     draw_compare_buttons(shell);
     const ImVec2 from = ImGui::GetCursorScreenPos(), space = ImGui::GetContentRegionAvail();
-    const Frame stage{std::floor(from.x),
-                      std::floor(from.y),
-                      std::max(std::floor(space.x), 16.0f),
-                      std::max(std::floor(space.y), 16.0f)};
+    const StageFrame stage{std::floor(from.x),
+                           std::floor(from.y),
+                           std::max(std::floor(space.x), 16.0f),
+                           std::max(std::floor(space.y), 16.0f)};
     shell.stage_x = stage.x;
     shell.stage_y = stage.y;
     ImGui::GetWindowDrawList()->AddRectFilled({stage.x, stage.y},

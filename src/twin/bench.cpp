@@ -27,7 +27,7 @@ constexpr int kGatherRays = 256;
 
 /// A picture as it stands on the mock-up; what the camera sees of it is computed when first asked
 /// for.
-struct ShownPicture {
+struct LitPicture {
     ImageF light;
     ImageF camera_units_per_s;  ///< empty: not yet asked for
 };
@@ -56,7 +56,7 @@ struct Bench::State {
     ImageF camera_ambient;  ///< empty: no ambient light
     ImageF room_light;      ///< of mishaps, at 1; empty: none switches one on
 
-    ShownPicture shown, before;
+    LitPicture shown, before;
     int photographs_of_shown = 0;
     std::uint32_t photographs = 0;
     double default_exposure_s = 0.0, exposure_s = 0.0;
@@ -64,7 +64,7 @@ struct Bench::State {
     void trace(const Progress& progress);
     void measure_truth();
     double metered_exposure_s() const;
-    ImageF camera_light(ShownPicture& picture);
+    ImageF camera_light(LitPicture& picture);
     void show(const Image8& drive);
     Photograph photograph(double wanted_exposure_s);
     glm::dvec3 measure_xyz(glm::dvec2 pixel) const;
@@ -166,14 +166,14 @@ double Bench::State::metered_exposure_s() const {
 }
 
 void Bench::State::show(const Image8& drive) {
-    ShownPicture next;
+    LitPicture next;
     next.light = light_from_drive(description.projector, drive);
     before = std::move(shown);
     shown = std::move(next);
     photographs_of_shown = 0;
 }
 
-ImageF Bench::State::camera_light(ShownPicture& picture) {
+ImageF Bench::State::camera_light(LitPicture& picture) {
     if (picture.camera_units_per_s.empty()) {
         picture.camera_units_per_s = receive_all(camera, gathers, picture.light);
     }

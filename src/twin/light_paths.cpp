@@ -123,22 +123,22 @@ void add_covers(const SurfaceFactors& shares, double share, std::vector<CoverTer
     }
 }
 
-/// Rows of `rect` in parallel, blocks of pixels in each; body(row, y, x0, x1, rays, hits).
+/// Rows of `rectangle` in parallel, blocks of pixels in each; body(row, y, x0, x1, rays, hits).
 template <typename Body>
 std::vector<RowPaths> for_blocks(const TracedWorld& world,
                                  const PixelRays& pixel_rays,
-                                 const PixelRect& rect,
+                                 const PixelRectangle& rectangle,
                                  const Progress& progress,
                                  const Body& body) {
-    std::vector<RowPaths> rows(static_cast<std::size_t>(rect.y1 - rect.y0));
+    std::vector<RowPaths> rows(static_cast<std::size_t>(rectangle.bottom - rectangle.top));
     parallel_for(rows.size(), 4, [&](std::size_t begin, std::size_t end) {
         std::vector<TraceRay> rays;
         std::vector<Hit> hits;
         for (std::size_t r = begin; r < end; ++r) {
             progress.check_stop();
-            const int y = rect.y0 + static_cast<int>(r);
-            for (int x0 = rect.x0; x0 < rect.x1; x0 += kBlockPixels) {
-                const int x1 = std::min(x0 + kBlockPixels, rect.x1);
+            const int y = rectangle.top + static_cast<int>(r);
+            for (int x0 = rectangle.left; x0 < rectangle.right; x0 += kBlockPixels) {
+                const int x1 = std::min(x0 + kBlockPixels, rectangle.right);
                 rays.clear();
                 for (int x = x0; x < x1; ++x) pixel_rays.add(x, y, rays);
                 hits.assign(rays.size(), Hit{});
@@ -157,13 +157,13 @@ LightPaths trace_camera(const TracedWorld& world, const Progress& progress) {
     const glm::dvec3 camera_mm = centre_in_world(view);
     const glm::dvec3 projector_mm = centre_in_world(world.bench.projector.view);
     const int samples = world.bench.samples_a_side * world.bench.samples_a_side;
-    const PixelRect rect = pixels_that_see(view, world.mesh);
-    const PixelRays pixel_rays(view, rect, world.bench.samples_a_side);
+    const PixelRectangle rectangle = pixels_that_see(view, world.mesh);
+    const PixelRays pixel_rays(view, rectangle, world.bench.samples_a_side);
 
     auto rows = for_blocks(
         world,
         pixel_rays,
-        rect,
+        rectangle,
         progress,
         [&](RowPaths& row,
             int y,
@@ -241,8 +241,8 @@ ProjectorPaths trace_projector(const TracedWorld& world, const Progress& progres
     const glm::dvec3 eye_mm = world.bench.eye_mm;
     const int side = world.bench.samples_a_side;
     const int samples = side * side;
-    const PixelRect rect = pixels_that_see(view, world.mesh);
-    const PixelRays pixel_rays(view, rect, world.bench.samples_a_side);
+    const PixelRectangle rectangle = pixels_that_see(view, world.mesh);
+    const PixelRays pixel_rays(view, rectangle, world.bench.samples_a_side);
 
     ProjectorPaths result;
     result.lit = Image8(view.width, view.height, 1);
@@ -255,7 +255,7 @@ ProjectorPaths trace_projector(const TracedWorld& world, const Progress& progres
     auto rows = for_blocks(
         world,
         pixel_rays,
-        rect,
+        rectangle,
         progress,
         [&](RowPaths& row,
             int y,
@@ -337,8 +337,8 @@ ProjectorPaths trace_projector(const TracedWorld& world, const Progress& progres
         return std::min(off_a, off_b) > 2.0 * pixel_mm;
     };
     constexpr int kReach = 2;
-    for (int y = rect.y0; y < rect.y1; ++y) {
-        for (int x = rect.x0; x < rect.x1; ++x) {
+    for (int y = rectangle.top; y < rectangle.bottom; ++y) {
+        for (int x = rectangle.left; x < rectangle.right; ++x) {
             bool edge = mixed.at(x, y) != 0;
             if (!edge && x + 1 < view.width) edge = is_edge(x, y, x + 1, y);
             if (!edge && y + 1 < view.height) edge = is_edge(x, y, x, y + 1);

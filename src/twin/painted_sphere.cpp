@@ -79,17 +79,17 @@ ImageF paint_radiance_xyz(const Mesh& mesh,
     const auto lights = neutral_lights(from_lights);
     const PaintBands bands(paint);
     const auto moments = bands.moments(d65_observer());
-    const PixelRect rect = pixels_that_see(view, mesh);
-    const PixelRays pixel_rays(view, rect, samples_a_side);
+    const PixelRectangle rectangle = pixels_that_see(view, mesh);
+    const PixelRays pixel_rays(view, rectangle, samples_a_side);
     ImageF xyz(view.width, view.height, 3);
-    const auto rows = static_cast<std::size_t>(rect.y1 - rect.y0);
+    const auto rows = static_cast<std::size_t>(rectangle.bottom - rectangle.top);
     parallel_for(rows, 2, [&](std::size_t begin, std::size_t end) {
         std::vector<TraceRay> rays;
         std::vector<Hit> hits;
         for (std::size_t row = begin; row < end; ++row) {
             progress.check_stop();
-            const int y = rect.y0 + static_cast<int>(row);
-            for (int x = rect.x0; x < rect.x1; ++x) {
+            const int y = rectangle.top + static_cast<int>(row);
+            for (int x = rectangle.left; x < rectangle.right; ++x) {
                 rays.clear();
                 pixel_rays.add(x, y, rays);
                 hits.assign(rays.size(), Hit{});

@@ -11,7 +11,7 @@
 
 namespace livery {
 
-PixelRect pixels_that_see(const View& view, const Mesh& mesh) {
+PixelRectangle pixels_that_see(const View& view, const Mesh& mesh, int margin_px) {
     glm::dvec2 low(1e30), high(-1e30);
     for (const glm::vec3& vertex : mesh.positions_mm) {
         const auto pixel = project(view, glm::dvec3(vertex));
@@ -22,24 +22,24 @@ PixelRect pixels_that_see(const View& view, const Mesh& mesh) {
     const auto clamped = [](double value, int limit) {
         return static_cast<int>(std::clamp(value, 0.0, static_cast<double>(limit)));
     };
-    return {clamped(std::floor(low.x) - 2.0, view.width),
-            clamped(std::floor(low.y) - 2.0, view.height),
-            clamped(std::ceil(high.x) + 2.0, view.width),
-            clamped(std::ceil(high.y) + 2.0, view.height)};
+    return {clamped(std::floor(low.x) - margin_px, view.width),
+            clamped(std::floor(low.y) - margin_px, view.height),
+            clamped(std::ceil(high.x) + margin_px, view.width),
+            clamped(std::ceil(high.y) + margin_px, view.height)};
 }
 
-PixelRays::PixelRays(const View& view, const PixelRect& rect, int samples_a_side)
+PixelRays::PixelRays(const View& view, const PixelRectangle& rectangle, int samples_a_side)
     : origin_(centre_in_world(view)),
-      rect_(rect),
-      stride_(static_cast<std::size_t>(rect.x1 - rect.x0 + 1)),
+      rectangle_(rectangle),
+      stride_(static_cast<std::size_t>(rectangle.right - rectangle.left + 1)),
       samples_(samples_a_side) {
-    const auto rows = static_cast<std::size_t>(rect.y1 - rect.y0 + 1);
+    const auto rows = static_cast<std::size_t>(rectangle.bottom - rectangle.top + 1);
     corners_.resize(stride_ * rows);
     parallel_for(rows, 8, [&](std::size_t begin, std::size_t end) {
         for (std::size_t row = begin; row < end; ++row) {
             for (std::size_t column = 0; column < stride_; ++column) {
-                const glm::dvec2 pixel(rect.x0 + static_cast<int>(column),
-                                       rect.y0 + static_cast<int>(row));
+                const glm::dvec2 pixel(rectangle.left + static_cast<int>(column),
+                                       rectangle.top + static_cast<int>(row));
                 corners_[row * stride_ + column] = glm::vec3(ray_through(view, pixel).direction);
             }
         }
@@ -47,8 +47,8 @@ PixelRays::PixelRays(const View& view, const PixelRect& rect, int samples_a_side
 }
 
 void PixelRays::add(int x, int y, std::vector<TraceRay>& rays) const {
-    const auto* corner = corners_.data() + static_cast<std::size_t>(y - rect_.y0) * stride_ +
-                         static_cast<std::size_t>(x - rect_.x0);
+    const auto* corner = corners_.data() + static_cast<std::size_t>(y - rectangle_.top) * stride_ +
+                         static_cast<std::size_t>(x - rectangle_.left);
     const glm::vec3 dx = corner[1] - corner[0], dy = corner[stride_] - corner[0],
                     dxy = corner[stride_ + 1] - corner[stride_] - dx;
     const float step = 1.0f / static_cast<float>(samples_);

@@ -5,24 +5,22 @@
 
 #include <glm/vec3.hpp>
 
+#include "core/image.h"
 #include "mesh/mesh.h"
 #include "scene/view.h"
 #include "tracing/tracer.h"
 
 namespace livery {
 
-struct PixelRect {
-    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  ///< half open
-};
-
-/// The pixels that can see the mesh: the box around its projected vertices.
-PixelRect pixels_that_see(const View& view, const Mesh& mesh);
+/// The pixels that can see the mesh: the box around its projected vertices, `margin_px` wider and
+/// inside the picture. All of them where a vertex lies behind the view.
+PixelRectangle pixels_that_see(const View& view, const Mesh& mesh, int margin_px = 2);
 
 /// The lens is undone at the pixels' corners and interpolated inside a pixel, where distortion is
 /// linear to 1e-6 px.
 class PixelRays {
   public:
-    PixelRays(const View& view, const PixelRect& rect, int samples_a_side);
+    PixelRays(const View& view, const PixelRectangle& rectangle, int samples_a_side);
 
     /// Appends the rays of one pixel, row by row of a grid, jittered inside each cell so that no
     /// edge of another device's pixels aligns with it.
@@ -30,7 +28,7 @@ class PixelRays {
 
   private:
     glm::vec3 origin_;
-    PixelRect rect_;
+    PixelRectangle rectangle_;
     std::size_t stride_;
     int samples_;
     std::vector<glm::vec3> corners_;

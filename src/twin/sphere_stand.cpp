@@ -24,9 +24,9 @@ constexpr double kShownHeight_mm = 88.0;
 constexpr int kSamplesASide = 4;
 
 /// What a lamp's light becomes on the way: seen through one sample of a pixel.
-class Scene {
+class SphereScene {
   public:
-    Scene(const SphereStand& stand, const Material& paint, const glm::dvec3& lamp_mm)
+    SphereScene(const SphereStand& stand, const Material& paint, const glm::dvec3& lamp_mm)
         : stand_(stand), reflectance_(reflectance_of(paint)), lamp_mm_(lamp_mm) {
         const glm::dvec3 away = glm::normalize(lamp_mm);
         const glm::dvec3 helper =
@@ -117,7 +117,7 @@ ImageF sphere_light(const SphereStand& stand,
                                glm::length(lamp_mm),
                                stand.diameter_mm));
     const View& view = stand.camera.view;
-    const Scene scene(stand, paint, lamp_mm);
+    const SphereScene scene(stand, paint, lamp_mm);
     // The lens is undone at the pixels' corners and interpolated inside, where it is even.
     const auto stride = static_cast<std::size_t>(view.width) + 1;
     const auto rows = static_cast<std::size_t>(view.height);

@@ -10,8 +10,8 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "calibration/statistics.h"
 #include "core/random.h"
+#include "core/statistics.h"
 #include "support/messages.h"
 
 namespace livery {

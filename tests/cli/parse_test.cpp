@@ -86,7 +86,7 @@ TEST(Parse, HelpShowsEveryOptionAndAnExample) {
 }
 
 TEST(Parse, SizesAndNumbers) {
-    EXPECT_EQ(parse_size("--size", "1280x800").height, 800);
+    EXPECT_EQ(parse_size("--size", "1280x800").y, 800);
     for (const char* wrong :
          {"1280", "x800", "1280x", "1280x800x3", "0x10", "99999x10", "axb", ""}) {
         EXPECT_THROW(parse_size("--size", wrong), std::invalid_argument) << wrong;

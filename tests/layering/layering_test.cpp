@@ -1,4 +1,6 @@
-// Reads the lists in docs/architecture.md and holds every #include of src/ against them.
+// Reads the lists in docs/architecture.md and holds every #include of src/ against them; names of
+// types, sizes of folders.
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -6,6 +8,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -56,13 +59,16 @@ Rules read_rules(const std::filesystem::path& source) {
             read_list(text, "Where other people's headers stay")};
 }
 
+bool is_source(const std::filesystem::path& file) {
+    return file.extension() == ".h" || file.extension() == ".cpp" || file.extension() == ".inc";
+}
+
 /// Every include of src/ that the rules forbid, as "folder/file.cpp:7: why".
 std::vector<std::string> violations(const std::filesystem::path& source, const Rules& rules) {
     static const std::regex include(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"].*$)");
     std::vector<std::string> found;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(source / "src")) {
-        const auto extension = entry.path().extension();
-        if (extension != ".h" && extension != ".cpp" && extension != ".inc") continue;
+        if (!is_source(entry.path())) continue;
         const auto file = std::filesystem::relative(entry.path(), source / "src").generic_string();
         const auto folder = file.substr(0, file.find('/'));
         const auto allowed = rules.may_include.find(folder);
@@ -90,6 +96,54 @@ std::vector<std::string> violations(const std::filesystem::path& source, const R
                     }
                 }
             }
+        }
+    }
+    return found;
+}
+
+/// Every name that two files of src/ give to types of their own, a file's private ones too: "Name:
+/// a.cpp b.h". Members of a type have that type's name before them.
+std::vector<std::string> names_given_twice(const std::filesystem::path& source) {
+    static const std::regex declared(
+        R"(^(?:struct|class|enum class|enum) (\w+)(?: final)?(?: :[^:].*)? \{)");
+    std::map<std::string, std::set<std::string>> places;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(source / "src")) {
+        if (!is_source(entry.path())) continue;
+        std::istringstream lines(text_of(entry.path()));
+        for (std::string line; std::getline(lines, line);) {
+            std::smatch match;
+            if (!std::regex_search(line, match, declared)) continue;
+            places[match[1]].insert(
+                std::filesystem::relative(entry.path(), source / "src").generic_string());
+        }
+    }
+    std::vector<std::string> found;
+    for (const auto& [name, files] : places) {
+        if (files.size() < 2) continue;
+        std::string line = name + ":";
+        for (const auto& file : files) line += " " + file;
+        found.push_back(line);
+    }
+    return found;
+}
+
+/// Folders of src/ with more than a newcomer can look through, their subfolders apart.
+std::vector<std::string> crowded_folders(const std::filesystem::path& source) {
+    constexpr int kMostFiles = 60, kMostLines = 6000;
+    std::map<std::string, std::pair<int, std::ptrdiff_t>> sizes;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(source / "src")) {
+        if (!entry.is_regular_file()) continue;
+        auto& [files, lines] =
+            sizes[std::filesystem::relative(entry.path(), source).parent_path().generic_string()];
+        const std::string text = text_of(entry.path());
+        files += 1;
+        lines += std::count(text.begin(), text.end(), '\n');
+    }
+    std::vector<std::string> found;
+    for (const auto& [folder, size] : sizes) {
+        if (size.first > kMostFiles || size.second > kMostLines) {
+            found.push_back(folder + ": " + std::to_string(size.first) + " files, " +
+                            std::to_string(size.second) + " lines");
         }
     }
     return found;
@@ -156,6 +210,27 @@ TEST(Layering, PlantedIncludesAreFound) {
           "core/c.cpp:2: <OpenImageIO/imageio.h> stays in core/image_io"}) {
         EXPECT_NE(text.find(part), std::string::npos) << part << " not in\n" << text;
     }
+}
+
+TEST(Layering, NoTwoTypesHaveOneName) {
+    const auto found = names_given_twice(kSource);
+    EXPECT_TRUE(found.empty()) << joined(found);
+}
+
+TEST(Layering, NoFolderIsCrowded) {
+    const auto found = crowded_folders(kSource);
+    EXPECT_TRUE(found.empty()) << joined(found);
+}
+
+TEST(Layering, PlantedNamesAndCrowdsAreFound) {
+    const TemporaryFolder folder;
+    std::filesystem::create_directories(folder / "src/core");
+    folder.write("src/core/a.h", "struct Cell {\n};\nclass Other final : public Base {\n");
+    folder.write("src/core/b.cpp", "struct Cell {\n};\nstruct Other::State {\n");
+    folder.write("src/core/c.cpp", "enum class Other {\n" + std::string(6000, '\n'));
+    EXPECT_EQ(joined(names_given_twice(folder.path())),
+              "Cell: core/a.h core/b.cpp\nOther: core/a.h core/c.cpp\n");
+    EXPECT_EQ(joined(crowded_folders(folder.path())), "src/core: 3 files, 6007 lines\n");
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "scene/library.h"
 #include "support/temporary_folder.h"
 #include "twin/bench.h"
+#include "twin/pixel_rays.h"
 
 namespace livery {
 namespace {
@@ -144,7 +145,7 @@ TEST_F(OnTheBench, PhotographsFromTheEyeAndCalibratesWithItsOwnCamera) {
         EXPECT_EQ(photograph->problem, "");
         // What the stage's eye view shows: the same corners of the car.
         const View view = eye_view(eye_mm, bounds_of(car_->mesh), 432, 288);
-        const PixelRectangle whole = bounds_in_view(car_->mesh, view, 12);
+        const PixelRectangle whole = pixels_that_see(view, car_->mesh, 12);
         EXPECT_EQ(photograph->srgb.width, whole.right - whole.left);
         EXPECT_EQ(photograph->srgb.height, whole.bottom - whole.top);
     }

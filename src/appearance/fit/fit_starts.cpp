@@ -10,6 +10,7 @@
 #include "appearance/bsdf.h"
 #include "appearance/fit/fit_search.h"
 #include "appearance/parameter_table.h"
+#include "core/statistics.h"
 
 namespace livery {
 namespace {
@@ -50,14 +51,8 @@ FirstSight first_sight(const FitSamples& samples) {
         for (std::size_t k = 0; k < near; ++k) {
             peaks.push_back(samples.values_working[by_half[k]][c]);
         }
-        const auto quantile = [](std::vector<double>& of, double fraction) {
-            const auto at = of.begin() + static_cast<std::ptrdiff_t>(
-                                             fraction * static_cast<double>(of.size() - 1));
-            std::nth_element(of.begin(), at, of.end());
-            return *at;
-        };
         sight.diffuse[c] = std::clamp(std::numbers::pi * quantile(values, 0.25), 1e-3, 0.95);
-        sight.peak[c] = std::max(quantile(peaks, 0.5) - sight.diffuse[c] / std::numbers::pi, 1e-3);
+        sight.peak[c] = std::max(median(peaks) - sight.diffuse[c] / std::numbers::pi, 1e-3);
     }
     return sight;
 }

@@ -14,20 +14,13 @@
 #include "core/parallel.h"
 #include "core/paths.h"
 #include "core/random.h"
+#include "core/statistics.h"
 
 namespace livery {
 
 namespace {
 
 constexpr int kRelativePairs = 20'000;
-
-double quantile(std::vector<double>& values, double fraction) {
-    if (values.empty()) return 0.0;
-    const auto at = values.begin() +
-                    static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
-}
 
 glm::dvec3 lab_under_light(const glm::dvec3& reflectance, double cosine) {
     const glm::dvec3 seen =

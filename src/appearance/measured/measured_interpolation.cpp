@@ -3,10 +3,14 @@
 #include <cstdint>
 #include <numbers>
 #include <numeric>
+#include <utility>
+
+#include <Eigen/LU>
 
 #include "appearance/measured/half_difference.h"
 #include "appearance/measured/measured_samples.h"
 #include "core/error.h"
+#include "core/statistics.h"
 
 namespace livery {
 
@@ -18,38 +22,6 @@ constexpr std::size_t kNeighbours = 24;
 constexpr double kFloor = 1e-4;
 /// Samples nearer than this are one, which has their mean: repeated, or light and eye exchanged.
 constexpr double kSame = 1e-6;
-
-/// Solves a x = b by elimination with pivots; `a` row by row, both overwritten, x in b. False when
-/// it is singular.
-bool solve(std::vector<double>& a, std::vector<double>& b) {
-    const std::size_t n = b.size();
-    for (std::size_t column = 0; column < n; ++column) {
-        std::size_t pivot = column;
-        for (std::size_t row = column + 1; row < n; ++row) {
-            if (std::abs(a[row * n + column]) > std::abs(a[pivot * n + column])) pivot = row;
-        }
-        if (std::abs(a[pivot * n + column]) < 1e-12) return false;
-        if (pivot != column) {
-            for (std::size_t k = column; k < n; ++k) {
-                std::swap(a[pivot * n + k], a[column * n + k]);
-            }
-            std::swap(b[pivot], b[column]);
-        }
-        for (std::size_t row = column + 1; row < n; ++row) {
-            const double factor = a[row * n + column] / a[column * n + column];
-            if (factor == 0.0) continue;
-            for (std::size_t k = column + 1; k < n; ++k) {
-                a[row * n + k] -= factor * a[column * n + k];
-            }
-            b[row] -= factor * b[column];
-        }
-    }
-    for (std::size_t row = n; row-- > 0;) {
-        for (std::size_t k = row + 1; k < n; ++k) b[row] -= a[row * n + k] * b[k];
-        b[row] /= a[row * n + row];
-    }
-    return true;
-}
 
 template <typename Point>
 double distance2(const Point& a, const Point& b) {
@@ -115,9 +87,7 @@ SampleInterpolator::SampleInterpolator(const MeasuredSamples& samples)
         find_nearest(point, 0, points_.size(), 0, 2, heap);
         distances.push_back(std::sqrt(heap.front().distance2));
     }
-    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-    std::nth_element(distances.begin(), middle, distances.end());
-    spacing_ = *middle;
+    spacing_ = median(std::move(distances));
 }
 
 void SampleInterpolator::build_tree(std::size_t begin, std::size_t end, std::size_t axis) {
@@ -197,16 +167,20 @@ void SampleInterpolator::evaluate(glm::dvec3 half_difference, std::span<double> 
     // Radial basis |x| with a constant, over the neighbours: the weights that a sum over them
     // takes.
     const std::size_t n = near.size();
-    std::vector<double> matrix((n + 1) * (n + 1), 1.0), weights(n + 1, 1.0);
+    const auto size = static_cast<Eigen::Index>(n + 1);
+    Eigen::MatrixXd matrix = Eigen::MatrixXd::Ones(size, size);
+    Eigen::VectorXd target = Eigen::VectorXd::Ones(size);
     for (std::size_t row = 0; row < n; ++row) {
+        const auto i = static_cast<Eigen::Index>(row);
         for (std::size_t column = 0; column < n; ++column) {
-            matrix[row * (n + 1) + column] =
+            matrix(i, static_cast<Eigen::Index>(column)) =
                 std::sqrt(distance2(points_[near[row].point], points_[near[column].point]));
         }
-        weights[row] = std::sqrt(near[row].distance2);
+        target[i] = std::sqrt(near[row].distance2);
     }
-    matrix.back() = 0.0;
-    if (!solve(matrix, weights)) {
+    matrix(size - 1, size - 1) = 0.0;
+    const Eigen::VectorXd weights = matrix.partialPivLu().solve(target);
+    if (!weights.allFinite()) {
         throw std::logic_error("SampleInterpolator: neighbours that are one point");
     }
     const auto logarithm = [&](std::size_t neighbour, std::size_t channel) {
@@ -216,7 +190,7 @@ void SampleInterpolator::evaluate(glm::dvec3 half_difference, std::span<double> 
         double sum = 0.0, low = logarithm(0, c), high = low;
         for (std::size_t k = 0; k < n; ++k) {
             const double value = logarithm(k, c);
-            sum += weights[k] * value;
+            sum += weights[static_cast<Eigen::Index>(k)] * value;
             low = std::min(low, value);
             high = std::max(high, value);
         }

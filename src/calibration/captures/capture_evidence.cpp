@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "calibration/colour/colour_report.h"
-#include "calibration/statistics.h"
 #include "core/error.h"
+#include "core/statistics.h"
 
 namespace livery {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "calibration/captures/capture_evidence.h"
 #include "calibration/colour/colour_report.h"
-#include "calibration/statistics.h"
 #include "core/error.h"
+#include "core/statistics.h"
 
 namespace livery {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <glm/geometric.hpp>
 
-#include "calibration/statistics.h"
 #include "core/parallel.h"
+#include "core/statistics.h"
 
 namespace livery {
 namespace {

@@ -6,8 +6,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "calibration/statistics.h"
 #include "core/error.h"
+#include "core/statistics.h"
 
 namespace livery {
 namespace {

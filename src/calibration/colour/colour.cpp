@@ -13,10 +13,10 @@
 #include "calibration/colour/mixing.h"
 #include "calibration/colour/response.h"
 #include "calibration/colour/scattered_light.h"
-#include "calibration/statistics.h"
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/statistics.h"
 #include "core/utc.h"
 
 namespace livery {

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "calibration/colour/colour.h"
-#include "calibration/statistics.h"
 #include "core/error.h"
+#include "core/statistics.h"
 
 namespace livery {
 namespace {

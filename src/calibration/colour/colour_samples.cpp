@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibration/statistics.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/statistics.h"
 
 namespace livery {
 namespace {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include <Eigen/Cholesky>
+
 #include "core/error.h"
 
 namespace livery {
@@ -50,7 +52,7 @@ Row row_of(const glm::dvec3& light) {
     return row;
 }
 
-using Matrix = std::vector<std::array<double, kUnknowns>>;
+using Matrix = Eigen::MatrixXd;
 
 /// Smoothness: slopes from knot to knot differ by about `sigma`; size: values are about 0.3.
 void add_priors(Matrix& normal) {
@@ -64,36 +66,14 @@ void add_priors(Matrix& normal) {
             for (int a = 0; a < 3; ++a)
                 for (int b = 0; b < 3; ++b) {
                     if (j - 1 + a == 0 || j - 1 + b == 0) continue;
-                    normal[static_cast<std::size_t>(first + j - 1 + a)]
-                          [static_cast<std::size_t>(first + j - 1 + b)] +=
+                    normal(first + j - 1 + a, first + j - 1 + b) +=
                         slope_change[static_cast<std::size_t>(a)] *
                         slope_change[static_cast<std::size_t>(b)] / (kSigma * kSigma);
                 }
         }
         // Two channels add to each other more rarely than all three.
         const double sigma = curve == 6 ? 0.5 : curve >= 3 ? 0.1 : 0.03;
-        for (int j = 1; j <= kKnots; ++j)
-            normal[static_cast<std::size_t>(first + j)][static_cast<std::size_t>(first + j)] +=
-                1.0 / (sigma * sigma);
-    }
-}
-
-/// Cholesky in place, then three right-hand sides.
-void solve(Matrix& a, std::vector<glm::dvec3>& right) {
-    const std::size_t n = a.size();
-    for (std::size_t i = 0; i < n; ++i)
-        for (std::size_t j = 0; j <= i; ++j) {
-            double sum = a[i][j];
-            for (std::size_t k = 0; k < j; ++k) sum -= a[i][k] * a[j][k];
-            a[i][j] = i == j ? std::sqrt(std::max(sum, 1e-300)) : sum / a[j][j];
-        }
-    for (std::size_t i = 0; i < n; ++i) {
-        for (std::size_t k = 0; k < i; ++k) right[i] -= a[i][k] * right[k];
-        right[i] /= a[i][i];
-    }
-    for (std::size_t i = n; i-- > 0;) {
-        for (std::size_t k = i + 1; k < n; ++k) right[i] -= a[k][i] * right[k];
-        right[i] /= a[i][i];
+        for (int j = 1; j <= kKnots; ++j) normal(first + j, first + j) += 1.0 / (sigma * sigma);
     }
 }
 
@@ -136,9 +116,8 @@ TableFit fit_drive_table(const std::vector<TableSample>& samples) {
     }
 
     // What remains beside the channels' own light, by least squares
-    Matrix normal(kUnknowns);
-    for (auto& row : normal) row.fill(0.0);
-    std::vector<glm::dvec3> right(kUnknowns, glm::dvec3(0.0));
+    Matrix normal = Matrix::Zero(kUnknowns, kUnknowns);
+    Matrix right = Matrix::Zero(kUnknowns, 3);
     add_priors(normal);
     const auto light_of = [&](const TableSample& s) {
         return glm::dvec3(light[0][s.drive[0]], light[1][s.drive[1]], light[2][s.drive[2]]);
@@ -149,21 +128,23 @@ TableFit fit_drive_table(const std::vector<TableSample>& samples) {
         const double weight = 1.0 / (sample.variance + kModelSigma * kModelSigma);
         const glm::dvec3 rest = sample.n - full * p;
         for (int a = 0; a < row.count; ++a) {
-            const auto i = static_cast<std::size_t>(row.column[static_cast<std::size_t>(a)]);
+            const int i = row.column[static_cast<std::size_t>(a)];
             const double wa = weight * row.value[static_cast<std::size_t>(a)];
-            right[i] += wa * rest;
+            for (int c = 0; c < 3; ++c) right(i, c) += wa * rest[c];
             for (int b = 0; b < row.count; ++b)
-                normal[i][static_cast<std::size_t>(row.column[static_cast<std::size_t>(b)])] +=
+                normal(i, row.column[static_cast<std::size_t>(b)]) +=
                     wa * row.value[static_cast<std::size_t>(b)];
         }
     }
-    solve(normal, right);
+    const Matrix knots = normal.llt().solve(right);
     const auto n_of = [&](const glm::dvec3& p) {
         const Row row = row_of(p);
         glm::dvec3 n = full * p;
-        for (int a = 0; a < row.count; ++a)
+        for (int a = 0; a < row.count; ++a) {
+            const int i = row.column[static_cast<std::size_t>(a)];
             n += row.value[static_cast<std::size_t>(a)] *
-                 right[static_cast<std::size_t>(row.column[static_cast<std::size_t>(a)])];
+                 glm::dvec3(knots(i, 0), knots(i, 1), knots(i, 2));
+        }
         return n;
     };
 

@@ -12,9 +12,9 @@
 #include <glm/matrix.hpp>
 
 #include "calibration/colour/shrinkage.h"
-#include "calibration/statistics.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/statistics.h"
 
 namespace livery {
 namespace {

@@ -6,8 +6,8 @@
 #include <map>
 #include <numeric>
 
-#include "calibration/statistics.h"
 #include "core/error.h"
+#include "core/statistics.h"
 
 namespace livery {
 namespace {

@@ -15,7 +15,7 @@ constexpr int kReach = 9;                     // cells
 constexpr double kStandsOut = 4.0;            // variances of its noise
 constexpr double kPrior_cells = 0.05;         // that the mean of all counts as
 
-struct Cell {
+struct LightCell {
     glm::dvec3 sum{0.0}, sum2{0.0};
     double count = 0.0;
     glm::dvec3 mean() const { return sum / count; }
@@ -27,7 +27,7 @@ struct Average {
     glm::dvec3 mean{0.0}, noise{0.0}, scatter{0.0};
 };
 
-Average average(const std::vector<Cell>& cells,
+Average average(const std::vector<LightCell>& cells,
                 int columns,
                 int rows,
                 int x,
@@ -39,7 +39,7 @@ Average average(const std::vector<Cell>& cells,
     double weight = kPrior_cells;
     for (int v = std::max(0, y - kReach); v <= std::min(rows - 1, y + kReach); ++v)
         for (int u = std::max(0, x - kReach); u <= std::min(columns - 1, x + kReach); ++u) {
-            const Cell& cell = cells[static_cast<std::size_t>(v * columns + u)];
+            const LightCell& cell = cells[static_cast<std::size_t>(v * columns + u)];
             if (cell.count < 4.0) continue;
             const double away2 = (u - x) * (u - x) + (v - y) * (v - y);
             const double w = std::exp(-0.5 * away2 / (sigma * sigma));
@@ -85,13 +85,14 @@ ScatteredLight scattered_light(const LevelsSamples& seen) {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) +
                static_cast<std::size_t>(x);
     };
-    std::vector<Cell> cells(cell_at(columns - 1, rows - 1) + 1);
-    Cell all;
+    std::vector<LightCell> cells(cell_at(columns - 1, rows - 1) + 1);
+    LightCell all;
     glm::dvec3 span_sum(0.0);
     for (std::size_t k = 0; k < black.size(); ++k) {
         const glm::dvec3 value(found[0][k], found[1][k], found[2][k]);
         const int p = static_cast<int>(samples.pixels[black[k]]);
-        Cell& cell = cells[cell_at(p % samples.width / kCell_px, p / samples.width / kCell_px)];
+        LightCell& cell =
+            cells[cell_at(p % samples.width / kCell_px, p / samples.width / kCell_px)];
         cell.sum += value;
         cell.sum2 += value * value;
         cell.count += 1.0;

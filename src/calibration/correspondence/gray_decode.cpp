@@ -10,6 +10,7 @@
 #include "calibration/correspondence/patterns.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/statistics.h"
 
 namespace livery {
 namespace {
@@ -93,17 +94,17 @@ struct Tail {
     }
 };
 
-struct Counts {
+struct DecodeCounts {
     std::size_t lit = 0, decoded = 0;
 };
 
 template <typename T>
-Counts decode_block(const Planes<T>& planes,
-                    std::size_t offset,
-                    std::size_t count,
-                    float threshold,
-                    float* projector_px,
-                    std::uint8_t* decoded) {
+DecodeCounts decode_block(const Planes<T>& planes,
+                          std::size_t offset,
+                          std::size_t count,
+                          float threshold,
+                          float* projector_px,
+                          std::uint8_t* decoded) {
     std::array<std::uint16_t, kBlock> column, row;
     std::array<std::uint8_t, kBlock> weak_columns, weak_rows;
     std::array<ContrastOf<T>, kBlock> contrast{};
@@ -124,7 +125,7 @@ Counts decode_block(const Planes<T>& planes,
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const auto columns = static_cast<unsigned>(planes.projector_width);
     const auto rows = static_cast<unsigned>(planes.projector_height);
-    Counts counts;
+    DecodeCounts counts;
     for (std::size_t i = 0; i < count; ++i) {
         const float lit_by = static_cast<float>(planes.white[offset + i]) -
                              static_cast<float>(planes.black[offset + i]);
@@ -156,9 +157,8 @@ double noise_of(const T* picture, int width, int height) {
             if (std::isfinite(difference)) samples.push_back(std::abs(difference));
         }
     if (samples.empty()) return 0.0;
-    const auto middle = samples.begin() + static_cast<std::ptrdiff_t>(samples.size() / 2);
-    std::nth_element(samples.begin(), middle, samples.end());
-    const double sigma = static_cast<double>(*middle) / (0.6745 * std::sqrt(6.0));
+    const double sigma =
+        static_cast<double>(median(std::move(samples))) / (0.6745 * std::sqrt(6.0));
     // Whole numbers hide noise under half a step.
     return std::is_floating_point_v<T> ? sigma : std::max(sigma, 0.5);
 }
@@ -176,11 +176,8 @@ double automatic_threshold(const Planes<T>& planes) {
         if (std::isfinite(difference)) differences.push_back(difference);
     }
     if (differences.empty()) return 0.0;
-    const auto high = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() - 1 -
-                                                                        differences.size() / 1000);
-    std::nth_element(differences.begin(), high, differences.end());
     return std::max({8.0 * std::sqrt(2.0) * noise_of(planes.black, planes.width, planes.height),
-                     0.005 * static_cast<double>(*high),
+                     0.005 * static_cast<double>(quantile(std::move(differences), 0.999)),
                      0.0});
 }
 
@@ -197,12 +194,12 @@ GrayCodeResult decode_planes(const Planes<T>& planes, double lit_threshold) {
     std::atomic<std::size_t> lit{0}, decoded{0};
     const auto decode_one =
         [&](const Planes<T>& from, std::size_t from_offset, std::size_t offset, std::size_t count) {
-            const Counts counts = decode_block(from,
-                                               from_offset,
-                                               count,
-                                               threshold,
-                                               result.projector_px.values.data() + 2 * offset,
-                                               result.decoded.values.data() + offset);
+            const DecodeCounts counts = decode_block(from,
+                                                     from_offset,
+                                                     count,
+                                                     threshold,
+                                                     result.projector_px.values.data() + 2 * offset,
+                                                     result.decoded.values.data() + offset);
             lit += counts.lit;
             decoded += counts.decoded;
         };

@@ -9,8 +9,8 @@
 #include <glm/vec2.hpp>
 
 #include "calibration/correspondence/patterns.h"
-#include "calibration/statistics.h"
 #include "core/random.h"
+#include "core/statistics.h"
 
 namespace livery {
 namespace {

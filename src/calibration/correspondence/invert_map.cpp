@@ -16,6 +16,7 @@
 #include "calibration/correspondence/gray_code.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/statistics.h"
 
 namespace livery {
 namespace {
@@ -127,14 +128,9 @@ Bins gather(const GrayCodeResult& decoded, const Image8& kept, int width, int he
                 xs.push_back(static_cast<float>(order[k] % camera_width) + 0.5f);
                 ys.push_back(static_cast<float>(order[k] / camera_width) + 0.5f);
             }
-            const auto median_of = [](std::vector<float> values) {
-                const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-                std::nth_element(values.begin(), middle, values.end());
-                return *middle;
-            };
             const bool few = xs.size() < 3;
-            const float centre_x = few ? xs[0] : median_of(xs);
-            const float centre_y = few ? ys[0] : median_of(ys);
+            const float centre_x = few ? xs[0] : median(xs);
+            const float centre_y = few ? ys[0] : median(ys);
             Bin& bin = result.bins[p];
             for (std::size_t k = 0; k < xs.size(); ++k)
                 if (std::abs(xs[k] - centre_x) <= reach && std::abs(ys[k] - centre_y) <= reach) {
@@ -199,15 +195,15 @@ constexpr int kMaxRadius = 4;
 constexpr int kMaxSide = 2 * kMaxRadius + 1;
 
 /// The bins around a projector pixel, each of which belongs to one piece of surface.
-struct Window {
+struct SearchWindow {
     int radius = 0, side = 0;
     std::array<const Bin*, kMaxSide * kMaxSide> bins{};
     std::array<bool, kMaxSide * kMaxSide> seen{};  ///< already part of a piece
     int filled = 0;                                ///< bins that hold something
 };
 
-Window window_around(const Bins& bins, int x, int y, int radius) {
-    Window window;
+SearchWindow window_around(const Bins& bins, int x, int y, int radius) {
+    SearchWindow window;
     window.radius = radius;
     window.side = 2 * radius + 1;
     for (int dy = -radius; dy <= radius; ++dy)
@@ -220,7 +216,7 @@ Window window_around(const Bins& bins, int x, int y, int radius) {
 }
 
 /// The unseen bin nearest to the middle, within `reach`; -1: none.
-int seed_of(const Window& window, int reach) {
+int seed_of(const SearchWindow& window, int reach) {
     for (int ring = 0; ring <= reach; ++ring)
         for (int dy = -ring; dy <= ring; ++dy)
             for (int dx = -ring; dx <= ring; ++dx) {
@@ -234,7 +230,7 @@ int seed_of(const Window& window, int reach) {
 }
 
 /// What can be reached from the seed without a jump, flood-filled inside the window.
-int connected_samples(Window& around,
+int connected_samples(SearchWindow& around,
                       float scale,
                       int seed,
                       int link_reach,
@@ -321,7 +317,7 @@ std::optional<Located> fit_piece(const Bins& bins,
 /// From the piece of surface that the pixel's own bin belongs to, else (a stray) most of the
 /// window.
 std::optional<Located> locate(const Bins& bins, int x, int y, int radius, int link_reach) {
-    Window window = window_around(bins, x, y, radius);
+    SearchWindow window = window_around(bins, x, y, radius);
     const auto scale = static_cast<float>(bins.camera_px_per_pixel);
     std::array<WindowSample, kMaxSide * kMaxSide> samples;
     const bool has_own = bins.find(x, y) != nullptr;

@@ -12,6 +12,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/statistics.h"
 
 namespace livery {
 
@@ -89,12 +90,6 @@ std::vector<std::optional<float>> brightness(const MergedPhotographs& picture) {
         }
     }
     return result;
-}
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 using Brightness = std::vector<std::optional<float>>;

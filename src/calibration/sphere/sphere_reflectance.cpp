@@ -12,6 +12,7 @@
 #include "appearance/measured/half_difference.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/statistics.h"
 
 namespace livery {
 
@@ -97,7 +98,7 @@ LampRay toward(const Place& place, const glm::dvec3& light_mm) {
     return {local(place, way / std::sqrt(squared)), 1.0 / squared};
 }
 
-struct Cell {
+struct AngleCell {
     glm::dvec3 counts{0.0}, expected{0.0};  ///< expected: of a reflectance of 1 per steradian
     glm::dvec3 angles{0.0};                 ///< sum, weighted
     double weight = 0.0;
@@ -105,13 +106,13 @@ struct Cell {
 };
 
 /// One lamp's view of a cell on one side of the sphere.
-struct Look {
+struct SphereLook {
     double counts = 0.0, expected = 0.0, weight = 0.0;
 };
 
-class Cells {
+class AngleCells {
   public:
-    explicit Cells(const SphereGrid& grid)
+    explicit AngleCells(const SphereGrid& grid)
         : grid_(grid),
           cells_(static_cast<std::size_t>(grid.theta_h * grid.theta_d * grid.phi_d)),
           looks_(cells_.size() * kSides) {}
@@ -125,7 +126,7 @@ class Cells {
         const bool mirrored = angles.z > kRightAngle;
         if (mirrored) angles.z = std::numbers::pi - angles.z;
         const std::size_t index = index_of(angles);
-        Cell& cell = cells_[index];
+        AngleCell& cell = cells_[index];
         const double weight = expected.x + expected.y + expected.z;
         cell.counts += counts;
         cell.expected += expected;
@@ -142,9 +143,9 @@ class Cells {
     /// Call after each lamp.
     void end_lamp() {
         for (const std::size_t k : touched_) {
-            const Look& look = looks_[k];
+            const SphereLook& look = looks_[k];
             const double value = look.counts / look.expected;
-            Cell& cell = cells_[k / kSides];
+            AngleCell& cell = cells_[k / kSides];
             cell.looks += 1.0;
             cell.looks_weight += look.weight;
             cell.looks_sum += look.weight * value;
@@ -158,7 +159,7 @@ class Cells {
         double squares = 0.0, weights = 0.0, domain = 0.0, seen = 0.0;
         std::vector<double> deviations;
         for (std::size_t k = 0; k < cells_.size(); ++k) {
-            const Cell& cell = cells_[k];
+            const AngleCell& cell = cells_[k];
             const double share = solid_angle(k);
             domain += share;
             if (cell.weight <= 0.0) continue;
@@ -175,10 +176,7 @@ class Cells {
         }
         result.coverage = seen / domain;
         result.residual = weights > 0.0 ? std::sqrt(squares / weights) : 0.0;
-        if (deviations.empty()) return;
-        const auto middle = deviations.begin() + static_cast<std::ptrdiff_t>(deviations.size() / 2);
-        std::nth_element(deviations.begin(), middle, deviations.end());
-        result.residual_median = *middle;
+        result.residual_median = median(std::move(deviations));
     }
 
   private:
@@ -214,7 +212,7 @@ class Cells {
         return std::cos(theta_d) * std::sin(theta_d) * std::sin(theta_h) * root;
     }
 
-    static void add_samples(const Cell& cell, SphereReflectance& result) {
+    static void add_samples(const AngleCell& cell, SphereReflectance& result) {
         const glm::dvec3 value = cell.counts / cell.expected;
         if (value.x + value.y + value.z <= 0.0) return;
         glm::dvec3 angles = cell.angles / cell.weight;
@@ -226,8 +224,8 @@ class Cells {
     }
 
     SphereGrid grid_;
-    std::vector<Cell> cells_;
-    std::vector<Look> looks_;
+    std::vector<AngleCell> cells_;
+    std::vector<SphereLook> looks_;
     std::vector<std::size_t> touched_;
 };
 
@@ -246,9 +244,7 @@ glm::dvec3 veil_around(const SeenSphere& seen, const MergedPhotographs& picture)
     }
     glm::dvec3 veil;
     for (std::size_t c = 0; c < 3; ++c) {
-        const auto middle = values[c].begin() + static_cast<std::ptrdiff_t>(values[c].size() / 2);
-        std::nth_element(values[c].begin(), middle, values[c].end());
-        veil[static_cast<int>(c)] = *middle;
+        veil[static_cast<int>(c)] = median(std::move(values[c]));
     }
     return veil;
 }
@@ -335,7 +331,7 @@ SphereReflectance sphere_reflectance(const View& view,
     check_argument(grid.theta_h > 0 && grid.theta_d > 0 && grid.phi_d > 0,
                    "sphere_reflectance: an empty grid");
     const SeenSphere seen = seen_sphere(view, sphere, kLowestCosine);
-    Cells cells(grid);
+    AngleCells cells(grid);
     SphereReflectance result;
     for (std::size_t k = 0; k < lit.size(); ++k) {
         progress.update(static_cast<double>(k) / static_cast<double>(lit.size()), "sorting pixels");

@@ -30,7 +30,7 @@ using f32::BsdfParameters, f32::bsdf_widen;
 using glm::clamp, glm::dot, glm::max, glm::min, glm::mix, std::sqrt;
 
 /// An array of uniforms, by light.
-struct LightRadiance {
+struct LampRadiance {
     const float* of_light;
     glm::vec3 operator[](int k) const {
         return {of_light[3 * k], of_light[3 * k + 1], of_light[3 * k + 2]};
@@ -38,16 +38,18 @@ struct LightRadiance {
 };
 
 /// What a fragment reads; without an environment, or for a model that mirrors nothing, black.
-struct Inputs {
+struct FragmentValues {
     const LaneJob& job;
     const ModelInfo& model;
     const MeasuredPaint* measured;
     std::size_t block = 0, lane = 0;
     const float turn2 = static_cast<float>(lobe_turn_squared(model));
-    LightRadiance u_light_radiance{job.light_irradiance};
+    LampRadiance u_light_radiance{job.light_irradiance};
     const float* u_light_radius2 = job.light_radius2;
 
-    Inputs(const LaneJob& its_job, const ModelInfo& its_model, const MeasuredPaint* its_measured)
+    FragmentValues(const LaneJob& its_job,
+                   const ModelInfo& its_model,
+                   const MeasuredPaint* its_measured)
         : job(its_job), model(its_model), measured(its_measured) {}
 
     glm::vec3 bsdf_eval(const BsdfParameters& p, const glm::vec3& wi, const glm::vec3& wo) const {
@@ -76,11 +78,11 @@ struct Inputs {
     }
 };
 
-struct Shader : Inputs {
+struct Shader : FragmentValues {
 #include "shaders/radiance/shade.glsl"
 
     Shader(const LaneJob& its_job, const ModelInfo& its_model, const AnyModelUniforms& u)
-        : Inputs(its_job, its_model, u.measured.get()),
+        : FragmentValues(its_job, its_model, u.measured.get()),
           u_exposure(u.exposure),
           u_paint(u.paint),
           u_base_layers(u.base_layers),

@@ -28,9 +28,9 @@ namespace {
 constexpr const char* kOwnPaint = "The part's own";
 
 /// One artwork's rows; an edit is tried and committed by what was just drawn.
-class Rows {
+class ArtworkRows {
   public:
-    Rows(Studio& studio, std::size_t at, Artwork& edited)
+    ArtworkRows(Studio& studio, std::size_t at, Artwork& edited)
         : studio_(studio), before_(shown_artwork(studio)[at]), at_(at), edited_(edited) {}
 
     const Artwork& before() const { return before_; }
@@ -98,7 +98,7 @@ bool begin_list(const char* label,
     return open;
 }
 
-void draw_name(Rows& rows) {
+void draw_name(ArtworkRows& rows) {
     ArtworkPanelState& state = rows.studio().panels.artwork;
     row_label("Name");
     if (!state.naming) state.name = rows.before().name;
@@ -117,7 +117,7 @@ void draw_name(Rows& rows) {
     state.naming = ImGui::IsItemActive();
 }
 
-void draw_part(Rows& rows) {
+void draw_part(ArtworkRows& rows) {
     const Artwork& before = rows.before();
     const auto shown = [](const std::string& part) { return part == "*" ? "All parts" : part; };
     if (!begin_list("Part", "part", shown(before.part), "What wears it: one part, or all.")) return;
@@ -132,7 +132,7 @@ void draw_part(Rows& rows) {
     ImGui::EndCombo();
 }
 
-void draw_shape(Rows& rows) {
+void draw_shape(ArtworkRows& rows) {
     const Artwork& before = rows.before();
     const Words now = words_of(before.shape);
     if (!begin_list("Shape", "shape", now.label, now.meaning)) return;
@@ -157,7 +157,7 @@ void draw_shape(Rows& rows) {
     ImGui::EndCombo();
 }
 
-void draw_paint(Rows& rows) {
+void draw_paint(ArtworkRows& rows) {
     Studio& studio = rows.studio();
     ArtworkPanelState& state = studio.panels.artwork;
     const Artwork& before = rows.before();
@@ -188,7 +188,7 @@ void draw_paint(Rows& rows) {
     ImGui::EndCombo();
 }
 
-void draw_picture(Rows& rows) {
+void draw_picture(ArtworkRows& rows) {
     const Artwork& before = rows.before();
     const std::filesystem::path file(before.picture);
     row_label("File");
@@ -235,7 +235,7 @@ const ProductFacts& facts_of(const std::shared_ptr<const Product>& product) {
     return facts;
 }
 
-void draw_measures(Rows& rows, Artwork& edited) {
+void draw_measures(ArtworkRows& rows, Artwork& edited) {
     const ShapeFields fields = fields_of(edited.shape);
     const double extent = facts_of(rows.studio().product).extent_mm;
     if (fields.size && !edited.place.by_uv) {
@@ -285,7 +285,7 @@ std::string front_of(const Studio& studio) {
     }
 }
 
-void draw_sides(Rows& rows) {
+void draw_sides(ArtworkRows& rows) {
     const Artwork& before = rows.before();
     const auto now = side_of(before.place);
     const auto sides = named_sides(front_of(rows.studio()));
@@ -300,7 +300,7 @@ void draw_sides(Rows& rows) {
     }
 }
 
-void draw_direction(Rows& rows, ArtworkPlace& place) {
+void draw_direction(ArtworkRows& rows, ArtworkPlace& place) {
     Angles angles = angles_of(place);
     row_label("Azimuth");
     number_slider("##azimuth", angles.azimuth_deg, -180.0, 180.0, "%.1f°");
@@ -321,7 +321,7 @@ void draw_direction(Rows& rows, ArtworkPlace& place) {
     rows.after_item("turn", "Counter-clockwise, as it is seen from there; 0° is upright.");
 }
 
-void draw_place_button(Rows& rows) {
+void draw_place_button(ArtworkRows& rows) {
     Studio& studio = rows.studio();
     ArtworkPanelState& state = studio.panels.artwork;
     const float width = ImGui::GetContentRegionAvail().x;
@@ -338,7 +338,7 @@ void draw_place_button(Rows& rows) {
         "Esc takes it back.");
 }
 
-void draw_place(Rows& rows, Artwork& edited) {
+void draw_place(ArtworkRows& rows, Artwork& edited) {
     const Artwork& before = rows.before();
     heading("Place");
     if (before.shape == ArtworkShape::picture) {
@@ -376,7 +376,7 @@ void draw_place(Rows& rows, Artwork& edited) {
 void draw_artwork_fields(Studio& studio, std::size_t at) {
     ArtworkPanelState& state = studio.panels.artwork;
     Artwork& edited = state.held.start(shown_artwork(studio)[at]);
-    Rows rows(studio, at, edited);
+    ArtworkRows rows(studio, at, edited);
     draw_name(rows);
     if (const std::string why = why_not_seen(studio, at); !why.empty()) {
         warning_text(why);

@@ -28,7 +28,7 @@ namespace livery {
 namespace {
 
 /// One swatch of the grid.
-struct Cell {
+struct SwatchCell {
     const Material* paint = nullptr;
     std::string distance;  ///< from the colour that was searched for; empty: none was
     ImVec2 centre{0.0f, 0.0f};
@@ -292,7 +292,7 @@ void draw_cell_picture(Studio& studio,
 }
 
 /// One swatch; true when it was clicked.
-bool draw_cell(Studio& studio, const Target& target, Cell& cell, float width, float height) {
+bool draw_cell(Studio& studio, const Target& target, SwatchCell& cell, float width, float height) {
     LibraryPanelState& state = studio.panels.library;
     const Material& paint = *cell.paint;
     const ImVec2 corner = ImGui::GetCursorScreenPos();
@@ -338,7 +338,7 @@ bool draw_cell(Studio& studio, const Target& target, Cell& cell, float width, fl
 
 /// The swatch that an arrow key leads to: the next in reading order, or the nearest in the row
 /// above or below.
-std::optional<std::size_t> neighbour(const std::vector<Cell>& cells,
+std::optional<std::size_t> neighbour(const std::vector<SwatchCell>& cells,
                                      std::optional<std::size_t> from,
                                      int across,
                                      int down) {
@@ -365,7 +365,7 @@ std::optional<std::size_t> neighbour(const std::vector<Cell>& cells,
     return best ? best : from;
 }
 
-void follow_keys(Studio& studio, const Target& target, const std::vector<Cell>& cells) {
+void follow_keys(Studio& studio, const Target& target, const std::vector<SwatchCell>& cells) {
     LibraryPanelState& state = studio.panels.library;
     if (!state.owns_arrows && !state.searching) return;
     std::optional<std::size_t> at;
@@ -411,7 +411,7 @@ void draw_grid(Studio& studio,
     const float width = std::floor((available - gap * static_cast<float>(columns - 1)) /
                                    static_cast<float>(columns));
     const float height = std::floor(0.78f * width) + em(by_colour ? 3.85f : 2.75f);
-    std::vector<Cell> cells;
+    std::vector<SwatchCell> cells;
     std::optional<std::string> clicked;
     std::optional<unsigned> current;
     begin_tab_group();
@@ -423,9 +423,9 @@ void draw_grid(Studio& studio,
         for (std::size_t i = 0; i < section.found.size(); ++i) {
             if (i % static_cast<std::size_t>(columns) != 0) ImGui::SameLine(0.0f, gap);
             const NearPaint& found = section.found[i];
-            Cell cell{&(*section.paints)[found.index],
-                      by_colour ? fmt::format("ΔE {:.1f}", found.de00) : "",
-                      {}};
+            SwatchCell cell{&(*section.paints)[found.index],
+                            by_colour ? fmt::format("ΔE {:.1f}", found.de00) : "",
+                            {}};
             if (draw_cell(studio, target, cell, width, height)) clicked = cell.paint->name;
             const bool worn = same_paint_name(cell.paint->name, target.paint);
             const auto& cursor = studio.panels.library.cursor;

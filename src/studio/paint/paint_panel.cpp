@@ -83,9 +83,9 @@ bool is_own(const Document& document, const std::string& name) {
 }
 
 /// One control's row; the edit is tried and committed by what was just drawn.
-class Rows {
+class ParameterRows {
   public:
-    Rows(Studio& studio, Material& edited) : studio_(studio), edited_(edited) {}
+    ParameterRows(Studio& studio, Material& edited) : studio_(studio), edited_(edited) {}
 
     void label(const char* text, const std::string& meaning) {
         row_label(text);
@@ -175,7 +175,10 @@ void draw_slider(const ParameterInfo& parameter, const std::string& id, double& 
                     parameter.logarithmic);
 }
 
-void draw_pair(Studio& studio, Rows& rows, const ParameterInfo& parameter, Material& edited) {
+void draw_pair(Studio& studio,
+               ParameterRows& rows,
+               const ParameterInfo& parameter,
+               Material& edited) {
     PaintPanelState& state = studio.panels.paint;
     const Components<double> components = parameter.in_material(edited);
     double& along = *components[0];
@@ -209,7 +212,7 @@ void draw_pair(Studio& studio, Rows& rows, const ParameterInfo& parameter, Mater
 void draw_parameters(Studio& studio) {
     PaintPanelState& state = studio.panels.paint;
     Material& edited = state.held.start(*state.material);
-    Rows rows(studio, edited);
+    ParameterRows rows(studio, edited);
     for (const char* name : model_info(edited.model).parameters) {
         const ParameterInfo& parameter = parameter_info(name);
         const Components<double> components = parameter.in_material(edited);

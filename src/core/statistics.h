@@ -7,7 +7,8 @@
 
 namespace livery {
 
-/// Value at a fraction in [0, 1] of the sorted values; 0 for none. Takes a copy to reorder.
+/// Value at a fraction in [0, 1] of the sorted values, the nearest of them; 0 for none. Takes a
+/// copy to reorder.
 template <typename T>
 T quantile(std::vector<T> values, double fraction) {
     if (values.empty()) return T{};
