@@ -67,16 +67,20 @@ bool has_glints(const Material& material);
 /// "physical", or "exaggerated 30 times": the size of flakes that glint.
 std::string glint_scale_text(const Material& material);
 
-/// Reads and checks one material file. Throws FileError (unknown model or parameter, out of range).
-Material read_material_file(const std::filesystem::path& file);
-/// The same of its text.
-Material parse_material(const std::string& text, const std::filesystem::path& file);
-void write_material_file(const std::filesystem::path& file, const Material& material);
+/// Whether the paint is all there: of a measured one, whether its file was read or found to be bad
+/// (MeasuredPaint::problem). One that is not stands in for itself, black, until it is.
+bool is_read(const Material& material);
 
-/// A file if there is one of that name (of a material, or of measured reflectance), else a paint of
-/// the library by its name: of the shipped ones (materials/), then of the user's own
-/// (material_library.h). Throws FileError with the nearest names.
-Material find_material(const std::string& name_or_file);
-std::vector<Material> load_library(const std::filesystem::path& folder);
+/// One material file, with what it was measured in. Throws FileError (unknown model or parameter,
+/// out of range).
+Material read_material_file(const std::filesystem::path& file);
+/// The same of its text; a measured paint is not read yet.
+Material parse_material(const std::string& text, const std::filesystem::path& file);
+/// A material file, or one of measured reflectance, whose paint has its name; a measured paint is
+/// not read yet.
+Material read_paint_file(const std::filesystem::path& file);
+/// Reads what a paint that is not read yet was measured in. Throws FileError.
+Material with_measured_read(Material material);
+void write_material_file(const std::filesystem::path& file, const Material& material);
 
 }  // namespace livery

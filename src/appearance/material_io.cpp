@@ -15,6 +15,7 @@ namespace livery {
 namespace {
 
 constexpr int kFormatVersion = 1;
+constexpr std::size_t kLargestFile_bytes = std::size_t{1} << 20u;
 
 const ModelInfo& read_model(const JsonReader& reader) {
     const std::string name = reader.text();
@@ -62,20 +63,12 @@ Json json_of_value(const ParameterInfo& parameter, const Material& material) {
 
 /// The measured file, absolute or beside the material's own. An absolute place is written: the
 /// material may be kept elsewhere than the file.
-void read_measured(const JsonReader& reader, UnreadMeasured unread, Material& material) {
+void read_measured(const JsonReader& reader, Material& material) {
     if (!reader.is_object()) reader.fail(reader.found(), "an object");
     reader.allow_only({"file"});
     const std::filesystem::path named = reader["file"].text();
     if (named.empty()) reader["file"].fail("empty text", "a file of measured reflectance");
-    const std::filesystem::path file = reader.file().parent_path() / named;
-    try {
-        material.measured = load_measured_paint(file);
-    } catch (const MeasuredFileUnread&) {
-        throw;
-    } catch (const FileError& error) {
-        if (unread == UnreadMeasured::refused) throw;
-        material.measured = unread_measured_paint(file, error.what());
-    }
+    material.measured = unread_measured_paint(reader.file().parent_path() / named);
 }
 
 /// A model's parameters, no others, and all that are not optional.
@@ -98,7 +91,7 @@ void read_parameters(const JsonReader& reader, const ModelInfo& model, Material&
 
 }  // namespace
 
-Material read_material(const JsonReader& reader, UnreadMeasured unread) {
+Material read_material(const JsonReader& reader) {
     Material material;
     material.name = reader["name"].text();
     if (material.name.empty()) reader["name"].fail("empty text", "a name");
@@ -108,7 +101,7 @@ Material read_material(const JsonReader& reader, UnreadMeasured unread) {
     material.model = model.model;
     const JsonReader parameters = reader["parameters"];
     if (model.model == ReflectanceModel::measured) {
-        read_measured(parameters, unread, material);
+        read_measured(parameters, material);
         return material;
     }
     read_parameters(parameters, model, material);
@@ -146,7 +139,19 @@ Json json_of(const Material& material) {
 }
 
 Material read_material_file(const std::filesystem::path& file) {
-    return parse_material(read_text_file(file, std::size_t{1} << 20u), file);
+    return with_measured_read(parse_material(read_text_file(file, kLargestFile_bytes), file));
+}
+
+Material read_paint_file(const std::filesystem::path& file) {
+    if (!is_measured_file(file)) {
+        return parse_material(read_text_file(file, kLargestFile_bytes), file);
+    }
+    Material material;
+    material.name = file.stem().string();
+    material.model = ReflectanceModel::measured;
+    material.measured = unread_measured_paint(file);
+    material.file = file;
+    return material;
 }
 
 Material parse_material(const std::string& text, const std::filesystem::path& file) {

@@ -91,7 +91,7 @@ std::vector<ListedPaint> found(const PaintsArguments& arguments,
 }
 
 Outcome list_paints(const PaintsArguments& arguments, const Progress& progress) {
-    const PaintLibrary library = read_paint_library();
+    const PaintLibrary library = *read_whole_paint_library();
     const std::vector<Material> all = all_of(library);
     const auto list = found(arguments, all, progress);
     Outcome outcome;
@@ -107,7 +107,7 @@ Outcome list_paints(const PaintsArguments& arguments, const Progress& progress) 
 
 Outcome write_table(const PaintsArguments& arguments, const Progress& progress) {
     check_marked_block(arguments.markdown, "paints");
-    const auto shipped = read_paint_library().shipped;
+    const std::vector<Material> shipped = read_paint_library()->shipped;
     replace_marked_block(arguments.markdown, "paints", markdown_of(listed(shipped, progress)));
     Outcome outcome;
     outcome.figures = {{"file", arguments.markdown}, {"paints", shipped.size()}};

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "appearance/material.h"
+#include "appearance/material_library.h"
 #include "cli/command.h"
 #include "jobs/simulated_captures.h"
 #include "jobs/simulated_sphere.h"

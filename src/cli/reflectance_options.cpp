@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "appearance/material_library.h"
 #include "appearance/measured/measured_grid.h"
 #include "appearance/measured/measured_paint.h"
 

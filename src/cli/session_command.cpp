@@ -31,7 +31,7 @@ Summary read_summary(const Path& file) {
     Summary summary;
     summary.position = store.position();
     summary.last = store.last_step();
-    summary.document = store.document(summary.position);
+    summary.document = with_paints_read(store.document(summary.position));
     if (summary.position > 0) summary.undo_label = store.step(summary.position).label;
     if (summary.position < summary.last) {
         summary.redo_label = store.step(summary.position + 1).label;
@@ -95,6 +95,11 @@ Outcome changed(const Path& file, const std::function<void(Session&)>& change) {
 
 /// All or none: a mistake in the third command leaves the first two undone as well.
 void execute_all(Session& session, const std::vector<SessionCommand>& commands) {
+    std::set<Path> files;
+    for (const SessionCommand& command : commands) {
+        files.merge(unread_files(session.document(), command));
+    }
+    session.use(read_paint_library(session.document().library, files));
     Document tried = session.document();
     for (const SessionCommand& command : commands) tried = applied(tried, command);
     for (const SessionCommand& command : commands) session.execute(command);
@@ -247,7 +252,8 @@ Command import_command() {
                         {{"--look-file", "FILE", "a look file", &arguments->look_file, true, {}}});
     command.run = [arguments](const CommonOptions&, const Progress&) {
         const Look look = read_look_file(arguments->look_file);
-        return changed(arguments->file, [&](Session& session) { session.execute(AddLook{look}); });
+        return changed(arguments->file,
+                       [&](Session& session) { execute_all(session, {AddLook{look}}); });
     };
     return command;
 }

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "appearance/directions.h"
-#include "appearance/material.h"
+#include "appearance/material_library.h"
 #include "appearance/measured/measured_paint.h"
 #include "appearance/measured/measured_reflectance.h"
 #include "capture/captures_folder.h"
@@ -160,7 +160,7 @@ void read_session(const Path& file, FileCheck& check) {
     SessionFile session(file, SessionFile::Access::read);
     session.check_all();
     const std::int64_t steps = session.last_step();
-    const Document document = session.document(session.position());
+    const Document document = with_paints_read(session.document(session.position()));
     check.notes.push_back(std::to_string(document.looks.size()) + " looks, " +
                           std::to_string(steps) + (steps == 1 ? " step" : " steps"));
     std::set<std::string> environments;

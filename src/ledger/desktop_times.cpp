@@ -155,6 +155,7 @@ struct MeasuredDesktop {
         frame.number = ++number;
         frame.scene = scene_of(session.document(), look(), product, loaded);
         frame.setup = setup;
+        frame.library = session.document().library;
         frame.asked_at = Clock::now();
         return frame;
     }
@@ -192,6 +193,7 @@ struct Swaps {
             frame.number = ++desktop.number;
             frame.scene = scene;
             frame.setup = desktop.setup;
+            frame.library = desktop.session.document().library;
             frame.asked_at = start;
             desktop.thread.show(std::move(frame));
             const FramePointer shown = desktop.finished.wait_for(desktop.number, progress);
@@ -203,17 +205,17 @@ struct Swaps {
 };
 
 /// One of each finish that the shipped looks have.
-std::vector<Material> usual_paints() {
+std::vector<Material> usual_paints(const PaintLibrary& library) {
     std::vector<Material> paints;
     for (const char* name : {"solid red", "silver metallic", "solid ivory", "blue metallic"}) {
-        paints.push_back(find_material(name));
+        paints.push_back(find_material(name, library));
     }
     return paints;
 }
 
 /// All shipped paints in an order that jumps between families.
-std::vector<Material> whole_library() {
-    std::vector<Material> paints = read_paint_library().shipped;
+std::vector<Material> whole_library(const PaintLibrary& library) {
+    std::vector<Material> paints = library.shipped;
     Random random(1);
     shuffle(paints, random);
     return paints;
@@ -242,7 +244,7 @@ std::vector<BenchEffect> run_desktop_bench(GlDevice device, const Progress& prog
 
     const auto start = Clock::now();
     MeasuredDesktop desktop(device, folder / "session.livery", folder / "calibration");
-    Swaps swaps{desktop, usual_paints(), {}};
+    Swaps swaps{desktop, usual_paints(*desktop.session.document().library), {}};
     FrameDescription first = desktop.description(nullptr);
     swaps.scene = first.scene;
     desktop.thread.show(std::move(first));
@@ -266,12 +268,12 @@ std::vector<BenchEffect> run_desktop_bench(GlDevice device, const Progress& prog
         desktop.wait_until_idle(progress);
     };
     measure("alone", {0, {}}, nothing);
-    swaps.paints = whole_library();
+    swaps.paints = whole_library(*desktop.session.document().library);
     progress.update(0.0, "timing every paint of the library");
     swap_effect.levels.push_back(waited_level_of(
         "every paint of the library, twice",
         swaps.run(2 * static_cast<int>(swaps.paints.size()), {0, {}}, nothing, progress)));
-    swaps.paints = usual_paints();
+    swaps.paints = usual_paints(*desktop.session.document().library);
     {
         Bench bench(read_bench_file("default"), desktop.product, progress);
         const auto calibrate = [&](const Progress& stop) {

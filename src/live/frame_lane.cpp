@@ -112,19 +112,12 @@ Material plain_paint(const ProgramOf& program) {
     return paint;
 }
 
-/// What the next paint may need: the library's, and that of a glowing part. Without a library that
-/// can be read (the library panel says why) nothing is likely.
-std::set<ProgramOf> programs_likely_next() {
+/// What the next paint may need: the library's, and that of a glowing part.
+std::set<ProgramOf> programs_likely_next(const PaintLibrary* library) {
     std::set<ProgramOf> programs{ProgramOf(glow_paint())};
-    try {
-        const OnlyMeasuredInMemory others_read_it;
-        const PaintLibrary library = read_paint_library();
-        if (!library.unread.empty()) programs.emplace(ReflectanceModel::measured);
-        for (const auto* paints : {&library.shipped, &library.users}) {
-            for (const Material& paint : *paints) programs.emplace(paint);
-        }
-    } catch (const FileError&) {
-        return programs;
+    if (!library) return programs;
+    for (const auto* paints : {&library->shipped, &library->users, &library->unread}) {
+        for (const Material& paint : *paints) programs.emplace(paint);
     }
     return programs;
 }
@@ -216,8 +209,7 @@ void FrameLane::solve_light(std::size_t index,
 
 void FrameLane::prepare(const FrameDescription& description, const Progress& progress) {
     std::vector<PlannedPass> passes;
-    std::set<ProgramOf> programs;
-    run_giving_way(Urgency::background, [&] { programs = programs_likely_next(); });
+    std::set<ProgramOf> programs = programs_likely_next(description.library.get());
     for (std::size_t side = 0; side < side_count(description); ++side) {
         any_paint(side_of(description, side), [&](const Material& paint) {
             programs.emplace(paint);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "appearance/material_library.h"
 #include "core/image.h"
 #include "gl/context.h"
 #include "gl/fence.h"
@@ -27,6 +28,7 @@ struct FrameDescription {
     std::optional<int> glowing_part;  ///< clicked in the preview: glows on the mock-up
     Quality quality = Quality::normal;
     std::shared_ptr<const ProjectorSetup> setup;
+    std::shared_ptr<const PaintLibrary> library;       ///< what is likely to be next; null: nothing
     std::chrono::steady_clock::time_point asked_at{};  ///< of the input that caused it
 };
 

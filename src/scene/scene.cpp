@@ -5,26 +5,13 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "appearance/material_library.h"
+#include "appearance/measured/measured_paint.h"
 #include "core/error.h"
 
 namespace livery {
 
 namespace {
-
-/// A material file may stand beside the look that names it.
-Material find_paint(const Look& look,
-                    const std::string& name_or_file,
-                    const std::vector<Material>& own_paints) {
-    for (const Material& own : own_paints) {
-        if (own.name == name_or_file) return own;
-    }
-    std::error_code error;
-    const auto beside = look.file.parent_path() / name_or_file;
-    if (!look.file.empty() && std::filesystem::is_regular_file(beside, error)) {
-        return find_material(beside.string());
-    }
-    return find_material(name_or_file);
-}
 
 /// What the mesh file says of a part.
 Material own_material(const Part& part) {
@@ -51,10 +38,7 @@ void check_part_name(const Product& product,
     throw FileError(look.file, field, "no such part in " + product.name, "one of *" + names);
 }
 
-void add_artwork(const Look& look,
-                 const std::vector<Material>& own_paints,
-                 Unwearable unwearable,
-                 Scene& scene) {
+void add_artwork(const Look& look, const LookPaints& paints, Unwearable unwearable, Scene& scene) {
     const std::vector<Part>& parts = scene.product->mesh.parts;
     for (std::size_t k = 0; k < look.artwork.size(); ++k) {
         const Artwork& artwork = look.artwork[k];
@@ -67,9 +51,8 @@ void add_artwork(const Look& look,
         }
         for (std::size_t p = 0; p < parts.size(); ++p) {
             if (artwork.part != "*" && artwork.part != parts[p].name) continue;
-            const Material material = artwork.paint.empty()
-                                          ? scene.part_materials[p]
-                                          : find_paint(look, artwork.paint, own_paints);
+            const Material material =
+                artwork.paint.empty() ? scene.part_materials[p] : paints.at(artwork.paint);
             if (is_relief(artwork)) {
                 if (relief_of(scene, p)) {
                     throw FileError(look.file,
@@ -93,11 +76,26 @@ void add_artwork(const Look& look,
 
 }  // namespace
 
+LookPaints read_paints(const Look& look) {
+    LookPaints paints;
+    const auto library = read_paint_library();
+    Look named = look;
+    for_each_paint(named, [&](const std::string& name) {
+        if (paints.contains(name)) return;
+        std::error_code error;
+        const auto beside = look.file.parent_path() / name;
+        const bool is_beside =
+            !look.file.empty() && std::filesystem::is_regular_file(beside, error);
+        paints[name] = find_material(is_beside ? beside.string() : name, *library);
+    });
+    return paints;
+}
+
 Scene make_scene(std::shared_ptr<const Product> product,
                  const Look& look,
+                 const LookPaints& paints,
                  glm::dvec3 eye_mm,
                  const std::shared_ptr<const Environment>& loaded,
-                 const std::vector<Material>& own_paints,
                  Unwearable unwearable) {
     check_argument(product != nullptr, "make_scene: a product is needed");
     for (const auto& [name, paint] : look.parts) {
@@ -107,9 +105,8 @@ Scene make_scene(std::shared_ptr<const Product> product,
     for (const auto& part : product->mesh.parts) {
         auto paint = look.parts.find(part.name);
         if (paint == look.parts.end()) paint = look.parts.find("*");
-        scene.part_materials.push_back(paint == look.parts.end()
-                                           ? own_material(part)
-                                           : find_paint(look, paint->second, own_paints));
+        scene.part_materials.push_back(paint == look.parts.end() ? own_material(part)
+                                                                 : paints.at(paint->second));
     }
     if (!look.environment.file.empty()) {
         const auto beside = look.file.parent_path();
@@ -121,11 +118,27 @@ Scene make_scene(std::shared_ptr<const Product> product,
                  : std::make_shared<const Environment>(load_environment(look.environment, beside));
     }
     scene.product = std::move(product);
-    add_artwork(look, own_paints, unwearable, scene);
+    add_artwork(look, paints, unwearable, scene);
     scene.lights = look.lights;
     scene.eye_in_world_mm = eye_mm;
     scene.exposure_ev = look.exposure_ev;
     return scene;
+}
+
+Scene make_scene(std::shared_ptr<const Product> product,
+                 const Look& look,
+                 glm::dvec3 eye_mm,
+                 const std::shared_ptr<const Environment>& loaded) {
+    return make_scene(std::move(product), look, read_paints(look), eye_mm, loaded);
+}
+
+std::set<std::filesystem::path> unread_files(const Scene& scene) {
+    std::set<std::filesystem::path> files;
+    any_paint(scene, [&](const Material& paint) {
+        if (!is_read(paint)) files.insert(paint.measured->file);
+        return false;
+    });
+    return files;
 }
 
 const PartArtwork* relief_of(const Scene& scene, std::size_t part) {

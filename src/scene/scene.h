@@ -1,8 +1,12 @@
 // One immutable description of what to draw: everything that the renderers are handed.
 #pragma once
 
+#include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
+#include <set>
+#include <string>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -35,19 +39,33 @@ bool same_relief(const std::vector<PartArtwork>& a, const std::vector<PartArtwor
 /// Whether any paint on the product, artwork's included, is such.
 bool any_paint(const Scene& scene, const std::function<bool(const Material&)>& is_such);
 
-/// Resolves a look's names against a product and the paint library. A part that the look does not
-/// name keeps the file's own paint, or its colour as a plain diffuse. Throws FileError (unknown
-/// part or paint, with the names there are). `loaded` is shared when it is the environment that the
-/// look names: a map takes a while to read, and renderers keep what they have made of it.
-/// `own_paints` come before the library's and files by name. A picture that a part's own paint
-/// cannot wear (artwork_coats.h) is refused, or left out while the part wears it.
+/// What each name of a paint in a look means.
+using LookPaints = std::map<std::string, Material>;
+/// For a program that runs once: files beside the look, else what the library has now, all read.
+/// Throws FileError with the nearest names.
+LookPaints read_paints(const Look& look);
+
+/// A look on a product. A part that the look does not name keeps the file's own paint, or its
+/// colour as a plain diffuse. Throws FileError (unknown part, with the names there are),
+/// std::out_of_range (a paint that is not among `paints`). `loaded` is shared when it is the
+/// environment that the look names: a map takes a while to read, and renderers keep what they have
+/// made of it. A picture that a part's own paint cannot wear (artwork_coats.h) is refused, or left
+/// out while the part wears it.
 enum class Unwearable { refused, left_out };
 Scene make_scene(std::shared_ptr<const Product> product,
                  const Look& look,
+                 const LookPaints& paints,
                  glm::dvec3 eye_mm,
                  const std::shared_ptr<const Environment>& loaded = nullptr,
-                 const std::vector<Material>& own_paints = {},
                  Unwearable unwearable = Unwearable::refused);
+/// The same in read_paints().
+Scene make_scene(std::shared_ptr<const Product> product,
+                 const Look& look,
+                 glm::dvec3 eye_mm,
+                 const std::shared_ptr<const Environment>& loaded = nullptr);
+
+/// Of its paints that are not read yet (is_read()): nothing is to be drawn before.
+std::set<std::filesystem::path> unread_files(const Scene& scene);
 
 /// A plain diffuse studio: the default eye and key light when nothing else was given.
 glm::dvec3 default_eye_mm(const Product& product);

@@ -1,7 +1,9 @@
 // The only ways in which a session changes: the same for panel, keys, command line and tests.
 #pragma once
 
+#include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <variant>
 #include <vector>
@@ -105,8 +107,14 @@ using SessionCommand = std::variant<SetPaint,
                                     SetBench,
                                     SetDesignWhite>;
 
+/// Files that the command calls a paint by, or that its paint was measured in, and that the
+/// document's library has not read: the library is to have them before the command is applied.
+std::set<std::filesystem::path> unread_files(const Document& document,
+                                             const SessionCommand& command);
+
 /// The document after the command; a pure function. Throws std::invalid_argument with the values
-/// (no such look, part, paint; empty name; not finite; the last look deleted).
+/// (no such look, part, paint; a paint's file that is not read; empty name; not finite; the last
+/// look deleted).
 Document applied(const Document& document, const SessionCommand& command);
 
 /// A look read from a file as it can stand in a session: what it names beside that file by its

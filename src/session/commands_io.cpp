@@ -39,7 +39,7 @@ void read(const JsonReader& fields, EditPaint& c) {
     fields.allow_only({"look", "part", "material"});
     const JsonReader material = fields["material"];
     material.allow_only({"name", "family", "model", "parameters", "provenance"});
-    c = {look_in(fields), fields["part"].text(), read_material(material, UnreadMeasured::kept)};
+    c = {look_in(fields), fields["part"].text(), read_material(material)};
 }
 
 Json fields_of(const RenamePaint& c) { return {{"paint", c.paint}, {"name", c.name}}; }

@@ -14,29 +14,10 @@
 
 namespace livery {
 
-namespace {
-
-/// Why a paint that a look names cannot be had now: its file, or that of its measured reflectance.
-std::optional<std::string> why_black(const Document& document,
-                                     const PaintLibrary& library,
-                                     const std::string& name) {
-    for (const Material& own : document.paints) {
-        if (own.name != name) continue;
-        const bool unread = own.measured && !own.measured->problem.empty();
-        return unread ? std::optional(own.measured->problem) : std::nullopt;
-    }
-    if (library.find(name)) return std::nullopt;
-    try {
-        find_material(name);
-    } catch (const MeasuredFileUnread&) {
-        return std::nullopt;
-    } catch (const FileError& error) {
-        return error.what();
-    }
-    return std::nullopt;
+const PaintLibrary& library_of(const Document& document) {
+    static const PaintLibrary none;
+    return document.library ? *document.library : none;
 }
-
-}  // namespace
 
 std::string product_reference(const std::string& name_or_file) {
     std::error_code error;
@@ -52,12 +33,11 @@ Document new_document(const std::string& product, std::optional<LengthUnit> unit
     const auto bench = bench_of_shipped_product(product);
     const auto own = bench ? nullptr : find_product(product, unit);
     const std::vector<std::string> parts = own ? part_names(own->mesh) : part_names(product);
-    PaintLibrary library;
-    library.shipped = read_shipped_paints();
+    document.library = read_paint_library();
     for (const std::string& name : shipped_looks()) {
         Look look = find_look_for(name, parts);
         for_each_paint(look, [&](std::string& paint) {
-            const Material* known = library.find(paint);
+            const Material* known = document.library->find(paint);
             if (!known) throw FileError(look.file, "parts", paint, "a paint's name");
             paint = known->name;
         });
@@ -82,10 +62,56 @@ const SessionLook* find_look(const Document& document, int id) {
     return nullptr;
 }
 
+Document in_library(Document document, std::shared_ptr<const PaintLibrary> library) {
+    document.library = std::move(library);
+    for (Material& paint : document.paints) {
+        paint = resolved(std::move(paint), library_of(document));
+    }
+    return document;
+}
+
+Document with_paints_read(Document document) {
+    document = in_library(std::move(document), read_paint_library(document.library));
+    const auto unread = unread_files(document);
+    if (unread.empty()) return document;
+    auto library = read_paint_library(document.library, unread);
+    return in_library(std::move(document), std::move(library));
+}
+
+NamedPaint look_up(const Document& document, const std::string& name) {
+    for (const Material& paint : document.paints) {
+        if (!same_paint_name(paint.name, name)) continue;
+        NamedPaint named{paint, paint.measured ? paint.measured->problem : ""};
+        return named;
+    }
+    return look_up(library_of(document), name);
+}
+
+Material find_paint(const Document& document, const std::string& name) {
+    NamedPaint named = look_up(document, name);
+    if (!named.problem.empty()) throw std::invalid_argument(named.problem);
+    return std::move(named.material);
+}
+
+std::set<std::filesystem::path> unread_files(const Document& document) {
+    std::set<std::filesystem::path> files;
+    const auto add = [&](const Material& paint) {
+        if (!is_read(paint)) files.insert(paint.measured->file);
+    };
+    for (const Material& paint : document.paints) add(paint);
+    for (const SessionLook& one : document.looks) {
+        Look look = one.look;
+        for_each_paint(look,
+                       [&](const std::string& name) { add(look_up(document, name).material); });
+    }
+    return files;
+}
+
 std::vector<std::string> paint_names(const Document& document) {
-    const PaintLibrary library = read_paint_library();
+    const PaintLibrary& library = library_of(document);
     std::vector<std::string> names;
-    for (const auto* paints : {&document.paints, &library.shipped, &library.users}) {
+    for (const auto* paints :
+         {&document.paints, &library.shipped, &library.users, &library.unread}) {
         for (const Material& paint : *paints) {
             const bool known = std::any_of(names.begin(), names.end(), [&](const auto& name) {
                 return same_paint_name(name, paint.name);
@@ -106,34 +132,23 @@ Scene scene_of(const Document& document,
     Look look = found->look;
     std::erase_if(look.artwork, [](const Artwork& artwork) { return picture_problem(artwork); });
     look.exposure_ev = document.exposure_ev;
-    // The library is read once for all parts: a scene is made whenever the pointer moves.
-    std::vector<Material> paints = document.paints;
-    const PaintLibrary library = read_paint_library();
-    for (const auto* more : {&library.shipped, &library.users}) {
-        paints.insert(paints.end(), more->begin(), more->end());
-    }
+    LookPaints paints;
     for_each_paint(look, [&](const std::string& name) {
-        if (!why_black(document, library, name)) return;
-        Material black;
-        black.name = name;
-        black.diffuse = glm::dvec3(0.0);
-        paints.push_back(std::move(black));
+        if (!paints.contains(name)) paints[name] = look_up(document, name).material;
     });
     if (environment_problem(look.environment)) look.environment = {};
     return make_scene(
-        std::move(product), look, document.eye_mm, loaded, paints, Unwearable::left_out);
+        std::move(product), look, paints, document.eye_mm, loaded, Unwearable::left_out);
 }
 
 std::vector<std::string> drawing_problems(const Document& document, const SessionLook& look) {
     std::vector<std::string> problems;
-    const PaintLibrary library = read_paint_library();
     std::set<std::string> seen;
     Look here = look.look;
     for_each_paint(here, [&](const std::string& name) {
         if (!seen.insert(name).second) return;
-        if (const auto why = why_black(document, library, name)) {
-            problems.push_back(fmt::format("\"{}\" is black: {}", name, *why));
-        }
+        const std::string why = look_up(document, name).problem;
+        if (!why.empty()) problems.push_back(fmt::format("\"{}\" is black: {}", name, why));
     });
     for (const Artwork& artwork : look.look.artwork) {
         if (const auto why = picture_problem(artwork)) {

@@ -4,12 +4,13 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include <glm/vec3.hpp>
 
-#include "appearance/material.h"
+#include "appearance/material_library.h"
 #include "scene/frame_plan.h"
 #include "scene/look.h"
 #include "scene/scene.h"
@@ -34,18 +35,35 @@ struct Document {
     std::string bench = "default";  ///< the simulated bench; a shipped name or a file
     std::string calibration;        ///< folder; empty: none, the picture goes out uncorrected
     double design_white_percentile = 20.0;
+    /// What names of paints mean: shared and never changed. Not part of the document's text; null:
+    /// no name means anything.
+    std::shared_ptr<const PaintLibrary> library;
 };
 
 /// How a session names a product: a shipped one as it is, a file by its whole path.
 std::string product_reference(const std::string& name_or_file);
 
-/// The shipped looks on a product, seen as the default bench has it. Throws FileError.
+/// The shipped looks on a product, seen as the default bench has it, in the library as it is now.
+/// Throws FileError.
 Document new_document(const std::string& product = "car",
                       std::optional<LengthUnit> unit = std::nullopt);
 
 const SessionLook* find_look(const Document& document, int id);
-/// The session's own paint, else the library's. Throws FileError with the nearest names.
+/// What its names mean: an empty library where it has none.
+const PaintLibrary& library_of(const Document& document);
+/// The same document where names mean what they do in another library; its own measured paints are
+/// those that this one has read.
+Document in_library(Document document, std::shared_ptr<const PaintLibrary> library);
+/// For a program that runs once: in the library as it is now, with all that the document's paints
+/// were measured in and the files that its looks name. Throws FileError.
+Document with_paints_read(Document document);
+
+/// The session's own paint, else the library's.
+NamedPaint look_up(const Document& document, const std::string& name);
+/// The same. Throws std::invalid_argument where there is none.
 Material find_paint(const Document& document, const std::string& name);
+/// Of those of its paints, its looks' included, that are not read yet.
+std::set<std::filesystem::path> unread_files(const Document& document);
 /// A line for each file that drawing needs and that cannot be used now. All stays in the session as
 /// it is, and is itself again when the file is back: until then paints are black, pictures are not
 /// shown, and a look is lit without its environment.
@@ -55,8 +73,9 @@ std::vector<std::string> drawing_problems(const Document& document, const Sessio
 /// The session's and the library's names, sorted, each once.
 std::vector<std::string> paint_names(const Document& document);
 
-/// What to draw for one look, without what drawing_problems() names. Shares the environment with
-/// `loaded` where it is the same. Throws FileError: a part that the product has no longer.
+/// What to draw for one look, without what drawing_problems() names. Paints that are not read yet
+/// stand in it black (unread_files()). Shares the environment with `loaded` where it is the same.
+/// Throws FileError: a part that the product has no longer.
 Scene scene_of(const Document& document,
                int look_id,
                std::shared_ptr<const Product> product,

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include "appearance/material_json.h"
-#include "appearance/measured/measured_paint.h"
 #include "core/error.h"
 #include "core/json_ranges.h"
 #include "scene/look_json.h"
@@ -68,7 +67,7 @@ void read_paints(const JsonReader& list, Document& document) {
     for (std::size_t k = 0; k < list.size(); ++k) {
         const JsonReader field = list.at(k);
         field.allow_only({"name", "family", "model", "parameters", "provenance"});
-        Material paint = read_material(field, UnreadMeasured::kept);
+        Material paint = read_material(field);
         paint.name = checked_text(field["name"]);
         for (const Material& other : document.paints) {
             if (other.name == paint.name) {
@@ -147,8 +146,9 @@ Document read_document(const JsonReader& root) {
 Material kept_paint(const Material& paint) {
     try {
         const Json json = json_of(paint);
-        Material kept = read_material(JsonReader("", json), UnreadMeasured::kept);
+        Material kept = read_material(JsonReader("", json));
         kept.file = paint.file;
+        kept.measured = paint.measured;
         return kept;
     } catch (const FileError& mistake) {
         throw std::invalid_argument(mistake.field() + " is " + mistake.found() + "; expected " +

@@ -45,24 +45,43 @@ std::string provenance_of_edit(const std::string& name) {
 
 }  // namespace
 
-Material find_paint(const Document& document, const std::string& name) {
-    for (const Material& paint : document.paints) {
-        if (same_paint_name(paint.name, name)) return paint;
+std::set<std::filesystem::path> unread_files(const Document& document,
+                                             const SessionCommand& command) {
+    std::set<std::filesystem::path> files;
+    const auto add_named = [&](const std::string& name) {
+        std::error_code error;
+        const NamedPaint named = look_up(document, name);
+        const bool is_file =
+            !named.problem.empty() && std::filesystem::is_regular_file(name, error);
+        if (is_file) files.insert(std::filesystem::absolute(name).lexically_normal());
+        if (!is_read(named.material)) files.insert(named.material.measured->file);
+    };
+    Look look;
+    if (const auto* painted = std::get_if<SetPaint>(&command)) {
+        add_named(painted->paint);
+    } else if (const auto* product = std::get_if<PaintProduct>(&command)) {
+        add_named(product->paint);
+    } else if (const auto* edit = std::get_if<EditPaint>(&command)) {
+        if (!is_read(edit->material)) files.insert(edit->material.measured->file);
+    } else if (const auto* artwork = std::get_if<SetArtwork>(&command)) {
+        look.artwork = artwork->artwork;
+    } else if (const auto* added = std::get_if<AddLook>(&command)) {
+        look = portable_look(added->look);
     }
-    return find_material(name);
+    for_each_paint(look, add_named);
+    return files;
 }
 
 std::string known_paint(const Document& document, const std::string& name) {
     check_text(name, "the paint's name");
-    if (const Material* own = own_paint(document, name)) return own->name;
-    const PaintLibrary library = read_paint_library();
-    if (const Material* paint = library.find(name)) return paint->name;
-    try {
-        const Material paint = find_material(name);
-        return std::filesystem::absolute(paint.file).lexically_normal().string();
-    } catch (const FileError& error) {
-        throw std::invalid_argument(error.what());
-    }
+    const NamedPaint named = look_up(document, name);
+    const bool is_own = own_paint(document, name) != nullptr;
+    if (!is_own && !named.problem.empty()) throw std::invalid_argument(named.problem);
+    // By its name where that leads to it, else by its whole path.
+    if (is_own || library_of(document).find(name)) return named.material.name;
+    const std::string file = std::filesystem::absolute(name).lexically_normal().string();
+    if (!is_read(named.material)) check_argument(false, file + " was not read yet");
+    return file;
 }
 
 void edit_paint(Document& document, const EditPaint& command) {
@@ -70,10 +89,11 @@ void edit_paint(Document& document, const EditPaint& command) {
     check_text(command.material.family, "the paint's family");
     check_text(command.material.provenance, "the paint's provenance");
     Material edited = kept_paint(command.material);
+    edited = resolved(std::move(edited), library_of(document));
+    check_argument(is_read(edited), edited.name + " was not read yet");
     // A step of long ago may name a file that is gone; a new one may not.
-    if (edited.measured && !edited.measured->problem.empty()) {
-        throw std::invalid_argument(edited.measured->problem);
-    }
+    check_argument(!edited.measured || edited.measured->problem.empty(),
+                   edited.measured ? edited.measured->problem : "");
     edited.file.clear();
 
     const auto look = std::find_if(document.looks.begin(),
@@ -85,9 +105,8 @@ void edit_paint(Document& document, const EditPaint& command) {
         std::find_if(document.paints.begin(), document.paints.end(), [&](const Material& paint) {
             return worn != parts.end() && paint.name == worn->second;
         });
-    const PaintLibrary library = read_paint_library();
     const auto taken = [&](const std::string& name) {
-        return own_paint(document, name) || library.find(name);
+        return own_paint(document, name) || library_of(document).find(name);
     };
     if (own != document.paints.end() && times_used(document, own->name) == 1) {
         edited.name = free_name(edited.name, [&](const std::string& name) {
@@ -104,7 +123,7 @@ void edit_paint(Document& document, const EditPaint& command) {
     }
     const std::string from = edited.name;
     edited.name = free_name(from, taken);
-    const Material* before = own != document.paints.end() ? &*own : library.find(from);
+    const Material* before = own != document.paints.end() ? &*own : library_of(document).find(from);
     edited.provenance =
         provenance_of_edit(from) + colour_asked_by(edited, before ? before->provenance : "");
     parts[command.part] = edited.name;
@@ -126,10 +145,9 @@ void rename_paint(Document& document, const RenamePaint& command) {
                                                 command.paint,
                                                 known.empty() ? "is none" : "are " + known));
     }
-    const PaintLibrary library = read_paint_library();
     const Material* other = own_paint(document, command.name);
     // Another way to write its own name is no other paint's.
-    if ((other && other != &*own) || library.find(command.name)) {
+    if ((other && other != &*own) || library_of(document).find(command.name)) {
         throw std::invalid_argument(
             fmt::format("there is a paint \"{}\" already; expected another name", command.name));
     }

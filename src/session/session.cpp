@@ -48,7 +48,7 @@ struct Session::State {
         Document there = document_at(number);
         std::string undo = number > 0 ? step(number).label : "";
         std::string redo = number < last() ? step(number + 1).label : "";
-        document = std::move(there);
+        document = in_library(std::move(there), document.library);
         undo_label = std::move(undo);
         redo_label = std::move(redo);
         position = number;
@@ -143,6 +143,7 @@ Session Session::open(const std::filesystem::path& file,
     state->store->check_pages();
     state->saved_last = state->store->last_step();
     state->workspace = state->store->workspace();
+    state->document.library = read_paint_library();
     state->stand_at(state->store->position());
     return Session(std::move(state));
 }
@@ -157,6 +158,12 @@ Session Session::unsaved(const Document& document, std::string why) {
 
 const Document& Session::document() const { return state_->document; }
 std::uint64_t Session::revision() const { return state_->revision; }
+
+void Session::use(std::shared_ptr<const PaintLibrary> library) {
+    if (library == state_->document.library) return;
+    state_->document = in_library(std::move(state_->document), std::move(library));
+    ++state_->revision;
+}
 
 void Session::execute(const SessionCommand& command) {
     Document after = applied(state_->document, command);

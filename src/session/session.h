@@ -20,7 +20,8 @@ using Workspace = std::map<std::string, std::string>;
 
 class Session {
   public:
-    /// Opens the file or makes a new session in it. A second program on the same file is refused
+    /// Opens the file or makes a new session in it, in the paint library as it is now; measured
+    /// paints stay unread. A second program on the same file is refused
     /// (Refused, names the other's process). Throws FileError (corrupt, newer, read-only folder).
     static Session open(const std::filesystem::path& file,
                         const std::string& product = "car",
@@ -32,7 +33,11 @@ class Session {
     ~Session();
 
     const Document& document() const;
-    std::uint64_t revision() const;  ///< grows with every change, undo and redo included
+    /// Grows with every change, undo, redo and another library included.
+    std::uint64_t revision() const;
+
+    /// From now on names of paints mean what they do in this library; no step of the history.
+    void use(std::shared_ptr<const PaintLibrary> library);
 
     /// Applies and saves; it is on disk when this returns. When saving fails the change stands, and
     /// save_problem() says why until a later one succeeds, which then saves all that was not.

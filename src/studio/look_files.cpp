@@ -8,6 +8,7 @@
 #include "scene/look.h"
 #include "session/look_exchange.h"
 #include "studio/kit/user_folders.h"
+#include "studio/paint/users_library.h"
 #include "studio/window/shell.h"
 
 namespace livery {
@@ -18,31 +19,16 @@ void tell(Shell& shell, const std::string& what, const std::exception& error) {
     notify(shell.studio, {Notice::Level::error, what, error.what(), ""});
 }
 
-/// What lies beside the look's file is named in full, because the session lies elsewhere.
-void name_neighbours_in_full(Look& look) {
-    const auto folder = std::filesystem::absolute(look.file).parent_path();
-    const auto in_full = [&](std::string& name) {
-        std::error_code error;
-        if (std::filesystem::is_regular_file(folder / name, error)) {
-            name = (folder / name).string();
-        }
-    };
-    for_each_file(look, in_full);
-}
-
 void import_look(Shell& shell, const std::filesystem::path& file) {
-    Look look;
+    AddLook command;
     try {
-        look = read_look_file(file);
-        name_neighbours_in_full(look);
-        // Whatever it names must be there before the session names it too.
-        make_scene(shell.studio.product, look, shell.studio.session.document().eye_mm);
+        command.look = portable_look(read_look_file(file));
     } catch (const std::exception& error) {
         tell(shell, "The look was not imported.", error);
         return;
     }
-    look.file.clear();
-    commit(shell.studio, AddLook{look, -1});
+    const auto files = unread_files(shell.studio.session.document(), command);
+    refresh_library(shell.studio, files, [&shell, command] { commit(shell.studio, command); });
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "appearance/measured/measured_paint.h"
 #include "gl/window.h"
 #include "live/orbit.h"
 #include "studio/kit/theme.h"
@@ -41,11 +40,12 @@ std::optional<Scene> scene_of_paints(const Studio& studio, const SessionLook& lo
     Document document = studio.session.document();
     for (SessionLook& other : document.looks) other.look.environment = {};
     try {
-        const OnlyMeasuredInMemory no_waiting;
-        return scene_of(document, look.id, studio.product);
+        Scene scene = scene_of(document, look.id, studio.product);
+        if (unread_files(scene).empty()) return scene;
     } catch (const std::exception&) {
-        return std::nullopt;  // Told where the look itself is drawn.
+        // Told where the look itself is drawn.
     }
+    return std::nullopt;
 }
 
 void ask_for(Studio& studio, const SessionLook& look, const glm::ivec2& size_px) {

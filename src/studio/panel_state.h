@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -18,7 +19,6 @@
 #include "appearance/lobe_curve.h"
 #include "appearance/material_library.h"
 #include "appearance/measured/measured_grid.h"
-#include "appearance/measured/measured_paint.h"
 #include "appearance/paint_colour.h"
 #include "appearance/paint_figures.h"
 #include "core/image.h"
@@ -39,14 +39,16 @@ struct SwatchInbox {
     std::map<std::string, Image8> drawn;  ///< by the paint's parameters
 };
 
+/// One look at the paint library's files (users_library.h).
+struct LibraryReading {
+    bool asked = false;
+    std::set<std::filesystem::path> files;    ///< that are read as well
+    std::vector<std::function<void()>> then;  ///< called when it is done
+};
+
 struct LibraryPanelState {
-    PaintLibrary library;
-    std::string problem;      ///< why there is no library
-    double read_at_s = -1.0;  ///< of the window's clock; negative: to be read
-    std::filesystem::file_time_type folder_changed_at{};
-    std::set<std::filesystem::path> being_read;  ///< measured files, on the background thread
-    /// Until what waits for them was asked for again.
-    std::vector<std::shared_ptr<const MeasuredPaint>> just_read;
+    std::string problem;                   ///< why its files could not be looked at; else empty
+    LibraryReading reading, next_reading;  ///< on the background thread, and after it
     std::string search;
     bool searching = false;     ///< the text cursor is in the search
     bool focus_search = false;  ///< set by a key: the next frame puts the text cursor there

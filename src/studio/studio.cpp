@@ -6,7 +6,6 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
-#include "appearance/measured/measured_paint.h"
 #include "core/log.h"
 #include "studio/kit/theme.h"
 
@@ -43,7 +42,6 @@ bool was_led_to(unsigned item) {
 void commit(Studio& studio, const SessionCommand& command) {
     const std::string label = label_of(studio.session.document(), command);
     try {
-        const OnlyMeasuredInMemory no_waiting;
         studio.session.execute(command);
     } catch (const std::exception& error) {
         notify(studio, {Notice::Level::error, label + " was not done.", error.what(), ""});
@@ -111,7 +109,6 @@ Document shown_document(const Studio& studio) {
     const Document& document = studio.session.document();
     if (!studio.tried) return document;
     try {
-        const OnlyMeasuredInMemory no_waiting;
         return applied(document, *studio.tried);
     } catch (const std::invalid_argument&) {
         return document;  // The document changed under the pointer: the look is gone.

@@ -1,12 +1,11 @@
 // Paint files: what is read is what was written, and every mistake is named.
-#include "appearance/material.h"
-
 #include <stdexcept>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "appearance/bsdf.h"
+#include "appearance/material_library.h"
 #include "appearance/parameter_table.h"
 #include "core/colour.h"
 #include "core/paths.h"
@@ -202,7 +201,7 @@ TEST(MaterialFile, NamesEveryMistake) {
 }
 
 TEST(Library, EveryShippedPaintIsReadAndFoundByItsName) {
-    const auto library = load_library(shipped_path("materials"));
+    const auto library = read_paint_folder(shipped_path("materials"));
     EXPECT_GE(library.size(), 12u);
     for (const Material& material : library) {
         EXPECT_EQ(find_material(material.name).file, material.file);
@@ -224,9 +223,9 @@ TEST(Library, RefusesTwoPaintsOfOneNameAndAMissingFolder) {
     const TemporaryFolder folder;
     write_material_file(folder / "a.json", full_material());
     write_material_file(folder / "b.json", full_material());
-    EXPECT_TRUE(
-        fails_with([&] { load_library(folder.path()); }, {"b.json", "'test paint'", "a.json"}));
-    EXPECT_TRUE(fails_with([&] { load_library(folder / "none"); }, {"none"}));
+    EXPECT_TRUE(fails_with([&] { read_paint_folder(folder.path()); },
+                           {"b.json", "'test paint'", "a.json"}));
+    EXPECT_TRUE(fails_with([&] { read_paint_folder(folder / "none"); }, {"none"}));
 }
 
 TEST(Parameters, AreInTheWorkingSpace) {

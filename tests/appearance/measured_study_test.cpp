@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "appearance/bsdf.h"
+#include "appearance/material_library.h"
 #include "appearance/measured/measured_grid.h"
 #include "appearance/merl_bytes.h"
 #include "core/colour.h"

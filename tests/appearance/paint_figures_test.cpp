@@ -10,6 +10,7 @@
 
 #include "appearance/bsdf.h"
 #include "appearance/gloss_optics.h"
+#include "appearance/material_library.h"
 #include "appearance/measured/measured_paint.h"
 #include "appearance/model_table.h"
 #include "core/spectrum.h"
@@ -186,7 +187,7 @@ TEST(PaintFigures, OfMeasuredSpectraAreIntegrated) {
     }
     const TemporaryFolder folder;
     Material step = of_model(ReflectanceModel::measured);
-    step.measured = load_measured_paint(folder.write("step.brdf", rows));
+    step.measured = read_measured_paint(folder.write("step.brdf", rows));
     Spectrum half{};
     for (std::size_t k = 36; k < half.size(); ++k) half[k] = 0.5;
     const glm::dvec3 expected = lab10_from_xyz10(xyz10_from_reflectance(half));

@@ -54,7 +54,8 @@ TEST(Recolour, KeepsTheFinish) {
 }
 
 TEST(Recolour, GivesBackItsOwnColour) {
-    for (const Material& paint : read_paint_library().shipped) {
+    const auto library = read_paint_library();
+    for (const Material& paint : library->shipped) {
         if (paint.family == "chrome") continue;  // black at 45 degrees
         const glm::dvec3 lab = five_angle_lab(paint)[kFaceAngle];
         const Recoloured made = with_colour(paint, lab);

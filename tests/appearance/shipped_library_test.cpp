@@ -19,7 +19,7 @@
 namespace livery {
 namespace {
 
-std::vector<Material> shipped() { return load_library(shipped_path("materials")); }
+std::vector<Material> shipped() { return read_paint_folder(shipped_path("materials")); }
 
 bool is_measured_origin(const Material& paint) {
     return paint.provenance.starts_with("measured: ");
@@ -55,7 +55,7 @@ TEST(ShippedLibrary, IsLargeAndOfToldOrigin) {
 }
 
 TEST(ShippedLibrary, IsListedByFamily) {
-    const auto listed = read_paint_library().shipped;
+    const auto listed = read_paint_library()->shipped;
     const auto& families = paint_families();
     EXPECT_EQ(listed.front().family, families.front());
     EXPECT_EQ(listed.back().family, families.back());

@@ -16,7 +16,7 @@ BENCHMARK(LoadTheCar)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void LoadThePaints(benchmark::State& state) {
     std::size_t paints = 0;
-    for (auto _ : state) paints = read_paint_library().shipped.size();
+    for (auto _ : state) paints = read_paint_library()->shipped.size();
     count_items(state, paints);
 }
 BENCHMARK(LoadThePaints)->Unit(benchmark::kMillisecond);

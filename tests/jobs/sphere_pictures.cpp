@@ -7,7 +7,7 @@
 
 #include <glm/matrix.hpp>
 
-#include "appearance/material.h"
+#include "appearance/material_library.h"
 #include "core/colour.h"
 #include "core/image_io.h"
 #include "twin/sensor.h"

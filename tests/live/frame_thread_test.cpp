@@ -118,6 +118,10 @@ TEST_F(FrameThreadTest, ADraftComesFirstAndSaysSo) {
 }
 
 TEST_F(FrameThreadTest, PreparingIsAListedPass) {
+    PaintLibrary library;
+    library.shipped = {paint_of(ReflectanceModel::ggx, 0.2),
+                       paint_of(ReflectanceModel::clearcoat, 0.1)};
+    description_.library = std::make_shared<const PaintLibrary>(std::move(library));
     start();
     const auto number = show();
     const auto end = gallery_.whole(number);

@@ -13,7 +13,7 @@ namespace {
 
 /// Every shipped paint in an order of chance, and from each to the next a second time both ways.
 std::vector<Material> walk_through_the_library() {
-    std::vector<Material> paints = read_paint_library().shipped;
+    std::vector<Material> paints = read_paint_library()->shipped;
     Random random(63, 1);
     shuffle(paints, random);
     std::vector<Material> walk = paints;
@@ -58,7 +58,7 @@ TEST_F(PaintSwaps, EachIsTheVeryNextFrameAndSolvesNothing) {
             EXPECT_EQ(frame->drive->values, from_scratch(description_.scene).drive.values);
         }
     }
-    EXPECT_EQ(worn.size(), read_paint_library().shipped.size());
+    EXPECT_EQ(worn.size(), read_paint_library()->shipped.size());
     // One picture a swap, in their order, and none besides.
     std::uint64_t expected = first;
     for (const FramePointer& frame : gallery_.all()) EXPECT_EQ(frame->number, expected++);

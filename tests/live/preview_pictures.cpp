@@ -155,7 +155,7 @@ void draw_pictures(const std::filesystem::path& folder) {
         place(sheet, player.picture("solid-red", 0.45, kWidth, kHeight), 2 * kWidth, 0);
         write_png(folder / "player.png", sheet);
     }
-    const std::vector<Material> paints = read_paint_library().shipped;
+    const std::vector<Material> paints = read_paint_library()->shipped;
     SwatchPainter painter(make_swatch_studio());
     constexpr int kSize = 144, kStep = 160, kColumns = 8;
     const int rows = (static_cast<int>(paints.size()) + kColumns - 1) / kColumns;

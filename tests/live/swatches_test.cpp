@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "appearance/material_library.h"
 #include "core/image_io.h"
 #include "core/paths.h"
 #include "live/contexts.h"
@@ -56,7 +57,7 @@ TEST_F(Swatches, ShowEachPaintOnASphereTheSameEveryTime) {
     HeadlessContext context(GlDevice::software);
     SwatchPainter painter(studio());
     std::set<std::vector<std::uint8_t>> different;
-    const std::vector<Material> library = load_library(shipped_path("materials"));
+    const std::vector<Material> library = read_paint_folder(shipped_path("materials"));
     ASSERT_GE(library.size(), 16u);
     for (const Material& paint : library) {
         const Image8 swatch = painter.paint(paint, 48);

@@ -11,7 +11,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "appearance/material.h"
+#include "appearance/material_library.h"
 #include "core/paths.h"
 #include "radiance/direct_oracle.h"
 #include "radiance/renderer_fixture.h"
@@ -292,7 +292,7 @@ TEST_P(Mirror, SmoothPanelsHaveNoGrain) {
     // Asked: under .004 of the brightness, where the reflections themselves are smooth: lobes as
     // wide as metallic paints'. As many pixels as a projector spends on the bonnet. On a ball
     // reflections bend within a few pixels: there each is held against its neighbours.
-    const auto library = load_library(shipped_path("materials"));
+    const auto library = read_paint_folder(shipped_path("materials"));
     struct Case {
         Subject subject;
         int reach;

@@ -128,7 +128,7 @@ TEST(SetArtwork, GoesOutWithALookAndComesBack) {
     EXPECT_EQ(written.size(), 2u) << "the look and its own paint";
     const Look look = read_look_file(folder / "look.json");
     EXPECT_NE(look.artwork[1].paint, own.paint) << "the paint's file beside it";
-    const Document back = applied(car(), AddLook{look});
+    const Document back = testing::applied_with_files(car(), AddLook{look});
     ASSERT_EQ(artwork_of(back, 5).size(), 2u);
     EXPECT_EQ(find_paint(back, artwork_of(back, 5)[1].paint).diffuse, some_paint().diffuse);
 }

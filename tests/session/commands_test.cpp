@@ -115,7 +115,9 @@ TEST(SetPaint, TakesPaintsAsTheLibraryWritesThem) {
     const TemporaryFolder folder;
     const auto file = folder / "mein Lack.json";
     write_material_file(file, some_paint());
-    const Document painted = applied(car(), SetPaint{1, "body", file.string()});
+    const SetPaint command{1, "body", file.string()};
+    EXPECT_EQ(refusal(command), file.string() + " was not read yet");
+    const Document painted = testing::applied_with_files(car(), command);
     EXPECT_EQ(worn(painted, 1, "body"), file.string());
     EXPECT_EQ(find_paint(painted, worn(painted, 1, "body")).name, "solid red");
 }
@@ -297,11 +299,11 @@ TEST(Looks, FromAFileKeepWhatLiesBesideIt) {
     const auto file = folder.write(
         "look.json", R"({"format_version": 1, "name": "dusk", "parts": {"body": "own.json"}})");
     const AddLook command{read_look_file(file)};
-    const Document document = applied(car(), command);
+    const Document document = testing::applied_with_files(car(), command);
     EXPECT_EQ(worn(document, 5, "body"), (folder / "own.json").string());
     EXPECT_TRUE(document.looks.back().look.file.empty());
     const SessionCommand back = parse_session_command(text_of(command), "a test");
-    EXPECT_EQ(text_of(applied(car(), back)), text_of(document));
+    EXPECT_EQ(text_of(applied(document, back)), text_of(applied(document, command)));
 }
 
 TEST(Looks, MoveToTheirPlace) {

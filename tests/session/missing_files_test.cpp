@@ -79,9 +79,11 @@ TEST(PaintFile, ThatIsGoneLaterLeavesItsPartBlackAndIsTold) {
     write_material_file(folder / "ours.json", paint);
     const auto product = find_product("car");
     const auto body = static_cast<std::size_t>(part_index(*product, "body"));
-    const Document document = applied(car(), SetPaint{1, "body", (folder / "ours.json").string()});
+    Document document =
+        testing::applied_with_files(car(), SetPaint{1, "body", (folder / "ours.json").string()});
     EXPECT_EQ(scene_of(document, 1, product).part_materials[body].diffuse, paint.diffuse);
     std::filesystem::remove(folder / "ours.json");
+    document = in_library(document, read_paint_library(document.library));
     const Scene scene = scene_of(document, 1, product);
     EXPECT_EQ(scene.part_materials[body].diffuse, glm::dvec3(0.0));
     const auto told = drawing_problems(document);

@@ -292,7 +292,7 @@ TEST(SessionFile, PaintWhoseMeasuredFileIsGoneStaysAndComesBackWithIt) {
     Material paint;
     paint.name = "panel";
     paint.model = ReflectanceModel::measured;
-    paint.measured = load_measured_paint(panel);
+    paint.measured = read_measured_paint(panel);
     const auto file = folder / "a.livery";
     std::string text;
     {
@@ -304,6 +304,10 @@ TEST(SessionFile, PaintWhoseMeasuredFileIsGoneStaysAndComesBackWithIt) {
     std::filesystem::rename(panel, aside);
     {
         Session session = Session::open(file);
+        EXPECT_EQ(unread_files(session.document()), std::set{panel}) << "it was waited for";
+        EXPECT_TRUE(drawing_problems(session.document()).empty()) << "nobody knows yet";
+        session.use(with_paints_read(session.document()).library);
+        EXPECT_TRUE(unread_files(session.document()).empty());
         const auto problems = drawing_problems(session.document());
         ASSERT_EQ(problems.size(), 1u);
         EXPECT_TRUE(problems.front().starts_with("\"panel\" is black: ")) << problems.front();
@@ -317,9 +321,13 @@ TEST(SessionFile, PaintWhoseMeasuredFileIsGoneStaysAndComesBackWithIt) {
         EXPECT_TRUE(session.document().paints.empty());
         session.redo();
         EXPECT_EQ(text_of(session.document()), text);
+        EXPECT_EQ(drawing_problems(session.document()), problems) << "what is known stays";
+        std::filesystem::rename(aside, panel);
+        session.use(read_paint_library(session.document().library));
+        EXPECT_TRUE(drawing_problems(session.document()).empty());
     }
-    std::filesystem::rename(aside, panel);
-    const Session session = Session::open(file);
+    Session session = Session::open(file);
+    session.use(with_paints_read(session.document()).library);
     EXPECT_TRUE(drawing_problems(session.document()).empty());
     EXPECT_EQ(session.document().paints.front().measured->id, paint.measured->id);
 }

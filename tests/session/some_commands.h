@@ -14,6 +14,12 @@ inline const Document& car() {
     return document;
 }
 
+/// As a program applies it that first reads the files of paints that it names.
+inline Document applied_with_files(const Document& document, const SessionCommand& command) {
+    auto library = read_paint_library(document.library, unread_files(document, command));
+    return applied(in_library(document, std::move(library)), command);
+}
+
 inline Material some_paint() {
     Material paint;
     paint.name = "solid red";

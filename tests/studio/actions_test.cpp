@@ -12,6 +12,7 @@ namespace {
 
 Document three_looks() {
     Document document;
+    document.library = read_paint_library();
     for (int id = 1; id <= 3; ++id) {
         SessionLook look;
         look.id = id;

@@ -271,6 +271,7 @@ TEST_F(Keyboard, TabReachesEverythingInADialog) {
 /// A panel's studio, without threads, projector and window.
 Studio sphere_studio() {
     Document document;
+    document.library = read_paint_library();
     document.product = "sphere";
     SessionLook look;
     look.id = document.next_look_id++;

@@ -21,7 +21,7 @@ TEST(ColourIn, TakesWholeColoursAlone) {
 }
 
 TEST(FindPaints, TakesANameForAColourOnlyWhereNoPaintHasIt) {
-    const auto paints = read_paint_library().shipped;
+    const auto paints = read_paint_library()->shipped;
     const auto near = [&](const char* colour) {
         std::vector<std::size_t> places;
         for (const NearPaint& one : find_near_paints(paints, *colour_in(colour), "")) {
@@ -39,14 +39,15 @@ TEST(FindPaints, TakesANameForAColourOnlyWhereNoPaintHasIt) {
 }
 
 TEST(DrawnFace, IsTheFiveAngleOneOfAFormula) {
-    for (const Material& paint : read_paint_library().shipped) {
+    const auto library = read_paint_library();
+    for (const Material& paint : library->shipped) {
         const glm::dvec3 face = five_angle_lab(paint)[kFaceAngle];
         EXPECT_LT(ciede2000(drawn_face_lab(paint), face), 1e-6) << paint.name;
     }
 }
 
 TEST(FindPaints, AnswersAColourWithTheNearestOfTheFamily) {
-    const auto paints = read_paint_library().shipped;
+    const auto paints = read_paint_library()->shipped;
     const auto text = [](glm::dvec3 lab) {
         return "lab:" + std::to_string(lab.x) + "," + std::to_string(lab.y) + "," +
                std::to_string(lab.z);

@@ -29,6 +29,7 @@ constexpr float kColumn = 320.0f;
 
 Document two_looks() {
     Document document;
+    document.library = read_paint_library();
     document.product = "sphere";
     for (const char* paint : {"solid red", "blue metallic"}) {
         SessionLook look;

@@ -8,8 +8,9 @@
 
 #include <gtest/gtest.h>
 
+#include "appearance/measured/measured_paint.h"
 #include "appearance/merl_bytes.h"
-#include "session/document.h"
+#include "scene/library.h"
 #include "studio/kit/background.h"
 #include "support/temporary_folder.h"
 
@@ -56,46 +57,75 @@ std::string grey_tile() {
 
 TEST_F(UsersLibrary, AMeasuredPaintIsThereOnceItsFileWasReadBehind) {
     write_paint("my tile", grey_tile());
-    const PaintLibrary& library = current_library(studio_);
-    EXPECT_FALSE(library.shipped.empty());
-    EXPECT_TRUE(library.users.empty()) << "the window waited for the file";
-    EXPECT_TRUE(library.problems.empty());
-    EXPECT_EQ(library.unread.size(), 1u);
-    EXPECT_EQ(studio_.panels.library.being_read.size(), 1u);
+    refresh_library(studio_);
+    EXPECT_EQ(current_library(studio_).find("my tile"), nullptr) << "the window waited";
+    wait_for_background();
+    // In the first snapshot it is known, in the next it is read.
+    EXPECT_FALSE(current_library(studio_).shipped.empty());
+    EXPECT_TRUE(current_library(studio_).users.empty()) << "the window waited for the file";
+    EXPECT_TRUE(current_library(studio_).problems.empty());
+    EXPECT_EQ(current_library(studio_).unread.size(), 1u);
+    EXPECT_EQ(studio_.panels.library.reading.files.size(), 1u);
+    const std::uint64_t revision = studio_.session.revision();
 
     wait_for_background();
-    ASSERT_EQ(library.users.size(), 1u);
-    EXPECT_EQ(library.users[0].name, "my tile");
-    EXPECT_TRUE(library.unread.empty());
-    EXPECT_TRUE(studio_.panels.library.being_read.empty());
-    // Now in memory: whoever must not wait gets it.
-    const OnlyMeasuredInMemory no_waiting;
-    EXPECT_EQ(find_material("My-Tile").measured, library.users[0].measured);
+    ASSERT_EQ(current_library(studio_).users.size(), 1u);
+    EXPECT_EQ(current_library(studio_).users[0].name, "my tile");
+    EXPECT_TRUE(current_library(studio_).unread.empty());
+    EXPECT_TRUE(studio_.panels.library.reading.files.empty());
+    EXPECT_FALSE(studio_.background->is_busy());
+    EXPECT_GT(studio_.session.revision(), revision) << "nobody draws it";
+    const Material found = find_paint(studio_.session.document(), "My-Tile");
+    EXPECT_EQ(found.measured, current_library(studio_).users[0].measured);
 }
 
 TEST_F(UsersLibrary, AFileThatCannotBeReadIsAProblemAndIsReadOnce) {
     write_paint("cut off", grey_tile().substr(0, 1000));
-    const PaintLibrary& library = current_library(studio_);
-    EXPECT_TRUE(library.problems.empty());
+    refresh_library(studio_);
     wait_for_background();
-    EXPECT_TRUE(library.users.empty());
-    ASSERT_EQ(library.problems.size(), 1u);
-    EXPECT_NE(library.problems[0].find("cut off.binary"), std::string::npos) << library.problems[0];
-    EXPECT_TRUE(studio_.panels.library.being_read.empty());
+    EXPECT_TRUE(current_library(studio_).problems.empty());
+    wait_for_background();
+    EXPECT_TRUE(current_library(studio_).users.empty());
+    const auto problems = current_library(studio_).problems;
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_NE(problems[0].find("cut off.binary"), std::string::npos) << problems[0];
+    EXPECT_FALSE(studio_.panels.library.reading.asked);
     EXPECT_FALSE(studio_.background->is_busy());
 }
 
-TEST_F(UsersLibrary, WhatIsStillBeingReadIsSaidInsteadOfWaitedFor) {
+TEST_F(UsersLibrary, UndoToAPaintThatIsNotReadWaitsForNothing) {
     write_paint("my tile", grey_tile());
-    const OnlyMeasuredInMemory no_waiting;
-    try {
-        find_material("my tile");
-        FAIL() << "it was found";
-    } catch (const MeasuredFileUnread& unread) {
-        EXPECT_EQ(unread.file(), home_ / "materials/my tile.binary");
-        EXPECT_NE(std::string(unread.what()).find("still being read"), std::string::npos);
-    }
-    EXPECT_EQ(find_material("solid red").name, "solid red");
+    const auto file = home_ / "materials/my tile.binary";
+    Material paint = with_measured_read(read_paint_file(home_ / "materials/my tile.json"));
+    studio_.session.execute(EditPaint{1, "*", paint});
+    studio_.session.execute(PaintProduct{1, "solid red"});
+    const std::string worn = "my tile";
+    studio_.session.undo();
+    const Document& document = studio_.session.document();
+    EXPECT_FALSE(is_read(look_up(document, worn).material)) << "undo read the file";
+    const Scene scene = scene_of(document, 1, find_product("sphere"));
+    EXPECT_EQ(unread_files(scene), std::set{file});
+    bool called = false;
+    refresh_library(studio_, unread_files(scene), [&] { called = true; });
+    refresh_library(studio_, unread_files(scene));
+    wait_for_background();
+    EXPECT_TRUE(called);
+    EXPECT_FALSE(studio_.background->is_busy()) << "the file was asked for twice";
+    EXPECT_EQ(look_up(document, worn).material.measured->id, paint.measured->id);
+    EXPECT_TRUE(unread_files(scene_of(document, 1, find_product("sphere"))).empty());
+}
+
+TEST_F(UsersLibrary, APaintThatWasSavedMeanwhileStays) {
+    refresh_library(studio_);
+    Material paint;
+    paint.name = "saved";
+    save_to_library(paint);
+    studio_.session.use(read_paint_library(studio_.session.document().library));
+    write_paint("my tile", grey_tile());
+    do wait_for_background();
+    while (studio_.panels.library.reading.asked);
+    EXPECT_NE(current_library(studio_).find("saved"), nullptr);
+    EXPECT_TRUE(is_read(*current_library(studio_).find("my tile")));
 }
 
 }  // namespace

@@ -2,20 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
-#include <future>
-#include <map>
-#include <mutex>
 #include <numbers>
 #include <span>
-#include <tuple>
 #include <utility>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "core/colour.h"
-#include "core/error.h"
 #include "core/hash.h"
 #include "core/parallel.h"
 
@@ -118,17 +112,6 @@ float lobe_alpha(const MeasuredPaint& paint, const glm::vec3& diffuse) {
     return std::clamp(std::tan(kWidest * root * root), 1e-3f, 1.0f);
 }
 
-using PaintPointer = std::shared_ptr<const MeasuredPaint>;
-
-thread_local bool only_in_memory = false;
-
-struct KnownFile {
-    std::weak_ptr<const MeasuredPaint> paint;
-    std::shared_future<PaintPointer> reading;
-    std::exception_ptr failure;  ///< of the last time that it was read
-    bool is_forgotten() const { return paint.expired() && !reading.valid() && !failure; }
-};
-
 /// Everything that follows from the grid.
 MeasuredPaint paint_of(MeasuredGrid grid, const std::filesystem::path& file) {
     MeasuredPaint paint;
@@ -165,54 +148,9 @@ MeasuredPaint measured_paint(const MeasuredReflectance& measured, const Progress
     return paint_of(resampled(measured, {}, progress), measured.file);
 }
 
-OnlyMeasuredInMemory::OnlyMeasuredInMemory() : before_(std::exchange(only_in_memory, true)) {}
-OnlyMeasuredInMemory::~OnlyMeasuredInMemory() { only_in_memory = before_; }
-
-MeasuredFileUnread::MeasuredFileUnread(const std::filesystem::path& file)
-    : FileError(file, "", "it is still being read", "a moment of patience") {}
-
-std::shared_ptr<const MeasuredPaint> load_measured_paint(const std::filesystem::path& given) {
-    // A session's document is read anew for every step of its history: what its paints were read
-    // from must not be. Nothing is kept that no material has.
-    using Key = std::tuple<std::filesystem::path, std::filesystem::file_time_type, std::uintmax_t>;
-    static std::mutex mutex;
-    static std::map<Key, KnownFile> known;
-    std::error_code error;
-    const auto file = std::filesystem::absolute(given);
-    const auto time = std::filesystem::last_write_time(file, error);
-    const auto size = error ? 0 : std::filesystem::file_size(file, error);
-    if (error) return std::make_shared<MeasuredPaint>(measured_paint(read_measured_file(file)));
-    const Key key{file, time, size};
-    std::promise<PaintPointer> promise;
-    std::shared_future<PaintPointer> read_by_another;
-    {
-        const std::scoped_lock lock(mutex);
-        std::erase_if(known, [](const auto& entry) { return entry.second.is_forgotten(); });
-        KnownFile& entry = known[key];
-        if (auto paint = entry.paint.lock()) return paint;
-        if (only_in_memory && entry.failure) std::rethrow_exception(entry.failure);
-        if (only_in_memory) throw MeasuredFileUnread(file);
-        read_by_another = entry.reading;
-        if (!read_by_another.valid()) entry.reading = promise.get_future().share();
-    }
-    if (read_by_another.valid()) return read_by_another.get();
-    try {
-        auto paint =
-            std::make_shared<const MeasuredPaint>(measured_paint(read_measured_file(file)));
-        {
-            const std::scoped_lock lock(mutex);
-            known[key] = {paint, {}, {}};
-        }
-        promise.set_value(paint);
-        return paint;
-    } catch (...) {
-        {
-            const std::scoped_lock lock(mutex);
-            known[key] = {{}, {}, std::current_exception()};
-        }
-        promise.set_exception(std::current_exception());
-        throw;
-    }
+std::shared_ptr<const MeasuredPaint> read_measured_paint(const std::filesystem::path& file) {
+    return std::make_shared<const MeasuredPaint>(
+        measured_paint(read_measured_file(std::filesystem::absolute(file))));
 }
 
 std::shared_ptr<const MeasuredPaint> blank_measured_paint() {
@@ -225,7 +163,14 @@ std::shared_ptr<const MeasuredPaint> blank_measured_paint() {
     return blank;
 }
 
-std::shared_ptr<const MeasuredPaint> unread_measured_paint(const std::filesystem::path& file,
+std::shared_ptr<const MeasuredPaint> unread_measured_paint(const std::filesystem::path& file) {
+    auto paint = std::make_shared<MeasuredPaint>(*blank_measured_paint());
+    paint->file = std::filesystem::absolute(file);
+    paint->unread = true;
+    return paint;
+}
+
+std::shared_ptr<const MeasuredPaint> failed_measured_paint(const std::filesystem::path& file,
                                                            const std::string& problem) {
     auto paint = std::make_shared<MeasuredPaint>(*blank_measured_paint());
     paint->file = file;

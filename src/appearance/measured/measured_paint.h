@@ -31,40 +31,23 @@ struct MeasuredPaint {
     /// Under the cosines (k / 32)^2; see f32::BsdfEnvironment. The coat's is 0.
     std::array<f32::BsdfEnvironment, 33> environment{};
     float lobe_alpha = 1.0f;  ///< GGX slope parameter of a lobe about as wide
+    bool unread = false;      ///< the file is yet to be read: the paint is black until then
     std::string problem;      ///< why the file could not be read: the paint is black; empty: it was
 };
 
 /// Throws Cancelled.
 MeasuredPaint measured_paint(const MeasuredReflectance& measured, const Progress& progress = {});
 
-/// Reads the file, or gives what was read of it before, as long as a material has that and the file
-/// is as it was. Any thread; two that ask for one file read it once. Throws FileError.
-std::shared_ptr<const MeasuredPaint> load_measured_paint(const std::filesystem::path& file);
-
-/// Reading and resampling a file takes about a second. While one of these lives, its thread does
-/// not wait for that: load_measured_paint() gives what is in memory, throws again what went wrong
-/// when the file was last read, and throws MeasuredFileUnread for any other file.
-class OnlyMeasuredInMemory {
-  public:
-    OnlyMeasuredInMemory();
-    ~OnlyMeasuredInMemory();
-    OnlyMeasuredInMemory(const OnlyMeasuredInMemory&) = delete;
-    OnlyMeasuredInMemory& operator=(const OnlyMeasuredInMemory&) = delete;
-
-  private:
-    bool before_;
-};
-
-class MeasuredFileUnread : public FileError {
-  public:
-    explicit MeasuredFileUnread(const std::filesystem::path& file);
-};
+/// Reads and resamples the file, about a second's work. Throws FileError.
+std::shared_ptr<const MeasuredPaint> read_measured_paint(const std::filesystem::path& file);
 
 /// Black, to prepare with what will draw others.
 std::shared_ptr<const MeasuredPaint> blank_measured_paint();
 
+/// Stands for a file that nobody has read yet: black, and drawing waits for it.
+std::shared_ptr<const MeasuredPaint> unread_measured_paint(const std::filesystem::path& file);
 /// Stands for a file that cannot be read, in what names it: black, and says why.
-std::shared_ptr<const MeasuredPaint> unread_measured_paint(const std::filesystem::path& file,
+std::shared_ptr<const MeasuredPaint> failed_measured_paint(const std::filesystem::path& file,
                                                            const std::string& problem);
 
 /// As evaluate() of the grid, but never negative: a saturated colour's lacking channel is black.

@@ -444,13 +444,13 @@ void draw_grid(Studio& studio,
     }
 }
 
-void draw_nothing_found(LibraryPanelState& state) {
+void draw_nothing_found(LibraryPanelState& state, const PaintLibrary& library) {
     std::string text = "No paint";
     if (!state.family.empty()) text += fmt::format(" of family {}", state.family);
     if (!state.search.empty()) text += fmt::format(" answers \"{}\"", state.search);
     dim_text(text + ".");
     if (!state.search.empty()) {
-        const auto near = state.library.nearest(state.search, 1);
+        const auto near = library.nearest(state.search, 1);
         if (!near.empty()) {
             ImGui::AlignTextToFramePadding();
             ImGui::TextUnformatted("Nearest:");
@@ -473,15 +473,14 @@ void draw_nothing_found(LibraryPanelState& state) {
 
 void draw_library_panel(Studio& studio) {
     LibraryPanelState& state = studio.panels.library;
-    current_library(studio);
+    const PaintLibrary& library = current_library(studio);
     if (!state.problem.empty()) {
-        warning_text("The paint library cannot be read. " + state.problem);
-        return;
+        warning_text("The paint library cannot be read anew. " + state.problem);
     }
     const std::vector<Material>& own = studio.session.document().paints;
     std::vector<Section> sections{{"This session's own", &own, {}},
-                                  {"Saved by you", &state.library.users, {}},
-                                  {"Library", &state.library.shipped, {}}};
+                                  {"Saved by you", &library.users, {}},
+                                  {"Library", &library.shipped, {}}};
     draw_search(state);
     const auto searched = find_in(state, sections);
     const bool found_any = std::any_of(
@@ -494,8 +493,8 @@ void draw_library_panel(Studio& studio) {
         return;
     }
     draw_target(studio, target);
-    for (const std::string& problem : state.library.problems) warning_text("Left out: " + problem);
-    for (const auto& file : state.being_read) {
+    for (const std::string& problem : library.problems) warning_text("Left out: " + problem);
+    for (const auto& file : state.reading.files) {
         dim_text("Reading " + file.filename().string() + "…");
     }
 
@@ -507,7 +506,7 @@ void draw_library_panel(Studio& studio) {
     if (found_any) {
         draw_grid(studio, target, sections, searched.has_value());
     } else {
-        draw_nothing_found(state);
+        draw_nothing_found(state, library);
     }
     ImGui::EndChild();
 }

@@ -9,6 +9,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "appearance/measured/measured_paint.h"
 #include "appearance/model_table.h"
 #include "core/error.h"
 #include "session/naming.h"
@@ -62,18 +63,17 @@ void refresh(Studio& studio) {
     state.part_name = studio.product->mesh.parts[*chosen].name;
     const std::string paint = worn_paint(look->look, state.part_name);
     if (paint.empty()) return;
-    try {
-        const OnlyMeasuredInMemory no_waiting;
-        state.material = find_paint(document, paint);
-        state.becomes =
-            name_after_edit(document, EditPaint{state.look, state.part_name, *state.material});
-    } catch (const MeasuredFileUnread& unread) {
-        read_measured_behind(studio, unread.file());
-        state.read = false;
-        state.problem = unread.what();
-    } catch (const FileError& error) {
-        state.problem = error.what();
+    NamedPaint named = look_up(document, paint);
+    state.problem = named.problem;
+    if (!named.problem.empty()) return;
+    if (!is_read(named.material)) {
+        // What is drawn wears it as well and has it read (wiring.cpp).
+        state.problem = "Reading " + named.material.measured->file.filename().string() + ".";
+        return;
     }
+    state.material = std::move(named.material);
+    state.becomes =
+        name_after_edit(document, EditPaint{state.look, state.part_name, *state.material});
 }
 
 bool is_own(const Document& document, const std::string& name) {
@@ -251,7 +251,7 @@ void save_paint(Studio& studio) {
     }
     try {
         const auto file = save_to_library(paint);
-        studio.panels.library.read_at_s = -1.0;
+        studio.session.use(read_paint_library(studio.session.document().library));
         ImGui::CloseCurrentPopup();
         commit(studio, SetPaint{state.look, state.part_name, paint.name});
         notify(studio,

@@ -8,8 +8,6 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
-#include "appearance/measured/measured_paint.h"
-#include "appearance/measured/measured_reflectance.h"
 #include "appearance/paint_bsdf.h"
 #include "appearance/parameter_table.h"
 #include "core/colour.h"
@@ -150,15 +148,9 @@ void load_compared(Studio& studio, const std::filesystem::path& file) {
     PaintPortraitState& state = state_of(studio);
     studio.background->run(
         [&state, file](const Progress&) -> Background::Then {
-            Material material;
-            if (is_measured_file(file)) {
-                material.name = file.filename().string();
-                material.model = ReflectanceModel::measured;
-                material.measured = load_measured_paint(file);
-            } else {
-                material = read_material_file(file);
-            }
-            return [&state, material = std::move(material)] { state.compared = material; };
+            return [&state, material = with_measured_read(read_paint_file(file))] {
+                state.compared = material;
+            };
         },
         [&studio](const std::exception_ptr& failure) {
             notify(studio,

@@ -1,56 +1,92 @@
 #include "studio/paint/users_library.h"
 
-#include <system_error>
+#include <algorithm>
+#include <exception>
+#include <iterator>
+#include <utility>
 
 #include "appearance/measured/measured_paint.h"
-#include "core/error.h"
 #include "studio/kit/background.h"
 
 namespace livery {
 
 namespace {
 
-constexpr double kBetweenLooks_s = 2.0;
+/// Of the user's own paints.
+std::set<std::filesystem::path> unread_files(const PaintLibrary& library) {
+    std::set<std::filesystem::path> files;
+    for (const Material& paint : library.unread) files.insert(paint.measured->file);
+    return files;
+}
+
+void add(LibraryReading& reading, LibraryReading more) {
+    reading.asked = reading.asked || more.asked;
+    reading.files.merge(more.files);
+    std::move(more.then.begin(), more.then.end(), std::back_inserter(reading.then));
+}
+
+void start_reading(Studio& studio);
+
+/// The user's own measured paints follow, one snapshot after the one in which they were found.
+void finish_reading(Studio& studio) {
+    LibraryPanelState& state = studio.panels.library;
+    const LibraryReading done = std::exchange(state.reading, {});
+    for (const auto& then : done.then) then();
+    if (state.problem.empty()) {
+        auto files = unread_files(current_library(studio));
+        if (!files.empty()) add(state.next_reading, {true, std::move(files), {}});
+    }
+    if (state.next_reading.asked && !state.reading.asked) start_reading(studio);
+}
+
+void start_reading(Studio& studio) {
+    LibraryPanelState& state = studio.panels.library;
+    state.reading = std::exchange(state.next_reading, {});
+    const auto before = studio.session.document().library;
+    studio.background->run(
+        [&studio, before, files = state.reading.files](const Progress&) -> Background::Then {
+            return [&studio, before, library = read_paint_library(before, files)] {
+                LibraryPanelState& there = studio.panels.library;
+                there.problem.clear();
+                if (studio.session.document().library == before) {
+                    studio.session.use(library);
+                } else {
+                    // A paint was saved meanwhile: once more, from there.
+                    add(there.next_reading, std::exchange(there.reading, {}));
+                }
+                finish_reading(studio);
+            };
+        },
+        [&studio](const std::exception_ptr& why) {
+            try {
+                std::rethrow_exception(why);
+            } catch (const std::exception& error) {
+                studio.panels.library.problem = error.what();
+            }
+            finish_reading(studio);
+        });
+}
 
 }  // namespace
 
-const PaintLibrary& current_library(Studio& studio) {
-    LibraryPanelState& state = studio.panels.library;
-    const bool read_before = state.read_at_s >= 0.0;
-    if (read_before && studio.now_s - state.read_at_s < kBetweenLooks_s) return state.library;
-    state.read_at_s = studio.now_s;
-    std::error_code none;
-    try {
-        const auto changed_at = std::filesystem::last_write_time(user_materials_folder(), none);
-        if (read_before && changed_at == state.folder_changed_at) return state.library;
-        state.folder_changed_at = changed_at;
-        state.problem.clear();
-        const OnlyMeasuredInMemory no_waiting;
-        state.library = read_paint_library();
-        for (const auto& file : state.library.unread) read_measured_behind(studio, file);
-    } catch (const FileError& error) {
-        state.problem = error.what();
-    }
-    return state.library;
+const PaintLibrary& current_library(const Studio& studio) {
+    return library_of(studio.session.document());
 }
 
-void read_measured_behind(Studio& studio, const std::filesystem::path& file) {
-    if (!studio.panels.library.being_read.insert(file).second) return;
-    const auto done = [&studio, file] {
-        LibraryPanelState& state = studio.panels.library;
-        state.being_read.erase(file);
-        state.read_at_s = -1.0;
-        current_library(studio);
-    };
-    studio.background->run(
-        [&studio, file, done](const Progress&) -> Background::Then {
-            return [&studio, done, paint = load_measured_paint(file)] {
-                studio.panels.library.just_read.push_back(paint);
-                done();
-            };
-        },
-        // Whoever needs the file is told why it cannot be read when it is asked for again.
-        [done](std::exception_ptr) { done(); });
+void refresh_library(Studio& studio,
+                     const std::set<std::filesystem::path>& wanted,
+                     std::function<void()> then) {
+    LibraryPanelState& state = studio.panels.library;
+    const auto& files = state.reading.files;
+    const bool is_under_way =
+        !wanted.empty() && std::includes(files.begin(), files.end(), wanted.begin(), wanted.end());
+    // After a failure the next look is at the next change of focus, not in every frame.
+    const bool is_vain = !wanted.empty() && !state.problem.empty();
+    if ((is_under_way || is_vain) && !then) return;
+    LibraryReading asked{true, wanted, {}};
+    if (then) asked.then.push_back(std::move(then));
+    add(state.next_reading, std::move(asked));
+    if (!state.reading.asked) start_reading(studio);
 }
 
 }  // namespace livery

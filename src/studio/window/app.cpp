@@ -22,6 +22,7 @@
 #include "studio/kit/tab_order.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
+#include "studio/paint/users_library.h"
 #include "studio/projector_control.h"
 #include "studio/quality_costs.h"
 #include "studio/window/actions.h"
@@ -210,6 +211,7 @@ KeyboardOwner keyboard_owner(const Shell& shell) {
 bool handle_key(Shell& shell, const InputEvent& event) {
     if (event.kind == InputEvent::Kind::focus) {
         if (!event.down) shell.studio.showing_b = false;
+        if (event.down) refresh_library(shell.studio);
         return false;
     }
     if (event.code == GLFW_KEY_TAB && (event.modifiers & ~GLFW_MOD_SHIFT & kRealModifiers) == 0) {

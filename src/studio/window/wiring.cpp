@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "appearance/measured/measured_paint.h"
 #include "core/log.h"
 #include "live/calibration_reuse.h"
 #include "scene/library.h"
@@ -33,7 +32,6 @@ std::string text_of_trial(const Studio& studio) {
 Scene scene_for(Shell& shell, const Document& document, int look) {
     const auto& reference = find_look(document, look)->look.environment;
     auto& kept = shell.environments[{reference.file, reference.rotation_rad, reference.scale}];
-    const OnlyMeasuredInMemory no_waiting;
     Scene scene = scene_of(document, look, shell.studio.product, kept);
     kept = scene.environment;
     constexpr std::size_t most_kept = 16;
@@ -139,6 +137,14 @@ std::optional<int> look_to_wipe_to(const Studio& studio) {
     return studio.wiping && !studio.showing_b ? studio.compared_look : std::nullopt;
 }
 
+/// Of a frame's or a preview's scenes.
+template <typename Description>
+std::set<std::filesystem::path> unread_files(const Description& description) {
+    auto files = unread_files(description.scene);
+    if (description.wipe_to) files.merge(unread_files(*description.wipe_to));
+    return files;
+}
+
 void ask_for_frame(Shell& shell) {
     Studio& studio = shell.studio;
     if (!studio.setup || preview_goes_first(shell)) return;
@@ -156,15 +162,16 @@ void ask_for_frame(Shell& shell) {
     try {
         description.scene = scene_for(shell, document, key.look);
         if (key.wipe_to) description.wipe_to = scene_for(shell, document, *key.wipe_to);
-    } catch (const MeasuredFileUnread& unread) {
-        // Asked for again when it is read; the last picture stays until then.
-        read_measured_behind(studio, unread.file());
-        shell.not_drawn = "Reading " + unread.file().filename().string() + ".";
-        return;
     } catch (const std::exception& error) {
         shell.asked_frame = key;
         shell.not_drawn = error.what();
         notify(studio, {Notice::Level::error, "The look cannot be drawn.", error.what(), ""});
+        return;
+    }
+    if (const auto unread = unread_files(description); !unread.empty()) {
+        // Asked for again when they are read; the last picture stays until then.
+        refresh_library(studio, unread);
+        shell.not_drawn = "Reading " + unread.begin()->filename().string() + ".";
         return;
     }
     tell_drawing_problems(shell, document, key.look);
@@ -177,6 +184,7 @@ void ask_for_frame(Shell& shell) {
     description.glowing_part = key.glowing_part;
     description.quality = document.quality;
     description.setup = studio.setup;
+    description.library = document.library;
     description.asked_at = shell.input_at;
     shell.trace->write("frame-asked", description.number, key.tried);
     studio.frames->show(std::move(description));
@@ -227,6 +235,7 @@ void ask_for_preview(Shell& shell) {
     } catch (const std::exception&) {
         return;  // Told when the frame was asked for.
     }
+    if (!unread_files(description).empty()) return;
     shell.asked_preview = key;
     description.number = ++shell.preview_number;
     description.view = stage_view(shell, document.eye_mm);
@@ -362,6 +371,7 @@ Contexts start_threads(Shell& shell, const Window& window) {
         window, [results](const ShownPicture& picture) { results->shown(picture); });
     results->use(studio.projector.get());
     studio.bench->use(studio.session.document().bench, studio.product);
+    refresh_library(studio);
     find_first_calibration(shell);
     ask_for_setup(shell);
     return contexts;
@@ -406,7 +416,6 @@ void ask_for_changes(Shell& shell) {
     ask_for_frame(shell);
     ask_for_preview(shell);
     ask_for_photograph(shell);
-    shell.studio.panels.library.just_read.clear();
 }
 
 }  // namespace livery
