@@ -40,6 +40,7 @@ StudioProgram::StudioProgram(Desktop& desktop, const StudioStart& start) : deskt
                          fmt::format("{}", start.ui_scale)};
     options.arguments.insert(
         options.arguments.end(), start.more_arguments.begin(), start.more_arguments.end());
+    options.environment = start.environment;
     options.output = folder_ / "output";
     process_ = std::make_unique<ChildProcess>(options);
     const bool up = wait_until(

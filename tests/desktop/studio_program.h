@@ -30,7 +30,8 @@ struct StudioStart {
     std::filesystem::path session;
     glm::ivec2 size_px{1280, 800};
     double ui_scale = 1.0;
-    std::vector<std::string> more_arguments;
+    std::vector<std::string> more_arguments = {};
+    std::map<std::string, std::string> environment = {};  ///< on top of the test's own
 };
 
 /// Everything that waits throws std::runtime_error after its timeout, with what there was instead.
