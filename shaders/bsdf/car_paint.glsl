@@ -12,61 +12,79 @@
 // the same along and across. A thin film on the second lobe's turns flake_f0 into a colour that
 // depends on the half angle; the pigment then sees what the film lets through at least.
 
-// Of the second lobe's flakes where they are met under that half angle.
-FN VEC3 car_paint_flakes(BsdfParameters p, REAL hh) {
-    if (p.film_nm <= R(0.0)) return p.flake_f0;
-    return film_reflectance(p, hh);
-}
-
-// The most that they reflect.
-FN VEC3 car_paint_most(BsdfParameters p) {
-    if (p.film_nm <= R(0.0)) return p.flake_f0;
-    return film_most(p);
-}
+struct CarPaintPrepared {
+    GgxPrepared base;    // the first lobe; the pigment is its diffuse layer
+    REAL flake_alpha;    // of the second lobe
+    FilmPrepared flakes; // what its flakes reflect
+    CoatPrepared coat;
+};
 
 // What the flakes let through to the pigment of a light that each lobe loses that much of: 1 - E
 // without cancellation. Where they lose it, it is the pigment's too.
-FN VEC3 car_paint_passed(BsdfParameters p, VEC3 most, REAL loss, REAL flake_loss) {
+FN VEC3 car_paint_passed(CarPaintPrepared q, REAL loss, REAL flake_loss) {
     VEC3 one = VEC3(R(1.0));
-    return (one - p.f0) * (one - most * (R(1.0) - flake_loss)) + p.f0 * loss;
+    return (one - q.base.f0) * (one - q.flakes.most * (R(1.0) - flake_loss)) + q.base.f0 * loss;
 }
 
-FN VEC3 car_paint_transmission(BsdfParameters p, VEC3 most, REAL mu) {
+FN CarPaintPrepared car_paint_prepare(BsdfParameters p) {
+    BsdfParameters not_stretched = p;
+    not_stretched.alpha_y = p.alpha_x;
+    CarPaintPrepared q;
+    q.base = ggx_interface(not_stretched);
+    q.flake_alpha = p.flake_alpha;
+    q.flakes = film_prepare(p);
+    q.coat = coat_prepare(p);
+    VEC3 passed =
+        car_paint_passed(q, ggx_average_loss(p.alpha_x), ggx_average_loss(p.flake_alpha));
+    q.base = coated_base(q.base, q.coat, p.diffuse, max(passed, VEC3(R(0.001))));
+    return q;
+}
+
+FN int lobe_count(CarPaintPrepared q) {
+    return 3;
+}
+
+FN VEC2 slopes_of(CarPaintPrepared q, int lobe) {
+    REAL alpha = lobe == COAT_LOBE    ? q.coat.alpha
+                 : lobe == FLAKE_LOBE ? q.flake_alpha
+                                      : q.base.alpha_x;
+    return VEC2(alpha, alpha);
+}
+
+FN Passage passage_of(CarPaintPrepared q, REAL mu) {
     REAL loss;
     REAL flake_loss;
     REAL cosine;
-    ggx_albedo_fit(mu, p.alpha_x, loss, cosine);
-    ggx_albedo_fit(mu, p.flake_alpha, flake_loss, cosine);
-    return car_paint_passed(p, most, loss, flake_loss);
+    ggx_albedo_fit(mu, q.base.alpha_x, loss, cosine);
+    ggx_albedo_fit(mu, q.flake_alpha, flake_loss, cosine);
+    return coated_passage(q.coat, car_paint_passed(q, loss, flake_loss), mu);
 }
 
-// The pigment's share of the light that passes coat and flakes.
-FN VEC3 car_paint_share(BsdfParameters p) {
-    VEC3 passed = car_paint_passed(
-        p, car_paint_most(p), ggx_average_loss(p.alpha_x), ggx_average_loss(p.flake_alpha));
-    return min(max(passed, VEC3(R(0.001))), VEC3(coat_average_transmission(p)));
+FN VEC3 reflected(CarPaintPrepared q, Passage from, Passage to, REAL hh, VEC3 lobes) {
+    VEC3 flakes = (VEC3(R(1.0)) - q.base.f0) * film_reflectance(q.flakes, hh);
+    VEC3 pigment = q.base.diffuse * from.base * to.base * R(0.3183098861837907);
+    VEC3 under = q.base.f0 * lobes.x + flakes * lobes.z + pigment;
+    return reflected_through(q.coat, from, to, under, hh, lobes.y);
 }
 
-// The pigment's albedo with the coat's inner reflections, over that share.
-FN VEC3 car_paint_pigment(BsdfParameters p, REAL inverse_index_squared) {
-    return coated_diffuse_over(p, inverse_index_squared, car_paint_share(p));
-}
-
-FN VEC3 car_paint_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
+FN VEC3 evaluate(CarPaintPrepared q, VEC3 wi, VEC3 wo) {
     if (wi.z <= R(0.0) || wo.z <= R(0.0)) return VEC3(R(0.0));
     VEC3 h = wi + wo;
     REAL hh = dot(h, h);
     if (hh < R(1e-8)) return VEC3(R(0.0));
-    REAL coat = coat_lobe(p, wi, wo, hh);
-    REAL eta = coat_inverse_index_squared(p);
-    VEC3 passed = coat_passed(p, wi.z, wo.z, eta);
-    VEC3 flakes = p.f0 * ggx_distribution_visibility(wi, wo, hh, p.alpha_x, p.alpha_x) +
-                  (VEC3(R(1.0)) - p.f0) * car_paint_flakes(p, hh) *
-                      ggx_distribution_visibility(wi, wo, hh, p.flake_alpha, p.flake_alpha);
-    VEC3 most = car_paint_most(p);
-    VEC3 pigment = car_paint_pigment(p, eta) * car_paint_transmission(p, most, wi.z) *
-                   car_paint_transmission(p, most, wo.z) * R(0.3183098861837907);
-    return VEC3(coat) + passed * (flakes + pigment);
+    VEC3 lobes =
+        VEC3(ggx_distribution_visibility(wi, wo, hh, q.base.alpha_x, q.base.alpha_x),
+             ggx_distribution_visibility(wi, wo, hh, q.coat.alpha, q.coat.alpha),
+             ggx_distribution_visibility(wi, wo, hh, q.flake_alpha, q.flake_alpha));
+    return reflected(q, passage_of(q, wi.z), passage_of(q, wo.z), hh, lobes);
+}
+
+FN VEC3 car_paint_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
+    return evaluate(car_paint_prepare(p), wi, wo);
+}
+
+FN VEC3 sky_weight(CarPaintPrepared q, Passage to) {
+    return coated_sky_weight(q.base, q.coat, to);
 }
 
 // |wi + wo|^2 of the light that a lobe mostly sends to mu: it enters from higher than the mirror
@@ -78,45 +96,53 @@ FN REAL car_paint_mirror_hh(REAL mu, REAL alpha) {
     return R(2.0) * (R(1.0) + mu * mu_in - sines);
 }
 
-// Of light from all around through one lobe of flakes of reflectance 1, the coat passed both ways.
-FN VEC3 car_paint_lobe(BsdfParameters p, REAL mu, REAL alpha, REAL eta) {
+// What a lobe of flakes of reflectance 1 mirrors, the coat passed both ways.
+FN VEC3 car_paint_lobe(CoatPrepared c, Passage to, REAL mu, MirrorGrazing grazing, REAL alpha) {
     REAL loss;
     REAL cosine;
     ggx_albedo_fit(mu, alpha, loss, cosine);
-    REAL passed = coat_transmission(p, mu) * coat_transmission(p, coat_entry_cosine(mu, alpha));
-    return coat_absorption(p, coat_path(mu, eta) + coat_entry_path(mu, alpha, eta)) *
-           ((R(1.0) - loss) * passed);
+    return coated_entry(c, to, mu, grazing, alpha) * (R(1.0) - loss);
 }
 
-// Where the flakes reflect that much.
-FN BsdfEnvironment car_paint_parts(BsdfParameters p, VEC3 flakes, REAL mu) {
-    REAL eta = coat_inverse_index_squared(p);
-    BsdfEnvironment e;
-    e.coat = VEC3(coat_albedo(p, mu, R(1.0)));
-    e.specular = p.f0 * car_paint_lobe(p, mu, p.alpha_x, eta) +
-                 (VEC3(R(1.0)) - p.f0) * flakes * car_paint_lobe(p, mu, p.flake_alpha, eta);
-    // The pigment is lit from everywhere: absorbed along the path of the mean cosine, 2/3.
-    REAL path = coat_path(mu, eta) + coat_path(R(0.6666666666666667), eta);
-    e.diffuse = car_paint_pigment(p, eta) * car_paint_share(p) *
-                car_paint_transmission(p, car_paint_most(p), mu) * coat_absorption(p, path) *
-                coat_transmission(p, mu);
-    return e;
+// Of the second lobe, whose flakes reflect that much.
+FN VEC3 car_paint_flakes(
+    CarPaintPrepared q, Passage to, REAL mu, MirrorGrazing grazing, VEC3 reflectance) {
+    return (VEC3(R(1.0)) - q.base.f0) * reflectance *
+           car_paint_lobe(q.coat, to, mu, grazing, q.flake_alpha);
+}
+
+FN VEC3 mirror_weight(CarPaintPrepared q, Passage to, REAL mu, MirrorGrazing grazing, int lobe) {
+    if (lobe == COAT_LOBE) return coat_weight(q.coat, mu, grazing);
+    if (lobe == FLAKE_LOBE) {
+        REAL hh = car_paint_mirror_hh(mu, q.flake_alpha);
+        return car_paint_flakes(q, to, mu, grazing, film_reflectance(q.flakes, hh));
+    }
+    return q.base.f0 * car_paint_lobe(q.coat, to, mu, grazing, q.base.alpha_x);
 }
 
 FN BsdfEnvironment car_paint_environment(BsdfParameters p, REAL mu) {
-    VEC3 flakes = car_paint_flakes(p, car_paint_mirror_hh(mu, p.flake_alpha));
-    return car_paint_parts(p, flakes, mu);
+    CarPaintPrepared q = car_paint_prepare(p);
+    Passage to = passage_of(q, mu);
+    BsdfEnvironment e;
+    e.coat = mirror_weight(q, to, mu, even_light(), COAT_LOBE);
+    e.specular = mirror_weight(q, to, mu, even_light(), BASE_LOBE) +
+                 mirror_weight(q, to, mu, even_light(), FLAKE_LOBE);
+    e.diffuse = sky_weight(q, to);
+    return e;
 }
 
 // Chances of the coat, the first lobe and the second when a direction is sampled, and the pigment's:
 // one minus the others would lose its digits. A film may reflect nothing under one angle and much
 // under another: its most counts.
 FN VEC3 car_paint_chances(BsdfParameters p, REAL mu, OUT(REAL) pigment) {
-    VEC3 most = car_paint_most(p);
-    BsdfEnvironment e = car_paint_parts(p, most, mu);
-    REAL coat = mean_component(e.coat);
-    REAL flakes = mean_component(e.specular);
-    REAL diffuse = mean_component(e.diffuse);
+    CarPaintPrepared q = car_paint_prepare(p);
+    Passage to = passage_of(q, mu);
+    MirrorGrazing even = even_light();
+    VEC3 most = q.flakes.most;
+    REAL coat = mean_component(mirror_weight(q, to, mu, even, COAT_LOBE));
+    REAL flakes = mean_component(mirror_weight(q, to, mu, even, BASE_LOBE) +
+                                 car_paint_flakes(q, to, mu, even, most));
+    REAL diffuse = mean_component(sky_weight(q, to));
     REAL sum = coat + flakes + diffuse;
     pigment = sum > R(0.0) ? diffuse / sum : R(1.0);
     if (sum <= R(0.0)) return VEC3(R(0.0));

@@ -10,59 +10,62 @@
 // The base's mirror-like part is seen after one bounce; what the coat returns to it again is lost
 // (at most coat_f0 of it).
 
-// Of light of which so many times as much grazes as of even light.
-FN REAL coat_albedo(BsdfParameters p, REAL mu, REAL grazing_ratio) {
-    REAL white;
-    REAL grazing;
-    ggx_albedo(mu, p.coat_alpha, p.coat_f0, white, grazing);
-    grazing = min(grazing * grazing_ratio, white);
-    REAL f90 = grazing_reflectance(p.coat_f0);
-    return p.coat_f0 * (white - grazing) + f90 * grazing;
+struct CoatPrepared {
+    REAL alpha;
+    REAL f0;
+    REAL f90;                    // reflectance at grazing incidence
+    REAL inverse_index_squared;  // 1 / n^2
+    VEC3 log_transmittance;      // base 2, once through at normal incidence
+};
+
+struct ClearcoatPrepared {
+    GgxPrepared base;  // its diffuse layer with the coat's inner reflections, and absorbed
+    CoatPrepared coat;
+};
+
+FN CoatPrepared coat_prepare(BsdfParameters p) {
+    REAL r = sqrt(p.coat_f0);
+    REAL inverse_index = (R(1.0) - r) / (R(1.0) + r);
+    CoatPrepared c;
+    c.alpha = p.coat_alpha;
+    c.f0 = p.coat_f0;
+    c.f90 = grazing_reflectance(p.coat_f0);
+    c.inverse_index_squared = inverse_index * inverse_index;
+    c.log_transmittance = log2(max(p.coat_transmittance, VEC3(R(1e-6))));
+    return c;
 }
 
-FN REAL coat_transmission(BsdfParameters p, REAL mu) {
+// Of light of which so many times as much grazes as of even light.
+FN REAL coat_albedo(CoatPrepared c, REAL mu, REAL grazing_ratio) {
+    REAL white;
+    REAL grazing;
+    ggx_albedo(mu, c.alpha, c.f0, white, grazing);
+    grazing = min(grazing * grazing_ratio, white);
+    return c.f0 * (white - grazing) + c.f90 * grazing;
+}
+
+FN REAL coat_transmission(CoatPrepared c, REAL mu) {
     REAL loss;
     REAL rest;
-    ggx_transmission_fit(mu, p.coat_alpha, p.coat_f0, loss, rest);
-    REAL f90 = grazing_reflectance(p.coat_f0);
-    return (R(1.0) - f90) + f90 * loss + (f90 - p.coat_f0) * rest;
+    ggx_transmission_fit(mu, c.alpha, c.f0, loss, rest);
+    return (R(1.0) - c.f90) + c.f90 * loss + (c.f90 - c.f0) * rest;
 }
 
-FN REAL coat_average_transmission(BsdfParameters p) {
+FN REAL coat_average_transmission(CoatPrepared c) {
     REAL white;
     REAL grazing;
-    ggx_average_albedo(p.coat_alpha, p.coat_f0, white, grazing);
-    REAL f90 = grazing_reflectance(p.coat_f0);
-    return R(1.0) - p.coat_f0 * (white - grazing) - f90 * grazing;
-}
-
-// 1 / n^2 of the coat.
-FN REAL coat_inverse_index_squared(BsdfParameters p) {
-    REAL r = sqrt(p.coat_f0);
-    REAL n = (R(1.0) - r) / (R(1.0) + r);
-    return n * n;
+    ggx_average_albedo(c.alpha, c.f0, white, grazing);
+    return R(1.0) - c.f0 * (white - grazing) - c.f90 * grazing;
 }
 
 // Length of the refracted path through a coat of thickness 1.
-FN REAL coat_path(REAL mu, REAL inverse_index_squared) {
-    REAL cos2 = R(1.0) - (R(1.0) - mu * mu) * inverse_index_squared;
+FN REAL coat_path(CoatPrepared c, REAL mu) {
+    REAL cos2 = R(1.0) - (R(1.0) - mu * mu) * c.inverse_index_squared;
     return R(1.0) / sqrt(max(cos2, R(1e-4)));
 }
 
-FN VEC3 coat_absorption(BsdfParameters p, REAL path) {
-    return pow(max(p.coat_transmittance, VEC3(R(1e-6))), VEC3(path));
-}
-
-// The diffuse layer's albedo with the coat's inner reflections, over the share of light that passes
-// the interfaces.
-FN VEC3 coated_diffuse_over(BsdfParameters p, REAL inverse_index_squared, VEC3 share) {
-    REAL inside = R(1.0) - coat_average_transmission(p) * inverse_index_squared;
-    return p.diffuse * (R(1.0) - inside) / ((VEC3(R(1.0)) - p.diffuse * inside) * share);
-}
-
-FN VEC3 coated_diffuse(BsdfParameters p, REAL inverse_index_squared) {
-    VEC3 share = min(VEC3(R(1.0)) - ggx_interface_average(p), VEC3(coat_average_transmission(p)));
-    return coated_diffuse_over(p, inverse_index_squared, share);
+FN VEC3 coat_absorption(CoatPrepared c, REAL path) {
+    return exp2(c.log_transmittance * path);
 }
 
 // Light from all around that a GGX lobe under the coat sends to mu enters under many cosines. One
@@ -81,63 +84,130 @@ FN REAL coat_entry_cosine(REAL mu, REAL alpha) {
 }
 
 // What the coat transmits of it where so many times as much grazes as of even light.
-FN REAL coat_entry_transmission(BsdfParameters p, REAL mu, REAL alpha, REAL grazing_ratio) {
-    REAL even = coat_transmission(p, coat_entry_cosine(mu, alpha));
-    REAL grazing = R(1.0) - p.coat_f0 - even;
+FN REAL coat_entry_transmission(CoatPrepared c, REAL mu, REAL alpha, REAL grazing_ratio) {
+    REAL even = coat_transmission(c, coat_entry_cosine(mu, alpha));
+    REAL grazing = R(1.0) - c.f0 - even;
     return clamp(even + grazing * (R(1.0) - grazing_ratio), R(0.0), R(1.0));
 }
 
-FN REAL coat_entry_path(REAL mu, REAL alpha, REAL inverse_index_squared) {
+FN REAL coat_entry_path(CoatPrepared c, REAL mu, REAL alpha) {
     REAL y = alpha / (alpha + R(0.3));
     REAL c0 = y * (R(0.1524) + y * (R(2.3192) + y * R(-2.5349)));
     REAL c1 = y * (R(-1.2958) + y * (R(2.3516) + y * R(-0.4029)));
     REAL c2 = y * (R(1.2878) + y * (R(-7.4003) + y * R(4.9449)));
     REAL squared = mu * mu + c0 + mu * (c1 + mu * c2);
-    return coat_path(sqrt(clamp(squared, R(0.0), R(1.0))), inverse_index_squared);
+    return coat_path(c, sqrt(clamp(squared, R(0.0), R(1.0))));
 }
 
-// The coat's own lobe. hh = |wi + wo|^2.
-FN REAL coat_lobe(BsdfParameters p, VEC3 wi, VEC3 wo, REAL hh) {
-    REAL weight = fresnel_weight(p.coat_f0, hh);
-    REAL fresnel = p.coat_f0 * (R(1.0) - weight) + grazing_reflectance(p.coat_f0) * weight;
-    return fresnel * ggx_distribution_visibility(wi, wo, hh, p.coat_alpha, p.coat_alpha);
+// The base with its diffuse layer of that albedo seen through the coat, where so much of the light
+// inside of the coat passes the base on the mean.
+FN GgxPrepared coated_base(GgxPrepared base, CoatPrepared c, VEC3 diffuse, VEC3 passed) {
+    REAL average = coat_average_transmission(c);
+    VEC3 share = min(passed, VEC3(average));
+    REAL inside = R(1.0) - average * c.inverse_index_squared;
+    GgxPrepared q = base;
+    q.diffuse = diffuse * (R(1.0) - inside) / ((VEC3(R(1.0)) - diffuse * inside) * share);
+    // Lit from everywhere it is absorbed along the path of the mean cosine, 2/3.
+    q.sky_diffuse =
+        q.diffuse * share * coat_absorption(c, coat_path(c, R(0.6666666666666667)));
+    return q;
 }
 
-// What passes the coat both ways.
-FN VEC3 coat_passed(BsdfParameters p, REAL mu_i, REAL mu_o, REAL inverse_index_squared) {
-    REAL path = coat_path(mu_i, inverse_index_squared) + coat_path(mu_o, inverse_index_squared);
-    return coat_absorption(p, path) * (coat_transmission(p, mu_i) * coat_transmission(p, mu_o));
+FN ClearcoatPrepared clearcoat_prepare(BsdfParameters p) {
+    GgxPrepared base = ggx_interface(p);
+    ClearcoatPrepared q;
+    q.coat = coat_prepare(p);
+    q.base = coated_base(base, q.coat, p.diffuse, VEC3(R(1.0)) - ggx_interface_average(base));
+    return q;
 }
 
-FN VEC3 clearcoat_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
+FN int lobe_count(ClearcoatPrepared q) {
+    return 2;
+}
+
+FN VEC2 slopes_of(ClearcoatPrepared q, int lobe) {
+    if (lobe == COAT_LOBE) return VEC2(q.coat.alpha, q.coat.alpha);
+    return slopes_of(q.base, lobe);
+}
+
+FN Passage coated_passage(CoatPrepared c, VEC3 base, REAL mu) {
+    Passage to;
+    to.base = base;
+    to.coat = coat_transmission(c, mu);
+    to.path = coat_path(c, mu);
+    return to;
+}
+
+FN Passage passage_of(ClearcoatPrepared q, REAL mu) {
+    return coated_passage(q.coat, ggx_interface_transmission(q.base, mu), mu);
+}
+
+// hh = |wi + wo|^2
+FN REAL coat_fresnel(CoatPrepared c, REAL hh) {
+    return mix(c.f0, c.f90, fresnel_weight(c.f0, hh));
+}
+
+// A coat over what returns `under` of the light that passes it.
+FN VEC3 reflected_through(
+    CoatPrepared c, Passage from, Passage to, VEC3 under, REAL hh, REAL coat_lobe) {
+    VEC3 passed = coat_absorption(c, from.path + to.path) * (from.coat * to.coat);
+    return VEC3(coat_fresnel(c, hh) * coat_lobe) + passed * under;
+}
+
+FN VEC3 reflected(ClearcoatPrepared q, Passage from, Passage to, REAL hh, VEC3 lobes) {
+    VEC3 under = reflected(q.base, from, to, hh, lobes);
+    return reflected_through(q.coat, from, to, under, hh, lobes.y);
+}
+
+FN VEC3 evaluate(ClearcoatPrepared q, VEC3 wi, VEC3 wo) {
     if (wi.z <= R(0.0) || wo.z <= R(0.0)) return VEC3(R(0.0));
     VEC3 h = wi + wo;
     REAL hh = dot(h, h);
     if (hh < R(1e-8)) return VEC3(R(0.0));
-    REAL coat = coat_lobe(p, wi, wo, hh);
-    REAL eta = coat_inverse_index_squared(p);
-    VEC3 passed = coat_passed(p, wi.z, wo.z, eta);
-    VEC3 diffuse = coated_diffuse(p, eta) * ggx_interface_transmission(p, wi.z) *
-                   ggx_interface_transmission(p, wo.z) * R(0.3183098861837907);
-    return VEC3(coat) + passed * (ggx_specular(p, wi, wo, hh) + diffuse);
+    VEC3 lobes =
+        VEC3(ggx_distribution_visibility(wi, wo, hh, q.base.alpha_x, q.base.alpha_y),
+             ggx_distribution_visibility(wi, wo, hh, q.coat.alpha, q.coat.alpha),
+             R(0.0));
+    return reflected(q, passage_of(q, wi.z), passage_of(q, wo.z), hh, lobes);
+}
+
+FN VEC3 clearcoat_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
+    return evaluate(clearcoat_prepare(p), wi, wo);
+}
+
+FN VEC3 coated_sky_weight(GgxPrepared base, CoatPrepared c, Passage to) {
+    return base.sky_diffuse * to.base * coat_absorption(c, to.path) * to.coat;
+}
+
+FN VEC3 sky_weight(ClearcoatPrepared q, Passage to) {
+    return coated_sky_weight(q.base, q.coat, to);
+}
+
+// Of the coat's own lobe.
+FN VEC3 coat_weight(CoatPrepared c, REAL mu, MirrorGrazing grazing) {
+    return VEC3(coat_albedo(c, mu, grazing_fresnel(grazing, c.alpha)));
+}
+
+// Through the coat both ways, of what a lobe under it mirrors.
+FN VEC3 coated_entry(CoatPrepared c, Passage to, REAL mu, MirrorGrazing grazing, REAL alpha) {
+    REAL entered = coat_entry_transmission(c, mu, alpha, grazing_entry(grazing, alpha));
+    return coat_absorption(c, to.path + coat_entry_path(c, mu, alpha)) * (to.coat * entered);
+}
+
+FN VEC3 mirror_weight(
+    ClearcoatPrepared q, Passage to, REAL mu, MirrorGrazing grazing, int lobe) {
+    if (lobe == COAT_LOBE) return coat_weight(q.coat, mu, grazing);
+    return mirror_weight(q.base, to, mu, grazing, lobe) *
+           coated_entry(q.coat, to, mu, grazing, q.base.mirror_alpha);
 }
 
 FN BsdfEnvironment clearcoat_environment(BsdfParameters p, REAL mu) {
-    REAL eta = coat_inverse_index_squared(p);
-    REAL path = coat_path(mu, eta);
-    REAL passed = coat_transmission(p, mu);
-    REAL alpha = sqrt(p.alpha_x * p.alpha_y);
+    ClearcoatPrepared q = clearcoat_prepare(p);
+    Passage to = passage_of(q, mu);
     BsdfEnvironment e;
-    e.coat = VEC3(coat_albedo(p, mu, R(1.0)));
-    e.specular = ggx_environment_albedo(p, mu, R(1.0)) *
-                 coat_absorption(p, path + coat_entry_path(mu, alpha, eta)) *
-                 (passed * coat_transmission(p, coat_entry_cosine(mu, alpha)));
-    // The diffuse layer is lit from everywhere: absorbed along the path of the mean cosine, 2/3.
-    VEC3 one = VEC3(R(1.0));
-    VEC3 share =
-        min(one - ggx_interface_average(p), VEC3(coat_average_transmission(p)));
-    e.diffuse = coated_diffuse(p, eta) * share * ggx_interface_transmission(p, mu) *
-                coat_absorption(p, path + coat_path(R(0.6666666666666667), eta)) * passed;
+    e.coat = mirror_weight(q, to, mu, even_light(), COAT_LOBE);
+    e.specular = mirror_weight(q, to, mu, even_light(), BASE_LOBE);
+    e.diffuse = sky_weight(q, to);
     return e;
 }
 

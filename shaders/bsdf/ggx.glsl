@@ -1,4 +1,5 @@
-// GGX interface over a diffuse layer. Local coordinates: z the normal, x the tangent.
+// GGX interface over a diffuse layer. Needs microfacet.glsl, layers.glsl. Local coordinates: z the
+// normal, x the tangent.
 //
 //   f = D F V + diffuse / pi (1 - E(mu_i)) (1 - E(mu_o)) / (1 - E_avg)
 //
@@ -7,61 +8,122 @@
 // itself scatters once: at f0 = 1 it loses 1 - E_white, 2% at normal incidence for alpha 0.13, 13%
 // for 0.31, 69% for 1.
 
-// The isotropic slope parameter whose interface reflects at least as much as a stretched one in any
-// azimuth.
-FN REAL ggx_layer_alpha(BsdfParameters p) {
+struct GgxPrepared {
+    VEC3 f0;
+    REAL f0_max;        // the largest channel: all go to grazing incidence as it does
+    REAL f90;           // reflectance there
+    REAL alpha_x;
+    REAL alpha_y;
+    REAL layer_alpha;   // of an interface that reflects at least as much in any azimuth
+    REAL mirror_alpha;  // of a lobe that is as wide along as across
+    VEC3 diffuse;       // of the layer, over the share of light that passes the interface
+    VEC3 sky_diffuse;   // of the layer, for what passes of light from everywhere
+};
+
+FN int lobe_count(GgxPrepared q) {
+    return 1;
+}
+
+FN VEC2 slopes_of(GgxPrepared q, int lobe) {
+    return VEC2(q.alpha_x, q.alpha_y);
+}
+
+// Over a layer that sees all light.
+FN GgxPrepared ggx_interface(BsdfParameters p) {
     REAL low = min(p.alpha_x, p.alpha_y);
-    return low * sqrt(low / max(p.alpha_x, p.alpha_y));
+    GgxPrepared q;
+    q.f0 = p.f0;
+    q.f0_max = max_component(p.f0);
+    q.f90 = grazing_reflectance(q.f0_max);
+    q.alpha_x = p.alpha_x;
+    q.alpha_y = p.alpha_y;
+    q.layer_alpha = low * sqrt(low / max(p.alpha_x, p.alpha_y));
+    q.mirror_alpha = sqrt(p.alpha_x * p.alpha_y);
+    q.diffuse = p.diffuse;
+    q.sky_diffuse = p.diffuse;
+    return q;
 }
 
 // What the interface lets through to the layer, at most; 1 - E.
-FN VEC3 ggx_interface_transmission(BsdfParameters p, REAL mu) {
+FN VEC3 ggx_interface_transmission(GgxPrepared q, REAL mu) {
     REAL loss;
     REAL rest;
-    REAL f0_max = max_component(p.f0);
-    ggx_transmission_fit(mu, ggx_layer_alpha(p), f0_max, loss, rest);
-    REAL f90 = grazing_reflectance(f0_max);
-    return VEC3(R(1.0) - f90 + f90 * loss) + (VEC3(f90) - p.f0) * rest;
+    ggx_transmission_fit(mu, q.layer_alpha, q.f0_max, loss, rest);
+    return VEC3(R(1.0) - q.f90 + q.f90 * loss) + (VEC3(q.f90) - q.f0) * rest;
 }
 
-FN VEC3 ggx_interface_albedo(BsdfParameters p, REAL mu) {
-    return VEC3(R(1.0)) - ggx_interface_transmission(p, mu);
-}
-
-FN VEC3 ggx_interface_average(BsdfParameters p) {
+FN VEC3 ggx_interface_average(GgxPrepared q) {
     REAL white;
     REAL grazing;
-    REAL f0_max = max_component(p.f0);
-    ggx_average_albedo(ggx_layer_alpha(p), f0_max, white, grazing);
-    REAL f90 = grazing_reflectance(f0_max);
+    ggx_average_albedo(q.layer_alpha, q.f0_max, white, grazing);
     // The layer under a stretched lobe would return up to 1.4e-4 too much.
-    REAL stretch = min(p.alpha_x, p.alpha_y) / max(p.alpha_x, p.alpha_y);
+    REAL stretch = min(q.alpha_x, q.alpha_y) / max(q.alpha_x, q.alpha_y);
     REAL in_hand = R(1.0) - R(0.006) * (R(1.0) - stretch);
-    return min(p.f0 * (white - grazing) + VEC3(f90 * grazing), VEC3(R(0.999))) * in_hand;
+    return min(q.f0 * (white - grazing) + VEC3(q.f90 * grazing), VEC3(R(0.999))) * in_hand;
 }
 
-FN VEC3 ggx_specular(BsdfParameters p, VEC3 wi, VEC3 wo, REAL hh) {
-    REAL f0_max = max_component(p.f0);
-    REAL f90 = grazing_reflectance(f0_max);
-    REAL weight = fresnel_weight(f0_max, hh);
-    VEC3 fresnel = p.f0 * (R(1.0) - weight) + VEC3(f90 * weight);
-    return fresnel * ggx_distribution_visibility(wi, wo, hh, p.alpha_x, p.alpha_y);
+FN GgxPrepared ggx_prepare(BsdfParameters p) {
+    GgxPrepared q = ggx_interface(p);
+    q.diffuse = p.diffuse / (VEC3(R(1.0)) - ggx_interface_average(q));
+    return q;
 }
 
-FN VEC3 ggx_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
+FN Passage passage_of(GgxPrepared q, REAL mu) {
+    Passage to;
+    to.base = ggx_interface_transmission(q, mu);
+    to.coat = R(1.0);
+    to.path = R(0.0);
+    return to;
+}
+
+// hh = |wi + wo|^2
+FN VEC3 ggx_fresnel(GgxPrepared q, REAL hh) {
+    return mix(q.f0, VEC3(q.f90), fresnel_weight(q.f0_max, hh));
+}
+
+FN VEC3 reflected(GgxPrepared q, Passage from, Passage to, REAL hh, VEC3 lobes) {
+    return ggx_fresnel(q, hh) * lobes.x +
+           q.diffuse * from.base * to.base * R(0.3183098861837907);
+}
+
+FN VEC3 evaluate(GgxPrepared q, VEC3 wi, VEC3 wo) {
     if (wi.z <= R(0.0) || wo.z <= R(0.0)) return VEC3(R(0.0));
     VEC3 h = wi + wo;
     REAL hh = dot(h, h);
     if (hh < R(1e-8)) return VEC3(R(0.0));
-    VEC3 through = ggx_interface_transmission(p, wi.z) * ggx_interface_transmission(p, wo.z) /
-                   (VEC3(R(1.0)) - ggx_interface_average(p));
-    return ggx_specular(p, wi, wo, hh) +
-           p.diffuse * through * R(0.3183098861837907);
+    REAL lobe = ggx_distribution_visibility(wi, wo, hh, q.alpha_x, q.alpha_y);
+    return reflected(q, passage_of(q, wi.z), passage_of(q, wo.z), hh, VEC3(lobe));
+}
+
+FN VEC3 ggx_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
+    return evaluate(ggx_prepare(p), wi, wo);
+}
+
+FN VEC3 sky_weight(GgxPrepared q, Passage to) {
+    return q.sky_diffuse * to.base;
+}
+
+FN VEC3 mirror_weight(GgxPrepared q, Passage to, REAL mu, MirrorGrazing grazing_ratio, int lobe) {
+    REAL white;
+    REAL grazing;
+    ggx_albedo(mu, q.mirror_alpha, q.f0_max, white, grazing);
+    grazing = min(grazing * grazing_fresnel(grazing_ratio, q.mirror_alpha), white);
+    return q.f0 * (white - grazing) + VEC3(q.f90 * grazing);
+}
+
+FN BsdfEnvironment ggx_environment(BsdfParameters p, REAL mu) {
+    GgxPrepared q = ggx_prepare(p);
+    Passage to = passage_of(q, mu);
+    BsdfEnvironment e;
+    e.diffuse = sky_weight(q, to);
+    e.specular = mirror_weight(q, to, mu, even_light(), BASE_LOBE);
+    e.coat = VEC3(R(0.0));
+    return e;
 }
 
 // Of sampling the microfacets and the diffuse layer.
 FN VEC2 ggx_chances(BsdfParameters p, REAL mu) {
-    VEC3 through = ggx_interface_transmission(p, mu);
+    VEC3 through = ggx_interface_transmission(ggx_interface(p), mu);
     return lobe_chances(VEC3(R(1.0)) - through, p.diffuse * through);
 }
 
@@ -79,23 +141,4 @@ FN REAL ggx_pdf(BsdfParameters p, VEC3 wi, VEC3 wo) {
     VEC2 chance = ggx_chances(p, wo.z);
     return chance.x * ggx_pdf_lobe(wi, wo, p.alpha_x, p.alpha_y) +
            chance.y * wi.z * R(0.3183098861837907);
-}
-
-// Of light of which so many times as much grazes as of even light.
-FN VEC3 ggx_environment_albedo(BsdfParameters p, REAL mu, REAL grazing_ratio) {
-    REAL white;
-    REAL grazing;
-    REAL f0_max = max_component(p.f0);
-    ggx_albedo(mu, sqrt(p.alpha_x * p.alpha_y), f0_max, white, grazing);
-    grazing = min(grazing * grazing_ratio, white);
-    REAL f90 = grazing_reflectance(f0_max);
-    return p.f0 * (white - grazing) + VEC3(f90 * grazing);
-}
-
-FN BsdfEnvironment ggx_environment(BsdfParameters p, REAL mu) {
-    BsdfEnvironment e;
-    e.diffuse = p.diffuse * ggx_interface_transmission(p, mu);
-    e.specular = ggx_environment_albedo(p, mu, R(1.0));
-    e.coat = VEC3(R(0.0));
-    return e;
 }

@@ -8,11 +8,11 @@
 // light after two and more bounces. The fits of W err so that never more comes back than was lost.
 // The facets are the same along and across: the loss of stretched ones depends on the azimuth.
 
-FN BsdfParameters ggx_not_stretched(BsdfParameters p) {
-    BsdfParameters q = p;
-    q.alpha_y = p.alpha_x;
-    return q;
-}
+struct GgxMultiscatterPrepared {
+    GgxPrepared once;  // a single bounce; its diffuse layer over what all bounces let through
+    VEC3 many;         // F_ms
+    REAL lost;         // 1 - W_avg
+};
 
 // 1 - W_avg; under a thousandth, where the fit is mostly error, less comes back than was lost.
 FN REAL ggx_multiscatter_average_loss(REAL alpha) {
@@ -20,55 +20,64 @@ FN REAL ggx_multiscatter_average_loss(REAL alpha) {
 }
 
 // F_ms; `lost` is 1 - W_avg.
-FN VEC3 ggx_many_bounces(BsdfParameters p, REAL lost) {
-    REAL f0_max = max_component(p.f0);
-    REAL weight = fresnel_average_weight(f0_max);
-    VEC3 f = p.f0 * (R(1.0) - weight) + VEC3(grazing_reflectance(f0_max) * weight);
+FN VEC3 ggx_many_bounces(GgxPrepared once, REAL lost) {
+    VEC3 f = mix(once.f0, VEC3(once.f90), fresnel_average_weight(once.f0_max));
     return f * f * (R(1.0) - lost) / (VEC3(R(1.0)) - f * lost);
 }
 
 // What reaches the diffuse layer, at most: 1 - E - F_ms (1 - W), without cancellation. `lost` is
 // 1 - W at mu.
-FN VEC3 ggx_multiscatter_transmission(BsdfParameters p, VEC3 many, REAL mu, OUT(REAL) lost) {
+FN VEC3 ggx_multiscatter_transmission(GgxMultiscatterPrepared q, REAL mu, OUT(REAL) lost) {
     REAL rest;
-    REAL f0_max = max_component(p.f0);
-    ggx_transmission_fit(mu, p.alpha_x, f0_max, lost, rest);
-    REAL f90 = grazing_reflectance(f0_max);
-    VEC3 through =
-        VEC3(R(1.0) - f90) + (VEC3(f90) - many) * lost + (VEC3(f90) - p.f0) * rest;
+    ggx_transmission_fit(mu, q.once.alpha_x, q.once.f0_max, lost, rest);
+    VEC3 f90 = VEC3(q.once.f90);
+    VEC3 through = VEC3(R(1.0)) - f90 + (f90 - q.many) * lost + (f90 - q.once.f0) * rest;
     return max(through, VEC3(R(0.0)));
 }
 
 // Its mean over the hemisphere, at least: the fit of W_avg is up to 0.0024 low.
-FN VEC3 ggx_multiscatter_average_transmission(BsdfParameters p, VEC3 many, REAL lost) {
-    VEC3 mean = VEC3(R(1.0)) - ggx_interface_average(ggx_not_stretched(p)) -
-                many * max(lost - R(0.0024), R(0.0));
+FN VEC3 ggx_multiscatter_average_transmission(GgxMultiscatterPrepared q) {
+    VEC3 mean = VEC3(R(1.0)) - ggx_interface_average(q.once) -
+                q.many * max(q.lost - R(0.0024), R(0.0));
     return max(mean, VEC3(R(0.001)));
 }
 
-FN VEC3 ggx_multiscatter_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
+FN GgxMultiscatterPrepared ggx_multiscatter_prepare(BsdfParameters p) {
+    BsdfParameters not_stretched = p;
+    not_stretched.alpha_y = p.alpha_x;
+    GgxMultiscatterPrepared q;
+    q.once = ggx_interface(not_stretched);
+    q.lost = ggx_multiscatter_average_loss(p.alpha_x);
+    q.many = ggx_many_bounces(q.once, q.lost);
+    q.once.diffuse = p.diffuse / ggx_multiscatter_average_transmission(q);
+    return q;
+}
+
+FN VEC3 evaluate(GgxMultiscatterPrepared q, VEC3 wi, VEC3 wo) {
     if (wi.z <= R(0.0) || wo.z <= R(0.0)) return VEC3(R(0.0));
     VEC3 h = wi + wo;
     REAL hh = dot(h, h);
     if (hh < R(1e-8)) return VEC3(R(0.0));
-    REAL lost = ggx_multiscatter_average_loss(p.alpha_x);
-    VEC3 many = ggx_many_bounces(p, lost);
     REAL lost_i;
     REAL lost_o;
-    VEC3 through = ggx_multiscatter_transmission(p, many, wi.z, lost_i) *
-                   ggx_multiscatter_transmission(p, many, wo.z, lost_o) /
-                   ggx_multiscatter_average_transmission(p, many, lost);
-    return ggx_specular(ggx_not_stretched(p), wi, wo, hh) +
-           (many * (lost_i * lost_o / lost) + p.diffuse * through) * R(0.3183098861837907);
+    VEC3 through = ggx_multiscatter_transmission(q, wi.z, lost_i) *
+                   ggx_multiscatter_transmission(q, wo.z, lost_o);
+    REAL lobe = ggx_distribution_visibility(wi, wo, hh, q.once.alpha_x, q.once.alpha_x);
+    VEC3 wide = q.many * (lost_i * lost_o / q.lost) + q.once.diffuse * through;
+    return ggx_fresnel(q.once, hh) * lobe + wide * R(0.3183098861837907);
+}
+
+FN VEC3 ggx_multiscatter_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
+    return evaluate(ggx_multiscatter_prepare(p), wi, wo);
 }
 
 FN BsdfEnvironment ggx_multiscatter_environment(BsdfParameters p, REAL mu) {
-    VEC3 many = ggx_many_bounces(p, ggx_multiscatter_average_loss(p.alpha_x));
+    GgxMultiscatterPrepared q = ggx_multiscatter_prepare(p);
     REAL lost;
-    VEC3 through = ggx_multiscatter_transmission(p, many, mu, lost);
+    VEC3 through = ggx_multiscatter_transmission(q, mu, lost);
     BsdfEnvironment e;
-    e.diffuse = p.diffuse * through + many * lost;
-    e.specular = ggx_environment_albedo(ggx_not_stretched(p), mu, R(1.0));
+    e.diffuse = p.diffuse * through + q.many * lost;
+    e.specular = mirror_weight(q.once, passage_of(q.once, mu), mu, even_light(), BASE_LOBE);
     e.coat = VEC3(R(0.0));
     return e;
 }

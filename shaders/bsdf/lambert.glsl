@@ -1,5 +1,23 @@
 // Lambert: the same radiance in all directions. Local coordinates: z the normal, x the tangent.
 
+struct LambertPrepared {
+    VEC3 diffuse;
+};
+
+FN int lobe_count(LambertPrepared q) {
+    return 0;
+}
+
+FN VEC2 slopes_of(LambertPrepared q, int lobe) {
+    return VEC2(R(1.0), R(1.0));
+}
+
+FN LambertPrepared lambert_prepare(BsdfParameters p) {
+    LambertPrepared q;
+    q.diffuse = p.diffuse;
+    return q;
+}
+
 FN VEC3 lambert_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
     if (wi.z <= R(0.0) || wo.z <= R(0.0)) return VEC3(R(0.0));
     return p.diffuse * R(0.3183098861837907);

@@ -9,6 +9,8 @@
 #define R(x) x
 #define FN
 #define OUT(T) out T
+// Of a number that is the same for all that is computed at once
+#define PRESENT(x) ((x) > 0.0)
 // Of shaders/radiance/shade.glsl. By its bits: x != x may be taken for false.
 #define IS_NAN(x) ((floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u)
 // Of shaders/radiance/glints.glsl

@@ -39,39 +39,51 @@ FN VEC3 film_coherence(REAL x_nm) {
     return exp2(R(-1.035104596e-07) * x_nm * x_nm) * sum;
 }
 
-// r12: of the film's front in a varnish whose index follows from coat_f0.
-FN REAL film_front(BsdfParameters p) {
+struct FilmPrepared {
+    REAL nm;         // thickness of the film, 0 for none
+    REAL eta;        // its index
+    VEC3 f0;         // of the flake without it
+    VEC3 minus_rho;  // -r12 r23
+    VEC3 twice_a;    // 2 A
+    VEC3 most;       // what any film of this index reflects of any wavelength, at most
+};
+
+FN FilmPrepared film_prepare(BsdfParameters p) {
+    FilmPrepared film;
+    film.nm = p.film_nm;
+    film.eta = p.film_eta;
+    film.f0 = p.flake_f0;
+    film.minus_rho = VEC3(R(0.0));
+    film.twice_a = VEC3(R(0.0));
+    film.most = p.flake_f0;
+    if (p.film_nm <= R(0.0)) return film;
+    VEC3 one = VEC3(R(1.0));
+    // r12, of the film's front in a varnish whose index follows from coat_f0
     REAL r = sqrt(p.coat_f0);
     REAL index = (R(1.0) + r) / (R(1.0) - r);
-    return (index - p.film_eta) / (index + p.film_eta);
-}
-
-// r23, such that both without a path between them reflect f0.
-FN VEC3 film_back(BsdfParameters p, REAL front) {
+    REAL front = (index - p.film_eta) / (index + p.film_eta);
+    // -r23, such that both without a path between them reflect f0
     VEC3 whole = sqrt(p.flake_f0);
-    return VEC3(R(0.0)) - (whole + VEC3(front)) / (VEC3(R(1.0)) + whole * front);
-}
-
-// The most that any film of this index reflects, of any wavelength.
-FN VEC3 film_most(BsdfParameters p) {
-    REAL front = film_front(p);
-    VEC3 back = film_back(p, front);
+    VEC3 back = (whole + VEC3(front)) / (one + whole * front);
+    VEC3 rho = back * front;
+    film.minus_rho = rho;  // back is turned already
+    film.twice_a =
+        R(2.0) * (one - back * back) * (R(1.0) - front * front) / (one - rho * rho);
     VEC3 a = VEC3(max(front, -front));
     VEC3 b = max(back, VEC3(R(0.0)) - back);
-    VEC3 root = (a + b) / (VEC3(R(1.0)) + a * b);
-    return root * root;
+    VEC3 root = (a + b) / (one + a * b);
+    film.most = root * root;
+    return film;
 }
 
-// hh = |wi + wo|^2: 4 cos^2 of the angle under which the flake is met, outside of the varnish.
-FN VEC3 film_reflectance(BsdfParameters p, REAL hh) {
+// Of the flake under its film. hh = |wi + wo|^2: 4 cos^2 of the angle under which the flake is met,
+// outside of the varnish.
+FN VEC3 film_reflectance(FilmPrepared film, REAL hh) {
+    if (!PRESENT(film.nm)) return film.f0;
     VEC3 one = VEC3(R(1.0));
-    REAL front = film_front(p);
-    VEC3 back = film_back(p, front);
-    VEC3 rho = back * front;
-    VEC3 a = (one - back * back) * (R(1.0) - front * front) / (one - rho * rho);
-    REAL sine2 = max(R(1.0) - R(0.25) * hh, R(0.0)) / (p.film_eta * p.film_eta);
-    REAL x_nm = R(2.0) * p.film_eta * p.film_nm * sqrt(R(1.0) - sine2);
-    VEC3 minus = VEC3(R(0.0)) - rho;
+    REAL sine2 = max(R(1.0) - R(0.25) * hh, R(0.0)) / (film.eta * film.eta);
+    REAL x_nm = R(2.0) * film.eta * film.nm * sqrt(R(1.0) - sine2);
+    VEC3 minus = film.minus_rho;
     VEC3 power = minus;
     VEC3 sum = power * (one - film_coherence(x_nm));
     power = power * minus;
@@ -80,8 +92,8 @@ FN VEC3 film_reflectance(BsdfParameters p, REAL hh) {
     sum += power * (one - film_coherence(R(3.0) * x_nm));
     power = power * minus;
     sum += power * (one - film_coherence(R(4.0) * x_nm));
-    power = power * minus / (one + rho);
+    power = power * minus / (one - minus);
     sum += power * (one - film_coherence(R(5.0) * x_nm));
     // A channel of the working space has negative parts; no wavelength returns less or more.
-    return min(max(p.flake_f0 + R(2.0) * a * sum, VEC3(R(0.0))), film_most(p));
+    return min(max(film.f0 + film.twice_a * sum, VEC3(R(0.0))), film.most);
 }

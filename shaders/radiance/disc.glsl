@@ -14,15 +14,14 @@
 FN REAL disc_distribution_visibility(VEC3 wi,
                                      VEC3 wo,
                                      REAL hh,
-                                     REAL alpha_x,
-                                     REAL alpha_y,
+                                     VEC2 slopes,
                                      REAL light_radius2,
                                      REAL mean_squared_slope) {
     REAL hx = wi.x + wo.x;
     REAL hy = wi.y + wo.y;
     REAL hz = wi.z + wo.z;
-    REAL a2 = alpha_x * alpha_y;
-    REAL ratio = alpha_y / alpha_x;
+    REAL a2 = slopes.x * slopes.y;
+    REAL ratio = slopes.y / slopes.x;
     REAL hz2 = hz * hz;
     // b and q, times H.z^2
     REAL h = sqrt(hh);
@@ -33,5 +32,5 @@ FN REAL disc_distribution_visibility(VEC3 wi,
     REAL q = sqrt(b * b + cross_term);
     REAL sum = b > R(0.0) ? q + b : cross_term / (q - b);
     return a2 * hh * hh * R(0.3183098861837907) /
-           (q * sum * smith_denominator(wi, wo, alpha_x, alpha_y));
+           (q * sum * smith_denominator(wi, wo, slopes.x, slopes.y));
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <sstream>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -215,10 +216,46 @@ glm::dvec3 directional_albedo(ReflectanceModel model,
     return total / (static_cast<double>(points) * points);
 }
 
+namespace {
+
+std::string source(const char* name) {
+    return read_text_file(shipped_path(std::filesystem::path("shaders/bsdf") / name)) + "\n";
+}
+
+void append_fields(const std::string& text,
+                   const std::string& type,
+                   const std::string& prefix,
+                   std::vector<PreparedField>* fields) {
+    const std::size_t begin = text.find("struct " + type + " {");
+    if (begin == std::string::npos) {
+        throw std::logic_error(fmt::format("no shader file declares struct {}", type));
+    }
+    std::istringstream lines(text.substr(begin, text.find("};", begin) - begin));
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream words(line);
+        std::string kind, name;
+        if (!(words >> kind >> name) || kind == "//" || name.back() != ';') continue;
+        name = prefix + name.substr(0, name.size() - 1);
+        if (kind == "REAL" || kind == "VEC3") {
+            fields->push_back({name, kind == "REAL" ? std::size_t{1} : std::size_t{3}});
+        } else {
+            append_fields(text, kind, name + ".", fields);
+        }
+    }
+}
+
+}  // namespace
+
+std::vector<PreparedField> prepared_fields(ReflectanceModel model) {
+    const ModelInfo& info = model_info(model);
+    std::string text;
+    for (const char* file : info.shaders) text += source(file);
+    std::vector<PreparedField> fields;
+    if (info.prepared.type) append_fields(text, info.prepared.type, "", &fields);
+    return fields;
+}
+
 std::string bsdf_glsl(ReflectanceModel model) {
-    const auto source = [](const char* name) {
-        return read_text_file(shipped_path(std::filesystem::path("shaders/bsdf") / name)) + "\n";
-    };
     if (model == ReflectanceModel::measured) {
         return measured_glsl() + source("parameters.glsl") +
                "uniform sampler2DArray u_measured;\n"

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "appearance/bsdf_source.h"
 #include "appearance/material.h"
@@ -69,5 +70,13 @@ glm::dvec3 directional_albedo(ReflectanceModel model,
 /// need. Of measured reflectance bsdf_eval alone, which reads the sampler2DArray `u_measured`
 /// (measured_grid.h). Throws FileError when the shipped sources are not found.
 std::string bsdf_glsl(ReflectanceModel model);
+
+/// The fields of the struct that a model prepares, as its shader file declares them: where each of
+/// PreparedPaint::numbers goes. Throws std::logic_error where the file has no such struct.
+struct PreparedField {
+    std::string name;   ///< "coat.f0"
+    std::size_t count;  ///< of numbers: 1 or 3
+};
+std::vector<PreparedField> prepared_fields(ReflectanceModel model);
 
 }  // namespace livery

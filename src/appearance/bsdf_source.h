@@ -15,6 +15,7 @@
 #define R(x) Real(x)
 #define FN inline
 #define OUT(T) T&
+#define PRESENT(x) ((x) > Real(0))
 
 // An unused parameter is normal here: all models share one signature.
 #pragma GCC diagnostic push
@@ -25,27 +26,9 @@ using Real = float;
 using Vec2 = glm::vec2;
 using Vec3 = glm::vec3;
 using glm::abs, glm::acos, glm::atan, glm::clamp, glm::cos, glm::dot, glm::exp, glm::exp2,
-    glm::floor, glm::log, glm::max, glm::min, glm::normalize, glm::pow, glm::sin, glm::sqrt;
-// Each needs the ones before it.
-// clang-format off
-#include "shaders/bsdf/parameters.glsl"
-#include "shaders/bsdf/stable.glsl"
-#include "shaders/bsdf/lobe_albedo.glsl"
-#include "shaders/bsdf/lambert.glsl"
-#include "shaders/bsdf/eon.glsl"
-#include "shaders/bsdf/phong.glsl"
-#include "shaders/bsdf/blinn_phong.glsl"
-#include "shaders/bsdf/beckmann.glsl"
-#include "shaders/bsdf/ward.glsl"
-#include "shaders/bsdf/microfacet.glsl"
-#include "shaders/bsdf/cook_torrance.glsl"
-#include "shaders/bsdf/ggx.glsl"
-#include "shaders/bsdf/ggx_multiscatter.glsl"
-#include "shaders/bsdf/ashikhmin_shirley.glsl"
-#include "shaders/bsdf/clearcoat.glsl"
-#include "shaders/bsdf/thin_film.glsl"
-#include "shaders/bsdf/car_paint.glsl"
-// clang-format on
+    glm::floor, glm::log, glm::log2, glm::max, glm::min, glm::mix, glm::normalize, glm::pow,
+    glm::sin, glm::sqrt;
+#include "appearance/bsdf_files.inc"
 }  // namespace livery::f32
 
 namespace livery::f64 {
@@ -53,36 +36,22 @@ using Real = double;
 using Vec2 = glm::dvec2;
 using Vec3 = glm::dvec3;
 using glm::abs, glm::acos, glm::atan, glm::clamp, glm::cos, glm::dot, glm::exp, glm::exp2,
-    glm::floor, glm::log, glm::max, glm::min, glm::normalize, glm::pow, glm::sin, glm::sqrt;
-// Each needs the ones before it.
-// clang-format off
-#include "shaders/bsdf/parameters.glsl"
-#include "shaders/bsdf/stable.glsl"
-#include "shaders/bsdf/lobe_albedo.glsl"
-#include "shaders/bsdf/lambert.glsl"
-#include "shaders/bsdf/eon.glsl"
-#include "shaders/bsdf/phong.glsl"
-#include "shaders/bsdf/blinn_phong.glsl"
-#include "shaders/bsdf/beckmann.glsl"
-#include "shaders/bsdf/ward.glsl"
-#include "shaders/bsdf/microfacet.glsl"
-#include "shaders/bsdf/cook_torrance.glsl"
-#include "shaders/bsdf/ggx.glsl"
-#include "shaders/bsdf/ggx_multiscatter.glsl"
-#include "shaders/bsdf/ashikhmin_shirley.glsl"
-#include "shaders/bsdf/clearcoat.glsl"
-#include "shaders/bsdf/thin_film.glsl"
-#include "shaders/bsdf/car_paint.glsl"
-// clang-format on
+    glm::floor, glm::log, glm::log2, glm::max, glm::min, glm::mix, glm::normalize, glm::pow,
+    glm::sin, glm::sqrt;
+#include "appearance/bsdf_files.inc"
 }  // namespace livery::f64
 
 #pragma GCC diagnostic pop
 
 #undef LOBE_ALBEDO
 #undef FILM_BAND
+#undef BASE_LOBE
+#undef COAT_LOBE
+#undef FLAKE_LOBE
 #undef REAL
 #undef VEC2
 #undef VEC3
 #undef R
 #undef FN
 #undef OUT
+#undef PRESENT

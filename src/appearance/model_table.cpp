@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -30,6 +31,21 @@ namespace {
 #define LIVERY_BSDF(prefix)                                 \
 #prefix, LIVERY_BSDF_OF(f32, float, glm::vec3, prefix), \
         LIVERY_BSDF_OF(f64, double, glm::dvec3, prefix)
+
+template <typename Prepared>
+PreparedPaint numbers_of(const Prepared& prepared) {
+    PreparedPaint paint;
+    paint.numbers.resize(sizeof prepared / sizeof(float));
+    std::memcpy(paint.numbers.data(), &prepared, sizeof prepared);
+    for (int lobe = 0; lobe < lobe_count(prepared); ++lobe) {
+        paint.lobe_slopes.push_back(slopes_of(prepared, lobe));
+    }
+    return paint;
+}
+#define LIVERY_PREPARED(Type, prefix)                                                            \
+    {                                                                                            \
+#Type, [](const f32::BsdfParameters& p) { return numbers_of(f32::prefix##_prepare(p)); } \
+    }
 
 /// In the place of a formula's functions.
 template <typename Real, typename Vec3, typename Parameters, typename Environment>
@@ -68,7 +84,8 @@ const std::vector<ModelInfo>& model_table() {
          kFromAllSides,
          kReciprocal,
          kConserving,
-         LIVERY_BSDF(lambert)},
+         LIVERY_BSDF(lambert),
+         LIVERY_PREPARED(LambertPrepared, lambert)},
         {ReflectanceModel::eon,
          "eon",
          "Rough diffuse",
@@ -195,21 +212,22 @@ const std::vector<ModelInfo>& model_table() {
          "A rough interface (GGX microfacets) over a diffuse layer.",
          "a paint with one glossy lobe",
          "no part uses GGX",
-         {"microfacet.glsl", "ggx.glsl"},
+         {"microfacet.glsl", "layers.glsl", "ggx.glsl"},
          {"diffuse", "f0", "alpha"},
          Lobe::half_alpha,
          kAnisotropic,
          kByDirection,
          kReciprocal,
          kConserving,
-         LIVERY_BSDF(ggx)},
+         LIVERY_BSDF(ggx),
+         LIVERY_PREPARED(GgxPrepared, ggx)},
         {ReflectanceModel::ggx_multiscatter,
          "ggx-multiscatter",
          "Metal, all bounces",
          "GGX with the light that microfacets pass on to one another (Kulla and Conty 2017).",
          "a paint of GGX with all bounces",
          "no part uses GGX with all bounces",
-         {"microfacet.glsl", "ggx.glsl", "ggx_multiscatter.glsl"},
+         {"microfacet.glsl", "layers.glsl", "ggx.glsl", "ggx_multiscatter.glsl"},
          {"diffuse", "f0", "alpha"},
          Lobe::half_alpha,
          kIsotropic,
@@ -237,21 +255,27 @@ const std::vector<ModelInfo>& model_table() {
          "A clear coat over a rough interface: solid car paint, and metallic of one lobe.",
          "a paint under a clear coat",
          "no paint has a clear coat",
-         {"microfacet.glsl", "ggx.glsl", "clearcoat.glsl"},
+         {"microfacet.glsl", "layers.glsl", "ggx.glsl", "clearcoat.glsl"},
          {"diffuse", "f0", "alpha", "coat_alpha", "coat_f0", "coat_transmittance"},
          Lobe::half_alpha,
          kAnisotropic,
          kByDirection,
          kReciprocal,
          kConserving,
-         LIVERY_BSDF(clearcoat)},
+         LIVERY_BSDF(clearcoat),
+         LIVERY_PREPARED(ClearcoatPrepared, clearcoat)},
         {ReflectanceModel::car_paint,
          "car-paint",
          "Car paint",
          "A clear coat over two lobes of flakes over a pigment: metallic and pearl car paint.",
          "a car paint with flakes",
          "no paint has flakes in two lobes",
-         {"microfacet.glsl", "ggx.glsl", "clearcoat.glsl", "thin_film.glsl", "car_paint.glsl"},
+         {"microfacet.glsl",
+          "layers.glsl",
+          "ggx.glsl",
+          "clearcoat.glsl",
+          "thin_film.glsl",
+          "car_paint.glsl"},
          {"diffuse",
           "f0",
           "alpha",
@@ -269,7 +293,8 @@ const std::vector<ModelInfo>& model_table() {
          kByDirection,
          kReciprocal,
          kConserving,
-         LIVERY_BSDF(car_paint)},
+         LIVERY_BSDF(car_paint),
+         LIVERY_PREPARED(CarPaintPrepared, car_paint)},
     };
     return table;
 }
@@ -301,6 +326,7 @@ const ModelInfo& measured_info() {
 
 #undef LIVERY_BSDF
 #undef LIVERY_BSDF_OF
+#undef LIVERY_PREPARED
 
 const ModelInfo& model_info(ReflectanceModel model) {
     if (model == ReflectanceModel::measured) return measured_info();

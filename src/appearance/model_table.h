@@ -21,6 +21,16 @@ using BsdfFunctionsF32 = BsdfFunctions<float, glm::vec3, f32::BsdfParameters, f3
 using BsdfFunctionsF64 =
     BsdfFunctions<double, glm::dvec3, f64::BsdfParameters, f64::BsdfEnvironment>;
 
+/// What a model takes from its parameters once, for shading (NAME_prepare of its shader file).
+struct PreparedPaint {
+    std::vector<float> numbers;          ///< of the model's struct, in its order
+    std::vector<glm::vec2> lobe_slopes;  ///< of each lobe that mirrors, along and across
+};
+struct PreparedModel {
+    const char* type = nullptr;  ///< the struct, "CarPaintPrepared"; null: shading prepares nothing
+    PreparedPaint (*of)(const f32::BsdfParameters&) = nullptr;
+};
+
 /// What a model's main lobe is a function of, and which parameter says how wide it is.
 enum class Lobe {
     none,            ///< diffuse
@@ -46,6 +56,7 @@ struct ModelInfo {
     const char* prefix;        ///< of its functions in shaders/bsdf: "blinn_phong"
     BsdfFunctionsF32 f32;
     BsdfFunctionsF64 f64;
+    PreparedModel prepared{};
 
     bool mirrors() const { return lobe != Lobe::none; }  ///< part of the environment
     bool has(const std::string& parameter) const;

@@ -1,16 +1,14 @@
 #include "radiance/shading.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <numbers>
-#include <stdexcept>
+#include <mutex>
 #include <string>
 
 #include <fmt/format.h>
 #include <glm/gtc/type_ptr.hpp>
 
-#include "appearance/model_table.h"
+#include "appearance/bsdf.h"
 #include "core/paths.h"
 #include "radiance/glints.h"
 #include "radiance/light/environment_filter.h"
@@ -19,12 +17,12 @@
 namespace livery {
 namespace {
 
-/// Of shade.glsl.
-std::string define_of(ReflectanceModel model) {
-    if (!has_own_shading(model)) return "ANY_MODEL";
-    std::string name = model_info(model).prefix;
-    for (char& c : name) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-    return name;
+/// What shade.glsl is told of the model.
+std::string defines_of(const ModelInfo& model) {
+    if (!model.prepared.type) return "#define ANY_MODEL\n";
+    return fmt::format("#define PREPARED {}\n{}",
+                       model.prepared.type,
+                       model.same_from_all_sides ? "#define LAMBERT\n" : "");
 }
 
 /// Light from all around is looked up under no smaller one.
@@ -32,15 +30,6 @@ constexpr float kLowestCosine = 1e-4f;
 
 std::string shipped_text(const char* file) {
     return read_text_file(shipped_path(std::filesystem::path("shaders") / file));
-}
-
-template <typename Uniform, typename Value>
-void set(Uniform& uniform, const Value& value) {
-    for (int c = 0; c < static_cast<int>(std::size(uniform)); ++c) uniform[c] = value[c];
-}
-
-glm::vec3 average_through(const BsdfParameters& p) {
-    return glm::vec3(1.0f) - f32::ggx_interface_average(p);
 }
 
 /// The first of four lobes and the shares of those after it.
@@ -51,55 +40,15 @@ glm::vec4 mirror_layers(float alpha) {
 
 }  // namespace
 
-bool has_own_shading(ReflectanceModel model) {
-    return model == ReflectanceModel::lambert || model == ReflectanceModel::ggx ||
-           model == ReflectanceModel::clearcoat || model == ReflectanceModel::car_paint;
-}
-
-namespace {
-
-/// How the coat and what lies on a diffuse layer weigh it, and the absorption in the coat.
-void set_coated(PaintUniforms& u,
-                const BsdfParameters& p,
-                const glm::vec3& diffuse,
-                const glm::vec3& share) {
-    const float inverse_index2 = f32::coat_inverse_index_squared(p);
-    const float mean_path = f32::coat_path(2.0f / 3.0f, inverse_index2);
-    set(u.diffuse, diffuse);
-    set(u.sky_diffuse, diffuse * share * f32::coat_absorption(p, mean_path));
-    set(u.coat_log_transmittance, glm::log2(glm::max(p.coat_transmittance, glm::vec3(1e-6f))));
-    u.coat_inverse_index_squared = inverse_index2;
-}
-
-}  // namespace
+bool has_own_shading(ReflectanceModel model) { return model_info(model).prepared.type != nullptr; }
 
 PaintUniforms uniforms_of(const Material& material, double exposure_ev) {
-    const BsdfParameters p = parameters_of(material);
-    PaintUniforms u{};
+    PaintUniforms u;
     u.exposure = static_cast<float>(std::exp2(exposure_ev));
-    set(u.f0, p.f0);
-    set(u.base_layers, mirror_layers(std::sqrt(p.alpha_x * p.alpha_y)));
-    set(u.coat_layers, mirror_layers(p.coat_alpha));
-    set(u.alpha, glm::vec4(p.alpha_x, p.alpha_y, p.coat_alpha, p.coat_f0));
-    if (material.model == ReflectanceModel::ggx) {
-        set(u.diffuse, p.diffuse / average_through(p));
-        set(u.sky_diffuse, p.diffuse);
-    } else if (material.model == ReflectanceModel::clearcoat) {
-        set_coated(u,
-                   p,
-                   f32::coated_diffuse(p, f32::coat_inverse_index_squared(p)),
-                   glm::min(average_through(p), glm::vec3(f32::coat_average_transmission(p))));
-    } else if (material.model == ReflectanceModel::car_paint) {
-        set_coated(u,
-                   p,
-                   f32::car_paint_pigment(p, f32::coat_inverse_index_squared(p)),
-                   f32::car_paint_share(p));
-        set(u.flakes, glm::vec4(p.flake_f0, p.flake_alpha));
-        set(u.flakes_most, f32::car_paint_most(p));
-        set(u.flake_layers, mirror_layers(p.flake_alpha));
-        set(u.film, glm::vec2(p.film_nm, p.film_eta));
-    } else {
-        set(u.diffuse, p.diffuse);
+    u.paint = model_info(material.model).prepared.of(parameters_of(material));
+    for (std::size_t lobe = 0; lobe < u.paint.lobe_slopes.size(); ++lobe) {
+        const glm::vec2 slopes = u.paint.lobe_slopes[lobe];
+        u.lobe_layers.at(lobe) = mirror_layers(std::sqrt(slopes.x * slopes.y));
     }
     return u;
 }
@@ -136,6 +85,19 @@ AnyModelUniforms any_model_uniforms_of(const Material& material, double exposure
 }
 
 namespace {
+
+/// Where each of PreparedPaint::numbers goes.
+const std::vector<PreparedField>& uniform_fields(ReflectanceModel model) {
+    static std::map<ReflectanceModel, std::vector<PreparedField>> known;
+    static std::mutex mutex;
+    const std::scoped_lock lock(mutex);
+    std::vector<PreparedField>& fields = known[model];
+    if (fields.empty()) {
+        fields = prepared_fields(model);
+        for (PreparedField& field : fields) field.name = "u_paint." + field.name;
+    }
+    return fields;
+}
 
 /// Above all units that the inputs of a fragment take.
 constexpr int kMeasuredUnit = 8;
@@ -187,31 +149,27 @@ void set_paint(Program& program,
     }
     const PaintUniforms u = uniforms_of(material, exposure_ev);
     program.set("u_exposure", u.exposure);
-    program.set("u_diffuse", glm::make_vec3(u.diffuse));
-    program.set("u_sky_diffuse", glm::make_vec3(u.sky_diffuse));
-    program.set("u_f0", glm::make_vec3(u.f0));
-    program.set("u_alpha", glm::make_vec4(u.alpha));
-    program.set("u_base_layers", glm::make_vec4(u.base_layers));
-    program.set("u_coat_layers", glm::make_vec4(u.coat_layers));
-    program.set("u_flakes", glm::make_vec4(u.flakes));
-    program.set("u_flakes_most", glm::make_vec3(u.flakes_most));
-    program.set("u_flake_layers", glm::make_vec4(u.flake_layers));
-    program.set("u_has_film", u.film[0] > 0.0f ? 1 : 0);
-    program.set("u_film", glm::make_vec2(u.film));
-    program.set("u_coat_log_transmittance", glm::make_vec3(u.coat_log_transmittance));
-    program.set("u_coat_inverse_index_squared", u.coat_inverse_index_squared);
+    program.set("u_lobe_layers", std::span<const glm::vec4>(u.lobe_layers));
+    const float* at = u.paint.numbers.data();
+    for (const PreparedField& field : uniform_fields(material.model)) {
+        if (field.count == 1) {
+            program.set(field.name, *at);
+        } else {
+            program.set(field.name, glm::make_vec3(at));
+        }
+        at += field.count;
+    }
 }
 
 Program make_shading_program(const ShadingKey& key, ShadingSource source) {
     const auto [model, lights, environment, over, relief, glints] = key;
     const bool raster = source == ShadingSource::raster;
     const std::string defines = fmt::format(
-        "#define {} 1\n#define LIGHTS {}\n#define LIGHT_COUNT LIGHTS\n#define ENVIRONMENT {}\n"
+        "#define LIGHTS {}\n#define LIGHT_COUNT LIGHTS\n#define ENVIRONMENT {}\n"
         "#define VEC4 vec4\n#define UNIFORM uniform\n"
         "#define LAYERS {}\n#define FIRST_ALPHA {:.8f}\n#define MESH_ROW {}\n"
-        "#define WEIGHTS {}\n#define MIRRORS {}\n#define MIRROR_LOBES {}\n"
+        "#define WEIGHTS {}\n#define MIRRORS {}\n#define MIRROR_LOBES {}\n#define MOST_LOBES {}\n"
         "#define BSDF_TURN2 R({:.1f})\n",
-        define_of(model),
         lights,
         environment ? 1 : 0,
         kLayerAlphas.size(),
@@ -220,8 +178,10 @@ Program make_shading_program(const ShadingKey& key, ShadingSource source) {
         kEnvironmentWeights,
         model_info(model).mirrors() ? 1 : 0,
         kMirrorAlphas.size(),
+        kMostLobes,
         lobe_turn_squared(model_info(model)));
-    std::string text = "#version 450 core\n" + bsdf_glsl(model) + defines;
+    std::string text =
+        "#version 450 core\n" + bsdf_glsl(model) + defines + defines_of(model_info(model));
     if (over) text += "#define OVER 1\n";
     if (relief) text += "#define RELIEF 1\n";
     if (raster && (over || relief)) {
@@ -229,7 +189,7 @@ Program make_shading_program(const ShadingKey& key, ShadingSource source) {
     }
     if (has_own_shading(model) && model_info(model).mirrors())
         text += shipped_text("radiance/disc.glsl");
-    if (glints) text += "#define GLINTS 1\n" + shipped_text("radiance/glints.glsl");
+    if (glints) text += "#define GLINTS true\n" + shipped_text("radiance/glints.glsl");
     if (raster)
         text += shipped_text("radiance/mesh_texels.glsl") + shipped_text("radiance/lens.glsl");
     text += shipped_text(raster ? "radiance/inputs_raster.glsl" : "radiance/inputs_packed.glsl");

@@ -10,6 +10,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "appearance/model_table.h"
 #include "appearance/paint_bsdf.h"
 #include "gl/draw.h"
 #include "gl/handles.h"
@@ -51,10 +52,16 @@ inline constexpr int kMeshRow = 2048;
 
 Program make_shading_program(const ShadingKey& key, ShadingSource source);
 
-/// Whether shade.glsl has the model's shading taken apart, eight fragments at a time as well.
+/// Whether what shades takes from the model's parameters once what depends on no fragment; it does
+/// so eight fragments at a time as well.
 bool has_own_shading(ReflectanceModel model);
 
 /// Uniforms that depend on the paint and the exposure only, of a model with its own shading.
+struct PaintUniforms {
+    float exposure = 1.0f;  ///< 2^EV
+    PreparedPaint paint;
+    std::array<glm::vec4, kMostLobes> lobe_layers{};  ///< u_lobe_layers
+};
 PaintUniforms uniforms_of(const Material& material, double exposure_ev);
 
 /// The same of any model: what ANY_MODEL of shade.glsl reads.

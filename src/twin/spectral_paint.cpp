@@ -12,32 +12,31 @@
 namespace livery {
 
 PaintBands::PaintBands(const SpectralPaint& paint) : paint_(paint) {
-    bands_.coat_alpha = paint.coat_alpha;
-    bands_.coat_f0 = paint.coat_f0;
-    bands_.alpha_x = bands_.alpha_y = paint.alpha;
-    bands_.coat_transmittance = glm::dvec3(1.0);
     largest_f0_ = *std::max_element(paint.f0.begin(), paint.f0.end());
+    f64::BsdfParameters p{};
+    p.coat_alpha = paint.coat_alpha;
+    p.coat_f0 = paint.coat_f0;
+    p.alpha_x = p.alpha_y = paint.alpha;
+    p.coat_transmittance = glm::dvec3(1.0);
+    p.f0 = glm::dvec3(0.0, largest_f0_, largest_f0_);
+    bands_ = f64::clearcoat_prepare(p);
 
     // The diffuse layer's part depends on no direction. A band stands beside the largest, which
     // decides for all how they behave at grazing light.
-    const double index_squared = f64::coat_inverse_index_squared(bands_);
-    f64::BsdfParameters p = bands_;
     for (std::size_t k = 0; k < kSpectrumCount; ++k) {
         p.diffuse = glm::dvec3(paint.diffuse[k]);
         p.f0 = glm::dvec3(paint.f0[k], largest_f0_, largest_f0_);
-        diffuse_[k] = f64::coated_diffuse(p, index_squared).x;
+        diffuse_[k] = f64::clearcoat_prepare(p).base.diffuse.x;
     }
 }
 
 PaintBands::Side PaintBands::side_of(double mu) const {
-    // The interface's albedo is a straight line in f0: its ends come from one call of the model.
-    f64::BsdfParameters p = bands_;
-    p.f0 = glm::dvec3(0.0, largest_f0_, largest_f0_);
-    const glm::dvec3 albedo = f64::ggx_interface_albedo(p, mu);
+    // What the interface lets through is a straight line in f0: one call of the model has its ends.
+    const f64::Passage passage = f64::passage_of(bands_, mu);
     Side side;
-    side.passed = f64::coat_transmission(bands_, mu);
-    side.kept = 1.0 - albedo.x;
-    side.slope = largest_f0_ > 0.0 ? (albedo.x - albedo.y) / largest_f0_ : 0.0;
+    side.passed = passage.coat;
+    side.kept = passage.base.x;
+    side.slope = largest_f0_ > 0.0 ? (passage.base.y - passage.base.x) / largest_f0_ : 0.0;
     return side;
 }
 
@@ -46,7 +45,8 @@ bool PaintBands::lobes_at(const glm::dvec3& wi, const glm::dvec3& wo, Lobes& lob
     const double hh = glm::dot(h, h);
     if (wi.z <= 0.0 || wo.z <= 0.0 || hh < 1e-8) return false;
     const double weight = f64::fresnel_weight(largest_f0_, hh);
-    lobes.coat = f64::coat_lobe(bands_, wi, wo, hh);
+    lobes.coat = f64::coat_fresnel(bands_.coat, hh) *
+                 f64::ggx_distribution_visibility(wi, wo, hh, paint_.coat_alpha, paint_.coat_alpha);
     const double base = f64::ggx_distribution_visibility(wi, wo, hh, paint_.alpha, paint_.alpha);
     lobes.f0 = base * (1.0 - weight);
     lobes.grazing = base * f64::grazing_reflectance(largest_f0_) * weight;

@@ -43,8 +43,8 @@ class PaintBands {
     bool lobes_at(const glm::dvec3& wi, const glm::dvec3& wo, Lobes& lobes) const;
 
     SpectralPaint paint_;
-    f64::BsdfParameters bands_{};  ///< the parameters without spectra
-    Spectrum diffuse_{};           ///< the coated diffuse layer's albedo, over its share
+    f64::ClearcoatPrepared bands_{};  ///< for f0 of 0 and, in two channels, of the largest
+    Spectrum diffuse_{};              ///< the coated diffuse layer's albedo, over its share
     double largest_f0_ = 0.0;
 };
 

@@ -107,7 +107,7 @@ TEST(Fresnel, AlbedoOfACoatIsNeverTooSmall) {
                 p.coat_alpha = alpha;
                 const double truth =
                     directional_albedo(ReflectanceModel::ggx, p, direction(mu, 0.0), 128).x;
-                const double excess = f64::coat_albedo(p, mu, 1.0) - truth;
+                const double excess = f64::coat_albedo(f64::coat_prepare(p), mu, 1.0) - truth;
                 low = std::min(low, excess);
                 high = std::max(high, excess);
             }

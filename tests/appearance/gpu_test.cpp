@@ -126,6 +126,23 @@ TEST_P(OnTheGpu, GivesTheValuesOfTheCpuInFloat) {
     }
 }
 
+TEST(PreparedFields, AreAllOfThePreparedNumbers) {
+    for (const ModelInfo& model : model_table()) {
+        if (!model.prepared.type) {
+            EXPECT_TRUE(prepared_fields(model.model).empty()) << model.name;
+            continue;
+        }
+        std::size_t count = 0;
+        for (const PreparedField& field : prepared_fields(model.model)) count += field.count;
+        EXPECT_EQ(count, model.prepared.of(rounded(plain_parameters())).numbers.size())
+            << model.name;
+    }
+    const auto fields = prepared_fields(ReflectanceModel::clearcoat);
+    EXPECT_EQ(fields.front().name, "base.f0");
+    EXPECT_EQ(fields.back().name, "coat.log_transmittance");
+    EXPECT_EQ(fields.back().count, 3u);
+}
+
 INSTANTIATE_TEST_SUITE_P(Models, OnTheGpu, testing::ValuesIn(all_models()), prefix_of);
 
 }  // namespace

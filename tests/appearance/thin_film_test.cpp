@@ -96,7 +96,8 @@ TEST(ThinFilm, ColoursAreThoseOfAirysFormula) {
                 for (double nm = 0.0; nm <= 2000.0; nm += nm < 800.0 ? 20.0 : 75.0) {
                     const Layers n{1.5, film, base};
                     const glm::dvec3 truth = spectral_colour(n, nm, sine);
-                    const glm::dvec3 value = f64::film_reflectance(film_on(n, nm), hh_of(sine));
+                    const glm::dvec3 value =
+                        f64::film_reflectance(f64::film_prepare(film_on(n, nm)), hh_of(sine));
                     const glm::dvec3 away = glm::abs(value - truth);
                     errors.push_back(std::max({away.x, away.y, away.z}));
                     colours.push_back(colour_difference(value, truth));
@@ -126,7 +127,7 @@ TEST(ThinFilm, ColoursAreThoseOfAirysFormula) {
 TEST(ThinFilm, OfNoThicknessOrOfTheVarnishsIndexIsNone) {
     const auto expect_plain = [](const f64::BsdfParameters& p) {
         for (const double hh : {0.1, 2.0, 4.0}) {
-            const glm::dvec3 value = f64::film_reflectance(p, hh);
+            const glm::dvec3 value = f64::film_reflectance(f64::film_prepare(p), hh);
             for (int c = 0; c < 3; ++c) EXPECT_NEAR(value[c], p.flake_f0[c], 1e-6);
         }
     };
@@ -146,9 +147,10 @@ TEST(ThinFilm, StaysWithinWhatAWavelengthReflectsAndMovesSmoothly) {
     for (int k = 0; k < 3000; ++k) {
         f32::BsdfParameters p = extreme_parameters(random);
         const float hh = 4.0f * random.uniform_float();
-        const glm::vec3 most = f32::film_most(p);
-        const glm::vec3 value = f32::film_reflectance(p, hh);
-        const glm::dvec3 precise = f64::film_reflectance(widened(p), static_cast<double>(hh));
+        const glm::vec3 most = f32::film_prepare(p).most;
+        const glm::vec3 value = f32::film_reflectance(f32::film_prepare(p), hh);
+        const glm::dvec3 precise =
+            f64::film_reflectance(f64::film_prepare(widened(p)), static_cast<double>(hh));
         for (int c = 0; c < 3; ++c) {
             ASSERT_GE(value[c], 0.0f);
             ASSERT_LE(value[c], most[c]);
@@ -157,9 +159,11 @@ TEST(ThinFilm, StaysWithinWhatAWavelengthReflectsAndMovesSmoothly) {
         }
         p.film_nm = std::min(p.film_nm, 1999.0f);
         f64::BsdfParameters thicker = widened(p);
-        const glm::dvec3 before = f64::film_reflectance(thicker, static_cast<double>(hh));
+        const glm::dvec3 before =
+            f64::film_reflectance(f64::film_prepare(thicker), static_cast<double>(hh));
         thicker.film_nm += 0.1;
-        const glm::dvec3 after = f64::film_reflectance(thicker, static_cast<double>(hh));
+        const glm::dvec3 after =
+            f64::film_reflectance(f64::film_prepare(thicker), static_cast<double>(hh));
         for (int c = 0; c < 3; ++c) ASSERT_NEAR(before[c], after[c], 0.02) << "case " << k;
     }
 }

@@ -5,7 +5,9 @@
 #include "benchmarks/car.h"
 #include "compensation/compensation.h"
 #include "compensation/gpu_pass.h"
+#include "core/parallel.h"
 #include "gl/context.h"
+#include "gl/draw.h"
 #include "jobs/synthetic_calibration.h"
 
 namespace livery::benchmarks {
@@ -56,6 +58,46 @@ BENCHMARK(ShadingAndMixingInOpenGl)
     ->Args({1280, 0})
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
+
+/// Every part in one model, each time in another colour.
+void shade_model(
+    benchmark::State& state, ReflectanceModel model, bool film, bool glints, ShadingDevice device) {
+    set_thread_count(1);
+    Ready ready(640, device);
+    Scene look = car().looks.front();
+    for (Material& material : look.part_materials) {
+        material = Material();
+        material.model = model;
+        material.alpha = glm::dvec2(0.2);
+        material.f0 = glm::dvec3(model == ReflectanceModel::lambert ? 0.04 : 0.4);
+        material.coat_transmittance = {0.9, 0.8, 0.7};
+        if (film) material.film_nm = 350.0;
+        if (glints) material.glint_density_per_mm2 = 100.0;
+    }
+    double green = 0.0;
+    for (auto _ : state) {
+        green = green < 0.5 ? green + 0.01 : 0.1;
+        for (Material& material : look.part_materials) material.diffuse = {0.2, green, 0.3};
+        ready.render(look);
+        if (device == ShadingDevice::gl) finish_gl();
+    }
+    set_thread_count(0);
+}
+constexpr auto kProcessor = ShadingDevice::processor, kGl = ShadingDevice::gl;
+#define LIVERY_SHADE_MODEL(name, model, film, glints)                                       \
+    BENCHMARK_CAPTURE(shade_model, name, ReflectanceModel::model, film, glints, kProcessor) \
+        ->MeasureProcessCPUTime()                                                           \
+        ->Unit(benchmark::kMillisecond);                                                    \
+    BENCHMARK_CAPTURE(shade_model, name##_gl, ReflectanceModel::model, film, glints, kGl)   \
+        ->MeasureProcessCPUTime()                                                           \
+        ->Unit(benchmark::kMillisecond);
+LIVERY_SHADE_MODEL(lambert, lambert, false, false)
+LIVERY_SHADE_MODEL(ggx, ggx, false, false)
+LIVERY_SHADE_MODEL(clearcoat, clearcoat, false, false)
+LIVERY_SHADE_MODEL(car_paint, car_paint, false, false)
+LIVERY_SHADE_MODEL(car_paint_film, car_paint, true, false)
+LIVERY_SHADE_MODEL(car_paint_glints, car_paint, false, true)
+#undef LIVERY_SHADE_MODEL
 
 void Correction(benchmark::State& state) {
     const Threads threads(state);

@@ -151,8 +151,7 @@ TEST_F(GltfMaterial, AnIridescentFilmInAirHasAirysReflectance) {
     EXPECT_NO_THROW(parameters_of_f64(paint));  // in range
     // A film much thinner than light reflects what its base does; the default one does not.
     const auto straight = [](const Material& of) {
-        f64::BsdfParameters p = parameters_of_f64(of);
-        return f64::film_reflectance(p, 4.0);
+        return f64::film_reflectance(f64::film_prepare(parameters_of_f64(of)), 4.0);
     };
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(straight(paint)[c], 0.7, 0.005);
     const Material usual = paint_of(R"({"pbrMetallicRoughness":

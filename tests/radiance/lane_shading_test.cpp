@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include "appearance/bsdf.h"
+#include "appearance/model_table.h"
 #include "radiance/light/mirror_quadrature.h"
 
 namespace livery {
@@ -62,6 +64,30 @@ struct Inputs {
     }
 };
 
+/// The last one twice, with glints too.
+constexpr int kGlints = 4;
+constexpr std::array kModels{ReflectanceModel::lambert,
+                             ReflectanceModel::ggx,
+                             ReflectanceModel::clearcoat,
+                             ReflectanceModel::car_paint,
+                             ReflectanceModel::car_paint};
+
+PreparedPaint prepared_of(int model) {
+    BsdfParameters p{};
+    p.diffuse = {0.2f, 0.4f, 0.8f};
+    p.f0 = {0.3f, 0.1f, 0.05f};
+    p.alpha_x = 0.3f;
+    p.alpha_y = 0.15f;
+    p.flake_f0 = {0.1f, 0.2f, 0.5f};
+    p.flake_alpha = 0.1f;
+    p.film_nm = 320.0f;
+    p.film_eta = 2.3f;
+    p.coat_alpha = 0.02f;
+    p.coat_f0 = 0.04f;
+    p.coat_transmittance = {0.93f, 0.25f, 1e-6f};
+    return model_info(kModels[static_cast<std::size_t>(model)]).prepared.of(p);
+}
+
 std::vector<float> shaded(const LaneFunctions& functions,
                           int model,
                           bool environment,
@@ -75,19 +101,12 @@ std::vector<float> shaded(const LaneFunctions& functions,
     const std::array<float, 2> radius2{7e-4f, 0.0f};
     std::vector<float> colours(kBlocks * kLaneBlock * 4);
     LaneJob job;
-    job.paint = {1.5f,
-                 {0.2f, 0.4f, 0.8f},
-                 {0.1f, 0.3f, 0.7f},
-                 {0.3f, 0.1f, 0.05f},
-                 {0.3f, 0.15f, 0.02f, 0.04f},
-                 {1.0f, 0.5f, 0.3f, -0.05f},
-                 {0.0f, 0.6f, 0.2f, -0.05f},
-                 {0.1f, 0.2f, 0.5f, 0.1f},
-                 {0.5f, 0.6f, 0.8f},
-                 {1.0f, 0.55f, 0.6f, -0.06f},
-                 {320.0f, 2.3f},
-                 {-0.1f, -2.0f, -19.9f},
-                 0.44f};
+    job.exposure = 1.5f;
+    const PreparedPaint paint = prepared_of(model);
+    job.prepared = paint.numbers.data();
+    const std::array<float, 12> layers{
+        1.0f, 0.5f, 0.3f, -0.05f, 0.0f, 0.6f, 0.2f, -0.05f, 1.0f, 0.55f, 0.6f, -0.06f};
+    job.lobe_layers = layers.data();
     job.eye = inputs.eye.data();
     job.lights = lights.data();
     job.light_irradiance = irradiance.data();
@@ -103,13 +122,23 @@ std::vector<float> shaded(const LaneFunctions& functions,
     job.glint_density = 200.0f;
     job.shaded = colours.data();
     job.end_block = kBlocks;
-    const std::array models{functions.lambert,
-                            functions.ggx[environment ? 1 : 0],
-                            functions.clearcoat[environment ? 1 : 0],
-                            functions.car_paint[environment ? 1 : 0],
-                            functions.car_paint_glints[environment ? 1 : 0]};
-    models[static_cast<std::size_t>(model)](job);
+    const ModelInfo& info = model_info(kModels[static_cast<std::size_t>(model)]);
+    functions.of(info.prepared.type, environment, model == kGlints)(job);
     return colours;
+}
+
+TEST(LaneShading, KnowsEveryModelThatIsPrepared) {
+    int known = 0;
+    for (const ModelInfo& model : model_table()) {
+        if (!model.prepared.type) continue;
+        ++known;
+        for (std::size_t k = 0; k < lanes_available(); ++k) {
+            EXPECT_NE(lanes_available(k).of(model.prepared.type, true, false), nullptr)
+                << model.name;
+        }
+    }
+    EXPECT_EQ(known, 4);
+    EXPECT_EQ(best_lanes().of("NoSuchStruct", true, false), nullptr);
 }
 
 TEST(LaneShading, EveryInstructionSetGivesTheSameBits) {
@@ -174,13 +203,13 @@ TEST(LaneShading, WritesItsBlocksOnly) {
     const Inputs inputs;
     std::vector<float> colours(kBlocks * kLaneBlock * 4, -1.0f);
     LaneJob job;
-    job.paint.exposure = 1.0f;
-    for (float& channel : job.paint.diffuse) channel = 0.5f;
+    const std::array<float, 3> diffuse{0.5f, 0.5f, 0.5f};
+    job.prepared = diffuse.data();
     job.lit = inputs.diffuse.data();
     job.shaded = colours.data();
     job.first_block = 3;
     job.end_block = 5;
-    best_lanes().lambert(job);
+    best_lanes().of("LambertPrepared", false, false)(job);
     for (std::size_t i = 0; i < colours.size(); ++i) {
         const std::size_t block = i / (4 * kLaneBlock);
         EXPECT_EQ(colours[i] < 0.0f, block < 3 || block >= 5) << i;

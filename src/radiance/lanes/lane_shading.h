@@ -12,15 +12,13 @@ namespace livery {
 /// then the next one's.
 inline constexpr std::size_t kLaneBlock = 8;
 
-/// The uniforms of shade.glsl.
-struct PaintUniforms {
-    float exposure, diffuse[3], sky_diffuse[3], f0[3], alpha[4], base_layers[4], coat_layers[4];
-    float flakes[4], flakes_most[3], flake_layers[4], film[2];  ///< film[0] > 0: it has one
-    float coat_log_transmittance[3], coat_inverse_index_squared;
-};
+/// Lobes that a model mirrors with, at most.
+inline constexpr std::size_t kMostLobes = 3;
 
 struct LaneJob {
-    PaintUniforms paint;
+    float exposure = 1.0f;
+    const float* prepared = nullptr;          ///< PreparedPaint::numbers
+    const float* lobe_layers = nullptr;       ///< 4 of each lobe, see u_lobe_layers of shade.glsl
     const float* eye = nullptr;               ///< 4 channels
     const float* const* lights = nullptr;     ///< 4 channels each
     const float* light_irradiance = nullptr;  ///< R, G, B of each
@@ -41,13 +39,12 @@ struct LaneJob {
     std::size_t first_block = 0, end_block = 0;
 };
 
+using LaneFunction = void (*)(const LaneJob&);
+
 struct LaneFunctions {
     const char* instruction_set;
-    void (*lambert)(const LaneJob&);
-    void (*ggx[2])(const LaneJob&);        ///< without and with an environment
-    void (*clearcoat[2])(const LaneJob&);  ///< the same
-    void (*car_paint[2])(const LaneJob&);  ///< the same
-    void (*car_paint_glints[2])(const LaneJob&);
+    /// What shades a model that prepares this struct ("CarPaintPrepared"); null: none.
+    LaneFunction (*of)(const char* prepared, bool environment, bool glints);
 };
 
 /// The best that this processor has, first; "portable" is always the last.

@@ -15,19 +15,6 @@ namespace {
 /// Small enough that two threads end together, large enough that starting one is nothing.
 constexpr std::size_t kBlocksAtOnce = 64, kPixelsAtOnce = 2048;
 
-/// Of a model with its own shading.
-auto lanes_of(ReflectanceModel model,
-              const LaneFunctions& functions,
-              bool environment,
-              bool glints) {
-    if (model == ReflectanceModel::lambert) return functions.lambert;
-    const auto& of_model = glints                                 ? functions.car_paint_glints
-                           : model == ReflectanceModel::ggx       ? functions.ggx
-                           : model == ReflectanceModel::clearcoat ? functions.clearcoat
-                                                                  : functions.car_paint;
-    return of_model[environment ? 1 : 0];
-}
-
 }  // namespace
 
 ProcessorShading::ProcessorShading(const SurfaceMap& map, const PackedLayout& layout)
@@ -89,15 +76,19 @@ void ProcessorShading::shade(const Material& material,
         }
     }
     std::function<void(const LaneJob&)> shade_blocks;
+    PaintUniforms uniforms;
     if (has_own_shading(material.model)) {
-        job.paint = uniforms_of(material, exposure_ev);
+        uniforms = uniforms_of(material, exposure_ev);
+        job.exposure = uniforms.exposure;
+        job.prepared = uniforms.paint.numbers.data();
+        job.lobe_layers = &uniforms.lobe_layers[0].x;
         const bool glints = !lights.empty() && has_glints(material);
         if (glints) {
             job.places = inputs.places.floats(0);
             job.glint_density =
                 static_cast<float>(glint_density_on_mock_up(material, inputs.product_scale));
         }
-        shade_blocks = lanes_of(material.model, functions, environment, glints);
+        shade_blocks = functions.of(model.prepared.type, environment, glints);
     } else {
         shade_blocks = [&model, any = any_model_uniforms_of(material, exposure_ev)](
                            const LaneJob& some) { shade_any_model(some, model, any); };
