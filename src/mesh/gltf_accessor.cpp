@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 #include "core/error.h"
 #include "mesh/gltf_file.h"
@@ -10,7 +9,6 @@ namespace livery {
 
 namespace {
 
-constexpr int kMaxInt = std::numeric_limits<int>::max();
 /// Over everything in one file.
 constexpr std::size_t kMaxElements = 1u << 25u;
 /// As many are taken on a file's word: more must be there as bytes, or a small file could declare
@@ -18,25 +16,17 @@ constexpr std::size_t kMaxElements = 1u << 25u;
 constexpr std::size_t kBelievedElements = 1u << 20u;
 
 enum ComponentType {
-    byte = 5120,
-    ubyte = 5121,
-    int16 = 5122,
-    uint16 = 5123,
-    uint32 = 5125,
-    real = 5126
+    byte = TINYGLTF_COMPONENT_TYPE_BYTE,
+    ubyte = TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE,
+    int16 = TINYGLTF_COMPONENT_TYPE_SHORT,
+    uint16 = TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
+    uint32 = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
+    real = TINYGLTF_COMPONENT_TYPE_FLOAT
 };
 
 std::size_t size_of(int component_type) {
-    switch (component_type) {
-        case byte:
-        case ubyte:
-            return 1;
-        case int16:
-        case uint16:
-            return 2;
-        default:
-            return 4;
-    }
+    return static_cast<std::size_t>(
+        tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(component_type)));
 }
 
 template <typename T>
@@ -79,19 +69,28 @@ double full_scale(int type) {
     }
 }
 
-std::size_t width_of(const std::string& type) {
-    if (type == "SCALAR") return 1;
-    return static_cast<std::size_t>(type.back() - '0');  // VEC2, VEC3, VEC4
+const char* name_of(int type) {
+    switch (type) {
+        case TINYGLTF_TYPE_SCALAR:
+            return "SCALAR";
+        case TINYGLTF_TYPE_VEC2:
+            return "VEC2";
+        case TINYGLTF_TYPE_VEC3:
+            return "VEC3";
+        default:
+            return "VEC4";
+    }
 }
 
-std::string join(const std::vector<std::string>& names) {
+template <typename Name>
+std::string join(const std::vector<int>& values, const Name& name) {
     std::string text;
-    for (const auto& name : names) text += (text.empty() ? "" : " or ") + name;
+    for (const int value : values) text += (text.empty() ? "" : " or ") + name(value);
     return text;
 }
 
-JsonReader member_at(const JsonReader& root, std::string_view array, const JsonReader& index) {
-    return root[array].at(index_into(root, array, index));
+bool is_one_of(int value, const std::vector<int>& values) {
+    return std::find(values.begin(), values.end(), value) != values.end();
 }
 
 }  // namespace
@@ -109,117 +108,125 @@ struct GltfAccessors::Shape {
     }
 };
 
-GltfAccessors::Shape GltfAccessors::shape_of(const JsonReader& accessor,
-                                             const GltfElementRule& rule) const {
-    Shape shape;
-    shape.count = static_cast<std::size_t>(accessor["count"].integer(1, kMaxInt));
+GltfAccessors::Shape GltfAccessors::shape_of(int index, const GltfElementRule& rule) const {
+    const auto k = static_cast<std::size_t>(index);
+    const tinygltf::Accessor& accessor = gltf_.model.accessors[k];
+    const auto reader = gltf_.root()["accessors"].at(k);
     std::size_t bytes = 0;
     for (const std::string& content : gltf_.contents) bytes += content.size();
     const std::size_t most = std::min(kMaxElements, kBelievedElements + bytes);
-    if (shape.count > most - elements_read_) {
-        accessor["count"].fail(
-            std::to_string(shape.count),
+    if (accessor.count > most - elements_read_) {
+        reader["count"].fail(
+            std::to_string(accessor.count),
             "at most " + std::to_string(most) + " in all accessors of a file of this length");
     }
-    const auto type = accessor["type"];
-    if (std::find(rule.types.begin(), rule.types.end(), type.text()) == rule.types.end()) {
-        type.fail(type.found(), join(rule.types));
+    if (!is_one_of(accessor.type, rule.types)) {
+        const auto name = [](int type) { return std::string(name_of(type)); };
+        reader["type"].fail(reader["type"].found(), join(rule.types, name));
     }
-    shape.width = width_of(type.text());
-    const auto component = accessor["componentType"];
-    shape.component_type = component.integer(0, kMaxInt);
-    const auto& allowed = rule.component_types;
-    if (std::find(allowed.begin(), allowed.end(), shape.component_type) == allowed.end()) {
-        std::vector<std::string> names;
-        for (const int one : allowed) names.push_back(std::to_string(one));
-        component.fail(component.found(), join(names));
+    if (!is_one_of(accessor.componentType, rule.component_types)) {
+        const auto name = [](int type) { return std::to_string(type); };
+        reader["componentType"].fail(name(accessor.componentType),
+                                     join(rule.component_types, name));
     }
-    shape.normalized = accessor.has("normalized") && accessor["normalized"].boolean();
-    if (shape.normalized && (shape.component_type == uint32 || shape.component_type == real)) {
-        accessor["normalized"].fail("true", "false for component type " + component.found());
+    if (accessor.normalized &&
+        (accessor.componentType == uint32 || accessor.componentType == real)) {
+        reader["normalized"].fail(
+            "true", "false for component type " + std::to_string(accessor.componentType));
     }
-    return shape;
+    const int width = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type));
+    return {accessor.count,
+            static_cast<std::size_t>(width),
+            accessor.componentType,
+            accessor.normalized};
 }
 
-const char* GltfAccessors::find_bytes(const JsonReader& place,
+const char* GltfAccessors::find_bytes(const std::string& place,
+                                      int view,
+                                      std::size_t offset,
                                       std::size_t count,
                                       std::size_t element_size,
                                       std::size_t& stride) const {
-    const auto view = member_at(gltf_.root(), "bufferViews", place["bufferView"]);
-    const auto buffer_index = view["buffer"];
-    member_at(gltf_.root(), "buffers", buffer_index);
-    const std::string_view buffer =
-        gltf_.buffer(static_cast<std::size_t>(buffer_index.integer(0, kMaxInt)));
-
+    const auto k = static_cast<std::size_t>(view);
+    const std::string_view bytes = gltf_.view(k);
+    const std::size_t said = gltf_.model.bufferViews[k].byteStride;
+    stride = said > 0 ? said : element_size;
+    if (stride < element_size) {
+        gltf_.fail("bufferViews[" + std::to_string(view) + "].byteStride",
+                   std::to_string(stride),
+                   "at least the element's " + std::to_string(element_size) + " bytes");
+    }
     // All below 2^31, so that 64-bit sums and products stay exact.
-    const auto view_offset =
-        static_cast<std::uint64_t>(integer_or(view, "byteOffset", 0, kMaxInt, 0));
-    const auto view_size = static_cast<std::uint64_t>(view["byteLength"].integer(1, kMaxInt));
-    if (view_offset + view_size > buffer.size()) {
-        view["byteLength"].fail(
-            std::to_string(view_size) + " from byte " + std::to_string(view_offset),
-            "an end within the buffer's " + std::to_string(buffer.size()) + " bytes");
-    }
-    stride = element_size;
-    if (view.has("byteStride")) {
-        stride = static_cast<std::size_t>(view["byteStride"].integer(1, 252));
-        if (stride < element_size) {
-            view["byteStride"].fail(
-                std::to_string(stride),
-                "at least the element's " + std::to_string(element_size) + " bytes");
-        }
-    }
-    const auto offset = static_cast<std::uint64_t>(integer_or(place, "byteOffset", 0, kMaxInt, 0));
     const std::uint64_t needed = offset + stride * (count - 1) + element_size;
-    if (needed > view_size) {
-        place.fail(
+    if (needed > bytes.size()) {
+        gltf_.fail(
+            place,
             std::to_string(count) + " elements that need " + std::to_string(needed) + " bytes",
-            "at most the buffer view's " + std::to_string(view_size));
+            "at most the buffer view's " + std::to_string(bytes.size()));
     }
-    return buffer.data() + view_offset + offset;
+    return bytes.data() + offset;
 }
 
-void GltfAccessors::overlay_sparse(const JsonReader& accessor,
-                                   const Shape& shape,
-                                   GltfNumbers& numbers) const {
-    const auto sparse = accessor["sparse"];
-    const auto count =
-        static_cast<std::size_t>(sparse["count"].integer(1, static_cast<int>(shape.count)));
+void GltfAccessors::overlay_sparse(int index, const Shape& shape, GltfNumbers& numbers) const {
+    const auto& sparse = gltf_.model.accessors[static_cast<std::size_t>(index)].sparse;
+    const std::string field = "accessors[" + std::to_string(index) + "].sparse";
+    const auto count = static_cast<std::size_t>(sparse.count);
+    if (count > shape.count) {
+        gltf_.fail(field + ".count",
+                   std::to_string(count),
+                   "a whole number between 1 and " + std::to_string(shape.count));
+    }
     Shape places;
-    const auto component = sparse["indices"]["componentType"];
-    places.component_type = component.integer(0, kMaxInt);
-    if (places.component_type != ubyte && places.component_type != uint16 &&
-        places.component_type != uint32) {
-        component.fail(component.found(), "5121 or 5123 or 5125");
+    places.component_type = sparse.indices.componentType;
+    if (!is_one_of(places.component_type, {ubyte, uint16, uint32})) {
+        gltf_.fail(field + ".indices.componentType",
+                   std::to_string(places.component_type),
+                   "5121 or 5123 or 5125");
     }
     std::size_t place_stride = 0, value_stride = 0;
-    const char* place = find_bytes(sparse["indices"], count, places.element_size(), place_stride);
-    const char* value = find_bytes(sparse["values"], count, shape.element_size(), value_stride);
+    const char* place = find_bytes(field + ".indices",
+                                   sparse.indices.bufferView,
+                                   static_cast<std::size_t>(sparse.indices.byteOffset),
+                                   count,
+                                   places.element_size(),
+                                   place_stride);
+    const char* value = find_bytes(field + ".values",
+                                   sparse.values.bufferView,
+                                   static_cast<std::size_t>(sparse.values.byteOffset),
+                                   count,
+                                   shape.element_size(),
+                                   value_stride);
     double last = -1.0;
     for (std::size_t k = 0; k < count; ++k, place += place_stride, value += value_stride) {
-        const double index = places.decode(place);
-        if (index <= last || index >= static_cast<double>(shape.count)) {
-            sparse["indices"].fail(std::to_string(static_cast<std::uint64_t>(index)),
-                                   "rising indices below " + std::to_string(shape.count));
+        const double at = places.decode(place);
+        if (at <= last || at >= static_cast<double>(shape.count)) {
+            gltf_.fail(field + ".indices",
+                       std::to_string(static_cast<std::uint64_t>(at)),
+                       "rising indices below " + std::to_string(shape.count));
         }
-        last = index;
-        double* element = numbers.values.data() + static_cast<std::size_t>(index) * shape.width;
+        last = at;
+        double* element = numbers.values.data() + static_cast<std::size_t>(at) * shape.width;
         for (std::size_t c = 0; c < shape.width; ++c) {
             element[c] = shape.decode(value + c * size_of(shape.component_type));
         }
     }
 }
 
-const GltfNumbers& GltfAccessors::read(const JsonReader& index, const GltfElementRule& rule) {
-    const auto accessor = member_at(gltf_.root(), "accessors", index);
-    const Shape shape = shape_of(accessor, rule);
-    const int key = index.integer(0, kMaxInt);
-    if (const auto known = read_.find(key); known != read_.end()) return known->second;
+const GltfNumbers& GltfAccessors::read(int index, const GltfElementRule& rule) {
+    const Shape shape = shape_of(index, rule);
+    if (const auto known = read_.find(index); known != read_.end()) return known->second;
 
+    const tinygltf::Accessor& accessor = gltf_.model.accessors[static_cast<std::size_t>(index)];
+    const std::string field = "accessors[" + std::to_string(index) + "]";
     std::size_t stride = 0;
     const char* bytes = nullptr;
-    if (accessor.has("bufferView")) {
-        bytes = find_bytes(accessor, shape.count, shape.element_size(), stride);
+    if (gltf_.has_view(accessor)) {
+        bytes = find_bytes(field,
+                           accessor.bufferView,
+                           accessor.byteOffset,
+                           shape.count,
+                           shape.element_size(),
+                           stride);
     }
     elements_read_ += shape.count;
     GltfNumbers numbers;
@@ -231,13 +238,14 @@ const GltfNumbers& GltfAccessors::read(const JsonReader& index, const GltfElemen
                 shape.decode(bytes + k * stride + c * size_of(shape.component_type));
         }
     }
-    if (accessor.has("sparse")) overlay_sparse(accessor, shape, numbers);
+    if (accessor.sparse.isSparse) overlay_sparse(index, shape, numbers);
     for (std::size_t k = 0; k < numbers.values.size(); ++k) {
         if (std::isfinite(numbers.values[k])) continue;
-        accessor.fail("a number that is not finite in element " + std::to_string(k / shape.width),
-                      "finite numbers");
+        gltf_.fail(field,
+                   "a number that is not finite in element " + std::to_string(k / shape.width),
+                   "finite numbers");
     }
-    return read_.emplace(key, std::move(numbers)).first->second;
+    return read_.emplace(index, std::move(numbers)).first->second;
 }
 
 }  // namespace livery

@@ -18,14 +18,22 @@ struct PlacedNode {
 };
 
 /// The nodes of the shown scene. glTF's graph is a forest: a second way to a node is a mistake.
-std::vector<PlacedNode> placed_nodes(const JsonReader& root);
+/// `notes` receives those that are hidden.
+std::vector<PlacedNode> placed_nodes(const GltfFile& gltf, std::vector<std::string>& notes);
+
+/// A primitive and where it stands in the file.
+struct GltfPrimitive {
+    const tinygltf::Primitive& content;
+    std::string field;  ///< "meshes[0].primitives[2]"
+    bool quantized = false;
+};
 
 /// One primitive in world millimetres, all of part 0 but without the part itself. Empty when
 /// nothing of it is left. `notes` receives what was dropped or repaired.
-Mesh build_primitive(GltfAccessors& accessors,
-                     const JsonReader& primitive,
+Mesh build_primitive(const GltfFile& gltf,
+                     GltfAccessors& accessors,
+                     const GltfPrimitive& primitive,
                      const glm::dmat4& world_from_node,
-                     bool quantized,
                      const std::string& part_name,
                      std::vector<std::string>& notes);
 

@@ -19,26 +19,28 @@ constexpr double kFarthestMm = 1e9;
 using Notes = std::vector<std::string>;
 
 /// The triangles of a primitive as vertex indices, whatever its mode. Nothing for points and lines.
-std::vector<glm::uvec3> read_triangles(GltfAccessors& accessors,
-                                       const JsonReader& primitive,
+std::vector<glm::uvec3> read_triangles(const GltfFile& gltf,
+                                       GltfAccessors& accessors,
+                                       const GltfPrimitive& primitive,
                                        std::size_t vertex_count,
                                        const std::string& name,
                                        Notes& notes) {
-    const int mode = integer_or(primitive, "mode", 0, 6, 4);
-    if (mode < 4) {
+    const int mode = primitive.content.mode;
+    if (mode < TINYGLTF_MODE_TRIANGLES) {
         notes.push_back(
             fmt::format("part \"{}\": {} dropped", name, mode == 0 ? "points" : "lines"));
         return {};
     }
     std::vector<std::uint32_t> order;
-    if (primitive.has("indices")) {
+    if (primitive.content.indices >= 0) {
         const auto& numbers =
-            accessors.read(primitive["indices"], {{"SCALAR"}, {5121, 5123, 5125}});
+            accessors.read(primitive.content.indices, {{TINYGLTF_TYPE_SCALAR}, {5121, 5123, 5125}});
         order.reserve(numbers.values.size());
         for (const double index : numbers.values) {
             if (index >= static_cast<double>(vertex_count)) {
-                primitive["indices"].fail(fmt::format("the vertex {:.0f}", index),
-                                          fmt::format("indices below {}", vertex_count));
+                gltf.fail(primitive.field + ".indices",
+                          fmt::format("the vertex {:.0f}", index),
+                          fmt::format("indices below {}", vertex_count));
             }
             order.push_back(static_cast<std::uint32_t>(index));
         }
@@ -47,8 +49,9 @@ std::vector<glm::uvec3> read_triangles(GltfAccessors& accessors,
         for (std::size_t k = 0; k < vertex_count; ++k) order[k] = static_cast<std::uint32_t>(k);
     }
     if (order.size() < 3 || (mode == 4 && order.size() % 3 != 0)) {
-        primitive.fail(fmt::format("{} corners", order.size()),
-                       mode == 4 ? "a multiple of three" : "three or more");
+        gltf.fail(primitive.field,
+                  fmt::format("{} corners", order.size()),
+                  mode == 4 ? "a multiple of three" : "three or more");
     }
     std::vector<glm::uvec3> triangles;
     if (mode == 4) {
@@ -74,28 +77,47 @@ struct Attributes {
     const GltfNumbers* uvs = nullptr;
 };
 
-Attributes read_attributes(GltfAccessors& accessors, const JsonReader& primitive, bool quantized) {
-    const auto attributes = primitive["attributes"];
-    const auto types = [&](std::vector<int> always, std::vector<int> when_quantized) {
-        if (quantized) always.insert(always.end(), when_quantized.begin(), when_quantized.end());
-        return always;
-    };
+Attributes read_attributes(const GltfFile& gltf,
+                           GltfAccessors& accessors,
+                           const GltfPrimitive& primitive) {
+    const auto& attributes = primitive.content.attributes;
     Attributes found;
-    found.positions = &accessors.read(attributes["POSITION"],
-                                      {{"VEC3"}, types({5126}, {5120, 5121, 5122, 5123})});
-    const auto optional = [&](std::string_view key, const GltfElementRule& rule) {
-        if (!attributes.has(key)) return static_cast<const GltfNumbers*>(nullptr);
-        const GltfNumbers* numbers = &accessors.read(attributes[key], rule);
-        if (numbers->count() != found.positions->count()) {
-            attributes[key].fail(fmt::format("{} elements", numbers->count()),
-                                 fmt::format("{}, as many as positions", found.positions->count()));
+    const auto read = [&](const char* key,
+                          int type,
+                          std::vector<int> component_types,
+                          const std::vector<int>& when_quantized) {
+        const auto index = attributes.find(key);
+        if (index == attributes.end()) return static_cast<const GltfNumbers*>(nullptr);
+        if (primitive.quantized) {
+            component_types.insert(
+                component_types.end(), when_quantized.begin(), when_quantized.end());
+        }
+        const GltfNumbers* numbers = &accessors.read(index->second, {{type}, component_types});
+        if (found.positions && numbers->count() != found.positions->count()) {
+            gltf.fail(primitive.field + ".attributes." + key,
+                      fmt::format("{} elements", numbers->count()),
+                      fmt::format("{}, as many as positions", found.positions->count()));
         }
         return numbers;
     };
-    found.normals = optional("NORMAL", {{"VEC3"}, types({5126}, {5120, 5122})});
-    found.tangents = optional("TANGENT", {{"VEC4"}, types({5126}, {5120, 5122})});
-    found.uvs = optional("TEXCOORD_0", {{"VEC2"}, types({5126, 5121, 5123}, {5120, 5122})});
+    found.positions = read("POSITION", TINYGLTF_TYPE_VEC3, {5126}, {5120, 5121, 5122, 5123});
+    if (!found.positions) return found;
+    found.normals = read("NORMAL", TINYGLTF_TYPE_VEC3, {5126}, {5120, 5122});
+    found.tangents = read("TANGENT", TINYGLTF_TYPE_VEC4, {5126}, {5120, 5122});
+    found.uvs = read("TEXCOORD_0", TINYGLTF_TYPE_VEC2, {5126, 5121, 5123}, {5120, 5122});
     return found;
+}
+
+/// A compressed primitive may have its numbers a second time, for those who do not unpack it.
+void check_compression(const GltfFile& gltf, const GltfPrimitive& primitive) {
+    const char* const draco = "KHR_draco_mesh_compression";
+    if (!primitive.content.extensions.contains(draco)) return;
+    for (const auto& [name, index] : primitive.content.attributes) {
+        if (gltf.has_view(gltf.model.accessors[static_cast<std::size_t>(index)])) continue;
+        gltf.fail(primitive.field + ".extensions." + draco,
+                  name + " compressed by Draco alone",
+                  "a mesh without it (export without compression)");
+    }
 }
 
 /// Keeps the vertices that triangles use, in rising order, and renames them.
@@ -181,18 +203,26 @@ void fill_tangents(Mesh& mesh,
 
 }  // namespace
 
-Mesh build_primitive(GltfAccessors& accessors,
-                     const JsonReader& primitive,
+Mesh build_primitive(const GltfFile& gltf,
+                     GltfAccessors& accessors,
+                     const GltfPrimitive& primitive,
                      const glm::dmat4& world_from_node,
-                     bool quantized,
                      const std::string& part_name,
                      Notes& notes) {
-    const Attributes from = read_attributes(accessors, primitive, quantized);
+    check_compression(gltf, primitive);
+    const Attributes from = read_attributes(gltf, accessors, primitive);
+    if (!from.positions) {
+        notes.push_back(fmt::format("{}.attributes has no POSITION; dropped", primitive.field));
+        return {};
+    }
     const std::size_t vertex_count = from.positions->count();
-    if (primitive.has("targets")) {
+    if (primitive.content.attributes.contains("COLOR_0")) {
+        notes.push_back(fmt::format("part \"{}\": colours of vertices are not read", part_name));
+    }
+    if (!primitive.content.targets.empty()) {
         notes.push_back(fmt::format("part \"{}\": morph targets are not read", part_name));
     }
-    auto triangles = read_triangles(accessors, primitive, vertex_count, part_name, notes);
+    auto triangles = read_triangles(gltf, accessors, primitive, vertex_count, part_name, notes);
 
     const glm::dmat3 linear(world_from_node);
     const auto world_mm = [&](std::uint32_t vertex) {
@@ -200,9 +230,9 @@ Mesh build_primitive(GltfAccessors& accessors,
         const glm::dvec3 position =
             kMmPerMetre * glm::dvec3(world_from_node * glm::dvec4(p[0], p[1], p[2], 1.0));
         if (!(glm::length(position) < kFarthestMm)) {
-            primitive["attributes"]["POSITION"].fail(
-                fmt::format("a vertex {:g} mm away", glm::length(position)),
-                fmt::format("positions within {:g} mm", kFarthestMm));
+            gltf.fail(primitive.field + ".attributes.POSITION",
+                      fmt::format("a vertex {:g} mm away", glm::length(position)),
+                      fmt::format("positions within {:g} mm", kFarthestMm));
         }
         return position;
     };

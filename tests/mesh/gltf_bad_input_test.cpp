@@ -84,7 +84,7 @@ const Broken kBroken[] = {
      {"meshes[0].primitives[0].mode: found 7"}},
     {"no positions",
      [](auto& g) { g.attributes().erase("POSITION"); },
-     {"meshes[0].primitives[0].attributes.POSITION: found nothing"}},
+     {"meshes: found no triangles (meshes[0].primitives[0].attributes has no POSITION; dropped"}},
     {"fewer normals than positions",
      [](auto& g) { g.accessor(1)["count"] = 3; },
      {"attributes.NORMAL: found 3 elements, expected 4, as many as positions"}},
@@ -143,6 +143,29 @@ const Broken kBroken[] = {
     {"unknown required extension",
      [](auto& g) { g.json["extensionsRequired"] = {"KHR_draco_mesh_compression"}; },
      {"extensionsRequired[0]: found the extension KHR_draco_mesh_compression"}},
+    {"compressed by Draco without its numbers a second time",
+     [](auto& g) {
+         g.primitive()["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", 0}};
+         g.accessor(0).erase("bufferView");
+     },
+     {"meshes[0].primitives[0].extensions.KHR_draco_mesh_compression: found POSITION compressed"}},
+    {"required meshopt compression",
+     [](auto& g) { g.json["extensionsRequired"] = {"EXT_meshopt_compression"}; },
+     {"extensionsRequired[0]: found the extension EXT_meshopt_compression"}},
+    {"compressed by meshopt without its numbers a second time",
+     [](auto& g) {
+         g.json["buffers"].push_back({{"byteLength", 48}});
+         g.view(0)["buffer"] = 1;
+         g.view(0)["byteOffset"] = 0;
+         g.view(0)["extensions"]["EXT_meshopt_compression"] = {{"buffer", 0}};
+     },
+     {"bufferViews[0]: found a view compressed by EXT_meshopt_compression"}},
+    {"stride that is no multiple of four",
+     [](auto& g) { g.view(0)["byteStride"] = 14; },
+     {"bufferViews[0].byteStride: found 14, expected a multiple of 4"}},
+    {"unknown element type",
+     [](auto& g) { g.accessor(0)["type"] = "VEC9"; },
+     {"accessors[0].type: found \"VEC9\", expected VEC3"}},
     {"newer version",
      [](auto& g) { g.json["asset"]["version"] = "3.0"; },
      {"asset.version: found \"3.0\", expected glTF 2.0"}},
@@ -189,7 +212,10 @@ const Broken kBroken[] = {
      {"accessors[0].sparse.indices: found 4, expected rising indices below 4"}},
     {"more sparse elements than elements",
      [](auto& g) {
-         g.accessor(0)["sparse"] = {{"count", 5}};
+         const int places = g.add_view(Words{0, 1, 2, 3, 4}), values = g.add_view(Floats(15));
+         g.accessor(0)["sparse"] = {{"count", 5},
+                                    {"indices", {{"bufferView", places}, {"componentType", 5123}}},
+                                    {"values", {{"bufferView", values}}}};
      },
      {"accessors[0].sparse.count: found 5"}},
     {"buffer on the network",

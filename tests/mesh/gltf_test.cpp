@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
@@ -226,15 +227,76 @@ TEST_F(LoadMesh, SparseAccessorsReplaceElements) {
     EXPECT_EQ(mesh.positions_mm[0], glm::vec3(0.0f));
 }
 
+TEST_F(LoadMesh, IndicesWithoutABufferViewAreZeros) {
+    GltfBuilder plate = make_plate();
+    plate.accessor(3).erase("bufferView");
+    const int places = plate.add_view(Words{1, 2});
+    const int values = plate.add_view(Words{1, 2});
+    plate.accessor(3)["sparse"] = {{"count", 2},
+                                   {"indices", {{"bufferView", places}, {"componentType", 5123}}},
+                                   {"values", {{"bufferView", values}}}};
+    EXPECT_EQ(load(plate).triangles.size(), 1u);
+}
+
+TEST_F(LoadMesh, WholeNumbersMayBeWrittenWithAPoint) {
+    GltfBuilder plate = make_plate();
+    plate.accessor(0)["count"] = 4.0;
+    plate.accessor(0)["componentType"] = 5126.0;
+    plate.view(0)["byteLength"] = 48.0;
+    plate.node()["mesh"] = 0.0;
+    plate.primitive()["mode"] = 4.0;
+    EXPECT_NEAR(area_mm2(load(plate)), 1e6, 1.0);
+}
+
+TEST_F(LoadMesh, DataUrisNeedNoBase64) {
+    GltfBuilder corner;
+    corner.attributes()["POSITION"] =
+        corner.add(Floats{0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3", 5126, 3);
+    std::string text;
+    for (const char c : corner.binary) {
+        text += fmt::format("%{:02X}", static_cast<unsigned>(static_cast<unsigned char>(c)));
+    }
+    corner.json["buffers"][0]["uri"] = "data:application/octet-stream," + text;
+    EXPECT_NEAR(area_mm2(load_mesh(folder_.write("a.gltf", corner.json.dump()))), 5e5, 1.0);
+}
+
+TEST_F(LoadMesh, CompressedPrimitivesAreReadWhereTheirNumbersAreThereASecondTime) {
+    GltfBuilder plate = make_plate();
+    plate.json["extensionsUsed"] = {"KHR_draco_mesh_compression"};
+    plate.primitive()["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", 0}};
+    EXPECT_EQ(load(plate).triangles.size(), 2u);
+    EXPECT_EQ(notes_, std::vector<std::string>{"KHR_draco_mesh_compression is not read"});
+}
+
+TEST_F(LoadMesh, HiddenNodesAndWhatHasNoPositionsAreDroppedWithANote) {
+    GltfBuilder plate = make_plate();
+    Json hidden = plate.node();
+    hidden["extensions"]["KHR_node_visibility"]["visible"] = false;
+    hidden["children"] = {2};
+    plate.json["nodes"].push_back(hidden);
+    plate.json["nodes"].push_back(plate.node());
+    plate.json["scenes"][0]["nodes"].push_back(1);
+    Json bare = plate.primitive();
+    bare["attributes"].erase("POSITION");
+    plate.json["meshes"][0]["primitives"].push_back(bare);
+    EXPECT_EQ(load(plate).triangles.size(), 2u);
+    EXPECT_EQ(
+        notes_,
+        (std::vector<std::string>{"nodes[1] is not visible; dropped",
+                                  "meshes[0].primitives[1].attributes has no POSITION; dropped"}));
+}
+
 TEST_F(LoadMesh, NotesWhatItDoesNotRead) {
     GltfBuilder plate = make_plate();
     plate.json["extensionsUsed"] = {"KHR_texture_transform"};
     plate.json["extensionsRequired"] = {"KHR_texture_transform"};
     plate.json["animations"] = Json::array({Json::object()});
+    plate.json["cameras"] = Json::array({Json::object()});
     load(plate);
     EXPECT_EQ(notes_,
               (std::vector<std::string>{"KHR_texture_transform is not read",
-                                        "animations are not read; the mesh is shown at rest"}));
+                                        "animations are not read; the mesh is shown at rest",
+                                        "cameras are not read"}));
 }
 
 TEST_F(LoadMesh, SplitsATruckByItsNodes) {
