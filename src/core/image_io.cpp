@@ -105,6 +105,7 @@ std::string start_of(const std::filesystem::path& file) {
 
 /// Refuses sizes that no honest file of this length declares, before anything is allocated.
 void check_size(const std::filesystem::path& file,
+                std::uintmax_t file_bytes,
                 const PictureHeader& header,
                 std::size_t max_pixels) {
     const auto size_text = std::to_string(header.width) + "x" + std::to_string(header.height) +
@@ -124,9 +125,7 @@ void check_size(const std::filesystem::path& file,
                             std::to_string(max_channels) + " channels and " +
                             std::to_string(kMaxValues) + " values in all");
     }
-    std::error_code error;
-    const auto file_bytes = std::filesystem::file_size(file, error);
-    if (!error && pixels * channels > kBelievedValues &&
+    if (pixels * channels > kBelievedValues &&
         pixels * channels / kMostValuesPerByte > file_bytes) {
         throw FileError(file,
                         "size",
@@ -169,30 +168,19 @@ void write_image(const std::filesystem::path& file,
     write_text_file(file, bytes);
 }
 
-void check_png_channels(int channels) {
-    check_argument(channels == 1 || channels == 3,
-                   "write_png: " + std::to_string(channels) + " channels; 1 or 3 can be written");
-}
-
-}  // namespace
-
-ImageFile read_image(const std::filesystem::path& file, std::size_t max_pixels) {
-    const std::string start = start_of(file);
-    const char* format = format_of(file, start);
+/// Of `bytes`, or without them of the file itself, which has `size` bytes.
+ImageFile read_pixels(const std::filesystem::path& file,
+                      std::string_view bytes,
+                      std::uintmax_t size,
+                      const char* format,
+                      std::size_t max_pixels) {
     if (!format) throw FileError(file, "", "content of another kind", kReadable);
-    if (std::string_view(format) == "hdr") {
-        const std::string bytes = read_text_file(file, kMaxBytes);
-        if (auto picture = decode_radiance_hdr(bytes, max_pixels)) {
-            return {std::move(*picture), {"R", "G", "B"}, 1.0, true};
-        }
-    }
-
     PictureHeader header;
     PictureError error;
     const std::unique_ptr<void, ClosePicture> picture(
-        module_table().open(file.c_str(), format, &header, &error));
+        module_table().open(file.c_str(), bytes.data(), bytes.size(), format, &header, &error));
     if (!picture) throw FileError(file, "", error.text, kReadable);
-    check_size(file, header, max_pixels);
+    check_size(file, size, header, max_pixels);
 
     ImageFile result;
     result.image = ImageF(header.width, header.height, header.channels);
@@ -205,6 +193,33 @@ ImageFile read_image(const std::filesystem::path& file, std::size_t max_pixels) 
         throw FileError(file, "", error.text, kReadable);
     }
     return result;
+}
+
+void check_png_channels(int channels) {
+    check_argument(channels == 1 || channels == 3,
+                   "write_png: " + std::to_string(channels) + " channels; 1 or 3 can be written");
+}
+
+}  // namespace
+
+ImageFile read_image(const std::filesystem::path& file, std::size_t max_pixels) {
+    const char* format = format_of(file, start_of(file));
+    if (format && std::string_view(format) == "hdr") {
+        const std::string bytes = read_text_file(file, kMaxBytes);
+        if (auto picture = decode_radiance_hdr(bytes, max_pixels)) {
+            return {std::move(*picture), {"R", "G", "B"}, 1.0, true};
+        }
+    }
+    std::error_code error;
+    const auto bytes = std::filesystem::file_size(file, error);
+    const auto most = std::numeric_limits<std::uintmax_t>::max();
+    return read_pixels(file, {}, error ? most : bytes, format, max_pixels);
+}
+
+ImageFile read_image_bytes(std::string_view bytes,
+                           const std::filesystem::path& name,
+                           std::size_t max_pixels) {
+    return read_pixels(name, bytes, bytes.size(), format_of("", bytes), max_pixels);
 }
 
 void write_exr(const std::filesystem::path& file,

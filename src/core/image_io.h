@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/image.h"
@@ -24,6 +25,11 @@ bool has_picture_suffix(const std::filesystem::path& file);
 /// (NaN and Inf included: the caller decides). Throws FileError; a declared size over
 /// `max_pixels` is refused before anything is allocated.
 ImageFile read_image(const std::filesystem::path& file, std::size_t max_pixels = 100'000'000);
+
+/// The same of bytes that stand in another file, RAW apart; `name` stands in messages.
+ImageFile read_image_bytes(std::string_view bytes,
+                           const std::filesystem::path& name,
+                           std::size_t max_pixels = 100'000'000);
 
 /// Linear float EXR (32 bit). channel_names defaults to R,G,B(,A) or Y.
 void write_exr(const std::filesystem::path& file,

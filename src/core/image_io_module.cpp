@@ -5,6 +5,7 @@
 #include <exception>
 #include <fstream>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +22,7 @@ using livery::PictureError;
 using livery::PictureHeader;
 
 struct Picture {
+    std::unique_ptr<OIIO::Filesystem::IOMemReader> memory;  ///< outlives `input`
     std::unique_ptr<OIIO::ImageInput> input;
     PictureHeader header;
 };
@@ -49,12 +51,20 @@ OIIO::ImageSpec reading_options() {
 }
 
 void* open_picture(const char* file,
+                   const void* bytes,
+                   std::size_t size,
                    const char* format,
                    PictureHeader* header,
                    PictureError* error) try {
     if (std::string_view(format) == "png") {
-        std::ifstream stream(file, std::ios::binary);
-        if (const auto damage = livery::png_damage(stream); !damage.empty()) {
+        std::unique_ptr<std::istream> stream;
+        if (bytes) {
+            stream = std::make_unique<std::istringstream>(
+                std::string(static_cast<const char*>(bytes), size));
+        } else {
+            stream = std::make_unique<std::ifstream>(file, std::ios::binary);
+        }
+        if (const auto damage = livery::png_damage(*stream); !damage.empty()) {
             say(error, damage);
             return nullptr;
         }
@@ -64,6 +74,14 @@ void* open_picture(const char* file,
     if (!picture->input) {
         say(error, OIIO::geterror());
         return nullptr;
+    }
+    if (bytes) {
+        if (!picture->input->supports("ioproxy")) {
+            say(error, std::string("a picture of the kind ") + format + " inside another file");
+            return nullptr;
+        }
+        picture->memory = std::make_unique<OIIO::Filesystem::IOMemReader>(bytes, size);
+        picture->input->set_ioproxy(picture->memory.get());
     }
     OIIO::ImageSpec spec;
     if (!picture->input->open(file, spec, reading_options())) {

@@ -18,8 +18,14 @@ struct PictureError {
 };
 
 struct ImageIoTable {
-    /// Reads a header of the format named; null and the reason when it cannot.
-    void* (*open)(const char* file, const char* format, PictureHeader*, PictureError*);
+    /// Reads a header of the format named, of a file or, where `bytes` is not null, of those, which
+    /// stay there until `close`; null and the reason when it cannot.
+    void* (*open)(const char* file,
+                  const void* bytes,
+                  std::size_t size,
+                  const char* format,
+                  PictureHeader*,
+                  PictureError*);
     /// Valid until `close`.
     const char* (*channel_name)(void* picture, int channel);
     /// All pixels, in file units; false and the reason when it cannot.

@@ -25,20 +25,6 @@ constexpr std::string_view kRead[] = {"KHR_materials_clearcoat",
 constexpr double kSmoothestAlpha = 0.001;  ///< a mirror; glTF's 0 is none that a lamp shows in
 constexpr double kCoatF0 = 0.04;           ///< of an index of 1.5, which glTF gives every coat
 
-/// Pictures are not read: names the one that colours a material in other programs.
-std::string picture_note(const GltfFile& gltf, int texture) {
-    const int source = gltf.model.textures[static_cast<std::size_t>(texture)].source;
-    if (source < 0) return "an embedded picture is not read";
-    const auto image = gltf.root()["images"].at(static_cast<std::size_t>(source));
-    if (!image.has("uri") || image["uri"].text().starts_with("data:")) {
-        return "an embedded picture is not read";
-    }
-    const std::string uri = image["uri"].text();
-    std::error_code error;
-    const bool exists = std::filesystem::exists(gltf.path.parent_path() / uri, error);
-    return fmt::format("the picture \"{}\" {}", uri, exists ? "is not read" : "is missing");
-}
-
 /// A material's extension; an empty object where it has none of that name.
 const tinygltf::Value& extension(const tinygltf::Material& material, const char* name) {
     static const tinygltf::Value none{tinygltf::Value::Object{}};
@@ -57,7 +43,6 @@ double number_or(const tinygltf::Value& object, const char* key, double otherwis
 /// What a material has that no paint of ours takes, by name.
 std::vector<std::string> dropped(const tinygltf::Material& material) {
     std::vector<std::string> names;
-    if (material.normalTexture.index >= 0) names.emplace_back("normalTexture");
     if (material.occlusionTexture.index >= 0) names.emplace_back("occlusionTexture");
     if (material.emissiveTexture.index >= 0) names.emplace_back("emissiveTexture");
     const auto& emitted = material.emissiveFactor;
@@ -70,9 +55,10 @@ std::vector<std::string> dropped(const tinygltf::Material& material) {
             names.push_back(name);
             continue;
         }
-        // Their pictures alone: the factors are read.
+        // Their pictures alone, but for those that are worn: the factors are read.
         for (const std::string& member : members.Keys()) {
-            if (member.ends_with("Texture")) names.push_back(name + "." + member);
+            const bool worn = member == "clearcoatTexture" || member == "clearcoatRoughnessTexture";
+            if (member.ends_with("Texture") && !worn) names.push_back(name + "." + member);
         }
         // Which matters to that picture alone.
         const char* const thinnest = "iridescenceThicknessMinimum";
@@ -108,7 +94,7 @@ double alpha_of(double roughness) { return std::max(roughness * roughness, kSmoo
 /// Along and across the tangent.
 glm::dvec2 base_alpha(const tinygltf::Material& material,
                       double roughness,
-                      const Part& part,
+                      const std::string& name,
                       Notes& notes) {
     const double alpha = alpha_of(roughness);
     const tinygltf::Value& anisotropy = extension(material, "KHR_materials_anisotropy");
@@ -121,7 +107,7 @@ glm::dvec2 base_alpha(const tinygltf::Material& material,
         notes.push_back(fmt::format(
             "material \"{}\": its grain is turned by {:.0f} degrees; the nearest right angle is "
             "taken",
-            part.material_name,
+            name,
             90.0 * turns));
     }
     return std::fmod(std::abs(whole), 2.0) == 1.0 ? glm::dvec2(alpha, along)
@@ -138,36 +124,32 @@ bool says_more(const tinygltf::Material& material) {
 }
 
 double within_range(
-    const char* parameter, double value, const char* what, const Part& part, Notes& notes) {
+    const char* parameter, double value, const char* what, const std::string& name, Notes& notes) {
     const ParameterInfo& info = parameter_info(parameter);
     const double possible = std::clamp(value, info.low, info.high);
     if (possible != value) {
-        notes.push_back(fmt::format("material \"{}\": {} of {:.4g} is taken for {:.4g}",
-                                    part.material_name,
-                                    what,
-                                    value,
-                                    possible));
+        notes.push_back(fmt::format(
+            "material \"{}\": {} of {:.4g} is taken for {:.4g}", name, what, value, possible));
     }
     return possible;
 }
 
 /// Turns the paint's base into flakes with a thin film. glTF's film has air above it, ours the
 /// coat's varnish: it gets the same step of index and the same path, hence the same colours.
-void add_film(const tinygltf::Value& iridescence, Material& paint, const Part& part, Notes& notes) {
+void add_film(const tinygltf::Value& iridescence, Material& paint, Notes& notes) {
     const double factor = number_or(iridescence, "iridescenceFactor", 0.0);
     const double index = number_or(iridescence, "iridescenceIor", 1.3);
     const double thickness_nm = number_or(iridescence, "iridescenceThicknessMaximum", 400.0);
     if (factor == 0.0 || thickness_nm == 0.0) return;
     if (factor < 1.0) {
-        notes.push_back(fmt::format("material \"{}\": iridescenceFactor {:.4g} is taken for 1",
-                                    part.material_name,
-                                    factor));
+        notes.push_back(fmt::format(
+            "material \"{}\": iridescenceFactor {:.4g} is taken for 1", paint.name, factor));
     }
     if (paint.alpha.x != paint.alpha.y) {
         notes.push_back(
             fmt::format("material \"{}\": under a thin film it is as rough along the "
                         "grain as across",
-                        part.material_name));
+                        paint.name));
     }
     const double coat_f0 = paint.model == ReflectanceModel::clearcoat ? paint.coat_f0 : 0.0;
     const double varnish = (1.0 + std::sqrt(coat_f0)) / (1.0 - std::sqrt(coat_f0));
@@ -177,46 +159,62 @@ void add_film(const tinygltf::Value& iridescence, Material& paint, const Part& p
     paint.f0 = glm::dvec3(0.0);
     paint.flake_alpha = std::sqrt(paint.alpha.x * paint.alpha.y);
     paint.alpha = glm::dvec2(paint.flake_alpha);
-    paint.film_eta = within_range("film_eta", index * varnish, "a film's index", part, notes);
+    paint.film_eta = within_range("film_eta", index * varnish, "a film's index", paint.name, notes);
     paint.film_nm = within_range("film_nm",
                                  thickness_nm * index / paint.film_eta,
                                  "a film's thickness in nanometres",
-                                 part,
+                                 paint.name,
                                  notes);
 }
 
-Material paint_of(const GltfFile& gltf, std::size_t index, const Part& part, Notes& notes) {
+}  // namespace
+
+GltfSurface surface_of(const tinygltf::Material& material) {
+    const tinygltf::PbrMetallicRoughness& pbr = material.pbrMetallicRoughness;
+    const tinygltf::Value& coat = extension(material, "KHR_materials_clearcoat");
+    return {{pbr.baseColorFactor[0], pbr.baseColorFactor[1], pbr.baseColorFactor[2]},
+            pbr.metallicFactor,
+            pbr.roughnessFactor,
+            number_or(coat, "clearcoatFactor", 0.0),
+            number_or(coat, "clearcoatRoughnessFactor", 0.0)};
+}
+
+Material gltf_paint(const GltfFile& gltf,
+                    std::size_t index,
+                    const GltfSurface& surface,
+                    const std::string& name,
+                    Notes& notes) {
     const tinygltf::Material& material = gltf.model.materials[index];
     Material paint;
-    paint.name = part.material_name;
+    paint.name = name;
     paint.model = ReflectanceModel::ggx;
-    const double metallic = material.pbrMetallicRoughness.metallicFactor;
-    const glm::dvec3& base = part.base_colour_rec709;
-    paint.diffuse = (1.0 - metallic) * base;
-    paint.f0 = glm::mix(dielectric_f0(gltf, index), base, metallic);
-    paint.alpha = base_alpha(material, material.pbrMetallicRoughness.roughnessFactor, part, notes);
-    const tinygltf::Value& coat = extension(material, "KHR_materials_clearcoat");
-    if (const double factor = number_or(coat, "clearcoatFactor", 0.0); factor > 0.0) {
+    const double metallic = surface.metallic;
+    paint.diffuse = (1.0 - metallic) * surface.base_rec709;
+    paint.f0 = glm::mix(dielectric_f0(gltf, index), surface.base_rec709, metallic);
+    paint.alpha = base_alpha(material, surface.roughness, name, notes);
+    if (surface.coat > 0.0) {
         paint.model = ReflectanceModel::clearcoat;
-        paint.coat_f0 = kCoatF0 * factor;
-        paint.coat_alpha = alpha_of(number_or(coat, "clearcoatRoughnessFactor", 0.0));
+        paint.coat_f0 = kCoatF0 * surface.coat;
+        paint.coat_alpha = alpha_of(surface.coat_roughness);
     }
     paint.family = paint.model == ReflectanceModel::clearcoat
                        ? metallic > 0.5 ? "metallic" : "solid"
                    : metallic > 0.5 ? "metal"
                                     : "plain";
     if (has_extension(material, "KHR_materials_iridescence")) {
-        add_film(extension(material, "KHR_materials_iridescence"), paint, part, notes);
+        add_film(extension(material, "KHR_materials_iridescence"), paint, notes);
         if (paint.model == ReflectanceModel::car_paint) paint.family = "pearl";
     }
     paint.provenance = "the mesh file's own material";
     return paint;
 }
 
-}  // namespace
-
-Part read_gltf_material(const GltfFile& gltf, std::size_t index, Notes& notes) {
-    Part part;
+GltfMaterial read_gltf_material(const GltfFile& gltf,
+                                GltfPictures& pictures,
+                                std::size_t index,
+                                Notes& notes) {
+    GltfMaterial result;
+    Part& part = result.part;
     const tinygltf::Material& material = gltf.model.materials[index];
     part.material_name = material.name.empty() ? fmt::format("material {}", index) : material.name;
     const auto left_out = dropped(material);
@@ -225,25 +223,29 @@ Part read_gltf_material(const GltfFile& gltf, std::size_t index, Notes& notes) {
             fmt::format("material \"{}\": {} not read", part.material_name, list_of(left_out)));
     }
     const tinygltf::PbrMetallicRoughness& pbr = material.pbrMetallicRoughness;
-    const bool has_picture = pbr.baseColorTexture.index >= 0;
-    if (!has_picture || material.values.contains("baseColorFactor")) {
-        const auto& factor = pbr.baseColorFactor;
-        part.base_colour_rec709 = {factor[0], factor[1], factor[2]};
-    }
-    if (has_picture) {
-        notes.push_back(fmt::format("material \"{}\": {}; its plain colour is shown",
-                                    part.material_name,
-                                    picture_note(gltf, pbr.baseColorTexture.index)));
+    if (pbr.baseColorTexture.index < 0 || material.values.contains("baseColorFactor")) {
+        part.base_colour_rec709 = surface_of(material).base_rec709;
     }
     const bool textured = pbr.metallicRoughnessTexture.index >= 0;
-    if (textured) {
+    const GltfPicture unread;
+    const GltfPicture& of_gloss =
+        textured ? pictures.of_texture(pbr.metallicRoughnessTexture.index, false) : unread;
+    const bool readable = of_gloss.picture != nullptr;
+    if (textured && !readable) {
         notes.push_back(
-            fmt::format("material \"{}\": what is metal and what is rough stands in a picture "
-                        "that is not read; it is shown without gloss",
-                        part.material_name));
+            fmt::format("material \"{}\": what is metal and what is rough is not known ({}); it is "
+                        "shown without gloss",
+                        part.material_name,
+                        of_gloss.note));
     }
-    if (!textured && says_more(material)) part.paint = paint_of(gltf, index, part, notes);
-    return part;
+    const bool plain = textured ? !readable : !says_more(material);
+    if (!plain) {
+        GltfSurface surface = surface_of(material);
+        surface.base_rec709 = part.base_colour_rec709;
+        part.paint = gltf_paint(gltf, index, surface, part.material_name, notes);
+    }
+    wear_pictures(gltf, pictures, index, plain, result, notes);
+    return result;
 }
 
 }  // namespace livery

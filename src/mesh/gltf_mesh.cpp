@@ -66,9 +66,9 @@ void note_unread(const GltfFile& gltf, Notes& notes) {
         // Each material says what it has that is not read.
         const bool of_materials =
             name.starts_with("KHR_materials_") && name != "KHR_materials_variants";
-        if (name != "KHR_mesh_quantization" && name != "KHR_node_visibility" && !of_materials) {
-            notes.push_back(name + " is not read");
-        }
+        const bool read = name == "KHR_mesh_quantization" || name == "KHR_node_visibility" ||
+                          name == "KHR_texture_transform";
+        if (!read && !of_materials) notes.push_back(name + " is not read");
     }
     for (const char* feature : {"skins", "animations"}) {
         if (gltf.json.contains(feature)) {
@@ -117,9 +117,10 @@ Mesh read_gltf(const std::string& bytes, const std::filesystem::path& file, Note
     const tinygltf::Model& model = gltf.model;
     note_unread(gltf, notes);
     const bool quantized = uses_extension(model, "KHR_mesh_quantization");
-    std::vector<Part> materials;
+    GltfPictures pictures(gltf);
+    std::vector<GltfMaterial> materials;
     for (std::size_t k = 0; k < model.materials.size(); ++k) {
-        materials.push_back(read_gltf_material(gltf, k, notes));
+        materials.push_back(read_gltf_material(gltf, pictures, k, notes));
     }
 
     const auto nodes = placed_nodes(gltf, notes);
@@ -136,8 +137,9 @@ Mesh read_gltf(const std::string& bytes, const std::filesystem::path& file, Note
         const std::string node_name =
             first_of(node.name, source.name, fmt::format("node {}", node_index));
         for (const auto& group : groups) {
-            Part part;
-            if (group.material >= 0) part = materials[static_cast<std::size_t>(group.material)];
+            GltfMaterial worn;
+            if (group.material >= 0) worn = materials[static_cast<std::size_t>(group.material)];
+            Part& part = worn.part;
             const std::string material = group.material >= 0 ? part.material_name : "no material";
             part.name = names.take(groups.size() > 1 ? node_name + "/" + material : node_name);
             Mesh built;
@@ -145,7 +147,8 @@ Mesh read_gltf(const std::string& bytes, const std::filesystem::path& file, Note
                 const GltfPrimitive primitive{
                     source.primitives[k],
                     fmt::format("meshes[{}].primitives[{}]", node.mesh, k),
-                    quantized};
+                    quantized,
+                    worn.uvs};
                 append(
                     built,
                     build_primitive(gltf, accessors, primitive, world_from_node, part.name, notes),

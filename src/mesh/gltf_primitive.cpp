@@ -104,7 +104,8 @@ Attributes read_attributes(const GltfFile& gltf,
     if (!found.positions) return found;
     found.normals = read("NORMAL", TINYGLTF_TYPE_VEC3, {5126}, {5120, 5122});
     found.tangents = read("TANGENT", TINYGLTF_TYPE_VEC4, {5126}, {5120, 5122});
-    found.uvs = read("TEXCOORD_0", TINYGLTF_TYPE_VEC2, {5126, 5121, 5123}, {5120, 5122});
+    const std::string uvs = fmt::format("TEXCOORD_{}", primitive.uvs.set);
+    found.uvs = read(uvs.c_str(), TINYGLTF_TYPE_VEC2, {5126, 5121, 5123}, {5120, 5122});
     return found;
 }
 
@@ -184,9 +185,10 @@ void fill_normals(Mesh& mesh,
 void fill_tangents(Mesh& mesh,
                    const Attributes& from,
                    const std::vector<std::uint32_t>& used,
-                   const glm::dmat3& linear) {
+                   const glm::dmat3& linear,
+                   bool of_these_uvs) {
     compute_tangents(mesh);
-    if (!from.tangents || !from.normals) return;
+    if (!from.tangents || !from.normals || !of_these_uvs) return;
     const double side = glm::determinant(linear) < 0.0 ? -1.0 : 1.0;
     for (std::size_t v = 0; v < used.size(); ++v) {
         const double* t = from.tangents->element(used[v]);
@@ -254,10 +256,12 @@ Mesh build_primitive(const GltfFile& gltf,
     for (const auto vertex : used) {
         mesh.positions_mm.emplace_back(world_mm(vertex));
         const double* uv = from.uvs ? from.uvs->element(vertex) : nullptr;
-        mesh.uvs.push_back(uv ? glm::vec2(uv[0], uv[1]) : glm::vec2(0.0f));
+        mesh.uvs.push_back(
+            uv ? glm::vec2(primitive.uvs.picture_from_uv * glm::dvec3(uv[0], uv[1], 1.0))
+               : glm::vec2(0.0f));
     }
     fill_normals(mesh, from, used, linear, part_name, notes);
-    fill_tangents(mesh, from, used, linear);
+    fill_tangents(mesh, from, used, linear, primitive.uvs == GltfUvs());
     mesh.triangle_part.assign(mesh.triangles.size(), 0);
     return mesh;
 }

@@ -13,14 +13,16 @@
 
 #include "appearance/material.h"
 #include "mesh/length_unit.h"
+#include "mesh/part_picture.h"
 
 namespace livery {
 
 struct Part {
     std::string name;
-    std::string material_name;           ///< as the file names it; may be empty
-    glm::dvec3 base_colour_rec709{0.5};  ///< the file's own colour, shown until a look says more
-    std::optional<Material> paint{};     ///< where the file says more of it than a colour
+    std::string material_name;            ///< as the file names it; may be empty
+    glm::dvec3 base_colour_rec709{0.5};   ///< the file's own colour, shown until a look says more
+    std::optional<Material> paint{};      ///< where the file says more of it than a colour
+    std::vector<PartPicture> pictures{};  ///< over that paint; a relief under any, one at most
 };
 
 /// World frame: right-handed, y up, millimetres. All vertex arrays have the same length; triangles

@@ -1,7 +1,6 @@
 #include "scene/artwork_picture.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <mutex>
@@ -10,7 +9,6 @@
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
 
-#include "core/channels.h"
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/image_io.h"
@@ -25,34 +23,13 @@ constexpr float kLeastRoughness = 0.05f;
 
 std::shared_ptr<const ArtworkPicture> read_picture(const std::filesystem::path& file) {
     const ImageFile from = read_image(file, std::size_t{kMostPixelsASide} * kMostPixelsASide);
-    const ImageF& image = from.image;
-    if (std::max(image.width, image.height) > kMostPixelsASide) {
+    if (std::max(from.image.width, from.image.height) > kMostPixelsASide) {
         throw FileError(file,
                         "size",
-                        fmt::format("{}x{}", image.width, image.height),
+                        fmt::format("{}x{}", from.image.width, from.image.height),
                         fmt::format("at most {} pixels a side", kMostPixelsASide));
     }
-    const std::array<int, 3> colour = colour_channels(file, from);
-    const int alpha = channel_named(from, "A");
-    auto picture = std::make_shared<ArtworkPicture>();
-    picture->file = file;
-    picture->linear = from.floating_point;
-    picture->has_alpha = alpha >= 0;
-    picture->rgba = ImageF(image.width, image.height, 4);
-    const auto scale = static_cast<float>(1.0 / from.full_scale);
-    for (std::size_t i = 0; i < image.pixel_count(); ++i) {
-        const float* values = &image.values[i * static_cast<std::size_t>(image.channels)];
-        for (int c = 0; c < image.channels; ++c) {
-            if (std::isfinite(values[c])) continue;
-            throw FileError(file, "pixels", "a value that is not finite", "finite numbers");
-        }
-        float* rgba = &picture->rgba.values[4 * i];
-        for (std::size_t c = 0; c < 3; ++c) {
-            rgba[c] = glm::clamp(scale * values[colour[c]], 0.0f, 1.0f);
-        }
-        rgba[3] = alpha >= 0 ? glm::clamp(scale * values[alpha], 0.0f, 1.0f) : 1.0f;
-    }
-    return picture;
+    return std::make_shared<const ArtworkPicture>(artwork_picture_of(from, file));
 }
 
 /// Of every value that 8 bits can have, and between them for finer ones.

@@ -8,20 +8,10 @@
 #include <glm/vec2.hpp>
 
 #include "core/image.h"
+#include "mesh/part_picture.h"
 #include "scene/artwork.h"
 
 namespace livery {
-
-/// R, G, B, alpha from 0 to 1, rows down; colours as they are in the file, alpha 1 where it has
-/// none.
-struct ArtworkPicture {
-    ImageF rgba;
-    bool has_alpha = false;
-    bool linear = false;  ///< of a floating-point file; else the colours are sRGB's
-    std::filesystem::path file;
-
-    double aspect() const { return static_cast<double>(rgba.height) / rgba.width; }
-};
 
 /// Reads a picture of at most 8192 pixels a side, or takes the one that was read before and still
 /// is somebody's, while the file has not changed. Throws FileError (as of read_image, values that

@@ -74,6 +74,41 @@ void add_artwork(const Look& look, const LookPaints& paints, Unwearable unwearab
     }
 }
 
+/// What the mesh file's pictures say: colours and roughness over the parts that wear the file's
+/// paint; or reliefs, which are of the parts' shape, under any paint, but where the look has
+/// another.
+void add_own_pictures(const Look& look, bool reliefs, Scene& scene) {
+    const std::vector<Part>& parts = scene.product->mesh.parts;
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+        const bool own_paint = !look.parts.contains(parts[p].name) && !look.parts.contains("*");
+        for (const PartPicture& picture : parts[p].pictures) {
+            Artwork artwork;
+            artwork.name = picture.name;
+            artwork.part = parts[p].name;
+            artwork.shape = ArtworkShape::picture;
+            artwork.picture = picture.name;
+            artwork.repeat = true;
+            artwork.depth = picture.depth;
+            artwork.place.by_uv = true;
+            switch (picture.use) {
+                case PartPicture::Use::tint:
+                    artwork.use = PictureUse::tint;
+                    break;
+                case PartPicture::Use::roughness:
+                    artwork.use = PictureUse::roughness;
+                    break;
+                case PartPicture::Use::relief:
+                    artwork.use = PictureUse::relief;
+                    break;
+            }
+            if (is_relief(artwork) != reliefs) continue;
+            if (reliefs ? relief_of(scene, p) != nullptr : !own_paint) continue;
+            auto& list = reliefs ? scene.relief : scene.artwork;
+            list.push_back(make_part_artwork(p, artwork, picture.paint, picture.picture));
+        }
+    }
+}
+
 }  // namespace
 
 LookPaints read_paints(const Look& look) {
@@ -118,7 +153,9 @@ Scene make_scene(std::shared_ptr<const Product> product,
                  : std::make_shared<const Environment>(load_environment(look.environment, beside));
     }
     scene.product = std::move(product);
+    add_own_pictures(look, false, scene);
     add_artwork(look, paints, unwearable, scene);
+    add_own_pictures(look, true, scene);
     scene.lights = look.lights;
     scene.eye_in_world_mm = eye_mm;
     scene.exposure_ev = look.exposure_ev;

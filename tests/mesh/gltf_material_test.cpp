@@ -213,8 +213,9 @@ TEST_F(GltfMaterial, WhatIsDroppedIsNamed) {
                            {"clearcoatFactor": 1, "clearcoatNormalTexture": {"index": 0}}}})");
     EXPECT_EQ(notes_,
               (std::vector<std::string>{
-                  "material \"skin\": normalTexture, emissiveFactor, alphaMode BLEND, "
-                  "KHR_materials_clearcoat.clearcoatNormalTexture, KHR_materials_sheen not read"}));
+                  "material \"skin\": emissiveFactor, alphaMode BLEND, "
+                  "KHR_materials_clearcoat.clearcoatNormalTexture, KHR_materials_sheen not read",
+                  "material \"skin\": normalTexture: a texture without a picture"}));
     // Which places are metal stands in a picture: no paint is better than a wrong one.
     EXPECT_FALSE(part_of(R"({"pbrMetallicRoughness":
         {"metallicFactor": 1, "metallicRoughnessTexture": {"index": 0}}})")
