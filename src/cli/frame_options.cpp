@@ -34,7 +34,7 @@ std::vector<Option> frame_options(FrameArguments& arguments) {
         unit_option(arguments.unit),
         {"--look",
          "FILE|NAME",
-         "a look file or a shipped look's name (default solid-red)",
+         "a look file, a shipped look's name or a variant of the product (default solid-red)",
          &arguments.look,
          false,
          {}},
@@ -157,8 +157,7 @@ ResolvedFrame resolve_frame(const FrameArguments& arguments, const CommonOptions
                 "--eye: found \"{}\", expected places within 1e9 mm of 0", arguments.eye));
         }
     }
-    request.scene =
-        make_scene(product, find_look_for(arguments.look, part_names(product->mesh)), eye_mm);
+    request.scene = make_scene(product, find_look_for(arguments.look, product->mesh), eye_mm);
 
     if (arguments.budget_ms > 0.0) {
         const BudgetChoice choice =

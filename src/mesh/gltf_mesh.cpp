@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/utf8.h"
 #include "mesh/because.h"
 #include "mesh/gltf_parts.h"
 
@@ -38,19 +39,48 @@ class UniqueNames {
     std::map<std::string, int> last_number_;
 };
 
-/// Primitives that share a material become one part.
+/// Primitives that share a material, in every variant, become one part.
 struct MaterialGroup {
-    int material = -1;  ///< none
+    int material = -1;              ///< none
+    std::map<int, int> of_variant;  ///< where a variant has another
     std::vector<std::size_t> primitives;
 };
 
-std::vector<MaterialGroup> group_by_material(const std::vector<tinygltf::Primitive>& primitives) {
+const char* const kVariants = "KHR_materials_variants";
+
+/// Which material a primitive has in which variant. Throws FileError: two in one.
+std::map<int, int> variants_of(const GltfFile& gltf,
+                               const tinygltf::Primitive& primitive,
+                               const std::string& field) {
+    std::map<int, int> materials;
+    const auto extension = primitive.extensions.find(kVariants);
+    if (extension == primitive.extensions.end()) return materials;
+    const tinygltf::Value& mappings = extension->second.Get("mappings");
+    for (int m = 0; m < static_cast<int>(mappings.Size()); ++m) {
+        const tinygltf::Value& variants = mappings.Get(m).Get("variants");
+        for (int k = 0; k < static_cast<int>(variants.Size()); ++k) {
+            const int variant = variants.Get(k).GetNumberAsInt();
+            const int material = mappings.Get(m).Get("material").GetNumberAsInt();
+            if (materials.try_emplace(variant, material).second) continue;
+            gltf.fail(
+                fmt::format("{}.extensions.{}.mappings[{}].variants[{}]", field, kVariants, m, k),
+                fmt::format("the variant {} a second time", variant),
+                "one material a variant");
+        }
+    }
+    return materials;
+}
+
+std::vector<MaterialGroup> group_by_material(const GltfFile& gltf, int mesh) {
+    const auto& primitives = gltf.model.meshes[static_cast<std::size_t>(mesh)].primitives;
     std::vector<MaterialGroup> groups;
-    std::map<int, std::size_t> group_of;
+    std::map<std::pair<int, std::map<int, int>>, std::size_t> group_of;
     for (std::size_t k = 0; k < primitives.size(); ++k) {
         const int material = primitives[k].material;
-        const auto [known, is_new] = group_of.try_emplace(material, groups.size());
-        if (is_new) groups.push_back({material, {}});
+        const auto variants =
+            variants_of(gltf, primitives[k], fmt::format("meshes[{}].primitives[{}]", mesh, k));
+        const auto [known, is_new] = group_of.try_emplace({material, variants}, groups.size());
+        if (is_new) groups.push_back({material, variants, {}});
         groups[known->second].primitives.push_back(k);
     }
     return groups;
@@ -64,8 +94,7 @@ bool uses_extension(const tinygltf::Model& model, std::string_view name) {
 void note_unread(const GltfFile& gltf, Notes& notes) {
     for (const std::string& name : gltf.model.extensionsUsed) {
         // Each material says what it has that is not read.
-        const bool of_materials =
-            name.starts_with("KHR_materials_") && name != "KHR_materials_variants";
+        const bool of_materials = name.starts_with("KHR_materials_");
         const bool read = name == "KHR_mesh_quantization" || name == "KHR_node_visibility" ||
                           name == "KHR_texture_transform";
         if (!read && !of_materials) notes.push_back(name + " is not read");
@@ -110,6 +139,35 @@ const std::string& first_of(const std::string& a, const std::string& b, const st
     return !a.empty() ? a : !b.empty() ? b : c;
 }
 
+std::vector<std::string> variant_names(const tinygltf::Model& model) {
+    std::vector<std::string> names;
+    const auto extension = model.extensions.find(kVariants);
+    if (extension == model.extensions.end()) return names;
+    const tinygltf::Value& variants = extension->second.Get("variants");
+    UniqueNames unique;
+    for (int k = 0; k < static_cast<int>(variants.Size()); ++k) {
+        const std::string name = printable(variants.Get(k).Get("name").Get<std::string>(), 60);
+        names.push_back(unique.take(name.empty() ? fmt::format("variant {}", k) : name));
+    }
+    return names;
+}
+
+/// A part in another material. Its texture coordinates are those of its own: pictures along others
+/// are left out.
+Part in_variant(const GltfMaterial& own, const GltfMaterial& other, Notes& notes) {
+    Part part = other.part;
+    part.name = own.part.name;
+    if (!part.pictures.empty() && !(own.uvs == other.uvs)) {
+        part.pictures.clear();
+        notes.push_back(
+            fmt::format("part \"{}\": the pictures of {} lie along other texture coordinates; they "
+                        "are not read",
+                        part.name,
+                        part.material_name));
+    }
+    return part;
+}
+
 }  // namespace
 
 Mesh read_gltf(const std::string& bytes, const std::filesystem::path& file, Notes& notes) {
@@ -129,11 +187,12 @@ Mesh read_gltf(const std::string& bytes, const std::filesystem::path& file, Note
     GltfAccessors accessors(gltf);
     UniqueNames names;
     Mesh mesh;
+    for (const std::string& name : variant_names(model)) mesh.variants.push_back({name, {}});
     for (const auto& [node_index, world_from_node] : nodes) {
         const tinygltf::Node& node = model.nodes[node_index];
         if (node.mesh < 0) continue;
         const tinygltf::Mesh& source = model.meshes[static_cast<std::size_t>(node.mesh)];
-        const auto groups = group_by_material(source.primitives);
+        const auto groups = group_by_material(gltf, node.mesh);
         const std::string node_name =
             first_of(node.name, source.name, fmt::format("node {}", node_index));
         for (const auto& group : groups) {
@@ -164,6 +223,10 @@ Mesh read_gltf(const std::string& bytes, const std::filesystem::path& file, Note
             }
             built.parts = {part};
             append(mesh, built, "");
+            for (const auto& [variant, other] : group.of_variant) {
+                mesh.variants[static_cast<std::size_t>(variant)].parts[mesh.parts.size() - 1] =
+                    in_variant(worn, materials[static_cast<std::size_t>(other)], notes);
+            }
         }
     }
     if (mesh.triangles.empty()) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +26,12 @@ struct Part {
     std::vector<PartPicture> pictures{};  ///< over that paint; a relief under any, one at most
 };
 
+/// What parts wear instead, as the file has it under a name; the others wear what they wear.
+struct MeshVariant {
+    std::string name;
+    std::map<std::size_t, Part> parts;  ///< by index
+};
+
 /// World frame: right-handed, y up, millimetres. All vertex arrays have the same length; triangles
 /// are counter-clockwise seen from outside.
 struct Mesh {
@@ -35,6 +42,7 @@ struct Mesh {
     std::vector<glm::uvec3> triangles;
     std::vector<std::uint16_t> triangle_part;  ///< index into parts, one a triangle
     std::vector<Part> parts;
+    std::vector<MeshVariant> variants;
 };
 
 struct Bounds {
@@ -47,7 +55,7 @@ Bounds bounds_of(const Mesh& mesh);
 void compute_normals(Mesh& mesh);
 void compute_tangents(Mesh& mesh);
 
-/// Appends `other` with its parts; part names get `prefix`.
+/// Appends `other` with its parts, without its variants; part names get `prefix`.
 void append(Mesh& mesh, const Mesh& other, const std::string& prefix);
 
 /// A sphere of `rings` x 2 rings quads with one part; for tests, swatches and the sphere product.

@@ -70,6 +70,33 @@ Look find_look_for(const std::string& name_or_file, const std::vector<std::strin
     return look;
 }
 
+std::vector<Look> own_looks(const Mesh& mesh) {
+    const bool pictures = std::any_of(mesh.parts.begin(), mesh.parts.end(), [](const Part& part) {
+        return !part.pictures.empty();
+    });
+    if (!pictures && mesh.variants.empty()) return {};
+    Look look = find_look(shipped_looks().at(0));
+    look.parts.clear();
+    look.artwork.clear();
+    look.file.clear();
+    look.name = "as it comes";
+    std::vector<Look> looks{look};
+    for (const MeshVariant& variant : mesh.variants) {
+        look.name = look.variant = variant.name;
+        looks.push_back(look);
+    }
+    return looks;
+}
+
+Look find_look_for(const std::string& name_or_file, const Mesh& mesh) {
+    if (!is_shipped(name_or_file, shipped_looks()) && !is_file(name_or_file)) {
+        for (Look& look : own_looks(mesh)) {
+            if (look.name == name_or_file) return look;
+        }
+    }
+    return find_look_for(name_or_file, part_names(mesh));
+}
+
 std::optional<std::string> bench_of_shipped_product(const std::string& name) {
     static const std::map<std::string, std::string> benches{
         {"car", "default"}, {"player", "player"}, {"sphere", "sphere"}};

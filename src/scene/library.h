@@ -38,6 +38,13 @@ Look find_look(const std::string& name_or_file);
 /// another product lacks are left out, and without a body all of it wears the body's paint.
 Look find_look_for(const std::string& name_or_file, const std::vector<std::string>& parts);
 
+/// What a product's file has itself, in the light of the first shipped look: where it has pictures
+/// or variants, "as it comes", and a look for each variant, named as that is.
+std::vector<Look> own_looks(const Mesh& mesh);
+
+/// find_look_for() of a file, a shipped look or one of own_looks(), in this order.
+Look find_look_for(const std::string& name_or_file, const Mesh& mesh);
+
 /// Names of the shipped looks, sorted.
 std::vector<std::string> shipped_looks();
 

@@ -39,7 +39,8 @@ struct EnvironmentReference {
 struct Look {
     std::string name;
     std::map<std::string, std::string>
-        parts;                     ///< part name -> material name or file; "*": the rest
+        parts;            ///< part name -> material name or file; "*": the rest
+    std::string variant;  ///< of the product's file: what parts wear that have no paint here
     std::vector<Artwork> artwork;  ///< over these paints, each over those before it
     std::vector<DirectionalLight> lights;
     EnvironmentReference environment;

@@ -89,6 +89,7 @@ Look read_look(const JsonReader& root) {
             if (look.parts[part].empty()) paint.fail("an empty name", "a paint or a material file");
         }
     }
+    if (root.has("variant")) look.variant = root["variant"].text();
     if (root.has("artwork")) look.artwork = read_artwork(root["artwork"]);
     if (root.has("lights")) look.lights = read_lights(root["lights"]);
     look.environment = read_environment(root);
@@ -101,6 +102,7 @@ Json json_of(const Look& look) {
     json["name"] = look.name;
     json["parts"] = Json::object();
     for (const auto& [part, paint] : look.parts) json["parts"][part] = paint;
+    if (!look.variant.empty()) json["variant"] = look.variant;
     if (!look.artwork.empty()) json["artwork"] = json_of(look.artwork);
     json["lights"] = json_of(look.lights);
     if (!look.environment.file.empty()) json["environment"] = json_of(look.environment);
@@ -131,8 +133,14 @@ Look parse_look(const std::string& text, const std::filesystem::path& file) {
     const Json json = parse_json(text, file);
     const JsonReader root(file, json);
     root.require_format_version(kFormatVersion);
-    root.allow_only(
-        {"format_version", "name", "parts", "artwork", "lights", "environment", "exposure_ev"});
+    root.allow_only({"format_version",
+                     "name",
+                     "parts",
+                     "variant",
+                     "artwork",
+                     "lights",
+                     "environment",
+                     "exposure_ev"});
     Look look = read_look(root);
     if (!root.has("name")) look.name = file.stem().string();
     look.file = file;

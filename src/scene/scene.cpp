@@ -8,10 +8,32 @@
 #include "appearance/material_library.h"
 #include "appearance/measured/measured_paint.h"
 #include "core/error.h"
+#include "core/paths.h"
 
 namespace livery {
 
 namespace {
+
+/// A part as the mesh file has it, in the look's variant where that has another.
+const Part& own_part(const Mesh& mesh, const Look& look, std::size_t part) {
+    for (const MeshVariant& variant : mesh.variants) {
+        if (variant.name != look.variant) continue;
+        const auto other = variant.parts.find(part);
+        if (other != variant.parts.end()) return other->second;
+    }
+    return mesh.parts[part];
+}
+
+void check_variant(const Product& product, const Look& look) {
+    std::vector<std::string> names;
+    for (const MeshVariant& variant : product.mesh.variants) names.push_back(variant.name);
+    const bool known = std::find(names.begin(), names.end(), look.variant) != names.end();
+    if (look.variant.empty() || known) return;
+    throw FileError(look.file,
+                    "variant",
+                    fmt::format("no variant \"{}\" of {}", look.variant, product.name),
+                    names.empty() ? "none: it has no variants" : "one of " + list_of(names));
+}
 
 /// What the mesh file says of a part.
 Material own_material(const Part& part) {
@@ -81,7 +103,7 @@ void add_own_pictures(const Look& look, bool reliefs, Scene& scene) {
     const std::vector<Part>& parts = scene.product->mesh.parts;
     for (std::size_t p = 0; p < parts.size(); ++p) {
         const bool own_paint = !look.parts.contains(parts[p].name) && !look.parts.contains("*");
-        for (const PartPicture& picture : parts[p].pictures) {
+        for (const PartPicture& picture : own_part(scene.product->mesh, look, p).pictures) {
             Artwork artwork;
             artwork.name = picture.name;
             artwork.part = parts[p].name;
@@ -136,8 +158,10 @@ Scene make_scene(std::shared_ptr<const Product> product,
     for (const auto& [name, paint] : look.parts) {
         check_part_name(*product, look, "parts." + name, name);
     }
+    check_variant(*product, look);
     Scene scene;
-    for (const auto& part : product->mesh.parts) {
+    for (std::size_t p = 0; p < product->mesh.parts.size(); ++p) {
+        const Part& part = own_part(product->mesh, look, p);
         auto paint = look.parts.find(part.name);
         if (paint == look.parts.end()) paint = look.parts.find("*");
         scene.part_materials.push_back(paint == look.parts.end() ? own_material(part)

@@ -63,7 +63,7 @@ Json fields_of(const AddLook& c) {
 void read(const JsonReader& fields, AddLook& c) {
     fields.allow_only({"look", "at"});
     const JsonReader look = fields["look"];
-    look.allow_only({"name", "parts", "artwork", "lights", "environment"});
+    look.allow_only({"name", "parts", "variant", "artwork", "lights", "environment"});
     look["name"].text();
     c.look = read_look(look);
     if (fields.has("at")) c.at = fields["at"].integer(0, std::numeric_limits<int>::max());

@@ -46,6 +46,15 @@ Document new_document(const std::string& product, std::optional<LengthUnit> unit
         look.file.clear();
         document.looks.push_back({document.next_look_id++, std::move(look)});
     }
+    for (Look& look : own ? own_looks(own->mesh) : std::vector<Look>()) {
+        const bool taken = std::any_of(
+            document.looks.begin(), document.looks.end(), [&](const SessionLook& other) {
+                return other.look.name == look.name;
+            });
+        if (taken) look.name += " of the file";
+        look.exposure_ev = 0.0;
+        document.looks.push_back({document.next_look_id++, std::move(look)});
+    }
     if (!own) {
         document.bench = *bench;
         document.eye_mm = read_bench_file(document.bench).eye_mm;

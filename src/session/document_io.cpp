@@ -30,7 +30,7 @@ std::string checked_text(const JsonReader& field) {
 }
 
 SessionLook read_session_look(const JsonReader& object) {
-    object.allow_only({"id", "name", "parts", "artwork", "lights", "environment"});
+    object.allow_only({"id", "name", "parts", "variant", "artwork", "lights", "environment"});
     SessionLook look;
     look.id = object["id"].integer(1, kLargestId);
     look.look = read_look(object);
