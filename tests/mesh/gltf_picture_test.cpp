@@ -296,7 +296,7 @@ TEST_F(GltfPictureTest, AScenesPartsWearThemUntilALookPaintsThem) {
     Material paint;
     paint.name = "mine";
     look.parts["plate"] = "mine";
-    const Scene painted = make_scene(product, look, glm::dvec3(0, 0, 1000), nullptr, {paint});
+    const Scene painted = make_scene(product, look, {{"mine", paint}}, glm::dvec3(0, 0, 1000));
     EXPECT_TRUE(painted.artwork.empty());
     EXPECT_EQ(painted.relief.size(), 1u);
 }
