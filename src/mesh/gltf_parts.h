@@ -70,11 +70,12 @@ class GltfPictures {
     const GltfPicture& of_texture(int texture, bool colours);
 
   private:
-    GltfPicture read(int texture, bool colours);
+    GltfPicture read(int index, bool colours);
 
     const GltfFile& gltf_;
     std::size_t most_a_side_ = 0;
-    std::map<std::pair<int, bool>, GltfPicture> read_;
+    std::size_t pixels_left_;                           ///< that may still be decoded
+    std::map<std::pair<int, bool>, GltfPicture> read_;  ///< by image
 };
 
 /// Each texel the mean of those that it covers, or the one in which it lies.

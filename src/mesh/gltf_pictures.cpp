@@ -17,6 +17,8 @@ constexpr std::size_t kMostPixelsASide = 4096;
 /// Of all pictures of a file as they are kept: half a gigabyte.
 constexpr std::size_t kMostTexels = 1u << 25u;
 constexpr std::size_t kFewestASide = 64;
+/// Decoded of one file: a few seconds' work.
+constexpr std::size_t kMostPixels = 1u << 27u;
 
 /// Of whole numbers of 8 or 16 bits, exactly.
 float decoded(float encoded) {
@@ -65,7 +67,7 @@ ImageF resampled(const ImageF& picture, int width, int height) {
     return to;
 }
 
-GltfPictures::GltfPictures(const GltfFile& gltf) : gltf_(gltf) {
+GltfPictures::GltfPictures(const GltfFile& gltf) : gltf_(gltf), pixels_left_(kMostPixels) {
     const std::size_t count = gltf.root().has("images") ? gltf.root()["images"].size() : 0;
     for (most_a_side_ = kMostPixelsASide;
          count * most_a_side_ * most_a_side_ > kMostTexels && most_a_side_ > kFewestASide;) {
@@ -74,28 +76,28 @@ GltfPictures::GltfPictures(const GltfFile& gltf) : gltf_(gltf) {
 }
 
 const GltfPicture& GltfPictures::of_texture(int texture, bool colours) {
-    const auto [known, is_new] = read_.try_emplace({texture, colours});
-    if (is_new) known->second = read(texture, colours);
+    const tinygltf::Texture& from = gltf_.model.textures[static_cast<std::size_t>(texture)];
+    const int image = from.source >= 0 ? from.source : -1 - texture;
+    const auto [known, is_new] = read_.try_emplace({image, colours});
+    if (!is_new) return known->second;
+    if (from.source >= 0) return known->second = read(image, colours);
+    known->second.note = "a texture without a picture";
+    for (const auto& [name, extension] : from.extensions) {
+        if (extension.Has("source")) known->second.note = "a picture by " + name + " is not read";
+    }
     return known->second;
 }
 
-GltfPicture GltfPictures::read(int texture, bool colours) {
-    const tinygltf::Texture& from = gltf_.model.textures[static_cast<std::size_t>(texture)];
-    if (from.source < 0) {
-        for (const auto& [name, extension] : from.extensions) {
-            if (extension.Has("source")) return {nullptr, "a picture by " + name + " is not read"};
-        }
-        return {nullptr, "a texture without a picture"};
-    }
-    const auto image = gltf_.root()["images"].at(static_cast<std::size_t>(from.source));
+GltfPicture GltfPictures::read(int index, bool colours) {
+    const auto image = gltf_.root()["images"].at(static_cast<std::size_t>(index));
     const bool inside = !image.has("uri") || image["uri"].text().starts_with("data:");
     const std::string name =
         inside ? "an embedded picture"
                : fmt::format("the picture \"{}\"", printable(image["uri"].text(), 100));
     try {
-        constexpr std::size_t most = kMostPixelsASide * kMostPixelsASide;
+        const std::size_t most = std::min(kMostPixelsASide * kMostPixelsASide, pixels_left_);
         ImageFile file;
-        std::filesystem::path path = fmt::format("images[{}]", from.source);
+        std::filesystem::path path = fmt::format("images[{}]", index);
         if (image.has("uri")) {
             const GltfUri uri = resolve_gltf_uri(image["uri"]);
             if (uri.inside) {
@@ -114,6 +116,7 @@ GltfPicture GltfPictures::read(int texture, bool colours) {
         } else {
             return {nullptr, name + " is not read: neither a uri nor a bufferView"};
         }
+        pixels_left_ -= file.image.pixel_count();
         ArtworkPicture picture = artwork_picture_of(file, path);
         if (colours) make_linear(picture);
         int width = picture.rgba.width, height = picture.rgba.height;
@@ -128,7 +131,9 @@ GltfPicture GltfPictures::read(int texture, bool colours) {
         picture.rgba = resampled(picture.rgba, width, height);
         return {std::make_shared<const ArtworkPicture>(std::move(picture)), note};
     } catch (const FileError& error) {
-        return {nullptr, fmt::format("{} is not read: {}", name, error.found())};
+        return {
+            nullptr,
+            fmt::format("{} is not read: {}; expected {}", name, error.found(), error.expected())};
     }
 }
 

@@ -93,24 +93,24 @@ struct Axis {
     std::optional<ImageF> picture{};
     int channel = 0;
     double factor = 1.0;
-    bool of_roughness = false;
+    bool of_roughness = false;     ///< slope parameters mix by their ratio: levels are logarithms
     std::vector<double> levels{};  ///< rising
 
     double at(std::size_t texel) const {
         const auto c = static_cast<std::size_t>(channel);
         const double found = factor * static_cast<double>(picture->values[4 * texel + c]);
-        return of_roughness ? std::max(found, kSmoothest) : found;
+        return of_roughness ? std::log(std::max(found, kSmoothest)) : found;
     }
-    /// How much of a value the paint of a level has.
+    double value_of(double level) const { return of_roughness ? std::exp(level) : level; }
+    /// How much of what stands at x the paint of a level has.
     double share(double x, std::size_t level) const {
-        const auto between = [&](double low, double high) {
-            const double t =
-                of_roughness ? std::log(x / low) / std::log(high / low) : (x - low) / (high - low);
-            return glm::clamp(t, 0.0, 1.0);
+        const auto between = [&](std::size_t below) {
+            const double low = levels[below], high = levels[below + 1];
+            return glm::clamp((x - low) / (high - low), 0.0, 1.0);
         };
         double share = 1.0;
-        if (level > 0) share *= between(levels[level - 1], levels[level]);
-        if (level + 1 < levels.size()) share *= 1.0 - between(levels[level], levels[level + 1]);
+        if (level > 0) share *= between(level - 1);
+        if (level + 1 < levels.size()) share *= 1.0 - between(level);
         return share;
     }
 };
@@ -125,7 +125,7 @@ void find_levels(Axis& axis, std::size_t texels, bool coloured, GltfSurface& sur
         sum += x;
     }
     const double mean = sum / static_cast<double>(texels);
-    surface.*axis.value = mean;
+    surface.*axis.value = axis.value_of(mean);
     const bool even = high - low < kEven;
     if (axis.value == &GltfSurface::metallic && (coloured || !even)) {
         // A picture colours a pigment or a metal; in between, both side by side reflect the same.
@@ -134,13 +134,12 @@ void find_levels(Axis& axis, std::size_t texels, bool coloured, GltfSurface& sur
     } else if (even) {
         axis.levels = {mean};
     } else if (axis.of_roughness) {
-        const double steps = std::ceil(2.0 * std::log(high / low) / std::log(kRoughnessStep));
+        const double steps = std::ceil(2.0 * (high - low) / std::log(kRoughnessStep));
         const auto count =
             std::clamp<std::size_t>(static_cast<std::size_t>(steps) + 1, 2, kMostRoughnesses);
         for (std::size_t k = 0; k < count; ++k) {
-            axis.levels.push_back(
-                low *
-                std::pow(high / low, static_cast<double>(k) / static_cast<double>(count - 1)));
+            const double t = static_cast<double>(k) / static_cast<double>(count - 1);
+            axis.levels.push_back(glm::mix(low, high, t));
         }
     } else {
         axis.levels = {low, high};
@@ -285,7 +284,7 @@ std::optional<PartPicture> roughness_map(const Texels& texels) {
     for (std::size_t i = 0; i < texels.count(); ++i) {
         std::fill_n(&picture.rgba.values[4 * i],
                     3,
-                    static_cast<float>(changing->at(i) / changing->levels.back()));
+                    static_cast<float>(std::exp(changing->at(i) - changing->levels.back())));
     }
     PartPicture map;
     map.use = PartPicture::Use::roughness;
@@ -409,7 +408,8 @@ void wear_pictures(const GltfFile& gltf,
     }
     if (auto map = roughness_map(texels)) {
         GltfSurface roughest = surface;
-        for (const Axis& axis : texels.axes) roughest.*axis.value = axis.levels.back();
+        for (const Axis& axis : texels.axes)
+            roughest.*axis.value = axis.value_of(axis.levels.back());
         map->paint = paint_of(roughest);
         map->name = "roughness of " + name;
         material.part.pictures.push_back(std::move(*map));
@@ -420,7 +420,8 @@ void wear_pictures(const GltfFile& gltf,
         GltfSurface white = surface;
         white.base_rec709 = glm::dvec3(1.0);
         for (std::size_t a = 0; a < texels.axes.size(); ++a) {
-            white.*texels.axes[a].value = texels.axes[a].levels[texels.level(k, a)];
+            const Axis& axis = texels.axes[a];
+            white.*axis.value = axis.value_of(axis.levels[texels.level(k, a)]);
         }
         PartPicture worn;
         worn.name = fmt::format("{} of {}", texels.base ? base.name : metal_rough.name, name);

@@ -229,6 +229,15 @@ def gltfs():
                                                                       {"byteLength": 9, "uri": "x/../large.bin"}]
         (inputs / "mesh.gltf").write_text(dump(gltf(buffers=buffers)))
     yield Case("gltf-large-buffers", ["check", "{in}/mesh.gltf"], many_files)
+
+    def pictures(inputs, place):
+        make_out(inputs, place)
+        (inputs / "large.png").write_bytes(files.png(4096, 4096))
+        materials = [{"pbrMetallicRoughness": {"baseColorTexture": {"index": k}, "metallicRoughnessTexture": {"index": k + 1}}}
+                     for k in range(0, 60, 2)]
+        (inputs / "mesh.gltf").write_text(dump(gltf(images=[{"uri": "large.png"}] * 60, materials=materials,
+                                                    textures=[{"source": k} for k in range(60)])))
+    yield Case("gltf-large-pictures", ["check", "{in}/mesh.gltf"], pictures)
     position, index = files.GLTF["accessors"]
     zeros = {"componentType": 5126, "count": 33000000, "type": "VEC3"}
     yield case("zeros", gltf(accessors=[zeros, index]), quick=True)
