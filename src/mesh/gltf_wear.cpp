@@ -88,7 +88,7 @@ Use use_of(const tinygltf::Material& material, const char* extension, const char
 
 /// What of a surface changes from texel to texel, and the values of the paints between which it is
 /// mixed.
-struct Axis {
+struct SurfaceAxis {
     double GltfSurface::*value = nullptr;
     std::optional<ImageF> picture{};
     int channel = 0;
@@ -116,7 +116,7 @@ struct Axis {
 };
 
 /// Sets the levels, and the surface's own value to the mean. An axis that is even has one.
-void find_levels(Axis& axis, std::size_t texels, bool coloured, GltfSurface& surface) {
+void find_levels(SurfaceAxis& axis, std::size_t texels, bool coloured, GltfSurface& surface) {
     double low = 1e9, high = -1e9, sum = 0.0;
     for (std::size_t i = 0; i < texels; ++i) {
         const double x = axis.at(i);
@@ -151,14 +151,14 @@ struct Texels {
     int width = 0, height = 0;
     std::optional<ImageF> base;  ///< linear, with the factor
     GltfSurface surface;         ///< in the mean
-    std::vector<Axis> axes;
+    std::vector<SurfaceAxis> axes;
 
     std::size_t count() const {
         return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     }
     std::size_t paints() const {
         std::size_t product = 1;
-        for (const Axis& axis : axes) product *= axis.levels.size();
+        for (const SurfaceAxis& axis : axes) product *= axis.levels.size();
         return product;
     }
     /// The level of each axis in the paint of a number.
@@ -172,15 +172,15 @@ void fit_grid(Texels& texels, int width, int height) {
     texels.width = width;
     texels.height = height;
     if (texels.base) texels.base = resampled(*texels.base, width, height);
-    for (Axis& axis : texels.axes) axis.picture = resampled(*axis.picture, width, height);
+    for (SurfaceAxis& axis : texels.axes) axis.picture = resampled(*axis.picture, width, height);
 }
 
 void find_all_levels(Texels& texels) {
-    for (Axis& axis : texels.axes) {
+    for (SurfaceAxis& axis : texels.axes) {
         axis.levels.clear();
         find_levels(axis, texels.count(), texels.base.has_value(), texels.surface);
     }
-    for (Axis& axis : texels.axes) {
+    for (SurfaceAxis& axis : texels.axes) {
         if (texels.paints() > kMostPaints && axis.levels.size() > 2) {
             axis.levels = {axis.levels.front(), axis.levels.back()};
         }
@@ -195,7 +195,7 @@ void choose_grid(Texels& texels, std::size_t most) {
         height = std::max(height, picture.height);
     };
     if (texels.base) take(*texels.base);
-    for (const Axis& axis : texels.axes) take(*axis.picture);
+    for (const SurfaceAxis& axis : texels.axes) take(*axis.picture);
     fit_grid(texels, width, height);
     find_all_levels(texels);
     while (texels.count() * texels.paints() > most && std::max(width, height) > 1) {
@@ -269,8 +269,8 @@ bool is_repeated(const tinygltf::Model& model, int texture) {
 
 /// Roughness alone changes, on a paint that has one: a map of it, exact in more steps.
 std::optional<PartPicture> roughness_map(const Texels& texels) {
-    const Axis* changing = nullptr;
-    for (const Axis& axis : texels.axes) {
+    const SurfaceAxis* changing = nullptr;
+    for (const SurfaceAxis& axis : texels.axes) {
         if (axis.levels.size() == 1) continue;
         if (changing || !axis.of_roughness) return std::nullopt;
         changing = &axis;
@@ -408,7 +408,7 @@ void wear_pictures(const GltfFile& gltf,
     }
     if (auto map = roughness_map(texels)) {
         GltfSurface roughest = surface;
-        for (const Axis& axis : texels.axes)
+        for (const SurfaceAxis& axis : texels.axes)
             roughest.*axis.value = axis.value_of(axis.levels.back());
         map->paint = paint_of(roughest);
         map->name = "roughness of " + name;
@@ -420,7 +420,7 @@ void wear_pictures(const GltfFile& gltf,
         GltfSurface white = surface;
         white.base_rec709 = glm::dvec3(1.0);
         for (std::size_t a = 0; a < texels.axes.size(); ++a) {
-            const Axis& axis = texels.axes[a];
+            const SurfaceAxis& axis = texels.axes[a];
             white.*axis.value = axis.value_of(axis.levels[texels.level(k, a)]);
         }
         PartPicture worn;
