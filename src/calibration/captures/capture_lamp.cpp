@@ -15,7 +15,7 @@ namespace livery {
 namespace {
 
 /// How bright white is by one photograph, or by one pair of stripes.
-struct Reading {
+struct LampReading {
     const CaptureSummary* capture = nullptr;
     const StripePair* pair = nullptr;
     double taken_at = 0.0;
@@ -30,11 +30,11 @@ struct Line {
 };
 
 /// `without` (by number) leaves one out.
-Line line_through(const std::vector<Reading>& readings, std::size_t without) {
+Line line_through(const std::vector<LampReading>& readings, std::size_t without) {
     double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
     for (std::size_t k = 0; k < readings.size(); ++k) {
         if (k == without) continue;
-        const Reading& r = readings[k];
+        const LampReading& r = readings[k];
         n += 1.0;
         sx += r.taken_at;
         sy += r.light;
@@ -62,17 +62,17 @@ Line line_through(const std::vector<Reading>& readings, std::size_t without) {
 struct Excess {
     double size = 0.0, error = 0.0;
 };
-Excess excess_of_fine(const std::vector<Reading>& readings) {
+Excess excess_of_fine(const std::vector<LampReading>& readings) {
     std::vector<glm::dvec3> rows;
     std::vector<double> light;
     for (const std::string axis : {"gray-column-", "gray-row-"}) {
-        const auto bit_of = [&](const Reading& r) {
+        const auto bit_of = [&](const LampReading& r) {
             return std::stoi(r.capture->role.substr(axis.size()));
         };
         int finest = -1;
-        for (const Reading& r : readings)
+        for (const LampReading& r : readings)
             if (r.capture->role.starts_with(axis)) finest = std::max(finest, bit_of(r));
-        for (const Reading& r : readings) {
+        for (const LampReading& r : readings) {
             if (!r.capture->role.starts_with(axis)) continue;
             rows.emplace_back(1.0, 0.01 * r.taken_at, std::exp2(bit_of(r) - finest));
             light.push_back(r.mean);
@@ -99,7 +99,7 @@ Excess excess_of_fine(const std::vector<Reading>& readings) {
 /// A camera pixel at a stripe's border sees a part of white in the one picture and the rest of it
 /// in the other: in linear files the two add up to white there as everywhere, in files encoded for
 /// viewing to more. What the projector does with its colours has no say in this.
-void refuse_encoded(const Evidence& e, const std::vector<Reading>& readings) {
+void refuse_encoded(const Evidence& e, const std::vector<LampReading>& readings) {
     constexpr double kLeast = 0.01, kSigmas = 5.0;
     const Excess excess = excess_of_fine(readings);
     if (excess.size <= std::max(kLeast, kSigmas * excess.error)) return;
@@ -176,7 +176,7 @@ void refuse_odd_pair(const StripePair& pair, const ImageF& ratio, const Region& 
 /// Takes out of `readings` what stands alone off their line, and says so: a picture of stripes is
 /// read by its signs and white only tells what is lit, so that it does no harm.
 Line line_without_slips(const Evidence& e,
-                        std::vector<Reading>& readings,
+                        std::vector<LampReading>& readings,
                         std::vector<std::string>& warnings) {
     constexpr double kSlip = 0.02, kSigmas = 5.0;
     constexpr int kMostSlips = 3;
@@ -193,7 +193,7 @@ Line line_without_slips(const Evidence& e,
             rest = without;
         }
         if (largest < kSlip || largest < kSigmas * rest.scatter) break;
-        const Reading& odd = readings[oddest];
+        const LampReading& odd = readings[oddest];
         std::string name = odd.capture->name;
         double ratio = odd.light / rest.at(odd.taken_at);
         if (odd.pair) {
@@ -271,7 +271,7 @@ void refuse_other_white(const Evidence& e) {
 
 LampDrift check_stripes(const Evidence& e, std::vector<std::string>& warnings) {
     if (e.pairs.size() < 5 || !e.black) return {};
-    std::vector<Reading> readings;
+    std::vector<LampReading> readings;
     std::vector<std::pair<ImageF, Region>> of_pair;
     for (const StripePair& pair : e.pairs) {
         ImageF ratio = light_of(e, pair);
@@ -296,7 +296,7 @@ LampDrift check_stripes(const Evidence& e, std::vector<std::string>& warnings) {
 
     const Line line = line_without_slips(e, readings, warnings);
     const auto [first, last] = std::minmax_element(
-        readings.begin(), readings.end(), [](const Reading& a, const Reading& b) {
+        readings.begin(), readings.end(), [](const LampReading& a, const LampReading& b) {
             return a.taken_at < b.taken_at;
         });
     const double change = line.slope * (last->taken_at - first->taken_at);
