@@ -14,9 +14,11 @@
 
 struct CarPaintPrepared {
     GgxPrepared base;    // the first lobe; the pigment is its diffuse layer
-    REAL flake_alpha;    // of the second lobe
-    FilmPrepared flakes; // what its flakes reflect
+    AlbedoFit flake;      // of the second lobe
+    FilmPrepared flakes;  // what its flakes reflect
     CoatPrepared coat;
+    CoatEntry base_entry;
+    CoatEntry flake_entry;
 };
 
 // What the flakes let through to the pigment of a light that each lobe loses that much of: 1 - E
@@ -31,7 +33,9 @@ FN CarPaintPrepared car_paint_prepare(BsdfParameters p) {
     not_stretched.alpha_y = p.alpha_x;
     CarPaintPrepared q;
     q.base = ggx_interface(not_stretched);
-    q.flake_alpha = p.flake_alpha;
+    q.flake = albedo_fit(p.flake_alpha);
+    q.base_entry = coat_entry(p.alpha_x);
+    q.flake_entry = coat_entry(p.flake_alpha);
     q.flakes = film_prepare(p);
     q.coat = coat_prepare(p);
     VEC3 passed =
@@ -46,7 +50,7 @@ FN int lobe_count(CarPaintPrepared q) {
 
 FN VEC2 slopes_of(CarPaintPrepared q, int lobe) {
     REAL alpha = lobe == COAT_LOBE    ? q.coat.alpha
-                 : lobe == FLAKE_LOBE ? q.flake_alpha
+                 : lobe == FLAKE_LOBE ? q.flake.alpha
                                       : q.base.alpha_x;
     return VEC2(alpha, alpha);
 }
@@ -55,8 +59,8 @@ FN Passage passage_of(CarPaintPrepared q, REAL mu) {
     REAL loss;
     REAL flake_loss;
     REAL cosine;
-    ggx_albedo_fit(mu, q.base.alpha_x, loss, cosine);
-    ggx_albedo_fit(mu, q.flake_alpha, flake_loss, cosine);
+    ggx_albedo_fit(mu, q.base.layer, loss, cosine);
+    ggx_albedo_fit(mu, q.flake, flake_loss, cosine);
     return coated_passage(q.coat, car_paint_passed(q, loss, flake_loss), mu);
 }
 
@@ -75,7 +79,7 @@ FN VEC3 evaluate(CarPaintPrepared q, VEC3 wi, VEC3 wo) {
     VEC3 lobes =
         VEC3(ggx_distribution_visibility(wi, wo, hh, q.base.alpha_x, q.base.alpha_x),
              ggx_distribution_visibility(wi, wo, hh, q.coat.alpha, q.coat.alpha),
-             ggx_distribution_visibility(wi, wo, hh, q.flake_alpha, q.flake_alpha));
+             ggx_distribution_visibility(wi, wo, hh, q.flake.alpha, q.flake.alpha));
     return reflected(q, passage_of(q, wi.z), passage_of(q, wo.z), hh, lobes);
 }
 
@@ -97,27 +101,28 @@ FN REAL car_paint_mirror_hh(REAL mu, REAL alpha) {
 }
 
 // What a lobe of flakes of reflectance 1 mirrors, the coat passed both ways.
-FN VEC3 car_paint_lobe(CoatPrepared c, Passage to, REAL mu, MirrorGrazing grazing, REAL alpha) {
+FN VEC3 car_paint_lobe(
+    CoatPrepared c, CoatEntry e, AlbedoFit fit, Passage to, REAL mu, MirrorGrazing grazing) {
     REAL loss;
     REAL cosine;
-    ggx_albedo_fit(mu, alpha, loss, cosine);
-    return coated_entry(c, to, mu, grazing, alpha) * (R(1.0) - loss);
+    ggx_albedo_fit(mu, fit, loss, cosine);
+    return coated_entry(c, e, to, mu, grazing) * (R(1.0) - loss);
 }
 
 // Of the second lobe, whose flakes reflect that much.
 FN VEC3 car_paint_flakes(
     CarPaintPrepared q, Passage to, REAL mu, MirrorGrazing grazing, VEC3 reflectance) {
     return (VEC3(R(1.0)) - q.base.f0) * reflectance *
-           car_paint_lobe(q.coat, to, mu, grazing, q.flake_alpha);
+           car_paint_lobe(q.coat, q.flake_entry, q.flake, to, mu, grazing);
 }
 
 FN VEC3 mirror_weight(CarPaintPrepared q, Passage to, REAL mu, MirrorGrazing grazing, int lobe) {
     if (lobe == COAT_LOBE) return coat_weight(q.coat, mu, grazing);
     if (lobe == FLAKE_LOBE) {
-        REAL hh = car_paint_mirror_hh(mu, q.flake_alpha);
+        REAL hh = car_paint_mirror_hh(mu, q.flake.alpha);
         return car_paint_flakes(q, to, mu, grazing, film_reflectance(q.flakes, hh));
     }
-    return q.base.f0 * car_paint_lobe(q.coat, to, mu, grazing, q.base.alpha_x);
+    return q.base.f0 * car_paint_lobe(q.coat, q.base_entry, q.base.layer, to, mu, grazing);
 }
 
 FN BsdfEnvironment car_paint_environment(BsdfParameters p, REAL mu) {

@@ -14,13 +14,10 @@ struct CoatPrepared {
     REAL alpha;
     REAL f0;
     REAL f90;                    // reflectance at grazing incidence
+    Fresnel fresnel;
+    AlbedoFit albedo;
     REAL inverse_index_squared;  // 1 / n^2
     VEC3 log_transmittance;      // base 2, once through at normal incidence
-};
-
-struct ClearcoatPrepared {
-    GgxPrepared base;  // its diffuse layer with the coat's inner reflections, and absorbed
-    CoatPrepared coat;
 };
 
 FN CoatPrepared coat_prepare(BsdfParameters p) {
@@ -30,6 +27,8 @@ FN CoatPrepared coat_prepare(BsdfParameters p) {
     c.alpha = p.coat_alpha;
     c.f0 = p.coat_f0;
     c.f90 = grazing_reflectance(p.coat_f0);
+    c.fresnel = fresnel_prepare(p.coat_f0);
+    c.albedo = albedo_fit(p.coat_alpha);
     c.inverse_index_squared = inverse_index * inverse_index;
     c.log_transmittance = log2(max(p.coat_transmittance, VEC3(R(1e-6))));
     return c;
@@ -39,7 +38,7 @@ FN CoatPrepared coat_prepare(BsdfParameters p) {
 FN REAL coat_albedo(CoatPrepared c, REAL mu, REAL grazing_ratio) {
     REAL white;
     REAL grazing;
-    ggx_albedo(mu, c.alpha, c.f0, white, grazing);
+    ggx_albedo(mu, c.albedo, c.fresnel, white, grazing);
     grazing = min(grazing * grazing_ratio, white);
     return c.f0 * (white - grazing) + c.f90 * grazing;
 }
@@ -47,7 +46,7 @@ FN REAL coat_albedo(CoatPrepared c, REAL mu, REAL grazing_ratio) {
 FN REAL coat_transmission(CoatPrepared c, REAL mu) {
     REAL loss;
     REAL rest;
-    ggx_transmission_fit(mu, c.alpha, c.f0, loss, rest);
+    ggx_transmission_fit(mu, c.albedo, c.fresnel, loss, rest);
     return (R(1.0) - c.f90) + c.f90 * loss + (c.f90 - c.f0) * rest;
 }
 
@@ -73,29 +72,42 @@ FN VEC3 coat_absorption(CoatPrepared c, REAL path) {
 // much arrives at grazing angles the mean direction would pass up to 5% too much. Squared, both are
 // smooth in mu; fits of our own quadrature of even light (index 1.5, alpha .01 to 1), of its
 // transmission within .4% and of its path within .3%, twice as much for mu < .15.
-FN REAL coat_entry_cosine(REAL mu, REAL alpha) {
+struct CoatEntry {
+    REAL alpha;  // of the lobe
+    REAL cosine0;
+    VEC3 cosine;  // further coefficients
+    VEC3 path;
+};
+
+FN CoatEntry coat_entry(REAL alpha) {
     REAL y = alpha / (alpha + R(0.3));
-    REAL c0 = y * (R(0.0045) + y * (R(1.3184) + y * (R(-1.3776) + y * R(-0.1443))));
-    REAL c1 = y * (R(-0.2752) + y * (R(-6.9299) + y * (R(23.2973) + y * R(-16.975))));
-    REAL c2 = y * (R(1.9661) + y * (R(4.1632) + y * (R(-40.2442) + y * R(36.8058))));
-    REAL c3 = y * (R(-4.1456) + y * (R(4.8188) + y * (R(15.85) + y * R(-19.0556))));
-    REAL squared = mu * mu + c0 + mu * (c1 + mu * (c2 + mu * c3));
+    CoatEntry e;
+    e.alpha = alpha;
+    e.cosine0 = y * (R(0.0045) + y * (R(1.3184) + y * (R(-1.3776) + y * R(-0.1443))));
+    e.cosine = VEC3(y * (R(-0.2752) + y * (R(-6.9299) + y * (R(23.2973) + y * R(-16.975)))),
+                    y * (R(1.9661) + y * (R(4.1632) + y * (R(-40.2442) + y * R(36.8058)))),
+                    y * (R(-4.1456) + y * (R(4.8188) + y * (R(15.85) + y * R(-19.0556)))));
+    e.path = VEC3(y * (R(0.1524) + y * (R(2.3192) + y * R(-2.5349))),
+                  y * (R(-1.2958) + y * (R(2.3516) + y * R(-0.4029))),
+                  y * (R(1.2878) + y * (R(-7.4003) + y * R(4.9449))));
+    return e;
+}
+
+FN REAL coat_entry_cosine(CoatEntry e, REAL mu) {
+    VEC3 c = e.cosine;
+    REAL squared = mu * mu + e.cosine0 + mu * (c.x + mu * (c.y + mu * c.z));
     return sqrt(clamp(squared, R(0.0), R(1.0)));
 }
 
 // What the coat transmits of it where so many times as much grazes as of even light.
-FN REAL coat_entry_transmission(CoatPrepared c, REAL mu, REAL alpha, REAL grazing_ratio) {
-    REAL even = coat_transmission(c, coat_entry_cosine(mu, alpha));
+FN REAL coat_entry_transmission(CoatPrepared c, CoatEntry e, REAL mu, REAL grazing_ratio) {
+    REAL even = coat_transmission(c, coat_entry_cosine(e, mu));
     REAL grazing = R(1.0) - c.f0 - even;
     return clamp(even + grazing * (R(1.0) - grazing_ratio), R(0.0), R(1.0));
 }
 
-FN REAL coat_entry_path(CoatPrepared c, REAL mu, REAL alpha) {
-    REAL y = alpha / (alpha + R(0.3));
-    REAL c0 = y * (R(0.1524) + y * (R(2.3192) + y * R(-2.5349)));
-    REAL c1 = y * (R(-1.2958) + y * (R(2.3516) + y * R(-0.4029)));
-    REAL c2 = y * (R(1.2878) + y * (R(-7.4003) + y * R(4.9449)));
-    REAL squared = mu * mu + c0 + mu * (c1 + mu * c2);
+FN REAL coat_entry_path(CoatPrepared c, CoatEntry e, REAL mu) {
+    REAL squared = mu * mu + e.path.x + mu * (e.path.y + mu * e.path.z);
     return coat_path(c, sqrt(clamp(squared, R(0.0), R(1.0))));
 }
 
@@ -113,11 +125,18 @@ FN GgxPrepared coated_base(GgxPrepared base, CoatPrepared c, VEC3 diffuse, VEC3 
     return q;
 }
 
+struct ClearcoatPrepared {
+    GgxPrepared base;  // its diffuse layer with the coat's inner reflections, and absorbed
+    CoatPrepared coat;
+    CoatEntry entry;
+};
+
 FN ClearcoatPrepared clearcoat_prepare(BsdfParameters p) {
     GgxPrepared base = ggx_interface(p);
     ClearcoatPrepared q;
     q.coat = coat_prepare(p);
     q.base = coated_base(base, q.coat, p.diffuse, VEC3(R(1.0)) - ggx_interface_average(base));
+    q.entry = coat_entry(base.mirror.alpha);
     return q;
 }
 
@@ -144,7 +163,7 @@ FN Passage passage_of(ClearcoatPrepared q, REAL mu) {
 
 // hh = |wi + wo|^2
 FN REAL coat_fresnel(CoatPrepared c, REAL hh) {
-    return mix(c.f0, c.f90, fresnel_weight(c.f0, hh));
+    return mix(c.f0, c.f90, fresnel_weight(c.fresnel, hh));
 }
 
 // A coat over what returns `under` of the light that passes it.
@@ -189,16 +208,16 @@ FN VEC3 coat_weight(CoatPrepared c, REAL mu, MirrorGrazing grazing) {
 }
 
 // Through the coat both ways, of what a lobe under it mirrors.
-FN VEC3 coated_entry(CoatPrepared c, Passage to, REAL mu, MirrorGrazing grazing, REAL alpha) {
-    REAL entered = coat_entry_transmission(c, mu, alpha, grazing_entry(grazing, alpha));
-    return coat_absorption(c, to.path + coat_entry_path(c, mu, alpha)) * (to.coat * entered);
+FN VEC3 coated_entry(CoatPrepared c, CoatEntry e, Passage to, REAL mu, MirrorGrazing grazing) {
+    REAL entered = coat_entry_transmission(c, e, mu, grazing_entry(grazing, e.alpha));
+    return coat_absorption(c, to.path + coat_entry_path(c, e, mu)) * (to.coat * entered);
 }
 
 FN VEC3 mirror_weight(
     ClearcoatPrepared q, Passage to, REAL mu, MirrorGrazing grazing, int lobe) {
     if (lobe == COAT_LOBE) return coat_weight(q.coat, mu, grazing);
     return mirror_weight(q.base, to, mu, grazing, lobe) *
-           coated_entry(q.coat, to, mu, grazing, q.base.mirror_alpha);
+           coated_entry(q.coat, q.entry, to, mu, grazing);
 }
 
 FN BsdfEnvironment clearcoat_environment(BsdfParameters p, REAL mu) {

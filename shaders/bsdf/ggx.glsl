@@ -10,14 +10,15 @@
 
 struct GgxPrepared {
     VEC3 f0;
-    REAL f0_max;        // the largest channel: all go to grazing incidence as it does
-    REAL f90;           // reflectance there
+    REAL f0_max;       // the largest channel: all go to grazing incidence as it does
+    REAL f90;          // reflectance there
+    Fresnel fresnel;
     REAL alpha_x;
     REAL alpha_y;
-    REAL layer_alpha;   // of an interface that reflects at least as much in any azimuth
-    REAL mirror_alpha;  // of a lobe that is as wide along as across
-    VEC3 diffuse;       // of the layer, over the share of light that passes the interface
-    VEC3 sky_diffuse;   // of the layer, for what passes of light from everywhere
+    AlbedoFit layer;   // of an interface that reflects at least as much in any azimuth
+    AlbedoFit mirror;  // of a lobe that is as wide along as across
+    VEC3 diffuse;      // of the layer, over the share of light that passes the interface
+    VEC3 sky_diffuse;  // of the layer, for what passes of light from everywhere
 };
 
 FN int lobe_count(GgxPrepared q) {
@@ -35,10 +36,11 @@ FN GgxPrepared ggx_interface(BsdfParameters p) {
     q.f0 = p.f0;
     q.f0_max = max_component(p.f0);
     q.f90 = grazing_reflectance(q.f0_max);
+    q.fresnel = fresnel_prepare(q.f0_max);
     q.alpha_x = p.alpha_x;
     q.alpha_y = p.alpha_y;
-    q.layer_alpha = low * sqrt(low / max(p.alpha_x, p.alpha_y));
-    q.mirror_alpha = sqrt(p.alpha_x * p.alpha_y);
+    q.layer = albedo_fit(low * sqrt(low / max(p.alpha_x, p.alpha_y)));
+    q.mirror = albedo_fit(sqrt(p.alpha_x * p.alpha_y));
     q.diffuse = p.diffuse;
     q.sky_diffuse = p.diffuse;
     return q;
@@ -48,14 +50,14 @@ FN GgxPrepared ggx_interface(BsdfParameters p) {
 FN VEC3 ggx_interface_transmission(GgxPrepared q, REAL mu) {
     REAL loss;
     REAL rest;
-    ggx_transmission_fit(mu, q.layer_alpha, q.f0_max, loss, rest);
+    ggx_transmission_fit(mu, q.layer, q.fresnel, loss, rest);
     return VEC3(R(1.0) - q.f90 + q.f90 * loss) + (VEC3(q.f90) - q.f0) * rest;
 }
 
 FN VEC3 ggx_interface_average(GgxPrepared q) {
     REAL white;
     REAL grazing;
-    ggx_average_albedo(q.layer_alpha, q.f0_max, white, grazing);
+    ggx_average_albedo(q.layer.alpha, q.f0_max, white, grazing);
     // The layer under a stretched lobe would return up to 1.4e-4 too much.
     REAL stretch = min(q.alpha_x, q.alpha_y) / max(q.alpha_x, q.alpha_y);
     REAL in_hand = R(1.0) - R(0.006) * (R(1.0) - stretch);
@@ -78,7 +80,7 @@ FN Passage passage_of(GgxPrepared q, REAL mu) {
 
 // hh = |wi + wo|^2
 FN VEC3 ggx_fresnel(GgxPrepared q, REAL hh) {
-    return mix(q.f0, VEC3(q.f90), fresnel_weight(q.f0_max, hh));
+    return mix(q.f0, VEC3(q.f90), fresnel_weight(q.fresnel, hh));
 }
 
 FN VEC3 reflected(GgxPrepared q, Passage from, Passage to, REAL hh, VEC3 lobes) {
@@ -106,8 +108,8 @@ FN VEC3 sky_weight(GgxPrepared q, Passage to) {
 FN VEC3 mirror_weight(GgxPrepared q, Passage to, REAL mu, MirrorGrazing grazing_ratio, int lobe) {
     REAL white;
     REAL grazing;
-    ggx_albedo(mu, q.mirror_alpha, q.f0_max, white, grazing);
-    grazing = min(grazing * grazing_fresnel(grazing_ratio, q.mirror_alpha), white);
+    ggx_albedo(mu, q.mirror, q.fresnel, white, grazing);
+    grazing = min(grazing * grazing_fresnel(grazing_ratio, q.mirror.alpha), white);
     return q.f0 * (white - grazing) + VEC3(q.f90 * grazing);
 }
 

@@ -29,7 +29,7 @@ FN VEC3 ggx_many_bounces(GgxPrepared once, REAL lost) {
 // 1 - W at mu.
 FN VEC3 ggx_multiscatter_transmission(GgxMultiscatterPrepared q, REAL mu, OUT(REAL) lost) {
     REAL rest;
-    ggx_transmission_fit(mu, q.once.alpha_x, q.once.f0_max, lost, rest);
+    ggx_transmission_fit(mu, q.once.layer, q.once.fresnel, lost, rest);
     VEC3 f90 = VEC3(q.once.f90);
     VEC3 through = VEC3(R(1.0)) - f90 + (f90 - q.many) * lost + (f90 - q.once.f0) * rest;
     return max(through, VEC3(R(0.0)));

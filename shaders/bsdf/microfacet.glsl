@@ -79,17 +79,20 @@ FN REAL max_component(VEC3 v) {
 //   T = 2 g c (1 / (g + c)^2 + n^2 / (n^2 c + g)^2), g^2 = n^2 - 1 + c^2,
 // in which nothing cancels at grazing incidence, nor where n is near 1:
 // n^2 - 1 = 4 r / (1 - r)^2 with r^2 = f0.
-FN REAL dielectric_rest(REAL f0, REAL c) {
-    REAL r = sqrt(f0);
-    REAL left = R(1.0) - r;
-    REAL beyond = R(4.0) * r / (left * left);
-    REAL n2 = R(1.0) + beyond;
-    REAL g = sqrt(beyond + c * c);
+struct Fresnel {
+    REAL beyond;  // n^2 - 1
+    REAL rest;    // 1 - f0 of the dielectric
+    REAL metal;   // 0 for dielectrics, 1 for metals
+};
+
+FN REAL dielectric_rest(Fresnel q, REAL c) {
+    REAL n2 = R(1.0) + q.beyond;
+    REAL g = sqrt(q.beyond + c * c);
     REAL across = g + c;
     REAL along = n2 * c + g;
     REAL both = across * along;
     return R(2.0) * g * c * (along * along + n2 * across * across) /
-           max(both * both * (R(1.0) - f0), R(1e-30));
+           max(both * both * q.rest, R(1e-30));
 }
 
 // 0 for dielectrics, f0 up to 0.2 (index 2.6), and 1 for metals, from 0.4 on; hardly a paint is
@@ -99,18 +102,29 @@ FN REAL metal_share(REAL f0) {
     return m * m * (R(3.0) - R(2.0) * m);
 }
 
-// Metals keep Schlick's 1 - (1 - c)^5, which is near theirs. f0 is the largest channel's; below
-// 0.02, where f90 fades out, the way is that of 0.02. Rounding may not lengthen the way: a channel
-// of f0 = 0 would reflect less than nothing.
-FN REAL fresnel_rest(REAL f0, REAL c) {
+// f0 is the largest channel's; below 0.02, where f90 fades out, the way is that of 0.02.
+FN Fresnel fresnel_prepare(REAL f0) {
+    REAL dielectric = clamp(f0, R(0.02), R(0.2));
+    REAL r = sqrt(dielectric);
+    REAL left = R(1.0) - r;
+    Fresnel q;
+    q.beyond = R(4.0) * r / (left * left);
+    q.rest = R(1.0) - dielectric;
+    q.metal = metal_share(f0);
+    return q;
+}
+
+// Metals keep Schlick's 1 - (1 - c)^5, which is near theirs. Rounding may not lengthen the way: a
+// channel of f0 = 0 would reflect less than nothing.
+FN REAL fresnel_rest(Fresnel q, REAL c) {
     REAL schlick = c * (R(5.0) - c * (R(10.0) - c * (R(10.0) - c * (R(5.0) - c))));
-    REAL exact = dielectric_rest(clamp(f0, R(0.02), R(0.2)), c);
-    return min(exact + (schlick - exact) * metal_share(f0), R(1.0));
+    REAL exact = dielectric_rest(q, c);
+    return min(exact + (schlick - exact) * q.metal, R(1.0));
 }
 
 // How much of the way F has gone between a direction and the half vector: |H| = 2 cos.
-FN REAL fresnel_weight(REAL f0, REAL hh) {
-    return R(1.0) - fresnel_rest(f0, min(R(0.5) * sqrt(hh), R(1.0)));
+FN REAL fresnel_weight(Fresnel q, REAL hh) {
+    return R(1.0) - fresnel_rest(q, min(R(0.5) * sqrt(hh), R(1.0)));
 }
 
 // The same averaged over the hemisphere with the cosine; of dielectrics at most 0.001 too small.
@@ -130,44 +144,67 @@ FN REAL fresnel_average_weight(REAL f0) {
 // [1e-4, 1] and f0 in [0.02, 1]: 1 - loss is at most 0.0066 too large, and E at most 0.009 more, 0.041
 // within 4 degrees of grazing; together they are nowhere more than 1e-4 too small, so that what is
 // left for the layers below is never too much.
-FN void ggx_albedo_fit(REAL mu, REAL alpha, OUT(REAL) loss, OUT(REAL) cosine) {
+struct AlbedoFit {
+    REAL alpha;
+    VEC3 loss_above;  // coefficients of the numerator and of the denominator
+    VEC3 loss_below;
+    REAL cosine_above0;
+    REAL cosine_above1;
+    REAL cosine_below0;
+    REAL cosine_below1;
+};
+
+FN AlbedoFit albedo_fit(REAL alpha) {
     REAL a = alpha;
+    AlbedoFit fit;
+    fit.alpha = a;
+    fit.loss_above = VEC3(R(0.00006) - a * (R(0.01023) - a * (R(0.78648) - a * R(0.54912))),
+                          -R(0.13743) - a * (R(0.60375) - a * R(0.96872)),
+                          R(1.91749) + a * R(0.70715));
+    fit.loss_below = VEC3(R(0.57679) - a * (R(0.80506) - a * (R(0.80967) - a * R(0.28165))),
+                          R(2.87614) - a * (R(0.62389) - a * R(0.21578)),
+                          a * R(0.49333) - R(6.24262));
+    fit.cosine_above0 = a * (R(2.47435) + a * (R(2.9317) - a * R(1.28922)));
+    fit.cosine_above1 = a * (-R(3.84045) - a * R(6.87772));
+    fit.cosine_below0 = R(1.08311) + a * (R(6.9501) + a * R(1.08186));
+    fit.cosine_below1 = -R(0.93321) - a * R(8.6096);
+    return fit;
+}
+
+FN void ggx_albedo_fit(REAL mu, AlbedoFit fit, OUT(REAL) loss, OUT(REAL) cosine) {
+    REAL a = fit.alpha;
     REAL m = max(mu, R(1e-6));
-    REAL t = m / (m + a);
-    REAL v = a / (m + a);
+    REAL inverse = R(1.0) / (m + a);
+    REAL t = m * inverse;
+    REAL v = a * inverse;
     // The numerator in powers of 1 - t: in powers of t its terms nearly cancel for small alpha.
-    REAL wn0 = R(0.00006) - a * (R(0.01023) - a * (R(0.78648) - a * R(0.54912)));
-    REAL wn1 = -R(0.13743) - a * (R(0.60375) - a * R(0.96872));
-    REAL wn2 = R(1.91749) + a * R(0.70715);
-    REAL wd0 = R(0.57679) - a * (R(0.80506) - a * (R(0.80967) - a * R(0.28165)));
-    REAL wd1 = R(2.87614) - a * (R(0.62389) - a * R(0.21578));
-    REAL wd2 = a * R(0.49333) - R(6.24262);
-    REAL lost = t * (wn0 + v * (wn1 + v * (wn2 - v * R(1.78348)))) /
-                (wd0 + t * (wd1 + t * (wd2 + t * R(3.7214))));
-    REAL cn0 = R(2.47435) + a * (R(2.9317) - a * R(1.28922));
-    REAL cn1 = -R(3.84045) - a * R(6.87772);
-    REAL cd0 = R(1.08311) + a * (R(6.9501) + a * R(1.08186));
-    REAL cd1 = -R(0.93321) - a * R(8.6096);
-    REAL c = m + a * (cn0 + t * (cn1 + t * R(1.3444))) / (cd0 + t * (cd1 + t * R(0.19318)));
+    VEC3 n = fit.loss_above;
+    VEC3 d = fit.loss_below;
+    REAL lost = t * (n.x + v * (n.y + v * (n.z - v * R(1.78348)))) /
+                (d.x + t * (d.y + t * (d.z + t * R(3.7214))));
+    REAL c = m + (fit.cosine_above0 + t * (fit.cosine_above1 + t * (a * R(1.3444)))) /
+                     (fit.cosine_below0 + t * (fit.cosine_below1 + t * R(0.19318)));
     loss = max(lost, R(0.0));
     cosine = clamp(c, R(0.0), R(1.0));
 }
 
 // E = f0 (white - grazing) + f90 grazing.
-FN void ggx_albedo(REAL mu, REAL alpha, REAL f0, OUT(REAL) white, OUT(REAL) grazing) {
+FN void ggx_albedo(
+    REAL mu, AlbedoFit fit, Fresnel fresnel, OUT(REAL) white, OUT(REAL) grazing) {
     REAL loss;
     REAL cosine;
-    ggx_albedo_fit(mu, alpha, loss, cosine);
+    ggx_albedo_fit(mu, fit, loss, cosine);
     white = R(1.0) - loss;
-    grazing = white * (R(1.0) - fresnel_rest(f0, cosine));
+    grazing = white * (R(1.0) - fresnel_rest(fresnel, cosine));
 }
 
 // 1 - E = (1 - f90) + loss_part + (f90 - f0) rest, without the cancellation near grazing:
 // loss_part = f90 loss, rest = (1 - loss) fresnel_rest.
-FN void ggx_transmission_fit(REAL mu, REAL alpha, REAL f0, OUT(REAL) loss, OUT(REAL) rest) {
+FN void ggx_transmission_fit(
+    REAL mu, AlbedoFit fit, Fresnel fresnel, OUT(REAL) loss, OUT(REAL) rest) {
     REAL c;
-    ggx_albedo_fit(mu, alpha, loss, c);
-    rest = (R(1.0) - loss) * fresnel_rest(f0, c);
+    ggx_albedo_fit(mu, fit, loss, c);
+    rest = (R(1.0) - loss) * fresnel_rest(fresnel, c);
 }
 
 // 1 - white, averaged over the hemisphere with the cosine.

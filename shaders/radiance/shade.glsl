@@ -96,6 +96,9 @@ FN VEC3 shaded() {
     VEC4 eye = eye_here();
     VEC3 wo = VEC3(eye.x, eye.y, eye.z);
     Passage to = passage_of(u_paint, wo.z);
+#ifdef GLINTS
+    VEC4 place = GLINTS ? place_here() : eye;
+#endif
     VEC3 sum = VEC3(R(0.0));
 
 #if LIGHTS > 0
@@ -121,7 +124,7 @@ FN VEC3 shaded() {
                                     slopes_of(u_paint, FLAKE_LOBE).x,
                                     disc,
                                     eye.w,
-                                    place_here(),
+                                    place,
                                     u_glint_density);
         }
 #endif

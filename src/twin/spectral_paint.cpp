@@ -44,7 +44,7 @@ bool PaintBands::lobes_at(const glm::dvec3& wi, const glm::dvec3& wo, Lobes& lob
     const glm::dvec3 h = wi + wo;
     const double hh = glm::dot(h, h);
     if (wi.z <= 0.0 || wo.z <= 0.0 || hh < 1e-8) return false;
-    const double weight = f64::fresnel_weight(largest_f0_, hh);
+    const double weight = f64::fresnel_weight(bands_.base.fresnel, hh);
     lobes.coat = f64::coat_fresnel(bands_.coat, hh) *
                  f64::ggx_distribution_visibility(wi, wo, hh, paint_.coat_alpha, paint_.coat_alpha);
     const double base = f64::ggx_distribution_visibility(wi, wo, hh, paint_.alpha, paint_.alpha);

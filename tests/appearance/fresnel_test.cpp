@@ -72,9 +72,9 @@ TEST(Fresnel, MetalsKeepSchlicks) {
 TEST(Fresnel, GoesOverFromDielectricsToMetalsWithoutAStep) {
     for (const double degrees : {10.0, 56.0, 80.0}) {
         const double hh = 4.0 * std::pow(std::cos(degrees * kDegree), 2.0);
-        double before = f64::fresnel_weight(0.02, hh);
+        double before = f64::fresnel_weight(f64::fresnel_prepare(0.02), hh);
         for (double f0 = 0.02; f0 <= 1.0; f0 += 1e-3) {
-            const double weight = f64::fresnel_weight(f0, hh);
+            const double weight = f64::fresnel_weight(f64::fresnel_prepare(f0), hh);
             EXPECT_NEAR(weight, before, 0.02) << f0 << ", " << degrees;
             EXPECT_GT(weight, -0.02) << "metal and dielectric alike hardly fall";
             before = weight;
@@ -89,7 +89,8 @@ TEST(Fresnel, KeepsItsDigitsInFloat) {
         for (const double degrees : {0.0, 1.0, 30.0, 56.3, 75.0, 88.0, 89.9, 89.99}) {
             const auto c = static_cast<float>(std::cos(degrees * kDegree));
             const double exact = dielectric_reflectance(c, index_of(f0));
-            const double passed = static_cast<double>(f32::fresnel_rest(f0, c)) * (1.0 - f0);
+            const double passed =
+                static_cast<double>(f32::fresnel_rest(f32::fresnel_prepare(f0), c)) * (1.0 - f0);
             EXPECT_NEAR(passed / (1.0 - exact), 1.0, 2e-6) << f0 << ", " << degrees;
         }
     }

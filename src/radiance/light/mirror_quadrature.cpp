@@ -116,9 +116,14 @@ Shares sharpened(const Cell& cell, const glm::dvec3& wi, const Cells& cells) {
     return weights;
 }
 
+const f64::Fresnel& dielectric() {
+    static const f64::Fresnel prepared = f64::fresnel_prepare(kDielectric);
+    return prepared;
+}
+
 /// Fresnel's weight under an angle; f64::fresnel_weight() takes |wi + wo|^2.
 double grazing_weight(double cosine) {
-    return f64::fresnel_weight(kDielectric, 4.0 * cosine * cosine);
+    return f64::fresnel_weight(dielectric(), 4.0 * cosine * cosine);
 }
 
 MirrorQuadrature::Even even_under(double mu) {
@@ -132,11 +137,11 @@ MirrorQuadrature::Even even_under(double mu) {
     };
     const auto reflected = [&](double alpha) {
         double white = 0.0, grazing = 0.0;
-        f64::ggx_albedo(mu, alpha, kDielectric, white, grazing);
+        f64::ggx_albedo(mu, f64::albedo_fit(alpha), dielectric(), white, grazing);
         return grazing / white;
     };
     const auto entering = [&](double alpha) {
-        return grazing_weight(f64::coat_entry_cosine(mu, alpha));
+        return grazing_weight(f64::coat_entry_cosine(f64::coat_entry(alpha), mu));
     };
     MirrorQuadrature::Even even;
     for (std::size_t i = 0; i < kHalfAngleLobes.size(); ++i) {
@@ -259,7 +264,7 @@ double mirror_correction(double cosine_to_eye, double alpha) {
         }
     }
     double loss = 0.0, cosine = 0.0;
-    f64::ggx_albedo_fit(mu, alpha, loss, cosine);
+    f64::ggx_albedo_fit(mu, f64::albedo_fit(alpha), loss, cosine);
     return sum / (kAround * kTilted) / (1.0 - loss);
 }
 
