@@ -1,6 +1,7 @@
 #include "scene/scene.h"
 
 #include <algorithm>
+#include <map>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -60,7 +61,10 @@ void check_part_name(const Product& product,
     throw FileError(look.file, field, "no such part in " + product.name, "one of *" + names);
 }
 
-void add_artwork(const Look& look, const LookPaints& paints, Unwearable unwearable, Scene& scene) {
+void add_artwork(const Look& look,
+                 const FindPaint& find_paint,
+                 Unwearable unwearable,
+                 Scene& scene) {
     const std::vector<Part>& parts = scene.product->mesh.parts;
     for (std::size_t k = 0; k < look.artwork.size(); ++k) {
         const Artwork& artwork = look.artwork[k];
@@ -74,7 +78,7 @@ void add_artwork(const Look& look, const LookPaints& paints, Unwearable unwearab
         for (std::size_t p = 0; p < parts.size(); ++p) {
             if (artwork.part != "*" && artwork.part != parts[p].name) continue;
             const Material material =
-                artwork.paint.empty() ? scene.part_materials[p] : paints.at(artwork.paint);
+                artwork.paint.empty() ? scene.part_materials[p] : find_paint(artwork.paint);
             if (is_relief(artwork)) {
                 if (relief_of(scene, p)) {
                     throw FileError(look.file,
@@ -133,24 +137,9 @@ void add_own_pictures(const Look& look, bool reliefs, Scene& scene) {
 
 }  // namespace
 
-LookPaints read_paints(const Look& look) {
-    LookPaints paints;
-    const auto library = read_paint_library();
-    Look named = look;
-    for_each_paint(named, [&](const std::string& name) {
-        if (paints.contains(name)) return;
-        std::error_code error;
-        const auto beside = look.file.parent_path() / name;
-        const bool is_beside =
-            !look.file.empty() && std::filesystem::is_regular_file(beside, error);
-        paints[name] = find_material(is_beside ? beside.string() : name, *library);
-    });
-    return paints;
-}
-
 Scene make_scene(std::shared_ptr<const Product> product,
                  const Look& look,
-                 const LookPaints& paints,
+                 const FindPaint& find_paint,
                  glm::dvec3 eye_mm,
                  const std::shared_ptr<const Environment>& loaded,
                  Unwearable unwearable) {
@@ -165,7 +154,7 @@ Scene make_scene(std::shared_ptr<const Product> product,
         auto paint = look.parts.find(part.name);
         if (paint == look.parts.end()) paint = look.parts.find("*");
         scene.part_materials.push_back(paint == look.parts.end() ? own_material(part)
-                                                                 : paints.at(paint->second));
+                                                                 : find_paint(paint->second));
     }
     if (!look.environment.file.empty()) {
         const auto beside = look.file.parent_path();
@@ -178,7 +167,7 @@ Scene make_scene(std::shared_ptr<const Product> product,
     }
     scene.product = std::move(product);
     add_own_pictures(look, false, scene);
-    add_artwork(look, paints, unwearable, scene);
+    add_artwork(look, find_paint, unwearable, scene);
     add_own_pictures(look, true, scene);
     scene.lights = look.lights;
     scene.eye_in_world_mm = eye_mm;
@@ -190,7 +179,17 @@ Scene make_scene(std::shared_ptr<const Product> product,
                  const Look& look,
                  glm::dvec3 eye_mm,
                  const std::shared_ptr<const Environment>& loaded) {
-    return make_scene(std::move(product), look, read_paints(look), eye_mm, loaded);
+    const auto library = read_paint_library();
+    std::map<std::string, Material> read;
+    const auto find_paint = [&](const std::string& name) {
+        if (const auto known = read.find(name); known != read.end()) return known->second;
+        std::error_code error;
+        const auto beside = look.file.parent_path() / name;
+        const bool is_beside =
+            !look.file.empty() && std::filesystem::is_regular_file(beside, error);
+        return read[name] = find_material(is_beside ? beside.string() : name, *library);
+    };
+    return make_scene(std::move(product), look, find_paint, eye_mm, loaded);
 }
 
 std::set<std::filesystem::path> unread_files(const Scene& scene) {

@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <memory>
 #include <set>
 #include <string>
@@ -39,26 +38,24 @@ bool same_relief(const std::vector<PartArtwork>& a, const std::vector<PartArtwor
 /// Whether any paint on the product, artwork's included, is such.
 bool any_paint(const Scene& scene, const std::function<bool(const Material&)>& is_such);
 
-/// What each name of a paint in a look means.
-using LookPaints = std::map<std::string, Material>;
-/// For a program that runs once: files beside the look, else what the library has now, all read.
-/// Throws FileError with the nearest names.
-LookPaints read_paints(const Look& look);
+/// The paint that a name in a look means.
+using FindPaint = std::function<Material(const std::string& name)>;
 
 /// A look on a product. A part that the look does not name keeps the file's own paint, or its
-/// colour as a plain diffuse. Throws FileError (unknown part, with the names there are),
-/// std::out_of_range (a paint that is not among `paints`). `loaded` is shared when it is the
+/// colour as a plain diffuse. Throws FileError (unknown part, with the names there are) and what
+/// `find_paint` throws, which is called for paints that are worn. `loaded` is shared when it is the
 /// environment that the look names: a map takes a while to read, and renderers keep what they have
 /// made of it. A picture that a part's own paint cannot wear (artwork_coats.h) is refused, or left
 /// out while the part wears it.
 enum class Unwearable { refused, left_out };
 Scene make_scene(std::shared_ptr<const Product> product,
                  const Look& look,
-                 const LookPaints& paints,
+                 const FindPaint& find_paint,
                  glm::dvec3 eye_mm,
                  const std::shared_ptr<const Environment>& loaded = nullptr,
                  Unwearable unwearable = Unwearable::refused);
-/// The same in read_paints().
+/// For a program that runs once: in files beside the look, else in what the library has now, all
+/// read. Throws FileError with the nearest names.
 Scene make_scene(std::shared_ptr<const Product> product,
                  const Look& look,
                  glm::dvec3 eye_mm,

@@ -141,13 +141,10 @@ Scene scene_of(const Document& document,
     Look look = found->look;
     std::erase_if(look.artwork, [](const Artwork& artwork) { return picture_problem(artwork); });
     look.exposure_ev = document.exposure_ev;
-    LookPaints paints;
-    for_each_paint(look, [&](const std::string& name) {
-        if (!paints.contains(name)) paints[name] = look_up(document, name).material;
-    });
+    const auto find = [&](const std::string& name) { return look_up(document, name).material; };
     if (environment_problem(look.environment)) look.environment = {};
     return make_scene(
-        std::move(product), look, paints, document.eye_mm, loaded, Unwearable::left_out);
+        std::move(product), look, find, document.eye_mm, loaded, Unwearable::left_out);
 }
 
 std::vector<std::string> drawing_problems(const Document& document, const SessionLook& look) {

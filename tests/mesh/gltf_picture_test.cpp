@@ -296,7 +296,8 @@ TEST_F(GltfPictureTest, AScenesPartsWearThemUntilALookPaintsThem) {
     Material paint;
     paint.name = "mine";
     look.parts["plate"] = "mine";
-    const Scene painted = make_scene(product, look, {{"mine", paint}}, glm::dvec3(0, 0, 1000));
+    const auto find = [&](const std::string&) { return paint; };
+    const Scene painted = make_scene(product, look, find, glm::dvec3(0, 0, 1000));
     EXPECT_TRUE(painted.artwork.empty());
     EXPECT_EQ(painted.relief.size(), 1u);
 }
