@@ -1,11 +1,14 @@
 // livery calibrate color
 
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 
+#include "capture/captures_folder.h"
 #include "cli/command.h"
 #include "core/error.h"
+#include "jobs/calibration_folder.h"
 #include "jobs/captured_calibration.h"
 
 namespace livery {
@@ -43,7 +46,7 @@ Json figures_of(const ColourCalibration& calibration) {
 
 Command calibrate_color_command() {
     struct Arguments {
-        std::string captures, patterns, map, camera_to_xyz, out, mode = "robust";
+        std::string captures, patterns, map, camera_to_xyz, camera, out, mode = "robust";
     };
     const auto arguments = std::make_shared<Arguments>();
     Command command;
@@ -70,6 +73,12 @@ Command calibrate_color_command() {
          &arguments->camera_to_xyz,
          false,
          {}},
+        {"--camera",
+         "FILE",
+         "camera file of the projector, kept in the folder for render and the desktop",
+         &arguments->camera,
+         false,
+         {}},
         {"--out", "DIR", "calibration folder", &arguments->out, true, {}},
         {"--mode",
          "MODE",
@@ -85,10 +94,22 @@ Command calibrate_color_command() {
         if (!arguments->map.empty()) request.map = arguments->map;
         if (!arguments->camera_to_xyz.empty()) request.camera_to_xyz = arguments->camera_to_xyz;
         request.mode = arguments->mode == "paper" ? ColourMode::paper : ColourMode::robust;
+        std::optional<View> projector;
+        if (!arguments->camera.empty()) {
+            projector = read_camera_file(arguments->camera);
+            const CapturesFolder folder =
+                read_captures_folder(request.captures, request.patterns_manifest);
+            check_projector(
+                *projector, arguments->camera, folder.projector_width, folder.projector_height);
+        }
         Outcome outcome;
         try {
             const ColourCalibration calibration = calibrate_from_folder(request, progress);
-            write_calibration(arguments->out, calibration);
+            if (projector) {
+                write_setup(arguments->out, calibration, *projector);
+            } else {
+                write_calibration(arguments->out, calibration);
+            }
             outcome.figures = figures_of(calibration);
             outcome.text = fmt::format(
                 "calibration {}: {:.1f}% of the lit pixels valid, additivity error {:.2f}%, "

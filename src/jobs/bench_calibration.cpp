@@ -3,7 +3,6 @@
 #include <chrono>
 
 #include "calibration/predict.h"
-#include "core/replace_folder.h"
 #include "jobs/projector_irradiance.h"
 #include "scene/mockup_mask.h"
 
@@ -37,15 +36,6 @@ BenchCalibration calibrate_through_ports(Bench& bench,
     result.predict_seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return result;
-}
-
-void write_setup(const std::filesystem::path& folder,
-                 const ColourCalibration& calibration,
-                 const View& projector) {
-    FolderReplacement replacement(folder);
-    write_camera_file(replacement.staging() / "projector.json", projector);
-    write_calibration(replacement.staging(), calibration);
-    replacement.commit("calibration.json");
 }
 
 }  // namespace livery

@@ -1,8 +1,6 @@
 // A simulated bench calibrated through its three ports, as the demo and the desktop do it.
 #pragma once
 
-#include <filesystem>
-
 #include "calibration/colour/colour.h"
 #include "core/image.h"
 #include "core/progress.h"
@@ -24,10 +22,5 @@ struct BenchCalibration {
 BenchCalibration calibrate_through_ports(Bench& bench,
                                          const Product& product,
                                          const Progress& progress);
-
-/// A folder that load_setup() opens: the calibration, and the projector that it is of.
-void write_setup(const std::filesystem::path& folder,
-                 const ColourCalibration& calibration,
-                 const View& projector);
 
 }  // namespace livery

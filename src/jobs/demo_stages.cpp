@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/image_io.h"
 #include "jobs/bench_calibration.h"
+#include "jobs/calibration_folder.h"
 #include "scene/mockup_mask.h"
 #include "twin/chart.h"
 

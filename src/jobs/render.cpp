@@ -93,13 +93,6 @@ RenderedFrame render_frame(const RenderRequest& request, const Progress& progres
     return frame;
 }
 
-std::optional<View> projector_view_of(const std::filesystem::path& calibration_folder) {
-    const auto file = calibration_folder / "projector.json";
-    std::error_code error;
-    if (!std::filesystem::exists(file, error)) return std::nullopt;
-    return read_camera_file(file);
-}
-
 void check_frame_file(const std::filesystem::path& file, FrameStage stage) {
     const auto suffix = file.extension();
     const std::string found = suffix.empty() ? "none" : suffix.string();

@@ -46,9 +46,6 @@ struct RenderedFrame {
 /// compensation, or one of another size).
 RenderedFrame render_frame(const RenderRequest& request, const Progress& progress = {});
 
-/// What a calibration folder says besides the colours: `projector.json`, if it is there.
-std::optional<View> projector_view_of(const std::filesystem::path& calibration_folder);
-
 /// So that a wrong name fails before the work, not after it. Throws FileError for a suffix that
 /// write_frame does not write, and for a folder that is not there.
 void check_frame_file(const std::filesystem::path& file, FrameStage stage);

@@ -14,6 +14,7 @@
 #include "core/error.h"
 #include "core/shuffle.h"
 #include "jobs/bench_calibration.h"
+#include "jobs/calibration_folder.h"
 #include "jobs/synthetic_calibration.h"
 #include "live/frame_thread.h"
 #include "live/low_priority.h"

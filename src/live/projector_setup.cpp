@@ -10,6 +10,7 @@
 #include "core/paths.h"
 #include "core/replace_folder.h"
 #include "jobs/bench_calibration.h"
+#include "jobs/calibration_folder.h"
 #include "live/setup_cache.h"
 #include "scene/mockup_mask.h"
 #include "twin/description.h"
@@ -60,13 +61,7 @@ std::shared_ptr<const ProjectorSetup> load_setup(const std::filesystem::path& fo
     auto setup = std::make_shared<ProjectorSetup>();
     ColourCalibration calibration = read_calibration(folder);
     setup->view = read_camera_file(camera_file);
-    if (setup->view.width != calibration.width || setup->view.height != calibration.height) {
-        throw FileError(
-            camera_file,
-            "width, height",
-            fmt::format("{} x {}", setup->view.width, setup->view.height),
-            fmt::format("{} x {}, as the calibration", calibration.width, calibration.height));
-    }
+    check_projector(setup->view, camera_file, calibration.width, calibration.height);
     setup->design_white_y = design_white_luminance(calibration, design_white_percentile, mockup);
     setup->table = bake(calibration, setup->design_white_y);
     for (ImageF* plane :

@@ -12,7 +12,9 @@
 
 #include "core/error.h"
 #include "core/paths.h"
+#include "jobs/calibration_folder.h"
 #include "studio/calibration_grade.h"
+#include "studio/kit/background.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/widgets.h"
 #include "studio/kit/words.h"
@@ -228,6 +230,45 @@ void draw_calibrating(Studio& studio) {
     }
 }
 
+/// `livery calibrate color` knows the projector only when it is told: without it nothing can be
+/// drawn, so it is asked for, once for the folder.
+void ask_for_projector(Studio& studio, const std::filesystem::path& folder) {
+    FileQuestion question;
+    question.title = "Where does the projector of this calibration stand?";
+    question.action = "Use";
+    question.suffixes = {".json"};
+    question.suggested = folder;
+    question.choices = [](FileQuestion&) {
+        dim_text(
+            "The folder has no projector.json. Choose the projector's camera file: its lens and "
+            "its pose in front of the mock-up. A copy is kept with the calibration.");
+    };
+    question.then = [&studio, folder](const std::filesystem::path& camera_file) {
+        studio.background->run(
+            [&studio, folder, camera_file](const Progress&) -> Background::Then {
+                add_projector(folder, camera_file);
+                return [&studio, folder] { commit(studio, SetCalibration{folder.string()}); };
+            },
+            [&studio](const std::exception_ptr& why) {
+                notify_failure(studio, "The calibration was not loaded.", why);
+            });
+    };
+    studio.file_dialog->ask(std::move(question));
+}
+
+void load_calibration(Studio& studio, const std::filesystem::path& folder) {
+    std::error_code error;
+    // What is no calibration at all is named by the command.
+    const bool lacks_projector =
+        std::filesystem::is_regular_file(folder / "calibration.json", error) &&
+        !std::filesystem::exists(folder / "projector.json", error);
+    if (lacks_projector) {
+        ask_for_projector(studio, folder);
+    } else {
+        commit(studio, SetCalibration{folder.string()});
+    }
+}
+
 void draw_kept(Studio& studio) {
     heading("Go back to");
     CalibrationPanelState& state = studio.panels.calibration;
@@ -257,7 +298,7 @@ void draw_kept(Studio& studio) {
         question.title = "Load a calibration";
         question.action = "Load";
         question.then = [&studio](const std::filesystem::path& folder) {
-            commit(studio, SetCalibration{std::filesystem::absolute(folder).string()});
+            load_calibration(studio, std::filesystem::absolute(folder));
         };
         studio.file_dialog->ask(std::move(question));
     }

@@ -171,4 +171,16 @@ void notify(Studio& studio, Notice notice) {
     studio.notices.push_back(std::move(notice));
 }
 
+void notify_failure(Studio& studio, const std::string& what, const std::exception_ptr& why) {
+    try {
+        std::rethrow_exception(why);
+    } catch (const Cancelled&) {
+        return;
+    } catch (const Refused& refused) {
+        notify(studio, {Notice::Level::error, what, refused.why(), refused.fix()});
+    } catch (const std::exception& error) {
+        notify(studio, {Notice::Level::error, what, error.what(), ""});
+    }
+}
+
 }  // namespace livery

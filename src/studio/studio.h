@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <exception>
 #include <map>
 #include <memory>
 #include <optional>
@@ -135,6 +136,8 @@ void select_part(Studio& studio, int part);
 Document shown_document(const Studio& studio);
 
 void notify(Studio& studio, Notice notice);
+/// `what` did not come about, and why; nothing for Cancelled.
+void notify_failure(Studio& studio, const std::string& what, const std::exception_ptr& why);
 
 /// Remembers where the item just drawn is on the screen, under a name that does not depend on the
 /// layout ("paint:solid red", "look:2", "undo"): for `--ui-map FILE`, by which tests and other

@@ -9,6 +9,7 @@
 
 #include "core/paths.h"
 #include "jobs/bench_calibration.h"
+#include "jobs/calibration_folder.h"
 #include "jobs/synthetic_calibration.h"
 #include "scene/mockup_mask.h"
 #include "session/small_session.h"
@@ -25,12 +26,13 @@ class ProjectorSetupTest : public ::testing::Test {
     ProjectorSetupTest() { ::setenv("LIVERY_HOME", (folder_ / "home").c_str(), 1); }
     ~ProjectorSetupTest() override { ::unsetenv("LIVERY_HOME"); }
 
-    std::filesystem::path write_small(int width = 32) {
-        const View view = look_at({0, 0, 500}, {0, 0, 0}, 0.3, 32, 20);
+    static View projector() { return look_at({0, 0, 500}, {0, 0, 0}, 0.3, 32, 20); }
+
+    std::filesystem::path write_small() {
         ColourCalibration calibration = synthetic_calibration(ImageF(32, 20, 1, 1.0f));
         seal(calibration);
         const auto folder = folder_ / "calibration";
-        write_setup(folder, calibration, resized(view, width, 20));
+        write_setup(folder, calibration, projector());
         return folder;
     }
 
@@ -141,9 +143,28 @@ TEST_F(ProjectorSetupTest, RefusesFoldersThatAreNone) {
         fails_with([&] { load_setup(folder, 20.0, mesh_); }, {"projector.json", "no such file"}));
     std::ofstream(folder / "projector.json") << "{";
     EXPECT_TRUE(fails_with([&] { load_setup(folder, 20.0, mesh_); }, {"projector.json"}));
-    write_small(64);
+    write_camera_file(folder / "projector.json", resized(projector(), 64, 20));
     EXPECT_TRUE(fails_with([&] { load_setup(folder, 20.0, mesh_); },
                            {"projector.json", "64 x 20", "32 x 20, as the calibration"}));
+}
+
+TEST_F(ProjectorSetupTest, ACalibrationWithoutItsProjectorTakesACameraFile) {
+    const auto folder = write_small();
+    const auto with_projector = load_setup(folder, 20.0, mesh_);
+    std::filesystem::remove(folder / "projector.json");
+    EXPECT_FALSE(projector_view_of(folder));
+
+    const auto camera = folder_ / "camera.json";
+    write_camera_file(camera, resized(projector(), 64, 20));
+    EXPECT_TRUE(fails_with([&] { add_projector(folder, camera); },
+                           {"camera.json", "64 x 20", "32 x 20, as the calibration"}));
+    EXPECT_TRUE(fails_with([&] { add_projector(folder, folder_ / "none.json"); }, {"none.json"}));
+    EXPECT_FALSE(std::filesystem::exists(folder / "projector.json"));
+
+    write_camera_file(camera, projector());
+    add_projector(folder, camera);
+    EXPECT_EQ(projector_view_of(folder), projector());
+    EXPECT_EQ(load_setup(folder, 20.0, mesh_)->design_white_y, with_projector->design_white_y);
 }
 
 TEST_F(ProjectorSetupTest, WithoutCalibrationItIsTheBenchsProjectorAndSaysWhy) {

@@ -56,18 +56,6 @@ std::optional<std::pair<double, double>> columns_of(const Product& product, cons
     return std::pair{std::max(low, 0.0), std::min(high, static_cast<double>(view.width))};
 }
 
-void tell_failure(Shell& shell, const std::string& what, std::exception_ptr why) {
-    try {
-        std::rethrow_exception(why);
-    } catch (const Cancelled&) {
-        return;
-    } catch (const Refused& refused) {
-        notify(shell.studio, {Notice::Level::error, what, refused.why(), refused.fix()});
-    } catch (const std::exception& error) {
-        notify(shell.studio, {Notice::Level::error, what, error.what(), ""});
-    }
-}
-
 void take_setup(Shell& shell, std::shared_ptr<const ProjectorSetup> setup) {
     shell.studio.setup = std::move(setup);
     shell.mock_up_columns = columns_of(*shell.studio.product, shell.studio.setup->view);
@@ -98,10 +86,10 @@ void ask_for_setup(Shell& shell) {
         },
         [&shell, key, still_wanted](std::exception_ptr why) {
             if (!still_wanted()) return;
-            tell_failure(shell,
-                         key.calibration.empty() ? "There is no projector to draw for."
-                                                 : "The calibration could not be loaded.",
-                         why);
+            notify_failure(shell.studio,
+                           key.calibration.empty() ? "There is no projector to draw for."
+                                                   : "The calibration could not be loaded.",
+                           why);
             // Something must be shown: the same projector, uncorrected, and the panel says so.
             if (key.calibration.empty() || shell.studio.setup) return;
             shell.studio.background->run(
@@ -111,7 +99,7 @@ void ask_for_setup(Shell& shell) {
                     };
                 },
                 [&shell](std::exception_ptr again) {
-                    tell_failure(shell, "There is no projector to draw for.", again);
+                    notify_failure(shell.studio, "There is no projector to draw for.", again);
                 });
         });
 }
@@ -282,7 +270,8 @@ void find_first_calibration(Shell& shell) {
         },
         [&shell](std::exception_ptr why) {
             shell.calibrates_after_first_frame = true;
-            tell_failure(shell, "Calibrations made before could not be looked through.", why);
+            notify_failure(
+                shell.studio, "Calibrations made before could not be looked through.", why);
         });
 }
 
