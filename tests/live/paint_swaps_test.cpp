@@ -32,6 +32,7 @@ using PaintSwaps = FrameThreadTest;
 
 TEST_F(PaintSwaps, EachIsTheVeryNextFrameAndSolvesNothing) {
     description_.scene.environment = sky(0.8);
+    description_.library = read_paint_library();
     start();
     ASSERT_TRUE(gallery_.whole(show()));
     wait_until_idle();
@@ -81,6 +82,7 @@ TEST_P(PaintSwapsOnADevice, CompileAndAllocateNothing) {
     description.scene.lights = {light_from({0.4, 0.8, 0.5}, 3.0 * kDegree_rad)};
     description.scene.environment = sky(0.8);
     description.setup = setup_of(test_view(128, 96), description.scene);
+    description.library = read_paint_library();
     FrameLane lane(std::make_shared<GeometryCache>(), GetParam());
     lane.solve(description, description.quality, {}, {});
     lane.prepare(description, {});
