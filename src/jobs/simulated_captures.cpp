@@ -8,6 +8,7 @@
 #include "core/json.h"
 #include "core/paths.h"
 #include "scene/library.h"
+#include "scene/view.h"
 #include "twin/bench.h"
 
 namespace livery {
@@ -152,6 +153,7 @@ SimulatedCaptures photograph_patterns(const SimulatedCapturesRequest& request,
                      {"projector", {projector.width, projector.height}},
                      {"captures", captures}});
     write_primaries(request.out / "camera-to-xyz.json", bench, ports);
+    write_camera_file(request.out / "projector.json", bench.description().projector.view);
     return result;
 }
 

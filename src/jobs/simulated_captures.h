@@ -22,7 +22,8 @@ struct SimulatedCaptures {
     double exposure_s = 0.0;
 };
 
-/// Writes 000.exr, ... with manifest.json, and the colorimeter's readings as camera-to-xyz.json.
+/// Writes 000.exr, ... with manifest.json, the colorimeter's readings as camera-to-xyz.json
+/// and the projector's view as projector.json.
 SimulatedCaptures photograph_patterns(const SimulatedCapturesRequest& request,
                                       const Progress& progress = {});
 

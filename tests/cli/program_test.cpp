@@ -253,9 +253,28 @@ TEST(Program, GoesFromPatternsToProjectorInputThroughFiles) {
                                           captures,
                                           "--camera-to-xyz",
                                           captures + "/camera-to-xyz.json",
+                                          "--camera",
+                                          captures + "/projector.json",
                                           "--out",
                                           calibration});
     ASSERT_EQ(solved.exit_code, 0) << solved.err;
+    // Kept with the calibration, and refused before the work when it is of another projector.
+    EXPECT_EQ(content(calibration + "/projector.json"), content(captures + "/projector.json"));
+    const std::string full_size = captures + "/../full-size.json";
+    Json view = Json::parse(content(captures + "/projector.json"));
+    view["width"] = 640;
+    std::ofstream(full_size) << view.dump();
+    const ProgramRun other = livery_run({"calibrate",
+                                         "color",
+                                         "--captures",
+                                         captures,
+                                         "--camera",
+                                         full_size,
+                                         "--out",
+                                         (folder / "none").string()});
+    EXPECT_EQ(other.exit_code, 2);
+    EXPECT_NE(other.err.find("640 x 200"), std::string::npos) << other.err;
+    EXPECT_FALSE(std::filesystem::exists(folder / "none"));
     const Json figures = json_of(solved);
     EXPECT_GT(figures["valid_fraction"].get<double>(), 0.8);
     EXPECT_LT(figures["additivity_error"].get<double>(), 0.02);
