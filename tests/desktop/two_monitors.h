@@ -35,6 +35,8 @@ class TwoMonitors : public testing::Test {
     /// A program of the test's own; the projector is not picked yet.
     void start(const DesktopOptions& options = {});
     void start_program();
+    /// Another desktop and session from here on; its program is not started.
+    void use(std::shared_ptr<RunningStudio> running);
     void pick_projector();
     /// Projects the first look, body selected, on a plain desktop: the shared program unless a
     /// test before this one failed.
@@ -71,9 +73,6 @@ class TwoMonitors : public testing::Test {
     Document document;
     Desktop* desktop = nullptr;
     StudioProgram* program = nullptr;
-
-  private:
-    void use(std::shared_ptr<RunningStudio> running);
 };
 
 }  // namespace livery

@@ -296,9 +296,22 @@ void start_first_calibration(Shell& shell) {
 void take_calibration(Shell& shell) {
     Studio& studio = shell.studio;
     const auto calibrating = studio.bench->calibrating();
-    // The panel tells the person who asked; nobody asked for this one.
-    if (!calibrating.refused_why.empty() && std::exchange(shell.calibrates_by_itself, false)) {
+    const auto take_back_notice = [&] {
         std::erase_if(studio.notices, [](const Notice& n) { return n.what == kCalibrating; });
+    };
+    const bool by_itself = shell.calibrates_by_itself;
+    shell.calibrates_by_itself = by_itself && calibrating.running;
+    if (by_itself && !studio.session.document().calibration.empty()) {
+        // Somebody has loaded one meanwhile: theirs stays.
+        studio.session.set_workspace(kCalibratedKey, "yes");
+        take_back_notice();
+        if (calibrating.running) studio.bench->cancel_calibration();
+        if (calibrating.finished) studio.panels.calibration.taken = *calibrating.finished;
+        return;
+    }
+    // The panel tells the person who asked; nobody asked for this one.
+    if (!calibrating.refused_why.empty() && by_itself) {
+        take_back_notice();
         notify(studio,
                {Notice::Level::error,
                 "The simulated bench could not be calibrated; pictures stay uncorrected.",
@@ -309,7 +322,7 @@ void take_calibration(Shell& shell) {
     studio.panels.calibration.taken = *calibrating.finished;
     studio.session.set_workspace(kCalibratedKey, "yes");
     stop_trying(studio);
-    std::erase_if(studio.notices, [](const Notice& n) { return n.what == kCalibrating; });
+    take_back_notice();
     commit(studio, SetCalibration{calibrating.finished->string()});
     Notice notice{Notice::Level::info, "The bench is calibrated.", "", ""};
     if (studio.view != StageView::photograph) {
