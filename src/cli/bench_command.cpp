@@ -52,11 +52,11 @@ Json json_of(const std::vector<SweepPoint>& sweep) {
     return effects;
 }
 
-Json json_of(const std::vector<BenchEffect>& benched) {
+Json json_of(const std::vector<LedgerEffect>& benched) {
     Json effects = Json::array();
-    for (const BenchEffect& effect : benched) {
+    for (const LedgerEffect& effect : benched) {
         Json levels = Json::array();
-        for (const BenchLevel& level : effect.levels) {
+        for (const LedgerLevel& level : effect.levels) {
             levels.push_back(
                 {{"name", level.name},
                  {"ms", level.ms},
@@ -73,7 +73,7 @@ Json json_of(const std::vector<BenchEffect>& benched) {
     return effects;
 }
 
-Json json_of(const SpeedBenchResult& result) {
+Json json_of(const SpeedLedger& result) {
     Json effects = json_of(result.effects);
     for (Json& effect : json_of(result.sweep)) effects.push_back(std::move(effect));
     return {{"suite", "speed"},
@@ -129,14 +129,14 @@ Command bench_command() {
         // What cannot be written is found before the work.
         check_argument(arguments->markdown.empty() || !(speed && accuracy),
                        "--markdown writes one suite's tables: choose --suite speed or accuracy");
-        const auto kept = bench_file();
+        const auto kept = ledger_file();
         if (!arguments->out.empty()) make_output_folder(arguments->out);
         if (!arguments->markdown.empty()) check_marked_block(arguments->markdown, "bench");
         Outcome outcome;
         std::string markdown, plot;
         if (speed) {
-            const SpeedBenchResult result =
-                run_speed_bench(common.gl_device(), arguments->quick, progress);
+            const SpeedLedger result =
+                measure_speed(common.gl_device(), arguments->quick, progress);
             if (!arguments->quick) write_pass_costs(kept, result.renderer, result.pass_costs);
             outcome.figures = json_of(result);
             outcome.text = text_of(result);
@@ -144,11 +144,10 @@ Command bench_command() {
             plot = sweep_svg(result.sweep);
         }
         if (accuracy) {
-            const AccuracyBenchResult result =
-                run_accuracy_bench(common.gl_device(),
-                                   arguments->quick,
-                                   static_cast<std::uint64_t>(common.seed),
-                                   progress);
+            const AccuracyLedger result = measure_accuracy(common.gl_device(),
+                                                           arguments->quick,
+                                                           static_cast<std::uint64_t>(common.seed),
+                                                           progress);
             Json effects = json_of(effects_of(result));
             if (speed) {
                 for (Json& effect : effects) outcome.figures["effects"].push_back(effect);

@@ -50,7 +50,7 @@ double worst_on_gpu(const ModelAccuracy& model) {
 }
 
 /// Every slope parameter that a model was measured at.
-std::set<double> all_alphas(const AccuracyBenchResult& result) {
+std::set<double> all_alphas(const AccuracyLedger& result) {
     std::set<double> alphas;
     for (const ModelAccuracy& model : result.models) {
         for (const PrecisionError& row : model.in_float) alphas.insert(row.alpha);
@@ -60,13 +60,13 @@ std::set<double> all_alphas(const AccuracyBenchResult& result) {
 
 }  // namespace
 
-AccuracyBenchResult run_accuracy_bench(GlDevice device,
-                                       bool quick,
-                                       std::uint64_t seed,
-                                       const Progress& progress) {
+AccuracyLedger measure_accuracy(GlDevice device,
+                                bool quick,
+                                std::uint64_t seed,
+                                const Progress& progress) {
     using Clock = std::chrono::steady_clock;
     const std::size_t part = quick ? 100 : 1;
-    AccuracyBenchResult result;
+    AccuracyLedger result;
     result.renderer = HeadlessContext(device).renderer();
     for (const ModelInfo& info : model_table()) {
         progress.update(
@@ -90,13 +90,13 @@ AccuracyBenchResult run_accuracy_bench(GlDevice device,
     return result;
 }
 
-std::vector<BenchEffect> effects_of(const AccuracyBenchResult& result) {
-    std::vector<BenchEffect> effects;
+std::vector<LedgerEffect> effects_of(const AccuracyLedger& result) {
+    std::vector<LedgerEffect> effects;
     for (const ModelAccuracy& model : result.models) {
-        BenchEffect& effect = effects.emplace_back();
+        LedgerEffect& effect = effects.emplace_back();
         effect.name = fmt::format("reflectance: {}", model_info(model.model).name);
         const auto add = [&](const std::string& name, double error, const std::string& unit) {
-            BenchLevel& level = effect.levels.emplace_back();
+            LedgerLevel& level = effect.levels.emplace_back();
             level.name = name;
             level.ms = level.fastest_ms = model.ms;
             level.repeats = 1;
@@ -120,7 +120,7 @@ std::vector<BenchEffect> effects_of(const AccuracyBenchResult& result) {
     return effects;
 }
 
-std::string text_of(const AccuracyBenchResult& result) {
+std::string text_of(const AccuracyLedger& result) {
     std::string text = fmt::format("OpenGL: {}\n{:<24}{:>10}{:>10}{:>12}{:>10}{:>9}\n",
                                    result.renderer,
                                    "model",
@@ -141,7 +141,7 @@ std::string text_of(const AccuracyBenchResult& result) {
     return text;
 }
 
-std::string markdown_of(const AccuracyBenchResult& result) {
+std::string markdown_of(const AccuracyLedger& result) {
     std::string text = fmt::format(
         "OpenGL: {}. {} inputs a model.\n\n"
         "| model | float against double | OpenGL against double | light and eye exchanged | "

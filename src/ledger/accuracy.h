@@ -22,22 +22,22 @@ struct ModelAccuracy {
     double ms = 0.0;  ///< that measuring it took
 };
 
-struct AccuracyBenchResult {
+struct AccuracyLedger {
     std::string renderer;
     std::vector<ModelAccuracy> models;
 };
 
 /// `quick`: a hundredth of the inputs, in seconds instead of minutes. The answer depends on the
 /// seed, not on the machine, but for OpenGL's part.
-AccuracyBenchResult run_accuracy_bench(GlDevice device,
-                                       bool quick,
-                                       std::uint64_t seed,
-                                       const Progress& progress = {});
+AccuracyLedger measure_accuracy(GlDevice device,
+                                bool quick,
+                                std::uint64_t seed,
+                                const Progress& progress = {});
 
 /// An effect for each model, its figures as errors.
-std::vector<BenchEffect> effects_of(const AccuracyBenchResult& result);
-std::string text_of(const AccuracyBenchResult& result);
+std::vector<LedgerEffect> effects_of(const AccuracyLedger& result);
+std::string text_of(const AccuracyLedger& result);
 /// A table of the models, and one of the errors at each slope parameter.
-std::string markdown_of(const AccuracyBenchResult& result);
+std::string markdown_of(const AccuracyLedger& result);
 
 }  // namespace livery

@@ -60,14 +60,14 @@ double milliseconds(const auto& work) {
 
 }  // namespace
 
-ArtworkBench run_artwork_bench(RadianceRenderer& renderer,
-                               const Scene& scene,
-                               Quality quality,
-                               const Progress& progress) {
+ArtworkTimes measure_artwork(RadianceRenderer& renderer,
+                             const Scene& scene,
+                             Quality quality,
+                             const Progress& progress) {
     const auto body = static_cast<std::size_t>(part_index(*scene.product, "body"));
     const Material& paint = scene.part_materials[body];
     const SurfaceMap& map = renderer.surface_map();
-    ArtworkBench result;
+    ArtworkTimes result;
     result.body_fragments = static_cast<double>(map.part_begin[body + 1] - map.part_begin[body]);
     const auto wearing = [&](const Artwork& artwork) {
         const auto picture = artwork.picture.empty()
@@ -95,7 +95,7 @@ ArtworkBench run_artwork_bench(RadianceRenderer& renderer,
             bare.exposure_ev += 0.005;
             more.push_back(covered_ms - shading_ms(renderer, bare, quality, nullptr));
         }
-        BenchLevel level = level_of(kind.name, more);
+        LedgerLevel level = level_of(kind.name, more);
         level.work_items = result.body_fragments;
         result.frames.push_back(level);
     }

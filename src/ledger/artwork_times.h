@@ -9,17 +9,17 @@
 
 namespace livery {
 
-struct ArtworkBench {
-    std::vector<BenchLevel> frames;  ///< a frame with it, less the same without; ms
-    std::vector<double> cover_ms;    ///< solving where one lies
-    std::vector<double> relief_ms;   ///< tilting the body's normals
+struct ArtworkTimes {
+    std::vector<LedgerLevel> frames;  ///< a frame with it, less the same without; ms
+    std::vector<double> cover_ms;     ///< solving where one lies
+    std::vector<double> relief_ms;    ///< tilting the body's normals
     double body_fragments = 0.0;
 };
 
 /// `renderer` draws the scene, which has a body and no artwork, and has drawn it before.
-ArtworkBench run_artwork_bench(RadianceRenderer& renderer,
-                               const Scene& scene,
-                               Quality quality,
-                               const Progress& progress);
+ArtworkTimes measure_artwork(RadianceRenderer& renderer,
+                             const Scene& scene,
+                             Quality quality,
+                             const Progress& progress);
 
 }  // namespace livery

@@ -234,14 +234,14 @@ void write_calibration_of(const Product& product, const std::filesystem::path& f
 
 }  // namespace
 
-std::vector<BenchEffect> run_desktop_bench(GlDevice device, const Progress& progress) {
+std::vector<LedgerEffect> measure_desktop(GlDevice device, const Progress& progress) {
     progress.update(0.0, "timing the desktop");
     const ScratchFolder folder;
     write_calibration_of(*find_product("car"), folder / "calibration");
 
-    BenchEffect start_effect{"desktop: start to first frame, with a saved calibration", {}};
-    BenchEffect whole_effect{"desktop: start to the frame at normal quality", {}};
-    BenchEffect swap_effect{"desktop: paint swap to finished frame", {}};
+    LedgerEffect start_effect{"desktop: start to first frame, with a saved calibration", {}};
+    LedgerEffect whole_effect{"desktop: start to the frame at normal quality", {}};
+    LedgerEffect swap_effect{"desktop: paint swap to finished frame", {}};
 
     const auto start = Clock::now();
     MeasuredDesktop desktop(device, folder / "session.livery", folder / "calibration");

@@ -10,6 +10,6 @@
 
 namespace livery {
 
-std::vector<BenchEffect> run_desktop_bench(GlDevice device, const Progress& progress = {});
+std::vector<LedgerEffect> measure_desktop(GlDevice device, const Progress& progress = {});
 
 }  // namespace livery

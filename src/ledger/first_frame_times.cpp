@@ -34,7 +34,7 @@ class Parts {
             .second.push_back(ms);
     }
     /// The whole first, then its parts where they are asked for.
-    void append_levels(const std::string& name, bool with_parts, BenchEffect& effect) const {
+    void append_levels(const std::string& name, bool with_parts, LedgerEffect& effect) const {
         std::vector<double> whole(parts_.front().second.size(), 0.0);
         for (const auto& [part, ms] : parts_) {
             for (std::size_t k = 0; k < whole.size(); ++k) whole[k] += ms[k];
@@ -82,14 +82,14 @@ void run_once(const View& view,
 
 }  // namespace
 
-BenchEffect run_first_frame_bench(const Progress& progress) {
+LedgerEffect measure_first_frame(const Progress& progress) {
     constexpr int kRepeats = 5;
     struct Case {
         int width, height;
         Quality quality;
         bool with_parts;
     };
-    BenchEffect effect{"load to first frame", {}};
+    LedgerEffect effect{"load to first frame", {}};
     const BenchDescription bench = read_bench_file("default");
     for (const Case& c : {Case{1280, 800, Quality::draft, true},
                           Case{1280, 800, Quality::normal, true},

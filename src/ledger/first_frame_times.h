@@ -9,6 +9,6 @@ namespace livery {
 
 /// Effect "load to first frame", in the current OpenGL context: of the shipped car under the first
 /// shipped look, each time from nothing, with the calibration at hand; and what its parts take.
-BenchEffect run_first_frame_bench(const Progress& progress = {});
+LedgerEffect measure_first_frame(const Progress& progress = {});
 
 }  // namespace livery

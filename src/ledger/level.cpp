@@ -4,9 +4,9 @@
 
 namespace livery {
 
-BenchLevel level_of(const std::string& name, std::vector<double> ms) {
+LedgerLevel level_of(const std::string& name, std::vector<double> ms) {
     std::sort(ms.begin(), ms.end());
-    BenchLevel level;
+    LedgerLevel level;
     level.name = name;
     level.ms = ms[ms.size() / 2];
     level.fastest_ms = ms.front();
@@ -14,9 +14,9 @@ BenchLevel level_of(const std::string& name, std::vector<double> ms) {
     return level;
 }
 
-BenchLevel waited_level_of(const std::string& name, std::vector<double> ms) {
+LedgerLevel waited_level_of(const std::string& name, std::vector<double> ms) {
     std::sort(ms.begin(), ms.end());
-    BenchLevel level = level_of(name, ms);
+    LedgerLevel level = level_of(name, ms);
     level.p95_ms = ms[ms.size() * 95 / 100];
     level.longest_ms = ms.back();
     return level;

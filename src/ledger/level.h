@@ -1,4 +1,4 @@
-// One row of the benches: what was timed, how often, and how long it took.
+// One row of the ledger: what was timed, how often, and how long it took.
 #pragma once
 
 #include <optional>
@@ -7,25 +7,25 @@
 
 namespace livery {
 
-struct BenchLevel {
+struct LedgerLevel {
     std::string name;  ///< "1280x800, normal"
     double ms = 0.0;   ///< median
     double fastest_ms = 0.0;
     int repeats = 0;
     double work_items = 0.0;
     std::optional<double> p95_ms, longest_ms;  ///< where a person waits for each one
-    std::optional<double> error;               ///< where the bench has a truth to compare with
+    std::optional<double> error;               ///< where there is a truth to compare with
     std::string unit;                          ///< of the error
 };
 
-struct BenchEffect {
+struct LedgerEffect {
     std::string name;
-    std::vector<BenchLevel> levels;
+    std::vector<LedgerLevel> levels;
 };
 
 /// Median and fastest of the repeats, of which there is at least one.
-BenchLevel level_of(const std::string& name, std::vector<double> ms);
+LedgerLevel level_of(const std::string& name, std::vector<double> ms);
 /// The same, for something that a person waits for.
-BenchLevel waited_level_of(const std::string& name, std::vector<double> ms);
+LedgerLevel waited_level_of(const std::string& name, std::vector<double> ms);
 
 }  // namespace livery

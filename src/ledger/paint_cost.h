@@ -10,7 +10,7 @@
 namespace livery {
 
 struct PaintCost {
-    std::optional<double> ns_a_pixel;  ///< of shading at normal quality, by the last bench
+    std::optional<double> ns_a_pixel;  ///< of shading at normal quality, by the last ledger
     std::string why_not;               ///< when it is not known
 };
 

@@ -18,7 +18,7 @@ Quality read_quality(const JsonReader& field) {
 
 }  // namespace
 
-std::filesystem::path bench_file() { return user_folder() / "bench.json"; }
+std::filesystem::path ledger_file() { return user_folder() / "bench.json"; }
 
 void write_pass_costs(const std::filesystem::path& file,
                       const std::string& renderer,

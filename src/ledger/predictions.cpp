@@ -76,7 +76,7 @@ double items_of(const std::string& pass, const Scene& scene, const FragmentCount
 std::optional<std::vector<PassCost>> known_pass_costs() {
     std::filesystem::path file;
     try {
-        file = bench_file();
+        file = ledger_file();
     } catch (const FileError&) {
         return std::nullopt;
     }

@@ -12,7 +12,7 @@
 
 namespace livery {
 
-/// One kind of pass as the last bench timed it: milliseconds for so many work items.
+/// One kind of pass as the last ledger has it: milliseconds for so many work items.
 struct PassCost {
     std::string pass;  ///< name without the part it draws: "shade:clearcoat"
     Quality quality = Quality::normal;
@@ -22,14 +22,14 @@ struct PassCost {
     std::optional<double> error;
 };
 
-/// Where the bench leaves its costs: the user's folder.
-std::filesystem::path bench_file();
+/// Where the ledger leaves its costs: the user's folder.
+std::filesystem::path ledger_file();
 void write_pass_costs(const std::filesystem::path& file,
                       const std::string& renderer,
                       const std::vector<PassCost>& costs);
-/// Nothing when no bench ran on this machine. Throws FileError for a malformed file.
+/// Nothing when `livery bench` never ran on this machine. Throws FileError for a malformed file.
 std::optional<std::vector<PassCost>> read_pass_costs(const std::filesystem::path& file);
-/// The same of bench_file(); nothing, too, without a home folder to keep one in.
+/// The same of ledger_file(); nothing, too, without a home folder to keep one in.
 std::optional<std::vector<PassCost>> known_pass_costs();
 /// The same of its text.
 std::vector<PassCost> parse_pass_costs(const std::string& text, const std::filesystem::path& file);
@@ -52,7 +52,7 @@ struct BudgetChoice {
     Quality quality = Quality::draft;
     std::string why;
 };
-/// The best quality whose predicted frame fits. Throws Refused without a bench.
+/// The best quality whose predicted frame fits. Throws Refused without a ledger.
 BudgetChoice quality_within(const Scene& scene,
                             const View& view,
                             FrameStage stage,

@@ -30,8 +30,8 @@ double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-BenchLevel worked_level_of(const std::string& name, std::vector<double> ms, double work_items) {
-    BenchLevel level = level_of(name, std::move(ms));
+LedgerLevel worked_level_of(const std::string& name, std::vector<double> ms, double work_items) {
+    LedgerLevel level = level_of(name, std::move(ms));
     level.work_items = work_items;
     return level;
 }
@@ -49,12 +49,12 @@ std::vector<double> repeat(int count, const Progress& progress, const Work& work
 }
 
 /// The effect of that name, added when it is new.
-BenchEffect& effect(SpeedBenchResult& result, const std::string& name) {
+LedgerEffect& effect(SpeedLedger& result, const std::string& name) {
     const auto known = std::find_if(result.effects.begin(),
                                     result.effects.end(),
-                                    [&](const BenchEffect& entry) { return entry.name == name; });
+                                    [&](const LedgerEffect& entry) { return entry.name == name; });
     if (known != result.effects.end()) return *known;
-    return result.effects.emplace_back(BenchEffect{name, {}});
+    return result.effects.emplace_back(LedgerEffect{name, {}});
 }
 
 /// Milliseconds of every pass over the repeats of one quality.
@@ -105,14 +105,14 @@ void collect_car_paint(PassTimes& times,
     }
 }
 
-struct BenchScene {
+struct TimedScene {
     std::shared_ptr<const Product> product;
     std::vector<Scene> looks;  ///< swapped in turn
     View projector;
 };
 
-BenchScene load_scene(SpeedBenchResult& result, const Progress& progress) {
-    BenchScene scene;
+TimedScene load_scene(SpeedLedger& result, const Progress& progress) {
+    TimedScene scene;
     const auto loads = repeat(3, progress, [&](int) { scene.product = find_product("car"); });
     effect(result, "load the car").levels.push_back(worked_level_of("car.glb", loads, 0.0));
     const BenchDescription bench = read_bench_file("default");
@@ -125,11 +125,11 @@ BenchScene load_scene(SpeedBenchResult& result, const Progress& progress) {
 }
 
 /// One resolution and quality: the first frame, then paint swaps, with the compensation after each.
-void bench_frames(SpeedBenchResult& result,
-                  const BenchScene& scene,
-                  const View& view,
-                  Quality quality,
-                  const Progress& progress) {
+void time_frames(SpeedLedger& result,
+                 const TimedScene& scene,
+                 const View& view,
+                 Quality quality,
+                 const Progress& progress) {
     const std::string name = fmt::format("{}x{}, {}", view.width, view.height, to_string(quality));
     const auto start = Clock::now();
     RadianceRenderer renderer(std::make_shared<const FrameGeometry>(
@@ -201,9 +201,9 @@ void bench_frames(SpeedBenchResult& result,
     }
     if (view.width != 1280) return;
     collect_car_paint(passes, renderer, scene.looks.front(), quality, progress);
-    ArtworkBench artwork = run_artwork_bench(renderer, scene.looks.front(), quality, progress);
+    ArtworkTimes artwork = measure_artwork(renderer, scene.looks.front(), quality, progress);
     if (quality == Quality::normal) {
-        for (BenchLevel& level : artwork.frames) {
+        for (LedgerLevel& level : artwork.frames) {
             effect(result, "artwork over the body, shading beside a frame without")
                 .levels.push_back(std::move(level));
         }
@@ -215,7 +215,7 @@ void bench_frames(SpeedBenchResult& result,
     passes.ms[kCompensationPass] = cpu_ms;
     passes.work_items[kCompensationPass] = pixels;
     for (const auto& [key, ms] : passes.ms) {
-        const BenchLevel level = worked_level_of(name, ms, passes.work_items[key]);
+        const LedgerLevel level = worked_level_of(name, ms, passes.work_items[key]);
         effect(result, "pass " + key).levels.push_back(level);
         result.pass_costs.push_back(
             {key, quality, level.ms, key == kFilterPass ? 0.0 : level.work_items, std::nullopt});
@@ -224,7 +224,9 @@ void bench_frames(SpeedBenchResult& result,
 
 /// What each quality level is worth: the same look by the path tracer, on a part of the picture at
 /// its own scale (the car's bonnet and wing), direct light.
-void bench_accuracy(SpeedBenchResult& result, const BenchScene& scene, const Progress& progress) {
+void compare_with_reference(SpeedLedger& result,
+                            const TimedScene& scene,
+                            const Progress& progress) {
     const Scene& look = scene.looks.front();
     const View part = cropped(scene.projector, 680, 470, 160, 100);
     ReferenceOptions options;
@@ -240,10 +242,11 @@ void bench_accuracy(SpeedBenchResult& result, const BenchScene& scene, const Pro
 
         const auto& frames = effect(result, "first frame").levels;
         const std::string name = fmt::format("1280x800, {}", to_string(quality));
-        const auto frame = std::find_if(frames.begin(), frames.end(), [&](const BenchLevel& level) {
-            return level.name == name;
-        });
-        BenchLevel level = *frame;
+        const auto frame =
+            std::find_if(frames.begin(), frames.end(), [&](const LedgerLevel& level) {
+                return level.name == name;
+            });
+        LedgerLevel level = *frame;
         level.error = error.median;
         level.unit = "of design white, median difference from the path tracer";
         effect(result, "quality level: first frame, and its error").levels.push_back(level);
@@ -255,14 +258,14 @@ void bench_accuracy(SpeedBenchResult& result, const BenchScene& scene, const Pro
 
 }  // namespace
 
-SpeedBenchResult run_speed_bench(GlDevice device, bool quick, const Progress& progress) {
-    SpeedBenchResult result;
+SpeedLedger measure_speed(GlDevice device, bool quick, const Progress& progress) {
+    SpeedLedger result;
     // Zero where the system does not say.
     ::getloadavg(&result.load_before, 1);
     const HeadlessContext context(device);
     result.renderer = context.renderer();
     result.threads = thread_count();
-    const BenchScene scene = load_scene(result, progress);
+    const TimedScene scene = load_scene(result, progress);
     result.sweep = run_speed_sweep(scene.product, scene.looks, scene.projector, quick, progress);
     const std::vector<Quality> qualities =
         quick ? std::vector{Quality::normal}
@@ -270,17 +273,17 @@ SpeedBenchResult run_speed_bench(GlDevice device, bool quick, const Progress& pr
     for (const auto& [width, height] : {std::pair(640, 400), std::pair(1280, 800)}) {
         const View view = resized(scene.projector, width, height);
         for (const Quality quality : qualities) {
-            bench_frames(result, scene, view, quality, progress);
+            time_frames(result, scene, view, quality, progress);
         }
     }
     if (quick) {
         result.pass_costs.clear();
         return result;
     }
-    bench_accuracy(result, scene, progress);
-    result.effects.push_back(run_first_frame_bench(progress));
+    compare_with_reference(result, scene, progress);
+    result.effects.push_back(measure_first_frame(progress));
     // Last: it lowers the priority of helping threads for good.
-    for (BenchEffect& desktop : run_desktop_bench(device, progress)) {
+    for (LedgerEffect& desktop : measure_desktop(device, progress)) {
         result.effects.push_back(std::move(desktop));
     }
     return result;

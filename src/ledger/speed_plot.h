@@ -1,4 +1,4 @@
-// The speed bench's sweep as a picture.
+// The speed ledger's sweep as a picture.
 #pragma once
 
 #include <string>

@@ -81,12 +81,12 @@ std::string milliseconds(double ms) {
     return ms >= 1000.0 ? fmt::format("{:.2f} s", ms / 1000.0) : fmt::format("{:.1f}", ms);
 }
 
-std::string effects_table(const std::vector<BenchEffect>& effects) {
+std::string effects_table(const std::vector<LedgerEffect>& effects) {
     std::string text =
         "| stage | of | median (fastest) ms | 95% | longest | runs |\n| --- | --- | --- | --- | "
         "--- | --- |\n";
-    for (const BenchEffect& effect : effects) {
-        for (const BenchLevel& level : effect.levels) {
+    for (const LedgerEffect& effect : effects) {
+        for (const LedgerLevel& level : effect.levels) {
             const auto optional = [](const std::optional<double>& ms) {
                 return ms ? milliseconds(*ms) : std::string();
             };
@@ -107,15 +107,15 @@ std::string effects_table(const std::vector<BenchEffect>& effects) {
 
 }  // namespace
 
-std::string text_of(const SpeedBenchResult& result) {
+std::string text_of(const SpeedLedger& result) {
     std::string text =
         fmt::format("{}, {} threads; mock-up on {:.1f}% of 1280x800; median (fastest) ms\n",
                     result.renderer,
                     result.threads,
                     100.0 * result.covered_fraction);
-    for (const BenchEffect& effect : result.effects) {
+    for (const LedgerEffect& effect : result.effects) {
         text += effect.name + "\n";
-        for (const BenchLevel& level : effect.levels) {
+        for (const LedgerLevel& level : effect.levels) {
             text += fmt::format("  {:<22}{:10.2f} ({:.2f}), {} runs\n",
                                 level.name,
                                 level.ms,
@@ -146,7 +146,7 @@ std::string text_of(const SpeedBenchResult& result) {
     return text + laws(result.sweep, false);
 }
 
-std::string markdown_of(const SpeedBenchResult& result) {
+std::string markdown_of(const SpeedLedger& result) {
     return fmt::format(
         "Measured by `livery bench` on {} threads; OpenGL: {}. Times are medians in "
         "milliseconds, the fastest in brackets. Load of the machine when it began: {:.1f}.\n\n"

@@ -1,4 +1,4 @@
-// The speed bench in words: for the terminal, and as Markdown for docs/performance.md.
+// The speed ledger in words: for the terminal, and as Markdown for docs/performance.md.
 #pragma once
 
 #include <string>
@@ -7,9 +7,9 @@
 
 namespace livery {
 
-std::string text_of(const SpeedBenchResult& result);
+std::string text_of(const SpeedLedger& result);
 
 /// Tables of the sweep, the stages and the desktop.
-std::string markdown_of(const SpeedBenchResult& result);
+std::string markdown_of(const SpeedLedger& result);
 
 }  // namespace livery

@@ -70,7 +70,7 @@ const std::vector<PassCost>* bench_costs(Studio& studio) {
     PlanPanelState& state = studio.panels.plan;
     if (!std::exchange(state.costs_read, true)) {
         try {
-            state.costs = read_pass_costs(bench_file());
+            state.costs = read_pass_costs(ledger_file());
         } catch (const FileError& error) {
             state.problem = error.what();
         }

@@ -103,11 +103,11 @@ TEST(SpeedSweep, PlotNamesItsSeriesAndHoldsEveryPoint) {
 
 TEST(BenchTable, RewritesItsBlockOnly) {
     const TemporaryFolder folder;
-    SpeedBenchResult result;
+    SpeedLedger result;
     result.renderer = "llvmpipe";
     result.threads = 2;
     result.sweep = power_law(3e-5, 1.0);
-    BenchLevel level;
+    LedgerLevel level;
     level.name = "1280x800";
     level.ms = 2.25;
     level.fastest_ms = 2.0;
