@@ -139,8 +139,7 @@ FN BsdfEnvironment car_paint_environment(BsdfParameters p, REAL mu) {
 // Chances of the coat, the first lobe and the second when a direction is sampled, and the pigment's:
 // one minus the others would lose its digits. A film may reflect nothing under one angle and much
 // under another: its most counts.
-FN VEC3 car_paint_chances(BsdfParameters p, REAL mu, OUT(REAL) pigment) {
-    CarPaintPrepared q = car_paint_prepare(p);
+FN VEC3 car_paint_chances(CarPaintPrepared q, REAL mu, OUT(REAL) pigment) {
     Passage to = passage_of(q, mu);
     MirrorGrazing even = even_light();
     VEC3 most = q.flakes.most;
@@ -151,28 +150,36 @@ FN VEC3 car_paint_chances(BsdfParameters p, REAL mu, OUT(REAL) pigment) {
     REAL sum = coat + flakes + diffuse;
     pigment = sum > R(0.0) ? diffuse / sum : R(1.0);
     if (sum <= R(0.0)) return VEC3(R(0.0));
-    VEC2 lobes = lobe_chances(p.f0, (VEC3(R(1.0)) - p.f0) * most);
+    VEC2 lobes = lobe_chances(q.base.f0, (VEC3(R(1.0)) - q.base.f0) * most);
     return VEC3(coat, flakes * lobes.x, flakes * lobes.y) / sum;
 }
 
-FN VEC3 car_paint_sample(BsdfParameters p, VEC3 wo, VEC3 u) {
+FN VEC3 sampled(CarPaintPrepared q, VEC3 wo, VEC3 u) {
     REAL pigment;
-    VEC3 chance = car_paint_chances(p, wo.z, pigment);
+    VEC3 chance = car_paint_chances(q, wo.z, pigment);
     VEC2 v = VEC2(u.x, u.y);
-    if (u.z < chance.x) return ggx_sample_lobe(wo, v, p.coat_alpha, p.coat_alpha);
-    if (u.z < chance.x + chance.y) return ggx_sample_lobe(wo, v, p.alpha_x, p.alpha_x);
+    if (u.z < chance.x) return ggx_sample_lobe(wo, v, q.coat.alpha, q.coat.alpha);
+    if (u.z < chance.x + chance.y) return ggx_sample_lobe(wo, v, q.base.alpha_x, q.base.alpha_x);
     if (u.z < chance.x + chance.y + chance.z) {
-        return ggx_sample_lobe(wo, v, p.flake_alpha, p.flake_alpha);
+        return ggx_sample_lobe(wo, v, q.flake.alpha, q.flake.alpha);
     }
     return cosine_sample(v);
 }
 
-FN REAL car_paint_pdf(BsdfParameters p, VEC3 wi, VEC3 wo) {
+FN VEC3 car_paint_sample(BsdfParameters p, VEC3 wo, VEC3 u) {
+    return sampled(car_paint_prepare(p), wo, u);
+}
+
+FN REAL density(CarPaintPrepared q, VEC3 wi, VEC3 wo) {
     if (wi.z <= R(0.0) || wo.z <= R(0.0)) return R(0.0);
     REAL pigment;
-    VEC3 chance = car_paint_chances(p, wo.z, pigment);
-    return chance.x * ggx_pdf_lobe(wi, wo, p.coat_alpha, p.coat_alpha) +
-           chance.y * ggx_pdf_lobe(wi, wo, p.alpha_x, p.alpha_x) +
-           chance.z * ggx_pdf_lobe(wi, wo, p.flake_alpha, p.flake_alpha) +
+    VEC3 chance = car_paint_chances(q, wo.z, pigment);
+    return chance.x * ggx_pdf_lobe(wi, wo, q.coat.alpha, q.coat.alpha) +
+           chance.y * ggx_pdf_lobe(wi, wo, q.base.alpha_x, q.base.alpha_x) +
+           chance.z * ggx_pdf_lobe(wi, wo, q.flake.alpha, q.flake.alpha) +
            pigment * wi.z * R(0.3183098861837907);
+}
+
+FN REAL car_paint_pdf(BsdfParameters p, VEC3 wi, VEC3 wo) {
+    return density(car_paint_prepare(p), wi, wo);
 }

@@ -220,8 +220,7 @@ FN VEC3 mirror_weight(
            coated_entry(q.coat, q.entry, to, mu, grazing);
 }
 
-FN BsdfEnvironment clearcoat_environment(BsdfParameters p, REAL mu) {
-    ClearcoatPrepared q = clearcoat_prepare(p);
+FN BsdfEnvironment weights(ClearcoatPrepared q, REAL mu) {
     Passage to = passage_of(q, mu);
     BsdfEnvironment e;
     e.coat = mirror_weight(q, to, mu, even_light(), COAT_LOBE);
@@ -230,27 +229,39 @@ FN BsdfEnvironment clearcoat_environment(BsdfParameters p, REAL mu) {
     return e;
 }
 
+FN BsdfEnvironment clearcoat_environment(BsdfParameters p, REAL mu) {
+    return weights(clearcoat_prepare(p), mu);
+}
+
 // Chances of the coat, the base and the diffuse layer when a direction is sampled.
-FN VEC3 clearcoat_probabilities(BsdfParameters p, REAL mu) {
-    BsdfEnvironment e = clearcoat_environment(p, mu);
+FN VEC3 clearcoat_chances(ClearcoatPrepared q, REAL mu) {
+    BsdfEnvironment e = weights(q, mu);
     VEC3 chance =
         VEC3(mean_component(e.coat), mean_component(e.specular), mean_component(e.diffuse));
     REAL sum = chance.x + chance.y + chance.z;
     return sum > R(0.0) ? chance / sum : VEC3(R(0.0), R(0.0), R(1.0));
 }
 
-FN VEC3 clearcoat_sample(BsdfParameters p, VEC3 wo, VEC3 u) {
-    VEC3 chance = clearcoat_probabilities(p, wo.z);
+FN VEC3 sampled(ClearcoatPrepared q, VEC3 wo, VEC3 u) {
+    VEC3 chance = clearcoat_chances(q, wo.z);
     VEC2 v = VEC2(u.x, u.y);
-    if (u.z < chance.x) return ggx_sample_lobe(wo, v, p.coat_alpha, p.coat_alpha);
-    if (u.z < chance.x + chance.y) return ggx_sample_lobe(wo, v, p.alpha_x, p.alpha_y);
+    if (u.z < chance.x) return ggx_sample_lobe(wo, v, q.coat.alpha, q.coat.alpha);
+    if (u.z < chance.x + chance.y) return ggx_sample_lobe(wo, v, q.base.alpha_x, q.base.alpha_y);
     return cosine_sample(v);
 }
 
-FN REAL clearcoat_pdf(BsdfParameters p, VEC3 wi, VEC3 wo) {
+FN VEC3 clearcoat_sample(BsdfParameters p, VEC3 wo, VEC3 u) {
+    return sampled(clearcoat_prepare(p), wo, u);
+}
+
+FN REAL density(ClearcoatPrepared q, VEC3 wi, VEC3 wo) {
     if (wi.z <= R(0.0) || wo.z <= R(0.0)) return R(0.0);
-    VEC3 chance = clearcoat_probabilities(p, wo.z);
-    return chance.x * ggx_pdf_lobe(wi, wo, p.coat_alpha, p.coat_alpha) +
-           chance.y * ggx_pdf_lobe(wi, wo, p.alpha_x, p.alpha_y) +
+    VEC3 chance = clearcoat_chances(q, wo.z);
+    return chance.x * ggx_pdf_lobe(wi, wo, q.coat.alpha, q.coat.alpha) +
+           chance.y * ggx_pdf_lobe(wi, wo, q.base.alpha_x, q.base.alpha_y) +
            chance.z * wi.z * R(0.3183098861837907);
+}
+
+FN REAL clearcoat_pdf(BsdfParameters p, VEC3 wi, VEC3 wo) {
+    return density(clearcoat_prepare(p), wi, wo);
 }

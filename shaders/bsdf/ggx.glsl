@@ -124,23 +124,32 @@ FN BsdfEnvironment ggx_environment(BsdfParameters p, REAL mu) {
 }
 
 // Of sampling the microfacets and the diffuse layer.
-FN VEC2 ggx_chances(BsdfParameters p, REAL mu) {
-    VEC3 through = ggx_interface_transmission(ggx_interface(p), mu);
-    return lobe_chances(VEC3(R(1.0)) - through, p.diffuse * through);
+FN VEC2 ggx_chances(GgxPrepared q, REAL mu) {
+    VEC3 through = ggx_interface_transmission(q, mu);
+    return lobe_chances(VEC3(R(1.0)) - through, q.sky_diffuse * through);
 }
 
-// u: three numbers in [0, 1). The direction may lie below the horizon, where ggx_eval is 0.
-FN VEC3 ggx_sample(BsdfParameters p, VEC3 wo, VEC3 u) {
+// u: three numbers in [0, 1). The direction may lie below the horizon, where evaluate() is 0.
+FN VEC3 sampled(GgxPrepared q, VEC3 wo, VEC3 u) {
     VEC2 v = VEC2(u.x, u.y);
-    if (u.z < ggx_chances(p, wo.z).x) {
-        return ggx_sample_lobe(wo, v, p.alpha_x, p.alpha_y);
+    if (u.z < ggx_chances(q, wo.z).x) {
+        return ggx_sample_lobe(wo, v, q.alpha_x, q.alpha_y);
     }
     return cosine_sample(v);
 }
 
-FN REAL ggx_pdf(BsdfParameters p, VEC3 wi, VEC3 wo) {
+FN VEC3 ggx_sample(BsdfParameters p, VEC3 wo, VEC3 u) {
+    return sampled(ggx_prepare(p), wo, u);
+}
+
+// Of sampled().
+FN REAL density(GgxPrepared q, VEC3 wi, VEC3 wo) {
     if (wi.z <= R(0.0) || wo.z <= R(0.0)) return R(0.0);
-    VEC2 chance = ggx_chances(p, wo.z);
-    return chance.x * ggx_pdf_lobe(wi, wo, p.alpha_x, p.alpha_y) +
+    VEC2 chance = ggx_chances(q, wo.z);
+    return chance.x * ggx_pdf_lobe(wi, wo, q.alpha_x, q.alpha_y) +
            chance.y * wi.z * R(0.3183098861837907);
+}
+
+FN REAL ggx_pdf(BsdfParameters p, VEC3 wi, VEC3 wo) {
+    return density(ggx_prepare(p), wi, wo);
 }

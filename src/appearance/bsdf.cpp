@@ -169,9 +169,13 @@ glm::dvec3 directional_albedo(ReflectanceModel model,
     // Many bounces are as smooth as a diffuse layer.
     const ReflectanceModel lobes =
         model == ReflectanceModel::ggx_multiscatter ? ReflectanceModel::ggx : model;
+    const auto whole = model_info(model).f64.bound(p);
+    const auto mirrored = model_info(lobes).f64.bound(no_diffuse);
+    const auto without_flakes = model_info(model).f64.bound(no_flakes);
+    const auto coat_alone = model_info(model).f64.bound(only_coat);
     const auto smooth = [&](const glm::dvec3& wi) {
-        glm::dvec3 value = evaluate(model, p, wi, wo);
-        if (has_lobe) value -= evaluate(lobes, no_diffuse, wi, wo);
+        glm::dvec3 value = whole->eval(wi, wo);
+        if (has_lobe) value -= mirrored->eval(wi, wo);
         return value;
     };
     glm::dvec3 total(0.0);
@@ -192,24 +196,20 @@ glm::dvec3 directional_albedo(ReflectanceModel model,
             if (has_coat) {
                 const glm::dvec3 coat = f64::ggx_sample_lobe(wo, u, p.coat_alpha, p.coat_alpha);
                 add(coat,
-                    share * evaluate(model, only_coat, coat, wo),
+                    share * coat_alone->eval(coat, wo),
                     f64::ggx_pdf_lobe(coat, wo, p.coat_alpha, p.coat_alpha));
                 const glm::dvec3 base = f64::ggx_sample_lobe(wo, u, p.alpha_x, p.alpha_y);
                 add(base,
-                    share * (evaluate(model, no_flakes, base, wo) -
-                             evaluate(model, only_coat, base, wo)),
+                    share * (without_flakes->eval(base, wo) - coat_alone->eval(base, wo)),
                     f64::ggx_pdf_lobe(base, wo, p.alpha_x, p.alpha_y));
                 if (!has_flakes) continue;
                 const glm::dvec3 flakes = f64::ggx_sample_lobe(wo, u, p.flake_alpha, p.flake_alpha);
                 add(flakes,
-                    share * (evaluate(model, no_diffuse, flakes, wo) -
-                             evaluate(model, no_flakes, flakes, wo)),
+                    share * (mirrored->eval(flakes, wo) - without_flakes->eval(flakes, wo)),
                     f64::ggx_pdf_lobe(flakes, wo, p.flake_alpha, p.flake_alpha));
             } else if (has_lobe) {
-                const glm::dvec3 wi = sample(lobes, no_diffuse, wo, {u.x, u.y, 0.0});
-                add(wi,
-                    share * evaluate(lobes, no_diffuse, wi, wo),
-                    pdf(lobes, no_diffuse, wi, wo));
+                const glm::dvec3 wi = mirrored->sample(wo, {u.x, u.y, 0.0});
+                add(wi, share * mirrored->eval(wi, wo), mirrored->pdf(wi, wo));
             }
         }
     }

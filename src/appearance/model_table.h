@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "appearance/bound_bsdf.h"
 #include "appearance/parameter_table.h"
 
 namespace livery {
@@ -16,6 +17,7 @@ struct BsdfFunctions {
     Vec3 (*sample)(const Parameters&, const Vec3& wo, const Vec3& u);
     Real (*pdf)(const Parameters&, const Vec3& wi, const Vec3& wo);
     Environment (*environment)(const Parameters&, Real mu);
+    BoundBsdfPointer<Real, Vec3> (*bound)(const Parameters&);  ///< for many directions
 };
 using BsdfFunctionsF32 = BsdfFunctions<float, glm::vec3, f32::BsdfParameters, f32::BsdfEnvironment>;
 using BsdfFunctionsF64 =

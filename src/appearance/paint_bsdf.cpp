@@ -13,6 +13,7 @@ PaintBsdf bsdf_of(const Material& material) {
     bsdf.model = material.model;
     if (material.model != ReflectanceModel::measured) {
         bsdf.parameters = parameters_of(material);
+        bsdf.bound = model_info(material.model).f32.bound(bsdf.parameters);
         return bsdf;
     }
     if (!material.measured) {
@@ -30,24 +31,20 @@ ReflectanceFunction reflectance_of(const Material& material) {
             return glm::dvec3(evaluate(*bsdf.measured, glm::vec3(wi), glm::vec3(wo)));
         };
     }
-    return [model = material.model, parameters = parameters_of_f64(material)](
-               const glm::dvec3& wi, const glm::dvec3& wo) {
-        return evaluate(model, parameters, wi, wo);
-    };
+    return [bound = model_info(material.model).f64.bound(parameters_of_f64(material))](
+               const glm::dvec3& wi, const glm::dvec3& wo) { return bound->eval(wi, wo); };
 }
 
 glm::vec3 evaluate(const PaintBsdf& bsdf, glm::vec3 wi, glm::vec3 wo) {
-    return bsdf.measured ? evaluate(*bsdf.measured, wi, wo)
-                         : evaluate(bsdf.model, bsdf.parameters, wi, wo);
+    return bsdf.measured ? evaluate(*bsdf.measured, wi, wo) : bsdf.bound->eval(wi, wo);
 }
 
 glm::vec3 sample(const PaintBsdf& bsdf, glm::vec3 wo, glm::vec3 u) {
-    return bsdf.measured ? sample(*bsdf.measured, wo, u)
-                         : sample(bsdf.model, bsdf.parameters, wo, u);
+    return bsdf.measured ? sample(*bsdf.measured, wo, u) : bsdf.bound->sample(wo, u);
 }
 
 float pdf(const PaintBsdf& bsdf, glm::vec3 wi, glm::vec3 wo) {
-    return bsdf.measured ? pdf(*bsdf.measured, wi, wo) : pdf(bsdf.model, bsdf.parameters, wi, wo);
+    return bsdf.measured ? pdf(*bsdf.measured, wi, wo) : bsdf.bound->pdf(wi, wo);
 }
 
 f32::BsdfEnvironment environment_weights(const PaintBsdf& bsdf, float mu) {

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "appearance/bound_bsdf.h"
 #include "appearance/bsdf.h"
 #include "appearance/measured/measured_paint.h"
 
@@ -11,6 +12,7 @@ namespace livery {
 struct PaintBsdf {
     ReflectanceModel model = ReflectanceModel::lambert;
     f32::BsdfParameters parameters{};                 ///< of a formula
+    BoundBsdfPointer<float, glm::vec3> bound{};       ///< the formula with them
     std::shared_ptr<const MeasuredPaint> measured{};  ///< of ReflectanceModel::measured
 };
 

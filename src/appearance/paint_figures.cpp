@@ -108,13 +108,14 @@ double specular_gloss(const Material& material, double angle_deg) {
     const bool schlick = has_schlick(material.model);
     const f64::BsdfParameters alone = schlick ? interface_alone(model, p) : p;
     const double f0 = std::clamp(luminance_of(p.f0), 0.0, 1.0);
+    const auto whole = model.f64.bound(p), mirrored = model.f64.bound(alone);
     return specular_gloss(
         [&](const glm::dvec3& wi, const glm::dvec3& wo) {
-            double value = luminance_of(model.f64.eval(p, wi, wo));
+            double value = luminance_of(whole->eval(wi, wo));
             if (schlick && f0 > 0.0) {
                 const double cosine = glm::dot(wi, glm::normalize(wi + wo));
-                value += luminance_of(model.f64.eval(alone, wi, wo)) *
-                         (fresnel_over_schlick(f0, cosine) - 1.0);
+                value +=
+                    luminance_of(mirrored->eval(wi, wo)) * (fresnel_over_schlick(f0, cosine) - 1.0);
             }
             return value;
         },

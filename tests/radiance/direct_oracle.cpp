@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "appearance/bsdf.h"
+#include "appearance/model_table.h"
 #include "core/colour.h"
 #include "core/parallel.h"
 #include "core/random.h"
@@ -60,25 +61,28 @@ glm::dvec3 even_point(int index, const glm::dvec3& shift) {
     return glm::fract(shift + static_cast<double>(index) * step);
 }
 
+using Paint = BoundBsdfPointer<double, glm::dvec3>;
+Paint paint_of(const Material& material) {
+    return model_info(material.model).f64.bound(parameters_of_f64(material));
+}
+
 /// What shines at a point: the part's paint and artwork's over it.
 struct Worn {
     double share;
-    ReflectanceModel model;
-    f64::BsdfParameters parameters;
+    Paint bsdf;
 };
 
 std::vector<Worn> worn_at(const Scene& scene,
-                          const std::vector<f64::BsdfParameters>& paints,
+                          const std::vector<Paint>& paints,
                           const SurfacePoint& point) {
-    std::vector<Worn> worn{{1.0, scene.part_materials[point.part].model, paints[point.part]}};
+    std::vector<Worn> worn{{1.0, paints[point.part]}};
     for (const PartArtwork& artwork : scene.artwork) {
         if (artwork.part != point.part) continue;
         const ArtworkPoint at = artwork_at(
             artwork, glm::dvec3(point.position_mm), glm::dvec3(point.normal), glm::dvec2(point.uv));
         if (!(at.cover > 0.0)) continue;
         for (Worn& below : worn) below.share *= 1.0 - at.cover;
-        const Material material = material_at(artwork, at.rgba);
-        worn.push_back({at.cover, material.model, parameters_of_f64(material)});
+        worn.push_back({at.cover, paint_of(material_at(artwork, at.rgba))});
     }
     std::erase_if(worn, [](const Worn& one) { return !(one.share > 0.0); });
     return worn;
@@ -100,8 +104,8 @@ glm::vec3 relieved_normal(const Scene& scene, const SurfacePoint& point) {
 ImageF direct_light(const Scene& scene, const View& view, const OracleOptions& options) {
     const Mesh& mesh = scene.product->mesh;
     const Tracer tracer(mesh);
-    std::vector<f64::BsdfParameters> paints;
-    for (const Material& m : scene.part_materials) paints.push_back(parameters_of_f64(m));
+    std::vector<Paint> paints;
+    for (const Material& m : scene.part_materials) paints.push_back(paint_of(m));
     ImageF image(view.width, view.height, 4);
     const int side = options.side, count = side * side;
     parallel_for(image.pixel_count(), 16, [&](std::size_t begin, std::size_t end) {
@@ -154,23 +158,19 @@ ImageF direct_light(const Scene& scene, const View& view, const OracleOptions& o
                     if (wi.z <= 0.0 || !visible(direction)) continue;
                     for (const Worn& paint : worn) {
                         sum += paint.share * kPi * (working_from_rec709() * light.radiance_rec709) *
-                               wi.z * evaluate(paint.model, paint.parameters, wi, wo);
+                               wi.z * paint.bsdf->eval(wi, wo);
                     }
                 }
                 for (const Worn& paint : worn) {
                     for (int j = 0; scene.environment && j < options.sky_samples; ++j) {
                         const glm::dvec3 wi =
-                            sample(paint.model,
-                                   paint.parameters,
-                                   wo,
-                                   even_point(k * options.sky_samples + j, shift));
+                            paint.bsdf->sample(wo, even_point(k * options.sky_samples + j, shift));
                         if (wi.z <= 0.0) continue;
-                        const double density = pdf(paint.model, paint.parameters, wi, wo);
+                        const double density = paint.bsdf->pdf(wi, wo);
                         const glm::dvec3 direction = frame.to_world(wi);
                         if (density <= 0.0 || !visible(direction)) continue;
                         sum += paint.share * sky(*scene.environment, direction) *
-                               evaluate(paint.model, paint.parameters, wi, wo) *
-                               (wi.z / density / options.sky_samples);
+                               paint.bsdf->eval(wi, wo) * (wi.z / density / options.sky_samples);
                     }
                 }
             }

@@ -14,6 +14,7 @@
 #include "appearance/bsdf.h"
 #include "appearance/fit/fit_search.h"
 #include "appearance/fit/fit_starts.h"
+#include "appearance/paint_bsdf.h"
 #include "appearance/parameter_table.h"
 #include "core/colour.h"
 #include "core/error.h"
@@ -118,11 +119,7 @@ BrdfFit fit_model(ReflectanceModel model,
         p = search_from(info, samples, p, {metric, fine, kFinalSteps}, progress).parameters;
         BrdfFit fit;
         fit.material = material_of(info, p);
-        const f64::BsdfParameters rounded = parameters_of_f64(fit.material);
-        fit.difference =
-            difference_of([&](const glm::dvec3& wi,
-                              const glm::dvec3& wo) { return info.f64.eval(rounded, wi, wo); },
-                          truth_working);
+        fit.difference = difference_of(reflectance_of(fit.material), truth_working);
         const bool nearer = fit.difference.de00_mean < best.difference.de00_mean;
         if (metric == Metric::logarithm || nearer) best = fit;
     }

@@ -139,10 +139,11 @@ class Residuals : public ceres::CostFunction {
 
   private:
     void evaluate(const f64::BsdfParameters& p, double* residuals) const {
+        const auto bsdf = model_.f64.bound(p);
         std::size_t at = 0;
         for (std::size_t i = 0; i < samples_.pairs.size(); i += stride_) {
             const DirectionPair& pair = samples_.pairs[i];
-            const glm::dvec3 value = model_.f64.eval(p, pair.wi, pair.wo);
+            const glm::dvec3 value = bsdf->eval(pair.wi, pair.wo);
             for (int c = 0; c < 3; ++c, ++at) {
                 residuals[at] = measure(metric_, value[c], pair.wi.z) - wanted_[at];
             }
