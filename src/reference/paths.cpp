@@ -31,12 +31,10 @@ struct PathScene::Vertex {
     glm::vec3 geometric_normal;
     glm::mat3 world_from_local;
     glm::vec3 wo;  ///< local
-    PaintBsdf bsdf;
+    const PaintBsdf& bsdf;
 
-    Vertex(PaintBsdf its_bsdf, const SurfacePoint& point, const glm::vec3& toward_eye)
-        : position(point.position_mm),
-          geometric_normal(point.geometric_normal),
-          bsdf(std::move(its_bsdf)) {
+    Vertex(const PaintBsdf& its_bsdf, const SurfacePoint& point, const glm::vec3& toward_eye)
+        : position(point.position_mm), geometric_normal(point.geometric_normal), bsdf(its_bsdf) {
         const glm::vec3 n = point.normal;
         glm::vec3 t = glm::vec3(point.tangent) - glm::dot(glm::vec3(point.tangent), n) * n;
         if (glm::dot(t, t) < 1e-12f) {
@@ -93,7 +91,9 @@ SurfacePoint PathScene::surface_at(const Hit& hit) const {
     return point;
 }
 
-PaintBsdf PathScene::bsdf_at(const SurfacePoint& point, Random& random) const {
+const PaintBsdf& PathScene::bsdf_at(const SurfacePoint& point,
+                                    Random& random,
+                                    PaintBsdf& made) const {
     for (std::size_t k = artwork_.size(); k-- > 0;) {
         const PartArtwork& artwork = artwork_[k];
         if (artwork.part != point.part) continue;
@@ -101,7 +101,9 @@ PaintBsdf PathScene::bsdf_at(const SurfacePoint& point, Random& random) const {
             artwork, glm::dvec3(point.position_mm), glm::dvec3(point.normal), glm::dvec2(point.uv));
         if (!(at.cover > 0.0) || random.uniform_float() >= static_cast<float>(at.cover)) continue;
         const bool same_everywhere = artwork.artwork.use == PictureUse::cover;
-        return same_everywhere ? artwork_bsdfs_[k] : bsdf_of(material_at(artwork, at.rgba));
+        if (same_everywhere) return artwork_bsdfs_[k];
+        made = bsdf_of(material_at(artwork, at.rgba));
+        return made;
     }
     return bsdfs_[point.part];
 }
@@ -173,7 +175,8 @@ glm::vec3 PathScene::radiance(SurfacePoint point,
     }
     glm::vec3 sum(0.0f), throughput(1.0f);
     for (int bounce = 0;; ++bounce) {
-        const Vertex vertex(bsdf_at(point, random), point, wo);
+        PaintBsdf made;
+        const Vertex vertex(bsdf_at(point, random, made), point, wo);
         sum += throughput * light_on(vertex, random);
 
         const glm::vec2 uv = uniform_2d(random);

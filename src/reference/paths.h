@@ -35,8 +35,9 @@ class PathScene {
     glm::vec3 light_on(const Vertex& vertex, Random& random) const;
     /// What an escaping direction sampled from the reflectance meets.
     glm::vec3 light_along(const glm::vec3& direction, float reflectance_pdf) const;
-    /// The paint at a point: artwork's, by chance as much as it covers, else the part's.
-    PaintBsdf bsdf_at(const SurfacePoint& point, Random& random) const;
+    /// The paint at a point: artwork's, by chance as much as it covers, else the part's. `made`
+    /// keeps one that is only this point's.
+    const PaintBsdf& bsdf_at(const SurfacePoint& point, Random& random, PaintBsdf& made) const;
     bool open(const Vertex& vertex, const glm::vec3& direction) const;
 
     const Mesh& mesh_;

@@ -82,7 +82,7 @@ void PathTracer(benchmark::State& state) {
     }
     count_items(state, 80 * 50 * 4);
 }
-BENCHMARK(PathTracer)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(PathTracer)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
 }  // namespace
 }  // namespace livery::benchmarks
