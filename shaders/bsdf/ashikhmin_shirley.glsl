@@ -7,7 +7,7 @@
 // with c = N.h, e = nu cos^2 phi + nv sin^2 phi of h, and Schlick's F.
 
 // c^e: e = (nu hx^2 + nv hy^2) / (1 - c^2) would be 0 / 0 at the peak.
-FN REAL ashikhmin_shirley_power(BsdfParameters p, VEC3 wi, VEC3 wo, REAL hh) {
+FN REAL ashikhmin_shirley_power(IN(BsdfParameters) p, VEC3 wi, VEC3 wo, REAL hh) {
     REAL hx = wi.x + wo.x;
     REAL hy = wi.y + wo.y;
     REAL hz = wi.z + wo.z;
@@ -23,7 +23,7 @@ FN REAL ashikhmin_shirley_diffuse(REAL mu) {
     return x * (R(5.0) - x * (R(10.0) - x * (R(10.0) - x * (R(5.0) - x))));
 }
 
-FN VEC3 ashikhmin_shirley_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
+FN VEC3 ashikhmin_shirley_eval(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
     if (wi.z <= R(0.0) || wo.z <= R(0.0)) return VEC3(R(0.0));
     VEC3 h = wi + wo;
     REAL hh = dot(h, h);
@@ -40,18 +40,18 @@ FN VEC3 ashikhmin_shirley_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
            p.diffuse * (VEC3(R(1.0)) - p.f0) * diffuse;
 }
 
-FN VEC3 ashikhmin_shirley_under(BsdfParameters p, REAL mu) {
+FN VEC3 ashikhmin_shirley_under(IN(BsdfParameters) p, REAL mu) {
     return p.diffuse * (VEC3(R(1.0)) - p.f0) * ashikhmin_shirley_diffuse(mu);
 }
 
-FN VEC2 ashikhmin_shirley_chances(BsdfParameters p, REAL mu) {
+FN VEC2 ashikhmin_shirley_chances(IN(BsdfParameters) p, REAL mu) {
     REAL schlick = schlick_weight(R(4.0) * mu * mu);
     REAL f90 = grazing_reflectance(max_component(p.f0));
     return lobe_chances(p.f0 * (R(1.0) - schlick) + VEC3(f90 * schlick),
                         ashikhmin_shirley_under(p, mu));
 }
 
-FN VEC3 ashikhmin_shirley_sample(BsdfParameters p, VEC3 wo, VEC3 u) {
+FN VEC3 ashikhmin_shirley_sample(IN(BsdfParameters) p, VEC3 wo, VEC3 u) {
     if (u.z >= ashikhmin_shirley_chances(p, wo.z).x) return cosine_sample(VEC2(u.x, u.y));
     REAL turn = R(6.283185307179586) * u.x;
     REAL x = sqrt(p.exponent_y + R(1.0)) * cos(turn);
@@ -63,7 +63,7 @@ FN VEC3 ashikhmin_shirley_sample(BsdfParameters p, VEC3 wo, VEC3 u) {
     return mirrored_about(wo, around_normal(sample_squared_sine(u.y, n), cos_phi, sin_phi));
 }
 
-FN REAL ashikhmin_shirley_pdf(BsdfParameters p, VEC3 wi, VEC3 wo) {
+FN REAL ashikhmin_shirley_pdf(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
     if (wi.z <= R(0.0) || wo.z <= R(0.0)) return R(0.0);
     VEC3 h = wi + wo;
     REAL hh = dot(h, h);
@@ -79,6 +79,6 @@ LOBE_ALBEDO(ashikhmin_shirley_lobe_albedo,
             ashikhmin_shirley_sample,
             ashikhmin_shirley_pdf)
 
-FN BsdfEnvironment ashikhmin_shirley_environment(BsdfParameters p, REAL mu) {
+FN BsdfEnvironment ashikhmin_shirley_environment(IN(BsdfParameters) p, REAL mu) {
     return diffuse_and_lobe(ashikhmin_shirley_under(p, mu), ashikhmin_shirley_lobe_albedo(p, mu));
 }

@@ -10,7 +10,7 @@ FN REAL blinn_phong_power(VEC3 wi, VEC3 wo, REAL hh, REAL n) {
     return cosine_power((hx * hx + hy * hy) / hh, hz * hz / hh, n);
 }
 
-FN VEC3 blinn_phong_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
+FN VEC3 blinn_phong_eval(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
     if (wi.z <= R(0.0) || wo.z <= R(0.0)) return VEC3(R(0.0));
     VEC3 h = wi + wo;
     REAL hh = dot(h, h);
@@ -22,14 +22,14 @@ FN VEC3 blinn_phong_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
            p.specular * (norm * blinn_phong_power(wi, wo, hh, n));
 }
 
-FN VEC3 blinn_phong_sample(BsdfParameters p, VEC3 wo, VEC3 u) {
+FN VEC3 blinn_phong_sample(IN(BsdfParameters) p, VEC3 wo, VEC3 u) {
     if (u.z >= lobe_chances(p.specular, p.diffuse).x) return cosine_sample(VEC2(u.x, u.y));
     REAL phi = R(6.283185307179586) * u.x;
     VEC3 h = around_normal(sample_squared_sine(u.y, p.exponent_x), cos(phi), sin(phi));
     return mirrored_about(wo, h);
 }
 
-FN REAL blinn_phong_pdf(BsdfParameters p, VEC3 wi, VEC3 wo) {
+FN REAL blinn_phong_pdf(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
     if (wi.z <= R(0.0) || wo.z <= R(0.0)) return R(0.0);
     VEC3 h = wi + wo;
     REAL hh = dot(h, h);
@@ -44,6 +44,6 @@ FN REAL blinn_phong_pdf(BsdfParameters p, VEC3 wi, VEC3 wo) {
 
 LOBE_ALBEDO(blinn_phong_lobe_albedo, blinn_phong_eval, blinn_phong_sample, blinn_phong_pdf)
 
-FN BsdfEnvironment blinn_phong_environment(BsdfParameters p, REAL mu) {
+FN BsdfEnvironment blinn_phong_environment(IN(BsdfParameters) p, REAL mu) {
     return diffuse_and_lobe(p.diffuse, blinn_phong_lobe_albedo(p, mu));
 }

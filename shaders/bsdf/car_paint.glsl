@@ -23,12 +23,12 @@ struct CarPaintPrepared {
 
 // What the flakes let through to the pigment of a light that each lobe loses that much of: 1 - E
 // without cancellation. Where they lose it, it is the pigment's too.
-FN VEC3 car_paint_passed(CarPaintPrepared q, REAL loss, REAL flake_loss) {
+FN VEC3 car_paint_passed(IN(CarPaintPrepared) q, REAL loss, REAL flake_loss) {
     VEC3 one = VEC3(R(1.0));
     return (one - q.base.f0) * (one - q.flakes.most * (R(1.0) - flake_loss)) + q.base.f0 * loss;
 }
 
-FN CarPaintPrepared car_paint_prepare(BsdfParameters p) {
+FN CarPaintPrepared car_paint_prepare(IN(BsdfParameters) p) {
     BsdfParameters not_stretched = p;
     not_stretched.alpha_y = p.alpha_x;
     CarPaintPrepared q;
@@ -44,18 +44,18 @@ FN CarPaintPrepared car_paint_prepare(BsdfParameters p) {
     return q;
 }
 
-FN int lobe_count(CarPaintPrepared q) {
+FN int lobe_count(IN(CarPaintPrepared) q) {
     return 3;
 }
 
-FN VEC2 slopes_of(CarPaintPrepared q, int lobe) {
+FN VEC2 slopes_of(IN(CarPaintPrepared) q, int lobe) {
     REAL alpha = lobe == COAT_LOBE    ? q.coat.alpha
                  : lobe == FLAKE_LOBE ? q.flake.alpha
                                       : q.base.alpha_x;
     return VEC2(alpha, alpha);
 }
 
-FN Passage passage_of(CarPaintPrepared q, REAL mu) {
+FN Passage passage_of(IN(CarPaintPrepared) q, REAL mu) {
     REAL loss;
     REAL flake_loss;
     REAL cosine;
@@ -64,14 +64,14 @@ FN Passage passage_of(CarPaintPrepared q, REAL mu) {
     return coated_passage(q.coat, car_paint_passed(q, loss, flake_loss), mu);
 }
 
-FN VEC3 reflected(CarPaintPrepared q, Passage from, Passage to, REAL hh, VEC3 lobes) {
+FN VEC3 reflected(IN(CarPaintPrepared) q, IN(Passage) from, IN(Passage) to, REAL hh, VEC3 lobes) {
     VEC3 flakes = (VEC3(R(1.0)) - q.base.f0) * film_reflectance(q.flakes, hh);
     VEC3 pigment = q.base.diffuse * from.base * to.base * R(0.3183098861837907);
     VEC3 under = q.base.f0 * lobes.x + flakes * lobes.z + pigment;
     return reflected_through(q.coat, from, to, under, hh, lobes.y);
 }
 
-FN VEC3 evaluate(CarPaintPrepared q, VEC3 wi, VEC3 wo) {
+FN VEC3 evaluate(IN(CarPaintPrepared) q, VEC3 wi, VEC3 wo) {
     if (wi.z <= R(0.0) || wo.z <= R(0.0)) return VEC3(R(0.0));
     VEC3 h = wi + wo;
     REAL hh = dot(h, h);
@@ -83,11 +83,11 @@ FN VEC3 evaluate(CarPaintPrepared q, VEC3 wi, VEC3 wo) {
     return reflected(q, passage_of(q, wi.z), passage_of(q, wo.z), hh, lobes);
 }
 
-FN VEC3 car_paint_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
+FN VEC3 car_paint_eval(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
     return evaluate(car_paint_prepare(p), wi, wo);
 }
 
-FN VEC3 sky_weight(CarPaintPrepared q, Passage to) {
+FN VEC3 sky_weight(IN(CarPaintPrepared) q, IN(Passage) to) {
     return coated_sky_weight(q.base, q.coat, to);
 }
 
@@ -102,7 +102,7 @@ FN REAL car_paint_mirror_hh(REAL mu, REAL alpha) {
 
 // What a lobe of flakes of reflectance 1 mirrors, the coat passed both ways.
 FN VEC3 car_paint_lobe(
-    CoatPrepared c, CoatEntry e, AlbedoFit fit, Passage to, REAL mu, MirrorGrazing grazing) {
+    IN(CoatPrepared) c, IN(CoatEntry) e, IN(AlbedoFit) fit, IN(Passage) to, REAL mu, IN(MirrorGrazing) grazing) {
     REAL loss;
     REAL cosine;
     ggx_albedo_fit(mu, fit, loss, cosine);
@@ -111,12 +111,12 @@ FN VEC3 car_paint_lobe(
 
 // Of the second lobe, whose flakes reflect that much.
 FN VEC3 car_paint_flakes(
-    CarPaintPrepared q, Passage to, REAL mu, MirrorGrazing grazing, VEC3 reflectance) {
+    IN(CarPaintPrepared) q, IN(Passage) to, REAL mu, IN(MirrorGrazing) grazing, VEC3 reflectance) {
     return (VEC3(R(1.0)) - q.base.f0) * reflectance *
            car_paint_lobe(q.coat, q.flake_entry, q.flake, to, mu, grazing);
 }
 
-FN VEC3 mirror_weight(CarPaintPrepared q, Passage to, REAL mu, MirrorGrazing grazing, int lobe) {
+FN VEC3 mirror_weight(IN(CarPaintPrepared) q, IN(Passage) to, REAL mu, IN(MirrorGrazing) grazing, int lobe) {
     if (lobe == COAT_LOBE) return coat_weight(q.coat, mu, grazing);
     if (lobe == FLAKE_LOBE) {
         REAL hh = car_paint_mirror_hh(mu, q.flake.alpha);
@@ -125,7 +125,7 @@ FN VEC3 mirror_weight(CarPaintPrepared q, Passage to, REAL mu, MirrorGrazing gra
     return q.base.f0 * car_paint_lobe(q.coat, q.base_entry, q.base.layer, to, mu, grazing);
 }
 
-FN BsdfEnvironment car_paint_environment(BsdfParameters p, REAL mu) {
+FN BsdfEnvironment car_paint_environment(IN(BsdfParameters) p, REAL mu) {
     CarPaintPrepared q = car_paint_prepare(p);
     Passage to = passage_of(q, mu);
     BsdfEnvironment e;
@@ -139,7 +139,7 @@ FN BsdfEnvironment car_paint_environment(BsdfParameters p, REAL mu) {
 // Chances of the coat, the first lobe and the second when a direction is sampled, and the pigment's:
 // one minus the others would lose its digits. A film may reflect nothing under one angle and much
 // under another: its most counts.
-FN VEC3 car_paint_chances(CarPaintPrepared q, REAL mu, OUT(REAL) pigment) {
+FN VEC3 car_paint_chances(IN(CarPaintPrepared) q, REAL mu, OUT(REAL) pigment) {
     Passage to = passage_of(q, mu);
     MirrorGrazing even = even_light();
     VEC3 most = q.flakes.most;
@@ -154,7 +154,7 @@ FN VEC3 car_paint_chances(CarPaintPrepared q, REAL mu, OUT(REAL) pigment) {
     return VEC3(coat, flakes * lobes.x, flakes * lobes.y) / sum;
 }
 
-FN VEC3 sampled(CarPaintPrepared q, VEC3 wo, VEC3 u) {
+FN VEC3 sampled(IN(CarPaintPrepared) q, VEC3 wo, VEC3 u) {
     REAL pigment;
     VEC3 chance = car_paint_chances(q, wo.z, pigment);
     VEC2 v = VEC2(u.x, u.y);
@@ -166,11 +166,11 @@ FN VEC3 sampled(CarPaintPrepared q, VEC3 wo, VEC3 u) {
     return cosine_sample(v);
 }
 
-FN VEC3 car_paint_sample(BsdfParameters p, VEC3 wo, VEC3 u) {
+FN VEC3 car_paint_sample(IN(BsdfParameters) p, VEC3 wo, VEC3 u) {
     return sampled(car_paint_prepare(p), wo, u);
 }
 
-FN REAL density(CarPaintPrepared q, VEC3 wi, VEC3 wo) {
+FN REAL density(IN(CarPaintPrepared) q, VEC3 wi, VEC3 wo) {
     if (wi.z <= R(0.0) || wo.z <= R(0.0)) return R(0.0);
     REAL pigment;
     VEC3 chance = car_paint_chances(q, wo.z, pigment);
@@ -180,6 +180,6 @@ FN REAL density(CarPaintPrepared q, VEC3 wi, VEC3 wo) {
            pigment * wi.z * R(0.3183098861837907);
 }
 
-FN REAL car_paint_pdf(BsdfParameters p, VEC3 wi, VEC3 wo) {
+FN REAL car_paint_pdf(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
     return density(car_paint_prepare(p), wi, wo);
 }

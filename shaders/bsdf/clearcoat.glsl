@@ -20,7 +20,7 @@ struct CoatPrepared {
     VEC3 log_transmittance;      // base 2, once through at normal incidence
 };
 
-FN CoatPrepared coat_prepare(BsdfParameters p) {
+FN CoatPrepared coat_prepare(IN(BsdfParameters) p) {
     REAL r = sqrt(p.coat_f0);
     REAL inverse_index = (R(1.0) - r) / (R(1.0) + r);
     CoatPrepared c;
@@ -35,7 +35,7 @@ FN CoatPrepared coat_prepare(BsdfParameters p) {
 }
 
 // Of light of which so many times as much grazes as of even light.
-FN REAL coat_albedo(CoatPrepared c, REAL mu, REAL grazing_ratio) {
+FN REAL coat_albedo(IN(CoatPrepared) c, REAL mu, REAL grazing_ratio) {
     REAL white;
     REAL grazing;
     ggx_albedo(mu, c.albedo, c.fresnel, white, grazing);
@@ -43,14 +43,14 @@ FN REAL coat_albedo(CoatPrepared c, REAL mu, REAL grazing_ratio) {
     return c.f0 * (white - grazing) + c.f90 * grazing;
 }
 
-FN REAL coat_transmission(CoatPrepared c, REAL mu) {
+FN REAL coat_transmission(IN(CoatPrepared) c, REAL mu) {
     REAL loss;
     REAL rest;
     ggx_transmission_fit(mu, c.albedo, c.fresnel, loss, rest);
     return (R(1.0) - c.f90) + c.f90 * loss + (c.f90 - c.f0) * rest;
 }
 
-FN REAL coat_average_transmission(CoatPrepared c) {
+FN REAL coat_average_transmission(IN(CoatPrepared) c) {
     REAL white;
     REAL grazing;
     ggx_average_albedo(c.alpha, c.f0, white, grazing);
@@ -58,12 +58,12 @@ FN REAL coat_average_transmission(CoatPrepared c) {
 }
 
 // Length of the refracted path through a coat of thickness 1.
-FN REAL coat_path(CoatPrepared c, REAL mu) {
+FN REAL coat_path(IN(CoatPrepared) c, REAL mu) {
     REAL cos2 = R(1.0) - (R(1.0) - mu * mu) * c.inverse_index_squared;
     return R(1.0) / sqrt(max(cos2, R(1e-4)));
 }
 
-FN VEC3 coat_absorption(CoatPrepared c, REAL path) {
+FN VEC3 coat_absorption(IN(CoatPrepared) c, REAL path) {
     return exp2(c.log_transmittance * path);
 }
 
@@ -93,27 +93,27 @@ FN CoatEntry coat_entry(REAL alpha) {
     return e;
 }
 
-FN REAL coat_entry_cosine(CoatEntry e, REAL mu) {
+FN REAL coat_entry_cosine(IN(CoatEntry) e, REAL mu) {
     VEC3 c = e.cosine;
     REAL squared = mu * mu + e.cosine0 + mu * (c.x + mu * (c.y + mu * c.z));
     return sqrt(clamp(squared, R(0.0), R(1.0)));
 }
 
 // What the coat transmits of it where so many times as much grazes as of even light.
-FN REAL coat_entry_transmission(CoatPrepared c, CoatEntry e, REAL mu, REAL grazing_ratio) {
+FN REAL coat_entry_transmission(IN(CoatPrepared) c, IN(CoatEntry) e, REAL mu, REAL grazing_ratio) {
     REAL even = coat_transmission(c, coat_entry_cosine(e, mu));
     REAL grazing = R(1.0) - c.f0 - even;
     return clamp(even + grazing * (R(1.0) - grazing_ratio), R(0.0), R(1.0));
 }
 
-FN REAL coat_entry_path(CoatPrepared c, CoatEntry e, REAL mu) {
+FN REAL coat_entry_path(IN(CoatPrepared) c, IN(CoatEntry) e, REAL mu) {
     REAL squared = mu * mu + e.path.x + mu * (e.path.y + mu * e.path.z);
     return coat_path(c, sqrt(clamp(squared, R(0.0), R(1.0))));
 }
 
 // The base with its diffuse layer of that albedo seen through the coat, where so much of the light
 // inside of the coat passes the base on the mean.
-FN GgxPrepared coated_base(GgxPrepared base, CoatPrepared c, VEC3 diffuse, VEC3 passed) {
+FN GgxPrepared coated_base(IN(GgxPrepared) base, IN(CoatPrepared) c, VEC3 diffuse, VEC3 passed) {
     REAL average = coat_average_transmission(c);
     VEC3 share = min(passed, VEC3(average));
     REAL inside = R(1.0) - average * c.inverse_index_squared;
@@ -131,7 +131,7 @@ struct ClearcoatPrepared {
     CoatEntry entry;
 };
 
-FN ClearcoatPrepared clearcoat_prepare(BsdfParameters p) {
+FN ClearcoatPrepared clearcoat_prepare(IN(BsdfParameters) p) {
     GgxPrepared base = ggx_interface(p);
     ClearcoatPrepared q;
     q.coat = coat_prepare(p);
@@ -140,16 +140,16 @@ FN ClearcoatPrepared clearcoat_prepare(BsdfParameters p) {
     return q;
 }
 
-FN int lobe_count(ClearcoatPrepared q) {
+FN int lobe_count(IN(ClearcoatPrepared) q) {
     return 2;
 }
 
-FN VEC2 slopes_of(ClearcoatPrepared q, int lobe) {
+FN VEC2 slopes_of(IN(ClearcoatPrepared) q, int lobe) {
     if (lobe == COAT_LOBE) return VEC2(q.coat.alpha, q.coat.alpha);
     return slopes_of(q.base, lobe);
 }
 
-FN Passage coated_passage(CoatPrepared c, VEC3 base, REAL mu) {
+FN Passage coated_passage(IN(CoatPrepared) c, VEC3 base, REAL mu) {
     Passage to;
     to.base = base;
     to.coat = coat_transmission(c, mu);
@@ -157,28 +157,28 @@ FN Passage coated_passage(CoatPrepared c, VEC3 base, REAL mu) {
     return to;
 }
 
-FN Passage passage_of(ClearcoatPrepared q, REAL mu) {
+FN Passage passage_of(IN(ClearcoatPrepared) q, REAL mu) {
     return coated_passage(q.coat, ggx_interface_transmission(q.base, mu), mu);
 }
 
 // hh = |wi + wo|^2
-FN REAL coat_fresnel(CoatPrepared c, REAL hh) {
+FN REAL coat_fresnel(IN(CoatPrepared) c, REAL hh) {
     return mix(c.f0, c.f90, fresnel_weight(c.fresnel, hh));
 }
 
 // A coat over what returns `under` of the light that passes it.
 FN VEC3 reflected_through(
-    CoatPrepared c, Passage from, Passage to, VEC3 under, REAL hh, REAL coat_lobe) {
+    IN(CoatPrepared) c, IN(Passage) from, IN(Passage) to, VEC3 under, REAL hh, REAL coat_lobe) {
     VEC3 passed = coat_absorption(c, from.path + to.path) * (from.coat * to.coat);
     return VEC3(coat_fresnel(c, hh) * coat_lobe) + passed * under;
 }
 
-FN VEC3 reflected(ClearcoatPrepared q, Passage from, Passage to, REAL hh, VEC3 lobes) {
+FN VEC3 reflected(IN(ClearcoatPrepared) q, IN(Passage) from, IN(Passage) to, REAL hh, VEC3 lobes) {
     VEC3 under = reflected(q.base, from, to, hh, lobes);
     return reflected_through(q.coat, from, to, under, hh, lobes.y);
 }
 
-FN VEC3 evaluate(ClearcoatPrepared q, VEC3 wi, VEC3 wo) {
+FN VEC3 evaluate(IN(ClearcoatPrepared) q, VEC3 wi, VEC3 wo) {
     if (wi.z <= R(0.0) || wo.z <= R(0.0)) return VEC3(R(0.0));
     VEC3 h = wi + wo;
     REAL hh = dot(h, h);
@@ -190,37 +190,37 @@ FN VEC3 evaluate(ClearcoatPrepared q, VEC3 wi, VEC3 wo) {
     return reflected(q, passage_of(q, wi.z), passage_of(q, wo.z), hh, lobes);
 }
 
-FN VEC3 clearcoat_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
+FN VEC3 clearcoat_eval(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
     return evaluate(clearcoat_prepare(p), wi, wo);
 }
 
-FN VEC3 coated_sky_weight(GgxPrepared base, CoatPrepared c, Passage to) {
+FN VEC3 coated_sky_weight(IN(GgxPrepared) base, IN(CoatPrepared) c, IN(Passage) to) {
     return base.sky_diffuse * to.base * coat_absorption(c, to.path) * to.coat;
 }
 
-FN VEC3 sky_weight(ClearcoatPrepared q, Passage to) {
+FN VEC3 sky_weight(IN(ClearcoatPrepared) q, IN(Passage) to) {
     return coated_sky_weight(q.base, q.coat, to);
 }
 
 // Of the coat's own lobe.
-FN VEC3 coat_weight(CoatPrepared c, REAL mu, MirrorGrazing grazing) {
+FN VEC3 coat_weight(IN(CoatPrepared) c, REAL mu, IN(MirrorGrazing) grazing) {
     return VEC3(coat_albedo(c, mu, grazing_fresnel(grazing, c.alpha)));
 }
 
 // Through the coat both ways, of what a lobe under it mirrors.
-FN VEC3 coated_entry(CoatPrepared c, CoatEntry e, Passage to, REAL mu, MirrorGrazing grazing) {
+FN VEC3 coated_entry(IN(CoatPrepared) c, IN(CoatEntry) e, IN(Passage) to, REAL mu, IN(MirrorGrazing) grazing) {
     REAL entered = coat_entry_transmission(c, e, mu, grazing_entry(grazing, e.alpha));
     return coat_absorption(c, to.path + coat_entry_path(c, e, mu)) * (to.coat * entered);
 }
 
 FN VEC3 mirror_weight(
-    ClearcoatPrepared q, Passage to, REAL mu, MirrorGrazing grazing, int lobe) {
+    IN(ClearcoatPrepared) q, IN(Passage) to, REAL mu, IN(MirrorGrazing) grazing, int lobe) {
     if (lobe == COAT_LOBE) return coat_weight(q.coat, mu, grazing);
     return mirror_weight(q.base, to, mu, grazing, lobe) *
            coated_entry(q.coat, q.entry, to, mu, grazing);
 }
 
-FN BsdfEnvironment weights(ClearcoatPrepared q, REAL mu) {
+FN BsdfEnvironment weights(IN(ClearcoatPrepared) q, REAL mu) {
     Passage to = passage_of(q, mu);
     BsdfEnvironment e;
     e.coat = mirror_weight(q, to, mu, even_light(), COAT_LOBE);
@@ -229,12 +229,12 @@ FN BsdfEnvironment weights(ClearcoatPrepared q, REAL mu) {
     return e;
 }
 
-FN BsdfEnvironment clearcoat_environment(BsdfParameters p, REAL mu) {
+FN BsdfEnvironment clearcoat_environment(IN(BsdfParameters) p, REAL mu) {
     return weights(clearcoat_prepare(p), mu);
 }
 
 // Chances of the coat, the base and the diffuse layer when a direction is sampled.
-FN VEC3 clearcoat_chances(ClearcoatPrepared q, REAL mu) {
+FN VEC3 clearcoat_chances(IN(ClearcoatPrepared) q, REAL mu) {
     BsdfEnvironment e = weights(q, mu);
     VEC3 chance =
         VEC3(mean_component(e.coat), mean_component(e.specular), mean_component(e.diffuse));
@@ -242,7 +242,7 @@ FN VEC3 clearcoat_chances(ClearcoatPrepared q, REAL mu) {
     return sum > R(0.0) ? chance / sum : VEC3(R(0.0), R(0.0), R(1.0));
 }
 
-FN VEC3 sampled(ClearcoatPrepared q, VEC3 wo, VEC3 u) {
+FN VEC3 sampled(IN(ClearcoatPrepared) q, VEC3 wo, VEC3 u) {
     VEC3 chance = clearcoat_chances(q, wo.z);
     VEC2 v = VEC2(u.x, u.y);
     if (u.z < chance.x) return ggx_sample_lobe(wo, v, q.coat.alpha, q.coat.alpha);
@@ -250,11 +250,11 @@ FN VEC3 sampled(ClearcoatPrepared q, VEC3 wo, VEC3 u) {
     return cosine_sample(v);
 }
 
-FN VEC3 clearcoat_sample(BsdfParameters p, VEC3 wo, VEC3 u) {
+FN VEC3 clearcoat_sample(IN(BsdfParameters) p, VEC3 wo, VEC3 u) {
     return sampled(clearcoat_prepare(p), wo, u);
 }
 
-FN REAL density(ClearcoatPrepared q, VEC3 wi, VEC3 wo) {
+FN REAL density(IN(ClearcoatPrepared) q, VEC3 wi, VEC3 wo) {
     if (wi.z <= R(0.0) || wo.z <= R(0.0)) return R(0.0);
     VEC3 chance = clearcoat_chances(q, wo.z);
     return chance.x * ggx_pdf_lobe(wi, wo, q.coat.alpha, q.coat.alpha) +
@@ -262,6 +262,6 @@ FN REAL density(ClearcoatPrepared q, VEC3 wi, VEC3 wo) {
            chance.z * wi.z * R(0.3183098861837907);
 }
 
-FN REAL clearcoat_pdf(BsdfParameters p, VEC3 wi, VEC3 wo) {
+FN REAL clearcoat_pdf(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
     return density(clearcoat_prepare(p), wi, wo);
 }

@@ -6,7 +6,7 @@
 // may return more than they receive.
 
 // D F, with |H|^2 = hh.
-FN VEC3 beckmann_distribution_fresnel(BsdfParameters p, VEC3 wi, VEC3 wo, REAL hh) {
+FN VEC3 beckmann_distribution_fresnel(IN(BsdfParameters) p, VEC3 wi, VEC3 wo, REAL hh) {
     REAL hz = max(wi.z + wo.z, R(1e-6));
     REAL hz2 = hz * hz;
     REAL d = gaussian_slopes(wi.x + wo.x, wi.y + wo.y, hz, p.alpha_x, p.alpha_y) * hh * hh *
@@ -29,7 +29,7 @@ FN REAL beckmann_masking(VEC3 w, REAL alpha_x, REAL alpha_y) {
                R(1.0) / mu);
 }
 
-FN VEC3 cook_torrance_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
+FN VEC3 cook_torrance_eval(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
     if (wi.z <= R(0.0) || wo.z <= R(0.0)) return VEC3(R(0.0));
     VEC3 h = wi + wo;
     REAL hh = dot(h, h);
@@ -42,7 +42,7 @@ FN VEC3 cook_torrance_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
 
 // G = min(1, 2 c mu / (wo.h)) of the lower direction; in terms of H = wi + wo, 2 c / (wo.h) is
 // 4 H.z / |H|^2.
-FN VEC3 cook_torrance_v_cavity_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
+FN VEC3 cook_torrance_v_cavity_eval(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
     if (wi.z <= R(0.0) || wo.z <= R(0.0)) return VEC3(R(0.0));
     VEC3 h = wi + wo;
     REAL hh = dot(h, h);
@@ -55,30 +55,30 @@ FN VEC3 cook_torrance_v_cavity_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
 }
 
 // The facets by their reflectance at the mirror direction.
-FN VEC2 cook_torrance_chances(BsdfParameters p, VEC3 wo) {
+FN VEC2 cook_torrance_chances(IN(BsdfParameters) p, VEC3 wo) {
     REAL schlick = schlick_weight(R(4.0) * wo.z * wo.z);
     REAL f90 = grazing_reflectance(max_component(p.f0));
     return lobe_chances(p.f0 * (R(1.0) - schlick) + VEC3(f90 * schlick), p.diffuse);
 }
 
-FN VEC3 cook_torrance_sample(BsdfParameters p, VEC3 wo, VEC3 u) {
+FN VEC3 cook_torrance_sample(IN(BsdfParameters) p, VEC3 wo, VEC3 u) {
     VEC2 v = VEC2(u.x, u.y);
     if (u.z >= cook_torrance_chances(p, wo).x) return cosine_sample(v);
     return beckmann_sample_lobe(wo, v, p.alpha_x, p.alpha_y);
 }
 
-FN REAL cook_torrance_pdf(BsdfParameters p, VEC3 wi, VEC3 wo) {
+FN REAL cook_torrance_pdf(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
     if (wi.z <= R(0.0) || wo.z <= R(0.0)) return R(0.0);
     VEC2 chance = cook_torrance_chances(p, wo);
     return chance.x * beckmann_pdf_lobe(wi, wo, p.alpha_x, p.alpha_y) +
            chance.y * wi.z * R(0.3183098861837907);
 }
 
-FN VEC3 cook_torrance_v_cavity_sample(BsdfParameters p, VEC3 wo, VEC3 u) {
+FN VEC3 cook_torrance_v_cavity_sample(IN(BsdfParameters) p, VEC3 wo, VEC3 u) {
     return cook_torrance_sample(p, wo, u);
 }
 
-FN REAL cook_torrance_v_cavity_pdf(BsdfParameters p, VEC3 wi, VEC3 wo) {
+FN REAL cook_torrance_v_cavity_pdf(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
     return cook_torrance_pdf(p, wi, wo);
 }
 
@@ -91,10 +91,10 @@ LOBE_ALBEDO(cook_torrance_v_cavity_lobe_albedo,
             cook_torrance_sample,
             cook_torrance_pdf)
 
-FN BsdfEnvironment cook_torrance_environment(BsdfParameters p, REAL mu) {
+FN BsdfEnvironment cook_torrance_environment(IN(BsdfParameters) p, REAL mu) {
     return diffuse_and_lobe(p.diffuse, cook_torrance_lobe_albedo(p, mu));
 }
 
-FN BsdfEnvironment cook_torrance_v_cavity_environment(BsdfParameters p, REAL mu) {
+FN BsdfEnvironment cook_torrance_v_cavity_environment(IN(BsdfParameters) p, REAL mu) {
     return diffuse_and_lobe(p.diffuse, cook_torrance_v_cavity_lobe_albedo(p, mu));
 }

@@ -22,7 +22,7 @@ FN REAL eon_loss(REAL mu) {
 }
 
 // pi times the value of the light of many bounces over (1 - E_i) (1 - E_o) / (A r)^2
-FN VEC3 eon_multiple(BsdfParameters p, REAL a) {
+FN VEC3 eon_multiple(IN(BsdfParameters) p, REAL a) {
     VEC3 one = VEC3(R(1.0));
     REAL r = p.diffuse_roughness;
     REAL average = (R(1.0) + R(0.07248821245692394) * r) * a;
@@ -31,7 +31,7 @@ FN VEC3 eon_multiple(BsdfParameters p, REAL a) {
     return rho * (a * r / R(0.21530519675388227));
 }
 
-FN VEC3 eon_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
+FN VEC3 eon_eval(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
     if (wi.z <= R(0.0) || wo.z <= R(0.0)) return VEC3(R(0.0));
     REAL r = p.diffuse_roughness;
     REAL a = R(1.0) / (R(1.0) + R(0.2877934092108062) * r);
@@ -42,16 +42,16 @@ FN VEC3 eon_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
     return value * R(0.3183098861837907);
 }
 
-FN VEC3 eon_sample(BsdfParameters p, VEC3 wo, VEC3 u) {
+FN VEC3 eon_sample(IN(BsdfParameters) p, VEC3 wo, VEC3 u) {
     return cosine_sample(VEC2(u.x, u.y));
 }
 
-FN REAL eon_pdf(BsdfParameters p, VEC3 wi, VEC3 wo) {
+FN REAL eon_pdf(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
     if (wi.z <= R(0.0) || wo.z <= R(0.0)) return R(0.0);
     return wi.z * R(0.3183098861837907);
 }
 
-FN BsdfEnvironment eon_environment(BsdfParameters p, REAL mu) {
+FN BsdfEnvironment eon_environment(IN(BsdfParameters) p, REAL mu) {
     REAL r = p.diffuse_roughness;
     REAL a = R(1.0) / (R(1.0) + R(0.2877934092108062) * r);
     REAL once = a * (R(1.0) + r * eon_integral(mu) * R(0.3183098861837907));

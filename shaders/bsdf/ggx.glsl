@@ -21,16 +21,16 @@ struct GgxPrepared {
     VEC3 sky_diffuse;  // of the layer, for what passes of light from everywhere
 };
 
-FN int lobe_count(GgxPrepared q) {
+FN int lobe_count(IN(GgxPrepared) q) {
     return 1;
 }
 
-FN VEC2 slopes_of(GgxPrepared q, int lobe) {
+FN VEC2 slopes_of(IN(GgxPrepared) q, int lobe) {
     return VEC2(q.alpha_x, q.alpha_y);
 }
 
 // Over a layer that sees all light.
-FN GgxPrepared ggx_interface(BsdfParameters p) {
+FN GgxPrepared ggx_interface(IN(BsdfParameters) p) {
     REAL low = min(p.alpha_x, p.alpha_y);
     GgxPrepared q;
     q.f0 = p.f0;
@@ -47,14 +47,14 @@ FN GgxPrepared ggx_interface(BsdfParameters p) {
 }
 
 // What the interface lets through to the layer, at most; 1 - E.
-FN VEC3 ggx_interface_transmission(GgxPrepared q, REAL mu) {
+FN VEC3 ggx_interface_transmission(IN(GgxPrepared) q, REAL mu) {
     REAL loss;
     REAL rest;
     ggx_transmission_fit(mu, q.layer, q.fresnel, loss, rest);
     return VEC3(R(1.0) - q.f90 + q.f90 * loss) + (VEC3(q.f90) - q.f0) * rest;
 }
 
-FN VEC3 ggx_interface_average(GgxPrepared q) {
+FN VEC3 ggx_interface_average(IN(GgxPrepared) q) {
     REAL white;
     REAL grazing;
     ggx_average_albedo(q.layer.alpha, q.f0_max, white, grazing);
@@ -64,13 +64,13 @@ FN VEC3 ggx_interface_average(GgxPrepared q) {
     return min(q.f0 * (white - grazing) + VEC3(q.f90 * grazing), VEC3(R(0.999))) * in_hand;
 }
 
-FN GgxPrepared ggx_prepare(BsdfParameters p) {
+FN GgxPrepared ggx_prepare(IN(BsdfParameters) p) {
     GgxPrepared q = ggx_interface(p);
     q.diffuse = p.diffuse / (VEC3(R(1.0)) - ggx_interface_average(q));
     return q;
 }
 
-FN Passage passage_of(GgxPrepared q, REAL mu) {
+FN Passage passage_of(IN(GgxPrepared) q, REAL mu) {
     Passage to;
     to.base = ggx_interface_transmission(q, mu);
     to.coat = R(1.0);
@@ -79,16 +79,16 @@ FN Passage passage_of(GgxPrepared q, REAL mu) {
 }
 
 // hh = |wi + wo|^2
-FN VEC3 ggx_fresnel(GgxPrepared q, REAL hh) {
+FN VEC3 ggx_fresnel(IN(GgxPrepared) q, REAL hh) {
     return mix(q.f0, VEC3(q.f90), fresnel_weight(q.fresnel, hh));
 }
 
-FN VEC3 reflected(GgxPrepared q, Passage from, Passage to, REAL hh, VEC3 lobes) {
+FN VEC3 reflected(IN(GgxPrepared) q, IN(Passage) from, IN(Passage) to, REAL hh, VEC3 lobes) {
     return ggx_fresnel(q, hh) * lobes.x +
            q.diffuse * from.base * to.base * R(0.3183098861837907);
 }
 
-FN VEC3 evaluate(GgxPrepared q, VEC3 wi, VEC3 wo) {
+FN VEC3 evaluate(IN(GgxPrepared) q, VEC3 wi, VEC3 wo) {
     if (wi.z <= R(0.0) || wo.z <= R(0.0)) return VEC3(R(0.0));
     VEC3 h = wi + wo;
     REAL hh = dot(h, h);
@@ -97,15 +97,15 @@ FN VEC3 evaluate(GgxPrepared q, VEC3 wi, VEC3 wo) {
     return reflected(q, passage_of(q, wi.z), passage_of(q, wo.z), hh, VEC3(lobe));
 }
 
-FN VEC3 ggx_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
+FN VEC3 ggx_eval(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
     return evaluate(ggx_prepare(p), wi, wo);
 }
 
-FN VEC3 sky_weight(GgxPrepared q, Passage to) {
+FN VEC3 sky_weight(IN(GgxPrepared) q, IN(Passage) to) {
     return q.sky_diffuse * to.base;
 }
 
-FN VEC3 mirror_weight(GgxPrepared q, Passage to, REAL mu, MirrorGrazing grazing_ratio, int lobe) {
+FN VEC3 mirror_weight(IN(GgxPrepared) q, IN(Passage) to, REAL mu, IN(MirrorGrazing) grazing_ratio, int lobe) {
     REAL white;
     REAL grazing;
     ggx_albedo(mu, q.mirror, q.fresnel, white, grazing);
@@ -113,7 +113,7 @@ FN VEC3 mirror_weight(GgxPrepared q, Passage to, REAL mu, MirrorGrazing grazing_
     return q.f0 * (white - grazing) + VEC3(q.f90 * grazing);
 }
 
-FN BsdfEnvironment ggx_environment(BsdfParameters p, REAL mu) {
+FN BsdfEnvironment ggx_environment(IN(BsdfParameters) p, REAL mu) {
     GgxPrepared q = ggx_prepare(p);
     Passage to = passage_of(q, mu);
     BsdfEnvironment e;
@@ -124,13 +124,13 @@ FN BsdfEnvironment ggx_environment(BsdfParameters p, REAL mu) {
 }
 
 // Of sampling the microfacets and the diffuse layer.
-FN VEC2 ggx_chances(GgxPrepared q, REAL mu) {
+FN VEC2 ggx_chances(IN(GgxPrepared) q, REAL mu) {
     VEC3 through = ggx_interface_transmission(q, mu);
     return lobe_chances(VEC3(R(1.0)) - through, q.sky_diffuse * through);
 }
 
 // u: three numbers in [0, 1). The direction may lie below the horizon, where evaluate() is 0.
-FN VEC3 sampled(GgxPrepared q, VEC3 wo, VEC3 u) {
+FN VEC3 sampled(IN(GgxPrepared) q, VEC3 wo, VEC3 u) {
     VEC2 v = VEC2(u.x, u.y);
     if (u.z < ggx_chances(q, wo.z).x) {
         return ggx_sample_lobe(wo, v, q.alpha_x, q.alpha_y);
@@ -138,18 +138,18 @@ FN VEC3 sampled(GgxPrepared q, VEC3 wo, VEC3 u) {
     return cosine_sample(v);
 }
 
-FN VEC3 ggx_sample(BsdfParameters p, VEC3 wo, VEC3 u) {
+FN VEC3 ggx_sample(IN(BsdfParameters) p, VEC3 wo, VEC3 u) {
     return sampled(ggx_prepare(p), wo, u);
 }
 
 // Of sampled().
-FN REAL density(GgxPrepared q, VEC3 wi, VEC3 wo) {
+FN REAL density(IN(GgxPrepared) q, VEC3 wi, VEC3 wo) {
     if (wi.z <= R(0.0) || wo.z <= R(0.0)) return R(0.0);
     VEC2 chance = ggx_chances(q, wo.z);
     return chance.x * ggx_pdf_lobe(wi, wo, q.alpha_x, q.alpha_y) +
            chance.y * wi.z * R(0.3183098861837907);
 }
 
-FN REAL ggx_pdf(BsdfParameters p, VEC3 wi, VEC3 wo) {
+FN REAL ggx_pdf(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
     return density(ggx_prepare(p), wi, wo);
 }

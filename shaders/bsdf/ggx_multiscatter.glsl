@@ -20,7 +20,7 @@ FN REAL ggx_multiscatter_average_loss(REAL alpha) {
 }
 
 // F_ms; `lost` is 1 - W_avg.
-FN VEC3 ggx_many_bounces(GgxPrepared once, REAL lost) {
+FN VEC3 ggx_many_bounces(IN(GgxPrepared) once, REAL lost) {
     VEC3 f = mix(once.f0, VEC3(once.f90), fresnel_average_weight(once.f0_max));
     return f * f * (R(1.0) - lost) / (VEC3(R(1.0)) - f * lost);
 }
@@ -42,7 +42,7 @@ FN VEC3 ggx_multiscatter_average_transmission(GgxMultiscatterPrepared q) {
     return max(mean, VEC3(R(0.001)));
 }
 
-FN GgxMultiscatterPrepared ggx_multiscatter_prepare(BsdfParameters p) {
+FN GgxMultiscatterPrepared ggx_multiscatter_prepare(IN(BsdfParameters) p) {
     BsdfParameters not_stretched = p;
     not_stretched.alpha_y = p.alpha_x;
     GgxMultiscatterPrepared q;
@@ -67,11 +67,11 @@ FN VEC3 evaluate(GgxMultiscatterPrepared q, VEC3 wi, VEC3 wo) {
     return ggx_fresnel(q.once, hh) * lobe + wide * R(0.3183098861837907);
 }
 
-FN VEC3 ggx_multiscatter_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
+FN VEC3 ggx_multiscatter_eval(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
     return evaluate(ggx_multiscatter_prepare(p), wi, wo);
 }
 
-FN BsdfEnvironment ggx_multiscatter_environment(BsdfParameters p, REAL mu) {
+FN BsdfEnvironment ggx_multiscatter_environment(IN(BsdfParameters) p, REAL mu) {
     GgxMultiscatterPrepared q = ggx_multiscatter_prepare(p);
     REAL lost;
     VEC3 through = ggx_multiscatter_transmission(q, mu, lost);
@@ -83,12 +83,12 @@ FN BsdfEnvironment ggx_multiscatter_environment(BsdfParameters p, REAL mu) {
 }
 
 // Of sampling the single bounce and the rest.
-FN VEC2 ggx_multiscatter_chances(BsdfParameters p, REAL mu) {
+FN VEC2 ggx_multiscatter_chances(IN(BsdfParameters) p, REAL mu) {
     BsdfEnvironment e = ggx_multiscatter_environment(p, mu);
     return lobe_chances(e.specular, e.diffuse);
 }
 
-FN VEC3 ggx_multiscatter_sample(BsdfParameters p, VEC3 wo, VEC3 u) {
+FN VEC3 ggx_multiscatter_sample(IN(BsdfParameters) p, VEC3 wo, VEC3 u) {
     VEC2 v = VEC2(u.x, u.y);
     if (u.z < ggx_multiscatter_chances(p, wo.z).x) {
         return ggx_sample_lobe(wo, v, p.alpha_x, p.alpha_x);
@@ -96,7 +96,7 @@ FN VEC3 ggx_multiscatter_sample(BsdfParameters p, VEC3 wo, VEC3 u) {
     return cosine_sample(v);
 }
 
-FN REAL ggx_multiscatter_pdf(BsdfParameters p, VEC3 wi, VEC3 wo) {
+FN REAL ggx_multiscatter_pdf(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
     if (wi.z <= R(0.0) || wo.z <= R(0.0)) return R(0.0);
     VEC2 chance = ggx_multiscatter_chances(p, wo.z);
     return chance.x * ggx_pdf_lobe(wi, wo, p.alpha_x, p.alpha_x) +

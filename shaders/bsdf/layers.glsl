@@ -48,7 +48,7 @@ FN REAL between_lobes(REAL below, VEC3 at, REAL alpha, VEC3 begins, VEC3 inverse
 }
 
 // Of a lobe's own Fresnel term. A mirror takes light from one direction only.
-FN REAL grazing_fresnel(MirrorGrazing g, REAL alpha) {
+FN REAL grazing_fresnel(IN(MirrorGrazing) g, REAL alpha) {
     REAL value = between_lobes(R(1.0),
                                g.narrow,
                                alpha,
@@ -67,7 +67,7 @@ FN REAL grazing_fresnel(MirrorGrazing g, REAL alpha) {
 }
 
 // Of the coat above it.
-FN REAL grazing_entry(MirrorGrazing g, REAL alpha) {
+FN REAL grazing_entry(IN(MirrorGrazing) g, REAL alpha) {
     return between_lobes(R(1.0),
                          g.entry,
                          alpha,

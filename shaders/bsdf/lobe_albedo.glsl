@@ -3,7 +3,7 @@
 // over the cosine.
 
 // The same lobe, round, without what lies under it.
-FN BsdfParameters round_lobe(BsdfParameters p) {
+FN BsdfParameters round_lobe(IN(BsdfParameters) p) {
     BsdfParameters q = p;
     q.diffuse = VEC3(R(0.0));
     q.alpha_x = sqrt(p.alpha_x * p.alpha_y);
@@ -15,7 +15,7 @@ FN BsdfParameters round_lobe(BsdfParameters p) {
 
 // Defines NAME(p, mu) from the model's own functions.
 #define LOBE_ALBEDO(NAME, EVAL, SAMPLE, PDF)                                            \
-    FN VEC3 NAME(BsdfParameters p, REAL mu) {                                           \
+    FN VEC3 NAME(IN(BsdfParameters) p, REAL mu) {                                           \
         BsdfParameters q = round_lobe(p);                                               \
         REAL c = clamp(mu, R(1e-4), R(1.0));                                            \
         VEC3 wo = VEC3(sqrt((R(1.0) - c) * (R(1.0) + c)), R(0.0), c);                   \

@@ -85,7 +85,7 @@ struct Fresnel {
     REAL metal;   // 0 for dielectrics, 1 for metals
 };
 
-FN REAL dielectric_rest(Fresnel q, REAL c) {
+FN REAL dielectric_rest(IN(Fresnel) q, REAL c) {
     REAL n2 = R(1.0) + q.beyond;
     REAL g = sqrt(q.beyond + c * c);
     REAL across = g + c;
@@ -116,14 +116,14 @@ FN Fresnel fresnel_prepare(REAL f0) {
 
 // Metals keep Schlick's 1 - (1 - c)^5, which is near theirs. Rounding may not lengthen the way: a
 // channel of f0 = 0 would reflect less than nothing.
-FN REAL fresnel_rest(Fresnel q, REAL c) {
+FN REAL fresnel_rest(IN(Fresnel) q, REAL c) {
     REAL schlick = c * (R(5.0) - c * (R(10.0) - c * (R(10.0) - c * (R(5.0) - c))));
     REAL exact = dielectric_rest(q, c);
     return min(exact + (schlick - exact) * q.metal, R(1.0));
 }
 
 // How much of the way F has gone between a direction and the half vector: |H| = 2 cos.
-FN REAL fresnel_weight(Fresnel q, REAL hh) {
+FN REAL fresnel_weight(IN(Fresnel) q, REAL hh) {
     return R(1.0) - fresnel_rest(q, min(R(0.5) * sqrt(hh), R(1.0)));
 }
 
@@ -171,7 +171,7 @@ FN AlbedoFit albedo_fit(REAL alpha) {
     return fit;
 }
 
-FN void ggx_albedo_fit(REAL mu, AlbedoFit fit, OUT(REAL) loss, OUT(REAL) cosine) {
+FN void ggx_albedo_fit(REAL mu, IN(AlbedoFit) fit, OUT(REAL) loss, OUT(REAL) cosine) {
     REAL a = fit.alpha;
     REAL m = max(mu, R(1e-6));
     REAL inverse = R(1.0) / (m + a);
@@ -190,7 +190,7 @@ FN void ggx_albedo_fit(REAL mu, AlbedoFit fit, OUT(REAL) loss, OUT(REAL) cosine)
 
 // E = f0 (white - grazing) + f90 grazing.
 FN void ggx_albedo(
-    REAL mu, AlbedoFit fit, Fresnel fresnel, OUT(REAL) white, OUT(REAL) grazing) {
+    REAL mu, IN(AlbedoFit) fit, IN(Fresnel) fresnel, OUT(REAL) white, OUT(REAL) grazing) {
     REAL loss;
     REAL cosine;
     ggx_albedo_fit(mu, fit, loss, cosine);
@@ -201,7 +201,7 @@ FN void ggx_albedo(
 // 1 - E = (1 - f90) + loss_part + (f90 - f0) rest, without the cancellation near grazing:
 // loss_part = f90 loss, rest = (1 - loss) fresnel_rest.
 FN void ggx_transmission_fit(
-    REAL mu, AlbedoFit fit, Fresnel fresnel, OUT(REAL) loss, OUT(REAL) rest) {
+    REAL mu, IN(AlbedoFit) fit, IN(Fresnel) fresnel, OUT(REAL) loss, OUT(REAL) rest) {
     REAL c;
     ggx_albedo_fit(mu, fit, loss, c);
     rest = (R(1.0) - loss) * fresnel_rest(fresnel, c);

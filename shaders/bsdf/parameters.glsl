@@ -39,7 +39,7 @@ FN REAL widened_exponent(REAL exponent, REAL mean_squared_slope) {
     return max(n2 / (R(1.0) + R(0.5) * mean_squared_slope * n2) - R(2.0), R(0.0));
 }
 
-FN BsdfParameters bsdf_widen(BsdfParameters p, REAL mean_squared_slope) {
+FN BsdfParameters bsdf_widen(IN(BsdfParameters) p, REAL mean_squared_slope) {
     BsdfParameters q = p;
     q.alpha_x = min(sqrt(p.alpha_x * p.alpha_x + mean_squared_slope), R(1.0));
     q.alpha_y = min(sqrt(p.alpha_y * p.alpha_y + mean_squared_slope), R(1.0));

@@ -14,14 +14,14 @@ FN REAL phong_power(VEC3 wi, VEC3 wo, REAL n) {
     return cosine_power(q * (R(2.0) - q), c * c, n);
 }
 
-FN VEC3 phong_eval(BsdfParameters p, VEC3 wi, VEC3 wo) {
+FN VEC3 phong_eval(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
     if (wi.z <= R(0.0) || wo.z <= R(0.0)) return VEC3(R(0.0));
     REAL n = p.exponent_x;
     return p.diffuse * R(0.3183098861837907) +
            p.specular * ((n + R(2.0)) * R(0.15915494309189535) * phong_power(wi, wo, n));
 }
 
-FN VEC3 phong_sample(BsdfParameters p, VEC3 wo, VEC3 u) {
+FN VEC3 phong_sample(IN(BsdfParameters) p, VEC3 wo, VEC3 u) {
     if (u.z >= lobe_chances(p.specular, p.diffuse).x) return cosine_sample(VEC2(u.x, u.y));
     REAL phi = R(6.283185307179586) * u.x;
     VEC3 l = around_normal(sample_squared_sine(u.y, p.exponent_x), cos(phi), sin(phi));
@@ -34,7 +34,7 @@ FN VEC3 phong_sample(BsdfParameters p, VEC3 wo, VEC3 u) {
     return normalize(s * l.x + t * l.y + r * l.z);
 }
 
-FN REAL phong_pdf(BsdfParameters p, VEC3 wi, VEC3 wo) {
+FN REAL phong_pdf(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
     if (wi.z <= R(0.0) || wo.z <= R(0.0)) return R(0.0);
     VEC2 chance = lobe_chances(p.specular, p.diffuse);
     REAL n = p.exponent_x;
@@ -44,6 +44,6 @@ FN REAL phong_pdf(BsdfParameters p, VEC3 wi, VEC3 wo) {
 
 LOBE_ALBEDO(phong_lobe_albedo, phong_eval, phong_sample, phong_pdf)
 
-FN BsdfEnvironment phong_environment(BsdfParameters p, REAL mu) {
+FN BsdfEnvironment phong_environment(IN(BsdfParameters) p, REAL mu) {
     return diffuse_and_lobe(p.diffuse, phong_lobe_albedo(p, mu));
 }

@@ -8,6 +8,7 @@
 #define VEC3 vec3
 #define R(x) x
 #define FN
+#define IN(T) T
 #define OUT(T) out T
 // Of a number that is the same for all that is computed at once
 #define PRESENT(x) ((x) > 0.0)

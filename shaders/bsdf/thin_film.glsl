@@ -48,7 +48,7 @@ struct FilmPrepared {
     VEC3 most;       // what any film of this index reflects of any wavelength, at most
 };
 
-FN FilmPrepared film_prepare(BsdfParameters p) {
+FN FilmPrepared film_prepare(IN(BsdfParameters) p) {
     FilmPrepared film;
     film.nm = p.film_nm;
     film.eta = p.film_eta;
@@ -78,7 +78,7 @@ FN FilmPrepared film_prepare(BsdfParameters p) {
 
 // Of the flake under its film. hh = |wi + wo|^2: 4 cos^2 of the angle under which the flake is met,
 // outside of the varnish.
-FN VEC3 film_reflectance(FilmPrepared film, REAL hh) {
+FN VEC3 film_reflectance(IN(FilmPrepared) film, REAL hh) {
     if (!PRESENT(film.nm)) return film.f0;
     VEC3 one = VEC3(R(1.0));
     REAL sine2 = max(R(1.0) - R(0.25) * hh, R(0.0)) / (film.eta * film.eta);

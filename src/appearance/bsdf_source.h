@@ -14,6 +14,7 @@
 #define VEC3 Vec3
 #define R(x) Real(x)
 #define FN inline
+#define IN(T) const T&
 #define OUT(T) T&
 #define PRESENT(x) ((x) > Real(0))
 
@@ -53,5 +54,6 @@ using glm::abs, glm::acos, glm::atan, glm::clamp, glm::cos, glm::dot, glm::exp, 
 #undef VEC3
 #undef R
 #undef FN
+#undef IN
 #undef OUT
 #undef PRESENT
