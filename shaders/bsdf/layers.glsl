@@ -7,6 +7,9 @@
 //                                        of light from all around: seen by the diffuse layer, and
 //                                        mirrored by a lobe
 //   evaluate(q, wi, wo)                  the value for a light without size on a smooth surface
+//   sampled(q, wo, u), density(q, wi, wo)
+//                                        a direction for light that leaves along wo, and how dense
+//                                        such directions are
 // What shades (shaders/radiance/shade.glsl) calls the same functions with means over a pixel.
 
 // In a VEC3 of lobes

@@ -1,7 +1,7 @@
 // GLSL's side of the shared reflectance source. The C++ side is src/appearance/bsdf_source.h.
 //
-// The subset that both languages read: literals R(1.0); FN before every function; OUT(T) for
-// results by reference; no swizzle longer than one component, no implicit conversion, no bare
+// The subset that both languages read: literals R(1.0); FN before every function; IN(T) for a
+// struct that is only read, OUT(T) for results by reference; no swizzle longer than one component, no implicit conversion, no bare
 // literal beside a vector.
 #define REAL float
 #define VEC2 vec2
