@@ -40,7 +40,8 @@ FN CarPaintPrepared car_paint_prepare(IN(BsdfParameters) p) {
     q.coat = coat_prepare(p);
     VEC3 passed =
         car_paint_passed(q, ggx_average_loss(p.alpha_x), ggx_average_loss(p.flake_alpha));
-    q.base = coated_base(q.base, q.coat, p.diffuse, max(passed, VEC3(R(0.001))));
+    q.base =
+        coated_base(q.base, q.coat, p.diffuse, max(passed, VEC3(R(0.001))), VEC3(R(0.0)));
     return q;
 }
 

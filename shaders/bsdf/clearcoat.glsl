@@ -112,16 +112,21 @@ FN REAL coat_entry_path(IN(CoatPrepared) c, IN(CoatEntry) e, REAL mu) {
 }
 
 // The base with its diffuse layer of that albedo seen through the coat, where so much of the light
-// inside of the coat passes the base on the mean.
-FN GgxPrepared coated_base(IN(GgxPrepared) base, IN(CoatPrepared) c, VEC3 diffuse, VEC3 passed) {
+// inside of the coat passes the base on the mean. `grazing` is the share that the base keeps back of
+// grazing light only.
+FN GgxPrepared coated_base(
+    IN(GgxPrepared) base, IN(CoatPrepared) c, VEC3 diffuse, VEC3 passed, VEC3 grazing) {
     REAL average = coat_average_transmission(c);
     VEC3 share = min(passed, VEC3(average));
     REAL inside = R(1.0) - average * c.inverse_index_squared;
     GgxPrepared q = base;
     q.diffuse = diffuse * (R(1.0) - inside) / ((VEC3(R(1.0)) - diffuse * inside) * share);
-    // Lit from everywhere it is absorbed along the path of the mean cosine, 2/3.
+    // Lit from everywhere it sees what passes both, which is a little more than the product of the
+    // means: both keep back the same grazing light, with a covariance of 1/66 - 1/21^2 for Schlick's
+    // weights. It is absorbed along the path of the mean cosine, 2/3.
+    VEC3 both = passed * average + grazing * (R(0.0128838) * (c.f90 - c.f0));
     q.sky_diffuse =
-        q.diffuse * share * coat_absorption(c, coat_path(c, R(0.6666666666666667)));
+        q.diffuse * both * coat_absorption(c, coat_path(c, R(0.6666666666666667)));
     return q;
 }
 
@@ -135,7 +140,11 @@ FN ClearcoatPrepared clearcoat_prepare(IN(BsdfParameters) p) {
     GgxPrepared base = ggx_interface(p);
     ClearcoatPrepared q;
     q.coat = coat_prepare(p);
-    q.base = coated_base(base, q.coat, p.diffuse, VEC3(R(1.0)) - ggx_interface_average(base));
+    q.base = coated_base(base,
+                         q.coat,
+                         p.diffuse,
+                         VEC3(R(1.0)) - ggx_interface_average(base),
+                         VEC3(base.f90) - base.f0);
     q.entry = coat_entry(base.mirror.alpha);
     return q;
 }

@@ -39,23 +39,99 @@ TEST_P(Energy, NeverExceedsOneWhereItIsClaimed) {
     }
 }
 
-TEST_P(Energy, LightFromAllAroundIsWeightedByTheAlbedo) {
-    double worst = 0.0;
-    for (const double alpha : {0.05, 0.1, 0.25, 0.5}) {
-        for (const double mu : {0.1, 0.3, 0.6, 0.9, 1.0}) {
-            f64::BsdfParameters p = plain_parameters();
-            p.diffuse = glm::dvec3(0.3);
-            p.specular = p.f0 = glm::dvec3(0.4);
-            set_slopes(p, alpha, alpha);
-            const f32::BsdfEnvironment e =
-                environment_weights(GetParam(), rounded(p), static_cast<float>(mu));
-            const double sum = static_cast<double>(e.diffuse.x + e.specular.x + e.coat.x);
-            const double albedo = directional_albedo(GetParam(), p, direction(mu, 0.0), 64).x;
-            worst = std::max(worst, std::abs(sum - albedo));
+/// Share of even light that leaves along wo: a sum over slopes of half vectors, even in their
+/// logarithm and their azimuth. It knows no lobe, and nothing of how the models sample theirs.
+glm::dvec3 albedo_by_slopes(ReflectanceModel model,
+                            const f64::BsdfParameters& p,
+                            const glm::dvec3& wo) {
+    constexpr int kRings = 200, kAround = 64;
+    constexpr double kFirst = -11.5, kLast = 6.0;
+    constexpr double kStep = (kLast - kFirst) / kRings;
+    constexpr double kTurn = 2.0 * std::numbers::pi / kAround;
+    glm::dvec3 sum(0.0);
+    for (int ring = 0; ring < kRings; ++ring) {
+        const double slope = std::exp(kFirst + (ring + 0.5) * kStep);
+        for (int k = 0; k < kAround; ++k) {
+            // Half a step further from ring to ring, so that an edge does not meet many at once
+            const double phi = kTurn * (k + 0.25 + 0.5 * (ring % 2));
+            const glm::dvec3 h =
+                glm::normalize(glm::dvec3(slope * std::cos(phi), slope * std::sin(phi), 1.0));
+            const double c = glm::dot(wo, h);
+            const glm::dvec3 wi = 2.0 * c * h - wo;
+            if (c <= 0.0 || wi.z <= 0.0) continue;
+            // Of the half vector slope^2 cos^3, of the light four times c as much
+            const double solid_angle = 4.0 * c * slope * slope * std::pow(h.z, 3) * kStep * kTurn;
+            sum += evaluate(model, p, wi, wo) * (wi.z * solid_angle);
         }
     }
-    std::printf("    %-24s worst difference %.4f\n", model_info(GetParam()).name, worst);
-    EXPECT_LT(worst, 0.03);
+    return sum;
+}
+
+/// All that a model's weights say of even light.
+double weighed(ReflectanceModel model, const f64::BsdfParameters& p, double mu) {
+    const f32::BsdfEnvironment e = environment_weights(model, rounded(p), static_cast<float>(mu));
+    return static_cast<double>(e.diffuse.x) + static_cast<double>(e.specular.x) +
+           static_cast<double>(e.coat.x);
+}
+
+/// Weights over what they should be, less 1.
+struct WeightError {
+    double worst = 0.0, sum = 0.0;
+    int count = 0;
+
+    void add(double weight, double truth) {
+        const double error = weight / truth - 1.0;
+        worst = std::max(worst, std::abs(error));
+        sum += error;
+        ++count;
+    }
+    double mean() const { return count ? sum / count : 0.0; }
+};
+
+TEST_P(Energy, LightFromAllAroundIsWeightedByTheAlbedo) {
+    // Relative, of the lobes and of the layer under them. Fits give the worst; their mean says
+    // whether a whole weight is off. Lobes of f0 .04 by their difference, two under a coat: the fit
+    // of a dielectric's albedo may be .009 too large (microfacet.glsl), ten times 2% of it.
+    // Ashikhmin and Shirley's twelve by twelve directions are few for a wide lobe that the horizon
+    // cuts.
+    const double worst = GetParam() == ReflectanceModel::ashikhmin_shirley ? 0.06 : 0.03;
+    WeightError lobes, layer;
+    double faint = 0.0;
+    for (const double alpha : {0.05, 0.1, 0.25, 0.5}) {
+        for (const double mu : {0.1, 0.3, 0.6, 0.9, 1.0}) {
+            for (const double f0 : {0.04, 0.4}) {
+                f64::BsdfParameters p = plain_parameters();
+                p.diffuse = glm::dvec3(0.3);
+                p.specular = p.f0 = glm::dvec3(f0);
+                set_slopes(p, alpha, alpha);
+                const glm::dvec3 wo = direction(mu, 0.0);
+                const double both = albedo_by_slopes(GetParam(), p, wo).x;
+                const double all = weighed(GetParam(), p, mu);
+                p.diffuse = glm::dvec3(0.0);
+                const double mirrored = albedo_by_slopes(GetParam(), p, wo).x;
+                const double mirror = weighed(GetParam(), p, mu);
+                if (f0 < 0.1) {
+                    faint = std::max(faint, std::abs(mirror - mirrored));
+                } else if (mirrored > 0.0) {
+                    lobes.add(mirror, mirrored);
+                }
+                layer.add(all - mirror, both - mirrored);
+            }
+        }
+    }
+    std::printf(
+        "    %-24s lobes %.4f at worst, %+.4f in the mean, faint ones %.4f; layer %.4f, %+.4f\n",
+        model_info(GetParam()).name,
+        lobes.worst,
+        lobes.mean(),
+        faint,
+        layer.worst,
+        layer.mean());
+    EXPECT_LT(lobes.worst, worst);
+    EXPECT_LT(std::abs(lobes.mean()), 0.01);
+    EXPECT_LT(faint, 0.019);
+    EXPECT_LT(layer.worst, 0.03);
+    EXPECT_LT(std::abs(layer.mean()), 0.015);
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, Energy, testing::ValuesIn(all_models()), prefix_of);
@@ -96,36 +172,6 @@ TEST(DirectionalAlbedo, WhiteLayersLoseLittle) {
     }
 }
 
-TEST(Environment, WeightsAddUpToTheAlbedo) {
-    // Uniform light: the weights must give the directional albedo. The interface's albedo is within
-    // 0.017; under a coat light comes in along other directions than the mirror one for rough
-    // bases.
-    double worst_ggx = 0.0, worst_coat = 0.0;
-    for (const double alpha : {0.02, 0.1, 0.25, 0.5}) {
-        for (const double mu : {0.1, 0.3, 0.6, 0.9, 1.0}) {
-            for (const double f0 : {0.04, 0.6}) {
-                f64::BsdfParameters p = plain_parameters();
-                p.diffuse = glm::dvec3(0.3);
-                p.f0 = glm::dvec3(f0);
-                p.alpha_x = p.alpha_y = alpha;
-                p.coat_transmittance = glm::dvec3(0.9);
-                for (const auto model : {ReflectanceModel::ggx, ReflectanceModel::clearcoat}) {
-                    const f32::BsdfEnvironment e =
-                        environment_weights(model, rounded(p), static_cast<float>(mu));
-                    const double sum = static_cast<double>(e.diffuse.x + e.specular.x + e.coat.x);
-                    const double albedo = directional_albedo(model, p, direction(mu, 0.0), 64).x;
-                    double& worst = model == ReflectanceModel::ggx ? worst_ggx : worst_coat;
-                    worst = std::max(worst, std::abs(sum - albedo));
-                }
-            }
-        }
-    }
-    RecordProperty("worst_ggx", std::to_string(worst_ggx));
-    RecordProperty("worst_clearcoat", std::to_string(worst_coat));
-    EXPECT_LT(worst_ggx, 0.02);
-    EXPECT_LT(worst_coat, 0.03);
-}
-
 // The fits may err by .8% in what the coat transmits at cosines of .15, by .3% in its path and by
 // .7% in the base's albedo.
 TEST(Environment, WhatABaseSendsThroughItsCoatIsTheMeanOverItsLobe) {
@@ -141,9 +187,9 @@ TEST(Environment, WhatABaseSendsThroughItsCoatIsTheMeanOverItsLobe) {
                     p.coat_transmittance = glm::dvec3(transmittance);
                     const double mean =
                         environment_weights(model, rounded(p), static_cast<float>(mu)).specular.x;
-                    const double both = directional_albedo(model, p, direction(mu, 0.0), 128).x;
+                    const double both = albedo_by_slopes(model, p, direction(mu, 0.0)).x;
                     p.f0 = glm::dvec3(0.0);
-                    const double coat = directional_albedo(model, p, direction(mu, 0.0), 128).x;
+                    const double coat = albedo_by_slopes(model, p, direction(mu, 0.0)).x;
                     worst = std::max(worst, std::abs(mean / (both - coat) - 1.0));
                 }
             }
