@@ -2,13 +2,12 @@
 
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <exception>
-#include <mutex>
-#include <thread>
+#include <utility>
 
 #include "core/error.h"
 #include "core/freed_memory.h"
+#include "core/worker.h"
 #include "live/bench_picture.h"
 #include "live/calibration_reuse.h"
 #include "live/low_priority.h"
@@ -43,45 +42,39 @@ struct Traced {
     bool operator==(const Traced&) const = default;
 };
 
+struct BenchJobs {
+    BenchChoice choice;
+    std::optional<PhotographRequest> photograph;
+    bool calibration = false;
+    BenchThread::Calibrating calibrating;
+    std::shared_ptr<const BenchPhotograph> newest;
+};
+
 }  // namespace
 
 struct BenchThread::Implementation {
     std::function<void()> on_change;
-
-    mutable std::mutex mutex;
-    std::condition_variable wake;
-    bool stop = false;
-    BenchChoice choice;
-    std::optional<PhotographRequest> requested;
-    bool calibration_wanted = false;
-    Calibrating calibrating;
-    std::shared_ptr<const BenchPhotograph> newest;
     std::atomic<bool> abandon{false};  ///< what runs now
-    std::thread thread;
 
     // Of the thread only
     Traced traced;
     std::unique_ptr<Bench> bench;
     PixelRectangle mockup;
 
-    void run();
+    Worker<BenchJobs> worker;
+
+    Worker<BenchJobs>::Turn next(BenchJobs& asked);
     void photograph(const PhotographRequest& request, const BenchChoice& with);
     Image8 picture_of(const PhotographRequest& request, const BenchChoice& with);
     void calibrate(const BenchChoice& with);
     void trace(const Traced& with, const Progress& progress);
     Progress abandonable();
     template <typename Change>
-    void publish(const Change& change);
-};
-
-template <typename Change>
-void BenchThread::Implementation::publish(const Change& change) {
-    {
-        const std::scoped_lock lock(mutex);
-        change();
+    void publish(const Change& change) {
+        worker.use(change);
+        on_change();
     }
-    on_change();
-}
+};
 
 Progress BenchThread::Implementation::abandonable() {
     Progress progress;
@@ -121,25 +114,28 @@ void BenchThread::Implementation::photograph(const PhotographRequest& request,
     try {
         result->srgb = picture_of(request, with);
     } catch (const Cancelled&) {
-        const std::scoped_lock lock(mutex);
-        if (!requested) requested = request;  // on the bench that is used now
+        worker.change([&](BenchJobs& asked) {
+            if (!asked.photograph) asked.photograph = request;  // on the bench that is used now
+        });
         return;
     } catch (const std::exception& error) {
         result->problem = error.what();
-        if (const auto last = newest) result->srgb = last->srgb;
+        worker.use([&](const BenchJobs& asked) {
+            if (asked.newest) result->srgb = asked.newest->srgb;
+        });
     }
     result->number = request.number;
     result->seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    publish([&] { newest = result; });
+    publish([&](BenchJobs& asked) { asked.newest = result; });
 }
 
 void BenchThread::Implementation::calibrate(const BenchChoice& with) {
     Progress progress = abandonable();
     progress.report = [&](double fraction, std::string_view stage) {
-        publish([&] {
-            calibrating.fraction = fraction;
-            calibrating.stage = stage;
+        publish([&](BenchJobs& asked) {
+            asked.calibrating.fraction = fraction;
+            asked.calibrating.stage = stage;
         });
     };
     Calibrating result;
@@ -157,55 +153,48 @@ void BenchThread::Implementation::calibrate(const BenchChoice& with) {
         result.refused_why = error.what();
         result.refused_fix = "Put that right and calibrate again.";
     }
-    publish([&] { calibrating = result; });
+    publish([&](BenchJobs& asked) { asked.calibrating = result; });
 }
 
-void BenchThread::Implementation::run() {
-    lower_priority_of_this_thread(Urgency::background);
-    std::unique_lock lock(mutex);
-    while (true) {
-        wake.wait(lock, [&] { return stop || calibration_wanted || requested; });
-        if (stop) return;
-        abandon = false;
-        const BenchChoice with = choice;
-        if (calibration_wanted) {
-            calibration_wanted = false;
-            lock.unlock();
+Worker<BenchJobs>::Turn BenchThread::Implementation::next(BenchJobs& asked) {
+    if (!asked.calibration && !asked.photograph) return {};
+    abandon = false;
+    const BenchChoice with = asked.choice;
+    if (std::exchange(asked.calibration, false)) {
+        return {[this, with] {
             calibrate(with);
-        } else {
-            const PhotographRequest request = std::move(*requested);
-            requested.reset();
-            lock.unlock();
-            photograph(request, with);
-        }
-        return_freed_memory();
-        lock.lock();
+            return_freed_memory();
+        }};
     }
+    return {[this, with, request = *std::exchange(asked.photograph, std::nullopt)] {
+        photograph(request, with);
+        return_freed_memory();
+    }};
 }
 
 BenchThread::BenchThread(std::function<void()> on_change)
     : implementation_(std::make_unique<Implementation>()) {
-    implementation_->on_change = std::move(on_change);
-    implementation_->thread = std::thread([this] { implementation_->run(); });
+    Implementation& it = *implementation_;
+    it.on_change = std::move(on_change);
+    it.worker.start([&it] {
+        lower_priority_of_this_thread(Urgency::background);
+        it.worker.serve([&it](BenchJobs& asked) { return it.next(asked); });
+    });
 }
 
 BenchThread::~BenchThread() {
-    {
-        const std::scoped_lock lock(implementation_->mutex);
-        implementation_->stop = true;
-        implementation_->abandon = true;
-    }
-    implementation_->wake.notify_all();
-    implementation_->thread.join();
+    implementation_->worker.stop();  // first: the next job would take `abandon` back
+    implementation_->abandon = true;
 }
 
 void BenchThread::use(const std::string& bench, std::shared_ptr<const Product> product) {
     check_argument(product != nullptr, "a bench without a mock-up");
-    const std::scoped_lock lock(implementation_->mutex);
-    BenchChoice choice{bench, std::move(product)};
-    if (choice == implementation_->choice) return;
-    implementation_->choice = std::move(choice);
-    implementation_->abandon = true;
+    implementation_->worker.use([&](BenchJobs& asked) {
+        BenchChoice choice{bench, std::move(product)};
+        if (choice == asked.choice) return;
+        asked.choice = std::move(choice);
+        implementation_->abandon = true;
+    });
 }
 
 void BenchThread::photograph(std::uint64_t number,
@@ -213,48 +202,40 @@ void BenchThread::photograph(std::uint64_t number,
                              const glm::dvec3& eye_mm,
                              double design_white_y) {
     check_argument(drive != nullptr, "a photograph of no picture");
-    {
-        const std::scoped_lock lock(implementation_->mutex);
-        check_argument(implementation_->choice.product != nullptr, "a photograph on no bench");
-        implementation_->requested =
-            PhotographRequest{number, std::move(drive), eye_mm, design_white_y};
-    }
-    implementation_->wake.notify_all();
+    implementation_->worker.change([&](BenchJobs& asked) {
+        check_argument(asked.choice.product != nullptr, "a photograph on no bench");
+        asked.photograph = PhotographRequest{number, std::move(drive), eye_mm, design_white_y};
+    });
 }
 
 std::shared_ptr<const BenchPhotograph> BenchThread::newest_photograph() const {
-    const std::scoped_lock lock(implementation_->mutex);
-    return implementation_->newest;
+    return implementation_->worker.use([](const BenchJobs& asked) { return asked.newest; });
 }
 
 void BenchThread::start_calibration() {
-    {
-        const std::scoped_lock lock(implementation_->mutex);
-        check_argument(implementation_->choice.product != nullptr, "a calibration on no bench");
-        if (implementation_->calibrating.running) return;
-        implementation_->calibrating = {};
-        implementation_->calibrating.running = true;
-        implementation_->calibrating.stage = "waiting for the bench";
-        implementation_->calibration_wanted = true;
-    }
-    implementation_->wake.notify_all();
+    implementation_->worker.change([](BenchJobs& asked) {
+        check_argument(asked.choice.product != nullptr, "a calibration on no bench");
+        if (asked.calibrating.running) return;
+        asked.calibrating = {};
+        asked.calibrating.running = true;
+        asked.calibrating.stage = "waiting for the bench";
+        asked.calibration = true;
+    });
 }
 
 void BenchThread::cancel_calibration() {
-    const std::scoped_lock lock(implementation_->mutex);
-    Implementation& it = *implementation_;
-    if (!it.calibrating.running) return;
-    if (it.calibration_wanted) {
-        it.calibration_wanted = false;
-        it.calibrating = {};
-    } else {
-        it.abandon = true;
-    }
+    implementation_->worker.use([&](BenchJobs& asked) {
+        if (!asked.calibrating.running) return;
+        if (std::exchange(asked.calibration, false)) {
+            asked.calibrating = {};
+        } else {
+            implementation_->abandon = true;
+        }
+    });
 }
 
 BenchThread::Calibrating BenchThread::calibrating() const {
-    const std::scoped_lock lock(implementation_->mutex);
-    return implementation_->calibrating;
+    return implementation_->worker.use([](const BenchJobs& asked) { return asked.calibrating; });
 }
 
 }  // namespace livery

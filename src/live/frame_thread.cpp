@@ -2,17 +2,15 @@
 
 #include <array>
 #include <atomic>
-#include <condition_variable>
 #include <exception>
-#include <mutex>
 #include <new>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/worker.h"
 #include "live/frame_lane.h"
 #include "live/solve_key.h"
 
@@ -43,19 +41,11 @@ std::optional<SolveKeys> wanted_of(const FrameDescription& description) {
     }
 }
 
-}  // namespace
-
-struct FrameThread::Implementation {
-    std::array<GlContext*, 2> contexts;
-    std::function<void(std::shared_ptr<const FinishedFrame>)> on_finished;
-    std::shared_ptr<GeometryCache> geometries = std::make_shared<GeometryCache>();
-
-    mutable std::mutex mutex;
-    std::condition_variable changed;
-    bool quit = false;
+/// What both lanes take their work from.
+struct FrameJobs {
     std::size_t front = 0;
-    bool front_draws = false;  ///< outside of the mutex
-    bool front_held = false;   ///< while the back lane draws the newest and tells
+    bool front_draws = false;
+    bool front_held = false;  ///< while the back lane draws the newest and tells
     Newest newest;
     Newest shown;   ///< the last that was finished, whatever is missing of it
     Newest failed;  ///< the last that could not be solved or drawn
@@ -76,50 +66,39 @@ struct FrameThread::Implementation {
         bool whole = false;  ///< prepares for other paints, too
     };
     std::optional<Task> task;
-    std::atomic<bool> stop{false};
-    std::optional<Solving> solving;
+    std::optional<FrameThread::Solving> solving;
 
-    std::array<std::thread, 2> threads;
-
-    void run(std::size_t lane);
-    void serve(std::size_t index, FrameLane& lane);
-    std::optional<Task> next_task(std::size_t back) const;
+    std::optional<Task> next_task() const;
     bool front_can_draw(const FrameLane& lane) const;
-    void draw_in_front(FrameLane& lane, std::unique_lock<std::mutex>& lock);
-    void work_behind(std::size_t index, FrameLane& lane, std::unique_lock<std::mutex>& lock);
-    void hold_front(std::unique_lock<std::mutex>& lock);
-    void hand_over(std::size_t index, FrameLane& lane, std::unique_lock<std::mutex>& lock);
-    void finish(FrameLane& lane, const Newest& description);
-    void fail(const Newest& description, const std::exception_ptr& error);
     std::string unfinished_of(const SolveKeys& solved, const SolveKeys& wanted) const;
     bool disturbs(const FrameDescription& description) const;
+    void note(std::size_t index, const FrameLane& lane) {
+        lanes[index] = {lane.solved(), lane.is_prepared()};
+    }
 };
 
 /// What the back lane should do next, if anything: show a new light as a draft; then at the quality
 /// that is wanted; then catch up with the front, to be as good a start for the next light.
-std::optional<FrameThread::Implementation::Task> FrameThread::Implementation::next_task(
-    std::size_t back) const {
+std::optional<FrameJobs::Task> FrameJobs::next_task() const {
     if (!newest || newest == failed) return std::nullopt;
     const auto wanted = wanted_of(*newest);
     if (!wanted) return std::nullopt;
-    const LaneState& ahead = lanes[1 - back];
-    const LaneState& own = lanes[back];
+    const LaneState& ahead = lanes[front];
+    const LaneState& own = lanes[1 - front];
     const bool light_shown = covers_light(ahead.solved, *wanted);
     const bool all_shown = light_shown && missing_of(ahead.solved, *wanted).empty();
+    const bool solved_already = own.solved[0] && missing_of(own.solved, *wanted).empty();
     if (all_shown && ahead.prepared) {
-        const bool caught_up =
-            own.solved[0] && missing_of(own.solved, *wanted).empty() && own.prepared;
-        if (caught_up) return std::nullopt;
+        if (solved_already && own.prepared) return std::nullopt;
         return Task{newest, *wanted, false, true};
     }
-    const bool solved_already = own.solved[0] && missing_of(own.solved, *wanted).empty();
     if (!light_shown && !solved_already) {
         return Task{newest, with_quality(*wanted, Quality::draft), true, false};
     }
     return Task{newest, *wanted, true, true};
 }
 
-bool FrameThread::Implementation::front_can_draw(const FrameLane& lane) const {
+bool FrameJobs::front_can_draw(const FrameLane& lane) const {
     if (!newest || newest == shown || front_held) return false;
     // A malformed one is drawn too: that says what is wrong with it.
     return !wanted_of(*newest) || lane.can_draw(*newest);
@@ -127,7 +106,7 @@ bool FrameThread::Implementation::front_can_draw(const FrameLane& lane) const {
 
 /// Whether a description makes the task that runs worthless. A draft is finished for its light even
 /// if a newer light waits, or a light that is dragged would never be seen to move.
-bool FrameThread::Implementation::disturbs(const FrameDescription& description) const {
+bool FrameJobs::disturbs(const FrameDescription& description) const {
     if (!task) return false;
     const auto wanted = wanted_of(description);
     if (!wanted) return false;
@@ -136,15 +115,37 @@ bool FrameThread::Implementation::disturbs(const FrameDescription& description) 
     return !draft_of_this_pose && !missing_of(task->wanted, *wanted).empty();
 }
 
-std::string FrameThread::Implementation::unfinished_of(const SolveKeys& solved,
-                                                       const SolveKeys& wanted) const {
+std::string FrameJobs::unfinished_of(const SolveKeys& solved, const SolveKeys& wanted) const {
     const std::string missing = missing_of(solved, wanted);
     if (missing.empty()) return "";
     const double fraction = solving ? solving->fraction : 0.0;
     return fmt::format("{}: solving, {:.0f}%", missing, 100.0 * fraction);
 }
 
-/// Draws and tells; with the mutex free. Only one lane is in here at a time.
+}  // namespace
+
+struct FrameThread::Implementation {
+    std::array<GlContext*, 2> contexts;
+    std::function<void(std::shared_ptr<const FinishedFrame>)> on_finished;
+    std::shared_ptr<GeometryCache> geometries = std::make_shared<GeometryCache>();
+    std::atomic<bool> stop{false};  ///< the task that runs
+
+    Worker<FrameJobs> worker;
+
+    void run(std::size_t lane);
+    Worker<FrameJobs>::Turn next(FrameJobs& jobs, std::size_t index, FrameLane& lane);
+    void work_behind(const FrameJobs::Task& task,
+                     bool told,
+                     std::optional<Urgency> urgency,
+                     std::size_t index,
+                     FrameLane& lane);
+    void hold_front();
+    bool hand_over(FrameLane& lane);
+    void finish(FrameLane& lane, const Newest& description);
+    void fail(const Newest& description, const std::exception_ptr& error);
+};
+
+/// Draws and tells. Only one lane is in here at a time.
 void FrameThread::Implementation::finish(FrameLane& lane, const Newest& description) {
     std::shared_ptr<FinishedFrame> frame;
     try {
@@ -153,24 +154,22 @@ void FrameThread::Implementation::finish(FrameLane& lane, const Newest& descript
         fail(description, std::current_exception());
         return;
     }
-    {
-        const std::scoped_lock lock(mutex);
-        frame->unfinished = unfinished_of(lane.solved(), keys_of(*description));
-        last_good = frame;
-        shown = description;
-    }
+    worker.use([&](FrameJobs& jobs) {
+        frame->unfinished = jobs.unfinished_of(lane.solved(), keys_of(*description));
+        jobs.last_good = frame;
+        jobs.shown = description;
+    });
     let_helpers_give_way();
     on_finished(std::move(frame));
 }
 
 void FrameThread::Implementation::fail(const Newest& description, const std::exception_ptr& error) {
     std::shared_ptr<FinishedFrame> frame;
-    {
-        const std::scoped_lock lock(mutex);
-        frame = last_good ? std::make_shared<FinishedFrame>(*last_good)
-                          : std::make_shared<FinishedFrame>();
-        shown = failed = description;
-    }
+    worker.use([&](FrameJobs& jobs) {
+        frame = jobs.last_good ? std::make_shared<FinishedFrame>(*jobs.last_good)
+                               : std::make_shared<FinishedFrame>();
+        jobs.shown = jobs.failed = description;
+    });
     frame->number = description->number;
     frame->asked_at = description->asked_at;
     frame->done_at = std::chrono::steady_clock::now();
@@ -179,112 +178,104 @@ void FrameThread::Implementation::fail(const Newest& description, const std::exc
     on_finished(std::move(frame));
 }
 
-void FrameThread::Implementation::draw_in_front(FrameLane& lane,
-                                                std::unique_lock<std::mutex>& lock) {
-    const Newest description = newest;
-    front_draws = true;
-    lock.unlock();
-    finish(lane, description);
-    lock.lock();
-    front_draws = false;
-}
-
-void FrameThread::Implementation::work_behind(std::size_t index,
-                                              FrameLane& lane,
-                                              std::unique_lock<std::mutex>& lock) {
-    const Task its_task = *task;
-    const bool told = !missing_of(lanes[front].solved, its_task.wanted).empty();
-    // The first picture waits for nothing else; what only gets better gives way to everything.
-    std::optional<Urgency> urgency;
-    if (last_good) urgency = its_task.whole ? Urgency::background : Urgency::watched;
-    stop = false;
-    if (told) solving = Solving{0.0, "starting"};
-    lock.unlock();
+void FrameThread::Implementation::work_behind(const FrameJobs::Task& task,
+                                              bool told,
+                                              std::optional<Urgency> urgency,
+                                              std::size_t index,
+                                              FrameLane& lane) {
     Progress progress{{}, &stop};
     if (told) {
         progress.report = [this](double fraction, std::string_view stage) {
-            const std::scoped_lock guard(mutex);
-            solving = Solving{fraction, std::string(stage)};
+            worker.use([&](FrameJobs& jobs) {
+                jobs.solving = Solving{fraction, std::string(stage)};
+            });
         };
     }
     std::exception_ptr error;
     try {
-        lane.solve(*its_task.description, its_task.wanted[0]->quality, urgency, progress);
+        lane.solve(*task.description, task.wanted[0]->quality, urgency, progress);
         // Everything that drawing makes once, before the front is held.
-        lane.draw_ahead(*its_task.description);
-        if (its_task.whole) lane.prepare(*its_task.description, progress);
+        lane.draw_ahead(*task.description);
+        if (task.whole) lane.prepare(*task.description, progress);
     } catch (const Cancelled&) {
     } catch (...) {
         error = std::current_exception();
     }
-    lock.lock();
-    task.reset();
-    solving.reset();
-    lanes[index] = {lane.solved(), lane.is_prepared()};
     // What failed for an older description is tried again for the newest.
-    if (error && newest == its_task.description) {
-        hold_front(lock);
-        lock.unlock();
-        fail(its_task.description, error);
-        lock.lock();
-        front_held = false;
+    const bool fails = worker.use([&](FrameJobs& jobs) {
+        jobs.task.reset();
+        jobs.solving.reset();
+        jobs.note(index, lane);
+        return error && jobs.newest == task.description;
+    });
+    if (fails) {
+        hold_front();
+        fail(task.description, error);
     }
-    if (error || stop || !its_task.for_showing) return;
-    hand_over(index, lane, lock);
-    lanes[index] = {lane.solved(), lane.is_prepared()};
+    const bool handed_over = !error && !stop && task.for_showing && hand_over(lane);
+    worker.change([&](FrameJobs& jobs) {
+        if (handed_over) jobs.front = index;
+        jobs.front_held = false;
+        jobs.note(index, lane);
+    });
 }
 
 /// The front draws nothing until front_held is false again: one lane at a time tells.
-void FrameThread::Implementation::hold_front(std::unique_lock<std::mutex>& lock) {
-    front_held = true;
-    changed.wait(lock, [&] { return !front_draws; });
+void FrameThread::Implementation::hold_front() {
+    worker.use([](FrameJobs& jobs) { jobs.front_held = true; });
+    worker.wait([](const FrameJobs& jobs) { return !jobs.front_draws; });
 }
 
-void FrameThread::Implementation::hand_over(std::size_t index,
-                                            FrameLane& lane,
-                                            std::unique_lock<std::mutex>& lock) {
-    const auto drawable = [&] { return wanted_of(*newest) && lane.can_draw(*newest); };
+/// True when this lane has drawn the newest, and is to be the front. Leaves the front held.
+bool FrameThread::Implementation::hand_over(FrameLane& lane) {
+    const auto drawable = [&](const FrameJobs& jobs) {
+        const bool can = wanted_of(*jobs.newest) && lane.can_draw(*jobs.newest);
+        return can ? jobs.newest : nullptr;
+    };
     // Paints that came meanwhile are drawn before the front is held, or they would wait for two
     // frames; whoever swaps faster than that waits once.
     Newest drawn;
-    for (int k = 0; k < 3 && newest != drawn && drawable(); ++k) {
+    for (int k = 0; k < 3; ++k) {
+        const Newest newest = worker.use(drawable);
+        if (!newest || newest == drawn) break;
         drawn = newest;
-        lock.unlock();
         try {
             lane.draw_ahead(*drawn);
         } catch (...) {
             // Told when it is drawn for showing, if it fails then, too.
         }
-        lock.lock();
     }
-    hold_front(lock);
-    if (drawable()) {
-        const Newest description = newest;
-        lock.unlock();
-        finish(lane, description);
-        lock.lock();
-        front = index;
-    }
-    front_held = false;
+    hold_front();
+    const Newest newest = worker.use(drawable);
+    if (newest) finish(lane, newest);
+    return newest != nullptr;
 }
 
-void FrameThread::Implementation::serve(std::size_t index, FrameLane& lane) {
-    std::unique_lock lock(mutex);
-    while (!quit) {
-        if (index == front) {
-            if (front_can_draw(lane)) {
-                draw_in_front(lane, lock);
-                lanes[index] = {lane.solved(), lane.is_prepared()};
-                changed.notify_all();
-                continue;
-            }
-        } else if ((task = next_task(index))) {
-            work_behind(index, lane, lock);
-            changed.notify_all();
-            continue;
-        }
-        changed.wait(lock);
+Worker<FrameJobs>::Turn FrameThread::Implementation::next(FrameJobs& jobs,
+                                                          std::size_t index,
+                                                          FrameLane& lane) {
+    if (index == jobs.front) {
+        if (!jobs.front_can_draw(lane)) return {};
+        jobs.front_draws = true;
+        return {[this, description = jobs.newest, index, &lane] {
+            finish(lane, description);
+            worker.change([&](FrameJobs& after) {
+                after.front_draws = false;
+                after.note(index, lane);
+            });
+        }};
     }
+    jobs.task = jobs.next_task();
+    if (!jobs.task) return {};
+    const bool told = !missing_of(jobs.lanes[jobs.front].solved, jobs.task->wanted).empty();
+    // The first picture waits for nothing else; what only gets better gives way to everything.
+    std::optional<Urgency> urgency;
+    if (jobs.last_good) urgency = jobs.task->whole ? Urgency::background : Urgency::watched;
+    stop = false;
+    if (told) jobs.solving = Solving{0.0, "starting"};
+    return {[this, task = *jobs.task, told, urgency, index, &lane] {
+        work_behind(task, told, urgency, index, lane);
+    }};
 }
 
 void FrameThread::Implementation::run(std::size_t index) {
@@ -292,7 +283,7 @@ void FrameThread::Implementation::run(std::size_t index) {
         contexts[index]->make_current();
         {
             FrameLane lane(geometries);
-            serve(index, lane);
+            worker.serve([&](FrameJobs& jobs) { return next(jobs, index, lane); });
         }
         contexts[index]->release();
     } catch (...) {
@@ -310,40 +301,32 @@ FrameThread::FrameThread(GlContext& front,
     all.contexts = {&front, &back};
     all.on_finished = std::move(on_finished);
     for (std::size_t lane = 0; lane < 2; ++lane) {
-        all.threads[lane] = std::thread([&all, lane] { all.run(lane); });
+        all.worker.start([&all, lane] { all.run(lane); });
     }
 }
 
 FrameThread::~FrameThread() {
-    {
-        const std::scoped_lock lock(implementation_->mutex);
-        implementation_->quit = true;
-        implementation_->stop = true;
-    }
-    implementation_->changed.notify_all();
-    for (std::thread& thread : implementation_->threads) thread.join();
+    implementation_->worker.stop();  // first: the next task would take `stop` back
+    implementation_->stop = true;
 }
 
 void FrameThread::show(FrameDescription description) {
     auto next = std::make_shared<const FrameDescription>(std::move(description));
-    {
-        const std::scoped_lock lock(implementation_->mutex);
-        if (implementation_->disturbs(*next)) implementation_->stop = true;
-        implementation_->newest = std::move(next);
-    }
-    implementation_->changed.notify_all();
+    implementation_->worker.change([&](FrameJobs& jobs) {
+        if (jobs.disturbs(*next)) implementation_->stop = true;
+        jobs.newest = std::move(next);
+    });
 }
 
 std::optional<FrameThread::Solving> FrameThread::solving() const {
-    const std::scoped_lock lock(implementation_->mutex);
-    return implementation_->solving;
+    return implementation_->worker.use([](const FrameJobs& jobs) { return jobs.solving; });
 }
 
 bool FrameThread::is_idle() const {
-    const Implementation& all = *implementation_;
-    const std::scoped_lock lock(all.mutex);
-    const bool drawn = all.newest == all.shown && !all.front_draws && !all.front_held;
-    return drawn && !all.task && !all.next_task(1 - all.front);
+    return implementation_->worker.use([](const FrameJobs& jobs) {
+        const bool drawn = jobs.newest == jobs.shown && !jobs.front_draws && !jobs.front_held;
+        return drawn && !jobs.task && !jobs.next_task();
+    });
 }
 
 }  // namespace livery

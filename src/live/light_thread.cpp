@@ -1,11 +1,8 @@
 #include "live/light_thread.h"
 
-#include <atomic>
-#include <condition_variable>
 #include <exception>
-#include <mutex>
-#include <thread>
 
+#include "core/worker.h"
 #include "live/low_priority.h"
 
 namespace livery {
@@ -18,39 +15,35 @@ struct Request {
     std::shared_ptr<const Environment> environment;
 };
 
+struct LightJobs {
+    std::optional<Request> request;
+    bool swatches = false;
+    LightThread::Results results;
+};
+
 }  // namespace
 
 struct LightThread::Implementation {
     std::function<void()> on_change;
-    std::atomic<bool> stop{false};
-    mutable std::mutex mutex;
-    std::condition_variable wake;
-    std::optional<Request> request;
-    bool swatches_wanted = false;
-    Results results;
-    std::thread thread;
 
     // Of the thread only
     std::shared_ptr<const Product> product;
     std::unique_ptr<VertexLightSolver> solver;
 
-    void run();
+    Worker<LightJobs> worker;
+
     void answer(const Request& asked);
     void answer_swatches();
-    void publish(const std::function<void(Results&)>& change);
-};
-
-void LightThread::Implementation::publish(const std::function<void(Results&)>& change) {
-    {
-        const std::scoped_lock lock(mutex);
-        change(results);
+    template <typename Change>
+    void publish(const Change& change) {
+        worker.use([&](LightJobs& asked) { change(asked.results); });
+        on_change();
     }
-    on_change();
-}
+};
 
 void LightThread::Implementation::answer(const Request& asked) {
     Progress progress;
-    progress.stop = &stop;
+    progress.stop = worker.stopping();
     try {
         if (asked.product != product) {
             solver = std::make_unique<VertexLightSolver>(asked.product);
@@ -77,7 +70,7 @@ void LightThread::Implementation::answer(const Request& asked) {
 
 void LightThread::Implementation::answer_swatches() {
     Progress progress;
-    progress.stop = &stop;
+    progress.stop = worker.stopping();
     try {
         const auto studio = std::make_shared<const SwatchStudio>(make_swatch_studio(progress));
         publish([&](Results& to) { to.swatches = studio; });
@@ -87,63 +80,40 @@ void LightThread::Implementation::answer_swatches() {
     }
 }
 
-void LightThread::Implementation::run() {
-    lower_priority_of_this_thread(Urgency::watched);
-    std::unique_lock lock(mutex);
-    while (true) {
-        wake.wait(lock, [&] { return stop || request || swatches_wanted; });
-        if (stop) return;
-        if (request) {
-            const Request asked = std::move(*request);
-            request.reset();
-            lock.unlock();
-            answer(asked);
-        } else {
-            swatches_wanted = false;
-            lock.unlock();
-            answer_swatches();
-        }
-        lock.lock();
-    }
-}
-
 LightThread::LightThread(std::function<void()> on_change)
     : implementation_(std::make_unique<Implementation>()) {
-    implementation_->on_change = std::move(on_change);
-    implementation_->thread = std::thread([this] { implementation_->run(); });
+    Implementation& it = *implementation_;
+    it.on_change = std::move(on_change);
+    it.worker.start([&it] {
+        lower_priority_of_this_thread(Urgency::watched);
+        it.worker.serve([&it](LightJobs& asked) -> Worker<LightJobs>::Turn {
+            if (asked.request) {
+                return {[&it, request = *std::exchange(asked.request, std::nullopt)] {
+                    it.answer(request);
+                }};
+            }
+            if (std::exchange(asked.swatches, false)) return {[&it] { it.answer_swatches(); }};
+            return {};
+        });
+    });
 }
 
-LightThread::~LightThread() {
-    {
-        const std::scoped_lock lock(implementation_->mutex);
-        implementation_->stop = true;
-    }
-    implementation_->wake.notify_all();
-    implementation_->thread.join();
-}
+LightThread::~LightThread() = default;
 
 void LightThread::solve(std::shared_ptr<const Product> product,
                         std::vector<DirectionalLight> lights,
                         std::shared_ptr<const Environment> environment) {
-    {
-        const std::scoped_lock lock(implementation_->mutex);
-        implementation_->request =
-            Request{std::move(product), std::move(lights), std::move(environment)};
-    }
-    implementation_->wake.notify_all();
+    implementation_->worker.change([&](LightJobs& asked) {
+        asked.request = Request{std::move(product), std::move(lights), std::move(environment)};
+    });
 }
 
 void LightThread::prepare_swatches() {
-    {
-        const std::scoped_lock lock(implementation_->mutex);
-        implementation_->swatches_wanted = true;
-    }
-    implementation_->wake.notify_all();
+    implementation_->worker.change([](LightJobs& asked) { asked.swatches = true; });
 }
 
 LightThread::Results LightThread::newest() const {
-    const std::scoped_lock lock(implementation_->mutex);
-    return implementation_->results;
+    return implementation_->worker.use([](const LightJobs& asked) { return asked.results; });
 }
 
 }  // namespace livery

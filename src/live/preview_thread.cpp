@@ -3,16 +3,15 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <condition_variable>
 #include <deque>
 #include <exception>
-#include <mutex>
-#include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
 #include "core/log.h"
+#include "core/worker.h"
 #include "gl/read_back.h"
 #include "live/light_thread.h"
 #include "live/low_priority.h"
@@ -70,31 +69,35 @@ struct Drawing {
     std::unique_ptr<SwatchPainter> swatches;
 };
 
+struct PreviewJobs {
+    std::optional<PreviewDescription> newest;
+    Clock::time_point asked_at{}, asked_before{};
+    bool light_changed = false;
+    std::deque<SwatchRequest> swatches;  ///< the newest first
+};
+
 }  // namespace
 
 struct PreviewThread::Implementation {
     GlContext& context;
     std::function<void(std::shared_ptr<const PreviewPicture>)> on_finished;
 
-    std::mutex mutex;
-    std::condition_variable wake;
-    bool stop = false;
-    bool light_changed = false;
-    std::optional<PreviewDescription> newest;
-    Clock::time_point asked_at{}, asked_before{};
-    std::deque<SwatchRequest> swatch_requests;  ///< the newest first
-
-    std::unique_ptr<LightThread> lights;
-    std::thread thread;
-
     // Of the thread only
     std::optional<PreviewDescription> shown;
     int drawn_supersampling = 0;  ///< of `shown`; 0: not yet
     bool swatch_light_asked = false;
+    bool swatches_wait = false;  ///< for their light
+    std::vector<DirectionalLight> asked_lights;
+    std::shared_ptr<const Environment> asked_environment;
+    std::shared_ptr<const Product> asked_product;
+    std::shared_ptr<const PreviewPicture> last_good;
+
+    std::unique_ptr<LightThread> lights;
+    Worker<PreviewJobs> worker;
 
     explicit Implementation(GlContext& its_context) : context(its_context) {}
     void run();
-    void loop(Drawing& drawing);
+    Worker<PreviewJobs>::Turn next(PreviewJobs& jobs, Drawing& drawing);
     void draw(Drawing& drawing, int supersampling);
     void draw_or_tell(Drawing& drawing, int supersampling);
     void ask_for_light(const Drawing& drawing);
@@ -102,11 +105,6 @@ struct PreviewThread::Implementation {
     bool answer(Drawing& drawing, const SwatchRequest& request);
     bool answer_look(Drawing& drawing, const SwatchRequest& request);
     void tell(const std::string& problem);
-
-    std::vector<DirectionalLight> asked_lights;
-    std::shared_ptr<const Environment> asked_environment;
-    std::shared_ptr<const Product> asked_product;
-    std::shared_ptr<const PreviewPicture> last_good;
 };
 
 void PreviewThread::Implementation::tell(const std::string& problem) {
@@ -286,46 +284,35 @@ bool PreviewThread::Implementation::answer(Drawing& drawing, const SwatchRequest
     return true;
 }
 
-void PreviewThread::Implementation::loop(Drawing& drawing) {
-    bool swatches_wait = false;  // for their light
-    std::unique_lock lock(mutex);
-    while (true) {
-        const auto urgent = [&] { return stop || newest || light_changed; };
-        const auto ready = [&] { return urgent() || (!swatch_requests.empty() && !swatches_wait); };
-        const bool to_refine = shown && drawn_supersampling < kAtRest;
-        if (to_refine) {
-            wake.wait_until(lock, asked_at + kPause, urgent);
-        } else {
-            wake.wait(lock, ready);
-        }
-        if (stop) return;
-        if (newest) {
-            shown = std::move(*newest);
-            newest.reset();
-            const bool moving = asked_at - asked_before < kPause;
-            lock.unlock();
+Worker<PreviewJobs>::Turn PreviewThread::Implementation::next(PreviewJobs& jobs, Drawing& drawing) {
+    if (jobs.newest) {
+        shown = std::exchange(jobs.newest, std::nullopt);
+        const bool moving = jobs.asked_at - jobs.asked_before < kPause;
+        return {[this, &drawing, moving] {
             draw_or_tell(drawing, moving || !drawing.light ? kWhileMoving : kAtRest);
-        } else if (light_changed) {
-            light_changed = false;
-            swatches_wait = false;
-            lock.unlock();
+        }};
+    }
+    if (std::exchange(jobs.light_changed, false)) {
+        swatches_wait = false;
+        return {[this, &drawing] {
             if (take_light(drawing) && shown) {
                 draw_or_tell(drawing, std::max(drawn_supersampling, kWhileMoving));
             }
-        } else if (to_refine) {
-            lock.unlock();
-            draw_or_tell(drawing, kAtRest);
-        } else {
-            const SwatchRequest request = std::move(swatch_requests.front());
-            swatch_requests.pop_front();
-            lock.unlock();
-            swatches_wait = !answer(drawing, request);
-            lock.lock();
-            if (swatches_wait) swatch_requests.push_back(request);
-            continue;
-        }
-        lock.lock();
+        }};
     }
+    if (shown && drawn_supersampling < kAtRest) {
+        const auto rested_at = jobs.asked_at + kPause;
+        if (Clock::now() < rested_at) return {{}, rested_at};
+        return {[this, &drawing] { draw_or_tell(drawing, kAtRest); }};
+    }
+    if (jobs.swatches.empty() || swatches_wait) return {};
+    SwatchRequest request = std::move(jobs.swatches.front());
+    jobs.swatches.pop_front();
+    return {[this, &drawing, request = std::move(request)] {
+        swatches_wait = !answer(drawing, request);
+        if (!swatches_wait) return;
+        worker.use([&](PreviewJobs& waiting) { waiting.swatches.push_back(request); });
+    }};
 }
 
 void PreviewThread::Implementation::run() {
@@ -333,7 +320,7 @@ void PreviewThread::Implementation::run() {
         context.make_current();
         {
             Drawing drawing;
-            loop(drawing);
+            worker.serve([&](PreviewJobs& jobs) { return next(jobs, drawing); });
         }
         last_good.reset();
         context.release();
@@ -348,34 +335,22 @@ PreviewThread::PreviewThread(GlContext& context,
     : implementation_(std::make_unique<Implementation>(context)) {
     Implementation& it = *implementation_;
     it.on_finished = std::move(on_finished);
-    it.lights = std::make_unique<LightThread>([&it] {
-        {
-            const std::scoped_lock lock(it.mutex);
-            it.light_changed = true;
-        }
-        it.wake.notify_all();
-    });
-    it.thread = std::thread([&it] { it.run(); });
+    it.lights = std::make_unique<LightThread>(
+        [&it] { it.worker.change([](PreviewJobs& jobs) { jobs.light_changed = true; }); });
+    it.worker.start([&it] { it.run(); });
 }
 
 PreviewThread::~PreviewThread() {
-    {
-        const std::scoped_lock lock(implementation_->mutex);
-        implementation_->stop = true;
-    }
-    implementation_->wake.notify_all();
-    implementation_->thread.join();
-    implementation_->lights.reset();
+    implementation_->worker.stop();
+    implementation_->worker.join();
+    implementation_->lights.reset();  // it tells the worker until it ends
 }
 
 void PreviewThread::show(PreviewDescription description) {
-    {
-        const std::scoped_lock lock(implementation_->mutex);
-        implementation_->newest = std::move(description);
-        implementation_->asked_before = implementation_->asked_at;
-        implementation_->asked_at = Clock::now();
-    }
-    implementation_->wake.notify_all();
+    implementation_->worker.change([&](PreviewJobs& jobs) {
+        jobs.newest = std::move(description);
+        jobs.asked_before = std::exchange(jobs.asked_at, Clock::now());
+    });
 }
 
 void PreviewThread::request_swatch(const Material& material,
@@ -386,12 +361,9 @@ void PreviewThread::request_swatch(const Material& material,
                                size_px,
                                kSmallestSwatch_px,
                                kLargestSwatch_px));
-    {
-        const std::scoped_lock lock(implementation_->mutex);
-        implementation_->swatch_requests.push_front(
-            {material, size_px, std::move(on_drawn), std::nullopt});
-    }
-    implementation_->wake.notify_all();
+    implementation_->worker.change([&](PreviewJobs& jobs) {
+        jobs.swatches.push_front({material, size_px, std::move(on_drawn), std::nullopt});
+    });
 }
 
 void PreviewThread::request_thumbnail(const Scene& scene,
@@ -404,12 +376,9 @@ void PreviewThread::request_thumbnail(const Scene& scene,
                                view.width,
                                view.height,
                                kLargestSwatch_px));
-    {
-        const std::scoped_lock lock(implementation_->mutex);
-        implementation_->swatch_requests.push_front(
-            {{}, 0, std::move(on_drawn), Thumbnail{scene, view}});
-    }
-    implementation_->wake.notify_all();
+    implementation_->worker.change([&](PreviewJobs& jobs) {
+        jobs.swatches.push_front({{}, 0, std::move(on_drawn), Thumbnail{scene, view}});
+    });
 }
 
 }  // namespace livery

@@ -1,98 +1,87 @@
 #include "studio/kit/background.h"
 
-#include <atomic>
-#include <condition_variable>
 #include <deque>
-#include <mutex>
-#include <thread>
+#include <utility>
 #include <vector>
 
 #include "core/freed_memory.h"
+#include "core/worker.h"
 
 namespace livery {
 
-struct Background::State {
-    struct Job {
-        Work work;
-        std::function<void(std::exception_ptr)> failed;
-    };
-    std::function<void()> wake;
-    mutable std::mutex mutex;
-    std::condition_variable changed;
-    std::deque<Job> jobs;
-    std::vector<Then> results;
+namespace {
+
+struct BackgroundJob {
+    Background::Work work;
+    std::function<void(std::exception_ptr)> failed;
+};
+
+struct BackgroundJobs {
+    std::deque<BackgroundJob> waiting;
+    std::vector<Background::Then> results;
     bool working = false;
-    std::atomic<bool> stop{false};
-    std::thread thread;
+};
 
-    void loop() {
-        std::unique_lock lock(mutex);
-        while (true) {
-            changed.wait(lock, [&] { return stop || !jobs.empty(); });
-            if (stop) return;
-            Job job = std::move(jobs.front());
-            jobs.pop_front();
-            working = true;
-            lock.unlock();
-            Then then = result_of(job);
-            job = {};  // and all that it holds
-            return_freed_memory();
-            lock.lock();
-            working = false;
-            results.push_back(std::move(then));
-            lock.unlock();
-            wake();
-            lock.lock();
-        }
+Background::Then result_of(const BackgroundJob& job, const std::atomic<bool>* stop) {
+    Progress progress;
+    progress.stop = stop;
+    try {
+        return job.work(progress);
+    } catch (...) {
+        return [failed = job.failed, why = std::current_exception()] { failed(why); };
     }
+}
 
-    Then result_of(const Job& job) {
-        Progress progress;
-        progress.stop = &stop;
-        try {
-            return job.work(progress);
-        } catch (...) {
-            return [failed = job.failed, why = std::current_exception()] { failed(why); };
-        }
+}  // namespace
+
+struct Background::State {
+    std::function<void()> wake;
+    Worker<BackgroundJobs> worker;
+
+    void work_off(BackgroundJob job) {
+        Then then = result_of(job, worker.stopping());
+        job = {};  // and all that it holds
+        return_freed_memory();
+        worker.use([&](BackgroundJobs& jobs) {
+            jobs.working = false;
+            jobs.results.push_back(std::move(then));
+        });
+        wake();
     }
 };
 
 Background::Background(std::function<void()> wake) : state_(std::make_unique<State>()) {
     state_->wake = std::move(wake);
-    state_->thread = std::thread([state = state_.get()] { state->loop(); });
+    state_->worker.start([state = state_.get()] {
+        state->worker.serve([state](BackgroundJobs& jobs) -> Worker<BackgroundJobs>::Turn {
+            if (jobs.waiting.empty()) return {};
+            BackgroundJob job = std::move(jobs.waiting.front());
+            jobs.waiting.pop_front();
+            jobs.working = true;
+            return {[state, job = std::move(job)]() mutable { state->work_off(std::move(job)); }};
+        });
+    });
 }
 
-Background::~Background() {
-    {
-        const std::lock_guard lock(state_->mutex);
-        state_->stop = true;
-    }
-    state_->changed.notify_all();
-    state_->thread.join();
-}
+Background::~Background() = default;
 
 void Background::run(Work work, std::function<void(std::exception_ptr)> failed) {
-    {
-        const std::lock_guard lock(state_->mutex);
-        state_->jobs.push_back({std::move(work), std::move(failed)});
-    }
-    state_->changed.notify_all();
+    state_->worker.change([&](BackgroundJobs& jobs) {
+        jobs.waiting.push_back({std::move(work), std::move(failed)});
+    });
 }
 
 void Background::take_results() {
-    std::vector<Then> results;
-    {
-        const std::lock_guard lock(state_->mutex);
-        results.swap(state_->results);
-    }
+    const auto results =
+        state_->worker.use([](BackgroundJobs& jobs) { return std::exchange(jobs.results, {}); });
     for (const Then& then : results) {
         if (then) then();
     }
 }
 
 bool Background::is_busy() const {
-    const std::lock_guard lock(state_->mutex);
-    return state_->working || !state_->jobs.empty();
+    return state_->worker.use(
+        [](const BackgroundJobs& jobs) { return jobs.working || !jobs.waiting.empty(); });
 }
 
 }  // namespace livery
