@@ -14,8 +14,7 @@
 #include <imgui_stdlib.h>
 
 #include "core/error.h"
-#include "core/paths.h"
-#include "evaluation/tally.h"
+#include "studio/ballot_result.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/widgets.h"
 #include "studio/kit/words.h"
@@ -27,13 +26,6 @@ namespace livery {
 namespace {
 
 using Page = BallotPanelState::Page;
-constexpr std::size_t kLetters = 26;
-
-/// "A", "B", ..., "Z", "27": what a design is called, and the key that chooses it.
-std::string letter(std::size_t design) {
-    return design < kLetters ? std::string(1, static_cast<char>('A' + design))
-                             : fmt::format("{}", design + 1);
-}
 
 float big_height() { return em(2.4f); }
 
@@ -231,7 +223,7 @@ void draw_title(const std::string& name, std::size_t design, float width) {
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     ImDrawList& list = *ImGui::GetWindowDrawList();
     ImFont& font = *large_font();
-    const std::string mark = letter(design);
+    const std::string mark = design_letter(design);
     const float indent = std::max(
         em(1.7f), font.CalcTextSizeA(font.FontSize, FLT_MAX, 0.0f, mark.c_str()).x + em(0.5f));
     const float height = 2.0f * ImGui::GetTextLineHeight() + em(0.3f);
@@ -322,7 +314,7 @@ void draw_vote(Studio& studio, const Round& round) {
         fmt::format("Keys A to {} choose the best, then the second best; Backspace takes "
                     "back. 1, 2, 3 … show looks on the mock-up; black is Ctrl+B, freeze "
                     "Ctrl+F.",
-                    letter(std::min(round.designs.size(), kLetters) - 1)));
+                    design_letter(std::min(round.designs.size(), kLetters) - 1)));
 
     const bool named = state.evaluator.find_first_not_of(' ') != std::string::npos;
     const bool complete = named && state.best && state.second;
@@ -369,60 +361,6 @@ void draw_thanks(Studio& studio, const Round& round) {
 
 // --- the result ---
 
-void draw_table(const Tally& tally) {
-    // As many columns as fit share the width; more are scrolled to.
-    constexpr std::size_t shared = 10, most = 62;
-    const std::size_t designs = std::min(tally.designs.size(), most);
-    const bool scrolls = designs > shared;
-    const float row_height = ImGui::GetTextLineHeight() + 2.0f * ImGui::GetStyle().CellPadding.y;
-    const float height =
-        scrolls ? 3.0f * row_height + ImGui::GetStyle().ScrollbarSize + em(0.4f) : 0.0f;
-    const ImGuiTableFlags flags =
-        ImGuiTableFlags_Borders | ImGuiTableFlags_RowBg |
-        (scrolls ? ImGuiTableFlags_ScrollX | ImGuiTableFlags_SizingFixedFit
-                 : ImGuiTableFlags_SizingStretchSame);
-    if (!ImGui::BeginTable("result", static_cast<int>(designs) + 1, flags, {0.0f, height})) return;
-    ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, em(6.0f));
-    if (scrolls) ImGui::TableSetupScrollFreeze(1, 1);
-    const auto row = [&](const char* label, auto&& cell) {
-        ImGui::TableNextRow();
-        ImGui::TableNextColumn();
-        ImGui::TextUnformatted(label);
-        for (std::size_t i = 0; i < designs; ++i) {
-            if (!ImGui::TableNextColumn()) continue;
-            ImGui::TextUnformatted(cell(i).c_str());
-        }
-    };
-    row("", [](std::size_t i) { return letter(i); });
-    row("Best", [&](std::size_t i) { return fmt::format("{}", tally.best[i]); });
-    row("Second best", [&](std::size_t i) { return fmt::format("{}", tally.second[i]); });
-    ImGui::EndTable();
-    for (std::size_t i = 0; i < tally.designs.size(); ++i) {
-        ImGui::TextWrapped("%s %s", letter(i).c_str(), tally.designs[i].c_str());
-    }
-}
-
-void ask_where_to_export(Studio& studio, const Tally& tally, int round) {
-    if (!studio.file_dialog) return;
-    FileQuestion question;
-    question.kind = FileQuestion::Kind::save;
-    question.title = "Export the result";
-    question.action = "Export";
-    question.suffixes = {".csv"};
-    question.suggested = fmt::format("round-{}.csv", round);
-    question.then = [&studio, tally](const std::filesystem::path& file) {
-        try {
-            write_text_file(file, tally_csv(tally));
-            notify(studio,
-                   {Notice::Level::info, "The result was exported.", "", file.string() + "."});
-        } catch (const FileError& error) {
-            notify(studio,
-                   {Notice::Level::error, "The result was not exported.", error.what(), ""});
-        }
-    };
-    studio.file_dialog->ask(std::move(question));
-}
-
 void draw_result(Studio& studio, const Round& round) {
     BallotPanelState& state = studio.panels.ballot;
     heading(fmt::format("Round {}: {}", round.id, count_of(round.ballots)).c_str());
@@ -434,7 +372,7 @@ void draw_result(Studio& studio, const Round& round) {
                              : "shown under calibration " + round.calibration_id.substr(0, 8)));
     Tally tally;
     if (!attempted(state, [&] { tally = studio.ballots->tally(round.id); })) return;
-    draw_table(tally);
+    draw_tally(tally);
     ImGui::Spacing();
     if (ImGui::Button("Export as CSV…")) ask_where_to_export(studio, tally, round.id);
     name_last_item("ballot:export");

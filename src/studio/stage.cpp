@@ -12,15 +12,12 @@
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
 #include "studio/kit/widgets.h"
+#include "studio/stage_words.h"
 #include "studio/window/shell.h"
 
 namespace livery {
 
 namespace {
-
-struct StageFrame {
-    float x = 0.0f, y = 0.0f, width = 0.0f, height = 0.0f;
-};
 
 /// What the pointer does with the stage in this frame.
 struct Pointer {
@@ -321,48 +318,6 @@ void draw_wipe(const Shell& shell, const StageFrame& stage) {
     const float top = stage.y + em(0.5f);
     list.AddText({x - ImGui::CalcTextSize(a.c_str()).x - em(0.6f), top}, colour, a.c_str());
     list.AddText({x + em(0.6f), top}, colour, b.c_str());
-}
-
-/// While B is held everything else in the window is about A.
-void draw_held_name(const Studio& studio, const StageFrame& stage) {
-    if (!studio.showing_b || !studio.compared_look) return;
-    const SessionLook* look = find_look(studio.session.document(), *studio.compared_look);
-    if (!look) return;
-    ImFont* font = large_font();
-    const float pad = em(0.5f), width = stage.width - 6.0f * pad;
-    ImGui::PushFont(font);
-    const auto lines = fitted_lines("B   " + look->look.name, width, 1);
-    ImGui::PopFont();
-    const ImVec2 size = font->CalcTextSizeA(font->FontSize, FLT_MAX, 0.0f, lines.front().c_str());
-    // At the lower right: notices and captions have the other corners.
-    const ImVec2 at(std::round(stage.x + stage.width - size.x - 4.0f * pad),
-                    stage.y + stage.height - size.y - 2.0f * pad);
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.AddRectFilled({at.x - 2.0f * pad, at.y - pad},
-                       {at.x + size.x + 2.0f * pad, at.y + size.y + pad},
-                       IM_COL32(0, 0, 0, 190),
-                       em(0.25f));
-    list.AddText(
-        font, font->FontSize, at, ImGui::GetColorU32(colours::text), lines.front().c_str());
-    name_rectangle("held-b-name", at.x, at.y, size.x, size.y);
-}
-
-/// Over the picture's upper edge, while the next click means something else than usual.
-void draw_placing(const Studio& studio, const StageFrame& stage) {
-    if (!is_placing(studio)) return;
-    const std::string text =
-        fmt::format("Click where \"{}\" goes. Esc takes it back.",
-                    shown_name(shown_artwork(studio)[*chosen_artwork(studio)]));
-    const float pad = em(0.5f), width = stage.width - 4.0f * pad;
-    const auto lines = fitted_lines(text, width - 2.0f * pad, 3);
-    const float height = static_cast<float>(lines.size()) * ImGui::GetFontSize() * 1.15f;
-    const ImVec2 low(stage.x + 2.0f * pad, stage.y + 2.0f * pad);
-    ImGui::GetWindowDrawList()->AddRectFilled(
-        low,
-        {low.x + width, low.y + height + 2.0f * pad},
-        ImGui::GetColorU32(ImVec4(colours::accent.x, colours::accent.y, colours::accent.z, 0.9f)),
-        em(0.25f));
-    centred_lines(lines, {low.x, low.y + pad}, width, colours::text);
 }
 
 void draw_drawn_view(Shell& shell, const StageFrame& stage) {

@@ -19,6 +19,7 @@
 #include "studio/paint/chosen_part.h"
 #include "studio/paint/paint_finder.h"
 #include "studio/paint/paint_parameters.h"
+#include "studio/paint/swatch_cell.h"
 #include "studio/paint/swatch_textures.h"
 #include "studio/paint/users_library.h"
 #include "studio/studio.h"
@@ -246,51 +247,6 @@ void draw_target(Studio& studio, const Target& target) {
     }
 }
 
-void paint_tooltip(const Material& paint) {
-    // Beside the column, so that it hides neither the swatches nor their names.
-    const ImVec2 pointer = ImGui::GetIO().MousePos;
-    ImGui::SetNextWindowPos(
-        {ImGui::GetWindowPos().x - em(1.0f), pointer.y}, ImGuiCond_Always, {1.0f, 0.5f});
-    ImGui::BeginTooltip();
-    ImGui::PushTextWrapPos(em(22.0f));
-    heading(paint.name.c_str());
-    ImGui::TextUnformatted(summary_of(paint).c_str());
-    if (!paint.provenance.empty()) dim_text(paint.provenance);
-    ImGui::PopTextWrapPos();
-    ImGui::EndTooltip();
-}
-
-void draw_cell_picture(Studio& studio,
-                       const Material& paint,
-                       const std::string& distance,
-                       const ImVec2& corner,
-                       float width,
-                       bool worn,
-                       bool lit) {
-    ImDrawList* draw = ImGui::GetWindowDrawList();
-    const float side = std::floor(0.78f * width);
-    const float left = std::floor(corner.x + 0.5f * (width - side)), top = corner.y + em(0.3f);
-    const ImVec2 end{corner.x + width, corner.y + ImGui::GetItemRectSize().y};
-    const float rounding = ImGui::GetStyle().FrameRounding;
-    if (lit) draw->AddRectFilled(corner, end, ImGui::GetColorU32(colours::raised), rounding);
-    draw_swatch(studio, paint, {left, top}, side);
-    if (worn) {
-        draw->AddRect(
-            corner, end, ImGui::GetColorU32(colours::text), rounding, 0, std::max(1.5f, em(0.1f)));
-    }
-    ImGui::PushFont(small_font());
-    const float below = top + side + em(0.25f);
-    centred_lines(fitted_lines(paint.name, width - em(0.3f), 2),
-                  {corner.x, below},
-                  width,
-                  worn || lit ? colours::text : colours::dim_text);
-    if (!distance.empty()) {
-        centred_lines(
-            {distance}, {corner.x, below + 2.3f * ImGui::GetFontSize()}, width, colours::text);
-    }
-    ImGui::PopFont();
-}
-
 /// One swatch; true when it was clicked.
 bool draw_cell(Studio& studio, const Target& target, SwatchCell& cell, float width, float height) {
     LibraryPanelState& state = studio.panels.library;
@@ -330,7 +286,7 @@ bool draw_cell(Studio& studio, const Target& target, SwatchCell& cell, float wid
     }
     if (led_here) ImGui::SetScrollHereY();
     if (ImGui::IsItemVisible()) {
-        draw_cell_picture(studio, paint, cell.distance, corner, width, worn, meant);
+        draw_swatch_cell(studio, paint, cell.distance, corner, width, worn, meant);
     }
     if (hovered && meant) paint_tooltip(paint);
     return clicked;

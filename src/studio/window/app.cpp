@@ -27,6 +27,7 @@
 #include "studio/quality_costs.h"
 #include "studio/window/actions.h"
 #include "studio/window/imgui_window.h"
+#include "studio/window/native_place.h"
 #include "studio/window/running_window.h"
 #include "studio/window/shell.h"
 #include "studio/window/shell_state.h"
@@ -51,22 +52,6 @@ constexpr double kGiveWay_s = 0.004;
 constexpr int kRealModifiers = GLFW_MOD_CONTROL | GLFW_MOD_SHIFT | GLFW_MOD_ALT | GLFW_MOD_SUPER;
 
 bool monitors_have_changed = false;  // Set by GLFW's callback, which carries no pointer.
-
-/// GLFW tells of monitors that come and go, not of those that move.
-std::vector<std::array<int, 4>> places_of_monitors() {
-    std::vector<std::array<int, 4>> places;
-    int count = 0;
-    GLFWmonitor** const monitors = glfwGetMonitors(&count);
-    for (int i = 0; i < count; ++i) {
-        auto& place = places.emplace_back();
-        glfwGetMonitorPos(monitors[i], &place[0], &place[1]);
-        if (const GLFWvidmode* mode = glfwGetVideoMode(monitors[i])) {
-            place[2] = mode->width;
-            place[3] = mode->height;
-        }
-    }
-    return places;
-}
 
 double now_s() { return seconds_of(std::chrono::steady_clock::now()); }
 
@@ -111,88 +96,6 @@ void tell_drawing_problems(Studio& studio) {
                 "",
                 "Put the file back, or choose another; then change something to draw it again."});
     }
-}
-
-/// A monitor's part of the desktop that the window lies on, and its scale.
-float screen_scale(GLFWwindow* window, const std::vector<Monitor>& monitors) {
-    float content_scale = 1.0f;
-    glfwGetWindowContentScale(window, &content_scale, nullptr);
-    int x = 0, y = 0;
-    glfwGetWindowPos(window, &x, &y);
-    glm::ivec2 size{0};
-    for (const Monitor& m : monitors) {
-        if (x >= m.x && y >= m.y && x < m.x + m.width && y < m.y + m.height)
-            size = {m.width, m.height};
-    }
-    return static_cast<float>(default_scale(content_scale, size));
-}
-
-WindowPlace place_of(GLFWwindow* window) {
-    WindowPlace place;
-    glfwGetWindowPos(window, &place.position.x, &place.position.y);
-    glfwGetWindowSize(window, &place.size_px.x, &place.size_px.y);
-    place.maximised = glfwGetWindowAttrib(window, GLFW_MAXIMIZED) != 0;
-    return place;
-}
-
-glm::ivec2 least_size(const Shell& shell,
-                      const std::vector<Monitor>& monitors,
-                      const glm::ivec2& position) {
-    double scale = 1.0;
-    for (const Monitor& m : monitors) {
-        if (position.x >= m.x && position.y >= m.y && position.x < m.x + m.width &&
-            position.y < m.y + m.height) {
-            scale = default_scale(1.0f, {m.width, m.height});
-        }
-    }
-    scale = shell.fixed_scale.value_or(scale * shell.user_scale);
-    return glm::ivec2(glm::dvec2(kLeastSize_px) * scale);
-}
-
-/// Where the window was left, or in the middle of the main monitor.
-WindowPlace first_place(const Shell& shell, const DesktopOptions& options) {
-    const auto& monitors = shell.studio.monitors;
-    const auto remembered = shell.studio.session.workspace().find(kWindowKey);
-    std::optional<WindowPlace> place;
-    if (remembered != shell.studio.session.workspace().end()) {
-        place = parse_window_place(remembered->second);
-    }
-    if (!place) {
-        place = WindowPlace{};
-        const auto main = std::find_if(
-            monitors.begin(), monitors.end(), [](const Monitor& m) { return m.primary; });
-        if (main != monitors.end()) {
-            const double scale = default_scale(1.0f, {main->width, main->height});
-            place->size_px = {std::min(main->width, static_cast<int>(1280 * scale)),
-                              std::min(main->height, static_cast<int>(800 * scale))};
-            place->position = {main->x + (main->width - place->size_px.x) / 2,
-                               main->y + (main->height - place->size_px.y) / 2};
-        }
-    }
-    // It may have been left on a screen with larger pixels.
-    place->size_px = glm::max(place->size_px, least_size(shell, monitors, place->position));
-    if (options.size_px) {
-        place->size_px = *options.size_px;
-        place->maximised = false;
-    }
-    return place_beside_projector(*place, monitors, shell.projector_monitor).value_or(*place);
-}
-
-void put_window(GLFWwindow* window, const WindowPlace& place) {
-    glfwSetWindowSize(window, place.size_px.x, place.size_px.y);
-    glfwSetWindowPos(window, place.position.x, place.position.y);
-    if (place.maximised) glfwMaximizeWindow(window);
-}
-
-/// Off the projector, when the projector was chosen or monitors came and went.
-void move_off_projector(Shell& shell, GLFWwindow* window) {
-    shell.window_must_move = false;
-    const WindowPlace now = place_of(window);
-    if (!must_move(now, shell.studio.monitors, shell.projector_monitor)) return;
-    const auto place = place_beside_projector(now, shell.studio.monitors, shell.projector_monitor);
-    if (!place || *place == now) return;
-    if (now.maximised) glfwRestoreWindow(window);
-    put_window(window, *place);
 }
 
 KeyboardOwner keyboard_owner(const Shell& shell) {

@@ -1,0 +1,27 @@
+// Where GLFW's window and monitors stand, and the window put where it belongs.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "studio/window/app.h"
+#include "studio/window/shell.h"
+#include "studio/window/window_place.h"
+
+struct GLFWwindow;
+
+namespace livery {
+
+/// x, y, width and height of each: GLFW tells of monitors that come and go, not of those that move.
+std::vector<std::array<int, 4>> places_of_monitors();
+/// Of the monitor that the window lies on.
+float screen_scale(GLFWwindow* window, const std::vector<Monitor>& monitors);
+
+WindowPlace place_of(GLFWwindow* window);
+void put_window(GLFWwindow* window, const WindowPlace& place);
+/// Where the window was left, or in the middle of the main monitor.
+WindowPlace first_place(const Shell& shell, const DesktopOptions& options);
+/// Off the projector, when the projector was chosen or monitors came and went.
+void move_off_projector(Shell& shell, GLFWwindow* window);
+
+}  // namespace livery
