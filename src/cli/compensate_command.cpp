@@ -67,14 +67,11 @@ Command compensate_command() {
             arguments->design_white,
             counted,
             target.has_coverage ? "coverage" : "every valid pixel: the target has no coverage");
-        const CompensationTable table = bake(calibration, white.y);
+        const CompensationTable table =
+            bake(calibration, white.y, parse_gamut_mapping(arguments->gamut));
         progress.update(0.5, "compensating");
-        // The fractions speak of what was wanted, before any gamut mapping.
         CompensationStats stats;
-        Image8 drive = compensate(table, wanted, &stats);
-        if (arguments->gamut == "preserve") {
-            drive = compensate(table, map_gamut(table, wanted, GamutMapping::preserve));
-        }
+        const Image8 drive = compensate(table, wanted, &stats);
         write_png(arguments->out, drive);
         Outcome outcome;
         outcome.figures = {{"out_of_gamut_fraction", stats.out_of_gamut_fraction},

@@ -75,6 +75,12 @@ std::vector<Option> frame_options(FrameArguments& arguments) {
          &arguments.stage,
          false,
          {"radiance", "projector"}},
+        {"--gamut",
+         "HOW",
+         "colours out of reach, strict: clip; preserve: keep the hue (default strict)",
+         &arguments.gamut,
+         false,
+         {"strict", "preserve"}},
         {"--design-white",
          "PERCENT",
          "percentile of the brightest neutral that becomes 1 (default 20)",
@@ -147,7 +153,8 @@ ResolvedFrame resolve_frame(const FrameArguments& arguments, const CommonOptions
             arguments.design_white,
             mockup,
             of_view ? "the mock-up" : "every valid pixel: the view has another size");
-        frame.compensation = bake(calibration, frame.design_white->y);
+        frame.compensation =
+            bake(calibration, frame.design_white->y, parse_gamut_mapping(arguments.gamut));
     }
     if (!arguments.eye.empty()) {
         const auto numbers = parse_numbers("--eye", arguments.eye, 3);

@@ -17,6 +17,7 @@ struct FrameArguments {
     std::string quality, stage = "radiance";
     double budget_ms = 0.0;
     double design_white = 20.0;
+    std::string gamut = "strict";
 };
 
 std::vector<Option> frame_options(FrameArguments& arguments);

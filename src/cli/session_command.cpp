@@ -259,9 +259,11 @@ Command import_command() {
 }
 
 std::shared_ptr<const ProjectorSetup> setup_of(const Document& document, const Product& product) {
-    return document.calibration.empty()
-               ? uncorrected_setup(document.bench)
-               : load_setup(document.calibration, document.design_white_percentile, product.mesh);
+    return document.calibration.empty() ? uncorrected_setup(document.bench)
+                                        : load_setup(document.calibration,
+                                                     document.design_white_percentile,
+                                                     product.mesh,
+                                                     document.gamut_mapping);
 }
 
 Command picture_command() {

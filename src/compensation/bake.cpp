@@ -9,6 +9,7 @@
 
 #include "compensation/compensation.h"
 #include "compensation/drive_table.h"
+#include "compensation/gamut.h"
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/parallel.h"
@@ -179,7 +180,9 @@ double design_white_luminance(const ColourCalibration& calibration,
     return brightest[rank];
 }
 
-CompensationTable bake(const ColourCalibration& calibration, double design_white_y) {
+CompensationTable bake(const ColourCalibration& calibration,
+                       double design_white_y,
+                       GamutMapping gamut) {
     check_argument(
         std::isfinite(design_white_y) && design_white_y > 0.0,
         "design white of " + std::to_string(design_white_y) + ", expected a positive luminance");
@@ -216,6 +219,7 @@ CompensationTable bake(const ColourCalibration& calibration, double design_white
             }
         }
     });
+    if (gamut == GamutMapping::preserve) table.gamut = make_gamut_boundary(table);
     return table;
 }
 

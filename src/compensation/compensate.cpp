@@ -12,6 +12,7 @@
 
 #include "compensation/dither.h"
 #include "compensation/drive_table.h"
+#include "compensation/gamut.h"
 #include "core/error.h"
 #include "core/parallel.h"
 
@@ -124,37 +125,51 @@ struct FrameCorrection {
     bool counted;
 };
 
-/// The table's pixels from `begin` to `end`.
-kernel::Counts compensate_range(const FrameCorrection& frame, std::size_t begin, std::size_t end) {
-    const CompensationTable& table = frame.table;
-    const std::size_t total = table.pixels.size();
-    const auto width = static_cast<std::uint32_t>(table.width);
-    kernel::Wanted colours;
-    alignas(64) std::array<std::uint32_t, kernel::kBlock> packed;
-    kernel::Counts counts;
+/// So many pixels of the table from `begin` on; `dither_of_row` is left to say.
+kernel::Job job_of(const CompensationTable& table, std::size_t begin, std::size_t count) {
     kernel::Job job;
+    job.pixels = table.pixels.data() + begin;
+    job.count = count;
+    for (std::size_t plane = 0; plane < 12; ++plane) {
+        job.coefficients[plane] = table.coefficients.data() + plane * table.pixels.size() + begin;
+    }
     for (std::size_t k = 0; k < 3; ++k) {
         job.curves[k] = {table.drive_from_n[k].data(),
                          static_cast<std::int32_t>(table.drive_from_n[k].size())};
     }
+    return job;
+}
+
+/// The table's pixels from `begin` to `end`.
+kernel::Counts compensate_range(const FrameCorrection& frame, std::size_t begin, std::size_t end) {
+    const CompensationTable& table = frame.table;
+    const auto width = static_cast<std::uint32_t>(table.width);
+    kernel::Wanted colours;
+    alignas(64) std::array<std::uint32_t, kernel::kBlock> packed;
+    kernel::Counts counts;
     while (begin < end) {
         // A block stays in one row, where the dither is linear in the pixel's index.
         const std::uint32_t row = table.pixels[begin] / width;
         const std::uint32_t* first = table.pixels.data() + begin;
         const std::size_t most = std::min(kernel::kBlock, end - begin);
-        job.count = static_cast<std::size_t>(
+        const auto count = static_cast<std::size_t>(
             std::lower_bound(first, first + most, (row + 1) * width) - first);
-        job.pixels = first;
-        for (std::size_t plane = 0; plane < 12; ++plane) {
-            job.coefficients[plane] = table.coefficients.data() + plane * total + begin;
-        }
+        kernel::Job job = job_of(table, begin, count);
         job.dither_of_row = row * dither::kPerRow - row * width * dither::kPerColumn;
         gather(frame.wanted, first, job.count, &colours);
         kernel::Counts* const counted = frame.counted ? &counts : nullptr;
-        if (table.non_additive.grid > 0) {
-            block_from_table(frame.functions, table, job, colours, packed.data(), counted);
-        } else {
-            frame.functions.block(job, colours, packed.data(), counted);
+        const auto correct = [&](kernel::Counts* counts_of) {
+            if (table.non_additive.grid > 0) {
+                block_from_table(frame.functions, table, job, colours, packed.data(), counts_of);
+            } else {
+                frame.functions.block(job, colours, packed.data(), counts_of);
+            }
+        };
+        correct(counted);
+        // What is counted is what was wanted; few blocks hold a colour that has to move.
+        if (!table.gamut.coefficients.empty() &&
+            frame.functions.map_gamut(job, gamut_job(table, begin), &colours)) {
+            correct(nullptr);
         }
         scatter(packed.data(), first, job.count, frame.drive);
         begin += job.count;
@@ -175,12 +190,9 @@ std::size_t count_covered(const ImageF& wanted) {
     return covered;
 }
 
-void compensate_with(const kernel::Functions& functions,
-                     const CompensationTable& table,
-                     const ImageF& wanted,
-                     std::size_t covered_pixels,
-                     Image8* drive,
-                     CompensationStats* stats) {
+namespace {
+
+void check_wanted(const CompensationTable& table, const ImageF& wanted) {
     check_argument(wanted.width == table.width && wanted.height == table.height &&
                        (wanted.channels == 3 || wanted.channels == 4) &&
                        wanted.values.size() ==
@@ -189,6 +201,40 @@ void compensate_with(const kernel::Functions& functions,
                        std::to_string(wanted.height) + " with " + std::to_string(wanted.channels) +
                        " channels, the calibration has " + std::to_string(table.width) + "x" +
                        std::to_string(table.height) + " and wants 3 or 4");
+}
+
+}  // namespace
+
+ImageF map_gamut(const kernel::Functions& functions,
+                 const CompensationTable& table,
+                 const ImageF& wanted) {
+    check_wanted(table, wanted);
+    ImageF mapped = wanted;
+    if (table.gamut.coefficients.empty()) return mapped;
+    const std::size_t total = table.pixels.size();
+    const auto channels = static_cast<std::size_t>(wanted.channels);
+    kernel::Wanted colours;
+    for (std::size_t begin = 0; begin < total; begin += kernel::kBlock) {
+        const kernel::Job job = job_of(table, begin, std::min(kernel::kBlock, total - begin));
+        gather(wanted, job.pixels, job.count, &colours);
+        if (!functions.map_gamut(job, gamut_job(table, begin), &colours)) continue;
+        for (std::size_t i = 0; i < job.count; ++i) {
+            float* colour = &mapped.values[channels * job.pixels[i]];
+            colour[0] = colours.r[i];
+            colour[1] = colours.g[i];
+            colour[2] = colours.b[i];
+        }
+    }
+    return mapped;
+}
+
+void compensate_with(const kernel::Functions& functions,
+                     const CompensationTable& table,
+                     const ImageF& wanted,
+                     std::size_t covered_pixels,
+                     Image8* drive,
+                     CompensationStats* stats) {
+    check_wanted(table, wanted);
     if (drive->width != table.width || drive->height != table.height || drive->channels != 3) {
         *drive = Image8(table.width, table.height, 3);
     }

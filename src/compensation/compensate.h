@@ -1,4 +1,4 @@
-// compensate_again() with the instruction set said, so that tests can compare them.
+// What compensate() does with the instruction set said, so that tests can compare them.
 #pragma once
 
 #include "compensation/compensation.h"
@@ -12,5 +12,12 @@ void compensate_with(const kernel::Functions& functions,
                      std::size_t covered_pixels,
                      Image8* drive,
                      CompensationStats* stats);
+
+/// Wanted colours as compensate() moves them before it corrects: into what each pixel can show if
+/// the table was baked so, else as they are. What is not valid, not covered or not finite passes
+/// through.
+ImageF map_gamut(const kernel::Functions& functions,
+                 const CompensationTable& table,
+                 const ImageF& wanted_working);
 
 }  // namespace livery

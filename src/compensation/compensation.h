@@ -11,6 +11,7 @@
 
 #include "core/image.h"
 #include "scene/colour_calibration.h"
+#include "scene/gamut_mapping.h"
 
 namespace livery {
 
@@ -34,6 +35,17 @@ struct NonAdditive {
     std::vector<glm::vec3> start;  ///< nearest node number, fractional, for rho(N); red fastest
 };
 
+/// Where the colours end that GamutMapping::preserve moves the wanted ones into (constant hue in
+/// Oklab, soft knees, chroma before lightness). It depends on the calibration alone, so looks that
+/// are compared share it. Planes have one value for each of the table's pixels; lightness is
+/// Oklab's, of neutrals, 0 and 0 where none can be shown.
+struct GamutBoundary {
+    std::vector<float> coefficients;        ///< 12 planes as in the table, of the neighbourhood
+    std::vector<float> darkest, brightest;  ///< of the neighbourhood, over the floor
+    std::vector<float> own_darkest, own_brightest;  ///< of the pixel
+    double floor_lightness = 0.0;  ///< the one black that all share: 95% of them can show it
+};
+
 /// The calibration baked for one design white: N = A * rgb + b per valid pixel, packed densely.
 struct CompensationTable {
     int width = 0, height = 0;
@@ -42,14 +54,18 @@ struct CompensationTable {
     std::vector<float> coefficients;    ///< 12 planes of pixels.size(): A row by row, then b
     std::array<std::vector<float>, 3> drive_from_n;  ///< equally spaced in N; empty if non-additive
     NonAdditive non_additive;
+    GamutBoundary gamut;  ///< empty: what cannot be shown is clipped (GamutMapping::strict)
     std::string calibration_id;
 };
 
 /// Wanted colours are in the working space, 1 = design white. Throws std::invalid_argument on
 /// planes of different sizes, an empty or falling response, a singular xyz_from_camera, and a
 /// pixel marked valid whose numbers are not finite or whose span is not positive.
-CompensationTable bake(const ColourCalibration& calibration, double design_white_y);
+CompensationTable bake(const ColourCalibration& calibration,
+                       double design_white_y,
+                       GamutMapping gamut = GamutMapping::strict);
 
+/// Of what was wanted, before any gamut mapping.
 struct CompensationStats {
     double out_of_gamut_fraction = 0.0;  ///< of the valid pixels with a wanted colour
     double invalid_fraction = 0.0;       ///< of the pixels with a wanted colour; NaN, Inf too
@@ -59,8 +75,9 @@ struct CompensationStats {
 
 /// On all threads, which change no bit of it; the GPU pass's oracle. `wanted` holds R, G, B
 /// (working space) and, if there is a fourth channel, coverage: pixels covered by less than half
-/// are black, as are invalid ones. NaN, Inf never propagate. Dither is fixed by pixel position.
-/// Throws std::invalid_argument on a wrong size or channel count.
+/// are black, as are invalid ones. Colours out of gamut are moved as the table was baked for. NaN,
+/// Inf never propagate. Dither is fixed by pixel position. Throws std::invalid_argument on a wrong
+/// size or channel count.
 Image8 compensate(const CompensationTable& table,
                   const ImageF& wanted_working,
                   CompensationStats* stats = nullptr);
@@ -82,34 +99,6 @@ void compensate_again(const CompensationTable& table,
                       std::size_t covered_pixels,
                       Image8* drive,
                       CompensationStats* stats = nullptr);
-
-enum class GamutMapping { strict, preserve };
-
-/// Moves wanted colours into what each pixel can show (constant hue in Oklab, soft knee, chroma
-/// before lightness); strict returns them as they are (compensate clips). What is not valid, not
-/// covered or not finite passes through. The map depends on the calibration alone, so looks that
-/// are compared share it.
-ImageF map_gamut(const CompensationTable& table,
-                 const ImageF& wanted_working,
-                 GamutMapping mapping);
-
-/// map_gamut(..., preserve) for a show: what depends on the table alone is worked out once.
-class GamutMap {
-  public:
-    explicit GamutMap(const CompensationTable& table);  ///< keeps a reference
-
-    ImageF preserve(const ImageF& wanted_working) const;
-    /// Oklab lightness of the one black that all pixels share: 95% of them can show it.
-    double floor_lightness() const { return floor_lightness_; }
-
-  private:
-    void store(std::size_t pixel, const glm::dmat3& matrix, const glm::dvec3& vector);
-    glm::dvec3 map_pixel(std::size_t i, const glm::dvec3& rgb) const;
-
-    const CompensationTable& table_;
-    std::vector<float> boundary_;  ///< 12 planes as in the table, of the neighbourhood
-    double floor_lightness_ = 0.0;
-};
 
 /// The fixed dither of pixel (x, y), the same for its three channels, in [-0.5, 0.5) drive levels;
 /// shaders/ has the same.

@@ -137,7 +137,10 @@ struct GpuCompensation::State {
 };
 
 GpuCompensation::GpuCompensation(const CompensationTable& table)
-    : state_(std::make_unique<State>(table)) {}
+    : state_(std::make_unique<State>(table)) {
+    check_argument(table.gamut.coefficients.empty(),
+                   "the OpenGL pass got a table with a gamut mapping, which it does not have");
+}
 
 GpuCompensation::~GpuCompensation() = default;
 

@@ -10,6 +10,8 @@ namespace livery {
 /// Needs a current OpenGL context, the same for its whole life.
 class GpuCompensation {
   public:
+    /// Throws std::invalid_argument for a table with a gamut mapping, which this pass does not
+    /// have.
     explicit GpuCompensation(const CompensationTable& table);
     ~GpuCompensation();
     GpuCompensation(const GpuCompensation&) = delete;

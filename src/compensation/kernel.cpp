@@ -141,10 +141,10 @@ std::vector<Functions> find_available() {
     std::vector<Functions> list;
 #if defined(__x86_64__)
     if (__builtin_cpu_supports("avx2")) {
-        list.push_back({"avx2", block_avx2, separate_avx2});
+        list.push_back({"avx2", block_avx2, separate_avx2, map_gamut_avx2});
     }
 #endif
-    list.push_back({"baseline", block_baseline, separate_baseline});
+    list.push_back({"baseline", block_baseline, separate_baseline, map_gamut_baseline});
     return list;
 }
 

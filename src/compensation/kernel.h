@@ -5,6 +5,10 @@
 #include <cstddef>
 #include <cstdint>
 
+namespace livery {
+struct NonAdditive;
+}
+
 namespace livery::kernel {
 
 inline constexpr std::size_t kBlock = 512;
@@ -48,10 +52,27 @@ struct Separated {
 };
 using SeparateFunction = void (*)(const Job& job, const Wanted& wanted, Separated* n);
 
+/// What a block needs of a GamutBoundary, each at the block's first pixel.
+struct GamutJob {
+    std::array<const float*, 12> boundary;
+    const float* darkest = nullptr;
+    const float* brightest = nullptr;
+    const float* own_darkest = nullptr;
+    const float* own_brightest = nullptr;
+    const NonAdditive* table = nullptr;  ///< null: the projector is additive
+};
+
+/// Moves those of the block's colours that lie beyond a knee or outside the pixel's gamut; false
+/// when there is none.
+using MapGamutFunction = bool (*)(const Job& job, const GamutJob& gamut, Wanted* wanted);
+bool map_gamut_baseline(const Job& job, const GamutJob& gamut, Wanted* wanted);
+bool map_gamut_avx2(const Job& job, const GamutJob& gamut, Wanted* wanted);  ///< x86-64 only
+
 struct Functions {
     const char* instruction_set;
     BlockFunction block;
     SeparateFunction separate;
+    MapGamutFunction map_gamut;
 };
 
 /// The best that this processor has, first; "baseline" is always the last. All give the same bits.

@@ -163,6 +163,9 @@ const glm::dmat3 kOklabFromRoots = glm::transpose(glm::dmat3(0.2104542553,
 
 }  // namespace
 
+const glm::dmat3& oklab_cones_from_xyz() { return kLmsFromXyz; }
+const glm::dmat3& oklab_from_cone_roots() { return kOklabFromRoots; }
+
 glm::dvec3 oklab_from_xyz(glm::dvec3 xyz) {
     const glm::dvec3 lms = kLmsFromXyz * xyz;
     return kOklabFromRoots * glm::dvec3(std::cbrt(lms.x), std::cbrt(lms.y), std::cbrt(lms.z));

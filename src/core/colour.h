@@ -34,6 +34,9 @@ double ciede2000(glm::dvec3 lab_a, glm::dvec3 lab_b);
 /// Oklab (Ottosson 2020) of XYZ relative to D65 with Y = 1.
 glm::dvec3 oklab_from_xyz(glm::dvec3 xyz);
 glm::dvec3 xyz_from_oklab(glm::dvec3 oklab);
+/// Its two matrices: between them stand the cube roots.
+const glm::dmat3& oklab_cones_from_xyz();
+const glm::dmat3& oklab_from_cone_roots();
 
 /// IEC 61966-2-1 curve, odd around zero so that signed values survive a round trip.
 double srgb_encode(double linear);

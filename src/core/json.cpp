@@ -184,6 +184,18 @@ std::string JsonReader::text() const {
     return value_->get<std::string>();
 }
 
+std::size_t JsonReader::one_of(std::initializer_list<std::string_view> texts) const {
+    const std::string given = text();
+    std::string expected;
+    for (const std::string_view& known : texts) {
+        const auto index = static_cast<std::size_t>(&known - texts.begin());
+        if (known == given) return index;
+        if (index > 0) expected += index + 1 == texts.size() ? " or " : ", ";
+        expected += known;
+    }
+    fail(found(), expected);
+}
+
 std::vector<double> JsonReader::numbers(std::size_t count) const {
     if (!value_->is_array() || value_->size() != count) {
         fail(value_->is_array() ? std::to_string(value_->size()) + " elements" : found(),

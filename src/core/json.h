@@ -49,6 +49,8 @@ class JsonReader {
     int integer(int low, int high) const;
     bool boolean() const;
     std::string text() const;
+    /// Which of these texts it is; throws with all of them for any other.
+    std::size_t one_of(std::initializer_list<std::string_view> texts) const;
     std::vector<double> numbers(std::size_t count) const;  ///< exactly `count`, all finite
     glm::dvec3 vec3() const;
     glm::dmat3 matrix3() const;  ///< nine numbers, row by row

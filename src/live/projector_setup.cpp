@@ -41,7 +41,8 @@ class UnfinishedFolder {
 
 std::shared_ptr<const ProjectorSetup> load_setup(const std::filesystem::path& folder,
                                                  double design_white_percentile,
-                                                 const Mesh& mesh) {
+                                                 const Mesh& mesh,
+                                                 GamutMapping gamut) {
     std::error_code error;
     const auto camera_file = folder / "projector.json";
     // Folders without a projector are found out below, after what names them better.
@@ -52,7 +53,7 @@ std::shared_ptr<const ProjectorSetup> load_setup(const std::filesystem::path& fo
     if (there) {
         const View view = read_camera_file(camera_file);
         mockup = mockup_mask(mesh, view);
-        kept = setup_cache_name(folder, design_white_percentile, mockup);
+        kept = setup_cache_name(folder, design_white_percentile, gamut, mockup);
         if (auto setup = read_kept_setup(kept)) {
             setup->view = view;
             return setup;
@@ -63,7 +64,7 @@ std::shared_ptr<const ProjectorSetup> load_setup(const std::filesystem::path& fo
     setup->view = read_camera_file(camera_file);
     check_projector(setup->view, camera_file, calibration.width, calibration.height);
     setup->design_white_y = design_white_luminance(calibration, design_white_percentile, mockup);
-    setup->table = bake(calibration, setup->design_white_y);
+    setup->table = bake(calibration, setup->design_white_y, gamut);
     for (ImageF* plane :
          {&calibration.unmixing, &calibration.dark, &calibration.span, &calibration.camera_px}) {
         *plane = ImageF();

@@ -31,7 +31,8 @@ struct ProjectorSetup {
 /// nothing of the mock-up is valid in it.
 std::shared_ptr<const ProjectorSetup> load_setup(const std::filesystem::path& folder,
                                                  double design_white_percentile,
-                                                 const Mesh& mesh);
+                                                 const Mesh& mesh,
+                                                 GamutMapping gamut = GamutMapping::strict);
 /// No calibration yet: the bench's projector, pictures go out as sRGB.
 std::shared_ptr<const ProjectorSetup> uncorrected_setup(const std::string& bench);
 

@@ -18,7 +18,7 @@ namespace livery {
 namespace {
 
 /// Rises when what is kept, or how it is worked out from a calibration, changes.
-constexpr int kVersion = 2;
+constexpr int kVersion = 3;
 
 /// Values one after the other into bytes.
 class Writer {
@@ -138,6 +138,12 @@ void visit_table(Archive& archive, Table& t) {
     for (auto& curve : t.non_additive.linear_of_node) archive(curve);
     archive(t.non_additive.start_grid);
     archive(t.non_additive.start);
+    archive(t.gamut.coefficients);
+    archive(t.gamut.darkest);
+    archive(t.gamut.brightest);
+    archive(t.gamut.own_darkest);
+    archive(t.gamut.own_brightest);
+    archive(t.gamut.floor_lightness);
     archive(t.calibration_id);
 }
 
@@ -152,6 +158,7 @@ void visit_setup(Archive& archive, Setup& setup) {
 
 std::string setup_cache_name(const std::filesystem::path& calibration,
                              double design_white_percentile,
+                             GamutMapping gamut,
                              const Image8& mockup) {
     std::vector<std::filesystem::path> files;
     std::error_code error;
@@ -162,7 +169,7 @@ std::string setup_cache_name(const std::filesystem::path& calibration,
     if (error) throw FileError(calibration, "", error.message(), "a folder that can be read");
     std::sort(files.begin(), files.end());
     Hasher hasher;
-    hasher.add(fmt::format("{} {}", kVersion, design_white_percentile));
+    hasher.add(fmt::format("{} {} {}", kVersion, design_white_percentile, to_string(gamut)));
     hasher.add_bytes(mockup.values.data(), mockup.values.size());
     for (const auto& file : files) {
         hasher.add(file.filename().string());

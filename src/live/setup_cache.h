@@ -14,6 +14,7 @@ namespace livery {
 /// for a folder or a file in it that cannot be read.
 std::string setup_cache_name(const std::filesystem::path& calibration,
                              double design_white_percentile,
+                             GamutMapping gamut,
                              const Image8& mockup);
 
 /// All but the view. Nothing when it is not kept (core/cache.h).

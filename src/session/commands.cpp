@@ -280,6 +280,10 @@ void apply(Document& document, const SetDesignWhite& command) {
     document.design_white_percentile = command.percentile;
 }
 
+void apply(Document& document, const SetGamutMapping& command) {
+    document.gamut_mapping = command.mapping;
+}
+
 }  // namespace
 
 Look portable_look(Look look) {

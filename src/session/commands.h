@@ -87,6 +87,10 @@ struct SetDesignWhite {
     double percentile = 20.0;
 };
 
+struct SetGamutMapping {
+    GamutMapping mapping = GamutMapping::strict;
+};
+
 using SessionCommand = std::variant<SetPaint,
                                     PaintProduct,
                                     EditPaint,
@@ -105,7 +109,8 @@ using SessionCommand = std::variant<SetPaint,
                                     SetQuality,
                                     SetCalibration,
                                     SetBench,
-                                    SetDesignWhite>;
+                                    SetDesignWhite,
+                                    SetGamutMapping>;
 
 /// Files that the command calls a paint by, or that its paint was measured in, and that the
 /// document's library has not read: the library is to have them before the command is applied.

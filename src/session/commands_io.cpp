@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/json_ranges.h"
 #include "scene/look_json.h"
+#include "session/choices_json.h"
 #include "session/commands.h"
 
 namespace livery {
@@ -130,12 +131,7 @@ void read(const JsonReader& fields, SetExposure& c) {
 Json fields_of(const SetQuality& c) { return {{"quality", to_string(c.quality)}}; }
 void read(const JsonReader& fields, SetQuality& c) {
     fields.allow_only({"quality"});
-    const JsonReader quality = fields["quality"];
-    try {
-        c.quality = parse_quality(quality.text());
-    } catch (const std::invalid_argument&) {
-        quality.fail(quality.found(), "draft, normal, high or reference");
-    }
+    c.quality = read_quality(fields["quality"]);
 }
 
 Json fields_of(const SetCalibration& c) { return {{"folder", c.folder}}; }
@@ -156,27 +152,18 @@ void read(const JsonReader& fields, SetDesignWhite& c) {
     c.percentile = fields["percentile"].number();
 }
 
+Json fields_of(const SetGamutMapping& c) { return {{"mapping", to_string(c.mapping)}}; }
+void read(const JsonReader& fields, SetGamutMapping& c) {
+    fields.allow_only({"mapping"});
+    c.mapping = read_gamut_mapping(fields["mapping"]);
+}
+
 /// In the order of SessionCommand's alternatives.
 constexpr std::array<const char*, std::variant_size_v<SessionCommand>> kNames = {
-    "set-paint",
-    "paint-product",
-    "edit-paint",
-    "rename-paint",
-    "set-artwork",
-    "add-look",
-    "duplicate-look",
-    "rename-look",
-    "delete-look",
-    "move-look",
-    "set-lights",
-    "set-environment",
-    "share-lighting",
-    "set-eye",
-    "set-exposure",
-    "set-quality",
-    "set-calibration",
-    "set-bench",
-    "set-design-white"};
+    "set-paint",   "paint-product",   "edit-paint",     "rename-paint",     "set-artwork",
+    "add-look",    "duplicate-look",  "rename-look",    "delete-look",      "move-look",
+    "set-lights",  "set-environment", "share-lighting", "set-eye",          "set-exposure",
+    "set-quality", "set-calibration", "set-bench",      "set-design-white", "set-gamut-mapping"};
 
 template <std::size_t K = 0>
 SessionCommand read_kind(const std::string& name, const JsonReader& root) {

@@ -85,6 +85,10 @@ std::string label(const Document&, const SetBench& command) {
 std::string label(const Document&, const SetDesignWhite& command) {
     return fmt::format("Set design white to {:.4g} %", command.percentile);
 }
+std::string label(const Document&, const SetGamutMapping& command) {
+    return command.mapping == GamutMapping::preserve ? "Keep hues out of reach"
+                                                     : "Clip colours out of reach";
+}
 
 }  // namespace
 

@@ -12,6 +12,7 @@
 
 #include "appearance/material_library.h"
 #include "scene/frame_plan.h"
+#include "scene/gamut_mapping.h"
 #include "scene/look.h"
 #include "scene/scene.h"
 
@@ -35,6 +36,7 @@ struct Document {
     std::string bench = "default";  ///< the simulated bench; a shipped name or a file
     std::string calibration;        ///< folder; empty: none, the picture goes out uncorrected
     double design_white_percentile = 20.0;
+    GamutMapping gamut_mapping = GamutMapping::strict;  ///< the same for all looks
     /// What names of paints mean: shared and never changed. Not part of the document's text; null:
     /// no name means anything.
     std::shared_ptr<const PaintLibrary> library;

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/json_ranges.h"
 #include "scene/look_json.h"
+#include "session/choices_json.h"
 #include "session/document.h"
 #include "session/naming.h"
 #include "session/paint_edit.h"
@@ -94,6 +95,7 @@ Json json_of(const Document& document) {
     json["bench"] = document.bench;
     json["calibration"] = document.calibration;
     json["design_white_percentile"] = document.design_white_percentile;
+    json["gamut_mapping"] = to_string(document.gamut_mapping);
     return json;
 }
 
@@ -110,7 +112,8 @@ Document read_document(const JsonReader& root) {
                      "quality",
                      "bench",
                      "calibration",
-                     "design_white_percentile"});
+                     "design_white_percentile",
+                     "gamut_mapping"});
     Document document;
     document.product = checked_text(root["product"]);
     if (root.has("product_unit")) {
@@ -130,14 +133,14 @@ Document read_document(const JsonReader& root) {
     read_paints(root["paints"], document);
     document.eye_mm = place_mm(root["eye_mm"]);
     document.exposure_ev = root["exposure_ev"].number_between(-30.0, 30.0);
-    try {
-        document.quality = parse_quality(root["quality"].text());
-    } catch (const std::invalid_argument&) {
-        root["quality"].fail(root["quality"].found(), "draft, normal, high or reference");
-    }
+    document.quality = read_quality(root["quality"]);
     document.bench = checked_text(root["bench"]);
     document.calibration = checked_text(root["calibration"]);
     document.design_white_percentile = root["design_white_percentile"].number_between(0.0, 100.0);
+    // Sessions from before there was a choice were shown without mapping.
+    if (root.has("gamut_mapping")) {
+        document.gamut_mapping = read_gamut_mapping(root["gamut_mapping"]);
+    }
     return document;
 }
 

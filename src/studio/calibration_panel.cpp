@@ -164,6 +164,19 @@ void draw_design_white(Studio& studio) {
     }
 }
 
+void draw_gamut_mapping(Studio& studio) {
+    bool keeps_hue = studio.session.document().gamut_mapping == GamutMapping::preserve;
+    row_label("Out of reach");
+    if (ImGui::Checkbox("keep the hue", &keeps_hue)) {
+        commit(studio, SetGamutMapping{keeps_hue ? GamutMapping::preserve : GamutMapping::strict});
+    }
+    name_last_item("keep-hue");
+    tooltip(
+        "What becomes of colours that the mock-up cannot show, in every look alike. Off: whatever "
+        "can be shown is exact, the rest is cut off and may change its hue. On: the hue stays, and "
+        "chroma gives way first; colours near the end of what can be shown make room.");
+}
+
 void draw_bench_choice(Studio& studio, bool calibrating) {
     CalibrationPanelState& state = studio.panels.calibration;
     const std::string& bench = studio.session.document().bench;
@@ -311,6 +324,7 @@ void draw_calibration_panel(Studio& studio) {
     list_what_there_is(studio);
     draw_in_use(studio);
     draw_design_white(studio);
+    draw_gamut_mapping(studio);
     ImGui::Spacing();
     draw_calibrating(studio);
     ImGui::Spacing();

@@ -13,9 +13,10 @@
 namespace livery::benchmarks {
 namespace {
 
-CompensationTable table_of(const FrameGeometry& geometry) {
+CompensationTable table_of(const FrameGeometry& geometry,
+                           GamutMapping gamut = GamutMapping::strict) {
     const ColourCalibration calibration = synthetic_calibration(geometry.map.coverage);
-    return bake(calibration, design_white_luminance(calibration, 20.0, {}));
+    return bake(calibration, design_white_luminance(calibration, 20.0, {}), gamut);
 }
 
 FramePlan draft_of(const Scene& scene) {
@@ -131,17 +132,28 @@ BENCHMARK(CorrectionInOpenGl)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 
-void GamutMapping(benchmark::State& state) {
+void CorrectionWithGamutMapping(benchmark::State& state) {
     const Threads threads(state);
     const int width = static_cast<int>(state.range(0));
     Ready ready(width, ShadingDevice::automatic);
-    const CompensationTable table = table_of(*geometry_of_width(width));
-    const GamutMap map(table);
-    const auto wanted = ready.renderer.picture();
-    for (auto _ : state) benchmark::DoNotOptimize(map.preserve(*wanted));
+    const CompensationTable table = table_of(*geometry_of_width(width), GamutMapping::preserve);
+    ImageF wanted = *ready.renderer.picture();
+    // Scaled so that fewer and more colours lie out of reach.
+    for (std::size_t i = 0; i < wanted.values.size(); ++i) {
+        if (i % 4 != 3) wanted.values[i] *= static_cast<float>(state.range(2)) / 100.0f;
+    }
+    const std::size_t covered = count_covered(wanted);
+    Image8 drive;
+    CompensationStats stats;
+    for (auto _ : state) compensate_again(table, wanted, covered, &drive, &stats);
+    state.counters["out_of_gamut"] = stats.out_of_gamut_fraction;
     count_items(state, table.pixels.size());
 }
-BENCHMARK(GamutMapping)->Apply(sizes_and_threads);
+BENCHMARK(CorrectionWithGamutMapping)
+    ->ArgNames({"width", "threads", "percent"})
+    ->ArgsProduct({{1280}, {1, 0}, {20, 50, 100, 400}})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 void BakingACalibration(benchmark::State& state) {
     const Threads threads(state);

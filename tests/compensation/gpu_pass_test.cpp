@@ -141,5 +141,12 @@ TEST_F(GpuPass, EmptyCalibrationIsBlack) {
     EXPECT_EQ(*std::max_element(result.gpu.values.begin(), result.gpu.values.end()), 0);
 }
 
+TEST_F(GpuPass, RefusesAMappingThatItDoesNotHave) {
+    const ColourCalibration calibration = synthetic::calibrate(synthetic::make_world(20, 20, 90));
+    EXPECT_NO_THROW(GpuCompensation(bake(calibration, 0.4)));
+    EXPECT_THROW(GpuCompensation(bake(calibration, 0.4, GamutMapping::preserve)),
+                 std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace livery

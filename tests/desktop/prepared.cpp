@@ -111,7 +111,9 @@ Image8 expected_drive(const Document& document, int look_id) {
         "--eye",
         fmt::format("{},{},{}", document.eye_mm.x, document.eye_mm.y, document.eye_mm.z),
         "--design-white",
-        fmt::format("{}", document.design_white_percentile)};
+        fmt::format("{}", document.design_white_percentile),
+        "--gamut",
+        to_string(document.gamut_mapping)};
     std::string key;
     for (const auto& file : files) key += read_text_file(file);
     for (const auto& option : options) key += option;

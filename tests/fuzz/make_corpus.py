@@ -221,7 +221,8 @@ put("document", "one.json",
         {"id": 1, "name": "a", "parts": {"body": "solid red"}, "lights": [LIGHT],
          "environment": {"file": "a.hdr", "rotation_rad": 1, "scale": 2}}],
      "next_look_id": 2, "paints": [PAINT], "eye_mm": [1, 2, 3], "exposure_ev": -0.5,
-     "quality": "high", "bench": "default", "calibration": "", "design_white_percentile": 20})
+     "quality": "high", "bench": "default", "calibration": "", "design_white_percentile": 20,
+     "gamut_mapping": "preserve"})
 for name, fields in {
         "set-paint": {"look": 1, "part": "body", "paint": "solid red"},
         "edit-paint": {"look": 1, "part": "body", "material": PAINT},
@@ -233,7 +234,8 @@ for name, fields in {
         "share-lighting": {"look": 1}, "set-eye": {"eye_mm": [1, 2, 3]},
         "set-exposure": {"ev": 1}, "set-quality": {"quality": "draft"},
         "set-calibration": {"folder": "c"}, "set-bench": {"bench": "hard"},
-        "set-design-white": {"percentile": 30}}.items():
+        "set-design-white": {"percentile": 30},
+        "set-gamut-mapping": {"mapping": "preserve"}}.items():
     put("commands", name + ".json", {name: fields})
 for name, text in {"size": "1280x800", "eye": "10,-20.5,3e2", "unit": "cm"}.items():
     put("command_line", name, text)

@@ -251,6 +251,32 @@ TEST_F(FrameThreadTest, AnotherCalibrationOfTheSameProjectorOnlyCorrectsAgain) {
     EXPECT_EQ(after->shade_ms, 0.0);
 }
 
+// Both scenes of a comparison go through one map: that of the setup.
+TEST_F(FrameThreadTest, MapsTheGamutOfEverySceneAlike) {
+    start();
+    description_.scene.exposure_ev = 2.0;  // much of it out of reach
+    const auto clipped = gallery_.whole(show());
+    ASSERT_TRUE(clipped);
+    EXPECT_GT(clipped->compensation.out_of_gamut_fraction, 0.1);
+    auto preserving = std::make_shared<ProjectorSetup>(*description_.setup);
+    const auto calibration = synthetic_calibration(
+        FrameGeometry(description_.scene.product, preserving->view).map.coverage);
+    preserving->table = bake(calibration, preserving->design_white_y, GamutMapping::preserve);
+    description_.setup = preserving;
+    const auto mapped = gallery_.whole(show());
+    ASSERT_TRUE(mapped);
+    EXPECT_EQ(mapped->drive->values,
+              compensate(*preserving->table, *mapped->radiance_working).values);
+    EXPECT_NE(mapped->drive->values, clipped->drive->values);
+    EXPECT_EQ(mapped->compensation.out_of_gamut_fraction,
+              clipped->compensation.out_of_gamut_fraction);
+    EXPECT_EQ(mapped->shade_ms, 0.0);
+    description_.wipe_to = description_.scene;
+    const auto wiped = gallery_.whole(show());
+    ASSERT_TRUE(wiped);
+    EXPECT_EQ(wiped->drive->values, mapped->drive->values);
+}
+
 TEST_F(FrameThreadTest, AnotherProjectorAndAnotherProductAreSolvedFromTheStart) {
     start();
     ASSERT_TRUE(gallery_.whole(show()));

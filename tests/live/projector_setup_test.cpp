@@ -107,6 +107,17 @@ TEST_F(ProjectorSetupTest, IsKeptAndTheSameAgain) {
     EXPECT_EQ(kept_setups().size(), 2u) << "another design white is baked otherwise";
     load_setup(folder, 20.0, make_sphere({0, 0, 0}, 30.0, 8, "ball"));
     EXPECT_EQ(kept_setups().size(), 3u) << "another mock-up has another design white";
+    EXPECT_TRUE(first->table->gamut.coefficients.empty());
+    const auto preserving = load_setup(folder, 20.0, mesh_, GamutMapping::preserve);
+    EXPECT_EQ(kept_setups().size(), 4u) << "a gamut mapping is baked too";
+    EXPECT_EQ(preserving->table->gamut.coefficients.size(), 12 * preserving->table->pixels.size());
+    const auto again = load_setup(folder, 20.0, mesh_, GamutMapping::preserve);
+    EXPECT_EQ(kept_setups().size(), 4u);
+    EXPECT_EQ(again->table->gamut.coefficients, preserving->table->gamut.coefficients);
+    EXPECT_EQ(again->table->gamut.darkest, preserving->table->gamut.darkest);
+    EXPECT_EQ(again->table->gamut.own_brightest, preserving->table->gamut.own_brightest);
+    EXPECT_EQ(again->table->gamut.floor_lightness, preserving->table->gamut.floor_lightness);
+    expect_same(*again, *preserving);
 }
 
 TEST_F(ProjectorSetupTest, WhatIsKeptNeverStandsForAChangedCalibration) {

@@ -101,6 +101,8 @@ TEST(Commands, LabelsSayWhatIsUndone) {
     EXPECT_EQ(label(SetCalibration{}), "Use no calibration");
     EXPECT_EQ(label(SetBench{"hard"}), "Use bench hard");
     EXPECT_EQ(label(SetDesignWhite{20}), "Set design white to 20 %");
+    EXPECT_EQ(label(SetGamutMapping{GamutMapping::preserve}), "Keep hues out of reach");
+    EXPECT_EQ(label(SetGamutMapping{GamutMapping::strict}), "Clip colours out of reach");
 }
 
 TEST(Commands, KnowTheLookThatTheyAreAbout) {

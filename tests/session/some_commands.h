@@ -74,7 +74,8 @@ inline std::vector<SessionCommand> one_of_each(const std::string& calibration_fo
             SetQuality{Quality::high},
             SetCalibration{calibration_folder},
             SetBench{"hard"},
-            SetDesignWhite{35.5}};
+            SetDesignWhite{35.5},
+            SetGamutMapping{GamutMapping::preserve}};
 }
 
 template <typename Value>
@@ -115,7 +116,7 @@ inline SessionCommand random_command(Random& random, const Document& document) {
     const auto place = static_cast<int>(random.below(static_cast<std::uint32_t>(looks.size() + 1)));
     // Looks that are many are deleted rather than added to.
     const bool many = looks.size() > 8;
-    switch (random.below(22)) {
+    switch (random.below(23)) {
         case 0:
         case 1:
         case 2:
@@ -172,6 +173,8 @@ inline SessionCommand random_command(Random& random, const Document& document) {
             if (document.paints.empty()) return RenamePaint{"no such paint", "other"};
             return RenamePaint{pick(random, document.paints).name,
                                "paint " + std::to_string(random.below(9))};
+        case 21:
+            return SetGamutMapping{static_cast<GamutMapping>(random.below(2))};
         default:
             return SetDesignWhite{number(random, 0.0, 105.0)};
     }

@@ -295,7 +295,7 @@ TEST_F(Keyboard, TabGoesThroughEveryPanelAndBack) {
         {draw_paint_panel, {"paint-colour", "param:model", "param:diffuse:hex", "save-paint"}},
         {draw_artwork_panel, {"artwork:add"}},
         {draw_lighting_panel, {"light:0:intensity", "add-light", "exposure", "quality:high"}},
-        {draw_calibration_panel, {"bench", "design-white", "calibration:none"}},
+        {draw_calibration_panel, {"bench", "design-white", "keep-hue", "calibration:none"}},
         {draw_looks_panel, {"look:1", "duplicate-look-button"}},
         {draw_parts_panel, {"part:sphere"}}};
     for (const auto& [draw, expected] : panels) {

@@ -68,6 +68,7 @@ struct PreviewKey {
 struct SetupKey {
     std::string calibration, bench;
     double design_white_percentile = 0.0;
+    GamutMapping gamut_mapping = GamutMapping::strict;
     bool operator==(const SetupKey&) const = default;
 };
 

@@ -63,10 +63,14 @@ void take_setup(Shell& shell, std::shared_ptr<const ProjectorSetup> setup) {
     shell.asked_preview.reset();  // it shows glints in this projector's pixels
 }
 
-/// A new calibration, bench or design white is loaded beside the frames, which go on as they were.
+/// A new calibration, bench, design white or gamut mapping is loaded beside the frames, which go on
+/// as they were.
 void ask_for_setup(Shell& shell) {
     const Document document = shown_document(shell.studio);
-    const SetupKey key{document.calibration, document.bench, document.design_white_percentile};
+    const SetupKey key{document.calibration,
+                       document.bench,
+                       document.design_white_percentile,
+                       document.gamut_mapping};
     if (shell.asked_setup == key) return;
     if (!shell.asked_setup || shell.asked_setup->bench != key.bench) {
         shell.studio.bench->use(key.bench, shell.studio.product);
@@ -76,10 +80,11 @@ void ask_for_setup(Shell& shell) {
     shell.studio.background->run(
         [&shell, key, still_wanted, product = shell.studio.product](
             const Progress&) -> Background::Then {
-            const auto setup =
-                key.calibration.empty()
-                    ? uncorrected_setup(key.bench)
-                    : load_setup(key.calibration, key.design_white_percentile, product->mesh);
+            const auto setup = key.calibration.empty() ? uncorrected_setup(key.bench)
+                                                       : load_setup(key.calibration,
+                                                                    key.design_white_percentile,
+                                                                    product->mesh,
+                                                                    key.gamut_mapping);
             return [&shell, setup, still_wanted] {
                 if (still_wanted()) take_setup(shell, setup);
             };
