@@ -2,6 +2,8 @@
 // Equation 9 at every pixel: N = A * wanted + b, then each channel's response turned round.
 // src/compensation/compensate.cpp is the oracle; the order of additions is the same.
 
+#define MUTATED(name, x) (x)  // src/core/mutation.h
+
 layout(binding = 0) uniform sampler2D wanted_working;  // R, G, B, coverage
 layout(binding = 1) uniform sampler2D row_red;         // a row of A, and b
 layout(binding = 2) uniform sampler2D row_green;
@@ -20,7 +22,7 @@ float look_up(int channel, float n) {
     int cell = min(int(at), last - 1);
     float low = texelFetch(rho, ivec2(cell, channel), 0).r;
     float high = texelFetch(rho, ivec2(cell + 1, channel), 0).r;
-    return low + (at - float(cell)) * (high - low);
+    return MUTATED(compensation_pass_drive, low + (at - float(cell)) * (high - low));
 }
 
 #ifdef NON_ADDITIVE
@@ -127,7 +129,7 @@ void main() {
     vec4 g = texelFetch(row_green, pixel, 0);
     vec4 b = texelFetch(row_blue, pixel, 0);
     vec3 n = vec3(r.x, g.x, b.x) * wanted.r + vec3(r.y, g.y, b.y) * wanted.g +
-             vec3(r.z, g.z, b.z) * wanted.b + vec3(r.w, g.w, b.w);
+             vec3(r.z, g.z, b.z) * wanted.b + MUTATED(compensation_pass_black, vec3(r.w, g.w, b.w));
     float sum = n.r + n.g + n.b;
     // A pixel without a calibration has zeros for A; no valid one has.
     bool usable = r.xyz != vec3(0.0) && wanted.a >= 0.5 && !isnan(sum) && !isinf(sum);

@@ -29,7 +29,7 @@ FN REAL half_cover(REAL x, REAL a, REAL b, REAL soft) {
         REAL l = (k & 4) != 0 ? R(0.5) : R(-0.5);
         sum += R(8.0) * i * j * l * cube_over_6(x + i * side.x + j * side.y + l * ramp);
     }
-    return clamp(sum / (side.x * side.y * ramp), R(0.0), R(1.0));
+    return clamp(MUTATED(edge_cover, sum / (side.x * side.y * ramp)), R(0.0), R(1.0));
 }
 
 // The wave that is 1 over `width` around every multiple of `period` and 0 between, less its mean,
@@ -54,7 +54,7 @@ FN REAL stripes_cover(REAL s, REAL a, REAL b, REAL period, REAL width) {
         REAL j = (k & 2) != 0 ? R(0.5) : R(-0.5);
         sum += R(4.0) * i * j * wave_integral(x + i * side.x + j * side.y, period, width);
     }
-    return clamp(width / period + sum / (side.x * side.y), R(0.0), R(1.0));
+    return clamp(MUTATED(stripes_cover, width / period) + sum / (side.x * side.y), R(0.0), R(1.0));
 }
 
 // Both dimensions are taken as independent: exact but where both edges of a check meet in a
@@ -77,7 +77,7 @@ FN REAL dots_part(VEC2 at, VEC2 a, VEC2 b, REAL period, REAL diameter) {
     REAL inside = half_cover(
         R(0.5) * diameter - d, a.x * nx + a.y * ny, b.x * nx + b.y * ny, R(0.0));
     REAL share = diameter / period;
-    REAL mean = R(0.7853981633974483) * share * share;
+    REAL mean = MUTATED(dots_cover, R(0.7853981633974483) * share * share);
     REAL widest = sqrt(max(a.x * a.x + a.y * a.y, b.x * b.x + b.y * b.y)) / period;
     return mix(inside, mean, clamp(R(4.0) * widest - R(1.0), R(0.0), R(1.0)));
 }

@@ -30,12 +30,13 @@ FN VEC3 ashikhmin_shirley_eval(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
     if (hh < R(1e-8)) return VEC3(R(0.0));
     REAL norm = sqrt((p.exponent_x + R(1.0)) * (p.exponent_y + R(1.0)));
     // wo.h = |H| / 2
-    REAL lobe = norm * R(0.07957747154594767) * ashikhmin_shirley_power(p, wi, wo, hh) /
+    REAL lobe = MUTATED(ashikhmin_shirley_norm, norm) * R(0.07957747154594767) *
+                ashikhmin_shirley_power(p, wi, wo, hh) /
                 (sqrt(hh) * max(max(wi.z, wo.z), R(1e-6)));
     REAL schlick = schlick_weight(hh);
     REAL f90 = grazing_reflectance(max_component(p.f0));
-    REAL diffuse = R(0.387507687528093) * ashikhmin_shirley_diffuse(wi.z) *
-                   ashikhmin_shirley_diffuse(wo.z);
+    REAL diffuse = MUTATED(ashikhmin_shirley_diffuse, R(0.387507687528093)) *
+                   ashikhmin_shirley_diffuse(wi.z) * ashikhmin_shirley_diffuse(wo.z);
     return (p.f0 * (R(1.0) - schlick) + VEC3(f90 * schlick)) * lobe +
            p.diffuse * (VEC3(R(1.0)) - p.f0) * diffuse;
 }

@@ -16,7 +16,7 @@ FN VEC3 blinn_phong_eval(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
     REAL hh = dot(h, h);
     if (hh < R(1e-8)) return VEC3(R(0.0));
     REAL n = p.exponent_x;
-    REAL norm = (n + R(2.0)) * (n + R(4.0)) * R(0.039788735772973836) /
+    REAL norm = MUTATED(blinn_phong_norm, n + R(2.0)) * (n + R(4.0)) * R(0.039788735772973836) /
                 (exp(-R(0.34657359027997264) * n) + n);
     return p.diffuse * R(0.3183098861837907) +
            p.specular * (norm * blinn_phong_power(wi, wo, hh, n));

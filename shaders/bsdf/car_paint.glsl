@@ -25,7 +25,9 @@ struct CarPaintPrepared {
 // without cancellation. Where they lose it, it is the pigment's too.
 FN VEC3 car_paint_passed(IN(CarPaintPrepared) q, REAL loss, REAL flake_loss) {
     VEC3 one = VEC3(R(1.0));
-    return (one - q.base.f0) * (one - q.flakes.most * (R(1.0) - flake_loss)) + q.base.f0 * loss;
+    return MUTATED(flakes_pass,
+                   (one - q.base.f0) * (one - q.flakes.most * (R(1.0) - flake_loss)) +
+                       q.base.f0 * loss);
 }
 
 FN CarPaintPrepared car_paint_prepare(IN(BsdfParameters) p) {
@@ -68,7 +70,8 @@ FN Passage passage_of(IN(CarPaintPrepared) q, REAL mu) {
 FN VEC3 reflected(IN(CarPaintPrepared) q, IN(Passage) from, IN(Passage) to, REAL hh, VEC3 lobes) {
     VEC3 flakes = (VEC3(R(1.0)) - q.base.f0) * film_reflectance(q.flakes, hh);
     VEC3 pigment = q.base.diffuse * from.base * to.base * R(0.3183098861837907);
-    VEC3 under = q.base.f0 * lobes.x + flakes * lobes.z + pigment;
+    VEC3 under = q.base.f0 * lobes.x + MUTATED(flake_lobe, flakes * lobes.z) +
+                 MUTATED(pigment, pigment);
     return reflected_through(q.coat, from, to, under, hh, lobes.y);
 }
 
@@ -113,7 +116,7 @@ FN VEC3 car_paint_lobe(
 // Of the second lobe, whose flakes reflect that much.
 FN VEC3 car_paint_flakes(
     IN(CarPaintPrepared) q, IN(Passage) to, REAL mu, IN(MirrorGrazing) grazing, VEC3 reflectance) {
-    return (VEC3(R(1.0)) - q.base.f0) * reflectance *
+    return MUTATED(flake_mirror_weight, (VEC3(R(1.0)) - q.base.f0) * reflectance) *
            car_paint_lobe(q.coat, q.flake_entry, q.flake, to, mu, grazing);
 }
 

@@ -47,7 +47,7 @@ FN REAL coat_transmission(IN(CoatPrepared) c, REAL mu) {
     REAL loss;
     REAL rest;
     ggx_transmission_fit(mu, c.albedo, c.fresnel, loss, rest);
-    return (R(1.0) - c.f90) + c.f90 * loss + (c.f90 - c.f0) * rest;
+    return MUTATED(coat_transmission, (R(1.0) - c.f90) + c.f90 * loss + (c.f90 - c.f0) * rest);
 }
 
 FN REAL coat_average_transmission(IN(CoatPrepared) c) {
@@ -60,11 +60,11 @@ FN REAL coat_average_transmission(IN(CoatPrepared) c) {
 // Length of the refracted path through a coat of thickness 1.
 FN REAL coat_path(IN(CoatPrepared) c, REAL mu) {
     REAL cos2 = R(1.0) - (R(1.0) - mu * mu) * c.inverse_index_squared;
-    return R(1.0) / sqrt(max(cos2, R(1e-4)));
+    return MUTATED(coat_path, R(1.0) / sqrt(max(cos2, R(1e-4))));
 }
 
 FN VEC3 coat_absorption(IN(CoatPrepared) c, REAL path) {
-    return exp2(c.log_transmittance * path);
+    return exp2(MUTATED(coat_absorption, c.log_transmittance * path));
 }
 
 // Light from all around that a GGX lobe under the coat sends to mu enters under many cosines. One
@@ -108,7 +108,7 @@ FN REAL coat_entry_transmission(IN(CoatPrepared) c, IN(CoatEntry) e, REAL mu, RE
 
 FN REAL coat_entry_path(IN(CoatPrepared) c, IN(CoatEntry) e, REAL mu) {
     REAL squared = mu * mu + e.path.x + mu * (e.path.y + mu * e.path.z);
-    return coat_path(c, sqrt(clamp(squared, R(0.0), R(1.0))));
+    return MUTATED(coat_entry_path, coat_path(c, sqrt(clamp(squared, R(0.0), R(1.0)))));
 }
 
 // The base with its diffuse layer of that albedo seen through the coat, where so much of the light
@@ -118,7 +118,7 @@ FN GgxPrepared coated_base(
     IN(GgxPrepared) base, IN(CoatPrepared) c, VEC3 diffuse, VEC3 passed, VEC3 grazing) {
     REAL average = coat_average_transmission(c);
     VEC3 share = min(passed, VEC3(average));
-    REAL inside = R(1.0) - average * c.inverse_index_squared;
+    REAL inside = MUTATED(coat_inner_reflectance, R(1.0) - average * c.inverse_index_squared);
     GgxPrepared q = base;
     q.diffuse = diffuse * (R(1.0) - inside) / ((VEC3(R(1.0)) - diffuse * inside) * share);
     // Lit from everywhere it sees what passes both, which is a little more than the product of the
@@ -179,7 +179,7 @@ FN REAL coat_fresnel(IN(CoatPrepared) c, REAL hh) {
 FN VEC3 reflected_through(
     IN(CoatPrepared) c, IN(Passage) from, IN(Passage) to, VEC3 under, REAL hh, REAL coat_lobe) {
     VEC3 passed = coat_absorption(c, from.path + to.path) * (from.coat * to.coat);
-    return VEC3(coat_fresnel(c, hh) * coat_lobe) + passed * under;
+    return VEC3(MUTATED(coat_lobe, coat_fresnel(c, hh) * coat_lobe)) + passed * under;
 }
 
 FN VEC3 reflected(IN(ClearcoatPrepared) q, IN(Passage) from, IN(Passage) to, REAL hh, VEC3 lobes) {

@@ -10,7 +10,8 @@ FN VEC3 beckmann_distribution_fresnel(IN(BsdfParameters) p, VEC3 wi, VEC3 wo, RE
     REAL hz = max(wi.z + wo.z, R(1e-6));
     REAL hz2 = hz * hz;
     REAL d = gaussian_slopes(wi.x + wo.x, wi.y + wo.y, hz, p.alpha_x, p.alpha_y) * hh * hh *
-             R(0.3183098861837907) / (p.alpha_x * p.alpha_y * (hz2 * hz2));
+             MUTATED(beckmann_norm, R(0.3183098861837907)) /
+             (p.alpha_x * p.alpha_y * (hz2 * hz2));
     REAL f90 = grazing_reflectance(max_component(p.f0));
     REAL schlick = schlick_weight(hh);
     return (p.f0 * (R(1.0) - schlick) + VEC3(f90 * schlick)) * d;
@@ -24,7 +25,7 @@ FN REAL beckmann_masking(VEC3 w, REAL alpha_x, REAL alpha_y) {
     REAL y = alpha_y * w.y;
     REAL t = sqrt(x * x + y * y);
     if (mu >= R(1.6) * t) return R(1.0) / mu;
-    return min((R(3.535) * t + R(2.181) * mu) /
+    return min(MUTATED(beckmann_masking, R(3.535) * t + R(2.181) * mu) /
                    (t * t + R(2.276) * mu * t + R(2.577) * mu * mu),
                R(1.0) / mu);
 }
@@ -49,7 +50,7 @@ FN VEC3 cook_torrance_v_cavity_eval(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
     if (hh < R(1e-8)) return VEC3(R(0.0));
     REAL low = max(min(wi.z, wo.z), R(1e-6));
     REAL high = max(max(wi.z, wo.z), R(1e-6));
-    REAL visibility = min(R(0.25) / low, h.z / hh) / high;
+    REAL visibility = MUTATED(v_cavity_masking, min(R(0.25) / low, h.z / hh) / high);
     return p.diffuse * R(0.3183098861837907) +
            beckmann_distribution_fresnel(p, wi, wo, hh) * visibility;
 }

@@ -28,7 +28,7 @@ FN VEC3 eon_multiple(IN(BsdfParameters) p, REAL a) {
     REAL average = (R(1.0) + R(0.07248821245692394) * r) * a;
     VEC3 rho = p.diffuse * p.diffuse * average / (one - p.diffuse * (R(1.0) - average));
     // C1 - C2, from 1 - E_avg = A r (C1 - C2)
-    return rho * (a * r / R(0.21530519675388227));
+    return MUTATED(eon_multiple, rho * (a * r / R(0.21530519675388227)));
 }
 
 FN VEC3 eon_eval(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
@@ -37,7 +37,7 @@ FN VEC3 eon_eval(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
     REAL a = R(1.0) / (R(1.0) + R(0.2877934092108062) * r);
     REAL s = wi.x * wo.x + wi.y * wo.y;
     REAL t = s > R(0.0) ? max(max(wi.z, wo.z), R(1e-6)) : R(1.0);
-    REAL once = a * max(R(1.0) + r * s / t, R(0.0));
+    REAL once = MUTATED(eon_single, a * max(R(1.0) + r * s / t, R(0.0)));
     VEC3 value = p.diffuse * once + eon_multiple(p, a) * (eon_loss(wi.z) * eon_loss(wo.z));
     return value * R(0.3183098861837907);
 }
@@ -54,7 +54,8 @@ FN REAL eon_pdf(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
 FN BsdfEnvironment eon_environment(IN(BsdfParameters) p, REAL mu) {
     REAL r = p.diffuse_roughness;
     REAL a = R(1.0) / (R(1.0) + R(0.2877934092108062) * r);
-    REAL once = a * (R(1.0) + r * eon_integral(mu) * R(0.3183098861837907));
+    REAL once =
+        MUTATED(eon_sky_weight, a * (R(1.0) + r * eon_integral(mu) * R(0.3183098861837907)));
     // The mean of the other direction's loss over the hemisphere is C1 - C2.
     BsdfEnvironment e;
     e.diffuse = p.diffuse * once + eon_multiple(p, a) * (eon_loss(mu) * R(0.21530519675388227));

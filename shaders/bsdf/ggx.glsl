@@ -66,7 +66,8 @@ FN VEC3 ggx_interface_average(IN(GgxPrepared) q) {
 
 FN GgxPrepared ggx_prepare(IN(BsdfParameters) p) {
     GgxPrepared q = ggx_interface(p);
-    q.diffuse = p.diffuse / (VEC3(R(1.0)) - ggx_interface_average(q));
+    q.diffuse =
+        MUTATED(ggx_diffuse_layer, p.diffuse / (VEC3(R(1.0)) - ggx_interface_average(q)));
     return q;
 }
 
@@ -102,7 +103,7 @@ FN VEC3 ggx_eval(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
 }
 
 FN VEC3 sky_weight(IN(GgxPrepared) q, IN(Passage) to) {
-    return q.sky_diffuse * to.base;
+    return MUTATED(ggx_sky_weight, q.sky_diffuse * to.base);
 }
 
 FN VEC3 mirror_weight(IN(GgxPrepared) q, IN(Passage) to, REAL mu, IN(MirrorGrazing) grazing_ratio, int lobe) {
@@ -110,7 +111,7 @@ FN VEC3 mirror_weight(IN(GgxPrepared) q, IN(Passage) to, REAL mu, IN(MirrorGrazi
     REAL grazing;
     ggx_albedo(mu, q.mirror, q.fresnel, white, grazing);
     grazing = min(grazing * grazing_fresnel(grazing_ratio, q.mirror.alpha), white);
-    return q.f0 * (white - grazing) + VEC3(q.f90 * grazing);
+    return MUTATED(ggx_mirror_weight, q.f0 * (white - grazing) + VEC3(q.f90 * grazing));
 }
 
 FN BsdfEnvironment ggx_environment(IN(BsdfParameters) p, REAL mu) {

@@ -22,7 +22,7 @@ FN REAL ggx_multiscatter_average_loss(REAL alpha) {
 // F_ms; `lost` is 1 - W_avg.
 FN VEC3 ggx_many_bounces(IN(GgxPrepared) once, REAL lost) {
     VEC3 f = mix(once.f0, VEC3(once.f90), fresnel_average_weight(once.f0_max));
-    return f * f * (R(1.0) - lost) / (VEC3(R(1.0)) - f * lost);
+    return MUTATED(ggx_many_bounces, f * f * (R(1.0) - lost) / (VEC3(R(1.0)) - f * lost));
 }
 
 // What reaches the diffuse layer, at most: 1 - E - F_ms (1 - W), without cancellation. `lost` is

@@ -14,8 +14,8 @@ FN VEC3 half_difference(VEC3 wi, VEC3 wo) {
     REAL tangential = sqrt(h.x * h.x + h.y * h.y);
     REAL along = sqrt(dot(h, h));
     REAL apart = sqrt(dot(d, d));
-    REAL theta_h = atan(tangential, h.z);
-    REAL theta_d = atan(apart, along);
+    REAL theta_h = MUTATED(half_angle, atan(tangential, h.z));
+    REAL theta_d = MUTATED(difference_angle, atan(apart, along));
     // phi_d turns freely where one of the two is 0, and nothing depends on it there.
     REAL phi_d = R(0.0);
     if (tangential > R(1e-6) * along && apart > R(1e-6)) {

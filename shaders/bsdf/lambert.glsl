@@ -20,7 +20,7 @@ FN LambertPrepared lambert_prepare(IN(BsdfParameters) p) {
 
 FN VEC3 lambert_eval(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
     if (wi.z <= R(0.0) || wo.z <= R(0.0)) return VEC3(R(0.0));
-    return p.diffuse * R(0.3183098861837907);
+    return MUTATED(lambert, p.diffuse * R(0.3183098861837907));
 }
 
 FN VEC3 lambert_sample(IN(BsdfParameters) p, VEC3 wo, VEC3 u) {
@@ -34,7 +34,7 @@ FN REAL lambert_pdf(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
 
 FN BsdfEnvironment lambert_environment(IN(BsdfParameters) p, REAL mu) {
     BsdfEnvironment e;
-    e.diffuse = p.diffuse;
+    e.diffuse = MUTATED(lambert_sky_weight, p.diffuse);
     e.specular = VEC3(R(0.0));
     e.coat = VEC3(R(0.0));
     return e;

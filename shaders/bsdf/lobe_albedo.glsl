@@ -30,7 +30,7 @@ FN BsdfParameters round_lobe(IN(BsdfParameters) p) {
                 if (density > R(0.0)) sum += EVAL(q, wi, wo) * (wi.z / density);        \
             }                                                                           \
         }                                                                               \
-        return sum * R(0.006944444444444444);                                           \
+        return MUTATED(lobe_albedo, sum * R(0.006944444444444444));                     \
     }
 
 FN BsdfEnvironment diffuse_and_lobe(VEC3 diffuse, VEC3 specular) {

@@ -11,7 +11,7 @@ FN REAL smith_denominator(VEC3 wi, VEC3 wo, REAL alpha_x, REAL alpha_y) {
     REAL yo = alpha_y * wo.y;
     REAL length_i = sqrt(xi * xi + yi * yi + mu_i * mu_i);
     REAL length_o = sqrt(xo * xo + yo * yo + mu_o * mu_o);
-    return mu_i * length_o + mu_o * length_i;
+    return MUTATED(smith_masking, mu_i * length_o + mu_o * length_i);
 }
 
 // Distribution times visibility, D G / (4 mu_i mu_o). H is not normalised: with s2 = |N x H|^2
@@ -24,7 +24,8 @@ FN REAL ggx_distribution_visibility(VEC3 wi, VEC3 wo, REAL hh, REAL alpha_x, REA
     REAL a2 = alpha_x * alpha_y;
     REAL ratio = alpha_y / alpha_x;
     REAL k = hh / (hx * hx * ratio + hy * hy / ratio + hz * hz * a2);
-    return a2 * k * k * R(0.15915494309189535) / smith_denominator(wi, wo, alpha_x, alpha_y);
+    return MUTATED(ggx_distribution, a2 * k * k * R(0.15915494309189535)) /
+           smith_denominator(wi, wo, alpha_x, alpha_y);
 }
 
 // A visible normal (spherical caps), then the mirror direction. May lie below the horizon.
@@ -53,14 +54,14 @@ FN REAL ggx_pdf_lobe(VEC3 wi, VEC3 wo, REAL alpha_x, REAL alpha_y) {
     REAL xo = alpha_x * wo.x;
     REAL yo = alpha_y * wo.y;
     REAL length_o = sqrt(xo * xo + yo * yo + mu_o * mu_o);
-    return a2 * k * k * R(0.15915494309189535) / (mu_o + length_o);
+    return MUTATED(ggx_density, a2 * k * k * R(0.15915494309189535) / (mu_o + length_o));
 }
 
 // (1 - cos)^5 between a direction and the half vector: |H| = 2 cos.
 FN REAL schlick_weight(REAL hh) {
     REAL m = max(R(1.0) - R(0.5) * sqrt(hh), R(0.0));
     REAL m2 = m * m;
-    return m2 * m2 * m;
+    return MUTATED(schlick, m2 * m2 * m);
 }
 
 // Reflectance at grazing incidence: 1 for every real interface, fading out below f0 = 0.02 so that
@@ -91,8 +92,9 @@ FN REAL dielectric_rest(IN(Fresnel) q, REAL c) {
     REAL across = g + c;
     REAL along = n2 * c + g;
     REAL both = across * along;
-    return R(2.0) * g * c * (along * along + n2 * across * across) /
-           max(both * both * q.rest, R(1e-30));
+    return MUTATED(fresnel_dielectric,
+                   R(2.0) * g * c * (along * along + n2 * across * across) /
+                       max(both * both * q.rest, R(1e-30)));
 }
 
 // 0 for dielectrics, f0 up to 0.2 (index 2.6), and 1 for metals, from 0.4 on; hardly a paint is
@@ -136,7 +138,8 @@ FN REAL dielectric_average_weight(REAL f0) {
 
 FN REAL fresnel_average_weight(REAL f0) {
     REAL exact = dielectric_average_weight(f0);
-    return exact + (R(0.047619047619047616) - exact) * metal_share(f0);
+    return MUTATED(fresnel_average,
+                   exact + (R(0.047619047619047616) - exact) * metal_share(f0));
 }
 
 // Directional albedo of the lobe, E = (1 - loss) F(cosine): `loss` is what masking takes at f0 = 1,
@@ -184,8 +187,8 @@ FN void ggx_albedo_fit(REAL mu, IN(AlbedoFit) fit, OUT(REAL) loss, OUT(REAL) cos
                 (d.x + t * (d.y + t * (d.z + t * R(3.7214))));
     REAL c = m + (fit.cosine_above0 + t * (fit.cosine_above1 + t * (a * R(1.3444)))) /
                      (fit.cosine_below0 + t * (fit.cosine_below1 + t * R(0.19318)));
-    loss = max(lost, R(0.0));
-    cosine = clamp(c, R(0.0), R(1.0));
+    loss = MUTATED(albedo_loss, max(lost, R(0.0)));
+    cosine = MUTATED(albedo_cosine, clamp(c, R(0.0), R(1.0)));
 }
 
 // E = f0 (white - grazing) + f90 grazing.
@@ -210,9 +213,10 @@ FN void ggx_transmission_fit(
 // 1 - white, averaged over the hemisphere with the cosine.
 FN REAL ggx_average_loss(REAL alpha) {
     REAL a = alpha;
-    return R(0.000038) -
-           a * (R(0.003956) -
-                a * (R(2.884075) - a * (R(5.08867) - a * (R(4.10955) - a * R(1.312381)))));
+    return MUTATED(albedo_average_loss,
+        R(0.000038) -
+            a * (R(0.003956) -
+                 a * (R(2.884075) - a * (R(5.08867) - a * (R(4.10955) - a * R(1.312381))))));
 }
 
 // The average of both; never above that of ggx_albedo, at most 0.0024 (white), 0.006 (grazing, of
@@ -232,5 +236,6 @@ FN void ggx_average_albedo(REAL alpha, REAL f0, OUT(REAL) white, OUT(REAL) grazi
              a * (R(0.349535) -
                   a * (R(1.842984) - a * (R(3.26051) - a * (R(2.617805) - a * R(0.800612))))));
     REAL exact = dielectric_average_weight(f0) * roughness_factor;
-    grazing = exact + (metal - exact) * metal_share(f0) - R(0.0001);
+    grazing = MUTATED(albedo_average_grazing, exact + (metal - exact) * metal_share(f0)) -
+              R(0.0001);
 }

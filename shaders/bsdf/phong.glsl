@@ -18,7 +18,8 @@ FN VEC3 phong_eval(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
     if (wi.z <= R(0.0) || wo.z <= R(0.0)) return VEC3(R(0.0));
     REAL n = p.exponent_x;
     return p.diffuse * R(0.3183098861837907) +
-           p.specular * ((n + R(2.0)) * R(0.15915494309189535) * phong_power(wi, wo, n));
+           p.specular * (MUTATED(phong_norm, n + R(2.0)) * R(0.15915494309189535) *
+                         phong_power(wi, wo, n));
 }
 
 FN VEC3 phong_sample(IN(BsdfParameters) p, VEC3 wo, VEC3 u) {

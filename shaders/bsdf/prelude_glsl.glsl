@@ -12,6 +12,8 @@
 #define OUT(T) out T
 // Of a number that is the same for all that is computed at once
 #define PRESENT(x) ((x) > 0.0)
+// A formula that tests put off by 2% (src/core/mutation.h)
+#define MUTATED(name, x) (x)
 // Of shaders/radiance/shade.glsl. By its bits: x != x may be taken for false.
 #define IS_NAN(x) ((floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u)
 // Of shaders/radiance/glints.glsl

@@ -36,7 +36,7 @@ FN VEC3 film_coherence(REAL x_nm) {
     FILM_BAND(0.008848, -0.020368, 0.379358)
     FILM_BAND(0.034606, -0.035897, 0.337859)
     FILM_BAND(0.016152, -0.019234, 0.155520)
-    return exp2(R(-1.035104596e-07) * x_nm * x_nm) * sum;
+    return MUTATED(film_coherence, exp2(R(-1.035104596e-07) * x_nm * x_nm) * sum);
 }
 
 struct FilmPrepared {
@@ -68,7 +68,8 @@ FN FilmPrepared film_prepare(IN(BsdfParameters) p) {
     VEC3 rho = back * front;
     film.minus_rho = rho;  // back is turned already
     film.twice_a =
-        R(2.0) * (one - back * back) * (R(1.0) - front * front) / (one - rho * rho);
+        MUTATED(film_airy,
+                R(2.0) * (one - back * back) * (R(1.0) - front * front) / (one - rho * rho));
     VEC3 a = VEC3(max(front, -front));
     VEC3 b = max(back, VEC3(R(0.0)) - back);
     VEC3 root = (a + b) / (one + a * b);
@@ -82,7 +83,7 @@ FN VEC3 film_reflectance(IN(FilmPrepared) film, REAL hh) {
     if (!PRESENT(film.nm)) return film.f0;
     VEC3 one = VEC3(R(1.0));
     REAL sine2 = max(R(1.0) - R(0.25) * hh, R(0.0)) / (film.eta * film.eta);
-    REAL x_nm = R(2.0) * film.eta * film.nm * sqrt(R(1.0) - sine2);
+    REAL x_nm = MUTATED(film_path, R(2.0) * film.eta * film.nm * sqrt(R(1.0) - sine2));
     VEC3 minus = film.minus_rho;
     VEC3 power = minus;
     VEC3 sum = power * (one - film_coherence(x_nm));

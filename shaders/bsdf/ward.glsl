@@ -15,7 +15,7 @@ FN REAL ward_lobe(IN(BsdfParameters) p, VEC3 wi, VEC3 wo) {
                            max(wi.z + wo.z, R(1e-6)),
                            p.alpha_x,
                            p.alpha_y) *
-           R(0.3183098861837907) / (p.alpha_x * p.alpha_y);
+           MUTATED(ward_norm, R(0.3183098861837907) / (p.alpha_x * p.alpha_y));
 }
 
 FN bool ward_is_dark(VEC3 wi, VEC3 wo) {

@@ -26,11 +26,12 @@ FN REAL disc_distribution_visibility(VEC3 wi,
     // b and q, times H.z^2
     REAL h = sqrt(hh);
     REAL c = max(hz / h, R(0.5));
-    REAL r2 = hz2 * (R(0.5) * light_radius2 / (h * c * c * c) + R(2.0) * mean_squared_slope);
+    REAL r2 = hz2 * (MUTATED(disc_of_light, R(0.5) * light_radius2 / (h * c * c * c)) +
+                     MUTATED(disc_of_slopes, R(2.0) * mean_squared_slope));
     REAL b = hx * hx * ratio + hy * hy / ratio + hz2 * a2 - r2;
     REAL cross_term = R(4.0) * r2 * a2 * hz2;
     REAL q = sqrt(b * b + cross_term);
     REAL sum = b > R(0.0) ? q + b : cross_term / (q - b);
-    return a2 * hh * hh * R(0.3183098861837907) /
+    return MUTATED(disc_mean, a2 * hh * hh * R(0.3183098861837907)) /
            (q * sum * smith_denominator(wi, wo, slopes.x, slopes.y));
 }

@@ -57,8 +57,8 @@ FN REAL glint_share(WORD corner, REAL weight, REAL variance) {
     REAL u = unit_of(glint_hash(corner));
     REAL sum = weight + variance;
     REAL q = R(1.3333333333333333) * weight / max(sum, R(1e-30));
-    REAL few = R(1.5) * sum * max(q - u, R(0.0)) / max(q, R(1e-9));
-    REAL many = weight + sqrt(R(12.0) * variance * weight) * (R(0.5) - u);
+    REAL few = MUTATED(glint_few, R(1.5) * sum) * max(q - u, R(0.0)) / max(q, R(1e-9));
+    REAL many = MUTATED(glint_many, weight) + sqrt(R(12.0) * variance * weight) * (R(0.5) - u);
     return R(3.0) * variance > weight ? few : many;
 }
 
@@ -125,7 +125,7 @@ FN REAL glint_chance(VEC3 wi,
     REAL cross_term = R(4.0) * r2 * a2 * hz2 * hz2;
     REAL q = max(sqrt(b * b + cross_term), R(1e-18));
     REAL chance = b > R(0.0) ? cross_term / (q * (q + b)) : (q - b) / q;
-    return clamp(R(0.5) * chance, R(1e-12), R(1.0));
+    return clamp(MUTATED(glint_chance, R(0.5) * chance), R(1e-12), R(1.0));
 }
 
 // What a lobe is multiplied by. `place` has the position and the side of the square that a pixel
@@ -139,7 +139,7 @@ FN REAL glint_factor(VEC3 wi,
                      VEC4 place,
                      REAL density) {
     REAL chance = glint_chance(wi, wo, hh, alpha, light_radius2, mean_squared_slope);
-    REAL expected = density * place.w * place.w * chance;
+    REAL expected = MUTATED(glint_count, density * place.w * place.w) * chance;
     REAL variance = min((R(1.0) - chance) / max(expected, R(1e-30)), GLINT_LARGEST_VARIANCE);
     REAL side = clamp(place.w, GLINT_SMALLEST_CELL, GLINT_LARGEST_CELL);
     REAL octave = octave_of(side);

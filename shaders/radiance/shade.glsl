@@ -30,7 +30,7 @@ FN VEC3 exposed(VEC3 colour) {
 UNIFORM PREPARED u_paint;
 
 FN VEC3 shaded() {
-    return exposed(u_paint.diffuse * diffuse_light_here());
+    return exposed(MUTATED(shade_lambert, u_paint.diffuse * diffuse_light_here()));
 }
 
 #elif defined(ANY_MODEL)
@@ -59,7 +59,7 @@ FN VEC3 shaded() {
         // The light's disc among the half vectors (disc.glsl), as a mean squared slope.
         REAL spread = eye.w + R(0.25) * u_light_radius2[k] / (length_h * c * c * c);
         VEC3 value = bsdf_eval(bsdf_widen(u_paint, BSDF_TURN2 * spread), wi, wo);
-        REAL lit = wi.z > R(0.0) ? light.w * wi.z : R(0.0);
+        REAL lit = MUTATED(shade_any_lamp, wi.z > R(0.0) ? light.w * wi.z : R(0.0));
         sum += u_light_radiance[k] * value * lit;
     }
 #endif
@@ -68,7 +68,8 @@ FN VEC3 shaded() {
     REAL at = sqrt(clamp(wo.z, R(0.0), R(1.0))) * REAL(WEIGHTS - 1);
     int below = min(int(at), WEIGHTS - 2);
     REAL share = at - REAL(below);
-    sum += mix(u_sky_weight[below], u_sky_weight[below + 1], share) * sky_here();
+    sum += MUTATED(shade_any_sky, mix(u_sky_weight[below], u_sky_weight[below + 1], share)) *
+           sky_here();
 #if MIRRORS
     sum += mix(u_mirror_weight[below], u_mirror_weight[below + 1], share) *
            mirrored_here(u_base_layers, u_lobe_alpha);
@@ -88,7 +89,7 @@ UNIFORM REAL u_glint_density;  // flakes on a mm^2 of the mock-up, as large as t
 
 FN VEC3 mirrored_by(int lobe, Passage to, REAL mu, MirrorGrazing grazing) {
     VEC2 slopes = slopes_of(u_paint, lobe);
-    return mirror_weight(u_paint, to, mu, grazing, lobe) *
+    return MUTATED(shade_mirror, mirror_weight(u_paint, to, mu, grazing, lobe)) *
            mirrored_here(u_lobe_layers[lobe], sqrt(slopes.x * slopes.y));
 }
 
@@ -130,7 +131,7 @@ FN VEC3 shaded() {
 #endif
         VEC3 value = reflected(u_paint, passage_of(u_paint, wi.z), to, hh, lobes);
         VEC3 seen = u_light_radiance[k] * value;
-        REAL lit = light.w * max(wi.z, R(0.0));
+        REAL lit = MUTATED(shade_lamp, light.w * max(wi.z, R(0.0)));
         // A light that is not seen may give no number at all.
         sum += VEC3(lit == R(0.0) ? R(0.0) : lit * seen.x,
                     lit == R(0.0) ? R(0.0) : lit * seen.y,
@@ -144,7 +145,7 @@ FN VEC3 shaded() {
         grazing.middle = grazing_here(1);
         grazing.wide = grazing_here(2);
         grazing.entry = grazing_here(3);
-        sum += sky_weight(u_paint, to) * sky_here();
+        sum += MUTATED(shade_sky, sky_weight(u_paint, to) * sky_here());
         sum += mirrored_by(0, to, wo.z, grazing);
         if (lobe_count(u_paint) > 1) sum += mirrored_by(1, to, wo.z, grazing);
         if (lobe_count(u_paint) > 2) sum += mirrored_by(2, to, wo.z, grazing);

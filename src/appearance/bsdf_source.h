@@ -9,6 +9,8 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "core/mutation.h"
+
 #define REAL Real
 #define VEC2 Vec2
 #define VEC3 Vec3

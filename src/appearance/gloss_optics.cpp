@@ -14,6 +14,7 @@
 
 #include "appearance/directions.h"
 #include "appearance/paint_figures.h"
+#include "core/mutation.h"
 
 namespace livery {
 
@@ -164,7 +165,7 @@ double specular_gloss(const LuminanceFunction& luminance, double angle_deg) {
             standard += light * dielectric_reflectance(wi.z, kGlossStandardIndex);
         }
     }
-    return 100.0 * paint / standard;
+    return LIVERY_MUTATED(gloss, 100.0 * paint / standard);
 }
 
 }  // namespace livery

@@ -11,6 +11,7 @@
 
 #include "calibration/colour/colour_report.h"
 #include "core/error.h"
+#include "core/mutation.h"
 #include "core/parallel.h"
 #include "core/statistics.h"
 
@@ -230,7 +231,8 @@ ColourCalibration predict_hidden(ColourCalibration c, const ImageF& geometry) {
                   c.unmixing.values.begin() + static_cast<std::ptrdiff_t>(9 * p));
         for (std::size_t k = 0; k < 3; ++k) {
             const auto channel = static_cast<int>(k);
-            c.span.values[3 * p + k] = local[i].span_over_geometry[channel] * geometry.values[p];
+            c.span.values[3 * p + k] = LIVERY_MUTATED(
+                predicted_span, local[i].span_over_geometry[channel] * geometry.values[p]);
             c.dark.values[3 * p + k] = local[i].dark[channel];
         }
         c.camera_px.values[2 * p] = c.camera_px.values[2 * p + 1] =

@@ -12,6 +12,7 @@
 #include "compensation/gamut.h"
 #include "core/colour.h"
 #include "core/error.h"
+#include "core/mutation.h"
 #include "core/parallel.h"
 
 namespace livery {
@@ -82,7 +83,9 @@ class PixelMaps {
                 separated_from_camera[column][row] =
                     static_cast<double>(u[3 * row + column]) / static_cast<double>(span[row]);
             }
-            map.offset[row] = -static_cast<double>(dark[row]) / static_cast<double>(span[row]);
+            map.offset[row] =
+                LIVERY_MUTATED(compensation_black,
+                               -static_cast<double>(dark[row]) / static_cast<double>(span[row]));
         }
         if (!finite) {
             const auto width = static_cast<std::size_t>(calibration_.width);
@@ -92,7 +95,7 @@ class PixelMaps {
                 std::to_string(span[0]) + ", " + std::to_string(span[1]) + ", " +
                 std::to_string(span[2]) + ") or a number of it is not finite");
         }
-        map.from_xyz = separated_from_camera * camera_from_xyz_;
+        map.from_xyz = LIVERY_MUTATED(compensation_solve, separated_from_camera * camera_from_xyz_);
         return map;
     }
 
@@ -110,7 +113,7 @@ double brightest_in_cube(const glm::dvec3& direction, const glm::dvec3& offset) 
             continue;
         }
         const double at_zero = -offset[k] / direction[k];
-        const double at_one = (1.0 - offset[k]) / direction[k];
+        const double at_one = LIVERY_MUTATED(design_white, (1.0 - offset[k]) / direction[k]);
         low = std::max(low, std::min(at_zero, at_one));
         high = std::min(high, std::max(at_zero, at_one));
     }

@@ -11,6 +11,7 @@
 #include <glm/glm.hpp>
 
 #include "compensation/drive_table.h"
+#include "core/mutation.h"
 #include "core/parallel.h"
 #include "core/statistics.h"
 
@@ -40,7 +41,7 @@ struct Gamut {
         }
         if (table->grid > 0 && high > low) high = brightest_reachable(*table, white, b, high);
         if (!(high > low)) return std::nullopt;
-        return Range{std::cbrt(low), std::cbrt(high)};
+        return Range{std::cbrt(low), LIVERY_MUTATED(gamut_lightness, std::cbrt(high))};
     }
 };
 

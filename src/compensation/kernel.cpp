@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "compensation/dither.h"
+#include "core/mutation.h"
 
 // One source, inlined into a wrapper for each instruction set. Contraction is off everywhere, so
 // the wrappers differ in speed only.
@@ -75,7 +76,7 @@ LIVERY_ALWAYS_INLINE void add_levels(const Job& job,
         cell = cell < last ? cell : last - 1;
         const float f = at - static_cast<float>(cell);
         const float low = curve[cell], high = curve[cell + 1];
-        const float drive = low + f * (high - low);
+        const float drive = LIVERY_MUTATED(compensation_drive, low + f * (high - low));
         const std::uint32_t phase = pixels[i] * dither::kPerColumn + row;
         const auto level = static_cast<std::int32_t>(drive + dither::threshold(phase));
         packed[i] |= static_cast<std::uint32_t>(level < 255 ? level : 255) << shift;

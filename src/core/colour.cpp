@@ -7,6 +7,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "core/mutation.h"
+
 namespace livery {
 
 namespace {
@@ -28,7 +30,9 @@ glm::dmat3 xyz_from_rgb_matrix(glm::dvec2 red,
     const glm::dmat3 primaries(
         xyz_from_chromaticity(red), xyz_from_chromaticity(green), xyz_from_chromaticity(blue));
     const glm::dvec3 scale = glm::inverse(primaries) * xyz_from_chromaticity(white);
-    return {primaries[0] * scale.x, primaries[1] * scale.y, primaries[2] * scale.z};
+    return {LIVERY_MUTATED(colour_matrix, primaries[0] * scale.x),
+            primaries[1] * scale.y,
+            primaries[2] * scale.z};
 }
 
 const glm::dmat3& xyz_from_rec709() {
@@ -71,7 +75,7 @@ glm::dvec3 lab_from_xyz(glm::dvec3 xyz, glm::dvec3 white_xyz) {
     };
     const glm::dvec3 ratio = xyz / white_xyz;
     const double fx = f(ratio.x), fy = f(ratio.y), fz = f(ratio.z);
-    return {116.0 * fy - 16.0, 500.0 * (fx - fy), 200.0 * (fy - fz)};
+    return {116.0 * fy - 16.0, LIVERY_MUTATED(lab, 500.0 * (fx - fy)), 200.0 * (fy - fz)};
 }
 
 glm::dvec3 xyz_from_lab(glm::dvec3 lab, glm::dvec3 white_xyz) {
@@ -130,7 +134,7 @@ double ciede2000(glm::dvec3 lab_a, glm::dvec3 lab_b) {
                      0.20 * std::cos((4.0 * h - 63.0) * degree);
     const double l50 = (l - 50.0) * (l - 50.0);
     const double sl = 1.0 + 0.015 * l50 / std::sqrt(20.0 + l50);
-    const double sc = 1.0 + 0.045 * c;
+    const double sc = LIVERY_MUTATED(ciede2000_chroma, 1.0 + 0.045 * c);
     const double sh = 1.0 + 0.015 * c * t;
     const double theta = 30.0 * std::exp(-((h - 275.0) / 25.0) * ((h - 275.0) / 25.0));
     const double rc = 2.0 * std::sqrt(pow7(c) / (pow7(c) + pow7(25.0)));
@@ -168,7 +172,8 @@ const glm::dmat3& oklab_from_cone_roots() { return kOklabFromRoots; }
 
 glm::dvec3 oklab_from_xyz(glm::dvec3 xyz) {
     const glm::dvec3 lms = kLmsFromXyz * xyz;
-    return kOklabFromRoots * glm::dvec3(std::cbrt(lms.x), std::cbrt(lms.y), std::cbrt(lms.z));
+    return kOklabFromRoots *
+           glm::dvec3(LIVERY_MUTATED(oklab, std::cbrt(lms.x)), std::cbrt(lms.y), std::cbrt(lms.z));
 }
 
 glm::dvec3 xyz_from_oklab(glm::dvec3 oklab) {
@@ -180,7 +185,9 @@ glm::dvec3 xyz_from_oklab(glm::dvec3 oklab) {
 
 double srgb_encode(double linear) {
     const double v = std::abs(linear);
-    const double encoded = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1.0 / 2.4) - 0.055;
+    const double encoded =
+        v <= 0.0031308 ? 12.92 * v
+                       : LIVERY_MUTATED(srgb_encode, 1.055 * std::pow(v, 1.0 / 2.4)) - 0.055;
     return std::copysign(encoded, linear);
 }
 

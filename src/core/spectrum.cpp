@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/mutation.h"
 
 namespace livery {
 
@@ -51,7 +52,7 @@ glm::dvec3 xyz_from_power(const Spectrum& power) {
     for (std::size_t k = 0; k < power.size(); ++k) {
         xyz += power[k] * glm::dvec3(kCie1931X[k], kCie1931Y[k], kCie1931Z[k]);
     }
-    return kSpectrumStep_nm * xyz;
+    return kSpectrumStep_nm * LIVERY_MUTATED(xyz_from_power, xyz);
 }
 
 glm::dvec3 xyz_from_reflectance(const Spectrum& reflectance, const Spectrum& illuminant) {

@@ -4,6 +4,7 @@
 #include <glm/matrix.hpp>
 
 #include "core/colour.h"
+#include "core/mutation.h"
 
 namespace livery {
 
@@ -36,7 +37,7 @@ glm::dvec3 xyz10_from_reflectance(const Spectrum& reflectance) {
         xyz += light * reflectance[k] * glm::dvec3(cie1964_x()[k], cie1964_y()[k], cie1964_z()[k]);
         white_y += light * cie1964_y()[k];
     }
-    return xyz / white_y;
+    return xyz / LIVERY_MUTATED(xyz10_white, white_y);
 }
 
 glm::dvec3 xyz10_from_xyz(glm::dvec3 xyz) {

@@ -8,6 +8,7 @@
 
 #include <epoxy/gl.h>
 
+#include "core/mutation.h"
 #include "gl/check.h"
 
 namespace livery {
@@ -52,7 +53,12 @@ std::string numbered_lines(const std::string& text, const std::set<int>& named) 
 
 Shader compile(GLenum stage, const ShaderSource& source) {
     Shader shader(glCreateShader(stage));
+#if defined(LIVERY_MUTATIONS)
+    const std::string mutated = mutated_glsl(source.text);
+    const char* text = mutated.c_str();
+#else
     const char* text = source.text.c_str();
+#endif
     glShaderSource(shader.get(), 1, &text, nullptr);
     glCompileShader(shader.get());
     GLint ok = GL_FALSE;

@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/colour.h"
+#include "core/mutation.h"
 #include "core/parallel.h"
 
 namespace livery {
@@ -332,8 +333,9 @@ void FragmentInputs::upload_directions(const Scene& scene) {
     }
     for (std::size_t k = 0; k < lights_.size(); ++k) {
         const Light& light = lights_[k];
-        shading_.light_irradiance.push_back(std::numbers::pi_v<float> *
-                                            radiance_working(light.light));
+        shading_.light_irradiance.push_back(
+            LIVERY_MUTATED(lamp_irradiance, std::numbers::pi_v<float>) *
+            radiance_working(light.light));
         shading_.light_radius2.push_back(
             static_cast<float>(0.25 * light.light.angle_rad * light.light.angle_rad));
         upload(shading_.lights, static_cast<int>(k), [&](std::size_t i) {

@@ -6,6 +6,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "core/mutation.h"
+
 namespace livery {
 
 PixelSize pixel_size_of(const View& view) {
@@ -24,12 +26,13 @@ double pixel_side_mm(const PixelSize& pixels,
     const double depth = std::max(glm::dot(apart, pixels.axis), 0.0);
     const double facing = std::max(std::abs(glm::dot(apart, normal)), 0.1 * glm::length(apart));
     if (!(facing > 0.0)) return 0.0;
-    return pixels.at_one_mm * std::sqrt(depth * depth * depth / facing);
+    return LIVERY_MUTATED(glint_pixel,
+                          pixels.at_one_mm * std::sqrt(depth * depth * depth / facing));
 }
 
 double glint_density_on_mock_up(const Material& material, double product_scale) {
     const double larger = product_scale / material.glint_scale;
-    return material.glint_density_per_mm2 * larger * larger;
+    return LIVERY_MUTATED(glint_density, material.glint_density_per_mm2 * larger * larger);
 }
 
 }  // namespace livery

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/colour.h"
+#include "core/mutation.h"
 
 namespace livery {
 
@@ -40,14 +41,15 @@ int find_step(const double* begin, const double* end, double u, double& within) 
 DiscLight::DiscLight(const DirectionalLight& light)
     : world_from_light_(frame_around(glm::normalize(light.direction))) {
     const glm::dvec3 radiance = working_from_rec709() * light.radiance_rec709;
-    irradiance_ = glm::vec3(kPi * radiance);
+    irradiance_ = LIVERY_MUTATED(reference_point_lamp, glm::vec3(kPi * radiance));
     const double radius = std::min(0.5 * light.angle_rad, 0.5 * kPi);
     if (radius <= 0.0) return;
     const double half_sine = std::sin(0.5 * radius);
     one_minus_cos_ = 2.0 * half_sine * half_sine;
     solid_angle_ = 2.0 * kPi * one_minus_cos_;
     // A disc of radiance L lights a plane that faces it with pi L sin^2 of its radius.
-    radiance_ = glm::vec3(radiance / (std::sin(radius) * std::sin(radius)));
+    radiance_ =
+        LIVERY_MUTATED(reference_lamp, glm::vec3(radiance / (std::sin(radius) * std::sin(radius))));
 }
 
 LightSample DiscLight::sample(glm::vec2 u) const {
@@ -102,7 +104,8 @@ LightSample EnvironmentSampler::of_pixel(int x, int y) const {
     LightSample light;
     light.radiance =
         glm::vec3(value[0], value[1], value[2]) * static_cast<float>(environment_->scale);
-    light.pdf = static_cast<float>(importance(x, y) / total_);
+    light.pdf = LIVERY_MUTATED(reference_environment_density,
+                               static_cast<float>(importance(x, y) / total_));
     return light;
 }
 

@@ -9,6 +9,7 @@
 #include <glm/matrix.hpp>
 
 #include "core/error.h"
+#include "core/mutation.h"
 #include "scene/artwork_relief.h"
 
 namespace livery {
@@ -16,7 +17,9 @@ namespace livery {
 namespace {
 
 /// The balance heuristic's weight of the first of two ways to find the same light.
-float balance(float used, float other) { return used / (used + other); }
+float balance(float used, float other) {
+    return LIVERY_MUTATED(reference_balance, used / (used + other));
+}
 
 glm::vec2 uniform_2d(Random& random) {
     const float x = random.uniform_float();
@@ -185,7 +188,8 @@ glm::vec3 PathScene::radiance(SurfacePoint point,
         const glm::vec3 direction = glm::normalize(vertex.world_from_local * wi);
         const float density = pdf(vertex.bsdf, wi, vertex.wo);
         if (!(density > 0.0f) || !vertex.above(direction)) return sum;
-        throughput *= evaluate(vertex.bsdf, wi, vertex.wo) * (wi.z / density);
+        throughput *= LIVERY_MUTATED(reference_throughput,
+                                     evaluate(vertex.bsdf, wi, vertex.wo) * (wi.z / density));
 
         TraceRay ray;
         ray.origin = offset_origin(vertex.position, vertex.geometric_normal);

@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/error.h"
+#include "core/mutation.h"
 
 #define REAL Real
 #define VEC2 Vec2

@@ -9,6 +9,7 @@
 #include <glm/matrix.hpp>
 
 #include "core/error.h"
+#include "core/mutation.h"
 
 namespace livery {
 
@@ -23,7 +24,7 @@ struct Distorted {
 Distorted distort(const std::array<double, 5>& lens, const glm::dvec2& p) {
     const auto [k1, k2, p1, p2, k3] = lens;
     const double x = p.x, y = p.y, s = x * x + y * y;
-    const double radial = 1.0 + s * (k1 + s * (k2 + s * k3));
+    const double radial = 1.0 + LIVERY_MUTATED(lens_distortion, s * (k1 + s * (k2 + s * k3)));
     const double slope = k1 + s * (2.0 * k2 + s * 3.0 * k3);  // d radial / d s
     Distorted result;
     result.point = {x * radial + 2.0 * p1 * x * y + p2 * (s + 2.0 * x * x),
@@ -130,7 +131,8 @@ std::optional<glm::dvec2> project(const View& view, const glm::dvec3& x_in_world
         if (!is_one_to_one_at(view.distortion, point, distorted)) return std::nullopt;
         point = distorted.point;
     }
-    const glm::dvec2 pixel = point * view.focal_px + view.principal_px;
+    const glm::dvec2 pixel =
+        LIVERY_MUTATED(camera_focal, point * view.focal_px) + view.principal_px;
     if (!std::isfinite(pixel.x) || !std::isfinite(pixel.y)) return std::nullopt;
     return pixel;
 }

@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/error.h"
+#include "core/mutation.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "tracing/tracer.h"
@@ -49,7 +50,7 @@ std::vector<float> ambient_openness(const Tracer& tracer,
                 const auto i = static_cast<double>(r);
                 const double u = std::fmod((i + shift_u) / ray_count, 1.0);
                 const double v = std::fmod(i * (std::numbers::phi - 1.0) + shift_v, 1.0);
-                const auto radius = static_cast<float>(std::sqrt(u));
+                const auto radius = LIVERY_MUTATED(openness, static_cast<float>(std::sqrt(u)));
                 const auto height = static_cast<float>(std::sqrt(1.0 - u));
                 const auto angle = static_cast<float>(2.0 * std::numbers::pi * v);
                 rays[r] = {

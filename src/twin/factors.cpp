@@ -1,6 +1,7 @@
 #include "twin/factors.h"
 
 #include "core/error.h"
+#include "core/mutation.h"
 
 namespace livery {
 
@@ -44,7 +45,9 @@ std::array<Spectrum, kLightChannels> scaled_lights(const ProjectorSpectra& spect
     std::array<Spectrum, kLightChannels> lights{
         spectra.primaries[0], spectra.primaries[1], spectra.primaries[2], spectra.clear};
     for (std::size_t c = 0; c < lights.size(); ++c) {
-        for (double& value : lights[c]) value /= c < 3 ? white_y : clear_y;
+        for (double& value : lights[c]) {
+            value /= LIVERY_MUTATED(twin_projector_white, c < 3 ? white_y : clear_y);
+        }
     }
     return lights;
 }
@@ -53,7 +56,7 @@ Spectrum scaled_ambient(const BenchDescription& bench) {
     Spectrum ambient = bench.ambient_spectrum;
     const double y = luminance(ambient);
     check_argument(y > 0.0, "bench: an ambient spectrum without light");
-    for (double& value : ambient) value *= bench.ambient / y;
+    for (double& value : ambient) value *= LIVERY_MUTATED(twin_ambient, bench.ambient / y);
     return ambient;
 }
 
@@ -75,7 +78,9 @@ Sensor camera_sensor(const BenchDescription& bench) {
     const double green = reading(white, sensor).y;
     check_argument(green > 0.0, "bench: a camera that is blind to the projector");
     for (Spectrum& curve : sensor) {
-        for (double& value : curve) value *= bench.camera.sensitivity_units_per_s / green;
+        for (double& value : curve) {
+            value *= LIVERY_MUTATED(twin_sensitivity, bench.camera.sensitivity_units_per_s / green);
+        }
     }
     return sensor;
 }

@@ -6,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "core/mutation.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "twin/place.h"
@@ -90,10 +91,10 @@ Gathers GatherPlaces::gather(const TracedWorld& world,
                 const auto shares = surface_shares(world.surfaces, other.part, other.position_mm);
                 for (int k = 0; k < shares.count; ++k) {
                     const auto& [surface, factor] = shares.list[static_cast<std::size_t>(k)];
-                    terms.push_back(
-                        {light->pixel,
-                         surface,
-                         static_cast<float>(light->irradiance * factor / rays_a_place)});
+                    terms.push_back({light->pixel,
+                                     surface,
+                                     static_cast<float>(LIVERY_MUTATED(
+                                         twin_bounce, light->irradiance * factor / rays_a_place))});
                 }
             }
             std::sort(terms.begin(), terms.end(), [](const PathTerm& a, const PathTerm& b) {

@@ -8,6 +8,7 @@
 
 #include "core/colour.h"
 #include "core/error.h"
+#include "core/mutation.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "twin/pixel_rays.h"
@@ -124,7 +125,8 @@ ImageF paint_radiance_xyz(const Mesh& mesh,
                             !sees(tracer, place.position_mm, place.geometric_normal, far_off)) {
                             continue;
                         }
-                        sum += std::numbers::pi * light.radiance * wi.z *
+                        sum += LIVERY_MUTATED(twin_painted_sphere, std::numbers::pi) *
+                               light.radiance * wi.z *
                                bands.evaluate(moments, wi, wo, bands.side_of(wi.z), side_o);
                     }
                 }

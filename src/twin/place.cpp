@@ -5,6 +5,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "core/mutation.h"
 #include "twin/light_paths.h"
 
 namespace livery {
@@ -67,7 +68,8 @@ std::optional<Illumination> illumination_of(const ProjectorDescription& projecto
     Illumination light;
     light.pixel = static_cast<std::uint32_t>(pixel->y) * static_cast<std::uint32_t>(view.width) +
                   static_cast<std::uint32_t>(pixel->x);
-    light.irradiance = cosine * reference_mm * reference_mm / (distance * distance);
+    light.irradiance =
+        LIVERY_MUTATED(twin_falloff, cosine * reference_mm * reference_mm / (distance * distance));
     if (projector.vignetting > 0.0) {
         const glm::dvec2 half(0.5 * view.width, 0.5 * view.height);
         const glm::dvec2 off = *pixel - half;

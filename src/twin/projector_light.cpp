@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/mutation.h"
 #include "core/parallel.h"
 
 namespace livery {
@@ -54,7 +55,7 @@ double channel_light(const ProjectorDescription& projector,
                      double field_radius) {
     const double gamma =
         projector.gamma[channel] * (1.0 + projector.gamma_spread * field_radius * field_radius);
-    return (1.0 - projector.s_curve) * std::pow(drive, gamma) +
+    return LIVERY_MUTATED(twin_gamma, (1.0 - projector.s_curve) * std::pow(drive, gamma)) +
            projector.s_curve * drive * drive * (3.0 - 2.0 * drive);
 }
 
@@ -105,7 +106,8 @@ ImageF light_from_drive(const ProjectorDescription& projector, const Image8& dri
                         }
                     }
                     // The clear segment opens as far as the three channels have in common.
-                    out[3] = clear * std::min({out[0], out[1], out[2]});
+                    out[3] = LIVERY_MUTATED(twin_white_segment,
+                                            clear * std::min({out[0], out[1], out[2]}));
                     for (int c = 0; c < 3; ++c) out[c] += leak;
                 }
             }

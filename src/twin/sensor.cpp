@@ -6,6 +6,7 @@
 #include <glm/vec2.hpp>
 
 #include "core/colour.h"
+#include "core/mutation.h"
 #include "core/parallel.h"
 #include "core/random.h"
 
@@ -150,7 +151,8 @@ ImageF with_flare(const ImageF& light, double flare, double radius_of_width) {
     const auto weights = gaussian_weights(radius_of_width * light.width / kStep);
     const ImageF wide = blurred_transposed(blurred_transposed(coarse, weights), weights);
     ImageF result(light.width, light.height, 3);
-    const auto kept = static_cast<float>(1.0 - flare), spread = static_cast<float>(flare);
+    const auto kept = static_cast<float>(1.0 - flare);
+    const auto spread = LIVERY_MUTATED(twin_flare, static_cast<float>(flare));
     parallel_for(
         static_cast<std::size_t>(light.height), 16, [&](std::size_t begin, std::size_t end) {
             for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
@@ -208,7 +210,10 @@ ImageF develop(const CameraDescription& camera,
                         float value = units_per_s.values[first + c] * exposure;
                         // Photons arrive at random (variance = mean, in electrons), reading adds
                         // its own.
-                        if (noisy) value += std::sqrt(value * shot + read2) * normal[index[c]];
+                        if (noisy) {
+                            value += LIVERY_MUTATED(twin_noise, std::sqrt(value * shot + read2)) *
+                                     normal[index[c]];
+                        }
                         value = std::clamp(std::round(value + black), 0.0f, full);
                         file.values[first + c] =
                             raw ? value : curve[static_cast<std::size_t>(value)];

@@ -7,6 +7,7 @@
 
 #include "appearance/bsdf_source.h"
 #include "core/colour.h"
+#include "core/mutation.h"
 #include "twin/painted_sphere.h"
 
 namespace livery {
@@ -36,7 +37,9 @@ PaintBands::Side PaintBands::side_of(double mu) const {
     Side side;
     side.passed = passage.coat;
     side.kept = passage.base.x;
-    side.slope = largest_f0_ > 0.0 ? (passage.base.y - passage.base.x) / largest_f0_ : 0.0;
+    side.slope = largest_f0_ > 0.0 ? LIVERY_MUTATED(twin_paint_slope,
+                                                    (passage.base.y - passage.base.x) / largest_f0_)
+                                   : 0.0;
     return side;
 }
 
@@ -93,7 +96,7 @@ glm::dvec3 PaintBands::evaluate(const Moments& m,
                                i.slope * o.slope * m.diffuse_f02;
     const glm::dvec3 under =
         lobes.f0 * m.f0 + lobes.grazing * m.white + diffuse * std::numbers::inv_pi;
-    return lobes.coat * m.white + i.passed * o.passed * under;
+    return LIVERY_MUTATED(twin_paint, lobes.coat * m.white + i.passed * o.passed * under);
 }
 
 Spectrum evaluate_paint(const SpectralPaint& paint, const glm::dvec3& wi, const glm::dvec3& wo) {

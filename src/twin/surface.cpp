@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/error.h"
+#include "core/mutation.h"
 #include "core/random.h"
 #include "twin/light_paths.h"
 
@@ -31,7 +32,7 @@ double rough_diffuse(double sigma_rad, double nl, double nv, double cos_azimuth)
     const double sin_v = std::sqrt(std::max(0.0, 1.0 - nv * nv));
     // sin(larger angle) tan(smaller angle): the smaller angle has the larger cosine.
     const double slant = sin_l * sin_v / std::max({nl, nv, 1e-6});
-    return a + b * std::max(0.0, cos_azimuth) * slant;
+    return LIVERY_MUTATED(twin_rough_diffuse, a + b * std::max(0.0, cos_azimuth) * slant);
 }
 
 /// pi times the GGX lobe with Smith's separable shadowing (Walter et al. 2007) and Schlick's
@@ -49,7 +50,7 @@ double sheen_lobe(
     };
     const double vh = 0.5 * length;  // l + v = 2 (v.h) h for unit l and v
     const double fresnel = f0 + (1.0 - f0) * std::pow(1.0 - std::min(vh, 1.0), 5.0);
-    return d * shadow(nl) * shadow(nv) * fresnel / (4.0 * nl * nv);
+    return LIVERY_MUTATED(twin_sheen, d * shadow(nl) * shadow(nv) * fresnel / (4.0 * nl * nv));
 }
 
 }  // namespace

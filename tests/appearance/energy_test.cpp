@@ -128,7 +128,8 @@ TEST_P(Energy, LightFromAllAroundIsWeightedByTheAlbedo) {
         layer.worst,
         layer.mean());
     EXPECT_LT(lobes.worst, worst);
-    EXPECT_LT(std::abs(lobes.mean()), 0.01);
+    // No fit of a Fresnel term is in flakes.
+    EXPECT_LT(std::abs(lobes.mean()), GetParam() == ReflectanceModel::car_paint ? 0.005 : 0.01);
     EXPECT_LT(faint, 0.019);
     EXPECT_LT(layer.worst, 0.03);
     EXPECT_LT(std::abs(layer.mean()), 0.015);
@@ -173,13 +174,14 @@ TEST(DirectionalAlbedo, WhiteLayersLoseLittle) {
 }
 
 // The fits may err by .8% in what the coat transmits at cosines of .15, by .3% in its path and by
-// .7% in the base's albedo.
+// .7% in the base's albedo. 2% of the cosine for which it transmits are no more than that. The dark
+// coat is for the path.
 TEST(Environment, WhatABaseSendsThroughItsCoatIsTheMeanOverItsLobe) {
     for (const auto model : {ReflectanceModel::clearcoat, ReflectanceModel::car_paint}) {
-        double worst = 0.0;
+        WeightError clear, dark;
         for (const double alpha : {0.03, 0.07, 0.15, 0.25, 0.35, 0.5}) {
             for (const double mu : {0.15, 0.25, 0.35, 0.5, 0.7, 0.95}) {
-                for (const double transmittance : {1.0, 0.7}) {
+                for (const double transmittance : {1.0, 0.7, 0.3}) {
                     f64::BsdfParameters p = plain_parameters();
                     p.diffuse = p.flake_f0 = glm::dvec3(0.0);
                     p.f0 = glm::dvec3(1.0);
@@ -190,12 +192,18 @@ TEST(Environment, WhatABaseSendsThroughItsCoatIsTheMeanOverItsLobe) {
                     const double both = albedo_by_slopes(model, p, direction(mu, 0.0)).x;
                     p.f0 = glm::dvec3(0.0);
                     const double coat = albedo_by_slopes(model, p, direction(mu, 0.0)).x;
-                    worst = std::max(worst, std::abs(mean / (both - coat) - 1.0));
+                    (transmittance < 0.5 ? dark : clear).add(mean, both - coat);
                 }
             }
         }
-        std::printf("    %-10s at most %.4f off\n", model_info(model).name, worst);
-        EXPECT_LT(worst, 0.018);
+        std::printf("    %-10s at most %.4f off; dark coats %.4f, %+.4f in the mean\n",
+                    model_info(model).name,
+                    clear.worst,
+                    dark.worst,
+                    dark.mean());
+        EXPECT_LT(clear.worst, 0.018);
+        EXPECT_LT(dark.worst, 0.03);
+        EXPECT_LT(std::abs(dark.mean()), 0.01);
     }
 }
 

@@ -145,6 +145,21 @@ TEST(EnvironmentFilter, LayersAreMeansOverTheirLobes) {
     }
 }
 
+TEST(EnvironmentFilter, LobesHaveTheirFirstTwoMoments) {
+    // The kernel's degrees 1 and 2: the lobe's means of the cosine and of Legendre's second
+    // polynomial, by how much they fall short of 1.
+    const glm::dvec3 axis(0.0, 0.6, 0.8);
+    for (const double alpha : {0.05, 0.2, 0.5}) {
+        const std::vector<double> kernel = ggx_lobe_kernel(alpha, 8);
+        const auto cosine = [&](const glm::dvec3& d) { return glm::dot(d, axis); };
+        const double first = lobe_mean(alpha, axis, cosine);
+        const double second = lobe_mean(
+            alpha, axis, [&](const glm::dvec3& d) { return 1.5 * cosine(d) * cosine(d) - 0.5; });
+        EXPECT_NEAR(1.0 - kernel[1], 1.0 - first, 0.004 * (1.0 - first)) << "alpha " << alpha;
+        EXPECT_NEAR(1.0 - kernel[2], 1.0 - second, 0.004 * (1.0 - second)) << "alpha " << alpha;
+    }
+}
+
 TEST(EnvironmentFilter, OtherSizesAreTakenAndRotationOnlyTurns) {
     Environment small = environment_of(90, 45, [](glm::dvec3 d) { return glm::dvec3(1.0 + d.x); });
     const FilteredEnvironment filtered = filter_environment(small, {false, true, false, false});
@@ -202,6 +217,11 @@ TEST(EnvironmentFilter, GaussiansMixToTheVarianceAskedFor) {
                 << v;
             EXPECT_NEAR(found.z, 1.0, 1e-4) << v;
         }
+        // The widest by itself
+        const double sigma = static_cast<double>(kFirstGaussian_rad) *
+                             std::pow(2.0, 0.5 * static_cast<double>(kGaussianLayers - 2));
+        const glm::vec3 widest = towards(sky, filtered.gaussians.back(), d);
+        EXPECT_NEAR(widest.x, 1.0 + std::exp(-sigma * sigma) * d.x, 6e-4);
     }
 }
 

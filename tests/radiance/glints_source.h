@@ -11,6 +11,8 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include "core/mutation.h"
+
 #define REAL Real
 #define VEC2 Vec2
 #define VEC3 Vec3

@@ -438,6 +438,14 @@ TEST_P(RenderedGlints, CostNothingWhereThereAreNone) {
     EXPECT_NE(find_pass(plan(scene), "shade:body:car-paint"), nullptr);
 }
 
+TEST(GlintPlaces, AMockUpIsAsManyTimesDenserAsItIsSmaller) {
+    Material material;
+    material.glint_density_per_mm2 = 100.0;
+    material.glint_scale = 5.0;
+    // 25 mm of the product on one of the mock-up, its flakes drawn five times as large: 5^2.
+    EXPECT_NEAR(glint_density_on_mock_up(material, 25.0), 2500.0, 1e-9);
+}
+
 TEST(GlintPlaces, APixelCoversMoreWhereItIsSeenFromTheSide) {
     const View view = look_at({0, 0, 1000}, {0, 0, 0}, 0.2, 400, 300);
     const PixelSize pixels = pixel_size_of(view);

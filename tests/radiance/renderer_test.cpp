@@ -83,6 +83,8 @@ TEST_P(Renderer, EnvironmentLightAgreesWithBruteForce) {
             if (quality == Quality::draft) continue;
             EXPECT_LT(error.median, 0.02);
             EXPECT_LT(error.p99, 0.10);
+            // The whole neither brighter nor darker
+            EXPECT_LT(std::abs(error.mean_signed), 0.001);
         }
     }
 }

@@ -126,7 +126,9 @@ TEST(ShapeCover, PixelsTogetherCoverWhatTheShapeDoes) {
                                   : shape == ArtworkShape::checks
                                       ? 0.5
                                       : std::numbers::pi / 4.0 * share * share;
-            EXPECT_NEAR(sum / (kSide * kSide), wanted, 0.01)
+            // Dots' edges are taken as straight where they are not small beside a pixel.
+            const bool straight = shape == ArtworkShape::dots && pixel_mm < 30.0;
+            EXPECT_NEAR(sum / (kSide * kSide), wanted, straight ? 0.01 : 0.01 * wanted)
                 << kArtworkShapes[static_cast<std::size_t>(shape)] << " at " << pixel_mm << " mm";
         }
     }

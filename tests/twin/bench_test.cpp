@@ -51,6 +51,20 @@ TEST(Bench, AWhiteDiffuserFacingTheProjectorHasLuminanceOne) {
     EXPECT_NEAR(xyz.at(80, 60, 1), 1.0, 1e-4);  // half a pixel off the axis: cos^3 differs by 1e-5
 }
 
+TEST(Bench, AWhiteDiffuserFacingTheProjectorGivesTheCamerasSensitivity) {
+    BenchDescription description = wall_bench();
+    description.mockup.surfaces["*"].reflectance = flat(1.0);
+    Bench bench(description, product_of(make_wall()));
+    auto ports = bench.ports();
+    ports.show(filled(description, 255, 255, 255));
+    const Photograph photograph = ports.photograph(0.05);
+    const glm::dvec2 at = project(description.camera.view, {0.0, 0.0, 0.0}).value();
+    const double green = photograph.image.at(static_cast<int>(at.x), static_cast<int>(at.y), 1) -
+                         photograph.black_level;
+    // In whole units; a pixel off the axis is 1e-4 dimmer.
+    EXPECT_NEAR(green / 0.05 / description.camera.sensitivity_units_per_s, 1.0, 1e-3);
+}
+
 TEST(Bench, PhotographsAreLinearInExposure) {
     const BenchDescription description = wall_bench();
     Bench bench(description, product_of(make_wall()));

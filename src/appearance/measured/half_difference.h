@@ -7,6 +7,8 @@
 #include <glm/trigonometric.hpp>
 #include <glm/vec3.hpp>
 
+#include "core/mutation.h"
+
 #define REAL Real
 #define VEC3 Vec3
 #define R(x) Real(x)

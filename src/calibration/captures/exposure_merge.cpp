@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/mutation.h"
 
 namespace livery {
 
@@ -77,7 +78,7 @@ void add(const Photograph& photograph, MergedPhotographs& merged) {
     const auto seconds = static_cast<float>(photograph.exposure_s);
     for (std::size_t k = 0; k < image.values.size(); ++k) {
         if (image.values[k] >= limit) continue;
-        merged.counts.values[k] += image.values[k] - black;
+        merged.counts.values[k] += image.values[k] - LIVERY_MUTATED(exposure_black, black);
         merged.seconds.values[k] += seconds;
     }
 }

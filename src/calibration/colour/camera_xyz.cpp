@@ -7,6 +7,7 @@
 #include <glm/matrix.hpp>
 
 #include "core/error.h"
+#include "core/mutation.h"
 #include "core/statistics.h"
 
 namespace livery {
@@ -23,7 +24,7 @@ glm::dmat3 regress(const std::vector<glm::dvec3>& x,
         yx += weight[i] * glm::outerProduct(y[i], x[i]);
         xx += weight[i] * glm::outerProduct(x[i], x[i]);
     }
-    return yx * glm::inverse(xx);
+    return LIVERY_MUTATED(camera_matrix_fit, yx * glm::inverse(xx));
 }
 
 }  // namespace
@@ -95,7 +96,8 @@ void match_black(const CameraToXyz& measured,
             glm::inverse(glm::dmat3(mixing.unmixing[i])) * glm::dvec3(mixing.dark[i]);
         const double share = std::max(0.0, brightness(black) / brightness(camera.black));
         if (!std::isfinite(share)) continue;
-        mixing.dark[i] += mixing.unmixing[i] * glm::vec3(excess * share);
+        mixing.dark[i] +=
+            LIVERY_MUTATED(match_black, mixing.unmixing[i] * glm::vec3(excess * share));
     }
 }
 

@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 
 #include "core/error.h"
+#include "core/mutation.h"
 
 namespace livery {
 namespace {
@@ -126,7 +127,7 @@ TableFit fit_drive_table(const std::vector<TableSample>& samples) {
         const glm::dvec3 p = light_of(sample);
         const Row row = row_of(p);
         const double weight = 1.0 / (sample.variance + kModelSigma * kModelSigma);
-        const glm::dvec3 rest = sample.n - full * p;
+        const glm::dvec3 rest = sample.n - LIVERY_MUTATED(drive_table_fit, full * p);
         for (int a = 0; a < row.count; ++a) {
             const int i = row.column[static_cast<std::size_t>(a)];
             const double wa = weight * row.value[static_cast<std::size_t>(a)];

@@ -13,6 +13,7 @@
 
 #include "calibration/colour/shrinkage.h"
 #include "core/error.h"
+#include "core/mutation.h"
 #include "core/parallel.h"
 #include "core/statistics.h"
 
@@ -137,7 +138,7 @@ void solve_span(const Work& work,
         }
     }
     const glm::dmat3 covariance = glm::inverse(normal);
-    span = covariance * right;
+    span = LIVERY_MUTATED(mixing_span, covariance * right);
     variance = {covariance[0][0], covariance[1][1], covariance[2][2]};
 }
 

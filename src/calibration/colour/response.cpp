@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "core/mutation.h"
 #include "core/statistics.h"
 
 namespace livery {
@@ -288,7 +289,7 @@ ResponseCurve invert_levels(const LevelCurve& levels, int dark_drive, int bright
             "the photographed grey levels do not get brighter with the projector's drive",
             "check that the gray-levels photograph shows the gray-levels picture, and that "
             "the projector is not in a mode that inverts or flattens grey");
-    for (double& value : n) value = (value - first) / span;
+    for (double& value : n) value = LIVERY_MUTATED(response_fit, (value - first) / span);
 
     curve.drive_from_n.resize(kResponseSize);
     int above = dark_drive + 1;

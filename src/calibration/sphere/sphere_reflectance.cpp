@@ -11,6 +11,7 @@
 
 #include "appearance/measured/half_difference.h"
 #include "core/error.h"
+#include "core/mutation.h"
 #include "core/parallel.h"
 #include "core/statistics.h"
 
@@ -95,7 +96,7 @@ struct LampRay {
 LampRay toward(const Place& place, const glm::dvec3& light_mm) {
     const glm::dvec3 way = light_mm - place.position_mm;
     const double squared = glm::dot(way, way);
-    return {local(place, way / std::sqrt(squared)), 1.0 / squared};
+    return {local(place, way / std::sqrt(squared)), LIVERY_MUTATED(sphere_falloff, 1.0 / squared)};
 }
 
 struct AngleCell {
@@ -304,7 +305,7 @@ LampResponse lamp_response(const View& view,
                           : "photograph it with a shorter exposure");
     }
     LampResponse lamp;
-    lamp.units = counts / expected;
+    lamp.units = LIVERY_MUTATED(sphere_lamp, counts / expected);
     if (!(lamp.units.x > 0.0 && lamp.units.y > 0.0 && lamp.units.z > 0.0)) {
         throw Refused("the white sphere is not brighter than the cloth around it",
                       "check the white reference's file, exposure and black level");

@@ -6,6 +6,8 @@
 #include <glm/common.hpp>
 #include <glm/gtc/packing.hpp>
 
+#include "core/mutation.h"
+
 // What shade.glsl is written in, as plain floats.
 #define REAL float
 #define VEC2 glm::vec2

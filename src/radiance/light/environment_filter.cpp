@@ -6,6 +6,7 @@
 
 #include <glm/common.hpp>
 
+#include "core/mutation.h"
 #include "core/parallel.h"
 #include "radiance/light/spherical_harmonics.h"
 
@@ -48,7 +49,7 @@ ImageF resample(const ImageF& picture, int width, int height) {
 std::vector<double> cosine_kernel(int degree) {
     std::vector<double> kernel(static_cast<std::size_t>(degree + 1), 0.0);
     kernel[0] = 1.0;
-    kernel[1] = 2.0 / 3.0;
+    kernel[1] = LIVERY_MUTATED(cosine_kernel, 2.0 / 3.0);
     double binomial = 0.5;  // l! / (2^l (l/2)!^2)
     for (int l = 2; l <= degree; l += 2) {
         if (l > 2) binomial *= (l - 1.0) / l;
@@ -61,7 +62,8 @@ std::vector<double> cosine_kernel(int degree) {
 std::vector<double> gaussian_kernel(double sigma_rad, int degree) {
     std::vector<double> kernel;
     for (int l = 0; l <= degree; ++l) {
-        kernel.push_back(std::exp(-0.5 * l * (l + 1.0) * sigma_rad * sigma_rad));
+        kernel.push_back(std::exp(
+            LIVERY_MUTATED(gaussian_kernel, -0.5 * l * (l + 1.0) * sigma_rad * sigma_rad)));
         if (kernel.back() < 1e-6) break;
     }
     return kernel;
@@ -101,7 +103,7 @@ std::vector<double> ggx_lobe_kernel(double alpha, int degree) {
     std::vector<Step> steps;
     for (int step = 0; step < kSteps; ++step) {
         const double u = (step + 0.5) / kSteps;
-        const double tan2 = alpha * alpha * u / (1.0 - u);
+        const double tan2 = LIVERY_MUTATED(ggx_lobe_kernel, alpha * alpha * u / (1.0 - u));
         const double cosine = (1.0 - tan2) / (1.0 + tan2);  // of twice the half vector's angle
         if (cosine <= 0.0) continue;
         const double weight =

@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/error.h"
+#include "core/mutation.h"
 #include "core/parallel.h"
 #include "radiance/light/light_visibility.h"
 #include "radiance/light/spiral.h"
@@ -186,7 +187,7 @@ std::vector<glm::vec3> sky_at_fragments(const Mesh& mesh,
     const SphereStack diffuse({&filtered.diffuse, 1});
     const SphereStack blurred = visibility ? SphereStack({&filtered.blurred, 1}) : SphereStack();
     const auto open_sky = [&](const glm::vec3& n) {
-        return scale * rgb_of(diffuse.at(places.of(n)).in(0));
+        return LIVERY_MUTATED(sky_light, scale * rgb_of(diffuse.at(places.of(n)).in(0)));
     };
     // The same directions estimate the whole: the ratio is kinder to bright lamps
     const auto share_seen = [&](std::span<const glm::vec3> directions, const std::uint64_t* words) {
