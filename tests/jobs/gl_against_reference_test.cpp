@@ -117,7 +117,7 @@ View car_view() { return read_bench_file("default").projector.view; }
 // The upper left of the sphere with a lamp's reflection and the silhouette.
 constexpr glm::ivec2 kSphereCorner{340, 100}, kSphereSky{100, 60};
 // The car's bonnet and wing with a joint.
-constexpr glm::ivec2 kCarCorner{680, 470}, kCarLamps{200, 130};
+constexpr glm::ivec2 kCarCorner{680, 470}, kCarLamps{200, 130}, kCarSky{64, 40};
 
 TEST(GlAgainstReference, SphereUnderLamps) {
     for (const Material& paint : {coated(0.02), flaked(0.02), glossy(0.02), glossy(0.3)}) {
@@ -143,6 +143,16 @@ TEST(GlAgainstReference, CarUnderLamps) {
         expect_close(
             error_of("default", paint, Light::lamps, part_of(car_view(), kCarCorner, kCarLamps)),
             kMedian,
+            kP99);
+    }
+}
+
+TEST(GlAgainstReference, CarInAnEnvironment) {
+    for (const Material& paint : {coated(0.02), flaked(0.02), glossy(0.3)}) {
+        expect_close(
+            error_of(
+                "default", paint, Light::environment, part_of(car_view(), kCarCorner, kCarSky)),
+            kEnvironmentMedian,
             kP99);
     }
 }
