@@ -191,7 +191,7 @@ Json json_of(const FramePlan& plan) {
     Json passes = Json::array(), skipped = Json::array();
     double total = 0.0;
     for (const PlannedPass& pass : plan.passes) {
-        Json entry = {{"name", pass.name},
+        Json entry = {{"name", to_string(pass.id)},
                       {"ms", or_null(pass.ms)},
                       {"why", pass.why},
                       {"predicted_ms", or_null(pass.predicted_ms)},
@@ -203,7 +203,7 @@ Json json_of(const FramePlan& plan) {
         total += pass.ms.value_or(0.0);
     }
     for (const SkippedPass& pass : plan.skipped) {
-        skipped.push_back({{"name", pass.name}, {"why", pass.why}});
+        skipped.push_back({{"name", to_string(pass.id)}, {"why", pass.why}});
     }
     return {{"quality", to_string(plan.quality)},
             {"passes", passes},
@@ -218,10 +218,10 @@ std::string text_of(const FramePlan& plan) {
         if (!pass.ms && pass.predicted_ms) {
             cost = fmt::format("{:8.2f} ms predicted", *pass.predicted_ms);
         }
-        text += fmt::format("runs  {:<30} {:<12} {}\n", pass.name, cost, pass.why);
+        text += fmt::format("runs  {:<30} {:<12} {}\n", to_string(pass.id), cost, pass.why);
     }
     for (const SkippedPass& pass : plan.skipped) {
-        text += fmt::format("skips {:<30} {:<12} {}\n", pass.name, "", pass.why);
+        text += fmt::format("skips {:<30} {:<12} {}\n", to_string(pass.id), "", pass.why);
     }
     return text;
 }

@@ -47,7 +47,8 @@ void judge_looks(DemoResult& result,
                                            options.out,
                                            times);
         for (const PlannedPass& pass : plan.passes) {
-            if (pass.ms && (pass.name.starts_with("shade") || pass.name == "resolve")) {
+            const PassKind kind = pass.id.kind;
+            if (pass.ms && (kind == PassKind::shade || kind == PassKind::resolve)) {
                 design.shade_ms += *pass.ms;
             }
         }

@@ -50,7 +50,7 @@ RenderedFrame render_by_reference(const RenderRequest& request, const Progress& 
     frame.renderer = "reference";
     frame.samples_per_pixel = traced.samples_per_pixel;
     frame.plan = plan_frame(request.scene, Quality::reference, request.stage);
-    PlannedPass& pass = *find_pass(frame.plan, kPathTracerPass);
+    PlannedPass& pass = *find_pass(frame.plan, PassKind::path_tracer);
     pass.work_items = static_cast<double>(frame.radiance_working.pixel_count()) *
                       static_cast<double>(traced.samples_per_pixel);
     pass.ms = 1000.0 * traced.seconds;
@@ -60,7 +60,7 @@ RenderedFrame render_by_reference(const RenderRequest& request, const Progress& 
 void compensate_frame(RenderedFrame& frame, const CompensationTable& table) {
     const auto start = Clock::now();
     frame.drive = compensate(table, frame.radiance_working, &frame.compensation);
-    PlannedPass& pass = *find_pass(frame.plan, kCompensationPass);
+    PlannedPass& pass = *find_pass(frame.plan, PassKind::compensation);
     pass.ms = milliseconds_since(start);
     pass.work_items = static_cast<double>(table.pixels.size());
 }

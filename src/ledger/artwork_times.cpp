@@ -45,8 +45,8 @@ double shading_ms(RadianceRenderer& renderer,
     renderer.render(scene, plan);
     double sum = 0.0;
     for (const PlannedPass& pass : plan.passes) {
-        if (pass.name.starts_with("shade:")) sum += pass.ms.value_or(0.0);
-        if (pass.name == kArtworkPass && cover_ms) *cover_ms = pass.ms.value_or(0.0);
+        if (pass.id.kind == PassKind::shade) sum += pass.ms.value_or(0.0);
+        if (pass.id == PassKind::artwork && cover_ms) *cover_ms = pass.ms.value_or(0.0);
     }
     return sum;
 }

@@ -8,15 +8,16 @@ namespace livery {
 
 PaintCost paint_cost(const Material& material, const std::optional<std::vector<PassCost>>& costs) {
     if (!costs) return {std::nullopt, "no bench has run on this machine"};
-    std::string name = model_info(material.model).name;
-    if (has_glints(material)) name += "+glints";
+    const PassId shading(PassKind::shade, "", material.model, has_glints(material));
     for (const PassCost& cost : *costs) {
-        if (cost.pass == "shade:" + name && cost.quality == Quality::normal &&
-            cost.work_items > 0.0) {
+        if (cost.pass == shading && cost.quality == Quality::normal && cost.work_items > 0.0) {
             return {1e6 * cost.ms / cost.work_items, ""};
         }
     }
-    return {std::nullopt, fmt::format("the last bench shaded nothing with {}", name)};
+    return {std::nullopt,
+            fmt::format("the last bench shaded nothing with {}{}",
+                        model_info(material.model).name,
+                        shading.glints ? "+glints" : "")};
 }
 
 }  // namespace livery

@@ -59,15 +59,12 @@ FragmentCounts count_fragments(const Scene& scene, const View& view, const Progr
     return counts;
 }
 
-double items_of(const std::string& pass, const Scene& scene, const FragmentCounts& counts) {
-    if (pass == kArtworkPass) return counts.wearing;
-    if (pass == kReliefPass) return counts.tilted;
-    if (!pass.starts_with("shade:")) return counts.all;
-    for (std::size_t k = 0; k < scene.artwork.size(); ++k) {
-        if (pass == artwork_pass(scene, k)) return counts.of_artwork[k];
-    }
-    const auto first = pass.find(':') + 1;
-    const auto part = counts.by_part.find(pass.substr(first, pass.rfind(':') - first));
+double items_of(const PassId& pass, const FragmentCounts& counts) {
+    if (pass == PassKind::artwork) return counts.wearing;
+    if (pass == PassKind::relief) return counts.tilted;
+    if (pass.kind != PassKind::shade) return counts.all;
+    if (pass.artwork) return counts.of_artwork[*pass.artwork];
+    const auto part = counts.by_part.find(pass.part);
     return part == counts.by_part.end() ? 0.0 : part->second;
 }
 
@@ -83,11 +80,7 @@ std::optional<std::vector<PassCost>> known_pass_costs() {
     return read_pass_costs(file);
 }
 
-std::string cost_key(const std::string& pass_name) {
-    if (pass_name.starts_with("shade:")) return "shade" + pass_name.substr(pass_name.rfind(':'));
-    const auto dash = pass_name.rfind("-visibility");
-    return dash == std::string::npos ? pass_name : "light-visibility";
-}
+PassId cost_key(const PassId& pass) { return {pass.kind, "", pass.model, pass.glints}; }
 
 std::string predict(FramePlan& plan,
                     const Scene& scene,
@@ -101,27 +94,28 @@ std::string predict(FramePlan& plan,
         return "no predictions: no bench has run on this machine (livery bench --suite speed)";
     }
     const FragmentCounts counts = count_fragments(scene, view, progress);
-    for (PlannedPass& pass : plan.passes) pass.work_items = items_of(pass.name, scene, counts);
+    for (PlannedPass& pass : plan.passes) pass.work_items = items_of(pass.id, counts);
     return predict_drawn(plan, *costs);
 }
 
 std::string predict_drawn(FramePlan& plan, const std::vector<PassCost>& costs) {
     // The bench times shading per fragment and all else per pixel of the mock-up.
-    const PlannedPass* resolve = find_pass(plan, kResolvePass);
+    const PlannedPass* resolve = find_pass(plan, PassKind::resolve);
     const double pixels = resolve ? resolve->work_items : 0.0;
     std::string note;
     for (PlannedPass& pass : plan.passes) {
         const auto known = std::find_if(costs.begin(), costs.end(), [&](const PassCost& cost) {
-            return cost.pass == cost_key(pass.name) && cost.quality == plan.quality;
+            return cost.pass == cost_key(pass.id) && cost.quality == plan.quality;
         });
         if (known == costs.end()) {
-            pass.unpredicted_because = fmt::format(
-                "the last bench did not time {} at {} quality", pass.name, to_string(plan.quality));
+            pass.unpredicted_because = fmt::format("the last bench did not time {} at {} quality",
+                                                   to_string(pass.id),
+                                                   to_string(plan.quality));
             note = "some passes are not predicted: see unpredicted_because";
             continue;
         }
-        const bool counted = pass.name.starts_with("shade:") || pass.name == kArtworkPass ||
-                             pass.name == kReliefPass;
+        const bool counted = pass.id.kind == PassKind::shade || pass.id == PassKind::artwork ||
+                             pass.id == PassKind::relief;
         const double items = counted ? pass.work_items : pixels;
         pass.predicted_ms =
             known->work_items > 0.0 ? known->ms * items / known->work_items : known->ms;
@@ -129,7 +123,7 @@ std::string predict_drawn(FramePlan& plan, const std::vector<PassCost>& costs) {
         if (!known->error) {
             pass.unpredicted_because =
                 "its part of the error is not measured apart: the frame's stands at " +
-                std::string(kResolvePass);
+                to_string(PassKind::resolve);
         }
     }
     return note;

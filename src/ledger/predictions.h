@@ -14,7 +14,7 @@ namespace livery {
 
 /// One kind of pass as the last ledger has it: milliseconds for so many work items.
 struct PassCost {
-    std::string pass;  ///< name without the part it draws: "shade:clearcoat"
+    PassId pass;  ///< as cost_key() has it
     Quality quality = Quality::normal;
     double ms = 0.0;
     double work_items = 0.0;  ///< 0: cost does not depend on the picture
@@ -34,8 +34,8 @@ std::optional<std::vector<PassCost>> known_pass_costs();
 /// The same of its text.
 std::vector<PassCost> parse_pass_costs(const std::string& text, const std::filesystem::path& file);
 
-/// "shade:body:clearcoat" -> "shade:clearcoat": what the cost of a pass depends on.
-std::string cost_key(const std::string& pass_name);
+/// What the cost of a pass depends on: the same of any part, artwork and light, "shade:clearcoat".
+PassId cost_key(const PassId& pass);
 
 /// Fills predicted_ms and the reasons for those that stay empty; returns a note for people (empty
 /// when everything is predicted). Counts the mock-up's pixels with a coarse ray cast.

@@ -59,8 +59,8 @@ LedgerEffect& effect(SpeedLedger& result, const std::string& name) {
 
 /// Milliseconds of every pass over the repeats of one quality.
 struct PassTimes {
-    std::map<std::string, std::vector<double>> ms;
-    std::map<std::string, double> work_items;
+    std::map<PassId, std::vector<double>> ms;
+    std::map<PassId, double> work_items;
 };
 
 void collect(PassTimes& times, const FramePlan& plan) {
@@ -68,13 +68,13 @@ void collect(PassTimes& times, const FramePlan& plan) {
     // all but shading is kept for its pixels.
     double pixels = 0.0;
     for (const PlannedPass& pass : plan.passes) {
-        if (pass.name == kResolvePass) pixels = pass.work_items;
+        if (pass.id == PassKind::resolve) pixels = pass.work_items;
     }
-    std::map<std::string, double> ms, items;
+    std::map<PassId, double> ms, items;
     for (const PlannedPass& pass : plan.passes) {
         if (!pass.ms) continue;
-        ms[cost_key(pass.name)] += *pass.ms;
-        items[cost_key(pass.name)] += pass.name.starts_with("shade:") ? pass.work_items : pixels;
+        ms[cost_key(pass.id)] += *pass.ms;
+        items[cost_key(pass.id)] += pass.id.kind == PassKind::shade ? pass.work_items : pixels;
     }
     for (const auto& [key, value] : ms) {
         if (value <= 0.0) continue;
@@ -209,16 +209,20 @@ void time_frames(SpeedLedger& result,
         }
     }
     // A prediction scales both by the fragments of the parts that wear it.
-    passes.ms[kArtworkPass] = artwork.cover_ms;
-    passes.ms[kReliefPass] = artwork.relief_ms;
-    passes.work_items[kArtworkPass] = passes.work_items[kReliefPass] = artwork.body_fragments;
-    passes.ms[kCompensationPass] = cpu_ms;
-    passes.work_items[kCompensationPass] = pixels;
+    passes.ms[PassKind::artwork] = artwork.cover_ms;
+    passes.ms[PassKind::relief] = artwork.relief_ms;
+    passes.work_items[PassKind::artwork] = passes.work_items[PassKind::relief] =
+        artwork.body_fragments;
+    passes.ms[PassKind::compensation] = cpu_ms;
+    passes.work_items[PassKind::compensation] = pixels;
     for (const auto& [key, ms] : passes.ms) {
         const LedgerLevel level = worked_level_of(name, ms, passes.work_items[key]);
-        effect(result, "pass " + key).levels.push_back(level);
-        result.pass_costs.push_back(
-            {key, quality, level.ms, key == kFilterPass ? 0.0 : level.work_items, std::nullopt});
+        effect(result, "pass " + to_string(key)).levels.push_back(level);
+        result.pass_costs.push_back({key,
+                                     quality,
+                                     level.ms,
+                                     key == PassKind::environment_filter ? 0.0 : level.work_items,
+                                     std::nullopt});
     }
 }
 
@@ -251,7 +255,9 @@ void compare_with_reference(SpeedLedger& result,
         level.unit = "of design white, median difference from the path tracer";
         effect(result, "quality level: first frame, and its error").levels.push_back(level);
         for (PassCost& cost : result.pass_costs) {
-            if (cost.pass == kResolvePass && cost.quality == quality) cost.error = error.median;
+            if (cost.pass == PassKind::resolve && cost.quality == quality) {
+                cost.error = error.median;
+            }
         }
     }
 }

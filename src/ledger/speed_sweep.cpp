@@ -81,10 +81,10 @@ SweepTime time_of(std::vector<double> ms) {
     return {ms[ms.size() / 2], ms.front()};
 }
 
-double milliseconds_of(const FramePlan& plan, std::string_view start) {
+double milliseconds_of(const FramePlan& plan, PassKind kind) {
     double sum = 0.0;
     for (const PlannedPass& pass : plan.passes) {
-        if (pass.name.starts_with(start)) sum += pass.ms.value_or(0.0);
+        if (pass.id.kind == kind) sum += pass.ms.value_or(0.0);
     }
     return sum;
 }
@@ -132,8 +132,8 @@ class Swapper {
         CompensationStats stats;
         compensate_again(table_, *wanted, covered_, &drive_, &stats);
         point->fragments_shaded = renderer_->counters().fragments_shaded - before;
-        return {milliseconds_of(plan, "shade:"),
-                milliseconds_of(plan, kResolvePass),
+        return {milliseconds_of(plan, PassKind::shade),
+                milliseconds_of(plan, PassKind::resolve),
                 milliseconds_since(corrected),
                 milliseconds_since(start)};
     }

@@ -84,7 +84,7 @@ void join(const Image<T>& left, const Image<T>& right, int column, Image<T>* joi
 /// `more` into `plan`: milliseconds are added up, and passes that it lacks put in where they stand.
 void add_milliseconds(FramePlan& plan, const FramePlan& more, bool add_passes) {
     for (const PlannedPass& pass : more.passes) {
-        PlannedPass* known = find_pass(plan, pass.name);
+        PlannedPass* known = find_pass(plan, pass.id);
         if (known && pass.ms) {
             known->ms = known->ms.value_or(0.0) + *pass.ms;
         } else if (!known && add_passes) {
@@ -234,7 +234,7 @@ void FrameLane::prepare(const FrameDescription& description, const Progress& pro
         if (used) continue;
         PlannedPass& pass = passes.emplace_back();
         const ModelInfo& model = model_info(program.model);
-        pass.name = fmt::format("prepare:{}{}", model.name, program.glints ? "+glints" : "");
+        pass.id = {PassKind::prepare, "", program.model, program.glints};
         pass.why = fmt::format("{}{} may be next: made ready ahead",
                                model.in_words,
                                program.glints ? " and glints" : "");
@@ -367,7 +367,7 @@ void FrameLane::draw_side(const FrameDescription& description, std::size_t index
 void FrameLane::compensate_side(const std::shared_ptr<const ProjectorSetup>& setup, Side& side) {
     const auto start = Clock::now();
     std::shared_ptr<Image8> drive;
-    PlannedPass& pass = *find_pass(side.plan, kCompensationPass);
+    PlannedPass& pass = *find_pass(side.plan, PassKind::compensation);
     side.compensation = {};
     if (setup->table) {
         // On the processor: quicker than OpenGL in software, and it counts what is out of the

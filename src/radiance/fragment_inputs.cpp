@@ -121,7 +121,7 @@ void FragmentInputs::solve_lights(const Scene& scene,
     const int rays = rays_of(plan.quality).light;
     std::size_t planned = 0;
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-        const std::string pass = visibility_pass(i);
+        const PassId pass = visibility_pass(i);
         if (!find_pass(plan, pass)) continue;
         const DirectionalLight& light = scene.lights[i];
         const auto found = std::find_if(lights_.begin(), lights_.end(), [&](const Light& l) {
@@ -151,7 +151,7 @@ void FragmentInputs::solve_sky(const Scene& scene,
                                const FramePlan& plan,
                                StageClock& clock,
                                const Progress& progress) {
-    if (!find_pass(plan, kIrradiancePass)) {
+    if (!find_pass(plan, PassKind::environment_irradiance)) {
         if (sky_made_.of) directions_stale_ = diffuse_light_stale_ = true;
         sky_made_ = {};
         diffused_ = nullptr;
@@ -159,16 +159,16 @@ void FragmentInputs::solve_sky(const Scene& scene,
         sky_.clear();
         return;
     }
-    const bool occluded = find_pass(plan, kOcclusionPass) != nullptr;
+    const bool occluded = find_pass(plan, PassKind::ambient_occlusion) != nullptr;
     const SkyRays sky_rays = rays_of(plan.quality).sky;
     const int rays = occluded ? sky_rays.first : 0;
     const bool stands = sky_made_.of == scene.environment && enough(sky_made_.rays, rays);
     const bool visible =
         !occluded || stands || (sky_visibility_ && enough(sky_visibility_->rays.first, rays));
-    clock.run(kOcclusionPass, !visible, [&] {
+    clock.run(PassKind::ambient_occlusion, !visible, [&] {
         sky_visibility_ = solve_sky_visibility(mesh_, tracer_, *map_, sky_rays, progress);
     });
-    clock.run(kIrradiancePass, !stands, [&] {
+    clock.run(PassKind::environment_irradiance, !stands, [&] {
         if (!same_map(diffused_, scene.environment)) {
             FilteredEnvironment filtered =
                 filter_environment(*scene.environment, {false, true, true, false}, progress);
@@ -188,8 +188,8 @@ void FragmentInputs::solve_mirror(const Scene& scene,
                                   StageClock& clock,
                                   const Progress& progress) {
     // A scene whose paints do not mirror keeps what the next one may; one without environment not.
-    if (!find_pass(plan, kMirrorPass)) {
-        if (find_pass(plan, kIrradiancePass)) return;
+    if (!find_pass(plan, PassKind::mirrored_environment)) {
+        if (find_pass(plan, PassKind::environment_irradiance)) return;
         if (mirror_made_.of) changed_.glossy = true;
         mirror_made_ = {};
         layered_ = nullptr;
@@ -198,13 +198,13 @@ void FragmentInputs::solve_mirror(const Scene& scene,
         mirror_texels_ = {};
         return;
     }
-    clock.run(kFilterPass, !same_map(layered_, scene.environment), [&] {
+    clock.run(PassKind::environment_filter, !same_map(layered_, scene.environment), [&] {
         filtered_.gaussians =
             filter_environment(*scene.environment, {false, false, false, true}, progress).gaussians;
     });
     layered_ = scene.environment;
     const glm::dvec3 eye = scene.eye_in_world_mm;
-    const bool occluded = find_pass(plan, kReflectionPass) != nullptr;
+    const bool occluded = find_pass(plan, PassKind::reflection_occlusion) != nullptr;
     const int rays = occluded ? rays_of(plan.quality).mirror : 0;
     const bool stands = mirror_made_.of == scene.environment && mirror_made_.eye_mm == eye &&
                         enough(mirror_made_.rays, rays);
@@ -212,11 +212,11 @@ void FragmentInputs::solve_mirror(const Scene& scene,
         !occluded || stands ||
         (mirror_visibility_ && enough(mirror_visibility_->quadrature.nodes(), rays) &&
          visibility_eye_ == eye);
-    clock.run(kReflectionPass, !visible, [&] {
+    clock.run(PassKind::reflection_occlusion, !visible, [&] {
         mirror_visibility_ = solve_mirror_visibility(mesh_, tracer_, *map_, eye, rays, progress);
         visibility_eye_ = eye;
     });
-    clock.run(kMirrorPass, !stands, [&] {
+    clock.run(PassKind::mirrored_environment, !stands, [&] {
         fill_mirror(scene, occluded, progress);
         mirror_made_ = {
             scene.environment, occluded ? mirror_visibility_->quadrature.nodes() : 0, eye};
@@ -281,24 +281,24 @@ void FragmentInputs::fill_mirror(const Scene& scene, bool occluded, const Progre
 FragmentInputs::Changed FragmentInputs::upload(const Scene& scene, StageClock& clock) {
     if (!mirror_made_.of) shading_.mirror = InputLayers();
     if (!mirror_texels_.empty()) {
-        clock.add(kMirrorPass, [&] {
+        clock.add(PassKind::mirrored_environment, [&] {
             upload_mirror();
             changed_.glossy = true;
         });
     }
     const bool other_eye = eye_ != scene.eye_in_world_mm;
-    clock.run(kDirectionsPass, directions_stale_ || other_eye, [&] {
+    clock.run(PassKind::directions, directions_stale_ || other_eye, [&] {
         upload_directions(scene);
         eye_ = scene.eye_in_world_mm;
         directions_stale_ = false;
         changed_.glossy = true;
     });
-    clock.run(kDiffuseLightPass, diffuse_light_stale_, [&] {
+    clock.run(PassKind::diffuse_light, diffuse_light_stale_, [&] {
         upload_diffuse_light();
         diffuse_light_stale_ = false;
         changed_.diffuse = true;
     });
-    clock.run(kGlintPlacesPass, places_stale_, [&] {
+    clock.run(PassKind::glint_places, places_stale_, [&] {
         upload_places();
         places_stale_ = false;
     });

@@ -34,12 +34,12 @@ class StageClock {
     explicit StageClock(FramePlan& plan, const Progress* progress = nullptr)
         : plan_(&plan), progress_(progress) {}
     template <typename Work>
-    bool run(const std::string& pass, bool stale, const Work& work) {
+    bool run(const PassId& pass, bool stale, const Work& work) {
         PlannedPass* planned = find_pass(*plan_, pass);
         if (!planned) return false;
         planned->ms = 0.0;
         if (!stale) return false;
-        if (progress_) progress_->update(place_of(*planned), pass);
+        if (progress_) progress_->update(place_of(*planned), to_string(pass));
         const double begin = now_ms();
         work();
         planned->ms = now_ms() - begin;
@@ -48,7 +48,7 @@ class StageClock {
     }
     /// What more a listed pass takes after it ran.
     template <typename Work>
-    void add(const std::string& pass, const Work& work) {
+    void add(const PassId& pass, const Work& work) {
         PlannedPass* planned = find_pass(*plan_, pass);
         if (!planned) return;
         const double begin = now_ms();

@@ -27,13 +27,14 @@ namespace {
 
 void check_fits(const Scene& scene, const FramePlan& plan, const Product* product) {
     check_argument(scene.product.get() == product, "the scene shows another product");
-    const auto check = [&](const std::string& pass) {
-        check_argument(find_pass(plan, pass) != nullptr,
-                       fmt::format("the plan has no pass \"{}\": it is of another scene", pass));
+    const auto check = [&](const PassId& pass) {
+        check_argument(
+            find_pass(plan, pass) != nullptr,
+            fmt::format("the plan has no pass \"{}\": it is of another scene", to_string(pass)));
     };
     for (std::size_t i = 0; i < scene.part_materials.size(); ++i) check(shade_pass(scene, i));
     for (std::size_t k = 0; k < scene.artwork.size(); ++k) check(artwork_pass(scene, k));
-    if (!scene.relief.empty()) check(kReliefPass);
+    if (!scene.relief.empty()) check(PassKind::relief);
 }
 
 /// What a part was shaded with.
@@ -162,20 +163,21 @@ void RadianceRenderer::State::solve(const Scene& scene,
                                     const Progress& progress) {
     rays_of(plan.quality);
     check_fits(scene, plan, geometry->product.get());
-    if (PlannedPass* pass = find_pass(plan, kSurfaceMapPass)) {
+    if (PlannedPass* pass = find_pass(plan, PassKind::surface_map)) {
         pass->ms = map_reported ? 0.0 : geometry->ms;
         if (!map_reported) ++counters.passes_run;
         map_reported = true;
     }
     const int before = clock.passes_run();
     const bool other_relief = !same_relief(relief, scene.relief);
-    clock.run(kReliefPass, other_relief, [&] { tilted = relieved(map, scene, geometry->view); });
+    clock.run(
+        PassKind::relief, other_relief, [&] { tilted = relieved(map, scene, geometry->view); });
     if (other_relief) {
         inputs.use(scene.relief.empty() ? map : tilted);
         relief = scene.relief;
     }
     inputs.solve(scene, plan, clock, progress);
-    if (!clock.run(kArtworkPass, !artwork.stands(scene), [&] { artwork.solve(scene); })) {
+    if (!clock.run(PassKind::artwork, !artwork.stands(scene), [&] { artwork.solve(scene); })) {
         artwork.solve(scene);  // what is there no more
     }
     counters.passes_run += clock.passes_run() - before;
@@ -293,7 +295,7 @@ void RadianceRenderer::State::shade_part(FramePlan& plan, const Scene& scene, st
 }
 
 void RadianceRenderer::State::run_resolve(FramePlan& plan) {
-    PlannedPass* pass = find_pass(plan, kResolvePass);
+    PlannedPass* pass = find_pass(plan, PassKind::resolve);
     check_argument(pass != nullptr, "the plan has no resolve pass");
     pass->ms = 0.0;
     if (parts_shaded == 0) return;
@@ -383,10 +385,10 @@ void RadianceRenderer::count_work(const Scene& scene, FramePlan& plan) const {
     const State& s = *state_;
     const auto fragments = static_cast<double>(s.map.fragments.size());
     const QualityRays rays = rays_of(plan.quality);
-    const auto set = [&](const std::string& name, double items) {
-        if (PlannedPass* pass = find_pass(plan, name)) pass->work_items = items;
+    const auto set = [&](const PassId& id, double items) {
+        if (PlannedPass* pass = find_pass(plan, id)) pass->work_items = items;
     };
-    set(kSurfaceMapPass, static_cast<double>(s.map.covered_pixels) * s.map.samples_per_pixel);
+    set(PassKind::surface_map, static_cast<double>(s.map.covered_pixels) * s.map.samples_per_pixel);
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
         const bool point = scene.lights[i].angle_rad <= 0.0;
         const int most = static_cast<int>(kSamplesAFragment);
@@ -394,15 +396,15 @@ void RadianceRenderer::count_work(const Scene& scene, FramePlan& plan) const {
     }
     std::size_t tilted = 0;
     for (const PartArtwork& relief : scene.relief) tilted += s.layout.fragments(relief.part);
-    set(kReliefPass, static_cast<double>(tilted));
-    set(kIrradiancePass, fragments);
-    set(kOcclusionPass, fragments * rays.sky.first);
-    set(kFilterPass, static_cast<double>(kFilterTexels));
-    set(kReflectionPass, fragments * mirror_rays(rays.mirror));
-    set(kMirrorPass, fragments * mirror_nodes(rays.mirror));
-    set(kDirectionsPass, fragments);
-    set(kDiffuseLightPass, fragments);
-    set(kGlintPlacesPass, fragments);
+    set(PassKind::relief, static_cast<double>(tilted));
+    set(PassKind::environment_irradiance, fragments);
+    set(PassKind::ambient_occlusion, fragments * rays.sky.first);
+    set(PassKind::environment_filter, static_cast<double>(kFilterTexels));
+    set(PassKind::reflection_occlusion, fragments * mirror_rays(rays.mirror));
+    set(PassKind::mirrored_environment, fragments * mirror_nodes(rays.mirror));
+    set(PassKind::directions, fragments);
+    set(PassKind::diffuse_light, fragments);
+    set(PassKind::glint_places, fragments);
     for (std::size_t p = 0; p < scene.part_materials.size(); ++p) {
         set(shade_pass(scene, p), static_cast<double>(s.layout.fragments(p)));
     }
@@ -413,8 +415,8 @@ void RadianceRenderer::count_work(const Scene& scene, FramePlan& plan) const {
         const std::size_t coats = coats_of(scene.artwork[k]).size();
         set(artwork_pass(scene, k), static_cast<double>(coats * s.artwork.covered(k)));
     }
-    set(kArtworkPass, static_cast<double>(worn));
-    set(kResolvePass, static_cast<double>(s.map.covered_pixels));
+    set(PassKind::artwork, static_cast<double>(worn));
+    set(PassKind::resolve, static_cast<double>(s.map.covered_pixels));
 }
 
 ImageF RadianceRenderer::read_back() const { return *picture(); }

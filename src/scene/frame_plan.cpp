@@ -18,9 +18,9 @@ namespace {
 
 constexpr std::array kQualities{Quality::draft, Quality::normal, Quality::high, Quality::reference};
 
-void plan_pass(FramePlan& plan, std::string name, std::string why) {
+void plan_pass(FramePlan& plan, PassId id, std::string why) {
     PlannedPass& pass = plan.passes.emplace_back();
-    pass.name = std::move(name);
+    pass.id = std::move(id);
     pass.why = std::move(why);
 }
 
@@ -69,7 +69,7 @@ void plan_lights(const Scene& scene, FramePlan& plan) {
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
         const DirectionalLight& light = scene.lights[i];
         const std::string name = light_name(i);
-        const std::string pass = visibility_pass(i);
+        const PassId pass = visibility_pass(i);
         if (is_black(light.radiance_rec709)) {
             plan.skipped.push_back({pass, fmt::format("the {} light is black", name)});
         } else if (light.angle_rad <= 0.0) {
@@ -96,44 +96,55 @@ void plan_lights(const Scene& scene, FramePlan& plan) {
 void plan_environment(const Needs& needs, FramePlan& plan) {
     const std::string mirror = needs.mirror_parts.empty() ? "" : *needs.mirror_parts.begin();
     if (!needs.environment) {
-        for (const char* pass :
-             {kIrradiancePass, kOcclusionPass, kFilterPass, kReflectionPass, kMirrorPass}) {
+        for (const PassKind pass : {PassKind::environment_irradiance,
+                                    PassKind::ambient_occlusion,
+                                    PassKind::environment_filter,
+                                    PassKind::reflection_occlusion,
+                                    PassKind::mirrored_environment}) {
             plan.skipped.push_back({pass, "no environment in the look"});
         }
         return;
     }
-    plan_pass(plan, kIrradiancePass, "the look has an environment that lights every part");
     plan_pass(plan,
-              kOcclusionPass,
+              PassKind::environment_irradiance,
+              "the look has an environment that lights every part");
+    plan_pass(plan,
+              PassKind::ambient_occlusion,
               plan.quality == Quality::draft
                   ? "joints are darker than what they join; draft looks at nothing else"
                   : "parts hide the environment from one another");
     if (mirror.empty()) {
-        for (const char* pass : {kFilterPass, kReflectionPass, kMirrorPass}) {
+        for (const PassKind pass : {PassKind::environment_filter,
+                                    PassKind::reflection_occlusion,
+                                    PassKind::mirrored_environment}) {
             plan.skipped.push_back({pass, "no part mirrors the environment: all are diffuse"});
         }
         return;
     }
-    plan_pass(plan, kFilterPass, fmt::format("part {} mirrors the environment", mirror));
+    plan_pass(
+        plan, PassKind::environment_filter, fmt::format("part {} mirrors the environment", mirror));
     if (plan.quality == Quality::draft) {
         plan.skipped.push_back(
-            {kReflectionPass, "draft mirrors the environment through other parts"});
+            {PassKind::reflection_occlusion, "draft mirrors the environment through other parts"});
     } else {
-        plan_pass(plan, kReflectionPass, fmt::format("part {} may mirror other parts", mirror));
+        plan_pass(plan,
+                  PassKind::reflection_occlusion,
+                  fmt::format("part {} may mirror other parts", mirror));
     }
     plan_pass(plan,
-              kMirrorPass,
+              PassKind::mirrored_environment,
               "what each fragment mirrors does not depend on its paint's colour: solved once");
 }
 
 void plan_glints(const Scene& scene, FramePlan& plan) {
     if (!any_paint(scene, has_glints)) {
-        plan.skipped.push_back({kGlintPlacesPass, "no paint of the scene has glints"});
+        plan.skipped.push_back({PassKind::glint_places, "no paint of the scene has glints"});
     } else if (!any_light(scene)) {
-        plan.skipped.push_back({kGlintPlacesPass, "flakes glint under lights; the look has none"});
+        plan.skipped.push_back(
+            {PassKind::glint_places, "flakes glint under lights; the look has none"});
     } else {
         plan_pass(plan,
-                  kGlintPlacesPass,
+                  PassKind::glint_places,
                   "how much of the product a pixel covers, and how many flakes: once for a pose");
     }
 }
@@ -150,10 +161,11 @@ std::string paint_in_words(const Scene& scene, const Material& material) {
 
 void plan_shading(const Scene& scene, const Needs& needs, FramePlan& plan) {
     if (needs.sided_parts.empty()) {
-        plan.skipped.push_back({kDirectionsPass, "every paint looks the same from every side"});
+        plan.skipped.push_back(
+            {PassKind::directions, "every paint looks the same from every side"});
     } else {
         plan_pass(plan,
-                  kDirectionsPass,
+                  PassKind::directions,
                   needs.mirror_parts.empty()
                       ? fmt::format("the shade of part {} depends on where the eye is",
                                     *needs.sided_parts.begin())
@@ -165,15 +177,16 @@ void plan_shading(const Scene& scene, const Needs& needs, FramePlan& plan) {
             return model_info(model).same_from_all_sides;
         });
     if (plain) {
-        plan_pass(plan, kDiffuseLightPass, "plain diffuse parts need only the sum of all light");
+        plan_pass(
+            plan, PassKind::diffuse_light, "plain diffuse parts need only the sum of all light");
     } else {
-        plan.skipped.push_back({kDiffuseLightPass, "no part is plain diffuse"});
+        plan.skipped.push_back({PassKind::diffuse_light, "no part is plain diffuse"});
     }
     if (scene.artwork.empty()) {
-        plan.skipped.push_back({kArtworkPass, "nothing lies over the parts' paints"});
+        plan.skipped.push_back({PassKind::artwork, "nothing lies over the parts' paints"});
     } else {
         plan_pass(plan,
-                  kArtworkPass,
+                  PassKind::artwork,
                   "how much of each fragment artwork covers, once a pose and place of it");
     }
     plan_glints(scene, plan);
@@ -199,11 +212,11 @@ void plan_shading(const Scene& scene, const Needs& needs, FramePlan& plan) {
     }
     for (const ModelInfo& model : model_table()) {
         if (needs.models.contains(model.model)) continue;
-        plan.skipped.push_back({fmt::format("shade:*:{}", model.name), model.unused});
+        plan.skipped.push_back({PassId(PassKind::shade, "*", model.model), model.unused});
     }
     if (const ModelInfo& model = model_info(ReflectanceModel::measured);
         !needs.models.contains(model.model)) {
-        plan.skipped.push_back({fmt::format("shade:*:{}", model.name), model.unused});
+        plan.skipped.push_back({PassId(PassKind::shade, "*", model.model), model.unused});
     }
 }
 
@@ -232,39 +245,39 @@ std::string to_string(Quality quality) {
         fmt::format("quality {} does not exist", static_cast<int>(quality)));
 }
 
-std::string light_name(std::size_t light) {
-    if (light == 0) return "key";
-    if (light == 1) return "fill";
-    return fmt::format("light-{}", light + 1);
+PassId visibility_pass(std::size_t light) {
+    PassId pass(PassKind::light_visibility);
+    pass.light = light;
+    return pass;
 }
 
-std::string visibility_pass(std::size_t light) { return light_name(light) + "-visibility"; }
-
-std::string shade_pass(const Scene& scene, std::size_t part) {
-    return fmt::format("shade:{}:{}{}",
-                       scene.product->mesh.parts.at(part).name,
-                       model_info(scene.part_materials.at(part).model).name,
-                       draws_glints(scene, scene.part_materials.at(part)) ? "+glints" : "");
+PassId shade_pass(const Scene& scene, std::size_t part) {
+    const Material& material = scene.part_materials.at(part);
+    return {PassKind::shade,
+            scene.product->mesh.parts.at(part).name,
+            material.model,
+            draws_glints(scene, material)};
 }
 
-std::string artwork_pass(const Scene& scene, std::size_t artwork) {
+PassId artwork_pass(const Scene& scene, std::size_t artwork) {
     const PartArtwork& one = scene.artwork.at(artwork);
-    return fmt::format("shade:{}:artwork-{}:{}{}",
-                       scene.product->mesh.parts.at(one.part).name,
-                       artwork + 1,
-                       model_info(one.material.model).name,
-                       draws_glints(scene, one.material) ? "+glints" : "");
+    PassId pass(PassKind::shade,
+                scene.product->mesh.parts.at(one.part).name,
+                one.material.model,
+                draws_glints(scene, one.material));
+    pass.artwork = artwork;
+    return pass;
 }
 
-const PlannedPass* find_pass(const FramePlan& plan, const std::string& name) {
+const PlannedPass* find_pass(const FramePlan& plan, const PassId& id) {
     const auto found = std::find_if(plan.passes.begin(),
                                     plan.passes.end(),
-                                    [&](const PlannedPass& pass) { return pass.name == name; });
+                                    [&](const PlannedPass& pass) { return pass.id == id; });
     return found == plan.passes.end() ? nullptr : &*found;
 }
 
-PlannedPass* find_pass(FramePlan& plan, const std::string& name) {
-    return const_cast<PlannedPass*>(find_pass(std::as_const(plan), name));
+PlannedPass* find_pass(FramePlan& plan, const PassId& id) {
+    return const_cast<PlannedPass*>(find_pass(std::as_const(plan), id));
 }
 
 FramePlan plan_frame(const Scene& scene, Quality quality, FrameStage stage) {
@@ -277,27 +290,28 @@ FramePlan plan_frame(const Scene& scene, Quality quality, FrameStage stage) {
     FramePlan plan;
     plan.quality = quality;
     if (quality == Quality::reference) {
-        plan_pass(plan, kPathTracerPass, "the ground truth was asked for");
-        plan.skipped.push_back({kSurfaceMapPass, "the path tracer finds what it sees by itself"});
+        plan_pass(plan, PassKind::path_tracer, "the ground truth was asked for");
+        plan.skipped.push_back(
+            {PassKind::surface_map, "the path tracer finds what it sees by itself"});
     } else {
-        plan_pass(plan, kSurfaceMapPass, "what each projector pixel lights, once for a pose");
+        plan_pass(plan, PassKind::surface_map, "what each projector pixel lights, once for a pose");
         if (scene.relief.empty()) {
-            plan.skipped.push_back({kReliefPass, "no part has a relief"});
+            plan.skipped.push_back({PassKind::relief, "no part has a relief"});
         } else {
             plan_pass(plan,
-                      kReliefPass,
+                      PassKind::relief,
                       fmt::format("the relief of part {} tilts its surface before light is solved",
                                   scene.product->mesh.parts[scene.relief.front().part].name));
         }
         plan_lights(scene, plan);
         plan_environment(needs, plan);
         plan_shading(scene, needs, plan);
-        plan_pass(plan, kResolvePass, "fragments of a pixel are mixed by their coverage");
+        plan_pass(plan, PassKind::resolve, "fragments of a pixel are mixed by their coverage");
     }
     if (stage == FrameStage::projector) {
-        plan_pass(plan, kCompensationPass, "the frame goes to the projector");
+        plan_pass(plan, PassKind::compensation, "the frame goes to the projector");
     } else {
-        plan.skipped.push_back({kCompensationPass, "the frame stops at radiance"});
+        plan.skipped.push_back({PassKind::compensation, "the frame stops at radiance"});
     }
     return plan;
 }

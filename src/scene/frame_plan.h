@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/pass_id.h"
 #include "scene/scene.h"
 
 namespace livery {
@@ -14,7 +15,7 @@ Quality parse_quality(const std::string& text);  ///< throws std::invalid_argume
 std::string to_string(Quality quality);
 
 struct PlannedPass {
-    std::string name;  ///< "surface-map", "key-visibility", "shade:body:ggx", ...
+    PassId id;
     std::string why;
     double work_items = 0.0;   ///< fragments, rays or pixels: what its cost is linear in; 0 unknown
     std::optional<double> ms;  ///< measured, after a render
@@ -24,7 +25,7 @@ struct PlannedPass {
 };
 
 struct SkippedPass {
-    std::string name;
+    PassId id;
     std::string why;
 };
 
@@ -37,31 +38,15 @@ struct FramePlan {
 /// What stage of the chain the frame must reach.
 enum class FrameStage { radiance, projector };
 
-// Names of passes. One of each light is named by light_name(): key, fill, light-3, ...
-inline constexpr const char* kSurfaceMapPass = "surface-map";
-inline constexpr const char* kIrradiancePass = "environment-irradiance";
-inline constexpr const char* kOcclusionPass = "ambient-occlusion";
-inline constexpr const char* kFilterPass = "environment-filter";
-inline constexpr const char* kReflectionPass = "reflection-occlusion";
-inline constexpr const char* kMirrorPass = "mirrored-environment";
-inline constexpr const char* kDirectionsPass = "directions";
-inline constexpr const char* kDiffuseLightPass = "diffuse-light";
-inline constexpr const char* kReliefPass = "relief";
-inline constexpr const char* kArtworkPass = "artwork";
-inline constexpr const char* kGlintPlacesPass = "glint-places";
-inline constexpr const char* kResolvePass = "resolve";
-inline constexpr const char* kCompensationPass = "compensation";
-inline constexpr const char* kPathTracerPass = "path-tracer";
-std::string light_name(std::size_t light);
-std::string visibility_pass(std::size_t light);  ///< "key-visibility"
-/// "shade:body:ggx", and "shade:body:car-paint+glints" where single flakes are seen.
-std::string shade_pass(const Scene& scene, std::size_t part);
-/// Of the scene's k-th artwork: "shade:body:artwork-1:clearcoat", and "+glints" alike.
-std::string artwork_pass(const Scene& scene, std::size_t artwork);
+PassId visibility_pass(std::size_t light);
+/// With glints where single flakes are seen.
+PassId shade_pass(const Scene& scene, std::size_t part);
+/// Of the scene's k-th artwork, over the paint of its part.
+PassId artwork_pass(const Scene& scene, std::size_t artwork);
 
-/// The pass of that name, or null.
-const PlannedPass* find_pass(const FramePlan& plan, const std::string& name);
-PlannedPass* find_pass(FramePlan& plan, const std::string& name);
+/// That pass of the plan, or null.
+const PlannedPass* find_pass(const FramePlan& plan, const PassId& id);
+PlannedPass* find_pass(FramePlan& plan, const PassId& id);
 
 /// Lists passes with the reason and skipped ones with theirs. Nothing that is not in the plan is
 /// compiled, allocated or run.

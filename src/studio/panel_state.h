@@ -152,7 +152,7 @@ struct LightingPanelState {
 /// What passes took when they last ran: a frame that changes nothing runs none.
 struct MeasuredCosts {
     std::chrono::steady_clock::time_point frame_done_at{};  ///< of the newest looked at
-    std::map<std::pair<Quality, std::string>, double> pass_ms;
+    std::map<std::pair<Quality, PassId>, double> pass_ms;
     double total_ms = 0.0, shade_ms = 0.0, compensate_ms = 0.0;  ///< of the last that was drawn
     bool newest_was_drawn = false;
 };

@@ -20,8 +20,8 @@ namespace {
 enum class CostKind { every_frame, solved_once, prepared };
 
 CostKind kind_of(const PlannedPass& pass) {
-    if (pass.name.starts_with("prepare")) return CostKind::prepared;
-    return runs_every_frame(pass.name) ? CostKind::every_frame : CostKind::solved_once;
+    if (pass.id.kind == PassKind::prepare) return CostKind::prepared;
+    return runs_every_frame(pass.id) ? CostKind::every_frame : CostKind::solved_once;
 }
 
 void right_aligned(const std::string& text, const ImVec4& colour) {
@@ -86,10 +86,10 @@ void draw_reach(const FinishedFrame& frame) {
     row("Left black", stats.invalid_fraction, "Pixels without a correction, or not finite.");
 }
 
-void draw_pass(const PlannedPass& pass, double longest_ms) {
-    ImGui::PushID(pass.name.c_str());
-    ImGui::TextUnformatted(pass.name.c_str());
-    name_last_item("pass:" + pass.name);
+void draw_pass(const std::string& name, const PlannedPass& pass, double longest_ms) {
+    ImGui::PushID(name.c_str());
+    ImGui::TextUnformatted(name.c_str());
+    name_last_item("pass:" + name);
     tooltip(pass.predicted_ms ? fmt::format("Predicted {}.", milliseconds(*pass.predicted_ms))
                               : "Not predicted: " + pass.unpredicted_because + ".");
     right_aligned(pass.ms ? milliseconds(*pass.ms) : "–", colours::text);
@@ -127,15 +127,14 @@ void draw_passes(const FramePlan& plan,
     ImGui::Spacing();
     heading(title);
     for (const PlannedPass& pass : plan.passes) {
-        if (kind_of(pass) == kind) draw_pass(pass, longest_ms);
+        if (kind_of(pass) == kind) draw_pass(to_string(pass.id), pass, longest_ms);
     }
     if (!beside_ms) return;
     PlannedPass rest;
-    rest.name = "between the passes";
     rest.why = "handing the picture from one to the next and to the projector";
     rest.ms = *beside_ms;
     rest.unpredicted_because = "it is no pass";
-    draw_pass(rest, longest_ms);
+    draw_pass("between the passes", rest, longest_ms);
 }
 
 void draw_skipped(const FramePlan& plan) {
@@ -145,8 +144,9 @@ void draw_skipped(const FramePlan& plan) {
     name_last_item("skipped-passes");
     if (!open) return;
     for (const SkippedPass& pass : plan.skipped) {
-        ImGui::TextUnformatted(pass.name.c_str());
-        name_last_item("skipped:" + pass.name);
+        const std::string name = to_string(pass.id);
+        ImGui::TextUnformatted(name.c_str());
+        name_last_item("skipped:" + name);
         ImGui::PushFont(small_font());
         dim_text(pass.why);
         ImGui::PopFont();

@@ -1,7 +1,6 @@
 #include "studio/quality_costs.h"
 
 #include <algorithm>
-#include <array>
 #include <stdexcept>
 #include <utility>
 
@@ -32,23 +31,23 @@ const char* what_it_does(Quality quality) {
 }
 
 /// Timed by the bench in the place of a look's own paint, not beside it.
-bool is_of_another_paint(const std::string& pass_name) {
-    return pass_name.starts_with("shade:car-paint") || pass_name == kGlintPlacesPass;
+bool is_of_another_paint(const PassId& pass) {
+    const bool shades = pass.kind == PassKind::shade && pass.model == ReflectanceModel::car_paint;
+    return shades || pass == PassKind::glint_places;
 }
 
 }  // namespace
 
-bool runs_every_frame(const std::string& pass_name) {
-    static const std::array every{kDiffuseLightPass, kResolvePass, kCompensationPass};
-    return pass_name.starts_with("shade:") ||
-           std::find(every.begin(), every.end(), pass_name) != every.end();
+bool runs_every_frame(const PassId& pass) {
+    return pass.kind == PassKind::shade || pass == PassKind::diffuse_light ||
+           pass == PassKind::resolve || pass == PassKind::compensation;
 }
 
 std::optional<QualityCost> quality_cost(const std::vector<PassCost>& costs,
                                         Quality quality,
                                         double pixels) {
     const auto resolve = std::find_if(costs.begin(), costs.end(), [&](const PassCost& cost) {
-        return cost.quality == quality && cost.pass == kResolvePass;
+        return cost.quality == quality && cost.pass == PassKind::resolve;
     });
     if (resolve == costs.end() || !(resolve->work_items > 0.0) || !(pixels > 0.0)) {
         return std::nullopt;
@@ -57,10 +56,9 @@ std::optional<QualityCost> quality_cost(const std::vector<PassCost>& costs,
     sum.error = resolve->error;
     for (const PassCost& cost : costs) {
         // Of looks that have artwork or a relief: theirs to add.
-        const bool artwork = cost.pass == kArtworkPass || cost.pass == kReliefPass;
+        const bool artwork = cost.pass == PassKind::artwork || cost.pass == PassKind::relief;
         if (cost.quality != quality || artwork || is_of_another_paint(cost.pass)) continue;
         const double ms = cost.work_items > 0.0 ? cost.ms * pixels / resolve->work_items : cost.ms;
-        // A cost's shading goes by model: "shade:ggx".
         (runs_every_frame(cost.pass) ? sum.frame_ms : sum.solve_ms) += ms;
     }
     return sum;
@@ -87,7 +85,7 @@ void remember_costs(MeasuredCosts& measured, const FinishedFrame& frame) {
     };
     measured.newest_was_drawn =
         std::any_of(frame.plan.passes.begin(), frame.plan.passes.end(), [&](const auto& pass) {
-            return did_something(pass) && runs_every_frame(pass.name);
+            return did_something(pass) && runs_every_frame(pass.id);
         });
     if (measured.newest_was_drawn) {
         // Those of one frame, so that they add up to it.
@@ -95,9 +93,9 @@ void remember_costs(MeasuredCosts& measured, const FinishedFrame& frame) {
                       [](const auto& known) { return runs_every_frame(known.first.second); });
     }
     for (const PlannedPass& pass : frame.plan.passes) {
-        const bool of_this_frame = measured.newest_was_drawn && runs_every_frame(pass.name);
+        const bool of_this_frame = measured.newest_was_drawn && runs_every_frame(pass.id);
         if (!did_something(pass) && !(of_this_frame && pass.ms)) continue;
-        measured.pass_ms[{frame.plan.quality, pass.name}] = *pass.ms;
+        measured.pass_ms[{frame.plan.quality, pass.id}] = *pass.ms;
     }
     if (!measured.newest_was_drawn) return;
     measured.total_ms = frame.ms_total;
@@ -107,7 +105,7 @@ void remember_costs(MeasuredCosts& measured, const FinishedFrame& frame) {
 
 void show_last_measured(const MeasuredCosts& measured, FramePlan& plan) {
     for (PlannedPass& pass : plan.passes) {
-        const auto last = measured.pass_ms.find({plan.quality, pass.name});
+        const auto last = measured.pass_ms.find({plan.quality, pass.id});
         pass.ms.reset();
         if (last != measured.pass_ms.end()) pass.ms = last->second;
     }
@@ -116,7 +114,7 @@ void show_last_measured(const MeasuredCosts& measured, FramePlan& plan) {
 double time_beside_passes_ms(const MeasuredCosts& measured, const FramePlan& plan) {
     double passes_ms = 0.0;
     for (const PlannedPass& pass : plan.passes) {
-        if (runs_every_frame(pass.name)) passes_ms += pass.ms.value_or(0.0);
+        if (runs_every_frame(pass.id)) passes_ms += pass.ms.value_or(0.0);
     }
     return std::max(0.0, measured.total_ms - passes_ms);
 }
@@ -125,7 +123,7 @@ std::string quality_text(Studio& studio, Quality quality) {
     std::string text = what_it_does(quality);
     const std::vector<PassCost>* costs = bench_costs(studio);
     const PlannedPass* resolve =
-        studio.frame ? find_pass(studio.frame->plan, kResolvePass) : nullptr;
+        studio.frame ? find_pass(studio.frame->plan, PassKind::resolve) : nullptr;
     const auto cost =
         costs && resolve ? quality_cost(*costs, quality, resolve->work_items) : std::nullopt;
     if (cost) {

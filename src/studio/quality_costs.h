@@ -12,7 +12,7 @@
 namespace livery {
 
 /// Runs with every paint swap; all others are solved once for a light, an eye and a pose.
-bool runs_every_frame(const std::string& pass_name);
+bool runs_every_frame(const PassId& pass);
 
 struct QualityCost {
     double solve_ms = 0.0;        ///< light, once

@@ -12,13 +12,49 @@ TEST(PassCosts, ComeBackAsTheyWereWritten) {
     const TemporaryFolder folder;
     const auto file = folder / "bench.json";
     EXPECT_EQ(read_pass_costs(file), std::nullopt);
-    write_pass_costs(file, "a renderer", {{"dither", Quality::high, 1.5, 1000.0, 0.25}});
+    write_pass_costs(file, "a renderer", {{PassKind::resolve, Quality::high, 1.5, 1000.0, 0.25}});
     const auto costs = read_pass_costs(file);
     ASSERT_TRUE(costs && costs->size() == 1);
-    EXPECT_EQ(costs->at(0).pass, "dither");
+    EXPECT_EQ(costs->at(0).pass, PassId(PassKind::resolve));
     EXPECT_EQ(costs->at(0).quality, Quality::high);
     EXPECT_EQ(costs->at(0).ms, 1.5);
     EXPECT_EQ(costs->at(0).error, 0.25);
+}
+
+TEST(PassCosts, KnowEveryPassAgain) {
+    const TemporaryFolder folder;
+    const auto file = folder / "bench.json";
+    std::vector<PassCost> costs;
+    for (const PassId& pass : {PassId(PassKind::path_tracer),
+                               PassId(PassKind::light_visibility),
+                               PassId(PassKind::shade, "", ReflectanceModel::lambert),
+                               PassId(PassKind::shade, "", ReflectanceModel::car_paint, true),
+                               PassId(PassKind::shade, "", ReflectanceModel::measured),
+                               PassId(PassKind::compensation)}) {
+        costs.push_back({pass, Quality::normal, 1.0, 2.0, {}});
+    }
+    write_pass_costs(file, "a renderer", costs);
+    const auto read = read_pass_costs(file);
+    ASSERT_TRUE(read);
+    ASSERT_EQ(read->size(), costs.size());
+    for (std::size_t i = 0; i < costs.size(); ++i) EXPECT_EQ(read->at(i).pass, costs[i].pass);
+}
+
+TEST(PassCosts, WhatAnotherVersionTimedIsLeftOut) {
+    const auto costs = parse_pass_costs(
+        R"({"format_version": 1, "passes": [
+            {"pass": "gone", "quality": "high", "ms": 1, "work_items": 1},
+            {"pass": "shade:ggx", "quality": "high", "ms": 2, "work_items": 1}]})",
+        "bench.json");
+    ASSERT_EQ(costs.size(), 1U);
+    EXPECT_EQ(costs[0].pass, PassId(PassKind::shade, "", ReflectanceModel::ggx));
+}
+
+TEST(PassCosts, DependOnNeitherPartNorLight) {
+    PassId shading(PassKind::shade, "body", ReflectanceModel::car_paint, true);
+    shading.artwork = 2;
+    EXPECT_EQ(cost_key(shading), PassId(PassKind::shade, "", ReflectanceModel::car_paint, true));
+    EXPECT_EQ(cost_key(visibility_pass(3)), PassId(PassKind::light_visibility));
 }
 
 TEST(PassCosts, AQualityThatIsNoneIsNamed) {
@@ -32,10 +68,15 @@ TEST(PassCosts, AQualityThatIsNoneIsNamed) {
 }
 
 TEST(PassCosts, SayWhatAPaintCosts) {
-    const std::vector<PassCost> costs{{"shade:ggx", Quality::high, 9.0, 1e6, {}},
-                                      {"shade:ggx", Quality::normal, 3.0, 1e6, {}},
-                                      {"shade:car-paint+glints", Quality::normal, 8.0, 1e6, {}},
-                                      {"shade:eon", Quality::normal, 3.0, 0.0, {}}};
+    const std::vector<PassCost> costs{
+        {PassId(PassKind::shade, "", ReflectanceModel::ggx), Quality::high, 9.0, 1e6, {}},
+        {PassId(PassKind::shade, "", ReflectanceModel::ggx), Quality::normal, 3.0, 1e6, {}},
+        {PassId(PassKind::shade, "", ReflectanceModel::car_paint, true),
+         Quality::normal,
+         8.0,
+         1e6,
+         {}},
+        {PassId(PassKind::shade, "", ReflectanceModel::eon), Quality::normal, 3.0, 0.0, {}}};
     Material paint;
     paint.model = ReflectanceModel::ggx;
     const PaintCost ggx = paint_cost(paint, costs);

@@ -112,8 +112,8 @@ TEST_F(FrameThreadTest, ADraftComesFirstAndSaysSo) {
     EXPECT_TRUE(frames.front()->unfinished.starts_with("normal quality: solving"))
         << frames.front()->unfinished;
     EXPECT_EQ(end->plan.quality, Quality::normal);
-    EXPECT_GT(*find_pass(frames.front()->plan, kSurfaceMapPass)->ms, 0.0);
-    EXPECT_GT(*find_pass(end->plan, kReflectionPass)->ms, 0.0);
+    EXPECT_GT(*find_pass(frames.front()->plan, PassKind::surface_map)->ms, 0.0);
+    EXPECT_GT(*find_pass(end->plan, PassKind::reflection_occlusion)->ms, 0.0);
     EXPECT_GT(end->shade_ms, 0.0);
 }
 
@@ -126,14 +126,15 @@ TEST_F(FrameThreadTest, PreparingIsAListedPass) {
     const auto number = show();
     const auto end = gallery_.whole(number);
     ASSERT_TRUE(end);
-    for (const char* name : {"prepare:lambert", "prepare:ggx"}) {
-        const PlannedPass* pass = find_pass(end->plan, name);
-        ASSERT_TRUE(pass) << name;
+    for (const ReflectanceModel model : {ReflectanceModel::lambert, ReflectanceModel::ggx}) {
+        const PassId id(PassKind::prepare, "", model);
+        const PlannedPass* pass = find_pass(end->plan, id);
+        ASSERT_TRUE(pass) << to_string(id);
         EXPECT_GT(*pass->ms, 0.0);
         EXPECT_NE(pass->why, "");
     }
     // All parts wear it: no preparing is needed.
-    EXPECT_FALSE(find_pass(end->plan, "prepare:clearcoat"));
+    EXPECT_FALSE(find_pass(end->plan, {PassKind::prepare, "", ReflectanceModel::clearcoat}));
 }
 
 TEST_F(FrameThreadTest, TheNewestWins) {

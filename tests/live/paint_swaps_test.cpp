@@ -24,8 +24,9 @@ std::vector<Material> walk_through_the_library() {
 }
 
 /// What a swap may cost: the part is shaded, its pixels are mixed and corrected.
-bool belongs_to_a_swap(const std::string& pass) {
-    return pass.starts_with("shade:") || pass == kResolvePass || pass == kCompensationPass;
+bool belongs_to_a_swap(const PassId& pass) {
+    return pass.kind == PassKind::shade || pass == PassKind::resolve ||
+           pass == PassKind::compensation;
 }
 
 using PaintSwaps = FrameThreadTest;
@@ -53,7 +54,8 @@ TEST_F(PaintSwaps, EachIsTheVeryNextFrameAndSolvesNothing) {
         EXPECT_EQ(frame->unfinished, "");
         EXPECT_FALSE(thread_->solving());
         for (const PlannedPass& pass : frame->plan.passes) {
-            EXPECT_TRUE(pass.ms.value_or(0.0) == 0.0 || belongs_to_a_swap(pass.name)) << pass.name;
+            EXPECT_TRUE(pass.ms.value_or(0.0) == 0.0 || belongs_to_a_swap(pass.id))
+                << to_string(pass.id);
         }
         if (k % 12 == 0) {
             EXPECT_EQ(frame->drive->values, from_scratch(description_.scene).drive.values);

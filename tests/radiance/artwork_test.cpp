@@ -191,7 +191,7 @@ TEST_P(ArtworkFrame, CostsOnlyWhatChanged) {
                                           after.fragments_shaded - before.fragments_shaded};
     };
     draw_again();
-    EXPECT_EQ(find_pass(plan(scene), kArtworkPass), nullptr);
+    EXPECT_EQ(find_pass(plan(scene), PassKind::artwork), nullptr);
     const ImageF bare = renderer.read_back();
     EXPECT_EQ(draw_again().passes_run, 0);
 

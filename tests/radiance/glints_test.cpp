@@ -402,11 +402,11 @@ TEST_P(RenderedGlints, CostNothingWhereThereAreNone) {
     Scene scene = scene_with(0.0);
     RadianceRenderer renderer = renderer_of(scene, view);
     FramePlan smooth = plan(scene);
-    EXPECT_EQ(find_pass(smooth, kGlintPlacesPass), nullptr);
-    EXPECT_NE(find_pass(smooth, "shade:body:car-paint"), nullptr);
+    EXPECT_EQ(find_pass(smooth, PassKind::glint_places), nullptr);
+    EXPECT_NE(find_pass(smooth, {PassKind::shade, "body", ReflectanceModel::car_paint}), nullptr);
     const auto skipped =
         std::find_if(smooth.skipped.begin(), smooth.skipped.end(), [](const SkippedPass& pass) {
-            return pass.name == kGlintPlacesPass;
+            return pass.id == PassKind::glint_places;
         });
     ASSERT_NE(skipped, smooth.skipped.end());
     EXPECT_EQ(skipped->why, "no paint of the scene has glints");
@@ -422,7 +422,8 @@ TEST_P(RenderedGlints, CostNothingWhereThereAreNone) {
     EXPECT_EQ(with.textures, without.textures + 1);
     EXPECT_EQ(with.programs, without.programs + (in_opengl() ? 1 : 0));
     EXPECT_EQ(with.passes_run, without.passes_run + 3);  // places, part, resolve
-    const PlannedPass* pass = find_pass(glinting, "shade:body:car-paint+glints");
+    const PlannedPass* pass =
+        find_pass(glinting, {PassKind::shade, "body", ReflectanceModel::car_paint, true});
     ASSERT_NE(pass, nullptr);
     EXPECT_GT(pass->work_items, 0.0);
     scene.part_materials[0].glint_density_per_mm2 = 200.0;
@@ -434,8 +435,9 @@ TEST_P(RenderedGlints, CostNothingWhereThereAreNone) {
 
     // Without a light no flake shines by itself.
     scene.lights.clear();
-    EXPECT_EQ(find_pass(plan(scene), kGlintPlacesPass), nullptr);
-    EXPECT_NE(find_pass(plan(scene), "shade:body:car-paint"), nullptr);
+    EXPECT_EQ(find_pass(plan(scene), PassKind::glint_places), nullptr);
+    EXPECT_NE(find_pass(plan(scene), {PassKind::shade, "body", ReflectanceModel::car_paint}),
+              nullptr);
 }
 
 TEST(GlintPlaces, AMockUpIsAsManyTimesDenserAsItIsSmaller) {

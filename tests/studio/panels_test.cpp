@@ -160,10 +160,11 @@ TEST_P(Panels, FitIntoTheNarrowestColumn) {
     studio.ballots = std::make_unique<BallotStore>(home_ / "ballots.sqlite");
     auto frame_shown = std::make_shared<FinishedFrame>();
     frame_shown->plan.passes.resize(2);
-    frame_shown->plan.passes[0].name = "shade:a-part-with-a-long-name:clearcoat";
+    frame_shown->plan.passes[0].id = {
+        PassKind::shade, "a-part-with-a-long-name", ReflectanceModel::clearcoat};
     frame_shown->plan.passes[0].why = "a reason that takes more than one line in a narrow column";
     frame_shown->plan.passes[0].ms = 12345.6;
-    frame_shown->plan.passes[1].name = "prepare:clearcoat";
+    frame_shown->plan.passes[1].id = {PassKind::prepare, "", ReflectanceModel::clearcoat};
     studio.frame = frame_shown;
     studio.session.execute(SetArtwork{studio.shown_look, long_names()});
     const std::vector<std::pair<DrawPanel, std::vector<std::string>>> panels{

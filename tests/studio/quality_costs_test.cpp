@@ -6,7 +6,11 @@
 namespace livery {
 namespace {
 
-PassCost cost(const char* pass, Quality quality, double ms, double items) {
+PassId shading(ReflectanceModel model, bool glints = false) {
+    return {PassKind::shade, "", model, glints};
+}
+
+PassCost cost(const PassId& pass, Quality quality, double ms, double items) {
     PassCost one;
     one.pass = pass;
     one.quality = quality;
@@ -16,14 +20,15 @@ PassCost cost(const char* pass, Quality quality, double ms, double items) {
 }
 
 TEST(QualityCost, PartsWhatIsSolvedFromWhatRunsEveryFrame) {
-    std::vector<PassCost> costs{cost(kSurfaceMapPass, Quality::normal, 1000.0, 0.0),
-                                cost("light-visibility", Quality::normal, 400.0, 1000.0),
-                                cost("shade:ggx", Quality::normal, 8.0, 600.0),
-                                cost(kResolvePass, Quality::normal, 2.0, 1000.0),
-                                cost("shade:car-paint+glints", Quality::normal, 9.0, 600.0),
-                                cost("glint-places", Quality::normal, 3.0, 600.0),
-                                cost(kCompensationPass, Quality::normal, 4.0, 1000.0),
-                                cost(kResolvePass, Quality::draft, 1.0, 0.0)};
+    std::vector<PassCost> costs{
+        cost(PassKind::surface_map, Quality::normal, 1000.0, 0.0),
+        cost(PassKind::light_visibility, Quality::normal, 400.0, 1000.0),
+        cost(shading(ReflectanceModel::ggx), Quality::normal, 8.0, 600.0),
+        cost(PassKind::resolve, Quality::normal, 2.0, 1000.0),
+        cost(shading(ReflectanceModel::car_paint, true), Quality::normal, 9.0, 600.0),
+        cost(PassKind::glint_places, Quality::normal, 3.0, 600.0),
+        cost(PassKind::compensation, Quality::normal, 4.0, 1000.0),
+        cost(PassKind::resolve, Quality::draft, 1.0, 0.0)};
     costs[3].error = 0.01;
     const auto sum = quality_cost(costs, Quality::normal, 500.0);
     ASSERT_TRUE(sum);
@@ -42,11 +47,11 @@ TEST(MeasuredCosts, OutliveFramesThatChangeNothing) {
     drawn.ms_total = 30.0;
     drawn.plan.quality = Quality::normal;
     drawn.plan.passes.resize(3);
-    drawn.plan.passes[0].name = "shade:body:ggx";
+    drawn.plan.passes[0].id = {PassKind::shade, "body", ReflectanceModel::ggx};
     drawn.plan.passes[0].ms = 20.0;
-    drawn.plan.passes[1].name = kSurfaceMapPass;
+    drawn.plan.passes[1].id = PassKind::surface_map;
     drawn.plan.passes[1].ms = 900.0;
-    drawn.plan.passes[2].name = kFilterPass;
+    drawn.plan.passes[2].id = PassKind::environment_filter;
     MeasuredCosts measured;
     remember_costs(measured, drawn);
     EXPECT_TRUE(measured.newest_was_drawn);
@@ -74,11 +79,11 @@ TEST(RememberCosts, OfOneFrameAddUpToItsTotal) {
     first.ms_total = 30.0;
     first.plan.quality = Quality::normal;
     first.plan.passes.resize(3);
-    first.plan.passes[0].name = "shade:body:ggx";
+    first.plan.passes[0].id = {PassKind::shade, "body", ReflectanceModel::ggx};
     first.plan.passes[0].ms = 20.0;
-    first.plan.passes[1].name = kCompensationPass;
+    first.plan.passes[1].id = PassKind::compensation;
     first.plan.passes[1].ms = 8.0;
-    first.plan.passes[2].name = kSurfaceMapPass;
+    first.plan.passes[2].id = PassKind::surface_map;
     first.plan.passes[2].ms = 900.0;
     remember_costs(measured, first);
     // The next paint: little to shade, nothing to correct anew, nothing solved.
@@ -101,17 +106,18 @@ TEST(PredictDrawn, ScalesByTheFramesOwnWork) {
     FramePlan plan;
     plan.quality = Quality::normal;
     plan.passes.resize(4);
-    plan.passes[0].name = "key-visibility";
+    plan.passes[0].id = visibility_pass(0);
     plan.passes[0].work_items = 1e9;  // rays: the bench counts pixels
-    plan.passes[1].name = "shade:body:ggx";
+    plan.passes[1].id = {PassKind::shade, "body", ReflectanceModel::ggx};
     plan.passes[1].work_items = 300.0;
-    plan.passes[2].name = kResolvePass;
+    plan.passes[2].id = PassKind::resolve;
     plan.passes[2].work_items = 500.0;
-    plan.passes[3].name = kFilterPass;
-    const std::vector<PassCost> costs{cost("light-visibility", Quality::normal, 400.0, 1000.0),
-                                      cost("shade:ggx", Quality::normal, 8.0, 600.0),
-                                      cost(kResolvePass, Quality::normal, 2.0, 1000.0),
-                                      cost(kFilterPass, Quality::high, 9.0, 0.0)};
+    plan.passes[3].id = PassKind::environment_filter;
+    const std::vector<PassCost> costs{
+        cost(PassKind::light_visibility, Quality::normal, 400.0, 1000.0),
+        cost(shading(ReflectanceModel::ggx), Quality::normal, 8.0, 600.0),
+        cost(PassKind::resolve, Quality::normal, 2.0, 1000.0),
+        cost(PassKind::environment_filter, Quality::high, 9.0, 0.0)};
     EXPECT_FALSE(predict_drawn(plan, costs).empty());
     EXPECT_DOUBLE_EQ(*plan.passes[0].predicted_ms, 200.0);
     EXPECT_DOUBLE_EQ(*plan.passes[1].predicted_ms, 4.0);
