@@ -164,11 +164,21 @@ Material parse_material(const std::string& text, const std::filesystem::path& fi
     return material;
 }
 
-void write_material_file(const std::filesystem::path& file, const Material& material) {
+namespace {
+
+Json file_json_of(const Material& material) {
     Json json = Json::object();
     json["format_version"] = kFormatVersion;
     json.update(json_of(material));
-    write_json_file(file, json);
+    return json;
+}
+
+}  // namespace
+
+std::string text_of(const Material& material) { return file_json_of(material).dump(); }
+
+void write_material_file(const std::filesystem::path& file, const Material& material) {
+    write_json_file(file, file_json_of(material));
 }
 
 }  // namespace livery

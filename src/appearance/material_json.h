@@ -2,6 +2,8 @@
 // Not for headers.
 #pragma once
 
+#include <string>
+
 #include "appearance/material.h"
 #include "core/json.h"
 
@@ -13,5 +15,7 @@ namespace livery {
 Material read_material(const JsonReader& object);
 /// Throws std::invalid_argument for parameters out of range.
 Json json_of(const Material& material);
+/// The text of a material file in one line.
+std::string text_of(const Material& material);
 
 }  // namespace livery

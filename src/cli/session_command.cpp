@@ -242,6 +242,32 @@ Command export_command() {
     return command;
 }
 
+Command export_product_command() {
+    const auto arguments = std::make_shared<SessionArguments>();
+    Command command = session_command(
+        "export-product",
+        "write the product as glTF (.glb) that wears all looks, for other programs",
+        "show.livery --look 1 --out car.glb",
+        arguments,
+        {{"--look", "N", "the look that it wears first", &arguments->look, true, {}},
+         {"--out", "FILE", "the mesh, .glb", &arguments->out, true, {}}});
+    command.run = [arguments](const CommonOptions&, const Progress&) {
+        if (Path(arguments->out).extension() != ".glb") {
+            throw std::invalid_argument("--out: found \"" + arguments->out +
+                                        "\", expected a name that ends in .glb");
+        }
+        const Document document = read_summary(arguments->file).document;
+        const auto product = find_product(document.product, document.product_unit);
+        Outcome outcome;
+        const auto notes = export_product(document, product, arguments->look, arguments->out);
+        outcome.figures = {{"file", arguments->out}};
+        outcome.text = arguments->out + "\n";
+        tell_notes(notes, outcome);
+        return outcome;
+    };
+    return command;
+}
+
 Command import_command() {
     const auto arguments = std::make_shared<SessionArguments>();
     Command command =
@@ -324,6 +350,7 @@ std::vector<Command> session_commands() {
             step_command(true),
             step_command(false),
             export_command(),
+            export_product_command(),
             import_command(),
             picture_command()};
 }

@@ -2,14 +2,16 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string_view>
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
 
 #include "appearance/parameter_table.h"
 #include "core/paths.h"
-#include "mesh/gltf_parts.h"
+#include "mesh/gltf_words.h"
 
 namespace livery {
 
@@ -167,6 +169,40 @@ void add_film(const tinygltf::Value& iridescence, Material& paint, Notes& notes)
                                  notes);
 }
 
+/// The whole paint that Livery wrote beside the words of glTF that come nearest to it.
+std::optional<Material> paint_in_extras(const GltfFile& gltf,
+                                        std::size_t index,
+                                        const std::string& name,
+                                        Notes& notes) {
+    const Json& material = gltf.json["materials"][index];
+    const Json* extras = material.contains("extras") ? &material["extras"] : nullptr;
+    if (!extras || !extras->is_object() || !extras->contains(kPaintInExtras)) return std::nullopt;
+    const Json& text = (*extras)[kPaintInExtras];
+    if (!text.is_string()) {
+        gltf.fail(fmt::format("materials[{}].extras.{}", index, kPaintInExtras),
+                  text.dump(),
+                  "the text of a paint");
+    }
+    Material paint = parse_material(text.get<std::string>(), gltf.path);
+    paint.name = name;
+    paint.file.clear();
+    // Another program may have changed the words and kept the extras.
+    const GltfSurface said = surface_of(gltf.model.materials[index]);
+    const GltfSurface written = words_of(paint).surface;
+    constexpr double kSame = 1e-3;
+    const bool same = glm::all(glm::lessThan(glm::abs(said.base_rec709 - written.base_rec709),
+                                             glm::dvec3(kSame))) &&
+                      std::abs(said.metallic - written.metallic) < kSame &&
+                      std::abs(said.roughness - written.roughness) < kSame &&
+                      std::abs(said.coat - written.coat) < kSame &&
+                      std::abs(said.coat_roughness - written.coat_roughness) < kSame;
+    if (same) return paint;
+    notes.push_back(fmt::format(
+        "material \"{}\": changed since Livery wrote it; its paint is made of what glTF says",
+        name));
+    return std::nullopt;
+}
+
 }  // namespace
 
 GltfSurface surface_of(const tinygltf::Material& material) {
@@ -245,6 +281,9 @@ GltfMaterial read_gltf_material(const GltfFile& gltf,
         part.paint = gltf_paint(gltf, index, surface, part.material_name, notes);
     }
     wear_pictures(gltf, pictures, index, plain, result, notes);
+    if (auto whole = paint_in_extras(gltf, index, part.material_name, notes)) {
+        part.paint = std::move(whole);
+    }
     return result;
 }
 

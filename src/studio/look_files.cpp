@@ -87,6 +87,37 @@ void ask_where_to_export_look(Shell& shell) {
          }});
 }
 
+void ask_where_to_export_product(Shell& shell) {
+    const Studio& studio = shell.studio;
+    FileQuestion question;
+    question.kind = FileQuestion::Kind::save;
+    question.title = "Export product with looks";
+    question.action = "Export";
+    question.suffixes = {".glb"};
+    question.suggested = documents_folder() / (file_name_of(studio.product->name) + ".glb");
+    question.then = [&shell](const std::filesystem::path& file) {
+        const Studio& now = shell.studio;
+        try {
+            std::string left_out;
+            for (const std::string& note :
+                 export_product(now.session.document(), now.product, now.shown_look, file)) {
+                left_out += note + ". ";
+            }
+            notify(shell.studio,
+                   {Notice::Level::info,
+                    fmt::format("Exported {} with {} looks to {}.",
+                                now.product->name,
+                                now.session.document().looks.size(),
+                                file.string()),
+                    left_out,
+                    ""});
+        } catch (const std::exception& error) {
+            tell(shell, "The product was not exported.", error);
+        }
+    };
+    shell.studio.file_dialog->ask(std::move(question));
+}
+
 void ask_where_to_save_session(Shell& shell) {
     FileQuestion question;
     question.kind = FileQuestion::Kind::save;

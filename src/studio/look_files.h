@@ -9,6 +9,7 @@ struct Shell;
 
 void ask_for_look(Shell& shell);
 void ask_where_to_export_look(Shell& shell);
+void ask_where_to_export_product(Shell& shell);
 void ask_where_to_save_session(Shell& shell);
 
 /// "Blue metallic / 2" -> "Blue-metallic-2": for file names.

@@ -2,6 +2,8 @@
 
 #include "session/session.h"
 
+#include <set>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -129,6 +131,28 @@ TEST(SessionCommand, ExportedLookComesBackWithItsOwnPaints) {
     const Json& imported = with["document"]["looks"][4];
     EXPECT_EQ(imported["name"], "blue metallic 2");
     EXPECT_EQ(imported["parts"]["body"], files["files"][1]);
+}
+
+TEST(SessionCommand, ExportedProductWearsTheSessionsLooks) {
+    const TemporaryFolder folder;
+    const auto file = folder / "a.livery", product = folder / "player looks.glb";
+    answer(session_run("new", file, {"--product", "player"}));
+    const auto run = [&](const std::string& look, const std::string& out) {
+        return session_run("export-product", file, {"--look", look, "--out", out});
+    };
+    const Json looks = answer(session_run("show", file))["document"]["looks"];
+    EXPECT_EQ(answer(run("1", product.string()))["file"], product.string());
+    const auto other = folder / "b.livery";
+    const Json again =
+        answer(session_run("new", other, {"--product", product.string()}))["document"]["looks"];
+    std::set<std::string> names;
+    for (const Json& look : again) names.insert(look["name"].get<std::string>());
+    // Beside the shipped ones, which have the names.
+    for (const Json& look : looks) {
+        EXPECT_TRUE(names.contains(look["name"].get<std::string>() + " of the file")) << look;
+    }
+    says(run("9", product.string()), 2, "there is no look 9");
+    says(run("1", "x.obj"), 2, "ends in .glb");
 }
 
 }  // namespace

@@ -115,6 +115,8 @@ void add_file_actions(std::vector<Action>& list) {
     list.push_back(action("import-look", "File", "Import look…", {ctrl(GLFW_KEY_I)}, ask_for_look));
     list.push_back(action(
         "export-look", "File", "Export look…", {ctrl(GLFW_KEY_E)}, ask_where_to_export_look));
+    list.push_back(action(
+        "export-product", "File", "Export product with looks…", {}, ask_where_to_export_product));
     list.push_back(action("save-session-as",
                           "File",
                           "Save session as…",
