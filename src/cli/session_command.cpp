@@ -6,6 +6,7 @@
 
 #include "cli/command.h"
 #include "core/error.h"
+#include "jobs/export_product.h"
 #include "jobs/render.h"
 #include "live/projector_setup.h"
 #include "scene/library.h"

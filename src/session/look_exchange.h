@@ -2,8 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
-#include <string>
 #include <vector>
 
 #include "session/document.h"
@@ -16,13 +14,5 @@ namespace livery {
 std::vector<std::filesystem::path> export_look(const Document& document,
                                                int look_id,
                                                const std::filesystem::path& file);
-
-/// Writes the product as binary glTF that wears the looks as KHR_materials_variants, the chosen one
-/// first (mesh/gltf_write.h). Returns what the file does not hold: artwork, lights, measurements.
-/// Throws std::invalid_argument (no such look), FileError.
-std::vector<std::string> export_product(const Document& document,
-                                        const std::shared_ptr<const Product>& product,
-                                        int look_id,
-                                        const std::filesystem::path& file);
 
 }  // namespace livery

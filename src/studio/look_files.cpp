@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "jobs/export_product.h"
 #include "scene/look.h"
 #include "session/look_exchange.h"
 #include "studio/kit/user_folders.h"

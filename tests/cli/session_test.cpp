@@ -91,6 +91,11 @@ TEST(SessionCommand, SaysWhatIsWrong) {
     says(session_run("apply", file), 2, "--command");
     says(session_run("undo", file, {"--steps", "0"}), 2, "--steps: found 0, expected 1 or more");
     says(session_run("export", file, {"--look", "9", "--out", "x.json"}), 2, "there is no look 9");
+    const auto product = [&](const char* look, const char* out) {
+        return session_run("export-product", file, {"--look", look, "--out", out});
+    };
+    says(product("9", "x.glb"), 2, "there is no look 9");
+    says(product("1", "x.obj"), 2, "ends in .glb");
     says(session_run("import", file, {"--look-file", "/no.json"}), 2, "/no.json: found no such");
     says(session_run("render", file, {"--look", "1", "--out", "x.gif"}), 2, ".gif");
     says(session_run("render", file, {"--look", "1", "--out", "x.png", "--stage", "projector"}),
@@ -137,11 +142,10 @@ TEST(SessionCommand, ExportedProductWearsTheSessionsLooks) {
     const TemporaryFolder folder;
     const auto file = folder / "a.livery", product = folder / "player looks.glb";
     answer(session_run("new", file, {"--product", "player"}));
-    const auto run = [&](const std::string& look, const std::string& out) {
-        return session_run("export-product", file, {"--look", look, "--out", out});
-    };
     const Json looks = answer(session_run("show", file))["document"]["looks"];
-    EXPECT_EQ(answer(run("1", product.string()))["file"], product.string());
+    EXPECT_EQ(answer(session_run(
+                  "export-product", file, {"--look", "1", "--out", product.string()}))["file"],
+              product.string());
     const auto other = folder / "b.livery";
     const Json again =
         answer(session_run("new", other, {"--product", product.string()}))["document"]["looks"];
@@ -151,8 +155,6 @@ TEST(SessionCommand, ExportedProductWearsTheSessionsLooks) {
     for (const Json& look : looks) {
         EXPECT_TRUE(names.contains(look["name"].get<std::string>() + " of the file")) << look;
     }
-    says(run("9", product.string()), 2, "there is no look 9");
-    says(run("1", "x.obj"), 2, "ends in .glb");
 }
 
 }  // namespace
