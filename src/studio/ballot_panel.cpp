@@ -1,5 +1,7 @@
 // Votes on looks: a round is opened, people vote one after another, and nothing is told before it
 // is closed. A panel: the looks go on being shown on the mock-up meanwhile.
+#include "studio/ballot_panel.h"
+
 #include <algorithm>
 #include <cctype>
 #include <cfloat>
@@ -49,7 +51,7 @@ bool attempted(BallotPanelState& state, Work&& work) {
 }
 
 void read_rounds(Studio& studio) {
-    BallotPanelState& state = studio.panels.ballot;
+    BallotPanelState& state = *studio.panels.ballot;
     attempted(state, [&] { state.rounds = studio.ballots->rounds(); });
 }
 
@@ -77,7 +79,7 @@ std::string count_of(int ballots) {
 // --- starting a round ---
 
 void draw_looks_to_choose(Studio& studio) {
-    BallotPanelState& state = studio.panels.ballot;
+    BallotPanelState& state = *studio.panels.ballot;
     for (const SessionLook& look : studio.session.document().looks) {
         bool& chosen = state.chosen_looks.try_emplace(look.id, true).first->second;
         ImGui::PushID(look.id);
@@ -96,8 +98,8 @@ void draw_looks_to_choose(Studio& studio) {
 std::vector<std::string> chosen_names(const Studio& studio) {
     std::vector<std::string> names;
     for (const SessionLook& look : studio.session.document().looks) {
-        const auto chosen = studio.panels.ballot.chosen_looks.find(look.id);
-        if (chosen != studio.panels.ballot.chosen_looks.end() && chosen->second) {
+        const auto chosen = studio.panels.ballot->chosen_looks.find(look.id);
+        if (chosen != studio.panels.ballot->chosen_looks.end() && chosen->second) {
             names.push_back(look.look.name);
         }
     }
@@ -105,7 +107,7 @@ std::vector<std::string> chosen_names(const Studio& studio) {
 }
 
 void draw_earlier_rounds(Studio& studio) {
-    BallotPanelState& state = studio.panels.ballot;
+    BallotPanelState& state = *studio.panels.ballot;
     heading("Earlier rounds");
     const bool any = std::any_of(
         state.rounds.begin(), state.rounds.end(), [](const Round& round) { return round.closed; });
@@ -126,7 +128,7 @@ void draw_earlier_rounds(Studio& studio) {
 }
 
 void draw_start(Studio& studio) {
-    BallotPanelState& state = studio.panels.ballot;
+    BallotPanelState& state = *studio.panels.ballot;
     heading("Looks under vote");
     draw_looks_to_choose(studio);
     const auto names = chosen_names(studio);
@@ -240,7 +242,7 @@ void draw_title(const std::string& name, std::size_t design, float width) {
 }
 
 void draw_designs(Studio& studio, const Round& round) {
-    BallotPanelState& state = studio.panels.ballot;
+    BallotPanelState& state = *studio.panels.ballot;
     const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
     for (std::size_t i = 0; i < round.designs.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
@@ -261,7 +263,7 @@ void draw_designs(Studio& studio, const Round& round) {
 }
 
 void draw_closing(Studio& studio, const Round& round) {
-    BallotPanelState& state = studio.panels.ballot;
+    BallotPanelState& state = *studio.panels.ballot;
     if (!state.asking_to_close) {
         if (ImGui::Button("Close the round…")) state.asking_to_close = true;
         name_last_item("ballot:close");
@@ -287,7 +289,7 @@ void draw_closing(Studio& studio, const Round& round) {
 }
 
 void confirm(Studio& studio, const Round& round) {
-    BallotPanelState& state = studio.panels.ballot;
+    BallotPanelState& state = *studio.panels.ballot;
     const int id = round.id;
     const Ballot ballot{state.evaluator, *state.best, *state.second};
     if (!attempted(state, [&] { studio.ballots->vote(id, ballot); })) return;
@@ -297,7 +299,7 @@ void confirm(Studio& studio, const Round& round) {
 }
 
 void draw_vote(Studio& studio, const Round& round) {
-    BallotPanelState& state = studio.panels.ballot;
+    BallotPanelState& state = *studio.panels.ballot;
     heading(fmt::format("Round {}: your ballot", round.id).c_str());
     row_label("Your name", 0.25f);
     if (std::exchange(state.focus_name, false)) ImGui::SetKeyboardFocusHere();
@@ -341,7 +343,7 @@ void draw_vote(Studio& studio, const Round& round) {
 }
 
 void draw_thanks(Studio& studio, const Round& round) {
-    BallotPanelState& state = studio.panels.ballot;
+    BallotPanelState& state = *studio.panels.ballot;
     ImGui::PushFont(large_font());
     ImGui::TextWrapped("Thank you, %s.", state.thanked.c_str());
     ImGui::PopFont();
@@ -362,7 +364,7 @@ void draw_thanks(Studio& studio, const Round& round) {
 // --- the result ---
 
 void draw_result(Studio& studio, const Round& round) {
-    BallotPanelState& state = studio.panels.ballot;
+    BallotPanelState& state = *studio.panels.ballot;
     heading(fmt::format("Round {}: {}", round.id, count_of(round.ballots)).c_str());
     name_last_item("ballot:result");
     dim_text(fmt::format("Started {}, {}.",
@@ -382,7 +384,7 @@ void draw_result(Studio& studio, const Round& round) {
 }
 
 void draw_page(Studio& studio) {
-    BallotPanelState& state = studio.panels.ballot;
+    BallotPanelState& state = *studio.panels.ballot;
     const Round* open = open_round(state);
     if (!open && (state.page == Page::vote || state.page == Page::thanks)) {
         go_to(state, Page::start);
@@ -416,7 +418,7 @@ void draw_page(Studio& studio) {
 }  // namespace
 
 void draw_ballot_panel(Studio& studio, bool& open) {
-    BallotPanelState& state = studio.panels.ballot;
+    BallotPanelState& state = *studio.panels.ballot;
     if (!open) {
         state.was_open = false;
         return;
@@ -445,7 +447,7 @@ void draw_ballot_panel(Studio& studio, bool& open) {
 }
 
 std::size_t ballot_letters(const Studio& studio) {
-    const BallotPanelState& state = studio.panels.ballot;
+    const BallotPanelState& state = *studio.panels.ballot;
     const Round* round = open_round(state);
     // Until the next voter begins, the last one's letters mean nothing else either.
     const bool votes =

@@ -1,4 +1,6 @@
 // Which calibration corrects the picture, how good it is, and how to get another.
+#include "studio/calibration_panel.h"
+
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
@@ -39,7 +41,7 @@ const ImVec4& colour_of(Grade grade) {
 }
 
 void list_what_there_is(Studio& studio) {
-    CalibrationPanelState& state = studio.panels.calibration;
+    CalibrationPanelState& state = *studio.panels.calibration;
     const bool recently =
         state.listed_at_s >= 0.0 && studio.now_s - state.listed_at_s < kBetweenListings_s;
     if (recently) return;
@@ -142,7 +144,7 @@ void draw_in_use(const Studio& studio) {
 }
 
 void draw_design_white(Studio& studio) {
-    Held<double>& held = studio.panels.calibration.held_percentile;
+    Held<double>& held = studio.panels.calibration->held_percentile;
     double& percentile = held.start(studio.session.document().design_white_percentile);
     row_label("Design white");
     number_slider("##design-white", percentile, 0.0, 100.0, "%.0f %%");
@@ -178,7 +180,7 @@ void draw_gamut_mapping(Studio& studio) {
 }
 
 void draw_bench_choice(Studio& studio, bool calibrating) {
-    CalibrationPanelState& state = studio.panels.calibration;
+    CalibrationPanelState& state = *studio.panels.calibration;
     const std::string& bench = studio.session.document().bench;
     begin_disabled(calibrating);
     row_label("Bench");
@@ -209,7 +211,7 @@ void draw_bench_choice(Studio& studio, bool calibrating) {
 
 void draw_calibrating(Studio& studio) {
     heading("Calibrate");
-    CalibrationPanelState& state = studio.panels.calibration;
+    CalibrationPanelState& state = *studio.panels.calibration;
     const auto calibrating =
         studio.bench ? studio.bench->calibrating() : BenchThread::Calibrating{};
     draw_bench_choice(studio, calibrating.running);
@@ -284,7 +286,7 @@ void load_calibration(Studio& studio, const std::filesystem::path& folder) {
 
 void draw_kept(Studio& studio) {
     heading("Go back to");
-    CalibrationPanelState& state = studio.panels.calibration;
+    CalibrationPanelState& state = *studio.panels.calibration;
     const std::filesystem::path in_use = studio.session.document().calibration;
     if (!state.list_problem.empty()) warning_text(state.list_problem);
     const auto offer = [&](const std::string& label,

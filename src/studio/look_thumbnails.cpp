@@ -49,7 +49,7 @@ std::optional<Scene> scene_of_paints(const Studio& studio, const SessionLook& lo
 }
 
 void ask_for(Studio& studio, const SessionLook& look, const glm::ivec2& size_px) {
-    LookThumbnailState& state = studio.panels.thumbnails;
+    LookThumbnailState& state = *studio.panels.thumbnails;
     const std::string key =
         fmt::format("{} {} {}", studio.session.revision(), size_px.x, size_px.y);
     std::string& asked = state.asked[look.look.name];
@@ -82,7 +82,7 @@ void draw_look_thumbnail(Studio& studio,
                          const std::string& look_name,
                          const ImVec2& corner,
                          const ImVec2& size) {
-    LookThumbnailState& state = studio.panels.thumbnails;
+    LookThumbnailState& state = *studio.panels.thumbnails;
     take_finished(state);
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImVec2 end{corner.x + size.x, corner.y + size.y};

@@ -1,11 +1,23 @@
 // Small pictures of looks, seen from the audience's eye, all in one light.
 #pragma once
 
+#include <map>
+#include <memory>
+#include <string>
+
+#include "gl/handles.h"
+#include "studio/paint/swatch_textures.h"
 #include "studio/studio.h"
 
 struct ImVec2;
 
 namespace livery {
+
+struct LookThumbnailState {
+    std::shared_ptr<SwatchInbox> inbox = std::make_shared<SwatchInbox>();  ///< by the look's name
+    std::map<std::string, Texture2D> pictures;
+    std::map<std::string, std::string> asked;  ///< for which state of the session, and size
+};
 
 /// Draws the look's picture into the current window; asks for it anew when the look has changed,
 /// and shows the one before until it is there. An empty frame when there is none (a look that was

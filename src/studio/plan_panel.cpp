@@ -1,4 +1,6 @@
 // What the frame on the mock-up cost, pass by pass, and what was not run and why.
+#include "studio/plan_panel.h"
+
 #include <algorithm>
 #include <optional>
 #include <string>
@@ -33,7 +35,7 @@ void right_aligned(const std::string& text, const ImVec4& colour) {
 }
 
 void draw_totals(const Studio& studio, const FinishedFrame& frame) {
-    const MeasuredCosts& measured = studio.panels.plan.measured;
+    const MeasuredCosts& measured = studio.panels.plan->measured;
     double predicted = 0.0;
     bool complete = true;
     for (const PlannedPass& pass : frame.plan.passes) {
@@ -57,12 +59,12 @@ void draw_totals(const Studio& studio, const FinishedFrame& frame) {
     }
     if (complete) {
         dim_text(fmt::format("Predicted from the last bench: {}.", milliseconds(predicted)));
-    } else if (studio.panels.plan.costs) {
+    } else if (studio.panels.plan->costs) {
         dim_text("Not predicted: the last bench did not time every pass of this frame.");
     } else {
         dim_text("Not predicted: no bench has run here (livery bench --suite speed).");
     }
-    if (!studio.panels.plan.problem.empty()) warning_text(studio.panels.plan.problem);
+    if (!studio.panels.plan->problem.empty()) warning_text(studio.panels.plan->problem);
     if (!frame.unfinished.empty()) warning_text(sentence("not final yet: " + frame.unfinished));
     if (!frame.problem.empty()) warning_text(sentence("not drawn: " + frame.problem));
 }
@@ -161,7 +163,7 @@ void draw_plan_panel(Studio& studio) {
         return;
     }
     FinishedFrame frame = *studio.frame;
-    show_last_measured(studio.panels.plan.measured, frame.plan);
+    show_last_measured(studio.panels.plan->measured, frame.plan);
     if (const auto* costs = bench_costs(studio)) {
         predict_drawn(frame.plan, *costs);
     } else {
@@ -173,7 +175,7 @@ void draw_plan_panel(Studio& studio) {
     draw_passes(frame.plan,
                 CostKind::every_frame,
                 "With every paint",
-                time_beside_passes_ms(studio.panels.plan.measured, frame.plan));
+                time_beside_passes_ms(studio.panels.plan->measured, frame.plan));
     draw_passes(frame.plan, CostKind::solved_once, "Once for light, eye and pose");
     draw_passes(frame.plan, CostKind::prepared, "Prepared while idle");
     draw_skipped(frame.plan);

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "studio/kit/words.h"
+#include "studio/plan_panel.h"
 
 namespace livery {
 
@@ -65,7 +66,7 @@ std::optional<QualityCost> quality_cost(const std::vector<PassCost>& costs,
 }
 
 const std::vector<PassCost>* bench_costs(Studio& studio) {
-    PlanPanelState& state = studio.panels.plan;
+    PlanPanelState& state = *studio.panels.plan;
     if (!std::exchange(state.costs_read, true)) {
         try {
             state.costs = read_pass_costs(ledger_file());

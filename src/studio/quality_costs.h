@@ -1,8 +1,11 @@
 // What a quality level costs and how far it is from the ground truth, where that was measured.
 #pragma once
 
+#include <chrono>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ledger/predictions.h"
@@ -10,6 +13,14 @@
 #include "studio/studio.h"
 
 namespace livery {
+
+/// What passes took when they last ran: a frame that changes nothing runs none.
+struct MeasuredCosts {
+    std::chrono::steady_clock::time_point frame_done_at{};  ///< of the newest looked at
+    std::map<std::pair<Quality, PassId>, double> pass_ms;
+    double total_ms = 0.0, shade_ms = 0.0, compensate_ms = 0.0;  ///< of the last that was drawn
+    bool newest_was_drawn = false;
+};
 
 /// Runs with every paint swap; all others are solved once for a light, an eye and a pose.
 bool runs_every_frame(const PassId& pass);

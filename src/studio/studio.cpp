@@ -8,6 +8,7 @@
 
 #include "core/log.h"
 #include "studio/kit/theme.h"
+#include "studio/paint/library_panel.h"
 
 namespace livery {
 
@@ -153,7 +154,7 @@ void keep_shown_looks_valid(Studio& studio) {
 
 void select_part(Studio& studio, int part) {
     studio.selected_part = part;
-    studio.panels.library.target = LibraryPanelState::Target::part;
+    studio.panels.library->target = LibraryPanelState::Target::part;
     studio.glowing_part = part;
     studio.glowing_until_s = studio.now_s + kGlow_s;
 }

@@ -19,7 +19,7 @@
 #include "session/session.h"
 #include "studio/kit/background.h"
 #include "studio/kit/file_dialog.h"
-#include "studio/panel_state.h"
+#include "studio/panel_states.h"
 
 namespace livery {
 

@@ -15,8 +15,10 @@
 #include "core/paths.h"
 #include "scene/library.h"
 #include "studio/artwork/artwork_edit.h"
+#include "studio/ballot_panel.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
+#include "studio/paint/library_panel.h"
 #include "studio/studio.h"
 #include "support/temporary_folder.h"
 
@@ -209,11 +211,11 @@ TEST_F(Panels, PointingTriesAPaintAndClickingPaints) {
 TEST_F(Panels, ArrowsTryPaintsAndEnterPaints) {
     use_scale(1.0f);
     Studio studio = make_studio();
-    studio.panels.library.focus_search = true;
-    studio.panels.library.search = "blue";
+    studio.panels.library->focus_search = true;
+    studio.panels.library->search = "blue";
     frames(studio, draw_library_panel, 3);
     press(studio, draw_library_panel, ImGuiKey_DownArrow);
-    EXPECT_EQ(studio.panels.library.cursor, "blue metallic");
+    EXPECT_EQ(studio.panels.library->cursor, "blue metallic");
     EXPECT_EQ(worn(shown_document(studio)), "blue metallic");
     press(studio, draw_library_panel, ImGuiKey_Enter);
     EXPECT_EQ(worn(studio.session.document()), "blue metallic");
@@ -271,8 +273,8 @@ TEST_F(Panels, APointerThatRestsTriesNothing) {
 TEST_F(Panels, APaintFromTheArrowsIsTakenBackWhenTheKeysGoElsewhere) {
     use_scale(1.0f);
     Studio studio = make_studio();
-    studio.panels.library.focus_search = true;
-    studio.panels.library.search = "blue";
+    studio.panels.library->focus_search = true;
+    studio.panels.library->search = "blue";
     frames(studio, draw_library_panel, 3);
     press(studio, draw_library_panel, ImGuiKey_DownArrow);
     ASSERT_TRUE(studio.tried);
@@ -297,7 +299,7 @@ TEST_F(Panels, ABallotIsFilledByTheLettersThatItShows) {
         EXPECT_LE(places[name].x + places[name].width, kColumn) << name;
     }
     EXPECT_EQ(ballot_letters(studio), 2u);
-    const BallotPanelState& state = studio.panels.ballot;
+    const BallotPanelState& state = *studio.panels.ballot;
     const auto type = [&](char letter) {
         ImGui::GetIO().AddInputCharacter(static_cast<unsigned>(letter));
         frames(studio, draw_ballot, 2);
@@ -346,12 +348,12 @@ TEST_F(Panels, AJunkEnvironmentIsRefusedWhenItIsChosenAndToldWhenItGoesBad) {
 TEST_F(Panels, SayWhenNothingIsFound) {
     use_scale(1.0f);
     Studio studio = make_studio();
-    studio.panels.library.search = "solid rad";
+    studio.panels.library->search = "solid rad";
     ItemPlaces places = frames(studio, draw_library_panel, 2);
     EXPECT_FALSE(places.contains("paint:solid red"));
     click(studio, draw_library_panel, "paint-nearest");
     places = frames(studio, draw_library_panel, 2);
-    EXPECT_EQ(studio.panels.library.search, "solid red");
+    EXPECT_EQ(studio.panels.library->search, "solid red");
     EXPECT_TRUE(places.contains("paint:solid red"));
 }
 

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "scene/artwork_coats.h"
 #include "scene/artwork_picture.h"
+#include "studio/artwork/artwork_panel.h"
 #include "studio/artwork/artwork_values.h"
 #include "studio/kit/user_folders.h"
 #include "studio/kit/words.h"
@@ -55,7 +56,7 @@ const std::vector<Artwork>& shown_artwork(const Studio& studio) {
 }
 
 std::optional<std::size_t> chosen_artwork(const Studio& studio) {
-    const ArtworkPanelState& state = studio.panels.artwork;
+    const ArtworkPanelState& state = *studio.panels.artwork;
     const std::size_t count = shown_artwork(studio).size();
     if (count == 0) return std::nullopt;
     if (state.look != studio.shown_look || !state.chosen || *state.chosen >= count) {
@@ -65,7 +66,7 @@ std::optional<std::size_t> chosen_artwork(const Studio& studio) {
 }
 
 void choose_artwork(Studio& studio, std::optional<std::size_t> at) {
-    ArtworkPanelState& state = studio.panels.artwork;
+    ArtworkPanelState& state = *studio.panels.artwork;
     if (state.look == studio.shown_look && state.chosen == at) return;
     state = {};
     state.look = studio.shown_look;
@@ -126,7 +127,7 @@ std::string look_up_why_not_seen(Studio& studio, std::size_t at) {
 }  // namespace
 
 const std::string& why_not_seen(Studio& studio, std::size_t at) {
-    ArtworkPanelState& state = studio.panels.artwork;
+    ArtworkPanelState& state = *studio.panels.artwork;
     const std::vector<Artwork>& list = shown_artwork(studio);
     if (state.looked_up_at != studio.session.revision() || state.not_seen.size() != list.size()) {
         state.looked_up_at = studio.session.revision();
@@ -218,17 +219,17 @@ void ask_for_picture(Studio& studio,
 }
 
 bool is_placing(const Studio& studio) {
-    return studio.panels.artwork.placing && chosen_artwork(studio).has_value() &&
-           studio.panels.artwork.look == studio.shown_look;
+    return studio.panels.artwork->placing && chosen_artwork(studio).has_value() &&
+           studio.panels.artwork->look == studio.shown_look;
 }
 
 void stop_placing(Studio& studio) {
-    studio.panels.artwork.placing = false;
-    studio.panels.artwork.placed.reset();
+    studio.panels.artwork->placing = false;
+    studio.panels.artwork->placed.reset();
 }
 
 void try_placing(Studio& studio, const std::optional<PickedPoint>& point) {
-    ArtworkPanelState& state = studio.panels.artwork;
+    ArtworkPanelState& state = *studio.panels.artwork;
     const std::size_t at = *chosen_artwork(studio);
     if (point) state.placed = placed_at(studio, at, *point);
     if (state.placed && wearing_problem(studio, *state.placed).empty()) {

@@ -15,6 +15,7 @@
 #include "core/error.h"
 #include "scene/library.h"
 #include "studio/artwork/artwork_edit.h"
+#include "studio/artwork/artwork_panel.h"
 #include "studio/artwork/artwork_values.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/widgets.h"
@@ -54,7 +55,7 @@ class ArtworkRows {
         after_item();
     }
     void after_item() {
-        ArtworkPanelState& state = studio_.panels.artwork;
+        ArtworkPanelState& state = *studio_.panels.artwork;
         state.held.after_item();
         const bool touched = last_item_is_held() || ImGui::IsItemDeactivatedAfterEdit();
         // What was put back where it was is no edit.
@@ -99,7 +100,7 @@ bool begin_list(const char* label,
 }
 
 void draw_name(ArtworkRows& rows) {
-    ArtworkPanelState& state = rows.studio().panels.artwork;
+    ArtworkPanelState& state = *rows.studio().panels.artwork;
     row_label("Name");
     if (!state.naming) state.name = rows.before().name;
     ImGui::InputTextWithHint("##name",
@@ -159,7 +160,7 @@ void draw_shape(ArtworkRows& rows) {
 
 void draw_paint(ArtworkRows& rows) {
     Studio& studio = rows.studio();
-    ArtworkPanelState& state = studio.panels.artwork;
+    ArtworkPanelState& state = *studio.panels.artwork;
     const Artwork& before = rows.before();
     const Words use = words_of(before.use);
     std::string meaning = "What it is painted with.";
@@ -323,7 +324,7 @@ void draw_direction(ArtworkRows& rows, ArtworkPlace& place) {
 
 void draw_place_button(ArtworkRows& rows) {
     Studio& studio = rows.studio();
-    ArtworkPanelState& state = studio.panels.artwork;
+    ArtworkPanelState& state = *studio.panels.artwork;
     const float width = ImGui::GetContentRegionAvail().x;
     if (toggle_button("Place it by a click", state.placing, width)) {
         const bool wanted = !state.placing;
@@ -374,7 +375,7 @@ void draw_place(ArtworkRows& rows, Artwork& edited) {
 }  // namespace
 
 void draw_artwork_fields(Studio& studio, std::size_t at) {
-    ArtworkPanelState& state = studio.panels.artwork;
+    ArtworkPanelState& state = *studio.panels.artwork;
     Artwork& edited = state.held.start(shown_artwork(studio)[at]);
     ArtworkRows rows(studio, at, edited);
     draw_name(rows);

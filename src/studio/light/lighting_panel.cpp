@@ -1,4 +1,6 @@
 // Lights, environment, eye, exposure and quality: how the look is lit and seen.
+#include "studio/light/lighting_panel.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -43,7 +45,7 @@ bool same_lighting(const Look& a, const Look& b) {
 }
 
 const glm::dvec3& product_centre(Studio& studio) {
-    LightingPanelState& state = studio.panels.lighting;
+    LightingPanelState& state = *studio.panels.lighting;
     if (studio.product && state.centre_of != studio.product) {
         const Bounds bounds = bounds_of(studio.product->mesh);
         state.centre_mm = 0.5 * (bounds.low + bounds.high);
@@ -78,7 +80,7 @@ class LightRows {
     void after_item(const char* name, const std::string& meaning) {
         name_last_item(fmt::format("light:{}:{}", light_, name));
         tooltip(meaning);
-        studio_.panels.lighting.held.after_item();
+        studio_.panels.lighting->held.after_item();
         edit_with_last_item(studio_, SetLights{studio_.shown_look, edited_.lights});
     }
 
@@ -160,7 +162,7 @@ void draw_lights(Studio& studio, Look& edited, const Look& before) {
     const glm::dvec3 toward_eye = studio.session.document().eye_mm - product_centre(studio);
     const float side = std::min(em(9.5f), ImGui::GetContentRegionAvail().x);
     light_pad(edited.lights, toward_eye, side, [&] {
-        studio.panels.lighting.held.after_item();
+        studio.panels.lighting->held.after_item();
         edit_with_last_item(studio, SetLights{studio.shown_look, edited.lights});
     });
     ImGui::SameLine();
@@ -203,7 +205,7 @@ void draw_sharing(Studio& studio, const Look& look) {
 
 void draw_eye_angles(Studio& studio, glm::dvec3& eye_mm) {
     const glm::dvec3 centre = product_centre(studio);
-    Held<glm::dvec3>& held = studio.panels.lighting.held_eye_mm;
+    Held<glm::dvec3>& held = studio.panels.lighting->held_eye_mm;
     const auto row = [&](const char* label, const char* name, const char* meaning, auto change) {
         Polar polar = polar_of(eye_mm, centre);
         row_label(label);
@@ -235,7 +237,7 @@ void draw_eye_angles(Studio& studio, glm::dvec3& eye_mm) {
 
 /// Read once a bench: a panel is drawn sixty times a second.
 std::optional<glm::dvec3> observer_mm(Studio& studio) {
-    LightingPanelState& state = studio.panels.lighting;
+    LightingPanelState& state = *studio.panels.lighting;
     const std::string& bench = studio.session.document().bench;
     if (state.observer_of == bench) return state.observer_mm;
     state.observer_of = bench;
@@ -263,7 +265,7 @@ void draw_eye_at_observer(Studio& studio) {
 }
 
 void draw_eye(Studio& studio) {
-    LightingPanelState& state = studio.panels.lighting;
+    LightingPanelState& state = *studio.panels.lighting;
     heading("Eye");
     tooltip(
         "Where the audience looks from: highlights sit where this eye sees them, and the "
@@ -277,7 +279,7 @@ void draw_eye(Studio& studio) {
 }
 
 void draw_exposure(Studio& studio) {
-    LightingPanelState& state = studio.panels.lighting;
+    LightingPanelState& state = *studio.panels.lighting;
     heading("Exposure");
     double& ev = state.held_ev.start(studio.session.document().exposure_ev);
     row_label("Exposure");
@@ -310,7 +312,7 @@ void draw_quality(Studio& studio) {
 }  // namespace
 
 void draw_lighting_panel(Studio& studio) {
-    LightingPanelState& state = studio.panels.lighting;
+    LightingPanelState& state = *studio.panels.lighting;
     const SessionLook* shown = find_look(studio.session.document(), studio.shown_look);
     if (!shown) {
         dim_text("There is no look to light.");

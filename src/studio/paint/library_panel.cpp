@@ -1,4 +1,6 @@
 // The paints: swatches to hover and to click, found by typing, walked through with the arrow keys.
+#include "studio/paint/library_panel.h"
+
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
@@ -64,10 +66,10 @@ Target target_of(const Studio& studio) {
     const auto& parts = studio.product->mesh.parts;
     const auto& painted = look->look.parts;
     const auto rest = painted.find("*");
-    if (studio.panels.library.target == LibraryPanelState::Target::product) {
+    if (studio.panels.library->target == LibraryPanelState::Target::product) {
         target = {"*", "every part", "", true};
         if (rest != painted.end() && painted.size() == 1) target.paint = rest->second;
-    } else if (studio.panels.library.target == LibraryPanelState::Target::rest) {
+    } else if (studio.panels.library->target == LibraryPanelState::Target::rest) {
         target = {"*", "every part without a paint of its own", ""};
         if (rest != painted.end()) target.paint = rest->second;
     } else if (const auto part = chosen_part(studio)) {
@@ -216,7 +218,7 @@ void draw_families(LibraryPanelState& state, const std::vector<Section>& section
 }
 
 void draw_target(Studio& studio, const Target& target) {
-    LibraryPanelState& state = studio.panels.library;
+    LibraryPanelState& state = *studio.panels.library;
     ImGui::AlignTextToFramePadding();
     ImGui::PushTextWrapPos(0.0f);
     ImGui::Text("Painting: %s", target.label.c_str());
@@ -249,7 +251,7 @@ void draw_target(Studio& studio, const Target& target) {
 
 /// One swatch; true when it was clicked.
 bool draw_cell(Studio& studio, const Target& target, SwatchCell& cell, float width, float height) {
-    LibraryPanelState& state = studio.panels.library;
+    LibraryPanelState& state = *studio.panels.library;
     const Material& paint = *cell.paint;
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     cell.centre = {corner.x + 0.5f * width, corner.y + 0.5f * height};
@@ -322,7 +324,7 @@ std::optional<std::size_t> neighbour(const std::vector<SwatchCell>& cells,
 }
 
 void follow_keys(Studio& studio, const Target& target, const std::vector<SwatchCell>& cells) {
-    LibraryPanelState& state = studio.panels.library;
+    LibraryPanelState& state = *studio.panels.library;
     if (!state.owns_arrows && !state.searching) return;
     std::optional<std::size_t> at;
     for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -384,7 +386,7 @@ void draw_grid(Studio& studio,
                             {}};
             if (draw_cell(studio, target, cell, width, height)) clicked = cell.paint->name;
             const bool worn = same_paint_name(cell.paint->name, target.paint);
-            const auto& cursor = studio.panels.library.cursor;
+            const auto& cursor = studio.panels.library->cursor;
             if (cursor ? *cursor == cell.paint->name : worn) current = ImGui::GetItemID();
             cells.push_back(cell);
         }
@@ -395,7 +397,7 @@ void draw_grid(Studio& studio,
     end_tab_group(current);
     follow_keys(studio, target, cells);
     if (clicked) {
-        studio.panels.library.cursor = clicked;
+        studio.panels.library->cursor = clicked;
         commit(studio, paint_command(studio, target, *clicked));
     }
 }
@@ -428,7 +430,7 @@ void draw_nothing_found(LibraryPanelState& state, const PaintLibrary& library) {
 }  // namespace
 
 void draw_library_panel(Studio& studio) {
-    LibraryPanelState& state = studio.panels.library;
+    LibraryPanelState& state = *studio.panels.library;
     const PaintLibrary& library = current_library(studio);
     if (!state.problem.empty()) {
         warning_text("The paint library cannot be read anew. " + state.problem);

@@ -1,4 +1,6 @@
 // The parameters of the chosen part's paint: live on the mock-up while they are dragged.
+#include "studio/paint/paint_panel.h"
+
 #include <algorithm>
 #include <array>
 #include <stdexcept>
@@ -43,7 +45,7 @@ std::string name_after_edit(const Document& document, const EditPaint& edit) {
 
 /// Looks the paint up again when the document or the choice has changed.
 void refresh(Studio& studio) {
-    PaintPanelState& state = studio.panels.paint;
+    PaintPanelState& state = *studio.panels.paint;
     const auto chosen = chosen_part(studio);
     const int part = chosen ? static_cast<int>(*chosen) : -1;
     const bool same = state.read && state.revision == studio.session.revision() &&
@@ -96,7 +98,7 @@ class ParameterRows {
               fmt::format("{}\n{}: {}. {}", info.meaning, info.name, info.range_text(), how));
     }
     void after_item(const std::string& name) {
-        PaintPanelState& state = studio_.panels.paint;
+        PaintPanelState& state = *studio_.panels.paint;
         name_last_item("param:" + name);
         tooltip(meaning_);
         state.held.after_item();
@@ -116,13 +118,13 @@ class ParameterRows {
 };
 
 void commit_edit(Studio& studio, const Material& material) {
-    const PaintPanelState& state = studio.panels.paint;
+    const PaintPanelState& state = *studio.panels.paint;
     commit(studio, EditPaint{state.look, state.part_name, material});
 }
 
 /// Where the paint comes from, and what becomes of it when it is changed.
 void draw_origin(Studio& studio) {
-    const PaintPanelState& state = studio.panels.paint;
+    const PaintPanelState& state = *studio.panels.paint;
     const Material& material = *state.material;
     const bool own = is_own(studio.session.document(), material.name);
     std::string origin = own ? "This session's own paint" : "From the library";
@@ -143,7 +145,7 @@ void draw_origin(Studio& studio) {
 }
 
 void draw_model(Studio& studio, const Material& material) {
-    PaintPanelState& state = studio.panels.paint;
+    PaintPanelState& state = *studio.panels.paint;
     row_label("Model");
     const ModelInfo& chosen = model_info(material.model);
     if (ImGui::BeginCombo("##model", chosen.label)) {
@@ -179,7 +181,7 @@ void draw_pair(Studio& studio,
                ParameterRows& rows,
                const ParameterInfo& parameter,
                Material& edited) {
-    PaintPanelState& state = studio.panels.paint;
+    PaintPanelState& state = *studio.panels.paint;
     const Components<double> components = parameter.in_material(edited);
     double& along = *components[0];
     double& across = *components[1];
@@ -210,7 +212,7 @@ void draw_pair(Studio& studio,
 }
 
 void draw_parameters(Studio& studio) {
-    PaintPanelState& state = studio.panels.paint;
+    PaintPanelState& state = *studio.panels.paint;
     Material& edited = state.held.start(*state.material);
     ParameterRows rows(studio, edited);
     for (const char* name : model_info(edited.model).parameters) {
@@ -235,7 +237,7 @@ void draw_parameters(Studio& studio) {
 }
 
 void save_paint(Studio& studio) {
-    PaintPanelState& state = studio.panels.paint;
+    PaintPanelState& state = *studio.panels.paint;
     Material paint = *state.material;
     paint.name = state.new_name;
     paint.family = state.new_family;
@@ -267,7 +269,7 @@ void save_paint(Studio& studio) {
 }
 
 void draw_save_popup(Studio& studio) {
-    PaintPanelState& state = studio.panels.paint;
+    PaintPanelState& state = *studio.panels.paint;
     ImGui::SetNextWindowSize({em(24.0f), 0.0f});
     if (!ImGui::BeginPopupModal(
             kSavePopup, nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove)) {
@@ -298,7 +300,7 @@ void draw_save_popup(Studio& studio) {
 }
 
 void draw_rename_popup(Studio& studio) {
-    PaintPanelState& state = studio.panels.paint;
+    PaintPanelState& state = *studio.panels.paint;
     ImGui::SetNextWindowSize({em(24.0f), 0.0f});
     if (!ImGui::BeginPopupModal(
             kRenamePopup, nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove)) {
@@ -332,7 +334,7 @@ void draw_rename_popup(Studio& studio) {
 }
 
 void draw_rename(Studio& studio) {
-    PaintPanelState& state = studio.panels.paint;
+    PaintPanelState& state = *studio.panels.paint;
     const char* rename = "Rename…";
     place_in_row(button_width(rename));
     begin_disabled(!is_own(studio.session.document(), state.material->name));
@@ -348,7 +350,7 @@ void draw_rename(Studio& studio) {
 }
 
 void draw_actions(Studio& studio) {
-    PaintPanelState& state = studio.panels.paint;
+    PaintPanelState& state = *studio.panels.paint;
     const Material& material = *state.material;
     const Material* origin = is_own(studio.session.document(), material.name)
                                  ? library_origin(material.name, current_library(studio))
@@ -388,7 +390,7 @@ void draw_actions(Studio& studio) {
 }  // namespace
 
 void draw_paint_panel(Studio& studio) {
-    PaintPanelState& state = studio.panels.paint;
+    PaintPanelState& state = *studio.panels.paint;
     refresh(studio);
     if (state.part_name.empty()) {
         dim_text("There is no part whose paint could be shown.");

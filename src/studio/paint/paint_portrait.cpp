@@ -18,13 +18,14 @@
 #include "studio/kit/widgets.h"
 #include "studio/paint/lobe_plot.h"
 #include "studio/paint/paint_choice.h"
+#include "studio/paint/paint_panel.h"
 #include "studio/paint/swatch_textures.h"
 
 namespace livery {
 
 namespace {
 
-PaintPortraitState& state_of(Studio& studio) { return studio.panels.paint.portrait; }
+PaintPortraitState& state_of(Studio& studio) { return studio.panels.paint->portrait; }
 
 PaintPortrait portrait_of(const Material& material, double light_rad) {
     return {material, paint_figures(material), lobe_curve(material, light_rad)};

@@ -11,6 +11,7 @@
 #include "appearance/parameter_table.h"
 #include "gl/window.h"
 #include "studio/kit/widgets.h"
+#include "studio/paint/library_panel.h"
 #include "studio/paint/paint_finder.h"
 
 namespace livery {
@@ -35,7 +36,7 @@ void draw_plain_disc(const Material& material, const ImVec2& corner, float side)
 }  // namespace
 
 void take_swatches(Studio& studio) {
-    LibraryPanelState& state = studio.panels.library;
+    LibraryPanelState& state = *studio.panels.library;
     std::map<std::string, Image8> drawn;
     {
         const std::scoped_lock lock(state.inbox->mutex);
@@ -57,7 +58,7 @@ void take_swatches(Studio& studio) {
 }
 
 void draw_swatch(Studio& studio, const Material& material, const ImVec2& corner, float side_px) {
-    LibraryPanelState& state = studio.panels.library;
+    LibraryPanelState& state = *studio.panels.library;
     // Few sizes, so that dragging a panel's edge does not draw all of them anew.
     const int size_px = std::clamp(static_cast<int>(std::ceil(side_px / 32.0f)) * 32, 64, 256);
     const std::string key = key_of(material, size_px);

@@ -1,11 +1,23 @@
 // Pictures of paints on a sphere, drawn by the preview's thread when it has time.
 #pragma once
 
+#include <map>
+#include <mutex>
+#include <string>
+
+#include "core/image.h"
 #include "studio/studio.h"
 
 struct ImVec2;
 
 namespace livery {
+
+/// Where the preview's thread leaves swatches. Shared, because a swatch may be finished after the
+/// panel that asked for it is gone.
+struct SwatchInbox {
+    std::mutex mutex;
+    std::map<std::string, Image8> drawn;  ///< by the paint's parameters
+};
 
 /// Once a frame of the window: turns what has arrived into textures.
 void take_swatches(Studio& studio);

@@ -7,6 +7,7 @@
 
 #include "appearance/measured/measured_paint.h"
 #include "studio/kit/background.h"
+#include "studio/paint/library_panel.h"
 
 namespace livery {
 
@@ -29,7 +30,7 @@ void start_reading(Studio& studio);
 
 /// The user's own measured paints follow, one snapshot after the one in which they were found.
 void finish_reading(Studio& studio) {
-    LibraryPanelState& state = studio.panels.library;
+    LibraryPanelState& state = *studio.panels.library;
     const LibraryReading done = std::exchange(state.reading, {});
     for (const auto& then : done.then) then();
     if (state.problem.empty()) {
@@ -40,13 +41,13 @@ void finish_reading(Studio& studio) {
 }
 
 void start_reading(Studio& studio) {
-    LibraryPanelState& state = studio.panels.library;
+    LibraryPanelState& state = *studio.panels.library;
     state.reading = std::exchange(state.next_reading, {});
     const auto before = studio.session.document().library;
     studio.background->run(
         [&studio, before, files = state.reading.files](const Progress&) -> Background::Then {
             return [&studio, before, library = read_paint_library(before, files)] {
-                LibraryPanelState& there = studio.panels.library;
+                LibraryPanelState& there = *studio.panels.library;
                 there.problem.clear();
                 if (studio.session.document().library == before) {
                     studio.session.use(library);
@@ -61,7 +62,7 @@ void start_reading(Studio& studio) {
             try {
                 std::rethrow_exception(why);
             } catch (const std::exception& error) {
-                studio.panels.library.problem = error.what();
+                studio.panels.library->problem = error.what();
             }
             finish_reading(studio);
         });
@@ -76,7 +77,7 @@ const PaintLibrary& current_library(const Studio& studio) {
 void refresh_library(Studio& studio,
                      const std::set<std::filesystem::path>& wanted,
                      std::function<void()> then) {
-    LibraryPanelState& state = studio.panels.library;
+    LibraryPanelState& state = *studio.panels.library;
     const auto& files = state.reading.files;
     const bool is_under_way =
         !wanted.empty() && std::includes(files.begin(), files.end(), wanted.begin(), wanted.end());

@@ -9,6 +9,7 @@
 #include "core/log.h"
 #include "studio/artwork/artwork_edit.h"
 #include "studio/look_files.h"
+#include "studio/paint/library_panel.h"
 #include "studio/projector_control.h"
 #include "studio/save_picture.h"
 #include "studio/window/shell.h"
@@ -152,7 +153,7 @@ void add_edit_actions(std::vector<Action>& list) {
                           {key(GLFW_KEY_SLASH), ctrl(GLFW_KEY_K)},
                           [](Shell& s) {
                               s.tab_to_open = 0;
-                              s.studio.panels.library.focus_search = true;
+                              s.studio.panels.library->focus_search = true;
                           }));
 }
 

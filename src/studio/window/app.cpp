@@ -22,7 +22,9 @@
 #include "studio/kit/tab_order.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
+#include "studio/paint/library_panel.h"
 #include "studio/paint/users_library.h"
+#include "studio/plan_panel.h"
 #include "studio/projector_control.h"
 #include "studio/quality_costs.h"
 #include "studio/window/actions.h"
@@ -106,7 +108,7 @@ KeyboardOwner keyboard_owner(const Shell& shell) {
     owner.dialog = ImGui::GetTopMostPopupModal() != nullptr;
     owner.ballot_letters = ballot_letters(shell.studio);
     owner.keyboard_navigation =
-        g.IO.NavVisible || g.OpenPopupStack.Size > 0 || shell.studio.panels.library.owns_arrows;
+        g.IO.NavVisible || g.OpenPopupStack.Size > 0 || shell.studio.panels.library->owns_arrows;
     return owner;
 }
 
@@ -302,7 +304,7 @@ class Desktop {
             give_icon(studio, native);
         }
         save_again_now_and_then(shell_);
-        if (studio.frame) remember_costs(studio.panels.plan.measured, *studio.frame);
+        if (studio.frame) remember_costs(studio.panels.plan->measured, *studio.frame);
         if (shell_.monitor_numbers && studio.now_s >= shell_.monitor_numbers_until_s) {
             shell_.monitor_numbers.reset();
         }
@@ -417,8 +419,7 @@ class Desktop {
         shell_.monitor_numbers.reset();
         stop_threads(shell_);
         shell_.stage.photograph_texture = {};
-        const auto no_textures = std::make_unique<PanelStates>();
-        shell_.studio.panels = std::move(*no_textures);
+        shell_.studio.panels = PanelStates();  // their textures go
         imgui_.reset();
     }
 

@@ -6,7 +6,9 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "studio/ballot_panel.h"
 #include "studio/kit/theme.h"
+#include "studio/paint/library_panel.h"
 #include "studio/paint/swatch_textures.h"
 #include "studio/window/actions.h"
 #include "studio/window/shell.h"
@@ -75,10 +77,10 @@ void draw_right_column(Shell& shell) {
                                                      {"Frame", draw_plan_panel}}};
     take_swatches(shell.studio);
     if (shell.ballots_open) {
-        shell.studio.panels.library.owns_arrows = false;
+        shell.studio.panels.library->owns_arrows = false;
         return draw_ballot_panel(shell.studio, shell.ballots_open);
     }
-    shell.studio.panels.ballot.was_open = false;
+    shell.studio.panels.ballot->was_open = false;
     if (!ImGui::BeginTabBar("tabs", ImGuiTabBarFlags_FittingPolicyResizeDown)) return;
     for (std::size_t i = 0; i < tabs.size(); ++i) {
         const bool to_open = shell.tab_to_open == static_cast<int>(i);
@@ -87,7 +89,7 @@ void draw_right_column(Shell& shell) {
         name_last_item(std::string("tab:") + tabs[i].label);
         if (!open) {
             if (tabs[i].draw == draw_library_panel) {
-                shell.studio.panels.library.owns_arrows = false;
+                shell.studio.panels.library->owns_arrows = false;
             }
             continue;
         }

@@ -10,6 +10,7 @@
 #include "live/calibration_reuse.h"
 #include "scene/library.h"
 #include "scene/view.h"
+#include "studio/calibration_panel.h"
 #include "studio/kit/words.h"
 #include "studio/paint/users_library.h"
 #include "studio/results.h"
@@ -311,7 +312,7 @@ void take_calibration(Shell& shell) {
         studio.session.set_workspace(kCalibratedKey, "yes");
         take_back_notice();
         if (calibrating.running) studio.bench->cancel_calibration();
-        if (calibrating.finished) studio.panels.calibration.taken = *calibrating.finished;
+        if (calibrating.finished) studio.panels.calibration->taken = *calibrating.finished;
         return;
     }
     // The panel tells the person who asked; nobody asked for this one.
@@ -323,8 +324,8 @@ void take_calibration(Shell& shell) {
                 sentence(calibrating.refused_why),
                 sentence(calibrating.refused_fix)});
     }
-    if (!calibrating.finished || *calibrating.finished == studio.panels.calibration.taken) return;
-    studio.panels.calibration.taken = *calibrating.finished;
+    if (!calibrating.finished || *calibrating.finished == studio.panels.calibration->taken) return;
+    studio.panels.calibration->taken = *calibrating.finished;
     studio.session.set_workspace(kCalibratedKey, "yes");
     stop_trying(studio);
     take_back_notice();

@@ -1,0 +1,27 @@
+// What the ballot panel remembers between frames.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "evaluation/ballots.h"
+
+namespace livery {
+
+struct BallotPanelState {
+    enum class Page { start, vote, thanks, result };
+    Page page = Page::start;
+    bool was_open = false;             ///< in the frame before
+    std::vector<Round> rounds;         ///< read when the panel opens and after each change
+    std::map<int, bool> chosen_looks;  ///< by the look's number
+    std::string evaluator, thanked;
+    bool focus_name = false;
+    std::optional<int> best, second;
+    std::string problem;
+    std::optional<int> shown_round;
+    bool asking_to_close = false;
+};
+
+}  // namespace livery

@@ -1,0 +1,28 @@
+#include "studio/panel_states.h"
+
+#include "studio/artwork/artwork_panel.h"
+#include "studio/ballot_panel.h"
+#include "studio/calibration_panel.h"
+#include "studio/light/lighting_panel.h"
+#include "studio/look_thumbnails.h"
+#include "studio/paint/library_panel.h"
+#include "studio/paint/paint_panel.h"
+#include "studio/plan_panel.h"
+
+namespace livery {
+
+PanelStates::PanelStates()
+    : library(std::make_unique<LibraryPanelState>()),
+      paint(std::make_unique<PaintPanelState>()),
+      artwork(std::make_unique<ArtworkPanelState>()),
+      lighting(std::make_unique<LightingPanelState>()),
+      plan(std::make_unique<PlanPanelState>()),
+      calibration(std::make_unique<CalibrationPanelState>()),
+      ballot(std::make_unique<BallotPanelState>()),
+      thumbnails(std::make_unique<LookThumbnailState>()) {}
+
+PanelStates::~PanelStates() = default;
+PanelStates::PanelStates(PanelStates&&) noexcept = default;
+PanelStates& PanelStates::operator=(PanelStates&&) noexcept = default;
+
+}  // namespace livery
