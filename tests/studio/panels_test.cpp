@@ -1,5 +1,6 @@
 // The panels drawn without a window: everything fits in the narrowest column, and pointer and keys
 // do to the session what they say.
+#include <algorithm>
 #include <cfloat>
 #include <cstdlib>
 #include <string>
@@ -19,6 +20,7 @@
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
 #include "studio/paint/library_panel.h"
+#include "studio/paint/swatch_cell.h"
 #include "studio/studio.h"
 #include "support/temporary_folder.h"
 
@@ -191,6 +193,25 @@ TEST_P(Panels, FitIntoTheNarrowestColumn) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scales, Panels, testing::Values(1.0f, 2.0f));
+
+TEST_F(Panels, ATooltipIsNeverTallerThanItsText) {
+    use_scale(1.0f);
+    Studio studio = make_studio();
+    const DrawPanel draw = [](Studio& of) {
+        paint_tooltip(find_paint(of.session.document(), "bronze metallic"));
+    };
+    std::vector<float> heights;
+    for (int i = 0; i < 8; ++i) {
+        frame(studio, draw);
+        for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows) {
+            const bool seen = (window->Flags & ImGuiWindowFlags_Tooltip) != 0 && window->Active &&
+                              !window->Hidden;
+            if (seen) heights.push_back(window->Size.y);
+        }
+    }
+    ASSERT_GE(heights.size(), 3u);
+    EXPECT_LE(*std::max_element(heights.begin(), heights.end()), 1.01f * heights.back());
+}
 
 TEST_F(Panels, PointingTriesAPaintAndClickingPaints) {
     use_scale(1.0f);

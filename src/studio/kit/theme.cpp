@@ -189,7 +189,10 @@ namespace {
 
 void wrapped(const ImVec4& colour, const std::string& text) {
     ImGui::PushStyleColor(ImGuiCol_Text, colour);
-    ImGui::PushTextWrapPos(0.0f);
+    // Where a width is set already (a tooltip's) the window's edge may not be known yet: it would
+    // be as high as the screen in its first picture.
+    const float set = ImGui::GetCurrentWindow()->DC.TextWrapPos;
+    ImGui::PushTextWrapPos(std::max(set, 0.0f));
     ImGui::TextUnformatted(text.c_str(), text.c_str() + text.size());
     ImGui::PopTextWrapPos();
     ImGui::PopStyleColor();
