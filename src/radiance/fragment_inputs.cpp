@@ -155,7 +155,7 @@ void FragmentInputs::solve_sky(const Scene& scene,
         if (sky_made_.of) directions_stale_ = diffuse_light_stale_ = true;
         sky_made_ = {};
         diffused_ = nullptr;
-        filtered_.diffuse = filtered_.blurred = {};
+        filtered_.diffuse = filtered_.blurred = filtered_.hardly_blurred = {};
         sky_.clear();
         return;
     }
@@ -174,6 +174,7 @@ void FragmentInputs::solve_sky(const Scene& scene,
                 filter_environment(*scene.environment, {false, true, true, false}, progress);
             filtered_.diffuse = std::move(filtered.diffuse);
             filtered_.blurred = std::move(filtered.blurred);
+            filtered_.hardly_blurred = std::move(filtered.hardly_blurred);
         }
         diffused_ = scene.environment;
         sky_ = sky_at_fragments(

@@ -232,10 +232,9 @@ std::vector<Region> regions_of(const Product& car, const View& view) {
 /// How far the sum over a region may be off, relative.
 double allowed_in(const std::string& region, const Material& paint) {
     constexpr double kAsked = 0.02;
-    const bool narrow_alone = paint.model == ReflectanceModel::ggx && paint.alpha.x < 0.1;
-    // What lies deep between tyre, spokes and arch sees little of the sky, and no few rays find how
-    // much: matt layers and wide lobes are up to 10% too bright there. Narrow lobes keep to 2%.
-    if (region == "wheels" && !narrow_alone) return 0.12;
+    // Between tyre, spokes and arch each fragment looks through gaps of its own, by a hundred rays
+    // at most: other neighbours' rays and every second of a ring's stand for those between.
+    if (region == "wheels") return 0.04;
     // The fit of a coat's albedo may be .009 too large (microfacet.glsl).
     if (paint.model == ReflectanceModel::clearcoat) return 0.035;
     return kAsked;
@@ -261,7 +260,8 @@ TEST(GlAgainstReference, RegionsOfTheCarInAnEnvironment) {
         for (const Region& region : regions) {
             ASSERT_GT(region.pixels_px.size(), 60u) << region.name;
             ReferenceOptions options;
-            options.samples_per_pixel = 256;
+            // Little light comes by few ways in the wheels: 512 samples leave 1.4%
+            options.samples_per_pixel = region.name == "wheels" ? 2048 : 256;
             const glm::ivec2 corner = region.corner_px;
             const ImageF truth =
                 trace_reference(

@@ -83,6 +83,7 @@ TEST(EnvironmentFilter, ConstantStaysConstant) {
     }
     for (const float value : filtered.diffuse.values) ASSERT_NEAR(value, 0.7f, 1e-5f);
     for (const float value : filtered.blurred.values) ASSERT_NEAR(value, 0.7f, 1e-5f);
+    for (const float value : filtered.hardly_blurred.values) ASSERT_NEAR(value, 0.7f, 1e-5f);
 }
 
 TEST(EnvironmentFilter, DiffuserUnderALinearSkyHasTheClosedForm) {

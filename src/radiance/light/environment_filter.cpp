@@ -140,12 +140,15 @@ FilteredEnvironment filter_environment(const Environment& environment,
 
     FilteredEnvironment result;
     if (parts.diffuse || parts.blurred) {
-        const std::vector<std::vector<double>> kernels{cosine_kernel(48),
-                                                       gaussian_kernel(0.1, 127)};
+        const std::vector<std::vector<double>> kernels{
+            cosine_kernel(48), gaussian_kernel(0.1, 127), gaussian_kernel(0.06, 127)};
         auto pictures = synthesise_sphere(harmonics, kernels, 256, 128);
         for (ImageF& picture : pictures) clamp_to_positive(picture);
         if (parts.diffuse) result.diffuse = std::move(pictures[0]);
-        if (parts.blurred) result.blurred = std::move(pictures[1]);
+        if (parts.blurred) {
+            result.blurred = std::move(pictures[1]);
+            result.hardly_blurred = std::move(pictures[2]);
+        }
     }
     if (parts.mirrored) {
         // Lobes of alpha .11 and more are smooth on 128 columns, which stay in a core's cache

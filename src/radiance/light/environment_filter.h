@@ -46,7 +46,9 @@ struct FilteredEnvironment {
     /// The same of Gaussians: what MirrorQuadrature's nodes look up.
     std::vector<ImageF> gaussians;
     ImageF diffuse;  ///< what a white diffuser facing there sends: irradiance / pi
-    ImageF blurred;  ///< 0.1 rad Gaussian: the mean over one of many stratified directions
+    /// Gaussians of .1 and .06 rad: the mean around one of a few dozen and of a hundred stratified
+    /// directions. Past an edge, as much of the hidden light as lies within one is seen.
+    ImageF blurred, hardly_blurred;
 };
 
 /// Only the parts asked for are made (the others stay empty). Filtering is exact up to degree 255

@@ -1,7 +1,9 @@
 #include "radiance/light/mirrored_environment.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <span>
 
 #include <glm/geometric.hpp>
 
@@ -108,6 +110,87 @@ bool any_weight(const MirrorQuadrature::Node& node) {
     return node.weight.back()[3] > 0.0f;
 }
 
+/// 1 where the bit is not set: nothing is in the way.
+float share_seen(std::uint64_t blocked, std::uint8_t bit) {
+    return ((blocked >> bit) & 1u) == 0 ? 1.0f : 0.0f;
+}
+
+/// Rays from fragments along the directions that nodes mirror to. For one thread.
+class NodeRays {
+  public:
+    NodeRays(const Mesh& mesh,
+             const Tracer& tracer,
+             const SurfaceMap& map,
+             const glm::dvec3& eye_mm,
+             const MirrorQuadrature& quadrature)
+        : mesh_(mesh), tracer_(tracer), map_(map), eye_mm_(eye_mm), quadrature_(quadrature) {}
+
+    /// Sets the bits of the nodes of this turn that the product hides.
+    void trace(std::size_t fragment, std::size_t turn, std::uint64_t& hidden) {
+        const Facets facets = facets_of(mesh_, map_, fragment, eye_mm_, quadrature_);
+        ray_origins(mesh_, map_, fragment, origins_);
+        const std::vector<std::size_t>& nodes = quadrature_.traced(turn);
+        rays_.clear();
+        bits_.clear();
+        for (std::size_t bit = 0; bit < nodes.size(); ++bit) {
+            const std::size_t k = nodes[bit];
+            const Facet& facet = facets[k % facets.size()];
+            const MirrorQuadrature::Node node = facet.row.node(k);
+            if (!any_weight(node)) continue;
+            TraceRay& ray = rays_.emplace_back();
+            ray.origin = origins_[k % origins_.size()];
+            ray.direction = facet.mirrored(node);
+            bits_.push_back(bit);
+        }
+        blocked_.resize(rays_.size());
+        tracer_.occluded(rays_, blocked_, RayOrder::scattered);
+        for (std::size_t k = 0; k < rays_.size(); ++k) {
+            if (blocked_[k]) hidden |= std::uint64_t{1} << bits_[k];
+        }
+    }
+
+  private:
+    const Mesh& mesh_;
+    const Tracer& tracer_;
+    const SurfaceMap& map_;
+    const glm::dvec3& eye_mm_;
+    const MirrorQuadrature& quadrature_;
+    std::vector<TraceRay> rays_;
+    std::vector<std::size_t> bits_;
+    std::vector<std::uint8_t> blocked_;
+    std::array<glm::vec3, kSamplesAFragment> origins_;
+};
+
+/// Fragments that look for themselves, where something is hidden: no neighbour has traced some of
+/// the directions, and those traced that come closest are up to a quarter of a ring away; or more
+/// than half is hidden, as in a wheel, where a neighbour looks through another gap.
+std::vector<std::uint32_t> find_alone(const SurfaceMap& map,
+                                      const MirrorQuadrature& quadrature,
+                                      std::span<const std::uint64_t> blocked) {
+    const FragmentNeighbours neighbours(map);
+    std::vector<std::uint8_t> is_alone(map.fragments.size(), 0);
+    parallel_for(is_alone.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        std::vector<FragmentNeighbours::Neighbour> found;
+        for (std::size_t i = begin; i < end; ++i) {
+            neighbours.around(i, found);
+            unsigned turns = 0;
+            bool hidden = false;
+            for (const FragmentNeighbours::Neighbour& one : found) {
+                turns |= 1u << one.turn;
+                hidden = hidden || blocked[one.fragment] != 0;
+            }
+            const auto own = static_cast<std::size_t>(std::popcount(blocked[i]));
+            const bool deep = 2 * own > quadrature.traced(neighbour_turn(map, i)).size();
+            is_alone[i] = hidden && (turns != (1u << kNeighbourTurns) - 1u || deep);
+        }
+    });
+    std::vector<std::uint32_t> alone;
+    for (std::size_t i = 0; i < is_alone.size(); ++i) {
+        if (is_alone[i]) alone.push_back(static_cast<std::uint32_t>(i));
+    }
+    return alone;
+}
+
 }  // namespace
 
 MirrorVisibility solve_mirror_visibility(const Mesh& mesh,
@@ -116,35 +199,28 @@ MirrorVisibility solve_mirror_visibility(const Mesh& mesh,
                                          glm::dvec3 eye_mm,
                                          int nodes,
                                          const Progress& progress) {
-    MirrorVisibility result{MirrorQuadrature(mirror_rings(nodes)), {}};
+    MirrorVisibility result{MirrorQuadrature(mirror_rings(nodes)), {}, {}, {}};
     const MirrorQuadrature& quadrature = result.quadrature;
     result.blocked.assign(map.fragments.size(), 0);
     parallel_for(map.fragments.size(), 512, [&](std::size_t begin, std::size_t end) {
         progress.check_stop();
-        std::vector<TraceRay> rays;
-        std::vector<std::size_t> bits;
-        std::vector<std::uint8_t> blocked;
-        std::array<glm::vec3, kSamplesAFragment> origins;
+        NodeRays rays(mesh, tracer, map, eye_mm, quadrature);
         for (std::size_t i = begin; i < end; ++i) {
-            const Facets facets = facets_of(mesh, map, i, eye_mm, quadrature);
-            ray_origins(mesh, map, i, origins);
-            rays.clear();
-            bits.clear();
-            const std::vector<std::size_t>& traced = quadrature.traced(neighbour_turn(map, i));
-            for (std::size_t bit = 0; bit < traced.size(); ++bit) {
-                const std::size_t k = traced[bit];
-                const Facet& facet = facets[k % facets.size()];
-                const MirrorQuadrature::Node node = facet.row.node(k);
-                if (!any_weight(node)) continue;
-                TraceRay& ray = rays.emplace_back();
-                ray.origin = origins[k % origins.size()];
-                ray.direction = facet.mirrored(node);
-                bits.push_back(bit);
-            }
-            blocked.resize(rays.size());
-            tracer.occluded(rays, blocked, RayOrder::scattered);
-            for (std::size_t k = 0; k < rays.size(); ++k) {
-                if (blocked[k]) result.blocked[i] |= std::uint64_t{1} << bits[k];
+            rays.trace(i, neighbour_turn(map, i), result.blocked[i]);
+        }
+    });
+
+    result.alone = find_alone(map, quadrature, result.blocked);
+    result.blocked_alone.resize(result.alone.size());
+    parallel_for(result.alone.size(), 64, [&](std::size_t begin, std::size_t end) {
+        progress.check_stop();
+        NodeRays rays(mesh, tracer, map, eye_mm, quadrature);
+        for (std::size_t k = begin; k < end; ++k) {
+            const std::size_t i = result.alone[k], own_turn = neighbour_turn(map, i);
+            result.blocked_alone[k][0] = result.blocked[i];
+            for (std::size_t word = 1; word < MirrorVisibility::kWordsAlone; ++word) {
+                const std::size_t turn = (own_turn + 2 * word) % kNeighbourTurns;
+                rays.trace(i, turn, result.blocked_alone[k][word]);
             }
         }
     });
@@ -171,35 +247,19 @@ MirroredEnvironment::MirroredEnvironment(const Environment& environment,
 }
 
 bool MirroredEnvironment::find_seen(std::size_t fragment, Scratch& scratch) const {
-    neighbours_->around(fragment, scratch.neighbours);
-    const std::vector<std::uint64_t>& blocked = visibility_->blocked;
-    if (std::all_of(scratch.neighbours.begin(), scratch.neighbours.end(), [&](const auto& one) {
-            return blocked[one.fragment] == 0;
-        })) {
-        return false;
-    }
-    std::array<float, MirrorQuadrature::kTurns> whole{};
-    for (const FragmentNeighbours::Neighbour& one : scratch.neighbours) {
-        whole[one.turn] += one.weight;
-    }
-    const auto is_seen = [&](std::size_t of, std::uint8_t bit) {
-        return ((blocked[of] >> bit) & 1u) == 0 ? 1.0f : 0.0f;
-    };
-    const std::size_t own_turn = neighbour_turn(map_, fragment);
-    scratch.seen.assign(quadrature_.count(), 0.0f);
-    for (std::size_t k = 0; k < scratch.seen.size(); ++k) {
-        const MirrorQuadrature::Ray& ray = quadrature_.ray(k);
-        if (ray.turn == MirrorQuadrature::kStraight) {
-            scratch.seen[k] = is_seen(fragment, ray.bit);
-        } else if (whole[ray.turn] > 0.0f) {
-            float sum = 0.0f;
-            for (const FragmentNeighbours::Neighbour& one : scratch.neighbours) {
-                if (one.turn == ray.turn) sum += one.weight * is_seen(one.fragment, ray.bit);
-            }
-            scratch.seen[k] = sum / whole[ray.turn];
-        } else {
-            scratch.seen[k] = is_seen(fragment, quadrature_.nearest(k, own_turn));
+    const std::vector<std::uint32_t>& alone = visibility_->alone;
+    const auto own = std::lower_bound(alone.begin(), alone.end(), fragment);
+    if (own != alone.end() && *own == fragment) {
+        const auto at = static_cast<std::size_t>(own - alone.begin());
+        ask_itself(fragment, visibility_->blocked_alone[at].data(), scratch);
+    } else {
+        neighbours_->around(fragment, scratch.neighbours);
+        if (std::all_of(scratch.neighbours.begin(), scratch.neighbours.end(), [&](const auto& one) {
+                return visibility_->blocked[one.fragment] == 0;
+            })) {
+            return false;
         }
+        ask_neighbours(fragment, scratch);
     }
     scratch.width.resize(scratch.seen.size());
     for (std::size_t k = 0; k < scratch.width.size(); ++k) {
@@ -210,6 +270,55 @@ bool MirroredEnvironment::find_seen(std::size_t fragment, Scratch& scratch) cons
         scratch.width[k] = 1.0f - (1.0f - kBesideHidden) * (1.0f - least);
     }
     return true;
+}
+
+void MirroredEnvironment::ask_neighbours(std::size_t fragment, Scratch& scratch) const {
+    std::array<float, MirrorQuadrature::kTurns> whole{};
+    for (const FragmentNeighbours::Neighbour& one : scratch.neighbours) {
+        whole[one.turn] += one.weight;
+    }
+    const std::vector<std::uint64_t>& blocked = visibility_->blocked;
+    scratch.seen.assign(quadrature_.count(), 0.0f);
+    for (std::size_t k = 0; k < scratch.seen.size(); ++k) {
+        const MirrorQuadrature::Ray& ray = quadrature_.ray(k);
+        if (ray.turn == MirrorQuadrature::kStraight) {
+            scratch.seen[k] = share_seen(blocked[fragment], ray.bit);
+            continue;
+        }
+        float sum = 0.0f;
+        for (const FragmentNeighbours::Neighbour& one : scratch.neighbours) {
+            if (one.turn == ray.turn) {
+                sum += one.weight * share_seen(blocked[one.fragment], ray.bit);
+            }
+        }
+        scratch.seen[k] = sum / whole[ray.turn];
+    }
+}
+
+void MirroredEnvironment::ask_itself(std::size_t fragment,
+                                     const std::uint64_t* words,
+                                     Scratch& scratch) const {
+    const std::size_t own_turn = neighbour_turn(map_, fragment);
+    // How many turns from the fragment's own on
+    const auto word_of = [](std::size_t turns) { return turns % kNeighbourTurns / 2; };
+    scratch.seen.assign(quadrature_.count(), 0.0f);
+    for (std::size_t k = 0; k < scratch.seen.size(); ++k) {
+        const MirrorQuadrature::Ray& ray = quadrature_.ray(k);
+        if (ray.turn == MirrorQuadrature::kStraight) {
+            scratch.seen[k] = share_seen(words[0], ray.bit);
+            continue;
+        }
+        const std::size_t turns = (ray.turn + kNeighbourTurns - own_turn) % kNeighbourTurns;
+        if (turns % 2 == 0) {
+            scratch.seen[k] = share_seen(words[word_of(turns)], ray.bit);
+            continue;
+        }
+        for (const std::size_t beside : {turns - 1, turns + 1}) {
+            const std::size_t turn = (own_turn + beside) % kNeighbourTurns;
+            scratch.seen[k] +=
+                0.5f * share_seen(words[word_of(beside)], quadrature_.nearest(k, turn));
+        }
+    }
 }
 
 MirroredLight MirroredEnvironment::at_fragment(std::size_t fragment, Scratch& scratch) const {

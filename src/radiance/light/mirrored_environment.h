@@ -22,6 +22,11 @@ namespace livery {
 struct MirrorVisibility {
     MirrorQuadrature quadrature;
     std::vector<std::uint64_t> blocked;  ///< a word a fragment, of MirrorQuadrature::Ray's bits
+    /// Fragments that cannot learn from their neighbours, in their order, and the words of every
+    /// other turn of each, from its own on.
+    std::vector<std::uint32_t> alone;
+    static constexpr std::size_t kWordsAlone = MirrorQuadrature::kTurns / 2;
+    std::vector<std::array<std::uint64_t, kWordsAlone>> blocked_alone;
 };
 MirrorVisibility solve_mirror_visibility(const Mesh& mesh,
                                          const Tracer& tracer,
@@ -61,6 +66,8 @@ class MirroredEnvironment {
   private:
     /// Whether any node is hidden, and by how much each.
     bool find_seen(std::size_t fragment, Scratch& scratch) const;
+    void ask_neighbours(std::size_t fragment, Scratch& scratch) const;
+    void ask_itself(std::size_t fragment, const std::uint64_t* words, Scratch& scratch) const;
 
     float scale_;
     SpherePlaces places_;

@@ -185,16 +185,22 @@ std::vector<glm::vec3> sky_at_fragments(const Mesh& mesh,
     const auto scale = static_cast<float>(environment.scale);
     const SpherePlaces places(environment);
     const SphereStack diffuse({&filtered.diffuse, 1});
-    const SphereStack blurred = visibility ? SphereStack({&filtered.blurred, 1}) : SphereStack();
+    const auto lookup = [&](const ImageF& light) {
+        return visibility ? SphereStack({&light, 1}) : SphereStack();
+    };
+    const SphereStack around_few = lookup(filtered.blurred);
+    const SphereStack around_many = lookup(filtered.hardly_blurred);
     const auto open_sky = [&](const glm::vec3& n) {
         return LIVERY_MUTATED(sky_light, scale * rgb_of(diffuse.at(places.of(n)).in(0)));
     };
     // The same directions estimate the whole: the ratio is kinder to bright lamps
-    const auto share_seen = [&](std::span<const glm::vec3> directions, const std::uint64_t* words) {
+    const auto share_seen = [&](const SphereStack& light,
+                                std::span<const glm::vec3> directions,
+                                const std::uint64_t* words) {
         Texel hidden{}, seen{};
         for (std::size_t k = 0; k < directions.size(); ++k) {
             const bool blocked = ((words[k / 64] >> (k % 64)) & 1u) != 0;
-            (blocked ? hidden : seen) += blurred.at(places.of(directions[k])).in(0);
+            (blocked ? hidden : seen) += light.at(places.of(directions[k])).in(0);
         }
         return rgb_of(seen) / glm::max(rgb_of(hidden + seen), glm::vec3(1e-20f));
     };
@@ -208,7 +214,7 @@ std::vector<glm::vec3> sky_at_fragments(const Mesh& mesh,
             result[i] = open_sky(n);
             if (!visibility || visibility->blocked[i] == 0) continue;
             sky.around(n, turn_of(i, 5u), directions);
-            result[i] *= share_seen(directions, &visibility->blocked[i]);
+            result[i] *= share_seen(around_few, directions, &visibility->blocked[i]);
         }
     });
     if (more.count() == 0) return result;
@@ -222,8 +228,9 @@ std::vector<glm::vec3> sky_at_fragments(const Mesh& mesh,
             for (std::size_t k = 0; k < kSamplesAFragment; ++k) {
                 light += open_sky(sample_normal(mesh, map, i, k));
             }
-            result[i] = light / static_cast<float>(kSamplesAFragment) *
-                        share_seen(directions, &visibility->more[at * (more.count() / 64)]);
+            result[i] =
+                light / static_cast<float>(kSamplesAFragment) *
+                share_seen(around_many, directions, &visibility->more[at * (more.count() / 64)]);
         }
     });
     return result;
