@@ -35,6 +35,31 @@ bool is_file(const std::string& name) {
     return looks_like_path || std::filesystem::is_regular_file(name, error);
 }
 
+/// Part names of the products that were read in this run, as they were last read.
+class KnownParts {
+  public:
+    std::optional<std::vector<std::string>> of(const std::string& product) {
+        const std::lock_guard lock(mutex_);
+        const auto found = names_.find(product);
+        if (found == names_.end()) return std::nullopt;
+        return found->second;
+    }
+
+    void keep(const std::string& product, std::vector<std::string> names) {
+        const std::lock_guard lock(mutex_);
+        names_.insert_or_assign(product, std::move(names));
+    }
+
+  private:
+    std::mutex mutex_;
+    std::map<std::string, std::vector<std::string>> names_;
+};
+
+KnownParts& known_parts() {
+    static KnownParts known;
+    return known;
+}
+
 }  // namespace
 
 std::vector<std::string> shipped_looks() { return shipped_names("assets/looks"); }
@@ -108,17 +133,21 @@ std::optional<std::string> bench_of_shipped_product(const std::string& name) {
 std::shared_ptr<const Product> find_product(const std::string& name_or_file,
                                             std::optional<LengthUnit> unit) {
     const std::string stem = file_stem_of(name_or_file);
-    if (!bench_of_shipped_product(stem) && is_file(name_or_file)) {
-        return std::make_shared<const Product>(load_product(name_or_file, unit));
-    }
-    if (!bench_of_shipped_product(stem)) {
+    const bool shipped = bench_of_shipped_product(stem).has_value();
+    if (!shipped && !is_file(name_or_file)) {
         throw FileError(name_or_file,
                         "product",
                         "no such file or shipped product",
                         "a file, car, player or sphere");
     }
-    if (unit) throw FileError(name_or_file, "unit", to_string(*unit), "none for a shipped product");
-    return std::make_shared<const Product>(load_product(shipped_path("assets/" + stem + ".json")));
+    if (shipped && unit) {
+        throw FileError(name_or_file, "unit", to_string(*unit), "none for a shipped product");
+    }
+    auto product = std::make_shared<const Product>(
+        shipped ? load_product(shipped_path("assets/" + stem + ".json"))
+                : load_product(name_or_file, unit));
+    known_parts().keep(name_or_file, part_names(product->mesh));
+    return product;
 }
 
 std::vector<std::string> part_names(const Mesh& mesh) {
@@ -129,15 +158,8 @@ std::vector<std::string> part_names(const Mesh& mesh) {
 
 std::vector<std::string> part_names(const std::string& product_name_or_file) {
     // Every command that names a part asks; the mesh takes a tenth of a second to read.
-    static std::mutex mutex;
-    static std::map<std::string, std::vector<std::string>> known;
-    const std::lock_guard lock(mutex);
-    auto entry = known.find(product_name_or_file);
-    if (entry == known.end()) {
-        const auto product = find_product(product_name_or_file);
-        entry = known.emplace(product_name_or_file, part_names(product->mesh)).first;
-    }
-    return entry->second;
+    if (auto known = known_parts().of(product_name_or_file)) return *std::move(known);
+    return part_names(find_product(product_name_or_file)->mesh);
 }
 
 std::string front_of_product(const std::string& name_or_file) {

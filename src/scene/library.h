@@ -24,7 +24,8 @@ std::shared_ptr<const Product> find_product(const std::string& name_or_file,
 
 std::vector<std::string> part_names(const Mesh& mesh);
 
-/// Names of a product's parts; the product is read once a run. Throws FileError.
+/// Names of a product's parts, as find_product() read it last, in any thread; it is read where it
+/// was not yet. Throws FileError.
 std::vector<std::string> part_names(const std::string& product_name_or_file);
 
 /// Where the front of a product points as it stands, "+x", "-x", "+z" or "-z", as its product

@@ -2,11 +2,13 @@
 #include "scene/library.h"
 
 #include <filesystem>
+#include <fstream>
 
 #include <gtest/gtest.h>
 
 #include "core/paths.h"
 #include "support/file_error.h"
+#include "support/temporary_folder.h"
 #include "twin/description.h"
 
 namespace livery {
@@ -36,6 +38,24 @@ TEST(Library, SaysWhichNamesThereAre) {
     EXPECT_TRUE(fails_with([] { find_look("chrome dream"); },
                            {"chrome dream", "no such file or shipped look", "blue-metallic"}));
     EXPECT_TRUE(fails_with([] { find_product("car", LengthUnit::m); }, {"car", "unit"}));
+}
+
+TEST(Library, KnowsThePartsOfTheProductThatWasReadLast) {
+    const TemporaryFolder folder;
+    const fs::path file = folder / "thing.obj";
+    const auto write = [&](const std::string& part) {
+        std::ofstream(file) << "v 0 0 0\nv 1 0 0\nv 0 1 0\no " << part << "\nf 1 2 3\n";
+    };
+    const std::string name = file.string();
+    write("lid");
+    find_product(name, LengthUnit::mm);
+    write("bowl");
+    // Not read again for each command of a session
+    EXPECT_EQ(part_names(name), std::vector<std::string>{"lid"});
+    find_product(name, LengthUnit::mm);
+    EXPECT_EQ(part_names(name), std::vector<std::string>{"bowl"});
+    fs::remove(file);
+    EXPECT_EQ(part_names(name), std::vector<std::string>{"bowl"});
 }
 
 TEST(Library, AShippedLookLeavesOutWhatAProductLacks) {
