@@ -15,7 +15,7 @@
 UNIFORM REAL u_exposure;  // 2^EV
 
 // Half floats end at 65504. What is no number must stay none, so that it ends black and counted
-// (compensation.frag) and not as the brightest light there is: what min makes of it is each
+// (correct.comp) and not as the brightest light there is: what min makes of it is each
 // language's, each driver's and each instruction set's own.
 FN REAL exposed(REAL value) {
     REAL lit = u_exposure * value;

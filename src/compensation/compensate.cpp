@@ -228,6 +228,16 @@ ImageF map_gamut(const kernel::Functions& functions,
     return mapped;
 }
 
+CompensationStats stats_of(const kernel::Counts& counts, std::size_t covered_pixels) {
+    const auto covered = static_cast<std::int64_t>(covered_pixels);
+    CompensationStats stats;
+    stats.out_of_gamut_fraction = fraction(counts.out, counts.finite);
+    stats.invalid_fraction = fraction(covered - counts.finite, covered);
+    stats.clipped_high_fraction = fraction(counts.high, counts.finite);
+    stats.clipped_low_fraction = fraction(counts.low, counts.finite);
+    return stats;
+}
+
 void compensate_with(const kernel::Functions& functions,
                      const CompensationTable& table,
                      const ImageF& wanted,
@@ -249,13 +259,7 @@ void compensate_with(const kernel::Functions& functions,
         counts.low += some.low;
         counts.out += some.out;
     });
-    if (stats) {
-        const auto covered = static_cast<std::int64_t>(covered_pixels);
-        stats->out_of_gamut_fraction = fraction(counts.out, counts.finite);
-        stats->clipped_high_fraction = fraction(counts.high, counts.finite);
-        stats->clipped_low_fraction = fraction(counts.low, counts.finite);
-        stats->invalid_fraction = fraction(covered - counts.finite, covered);
-    }
+    if (stats) *stats = stats_of(counts, covered_pixels);
 }
 
 void compensate_again(const CompensationTable& table,

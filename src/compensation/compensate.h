@@ -13,6 +13,9 @@ void compensate_with(const kernel::Functions& functions,
                      Image8* drive,
                      CompensationStats* stats);
 
+/// Of pixels that were counted, `covered_pixels` of the picture's.
+CompensationStats stats_of(const kernel::Counts& counts, std::size_t covered_pixels);
+
 /// Wanted colours as compensate() moves them before it corrects: into what each pixel can show if
 /// the table was baked so, else as they are. What is not valid, not covered or not finite passes
 /// through.

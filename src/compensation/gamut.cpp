@@ -11,6 +11,7 @@
 #include <glm/glm.hpp>
 
 #include "compensation/drive_table.h"
+#include "core/colour.h"
 #include "core/mutation.h"
 #include "core/parallel.h"
 #include "core/statistics.h"
@@ -173,6 +174,15 @@ GamutBoundary make_gamut_boundary(const CompensationTable& table) {
         boundary.darkest[i] = std::min(std::max(floor, boundary.darkest[i]), boundary.brightest[i]);
     }
     return boundary;
+}
+
+OklabMatrices oklab_matrices() {
+    OklabMatrices m;
+    m.cones = oklab_cones_from_xyz() * xyz_from_working();
+    m.lab = oklab_from_cone_roots();
+    m.roots = glm::inverse(m.lab);
+    m.rgb = glm::inverse(m.cones);
+    return m;
 }
 
 kernel::GamutJob gamut_job(const CompensationTable& table, std::size_t begin) {

@@ -1,14 +1,15 @@
 // Gamut mapping of a block of pixels. Most pixels of most pictures lie well inside: one loop finds
-// those that do not, and only they are gathered and moved.
+// those that do not, and only they are gathered and moved. The formulas are the shader's own.
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
 #include <glm/glm.hpp>
 
 #include "compensation/drive_table.h"
+#include "compensation/gamut.h"
 #include "compensation/kernel.h"
-#include "core/colour.h"
 
 #define LIVERY_ALWAYS_INLINE inline __attribute__((always_inline))
 /// Of a loop over pixels: no pixel reads what another has written.
@@ -17,10 +18,33 @@
 namespace livery::kernel {
 namespace {
 
-constexpr float kChromaKnee = 0.85f;
-/// Tighter: a wider one would grey the design white itself.
-constexpr float kLightnessKnee = 0.95f;
-constexpr int kHalvings = 18;
+/// No more than what the shared source says of a vector, so that loops over pixels stay simple.
+struct Vector {
+    float x, y, z;
+    Vector() = default;
+    Vector(float its_x, float its_y, float its_z) : x(its_x), y(its_y), z(its_z) {}
+};
+
+#define REAL float
+#define VEC3 Vector
+#define R(x) static_cast<float>(x)
+#define FN LIVERY_ALWAYS_INLINE
+#define IN(T) const T&
+#define AND &
+#define PRECISE
+#define FLOAT_BITS(x) std::bit_cast<std::int32_t>(x)
+#define BITS_FLOAT(x) std::bit_cast<float>(x)
+#include "shaders/compensation/gamut.glsl"
+#undef REAL
+#undef VEC3
+#undef R
+#undef FN
+#undef IN
+#undef AND
+#undef PRECISE
+#undef FLOAT_BITS
+#undef BITS_FLOAT
+
 /// So many are moved at once.
 constexpr std::size_t kMost = 128;
 
@@ -34,102 +58,55 @@ struct alignas(64) Gamuts {
     Row rows[12];
 };
 
-/// Rows of a matrix.
-template <typename Real>
-using Matrix = std::array<Real, 9>;
-
-template <typename Real>
-Matrix<Real> rows_of(const glm::dmat3& m) {
-    Matrix<Real> rows;
-    for (int row = 0; row < 3; ++row) {
-        for (int column = 0; column < 3; ++column) {
-            rows[static_cast<std::size_t>(3 * row + column)] = static_cast<Real>(m[column][row]);
-        }
-    }
-    return rows;
-}
-
-struct OklabMatrices {
-    Matrix<double> exact_cones = rows_of<double>(oklab_cones_from_xyz() * xyz_from_working());
-    Matrix<float> cones = rows_of<float>(oklab_cones_from_xyz() * xyz_from_working());
-    Matrix<float> lab = rows_of<float>(oklab_from_cone_roots());
-    Matrix<float> roots = rows_of<float>(glm::inverse(oklab_from_cone_roots()));
-    Matrix<float> rgb = rows_of<float>(glm::inverse(oklab_cones_from_xyz() * xyz_from_working()));
+struct Matrices {
+    Oklab oklab;
+    glm::dmat3 exact_cones;  ///< oklab.cones before rounding
 };
 
-const OklabMatrices& matrices() {
-    static const OklabMatrices all;
+Rows rows_of(const glm::dmat3& m) {
+    const auto row = [&](int i) {
+        return Vector(
+            static_cast<float>(m[0][i]), static_cast<float>(m[1][i]), static_cast<float>(m[2][i]));
+    };
+    return {row(0), row(1), row(2)};
+}
+
+const Matrices& matrices() {
+    static const OklabMatrices exact = oklab_matrices();
+    static const Matrices all{
+        {rows_of(exact.cones), rows_of(exact.lab), rows_of(exact.roots), rows_of(exact.rgb)},
+        exact.cones};
     return all;
 }
 
-template <typename Real>
-LIVERY_ALWAYS_INLINE Real row_of(const Real* m, Real x, Real y, Real z) {
-    return m[0] * x + m[1] * y + m[2] * z;
+LIVERY_ALWAYS_INLINE Vector lab_of(const Oklab& m, Vector c) {
+    return lab_of_cones(m, times(m.cones, c));
 }
-
-/// Cube root to the last bit or two: a guess from the exponent and two of Halley's steps.
-LIVERY_ALWAYS_INLINE float root_of(float x) {
-    const float size = x < 0.0f ? -x : x;
-    const auto bits = static_cast<float>(std::bit_cast<std::int32_t>(size));
-    float y = std::bit_cast<float>(static_cast<std::int32_t>(bits * (1.0f / 3.0f)) + 709982100);
-    for (int step = 0; step < 2; ++step) {
-        const float cube = y * y * y;
-        y *= (cube + 2.0f * size) / (2.0f * cube + size);
-    }
-    y = size > 1e-30f ? y : 0.0f;
-    return x < 0.0f ? -y : y;
-}
-
-struct Lab {
-    float l, a, b;
-};
 
 /// Saturated colours leave next to nothing to one kind of cones, and its root makes much of what
-/// floats round away: `cones` is a matrix of doubles for colours that are moved.
-template <typename Real>
-LIVERY_ALWAYS_INLINE Lab
-lab_of(const OklabMatrices& m, const Matrix<Real>& cones, Real r, Real g, Real b) {
-    const float x = root_of(static_cast<float>(row_of(&cones[0], r, g, b)));
-    const float y = root_of(static_cast<float>(row_of(&cones[3], r, g, b)));
-    const float z = root_of(static_cast<float>(row_of(&cones[6], r, g, b)));
-    return {row_of(&m.lab[0], x, y, z), row_of(&m.lab[3], x, y, z), row_of(&m.lab[6], x, y, z)};
+/// floats round away: doubles for colours that are moved.
+LIVERY_ALWAYS_INLINE Vector exact_lab_of(const Matrices& m, Vector c) {
+    const double r = static_cast<double>(c.x), g = static_cast<double>(c.y),
+                 b = static_cast<double>(c.z);
+    const auto cone = [&](int row) __attribute__((always_inline)) {
+        const glm::dmat3& cones = m.exact_cones;
+        return static_cast<float>(cones[0][row] * r + cones[1][row] * g + cones[2][row] * b);
+    };
+    return lab_of_cones(m.oklab, Vector(cone(0), cone(1), cone(2)));
 }
-
-struct Rgb {
-    float r, g, b;
-};
-
-LIVERY_ALWAYS_INLINE Rgb rgb_of(const OklabMatrices& m, float l, float a, float b) {
-    const float x = row_of(&m.roots[0], l, a, b);
-    const float y = row_of(&m.roots[3], l, a, b);
-    const float z = row_of(&m.roots[6], l, a, b);
-    const float xxx = x * x * x, yyy = y * y * y, zzz = z * z * z;
-    return {row_of(&m.rgb[0], xxx, yyy, zzz),
-            row_of(&m.rgb[3], xxx, yyy, zzz),
-            row_of(&m.rgb[6], xxx, yyy, zzz)};
-}
-
-/// N of a channel.
-template <typename Planes>
-LIVERY_ALWAYS_INLINE float n_of(const Planes& rows, std::size_t channel, std::size_t i, Rgb c) {
-    return rows[3 * channel][i] * c.r + rows[3 * channel + 1][i] * c.g +
-           rows[3 * channel + 2][i] * c.b + rows[9 + channel][i];
-}
-
-LIVERY_ALWAYS_INLINE float least(float a, float b) { return a < b ? a : b; }
-LIVERY_ALWAYS_INLINE float most(float a, float b) { return a > b ? a : b; }
 
 template <typename Planes>
-LIVERY_ALWAYS_INLINE bool in_cube(const Planes& rows, std::size_t i, Rgb c) {
-    const float x = n_of(rows, 0, i, c), y = n_of(rows, 1, i, c), z = n_of(rows, 2, i, c);
-    return (x >= 0.0f) & (x <= 1.0f) & (y >= 0.0f) & (y <= 1.0f) & (z >= 0.0f) & (z <= 1.0f);
+LIVERY_ALWAYS_INLINE Gamut gamut_at(const Planes& rows, std::size_t i) {
+    return {{rows[0][i], rows[1][i], rows[2][i]},
+            {rows[3][i], rows[4][i], rows[5][i]},
+            {rows[6][i], rows[7][i], rows[8][i]},
+            {rows[9][i], rows[10][i], rows[11][i]}};
 }
 
 /// Whether a non-additive projector can show it, within the cube.
-template <typename Planes>
-bool in_table(const NonAdditive& table, const Planes& rows, std::size_t i, Rgb c) {
+bool in_table(const NonAdditive& table, Vector n) {
     glm::vec3 residual;
-    drive_of_n(table, {n_of(rows, 0, i, c), n_of(rows, 1, i, c), n_of(rows, 2, i, c)}, &residual);
+    drive_of_n(table, {n.x, n.y, n.z}, &residual);
     return glm::dot(residual, residual) <= kReachableN * kReachableN;
 }
 
@@ -138,7 +115,7 @@ LIVERY_ALWAYS_INLINE std::size_t find_beyond(const Job& job,
                                              const GamutJob& gamut,
                                              const Wanted& wanted,
                                              std::uint32_t* __restrict list) {
-    const OklabMatrices& m = matrices();
+    const Oklab& m = matrices().oklab;
     alignas(64) std::array<std::uint8_t, kBlock> beyond;
     std::uint8_t* __restrict flag = beyond.data();
     const std::array<const float*, 12> outer = gamut.boundary, own = job.coefficients;
@@ -149,29 +126,25 @@ LIVERY_ALWAYS_INLINE std::size_t find_beyond(const Job& job,
     const float* __restrict b = wanted.b.data();
     const float* __restrict coverage = wanted.coverage.data();
     for (std::size_t i = 0; i < job.count; ++i) {
-        const float sum = r[i] + g[i] + b[i];
+        const Vector colour(r[i], g[i], b[i]);
+        const float sum = colour.x + colour.y + colour.z;
         // Where no neutral can be shown there is nothing to aim at: it is clipped and counted.
         const bool usable = (sum - sum == 0.0f) & (coverage[i] >= 0.5f) & (brightest[i] > 0.0f);
-        const Lab lab = lab_of(m, m.cones, r[i], g[i], b[i]);
-        const float knee = darkest[i] * (1.0f / kChromaKnee);
-        const bool lit = (lab.l >= knee) & (lab.l <= kLightnessKnee * brightest[i]);
-        const Rgb stretched =
-            rgb_of(m, lab.l, lab.a * (1.0f / kChromaKnee), lab.b * (1.0f / kChromaKnee));
-        const bool inside =
-            lit & in_cube(outer, i, stretched) & in_cube(own, i, Rgb{r[i], g[i], b[i]});
+        const Vector lab = lab_of(m, colour);
+        const bool inside = is_lit(lab.x, darkest[i], brightest[i]) &
+                            in_cube(n_of(gamut_at(outer, i), stretched(m, lab))) &
+                            in_cube(n_of(gamut_at(own, i), colour));
         flag[i] = static_cast<std::uint8_t>(usable & !inside);
     }
     std::size_t found = 0;
     for (std::size_t i = 0; i < job.count; ++i) {
         if (gamut.table && flag[i] == 0 && coverage[i] >= 0.5f && brightest[i] > 0.0f) {
-            const Rgb colour{r[i], g[i], b[i]};
-            const Lab lab = lab_of(m, m.cones, r[i], g[i], b[i]);
-            const Rgb stretched =
-                rgb_of(m, lab.l, lab.a * (1.0f / kChromaKnee), lab.b * (1.0f / kChromaKnee));
-            const float sum = colour.r + colour.g + colour.b;
-            flag[i] = static_cast<std::uint8_t>(sum - sum == 0.0f &&
-                                                !(in_table(*gamut.table, outer, i, stretched) &&
-                                                  in_table(*gamut.table, own, i, colour)));
+            const Vector colour(r[i], g[i], b[i]);
+            const Vector far = stretched(m, lab_of(m, colour));
+            const float sum = colour.x + colour.y + colour.z;
+            flag[i] = static_cast<std::uint8_t>(
+                sum - sum == 0.0f && !(in_table(*gamut.table, n_of(gamut_at(outer, i), far)) &&
+                                       in_table(*gamut.table, n_of(gamut_at(own, i), colour))));
         }
         list[found] = static_cast<std::uint32_t>(i);
         found += flag[i];
@@ -179,20 +152,8 @@ LIVERY_ALWAYS_INLINE std::size_t find_beyond(const Job& job,
     return found;
 }
 
-/// t / (1 + t^3)^(1/3): the identity near 0, towards 1; the least that is 1 to the last bit stands
-/// for all beyond.
-LIVERY_ALWAYS_INLINE float bend(float t) {
-    const float x = least(t, 1e4f);
-    return x / root_of(1.0f + x * x * x);
-}
-
-/// The identity up to `knee`, then bends towards 1 with slope 1 at the knee; rising everywhere.
-LIVERY_ALWAYS_INLINE float soft(float x, float knee) {
-    return x <= knee ? x : knee + (1.0f - knee) * bend((x - knee) * (1.0f / (1.0f - knee)));
-}
-
 struct Moving {
-    OklabMatrices m;  ///< a copy, which no store of the loops can change
+    Matrices m;  ///< a copy, which no store of the loops can change
     const NonAdditive* table;
     std::size_t count;
 };
@@ -201,12 +162,12 @@ struct Moving {
 template <bool kTable>
 LIVERY_ALWAYS_INLINE bool contains(
     const Moving& moving, const Gamuts& gamuts, const Colours& lab, std::size_t i, float scale) {
-    const Rgb c = rgb_of(moving.m, lab.x[i], lab.y[i] * scale, lab.z[i] * scale);
-    const bool inside = in_cube(gamuts.rows, i, c);
+    const Vector colour = with_chroma({lab.x[i], lab.y[i], lab.z[i]}, scale);
+    const Vector n = n_of(gamut_at(gamuts.rows, i), rgb_of_lab(moving.m.oklab, colour));
     if constexpr (kTable) {
-        return inside && in_table(*moving.table, gamuts.rows, i, c);
+        return in_cube(n) && in_table(*moving.table, n);
     } else {
-        return inside;
+        return in_cube(n);
     }
 }
 
@@ -236,39 +197,28 @@ LIVERY_ALWAYS_INLINE void bend_inwards(const Moving& moving,
                                        const float* __restrict brightest,
                                        Colours* __restrict lab,
                                        Colours* __restrict rgb) {
-    constexpr float kStretch = 1.0f / kChromaKnee;
     alignas(64) Row boundary;
     alignas(64) std::int32_t same[kMost];
     LIVERY_INDEPENDENT
     for (std::size_t i = 0; i < moving.count; ++i) {
-        const Lab c =
-            lab_of<double>(moving.m, moving.m.exact_cones, rgb->x[i], rgb->y[i], rgb->z[i]);
-        const float floor = darkest[i], high = brightest[i];
-        const float knee = least(floor * kStretch, high);
-        const float room = most(knee - floor, 1e-12f);
-        const float raised = knee - room * bend((knee - c.l) / room);
-        const float l = (c.l >= knee) | (knee <= floor) ? c.l : raised;
-        const float relative = l / high;
-        const float bent = high * soft(relative, kLightnessKnee);
-        lab->x[i] = relative <= kLightnessKnee ? l : bent;
-        lab->y[i] = c.a * kStretch;
-        lab->z[i] = c.b * kStretch;
-        same[i] = lab->x[i] == c.l ? 1 : 0;
+        const Vector c = exact_lab_of(moving.m, {rgb->x[i], rgb->y[i], rgb->z[i]});
+        lab->x[i] = bent_lightness(c.x, darkest[i], brightest[i]);
+        lab->y[i] = c.y * kStretch;
+        lab->z[i] = c.z * kStretch;
+        same[i] = lab->x[i] == c.x ? 1 : 0;
     }
     reach<kTable>(moving, outer, *lab, boundary);
     LIVERY_INDEPENDENT
     for (std::size_t i = 0; i < moving.count; ++i) {
         const bool inside = contains<kTable>(moving, outer, *lab, i, 1.0f);
-        const float far = boundary[i] * kStretch;  // in units of the wanted chroma
-        const float kept = far * soft(1.0f / most(far, 1e-6f), kChromaKnee);
-        const float scale = kChromaKnee * (inside ? 1.0f : kept);
+        const float scale = chroma_scale(boundary[i], inside);
         lab->y[i] *= scale;
         lab->z[i] *= scale;
-        const Rgb moved = rgb_of(moving.m, lab->x[i], lab->y[i], lab->z[i]);
+        const Vector moved = rgb_of_lab(moving.m.oklab, {lab->x[i], lab->y[i], lab->z[i]});
         const bool as_it_is = (same[i] != 0) & inside;
-        rgb->x[i] = as_it_is ? rgb->x[i] : moved.r;
-        rgb->y[i] = as_it_is ? rgb->y[i] : moved.g;
-        rgb->z[i] = as_it_is ? rgb->z[i] : moved.b;
+        rgb->x[i] = as_it_is ? rgb->x[i] : moved.x;
+        rgb->y[i] = as_it_is ? rgb->y[i] : moved.y;
+        rgb->z[i] = as_it_is ? rgb->z[i] : moved.z;
     }
 }
 
@@ -289,18 +239,17 @@ LIVERY_ALWAYS_INLINE void keep_inside(const Moving& moving,
     }
     if (left == 0) return;
     for (std::size_t i = 0; i < moving.count; ++i) {
-        // A hair inside: Oklab's neutrals, by its rounded matrices, are D65 to about 1e-4 only.
-        const float margin = 5e-4f * (brightest[i] - darkest[i]);
-        lab->x[i] = most(least(lab->x[i], brightest[i] - margin), darkest[i] + margin);
+        lab->x[i] = own_lightness(lab->x[i], darkest[i], brightest[i]);
     }
     alignas(64) Row kept;
     reach<kTable>(moving, own, *lab, kept);
     LIVERY_INDEPENDENT
     for (std::size_t i = 0; i < moving.count; ++i) {
-        const Rgb moved = rgb_of(moving.m, lab->x[i], lab->y[i] * kept[i], lab->z[i] * kept[i]);
-        rgb->x[i] = as_it_is[i] != 0 ? rgb->x[i] : moved.r;
-        rgb->y[i] = as_it_is[i] != 0 ? rgb->y[i] : moved.g;
-        rgb->z[i] = as_it_is[i] != 0 ? rgb->z[i] : moved.b;
+        const Vector moved =
+            rgb_of_lab(moving.m.oklab, with_chroma({lab->x[i], lab->y[i], lab->z[i]}, kept[i]));
+        rgb->x[i] = as_it_is[i] != 0 ? rgb->x[i] : moved.x;
+        rgb->y[i] = as_it_is[i] != 0 ? rgb->y[i] : moved.y;
+        rgb->z[i] = as_it_is[i] != 0 ? rgb->z[i] : moved.z;
     }
 }
 

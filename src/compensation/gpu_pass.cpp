@@ -1,40 +1,63 @@
 #include "compensation/gpu_pass.h"
 
 #include <algorithm>
+#include <array>
 #include <string>
+#include <string_view>
 
+#include <fmt/format.h>
+
+#include "compensation/compensate.h"
 #include "compensation/dither.h"
 #include "compensation/drive_table.h"
+#include "compensation/gamut.h"
 #include "core/error.h"
-#include "gl/draw.h"
-#include "gl/read_back.h"
+#include "gl/program.h"
 
 namespace livery {
 namespace {
 
-ShaderSource fragment_source(bool non_additive) {
-    std::vector<std::string> defines;
-    if (non_additive) {
-        defines = {"NON_ADDITIVE", "NEWTON_STEPS " + std::to_string(kNewtonSteps), "SOLVED_N 1e-6"};
-        static_assert(kSolvedN == 1e-6f);
+constexpr unsigned kGroup = 256;
+
+/// A matrix whose columns are the rows of `m`, as GLSL's constructor `type` of vectors.
+std::string rows_text(const glm::dmat3& m, std::string_view type, std::string_view suffix) {
+    std::string text;
+    for (int row = 0; row < 3; ++row) {
+        text += fmt::format("{}{}vec3({:.17e}{}, {:.17e}{}, {:.17e}{})",
+                            row == 0 ? "" : ", ",
+                            suffix.empty() ? "" : "d",
+                            m[0][row],
+                            suffix,
+                            m[1][row],
+                            suffix,
+                            m[2][row],
+                            suffix);
     }
-    return load_shader("compensation.frag", defines);
+    return fmt::format("{}({})", type, text);
 }
 
-/// Tiles of 32 pixels that hold a valid one: what lies outside costs nothing.
-ShaderSource tile_source() {
-    return {"compensation tiles", R"(#version 450 core
-layout(location = 0) in vec2 corner_px;
-uniform vec2 size_px;
-uniform float tile_px;
-void main() {
-    vec2 at = min(corner_px + tile_px * vec2(gl_VertexID & 1, gl_VertexID >> 1), size_px);
-    gl_Position = vec4(2.0 * at / size_px - 1.0, 0.0, 1.0);
+ShaderSource source_for(const CompensationTable& table) {
+    std::vector<std::string> defines = {fmt::format("GROUP {}", kGroup),
+                                        fmt::format("GAMUT_TOLERANCE {}", kernel::kGamutTolerance)};
+    if (table.non_additive.grid > 0) {
+        defines.insert(defines.end(),
+                       {"NON_ADDITIVE",
+                        fmt::format("NEWTON_STEPS {}", kNewtonSteps),
+                        fmt::format("SOLVED_N {}", kSolvedN),
+                        fmt::format("REACHABLE_N {}", kReachableN)});
+    }
+    if (!table.gamut.coefficients.empty()) {
+        const OklabMatrices m = oklab_matrices();
+        defines.insert(defines.end(),
+                       {"GAMUT_MAPPING",
+                        "OKLAB_CONES " + rows_text(m.cones, "Rows", ""),
+                        "OKLAB_LAB " + rows_text(m.lab, "Rows", ""),
+                        "OKLAB_ROOTS " + rows_text(m.roots, "Rows", ""),
+                        "OKLAB_RGB " + rows_text(m.rgb, "Rows", ""),
+                        "EXACT_CONES " + rows_text(m.cones, "dmat3", "LF")});
+    }
+    return load_shader("compensation/correct.comp", defines);
 }
-)"};
-}
-
-constexpr int kTile = 32;
 
 Texture2D grid_texture(int grid, const std::vector<glm::vec3>& values) {
     std::vector<float> texels;
@@ -62,104 +85,97 @@ const std::array<std::vector<float>, 3>& rho_of(const CompensationTable& table) 
     return table.non_additive.grid > 0 ? table.non_additive.rho : table.drive_from_n;
 }
 
+/// The planes of the table's boundary one after the other, as the shader counts them.
+Buffer boundary_buffer(const GamutBoundary& gamut) {
+    const std::array planes = {&gamut.coefficients,
+                               &gamut.darkest,
+                               &gamut.brightest,
+                               &gamut.own_darkest,
+                               &gamut.own_brightest};
+    std::size_t count = 0;
+    for (const auto* plane : planes) count += plane->size();
+    Buffer buffer(count * sizeof(float));
+    std::size_t at = 0;
+    for (const auto* plane : planes) {
+        buffer.update(std::span<const float>(*plane), at * sizeof(float));
+        at += plane->size();
+    }
+    return buffer;
+}
+
 }  // namespace
 
+CompensationCounts::CompensationCounts() : buffer_(4 * sizeof(std::uint32_t)) { buffer_.clear(); }
+
+CompensationStats CompensationCounts::read(std::size_t covered_pixels) const {
+    std::array<std::uint32_t, 4> counts{};
+    buffer_.read(counts.data(), sizeof(counts));
+    return stats_of({counts[0], counts[1], counts[2], counts[3]}, covered_pixels);
+}
+
 struct GpuCompensation::State {
+    int width, height;
+    unsigned pixel_count;
     Program program;
-    std::array<Texture2D, 3> rows;
-    Texture2D rho, nodes, start, linear_of, drive;
-    Framebuffer target;
-    Buffer corners;
-    VertexArray tiles;
-    int tile_count = 0;
+    Texture2D rho, nodes, start, linear_of;
+    Buffer pixels, coefficients, boundary;
 
     explicit State(const CompensationTable& table)
-        : program(tile_source(), fragment_source(table.non_additive.grid > 0)),
-          rho(curve_texture(rho_of(table))),
-          drive(table.width, table.height, TexelFormat::rgba8),
-          target({&drive}) {
-        upload_rows(table);
-        find_tiles(table);
+        : width(table.width),
+          height(table.height),
+          pixel_count(static_cast<unsigned>(table.pixels.size())) {
+        if (pixel_count == 0) return;
+        program = Program(source_for(table));
+        rho = curve_texture(rho_of(table));
+        pixels = Buffer(table.pixels);
+        coefficients = Buffer(table.coefficients);
+        if (!table.gamut.coefficients.empty()) boundary = boundary_buffer(table.gamut);
         if (table.non_additive.grid > 0) {
             nodes = grid_texture(table.non_additive.grid, table.non_additive.n_from_nodes);
             start = grid_texture(table.non_additive.start_grid, table.non_additive.start);
             linear_of = curve_texture(table.non_additive.linear_of_node);
         }
         for (std::size_t k = 0; k < 3; ++k) {
-            program.set("last_of_rho[" + std::to_string(k) + "]",
+            program.set(fmt::format("last_of_rho[{}]", k),
                         static_cast<int>(rho_of(table)[k].size()) - 1);
         }
+        program.set("pixel_count", pixel_count);
         program.set("dither_per_column", dither::kPerColumn);
         program.set("dither_per_row", dither::kPerRow);
-        program.set("tile_px", static_cast<float>(kTile));
-        program.set("size_px",
-                    glm::vec2(static_cast<float>(table.width), static_cast<float>(table.height)));
-        target.clear_colour(0, 0.0f, 0.0f, 0.0f, 1.0f);
-    }
-
-    void upload_rows(const CompensationTable& table) {
-        const std::size_t count = table.pixels.size();
-        std::vector<float> texels(4 * static_cast<std::size_t>(table.width) *
-                                  static_cast<std::size_t>(table.height));
-        for (std::size_t row = 0; row < 3; ++row) {
-            for (std::size_t i = 0; i < count; ++i) {
-                float* texel = &texels[4 * static_cast<std::size_t>(table.pixels[i])];
-                for (std::size_t column = 0; column < 3; ++column) {
-                    texel[column] = table.coefficients[(3 * row + column) * count + i];
-                }
-                texel[3] = table.coefficients[(9 + row) * count + i];
-            }
-            rows[row] = Texture2D(table.width, table.height, TexelFormat::rgba32f);
-            rows[row].upload(texels);
-        }
-    }
-
-    void find_tiles(const CompensationTable& table) {
-        const int across = (table.width + kTile - 1) / kTile;
-        const int down = (table.height + kTile - 1) / kTile;
-        std::vector<bool> used(static_cast<std::size_t>(across * down), false);
-        for (const std::uint32_t pixel : table.pixels) {
-            const int x = static_cast<int>(pixel) % table.width;
-            const int y = static_cast<int>(pixel) / table.width;
-            used[static_cast<std::size_t>(y / kTile * across + x / kTile)] = true;
-        }
-        std::vector<float> list;
-        for (int tile = 0; tile < across * down; ++tile) {
-            if (!used[static_cast<std::size_t>(tile)]) continue;
-            list.push_back(static_cast<float>(tile % across * kTile));
-            list.push_back(static_cast<float>(tile / across * kTile));
-            ++tile_count;
-        }
-        if (tile_count == 0) return;
-        corners = Buffer(list);
-        tiles.floats(0, corners, 2, 8, 0, 1);
     }
 };
 
 GpuCompensation::GpuCompensation(const CompensationTable& table)
-    : state_(std::make_unique<State>(table)) {
-    check_argument(table.gamut.coefficients.empty(),
-                   "the OpenGL pass got a table with a gamut mapping, which it does not have");
-}
+    : state_(std::make_unique<State>(table)) {}
 
 GpuCompensation::~GpuCompensation() = default;
 
-void GpuCompensation::run(unsigned radiance_texture) {
-    State& s = *state_;
-    if (s.tile_count == 0) return;
+void GpuCompensation::run(unsigned radiance_texture, Texture2D& drive, CompensationCounts& counts) {
+    const State& s = *state_;
+    check_argument(drive.width() == s.width && drive.height() == s.height &&
+                       drive.format() == TexelFormat::rgba8,
+                   fmt::format("a drive texture of {}x{}, the calibration has {}x{} in RGBA8",
+                               drive.width(),
+                               drive.height(),
+                               s.width,
+                               s.height));
+    // What the table does not hold is black.
+    drive.clear({0.0f, 0.0f, 0.0f, 1.0f});
+    counts.buffer_.clear();
+    if (s.pixel_count == 0) return;
     bind_texture(0, radiance_texture);
-    for (unsigned row = 0; row < 3; ++row) s.rows[row].bind(row + 1);
-    s.rho.bind(4);
+    s.rho.bind(1);
     if (s.nodes) {
-        s.nodes.bind(5);
-        s.start.bind(6);
-        s.linear_of.bind(7);
+        s.nodes.bind(2);
+        s.start.bind(3);
+        s.linear_of.bind(4);
     }
-    draw(s.program, s.tiles, s.target, Primitive::triangle_strip, 0, 4, {}, s.tile_count);
+    drive.bind_image(0);
+    s.pixels.bind_storage_block(0);
+    s.coefficients.bind_storage_block(1);
+    if (s.boundary.bytes() > 0) s.boundary.bind_storage_block(2);
+    counts.buffer_.bind_storage_block(3);
+    dispatch(s.program, (s.pixel_count + kGroup - 1) / kGroup, 1);
 }
-
-unsigned GpuCompensation::texture() const { return state_->drive.name(); }
-
-Image8 GpuCompensation::read_back() const { return read_bytes(state_->drive, 3); }
 
 }  // namespace livery

@@ -1,27 +1,38 @@
-// The compensation as an OpenGL fragment pass; the CPU's compensate() is its oracle.
+// The compensation in OpenGL, gamut mapping and statistics included; the CPU's compensate() is its
+// oracle.
 #pragma once
 
 #include <memory>
 
 #include "compensation/compensation.h"
+#include "gl/handles.h"
 
 namespace livery {
+
+/// What a run counts, where it was counted. A show keeps them: nothing is made for a frame.
+class CompensationCounts {
+  public:
+    CompensationCounts();
+
+    /// Waits until the run that counted last is done. `covered_pixels` is count_covered().
+    CompensationStats read(std::size_t covered_pixels) const;
+
+  private:
+    friend class GpuCompensation;
+    Buffer buffer_;
+};
 
 /// Needs a current OpenGL context, the same for its whole life.
 class GpuCompensation {
   public:
-    /// Throws std::invalid_argument for a table with a gamut mapping, which this pass does not
-    /// have.
     explicit GpuCompensation(const CompensationTable& table);
     ~GpuCompensation();
     GpuCompensation(const GpuCompensation&) = delete;
     GpuCompensation& operator=(const GpuCompensation&) = delete;
 
-    /// Reads the radiance texture (RGBA16F, working space, coverage in alpha), writes projector
-    /// input into texture().
-    void run(unsigned radiance_texture);
-    unsigned texture() const;  ///< RGBA8
-    Image8 read_back() const;  ///< 3 channels
+    /// Reads the radiance texture (RGBA16F, working space, coverage in alpha, of the table's size),
+    /// writes the whole of `drive` (RGBA8). Throws std::invalid_argument on another size or format.
+    void run(unsigned radiance_texture, Texture2D& drive, CompensationCounts& counts);
 
   private:
     struct State;

@@ -201,15 +201,41 @@ void Texture2D::make_mipmaps() {
     check_gl("making mipmaps");
 }
 
-void Texture2D::clear(float value) {
+void Texture2D::clear(float value) { clear({value, value, value, value}); }
+
+void Texture2D::clear(const std::array<float, 4>& rgba) {
     const FormatFacts f = facts(format_);
-    check_argument(f.kind != TexelKind::integer, "a float to clear an integer texture with");
-    const float values[4] = {value, value, value, value};
-    glClearTexImage(name_.get(), 0, f.external, GL_FLOAT, values);
+    check_argument(f.kind != TexelKind::integer, "floats to clear an integer texture with");
+    glClearTexImage(name_.get(), 0, f.external, GL_FLOAT, rgba.data());
     check_gl("clearing a texture");
 }
 
 void Texture2D::bind(unsigned unit) const { bind_texture(unit, name_.get()); }
+
+void Texture2D::bind_image(unsigned unit) const {
+    glBindImageTexture(unit, name_.get(), 0, GL_FALSE, 0, GL_WRITE_ONLY, facts(format_).internal);
+    check_gl("binding an image");
+}
+
+void copy_texels(unsigned from_texture_name, const Texture2D& to, const PixelRect& rect) {
+    if (rect.width <= 0 || rect.height <= 0) return;
+    glCopyImageSubData(from_texture_name,
+                       GL_TEXTURE_2D,
+                       0,
+                       rect.x,
+                       rect.y,
+                       0,
+                       to.name(),
+                       GL_TEXTURE_2D,
+                       0,
+                       rect.x,
+                       rect.y,
+                       0,
+                       rect.width,
+                       rect.height,
+                       1);
+    check_gl("copying texels");
+}
 
 void bind_texture(unsigned unit, unsigned texture_name) {
     glBindTextureUnit(unit, texture_name);
@@ -234,6 +260,18 @@ void Buffer::update(const void* data, std::size_t bytes, std::size_t byte_offset
     glNamedBufferSubData(
         name_.get(), static_cast<GLintptr>(byte_offset), static_cast<GLsizeiptr>(bytes), data);
     check_gl("updating a buffer");
+}
+
+void Buffer::clear() {
+    glClearNamedBufferData(name_.get(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+    check_gl("clearing a buffer");
+}
+
+void Buffer::read(void* data, std::size_t bytes) const {
+    check_argument(bytes <= bytes_,
+                   std::to_string(bytes) + " bytes from a buffer of " + std::to_string(bytes_));
+    glGetNamedBufferSubData(name_.get(), 0, static_cast<GLsizeiptr>(bytes), data);
+    throw_on_gl_error("reading a buffer");
 }
 
 void Buffer::bind_uniform_block(unsigned index) const {

@@ -6,6 +6,7 @@
 // step flips anything. Only a window's final blit turns the picture over.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -98,8 +99,10 @@ class Texture2D {
     void upload(std::span<const float> texels, const PixelRect& rect, int layer = 0);
     void make_mipmaps();
     void clear(float value = 0.0f);  ///< every channel of level 0; float and normalised formats
+    void clear(const std::array<float, 4>& rgba);
 
     void bind(unsigned unit) const;
+    void bind_image(unsigned unit) const;  ///< level 0, for a compute program to write
     unsigned name() const { return name_.get(); }
     const TextureShape& shape() const { return shape_; }
     int width() const { return shape_.width; }
@@ -119,6 +122,9 @@ class Texture2D {
 /// Binds a texture that somebody else owns.
 void bind_texture(unsigned unit, unsigned texture_name);
 
+/// The same rectangle of level 0 from one texture into another, whose format has as many bits.
+void copy_texels(unsigned from_texture_name, const Texture2D& to, const PixelRect& rect);
+
 /// Bytes on the device: vertices, indices, uniform or shader storage blocks.
 class Buffer {
   public:
@@ -134,6 +140,9 @@ class Buffer {
         update(values.data(), values.size_bytes(), byte_offset);
     }
     void update(const void* data, std::size_t bytes, std::size_t byte_offset);
+    void clear();  ///< to zeros
+    /// From its beginning; waits for what was asked for before.
+    void read(void* data, std::size_t bytes) const;
     void bind_uniform_block(unsigned index) const;
     void bind_storage_block(unsigned index) const;
     std::size_t bytes() const { return bytes_; }

@@ -151,12 +151,14 @@ void time_frames(SpeedLedger& result,
     const CompensationTable table =
         bake(calibration, design_white_luminance(calibration, 20.0, {}));
     GpuCompensation gpu(table);
+    CompensationCounts counts;
+    Texture2D input(view.width, view.height, TexelFormat::rgba8);
     // Programs and textures of every look are made before anything is timed.
     for (const Scene& look : scene.looks) {
         FramePlan plan = plan_frame(look, quality, FrameStage::projector);
         renderer.render(look, plan, progress);
-        gpu.run(renderer.texture());
-        gpu.read_back();
+        gpu.run(renderer.texture(), input, counts);
+        counts.read(0);
     }
     const std::size_t covered = count_covered(*renderer.picture());
 
@@ -179,10 +181,10 @@ void time_frames(SpeedLedger& result,
         cpu_ms.push_back(milliseconds_since(before_cpu));
         cpu_frame.push_back(milliseconds_since(began));
 
-        // The same with the correction in OpenGL; reading back waits until it is done.
+        // The same with the correction in OpenGL; reading what it counted waits until it is done.
         const auto before_gpu = Clock::now();
-        gpu.run(renderer.texture());
-        const Image8 from_gpu = gpu.read_back();
+        gpu.run(renderer.texture(), input, counts);
+        counts.read(covered);
         gpu_ms.push_back(milliseconds_since(before_gpu));
         gpu_frame.push_back(shade.back() + gpu_ms.back());
     }
@@ -196,7 +198,7 @@ void time_frames(SpeedLedger& result,
     if (quality == Quality::normal) {
         const std::string size = fmt::format("{}x{}", view.width, view.height);
         effect(result, "correction").levels.push_back(worked_level_of(size, cpu_ms, pixels));
-        effect(result, "correction in OpenGL, read back")
+        effect(result, "correction in OpenGL, with its counts")
             .levels.push_back(worked_level_of(size, gpu_ms, pixels));
     }
     if (view.width != 1280) return;

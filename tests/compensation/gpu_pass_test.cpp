@@ -24,16 +24,30 @@ class GpuPass : public testing::Test {
         int largest = 0;
         double changed_fraction = 0.0;
         Image8 gpu, cpu;
+        CompensationStats gpu_stats, cpu_stats;
     };
+    static void expect_same_counts(const Result& result) {
+        const CompensationStats &gpu = result.gpu_stats, &cpu = result.cpu_stats;
+        EXPECT_EQ(gpu.out_of_gamut_fraction, cpu.out_of_gamut_fraction);
+        EXPECT_EQ(gpu.invalid_fraction, cpu.invalid_fraction);
+        EXPECT_EQ(gpu.clipped_high_fraction, cpu.clipped_high_fraction);
+        EXPECT_EQ(gpu.clipped_low_fraction, cpu.clipped_low_fraction);
+    }
     /// Both see the same half floats, which is what the radiance texture holds.
     static Result compare(const CompensationTable& table, const ImageF& wanted) {
         Texture2D texture(wanted.width, wanted.height, TexelFormat::rgba16f);
         texture.upload(wanted.values);
         GpuCompensation pass(table);
-        pass.run(texture.name());
+        Texture2D drive(table.width, table.height, TexelFormat::rgba8);
+        CompensationCounts counts;
+        pass.run(texture.name(), drive, counts);
         Result result;
-        result.gpu = pass.read_back();
-        result.cpu = compensate(table, read_floats(texture));
+        result.gpu = read_bytes(drive, 3);
+        const ImageF seen = read_floats(texture);
+        CompensationStats of_cpu;
+        result.cpu = compensate(table, seen, &of_cpu);
+        result.gpu_stats = counts.read(count_covered(seen));
+        result.cpu_stats = of_cpu;
         EXPECT_EQ(result.gpu.values.size(), result.cpu.values.size());
         std::size_t changed = 0;
         for (std::size_t i = 0; i < result.cpu.values.size(); ++i) {
@@ -59,7 +73,7 @@ ImageF random_wanted(const synthetic::World& world, std::uint64_t seed) {
 }
 
 TEST_F(GpuPass, AgreesWithTheOracle) {
-    // Sizes that are no multiple of the tile, smaller than one, and one pixel wide.
+    // Sizes that are no multiple of a group, smaller than one, and one pixel wide.
     for (const auto& [width, height] : {std::pair{131, 77}, {31, 33}, {1, 65}, {64, 32}}) {
         SCOPED_TRACE(testing::Message() << width << "x" << height);
         const synthetic::World world = synthetic::make_world(width, height, 81);
@@ -73,6 +87,9 @@ TEST_F(GpuPass, AgreesWithTheOracle) {
             // Only where the two round a threshold of the dither differently.
             EXPECT_LT(result.changed_fraction, 0.005);
             EXPECT_GT(*std::max_element(result.gpu.values.begin(), result.gpu.values.end()), 100);
+            expect_same_counts(result);
+            EXPECT_GT(result.gpu_stats.clipped_high_fraction, 0.1);
+            EXPECT_GT(result.gpu_stats.clipped_low_fraction, 0.1);
         }
     }
 }
@@ -99,6 +116,8 @@ TEST_F(GpuPass, AgreesOnEverythingThatIsBlack) {
     for (std::size_t i = 0; i < result.cpu.values.size(); ++i) {
         EXPECT_EQ(result.cpu.values[i] == 0, result.gpu.values[i] == 0) << i;
     }
+    expect_same_counts(result);
+    EXPECT_GT(result.gpu_stats.invalid_fraction, 0.1);
 }
 
 TEST_F(GpuPass, AgreesOnANonAdditiveProjector) {
@@ -114,23 +133,59 @@ TEST_F(GpuPass, AgreesOnANonAdditiveProjector) {
     const Result outside = compare(table, random_wanted(world, 87));
     EXPECT_LE(outside.largest, 1);
     EXPECT_LT(outside.changed_fraction, 0.005);
+    expect_same_counts(outside);
+    EXPECT_GT(outside.gpu_stats.out_of_gamut_fraction, 0.1);
+}
+
+TEST_F(GpuPass, AgreesOnTheGamutMapping) {
+    const synthetic::World world = synthetic::make_world(131, 77, 91);
+    for (const bool segment : {false, true}) {
+        SCOPED_TRACE(segment ? "clear segment" : "additive");
+        const ColourCalibration calibration =
+            segment ? synthetic::calibrate_segment(world) : synthetic::calibrate(world);
+        const CompensationTable strict = bake(calibration, 0.4);
+        const CompensationTable table = bake(calibration, 0.4, GamutMapping::preserve);
+        ImageF wanted = random_wanted(world, 92);
+        for (std::size_t i = 0; i < wanted.pixel_count(); i += 19) {
+            wanted.values[4 * i] = std::numeric_limits<float>::quiet_NaN();
+        }
+        const Result result = compare(table, wanted);
+        EXPECT_LE(result.largest, 1);
+        EXPECT_LT(result.changed_fraction, 0.005);
+        expect_same_counts(result);
+        // It has moved much.
+        const Result clipped = compare(strict, wanted);
+        EXPECT_EQ(clipped.gpu_stats.out_of_gamut_fraction, result.gpu_stats.out_of_gamut_fraction);
+        std::size_t moved = 0;
+        for (std::size_t i = 0; i < result.gpu.values.size(); ++i) {
+            moved += result.gpu.values[i] != clipped.gpu.values[i] ? 1u : 0u;
+        }
+        EXPECT_GT(moved, result.gpu.values.size() / 5);
+    }
 }
 
 TEST_F(GpuPass, FramesFollowOneAnotherWithoutATrace) {
     const synthetic::World world = synthetic::make_world(40, 40, 88);
     const CompensationTable table = bake(synthetic::calibrate(world), 0.4);
     GpuCompensation pass(table);
+    CompensationCounts counts;
     Texture2D bright(40, 40, TexelFormat::rgba16f), none(40, 40, TexelFormat::rgba16f);
+    Texture2D drive(40, 40, TexelFormat::rgba8);
     bright.upload(ImageF(40, 40, 4, 1.0f).values);
     none.upload(ImageF(40, 40, 4, 0.0f).values);
-    pass.run(bright.name());
-    const Image8 first = pass.read_back();
+    drive.clear(0.5f);  // of a picture that another table made
+    pass.run(bright.name(), drive, counts);
+    const Image8 first = read_bytes(drive, 3);
+    const CompensationStats of_first = counts.read(1600);
     EXPECT_GT(*std::max_element(first.values.begin(), first.values.end()), 200);
-    pass.run(none.name());
-    const Image8 second = pass.read_back();
+    EXPECT_GT(of_first.out_of_gamut_fraction, 0.1);
+    pass.run(none.name(), drive, counts);
+    const Image8 second = read_bytes(drive, 3);
     EXPECT_EQ(*std::max_element(second.values.begin(), second.values.end()), 0);
-    pass.run(bright.name());
-    EXPECT_EQ(pass.read_back().values, first.values);
+    EXPECT_EQ(counts.read(0).out_of_gamut_fraction, 0.0);
+    pass.run(bright.name(), drive, counts);
+    EXPECT_EQ(read_bytes(drive, 3).values, first.values);
+    EXPECT_EQ(counts.read(1600).out_of_gamut_fraction, of_first.out_of_gamut_fraction);
 }
 
 TEST_F(GpuPass, EmptyCalibrationIsBlack) {
@@ -141,11 +196,13 @@ TEST_F(GpuPass, EmptyCalibrationIsBlack) {
     EXPECT_EQ(*std::max_element(result.gpu.values.begin(), result.gpu.values.end()), 0);
 }
 
-TEST_F(GpuPass, RefusesAMappingThatItDoesNotHave) {
-    const ColourCalibration calibration = synthetic::calibrate(synthetic::make_world(20, 20, 90));
-    EXPECT_NO_THROW(GpuCompensation(bake(calibration, 0.4)));
-    EXPECT_THROW(GpuCompensation(bake(calibration, 0.4, GamutMapping::preserve)),
-                 std::invalid_argument);
+TEST_F(GpuPass, RefusesATextureThatDoesNotFit) {
+    GpuCompensation pass(bake(synthetic::calibrate(synthetic::make_world(20, 20, 90)), 0.4));
+    CompensationCounts counts;
+    Texture2D wanted(20, 20, TexelFormat::rgba16f);
+    Texture2D narrow(19, 20, TexelFormat::rgba8), floats(20, 20, TexelFormat::rgba16f);
+    EXPECT_THROW(pass.run(wanted.name(), narrow, counts), std::invalid_argument);
+    EXPECT_THROW(pass.run(wanted.name(), floats, counts), std::invalid_argument);
 }
 
 }  // namespace

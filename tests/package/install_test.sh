@@ -10,7 +10,7 @@ set -euo pipefail
 # --- what lies there ---------------------------------------------------------------------------
 for file in bin/livery lib/livery/livery_image_io.so share/livery/materials/solid-red.json \
     share/livery/assets/car.glb share/livery/assets/looks/solid-red.json \
-    share/livery/shaders/compensation.frag share/livery/calibration/default.json \
+    share/livery/shaders/compensation/correct.comp share/livery/calibration/default.json \
     share/man/man1/livery.1 share/applications/livery.desktop share/mime/packages/livery.xml \
     share/icons/hicolor/scalable/apps/livery.svg share/icons/hicolor/48x48/apps/livery.png \
     share/doc/livery/README.md share/doc/livery/LICENSE share/doc/livery/docs/commands.md; do
