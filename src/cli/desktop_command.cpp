@@ -6,13 +6,14 @@
 #include <fmt/format.h>
 
 #include "cli/command.h"
+#include "live/frame_thread.h"
 #include "studio/window/app.h"
 
 namespace livery {
 
 Command desktop_command() {
     struct Arguments {
-        std::string session, product, unit, size, ui_map, trace;
+        std::string session, product, unit, size, ui_map, trace, shading = "auto";
         double ui_scale = 0.0;
     };
     const auto arguments = std::make_shared<Arguments>();
@@ -55,6 +56,13 @@ Command desktop_command() {
          &arguments->trace,
          false,
          {}},
+        {"--shading",
+         "DEVICE",
+         "what shades and corrects the mock-up's picture: auto, opengl or processor (default auto: "
+         "opengl unless it is software)",
+         &arguments->shading,
+         false,
+         {"auto", "opengl", "processor"}},
     };
     command.run = [arguments](const CommonOptions&, const Progress&) {
         DesktopOptions options;
@@ -63,6 +71,8 @@ Command desktop_command() {
         options.unit = parse_unit(arguments->unit);
         options.ui_map = arguments->ui_map;
         options.trace = arguments->trace;
+        if (arguments->shading == "opengl") options.shading = ShadingDevice::gl;
+        if (arguments->shading == "processor") options.shading = ShadingDevice::processor;
         if (arguments->ui_scale != 0.0) {
             if (arguments->ui_scale < 0.5 || arguments->ui_scale > 4.0) {
                 throw std::invalid_argument(

@@ -103,6 +103,8 @@ void ScreenPass::run(const Program& program,
     draw(program, no_inputs_, target, Primitive::triangles, 0, 3, state);
 }
 
+void flush_gl() { glFlush(); }
+
 void finish_gl() { glFinish(); }
 
 }  // namespace livery

@@ -46,6 +46,9 @@ class ScreenPass {
     VertexArray no_inputs_;
 };
 
+/// Hands everything asked for to the device, and does not wait.
+void flush_gl();
+
 /// Waits until everything asked for is done.
 void finish_gl();
 

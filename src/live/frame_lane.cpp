@@ -6,7 +6,6 @@
 #include <exception>
 #include <functional>
 #include <set>
-#include <span>
 #include <thread>
 #include <utility>
 
@@ -16,7 +15,6 @@
 #include "appearance/measured/measured_paint.h"
 #include "appearance/model_table.h"
 #include "core/error.h"
-#include "core/parallel.h"
 #include "jobs/picture.h"
 
 namespace livery {
@@ -61,25 +59,6 @@ const Scene& side_of(const FrameDescription& description, std::size_t side) {
 }
 
 std::size_t side_count(const FrameDescription& description) { return description.wipe_to ? 2 : 1; }
-
-template <typename T>
-void copy_columns(const Image<T>& from, int begin, int end, Image<T>* to) {
-    if (begin >= end) return;
-    for (int y = 0; y < from.height; ++y) {
-        const T* row = from.pixel(0, y);
-        std::copy(row + begin * from.channels, row + end * from.channels, to->pixel(begin, y));
-    }
-}
-
-template <typename T>
-void join(const Image<T>& left, const Image<T>& right, int column, Image<T>* joined) {
-    if (joined->width != left.width || joined->height != left.height ||
-        joined->channels != left.channels) {
-        *joined = Image<T>(left.width, left.height, left.channels);
-    }
-    copy_columns(left, 0, column, joined);
-    copy_columns(right, column, right.width, joined);
-}
 
 /// `more` into `plan`: milliseconds are added up, and passes that it lacks put in where they stand.
 void add_milliseconds(FramePlan& plan, const FramePlan& more, bool add_passes) {
@@ -162,7 +141,9 @@ std::shared_ptr<const FrameGeometry> GeometryCache::get(const SolveKey& key,
 }
 
 FrameLane::FrameLane(std::shared_ptr<GeometryCache> geometries, ShadingDevice device)
-    : geometries_(std::move(geometries)), device_(device) {}
+    : geometries_(std::move(geometries)),
+      device_(chosen_device(device)),
+      path_(make_drive_path(device_)) {}
 
 void FrameLane::solve(const FrameDescription& description,
                       Quality quality,
@@ -289,20 +270,26 @@ std::shared_ptr<FinishedFrame> FrameLane::draw_picture(const FrameDescription& d
     const auto start = Clock::now();
     check_argument(can_draw(description), "this frame's light was not solved");
     auto frame = std::make_shared<FinishedFrame>();
+    std::array<bool, 2> was_ahead{};
     for (std::size_t side = 0; side < side_count(description); ++side) {
         const bool ahead = !sides_[side].told;
         draw_side(description, side);
-        frame->shade_ms += sides_[side].shade_ms;
-        frame->compensate_ms += sides_[side].compensate_ms;
-        if (ahead) frame->ms_total += sides_[side].shade_ms + sides_[side].compensate_ms;
+        was_ahead[side] = ahead;
     }
     compose(description);
+    // The whole frame is on its way: what waits for numbers keeps nothing from being done.
+    for (std::size_t side = 0; side < side_count(description); ++side) {
+        measure_side(side);
+        frame->shade_ms += sides_[side].shade_ms;
+        frame->compensate_ms += sides_[side].compensate_ms;
+        if (was_ahead[side]) frame->ms_total += sides_[side].shade_ms + sides_[side].compensate_ms;
+    }
+    const auto& slot = composed_.pictures->drive.slot;
     frame->number = description.number;
-    frame->drive_texture = composed_.slot->texture.name();
-    frame->ready = {composed_.slot, &composed_.slot->ready};
-    frame->owner = composed_.slot;
-    frame->drive = composed_.drive;
-    frame->radiance_working = composed_.radiance_working;
+    frame->drive_texture = slot->texture.name();
+    frame->size_px = {slot->texture.width(), slot->texture.height()};
+    frame->ready = {slot, &slot->ready};
+    frame->pictures = composed_.pictures;
     frame->compensation = sides_[0].compensation;
     frame->asked_at = description.asked_at;
     frame->ms_total += milliseconds_since(start);
@@ -324,7 +311,7 @@ void FrameLane::draw_side(const FrameDescription& description, std::size_t index
     Side& side = sides_[index];
     const Scene scene = scene_of(description, index);
     const std::size_t light = nearest_of(solved_, keys_of(description), index);
-    const bool painted = side.radiance_working &&
+    const bool painted = side.radiance &&
                          all_same(side.paints, scene.part_materials, same_reflectance) &&
                          all_same(side.artwork, scene.artwork, looks_alike) &&
                          side.exposure_ev == scene.exposure_ev && side.light == light;
@@ -339,16 +326,16 @@ void FrameLane::draw_side(const FrameDescription& description, std::size_t index
     }
     side.plan = std::move(plan);
     if (!painted) {
-        side.radiance_working = nullptr;
+        side.radiance = {};
         const auto start = Clock::now();
         RadianceRenderer& renderer = *lights_[light].renderer;
         FramePlan drawn = plan_frame(scene, solved_[light]->quality, FrameStage::projector);
         renderer.render(scene, drawn);
-        auto radiance = renderer.picture();
+        auto radiance = path_->take(renderer);
         side.shade_ms += milliseconds_since(start);
         add_milliseconds(drawn, side.plan, false);
         side.plan = std::move(drawn);
-        side.radiance_working = std::move(radiance);
+        side.radiance = std::move(radiance);
         side.paints = scene.part_materials;
         side.artwork = scene.artwork;
         side.exposure_ev = scene.exposure_ev;
@@ -360,73 +347,57 @@ void FrameLane::draw_side(const FrameDescription& description, std::size_t index
     }
     if (painted && side.setup == description.setup) return;
     side.setup = nullptr;  // until it worked
-    compensate_side(description.setup, side);
+    correct_side(description.setup, index);
     side.setup = description.setup;
 }
 
-void FrameLane::compensate_side(const std::shared_ptr<const ProjectorSetup>& setup, Side& side) {
-    const auto start = Clock::now();
-    std::shared_ptr<Image8> drive;
-    PlannedPass& pass = *find_pass(side.plan, PassKind::compensation);
-    side.compensation = {};
-    if (setup->table) {
-        // On the processor: quicker than OpenGL in software, and it counts what is out of the
-        // gamut, which the OpenGL pass does not.
-        if (corrected_.of != setup) corrected_ = {setup, std::make_unique<Recycler<Image8>>()};
-        drive = corrected_.pictures->take();
-        std::optional<std::size_t>& covered = lights_[side.light].covered_pixels;
-        if (!covered) covered = count_covered(*side.radiance_working);
-        compensate_again(
-            *setup->table, *side.radiance_working, *covered, drive.get(), &side.compensation);
-        pass.work_items = static_cast<double>(setup->table->pixels.size());
-    } else {
-        drive = drives_.take();
-        srgb_from_working_into(*side.radiance_working, drive.get());
-        pass.why = "without a calibration the frame goes out as sRGB";
-        pass.work_items = static_cast<double>(drive->pixel_count());
+void FrameLane::correct_side(const std::shared_ptr<const ProjectorSetup>& setup,
+                             std::size_t index) {
+    Side& side = sides_[index];
+    Solved& light = lights_[side.light];
+    if (setup->table && !light.covered_pixels) {
+        light.covered_pixels = count_covered(*light.renderer->picture());
     }
-    side.drive = std::move(drive);
-    const double ms = milliseconds_since(start);
-    side.compensate_ms += ms;
-    pass.ms = pass.ms.value_or(0.0) + ms;
+    PlannedPass& pass = *find_pass(side.plan, PassKind::compensation);
+    if (!setup->table) pass.why = "without a calibration the frame goes out as sRGB";
+    pass.why += device_ == ShadingDevice::gl ? ", made on the graphics card, which shades it"
+                                             : ", made on the processor, which shades it";
+    pass.work_items =
+        static_cast<double>(setup->table ? setup->table->pixels.size()
+                                         : light.renderer->surface_map().coverage.pixel_count());
+    side.drive = path_->correct(index, setup, side.radiance, light.covered_pixels.value_or(0));
+    side.to_measure = true;
+}
+
+void FrameLane::measure_side(std::size_t index) {
+    Side& side = sides_[index];
+    if (!std::exchange(side.to_measure, false)) return;
+    const DrivePath::Measured measured = path_->measured(index);
+    PlannedPass& pass = *find_pass(side.plan, PassKind::compensation);
+    side.compensation = measured.stats;
+    side.compensate_ms += measured.ms;
+    pass.ms = pass.ms.value_or(0.0) + measured.ms;
 }
 
 void FrameLane::compose(const FrameDescription& description) {
+    auto pictures = std::make_shared<FramePictures>();
     Composed next;
-    next.from[0] = sides_[0].drive;
-    if (description.wipe_to) {
-        next.from[1] = sides_[1].drive;
-        next.column = wipe_column(lights_[0].renderer->surface_map(), description.wipe_at);
+    for (std::size_t side = 0; side < side_count(description); ++side) {
+        next.from[side] = sides_[side].drive;
+        pictures->radiance[side] = sides_[side].radiance;
     }
-    if (composed_.slot && next.from == composed_.from && next.column == composed_.column) return;
     if (description.wipe_to) {
-        auto drive = drives_.take();
-        join(*sides_[0].drive, *sides_[1].drive, next.column, drive.get());
-        auto radiance = radiances_.take();
-        join(*sides_[0].radiance_working, *sides_[1].radiance_working, next.column, radiance.get());
-        next.drive = std::move(drive);
-        next.radiance_working = std::move(radiance);
-    } else {
-        next.drive = sides_[0].drive;
-        next.radiance_working = sides_[0].radiance_working;
+        pictures->column = wipe_column(lights_[0].renderer->surface_map(), description.wipe_at);
     }
-    next.slot = upload(*next.drive);
+    if (composed_.pictures && next.from == composed_.from &&
+        pictures->column == composed_.pictures->column) {
+        return;
+    }
+    pictures->drive = description.wipe_to
+                          ? path_->join(next.from[0], next.from[1], pictures->column)
+                          : path_->show(next.from[0]);
+    next.pictures = std::move(pictures);
     composed_ = std::move(next);
-}
-
-std::shared_ptr<const TexturePool::Slot> FrameLane::upload(const Image8& drive) {
-    rgba_.resize(4 * drive.pixel_count(), 255);
-    const std::uint8_t* from = drive.values.data();
-    std::uint8_t* to = rgba_.data();
-    parallel_for(drive.pixel_count(), 65536, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            for (std::size_t c = 0; c < 3; ++c) to[4 * i + c] = from[3 * i + c];
-        }
-    });
-    auto slot = textures_.lend(drive.width, drive.height);
-    slot->texture.upload(std::span<const std::uint8_t>(rgba_));
-    slot->ready = Fence::after_everything_so_far();
-    return slot;
 }
 
 RadianceRenderer::Counters FrameLane::counters() const {
@@ -439,6 +410,8 @@ RadianceRenderer::Counters FrameLane::counters() const {
         sum.passes_run += one.passes_run;
         sum.fragments_shaded += one.fragments_shaded;
     }
+    sum.programs += path_->programs();
+    sum.textures += path_->textures();
     return sum;
 }
 

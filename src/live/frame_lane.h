@@ -9,11 +9,10 @@
 #include <vector>
 
 #include "core/progress.h"
-#include "core/recycler.h"
+#include "live/drive_path.h"
 #include "live/frame_thread.h"
 #include "live/low_priority.h"
 #include "live/solve_key.h"
-#include "live/texture_pool.h"
 #include "radiance/renderer.h"
 
 namespace livery {
@@ -63,7 +62,7 @@ class FrameLane {
     /// The same ahead of draw(), which then tells what it cost.
     void draw_ahead(const FrameDescription& description);
 
-    /// Of all its renderers together.
+    /// Of all its renderers and what follows on them.
     RadianceRenderer::Counters counters() const;
 
   private:
@@ -74,8 +73,9 @@ class FrameLane {
         double exposure_ev = 0.0;
         std::size_t light = 0;  ///< of lights_
         std::shared_ptr<const ProjectorSetup> setup;
-        std::shared_ptr<const ImageF> radiance_working;  ///< null: not drawn
-        std::shared_ptr<const Image8> drive;
+        FramePicture<ImageF> radiance;  ///< none: not drawn
+        FramePicture<Image8> drive;
+        bool to_measure = false;  ///< corrected, and not yet asked what that took
         FramePlan plan;
         CompensationStats compensation;
         double shade_ms = 0.0, compensate_ms = 0.0;
@@ -83,11 +83,8 @@ class FrameLane {
     };
     /// The picture of all sides.
     struct Composed {
-        std::array<std::shared_ptr<const Image8>, 2> from;
-        int column = 0;
-        std::shared_ptr<const Image8> drive;
-        std::shared_ptr<const ImageF> radiance_working;
-        std::shared_ptr<const TexturePool::Slot> slot;
+        std::array<FramePicture<Image8>, 2> from;
+        std::shared_ptr<const FramePictures> pictures;
     };
 
     void solve_light(std::size_t index,
@@ -98,18 +95,19 @@ class FrameLane {
     std::shared_ptr<FinishedFrame> draw_picture(const FrameDescription& description);
     Scene scene_of(const FrameDescription& description, std::size_t side) const;
     void draw_side(const FrameDescription& description, std::size_t side);
-    void compensate_side(const std::shared_ptr<const ProjectorSetup>& setup, Side& side);
+    void correct_side(const std::shared_ptr<const ProjectorSetup>& setup, std::size_t index);
+    void measure_side(std::size_t index);
     void compose(const FrameDescription& description);
-    std::shared_ptr<const TexturePool::Slot> upload(const Image8& drive);
     FramePlan told_plan(bool wiped);
 
     std::shared_ptr<GeometryCache> geometries_;
-    ShadingDevice device_;
+    const ShadingDevice device_;  ///< not automatic
+    std::unique_ptr<DrivePath> path_;
 
     struct Solved {
         std::unique_ptr<RadianceRenderer> renderer;
         std::optional<FramePlan> untold;            ///< milliseconds that no frame's plan told yet
-        std::optional<std::size_t> covered_pixels;  ///< as compensate_again() asks
+        std::optional<std::size_t> covered_pixels;  ///< as corrections ask
     };
     std::array<Solved, 2> lights_;
     SolveKeys solved_;
@@ -118,16 +116,6 @@ class FrameLane {
 
     std::array<Side, 2> sides_;
     Composed composed_;
-    /// Corrected pictures of one setup: what lies beside the mock-up stays black in them.
-    struct Corrected {
-        std::shared_ptr<const ProjectorSetup> of;
-        std::unique_ptr<Recycler<Image8>> pictures;
-    };
-    Corrected corrected_;
-    Recycler<ImageF> radiances_;  ///< of both sides of a wipe
-    Recycler<Image8> drives_;     ///< the same, and those that nothing corrects
-    std::vector<std::uint8_t> rgba_;
-    TexturePool textures_;
 };
 
 }  // namespace livery

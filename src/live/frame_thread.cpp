@@ -126,6 +126,7 @@ std::string FrameJobs::unfinished_of(const SolveKeys& solved, const SolveKeys& w
 
 struct FrameThread::Implementation {
     std::array<GlContext*, 2> contexts;
+    ShadingDevice device = ShadingDevice::automatic;
     std::function<void(std::shared_ptr<const FinishedFrame>)> on_finished;
     std::shared_ptr<GeometryCache> geometries = std::make_shared<GeometryCache>();
     std::atomic<bool> stop{false};  ///< the task that runs
@@ -282,7 +283,7 @@ void FrameThread::Implementation::run(std::size_t index) {
     try {
         contexts[index]->make_current();
         {
-            FrameLane lane(geometries);
+            FrameLane lane(geometries, device);
             worker.serve([&](FrameJobs& jobs) { return next(jobs, index, lane); });
         }
         contexts[index]->release();
@@ -295,10 +296,12 @@ void FrameThread::Implementation::run(std::size_t index) {
 
 FrameThread::FrameThread(GlContext& front,
                          GlContext& back,
-                         std::function<void(std::shared_ptr<const FinishedFrame>)> on_finished)
+                         std::function<void(std::shared_ptr<const FinishedFrame>)> on_finished,
+                         ShadingDevice device)
     : implementation_(std::make_unique<Implementation>()) {
     Implementation& all = *implementation_;
     all.contexts = {&front, &back};
+    all.device = device;
     all.on_finished = std::move(on_finished);
     for (std::size_t lane = 0; lane < 2; ++lane) {
         all.worker.start([&all, lane] { all.run(lane); });

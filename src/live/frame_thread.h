@@ -9,11 +9,14 @@
 #include <string>
 #include <vector>
 
+#include <glm/vec2.hpp>
+
 #include "appearance/material_library.h"
-#include "core/image.h"
 #include "gl/context.h"
 #include "gl/fence.h"
+#include "live/frame_pictures.h"
 #include "live/projector_setup.h"
+#include "radiance/lanes/input_layers.h"
 #include "scene/frame_plan.h"
 #include "scene/scene.h"
 
@@ -38,9 +41,9 @@ struct FrameDescription {
 struct FinishedFrame {
     std::uint64_t number = 0;
     unsigned drive_texture = 0;  ///< RGBA8 projector input; 0 before the first good frame
+    glm::ivec2 size_px{0};
     std::shared_ptr<const Fence> ready;
-    std::shared_ptr<const Image8> drive;  ///< the same for the bench and for files, 3 channels
-    std::shared_ptr<const ImageF> radiance_working;  ///< what is wanted
+    std::shared_ptr<const FramePictures> pictures;  ///< for the bench and for files
     FramePlan plan;  ///< measured milliseconds, and "prepare:..." passes that ran ahead
     CompensationStats compensation;
     double shade_ms = 0.0, compensate_ms = 0.0, ms_total = 0.0;
@@ -51,7 +54,6 @@ struct FinishedFrame {
     /// frame's, if there was one.
     std::string problem;
     std::chrono::steady_clock::time_point asked_at{}, done_at{};
-    std::shared_ptr<const void> owner;
 };
 
 /// Two lanes, each a thread with a context and a renderer. The front lane answers paint swaps at
@@ -63,10 +65,12 @@ struct FinishedFrame {
 class FrameThread {
   public:
     /// Contexts of one share group, current nowhere; they must outlive this. `on_finished` is
-    /// called on a lane's thread, one call at a time; it may call show().
+    /// called on a lane's thread, one call at a time; it may call show(). `device` shades and
+    /// corrects.
     FrameThread(GlContext& front,
                 GlContext& back,
-                std::function<void(std::shared_ptr<const FinishedFrame>)> on_finished);
+                std::function<void(std::shared_ptr<const FinishedFrame>)> on_finished,
+                ShadingDevice device = ShadingDevice::automatic);
     ~FrameThread();
     FrameThread(const FrameThread&) = delete;
     FrameThread& operator=(const FrameThread&) = delete;

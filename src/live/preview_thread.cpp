@@ -60,7 +60,7 @@ void check(const PreviewDescription& description) {
 
 /// All that lives in the context; made and destroyed with it current.
 struct Drawing {
-    TexturePool pool;
+    TexturePool pool{TexelFormat::rgba8};
     PreviewEncoder encoder;
     std::shared_ptr<const GroundShadow> ground;  ///< that the encoder has
     std::unique_ptr<RasterPreview> preview;

@@ -20,7 +20,8 @@ struct TexturePool::Shared {
     std::deque<Slot*> returned;              ///< the longest returned first
 };
 
-TexturePool::TexturePool() : shared_(std::make_shared<Shared>()) {}
+TexturePool::TexturePool(TexelFormat format)
+    : format_(format), shared_(std::make_shared<Shared>()) {}
 
 TexturePool::~TexturePool() {
     const std::scoped_lock lock(shared_->mutex);
@@ -45,7 +46,8 @@ std::shared_ptr<TexturePool::Slot> TexturePool::lend(int width, int height) {
     std::shared_ptr<Slot> lent(slot, give_back);
     if (!slot->texture || slot->texture.width() != width || slot->texture.height() != height) {
         slot->framebuffer = Framebuffer();
-        slot->texture = Texture2D({width, height}, TexelFormat::rgba8, TexelFilter::linear);
+        slot->texture = Texture2D({width, height}, format_, TexelFilter::linear);
+        ++made_;
         slot->framebuffer = Framebuffer({&slot->texture});
     }
     return lent;

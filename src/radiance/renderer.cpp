@@ -336,10 +336,7 @@ RadianceRenderer::RadianceRenderer(std::shared_ptr<const FrameGeometry> geometry
                                    bool keep_better,
                                    ShadingDevice device) {
     check_argument(geometry != nullptr, "a renderer needs a geometry");
-    if (device == ShadingDevice::automatic) {
-        device = current_context_is_software() ? ShadingDevice::processor : ShadingDevice::gl;
-    }
-    state_ = std::make_unique<State>(std::move(geometry), keep_better, device);
+    state_ = std::make_unique<State>(std::move(geometry), keep_better, chosen_device(device));
 }
 
 RadianceRenderer::~RadianceRenderer() = default;

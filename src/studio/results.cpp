@@ -11,7 +11,7 @@ std::shared_ptr<const ProjectorPicture> picture_of(
     auto picture = std::make_shared<ProjectorPicture>();
     picture->number = frame->number;
     picture->texture = frame->drive_texture;
-    picture->size_px = {frame->drive->width, frame->drive->height};
+    picture->size_px = frame->size_px;
     picture->ready = frame->ready;
     picture->owner = frame;
     return picture;

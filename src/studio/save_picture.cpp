@@ -5,7 +5,6 @@
 #include <cmath>
 #include <functional>
 #include <memory>
-#include <optional>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -38,8 +37,18 @@ constexpr std::array<Choice, 5> kChoices = {{
     {"Photograph of the mock-up", "photograph", ".png", "From the simulated bench, sRGB."},
 }};
 
-/// What the picture is made of now; nothing when it is not there yet.
 using Write = std::function<void(const std::filesystem::path&)>;
+
+bool is_there(const Studio& studio, int what) {
+    switch (what) {
+        case preview:
+            return studio.preview && studio.preview->texture != 0;
+        case photograph:
+            return studio.photograph && !studio.photograph->srgb.empty();
+        default:
+            return studio.frame && studio.frame->pictures;
+    }
+}
 
 Image8 without_coverage(const ImageF& rgba) {
     Image8 rgb(rgba.width, rgba.height, 3);
@@ -52,33 +61,28 @@ Image8 without_coverage(const ImageF& rgba) {
     return rgb;
 }
 
-std::optional<Write> writer_of(const Shell& shell, int what) {
-    const Studio& studio = shell.studio;
+/// Of a picture that is there, as it is now: fetched here, written on any thread.
+Write writer_of(const Studio& studio, int what) {
     switch (what) {
         case preview: {
-            const auto& picture = studio.preview;
-            if (!picture || picture->texture == 0) return {};
-            picture->ready->wait_on_device();
+            const PreviewPicture& picture = *studio.preview;
+            picture.ready->wait_on_device();
             auto pixels = std::make_shared<const Image8>(without_coverage(
-                read_floats(picture->texture, picture->size_px.x, picture->size_px.y, 4)));
+                read_floats(picture.texture, picture.size_px.x, picture.size_px.y, 4)));
             return [pixels](const auto& file) { write_png(file, *pixels); };
         }
-        case wanted_exr:
-        case wanted_png:
-            if (!studio.frame || !studio.frame->radiance_working) return {};
-            return [wanted = studio.frame->radiance_working](const auto& file) {
+        case projector_input:
+            return [drive = drive_of(*studio.frame->pictures)](const auto& file) {
+                write_png(file, *drive);
+            };
+        case photograph:
+            return [taken = studio.photograph](const auto& file) { write_png(file, taken->srgb); };
+        default:
+            return [wanted = radiance_of(*studio.frame->pictures)](const auto& file) {
                 RenderedFrame rendered;
                 rendered.radiance_working = *wanted;
                 write_frame(file, rendered, FrameStage::radiance);
             };
-        case projector_input:
-            if (!studio.frame || !studio.frame->drive) return {};
-            return [drive = studio.frame->drive](const auto& file) { write_png(file, *drive); };
-        case photograph:
-            if (!studio.photograph || studio.photograph->srgb.empty()) return {};
-            return [taken = studio.photograph](const auto& file) { write_png(file, taken->srgb); };
-        default:
-            return {};
     }
 }
 
@@ -106,10 +110,9 @@ std::string suggested_name(const Shell& shell, int what) {
 }
 
 void save(Shell& shell, int what, const std::filesystem::path& file) {
-    const auto write = writer_of(shell, what);
-    if (!write) return;  // The dialog asked just before.
+    if (!is_there(shell.studio, what)) return;  // The dialog asked just before.
     shell.studio.background->run(
-        [&shell, write = *write, file](const Progress&) -> Background::Then {
+        [&shell, write = writer_of(shell.studio, what), file](const Progress&) -> Background::Then {
             write(file);
             return [&shell, file] {
                 notify(shell.studio, {Notice::Level::info, "Saved " + file.string() + ".", "", ""});
@@ -158,7 +161,7 @@ void ask_where_to_save_picture(Shell& shell) {
     use_choice(shell, *what, question);
     question.choices = [&shell, what](FileQuestion& asked) { draw_choices(shell, *what, asked); };
     question.not_ready = [&shell, what] {
-        return std::string(writer_of(shell, *what) ? "" : why_not_there(*what));
+        return std::string(is_there(shell.studio, *what) ? "" : why_not_there(*what));
     };
     question.then = [&shell, what](const std::filesystem::path& file) { save(shell, *what, file); };
     shell.studio.file_dialog->ask(std::move(question));

@@ -240,7 +240,7 @@ void handle_view(Shell& shell, const StageFrame& stage, const Pointer& pointer) 
 StageFrame projector_picture(const Shell& shell, const StageFrame& stage) {
     const auto& frame = shell.studio.frame;
     if (!frame) return stage;
-    return place_picture(stage, frame->drive->width, frame->drive->height, shell.stage.projector);
+    return place_picture(stage, frame->size_px.x, frame->size_px.y, shell.stage.projector);
 }
 
 StageFrame photograph_picture(const Shell& shell, const StageFrame& stage) {
@@ -349,13 +349,13 @@ void draw_projector_view(Shell& shell, const StageFrame& stage) {
     frame.ready->wait_on_device();
     const StageFrame picture = projector_picture(shell, stage);
     draw_texture(frame.drive_texture, picture);
-    std::string caption = fmt::format("{} × {} pixels, ", frame.drive->width, frame.drive->height);
+    std::string caption = fmt::format("{} × {} pixels, ", frame.size_px.x, frame.size_px.y);
     caption += studio.setup && studio.setup->table
                    ? "corrected"
                    : "uncorrected: " + (studio.setup ? studio.setup->why_uncorrected : "");
     if (shell.stage.projector.factor > 1.0) {
-        caption += fmt::format(", {:.0f}%",
-                               100.0f * picture.width / static_cast<float>(frame.drive->width));
+        caption +=
+            fmt::format(", {:.0f}%", 100.0f * picture.width / static_cast<float>(frame.size_px.x));
     }
     draw_caption(shell, stage, caption);
 }

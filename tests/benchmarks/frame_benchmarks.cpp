@@ -9,6 +9,7 @@
 #include "gl/context.h"
 #include "gl/draw.h"
 #include "jobs/synthetic_calibration.h"
+#include "live/frame_lane.h"
 
 namespace livery::benchmarks {
 namespace {
@@ -154,6 +155,48 @@ void CorrectionWithGamutMapping(benchmark::State& state) {
 BENCHMARK(CorrectionWithGamutMapping)
     ->ArgNames({"width", "threads", "percent"})
     ->ArgsProduct({{1280}, {1, 0}, {20, 50, 100, 400}})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+/// A paint swap as a lane of the window does it, until the projector's texture is there.
+void swap(benchmark::State& state, ShadingDevice device) {
+    HeadlessContext context(GlDevice::automatic);
+    const FrameGeometry& geometry = *geometry_of_width(static_cast<int>(state.range(0)));
+    auto setup = std::make_shared<ProjectorSetup>();
+    setup->view = geometry.view;
+    setup->table =
+        table_of(geometry, state.range(1) != 0 ? GamutMapping::preserve : GamutMapping::strict);
+    FrameDescription description;
+    description.scene = car().looks.front();
+    description.quality = Quality::draft;
+    description.setup = setup;
+    FrameLane lane(std::make_shared<GeometryCache>(), device);
+    lane.solve(description, description.quality, {}, {});
+    double compensate_ms = 0.0;
+    std::size_t k = 0;
+    const auto next = [&] {
+        description.scene.part_materials = car().looks[k++ % car().looks.size()].part_materials;
+        const auto frame = lane.draw(description);
+        frame->ready->wait_for(60.0);
+        return frame->compensate_ms;
+    };
+    for (std::size_t warm = 0; warm < 8; ++warm) next();
+    for (auto _ : state) compensate_ms += next();
+    state.counters["correction_ms"] =
+        benchmark::Counter(compensate_ms, benchmark::Counter::kAvgIterations);
+}
+
+void SwapOnTheProcessor(benchmark::State& state) { swap(state, ShadingDevice::processor); }
+BENCHMARK(SwapOnTheProcessor)
+    ->ArgNames({"width", "mapping"})
+    ->ArgsProduct({{640, 1280}, {0, 1}})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+void SwapInOpenGl(benchmark::State& state) { swap(state, ShadingDevice::gl); }
+BENCHMARK(SwapInOpenGl)
+    ->ArgNames({"width", "mapping"})
+    ->ArgsProduct({{640, 1280}, {0, 1}})
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 

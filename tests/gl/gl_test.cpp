@@ -1,4 +1,5 @@
 // The headless context and what the handles promise, on whatever OpenGL is there.
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
@@ -124,6 +125,23 @@ TEST_F(Gl, LayersAndRectanglesGoWhereTheyBelong) {
     layers.upload(std::vector<float>{9.0f}, PixelRect{1, 0, 1, 1}, 1);
     const ImageF middle = read_floats(layers, 0, 1);
     EXPECT_EQ(middle.values, (std::vector<float>{1.0f, 9.0f, 1.0f, 1.0f}));
+}
+
+TEST_F(Gl, CopiesARectangleAndLeavesTheRest) {
+    Texture2D from(4, 3, TexelFormat::rgba16f), to(4, 3, TexelFormat::rgba16f);
+    from.upload(std::vector<float>(48, 2.0f));
+    to.clear({0.25f, 0.5f, 0.75f, 1.0f});
+    copy_texels(from.name(), to, {1, 0, 2, 3});
+    copy_texels(from.name(), to, {3, 0, 0, 3});  // nothing
+    const ImageF image = read_floats(to);
+    for (int y = 0; y < 3; ++y) {
+        for (int x = 0; x < 4; ++x) {
+            const bool copied = x == 1 || x == 2;
+            for (int c = 0; c < 4; ++c) {
+                EXPECT_EQ(image.at(x, y, c), copied ? 2.0f : 0.25f * static_cast<float>(c + 1));
+            }
+        }
+    }
 }
 
 TEST_F(Gl, RowZeroIsTheTopAndFragCoordIsThePixelCentre) {
@@ -290,9 +308,12 @@ TEST_F(Gl, ComputeWritesStorage) {
 layout(local_size_x = 4) in;
 layout(std430, binding = 0) buffer Values { float values[]; };
 void main() { values[gl_GlobalInvocationID.x] *= values[gl_GlobalInvocationID.x]; })"});
-    const Buffer buffer(std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8});
+    Buffer buffer(std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8});
     buffer.bind_storage_block(0);
     dispatch(program, 2, 1);
+    std::array<float, 3> read{};
+    buffer.read(read.data(), sizeof(read));
+    EXPECT_EQ(read, (std::array<float, 3>{1, 4, 9}));
     const Program copy = Program::screen_pass({"copy", R"(#version 450 core
 layout(std430, binding = 0) readonly buffer Values { float values[]; };
 out float colour;
@@ -301,6 +322,33 @@ void main() { colour = values[int(gl_FragCoord.x)]; })"});
     const Framebuffer framebuffer({&target});
     ScreenPass().run(copy, framebuffer);
     EXPECT_EQ(read_floats(target).values, (std::vector<float>{1, 4, 9, 16, 25, 36, 49, 64}));
+    buffer.clear();
+    buffer.read(read.data(), sizeof(read));
+    EXPECT_EQ(read, (std::array<float, 3>{}));
+    EXPECT_NE(message_of([&] { buffer.read(nullptr, 33); }).find("33 bytes from a buffer of 32"),
+              std::string::npos);
+}
+
+TEST_F(Gl, ComputeWritesAnImage) {
+    const Program program(ShaderSource{"ramp", R"(#version 450 core
+layout(local_size_x = 1) in;
+layout(binding = 1, rgba8) writeonly uniform image2D picture;
+void main() {
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    imageStore(picture, at, vec4(at.x / 255.0, at.y / 255.0, 3.0 / 255.0, 1.0));
+})"});
+    const Texture2D texture(5, 2, TexelFormat::rgba8);
+    texture.bind_image(1);
+    dispatch(program, 5, 2);
+    const Image8 image = read_bytes(texture, 4);
+    for (int y = 0; y < 2; ++y) {
+        for (int x = 0; x < 5; ++x) {
+            EXPECT_EQ(image.at(x, y, 0), x);
+            EXPECT_EQ(image.at(x, y, 1), y);
+            EXPECT_EQ(image.at(x, y, 2), 3);
+            EXPECT_EQ(image.at(x, y, 3), 255);
+        }
+    }
 }
 
 TEST_F(Gl, MistakesAreNamedWithTheirValues) {

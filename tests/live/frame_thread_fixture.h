@@ -98,7 +98,28 @@ class FrameThreadTest : public testing::Test {
         description_.number = 1;
     }
 
-    void start() { thread_ = std::make_unique<FrameThread>(front_, back_, gallery_.adder()); }
+    void start() {
+        thread_ = std::make_unique<FrameThread>(front_, back_, gallery_.adder(), device_);
+    }
+    template <typename Fetch>
+    auto in_window(const Fetch& fetch) {
+        struct Current {
+            HeadlessContext& context;
+            explicit Current(HeadlessContext& its_context) : context(its_context) {
+                context.make_current();
+            }
+            ~Current() { context.release(); }
+        };
+        const Current current(window_);
+        return fetch();
+    }
+    /// A frame's pictures as a window fetches them, whichever device holds them.
+    Image8 drive(const FinishedFrame& frame) {
+        return in_window([&] { return *drive_of(*frame.pictures); });
+    }
+    ImageF radiance(const FinishedFrame& frame) {
+        return in_window([&] { return *radiance_of(*frame.pictures); });
+    }
     /// The next number, shown.
     std::uint64_t show() {
         thread_->show(description_);
@@ -109,6 +130,7 @@ class FrameThreadTest : public testing::Test {
         scene.part_materials[part].diffuse = diffuse;
     }
     RenderedFrame from_scratch(const Scene& scene) const {
+        if (device_ == ShadingDevice::gl) return from_scratch_in_gl(scene);
         RenderRequest request;
         request.scene = scene;
         request.view = description_.setup->view;
@@ -121,10 +143,31 @@ class FrameThreadTest : public testing::Test {
         return render_frame(request);
     }
 
+    /// Shaded in OpenGL, corrected on the processor.
+    RenderedFrame from_scratch_in_gl(const Scene& scene) const {
+        const HeadlessContext context(GlDevice::software);
+        RadianceRenderer renderer(
+            std::make_shared<const FrameGeometry>(scene.product,
+                                                  description_.setup->view,
+                                                  Progress{},
+                                                  sub_samples_of(description_.quality)),
+            false,
+            ShadingDevice::gl);
+        RenderedFrame frame;
+        frame.plan = plan_frame(scene, description_.quality, FrameStage::projector);
+        renderer.render(scene, frame.plan);
+        frame.radiance_working = renderer.read_back();
+        if (const auto& table = description_.setup->table) {
+            frame.drive = compensate(*table, frame.radiance_working, &frame.compensation);
+        }
+        return frame;
+    }
+
     void wait_until_idle() const {
         while (!thread_->is_idle()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
-    void expect_wiped(const FinishedFrame& frame, const Scene& right) const {
+    void expect_wiped(const FinishedFrame& frame, const Scene& right) {
+        const Image8 shown = drive(frame);
         const Image8 left_drive = from_scratch(description_.scene).drive;
         const Image8 right_drive = from_scratch(right).drive;
         const FrameGeometry geometry(right.product, description_.setup->view);
@@ -134,7 +177,7 @@ class FrameThreadTest : public testing::Test {
             for (int x = 0; x < left_drive.width; ++x) {
                 for (int c = 0; c < 3; ++c) {
                     const Image8& wanted = x < column ? left_drive : right_drive;
-                    differing += frame.drive->at(x, y, c) != wanted.at(x, y, c) ? 1 : 0;
+                    differing += shown.at(x, y, c) != wanted.at(x, y, c) ? 1 : 0;
                 }
             }
         }
@@ -143,9 +186,17 @@ class FrameThreadTest : public testing::Test {
 
     HeadlessContext window_{GlDevice::software}, front_{GlDevice::software, &window_},
         back_{GlDevice::software, &window_};
+    ShadingDevice device_ = ShadingDevice::automatic;  ///< the processor, in software
     Gallery gallery_;
     FrameDescription description_;
     std::unique_ptr<FrameThread> thread_;
+};
+
+/// What both devices have to do alike.
+class FrameThreadOnADevice : public FrameThreadTest,
+                             public testing::WithParamInterface<ShadingDevice> {
+  protected:
+    FrameThreadOnADevice() { device_ = GetParam(); }
 };
 
 }  // namespace livery

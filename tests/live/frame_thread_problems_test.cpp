@@ -15,7 +15,7 @@ TEST_F(FrameThreadTest, AProblemKeepsTheLastGoodPicture) {
             [&](const auto& f) { return f.number == number && !f.problem.empty(); });
         ASSERT_TRUE(frame) << text;
         EXPECT_NE(frame->problem.find(text), std::string::npos) << frame->problem;
-        EXPECT_EQ(frame->drive, good->drive);
+        EXPECT_EQ(frame->pictures, good->pictures);
         EXPECT_EQ(frame->drive_texture, good->drive_texture);
         const auto next = description_.number;
         description_ = sound;
@@ -23,7 +23,7 @@ TEST_F(FrameThreadTest, AProblemKeepsTheLastGoodPicture) {
         const auto again = gallery_.whole(show());
         ASSERT_TRUE(again);
         EXPECT_EQ(again->problem, "");
-        EXPECT_EQ(again->drive->values, good->drive->values);
+        EXPECT_EQ(drive(*again).values, drive(*good).values);
     };
     description_.scene.part_materials.pop_back();
     expect_problem("1 materials for 2 parts");
@@ -47,7 +47,7 @@ TEST_F(FrameThreadTest, AProblemBeforeTheFirstPictureHasNone) {
     const auto frame = gallery_.wait_for([&](const auto& f) { return f.number == bad; });
     ASSERT_TRUE(frame);
     EXPECT_NE(frame->problem, "");
-    EXPECT_FALSE(frame->drive);
+    EXPECT_FALSE(frame->pictures);
     EXPECT_EQ(frame->drive_texture, 0u);
     description_ = sound;
     description_.number = bad + 1;

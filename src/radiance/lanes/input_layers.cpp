@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "core/parallel.h"
+#include "gl/context.h"
 #include "radiance/lanes/lane_shading.h"
 
 namespace livery {
@@ -42,6 +43,11 @@ void to_blocks(std::span<const float> rgba,
 }
 
 }  // namespace
+
+ShadingDevice chosen_device(ShadingDevice asked) {
+    if (asked != ShadingDevice::automatic) return asked;
+    return current_context_is_software() ? ShadingDevice::processor : ShadingDevice::gl;
+}
 
 bool InputLayers::make(ShadingDevice device, int rows, int layers, Precision precision) {
     if (device_ == device && rows_ == rows && layers_ == layers) return false;

@@ -17,6 +17,9 @@ enum class ShadingDevice {
     processor  ///< eight fragments at a time on all threads
 };
 
+/// What `asked` means in the current OpenGL context: the one place where a device is chosen.
+ShadingDevice chosen_device(ShadingDevice asked);
+
 /// One input in the packed layout, in one or more layers.
 class InputLayers {
   public:

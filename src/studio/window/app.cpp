@@ -241,7 +241,7 @@ class Desktop {
         studio.now_s = now_s();
         open_ballots(shell_);
         keep_shown_looks_valid(studio);
-        contexts_ = start_threads(shell_, *window_);
+        contexts_ = start_threads(shell_, *window_, options_.shading);
         tell_product_notes(studio);
         tell_drawing_problems(studio);
         tell_unsaved(shell_);

@@ -11,6 +11,8 @@
 
 namespace livery {
 
+enum class ShadingDevice;
+
 struct DesktopOptions {
     std::filesystem::path session;        ///< empty: the one in the user's folder
     std::string product;                  ///< empty: the session's; for a new session "car"
@@ -18,6 +20,7 @@ struct DesktopOptions {
     std::optional<double> ui_scale;       ///< instead of the screen's and the user's own
     std::optional<glm::ivec2> size_px;    ///< instead of the remembered one
     std::filesystem::path ui_map, trace;  ///< empty: not written
+    ShadingDevice shading{};              ///< of the mock-up's picture; automatic unless said
 };
 
 /// Runs until the window is closed; the exit code. Throws std::runtime_error without a display or

@@ -89,6 +89,8 @@ void draw_help(Shell& shell) {
             "can "
             "judge it before anyone mixes a can.");
         ImGui::Dummy({0.0f, em(0.2f)});
+        dim_text(shell.drawn_with);
+        ImGui::Dummy({0.0f, em(0.2f)});
         dim_text(
             "The libraries and data that it stands on, with their licences, are listed in "
             "docs/third-party.md.");

@@ -86,9 +86,10 @@ struct Shell {
     std::optional<PreviewKey> asked_preview;
     std::optional<SetupKey> asked_setup;
     std::uint64_t frame_number = 0, preview_number = 0;
-    std::shared_ptr<const Image8> photographed;  ///< the newest that the bench was asked to show
+    std::shared_ptr<const FramePictures> photographed;  ///< the newest that the bench was to show
     glm::dvec3 photographed_from_mm{0.0};
     bool draws_in_software = false;
+    std::string drawn_with;  ///< the devices, in a sentence or two
     double frame_asked_s = 0.0, preview_waits_until_s = 0.0;
     double opened_s = 0.0;  ///< steady clock
     bool calibrates_after_first_frame = false;

@@ -245,12 +245,12 @@ void ask_for_photograph(Shell& shell) {
     const glm::dvec3 eye_mm = shown_document(studio).eye_mm;
     // Not by its number: a frame comes again when more of it is there.
     const bool same =
-        studio.frame->drive == shell.photographed && eye_mm == shell.photographed_from_mm;
-    if (same || !studio.frame->drive) return;
-    shell.photographed = studio.frame->drive;
+        studio.frame->pictures == shell.photographed && eye_mm == shell.photographed_from_mm;
+    if (same || !studio.frame->pictures) return;
+    shell.photographed = studio.frame->pictures;
     shell.photographed_from_mm = eye_mm;
     studio.bench->photograph(
-        studio.frame->number, studio.frame->drive, eye_mm, studio.setup->design_white_y);
+        studio.frame->number, drive_of(*shell.photographed), eye_mm, studio.setup->design_white_y);
 }
 
 bool needs_first_calibration(const Session& session) {
@@ -357,9 +357,14 @@ bool is_frame_under_way(const Shell& shell) {
     return newest->problem.empty() && shell.results->awaits_projector();
 }
 
-Contexts start_threads(Shell& shell, const Window& window) {
+Contexts start_threads(Shell& shell, const Window& window, ShadingDevice shading) {
     Studio& studio = shell.studio;
     shell.draws_in_software = window.is_software();
+    shading = chosen_device(shading);
+    shell.drawn_with =
+        fmt::format("Drawn with {}. The mock-up's picture is shaded and corrected {}.",
+                    window.renderer(),
+                    shading == ShadingDevice::gl ? "by it, and stays there" : "on the processor");
     shell.opened_s = studio.now_s;
     Contexts contexts;
     WindowOptions hidden;
@@ -374,7 +379,10 @@ Contexts start_threads(Shell& shell, const Window& window) {
     studio.previews = std::make_unique<PreviewThread>(
         *contexts[2], [results](auto picture) { results->take(std::move(picture)); });
     studio.frames = std::make_unique<FrameThread>(
-        *contexts[0], *contexts[1], [results](auto frame) { results->take(std::move(frame)); });
+        *contexts[0],
+        *contexts[1],
+        [results](auto frame) { results->take(std::move(frame)); },
+        shading);
     studio.projector = std::make_unique<ProjectorScreen>(
         window, [results](const ShownPicture& picture) { results->shown(picture); });
     results->use(studio.projector.get());

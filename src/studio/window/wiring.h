@@ -9,12 +9,13 @@
 namespace livery {
 
 struct Shell;
+enum class ShadingDevice;
 
 /// The contexts of the threads, one share group with the window's: they outlive the threads.
 using Contexts = std::vector<std::unique_ptr<Window>>;
 
-/// Starts the threads; the session, the product and the window's context are there.
-Contexts start_threads(Shell& shell, const Window& window);
+/// Starts the threads; the session, the product and the window's context are there, current.
+Contexts start_threads(Shell& shell, const Window& window, ShadingDevice shading);
 /// In the order in which one needs the other; with the window's context current.
 void stop_threads(Shell& shell);
 
