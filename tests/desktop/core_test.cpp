@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/image_io.h"
 #include "desktop/two_monitors.h"
 #include "support/screen_watch.h"
 
@@ -81,6 +82,31 @@ TEST_F(Core, DoesTheSameUnderAWindowManager) {
     desktop->plug_projector();
     EXPECT_TRUE(projector_shows(drive_with_body("solid red")));
     EXPECT_EQ(program->quit(), 0);
+}
+
+// As on a graphics card, in software: nothing of the mock-up's picture passes the processor until
+// it is saved.
+TEST_F(Core, SwapsPaintsInOpenGl) {
+    start({}, {"--shading", "opengl"});
+    pick_projector();
+    ASSERT_TRUE(projector_shows(drive_of_place(0)));
+    program->click("part:body");
+    program->hover("paint:solid blue");
+    EXPECT_TRUE(projector_shows(drive_with_body("solid blue")));
+    program->click("paint:solid green");
+    program->move_away();
+    EXPECT_TRUE(projector_shows(drive_with_body("solid green")));
+    const Image8 shown = projector_picture();
+    const std::filesystem::path file = studio->folder / "sent.png";
+    desktop->press_key("ctrl+s");
+    program->click("save-picture:what-3");
+    program->click("file-dialog:path");
+    desktop->press_key("ctrl+a");
+    desktop->type(file.string());
+    program->click("file-dialog:ok");
+    EXPECT_TRUE(wait_until([&] { return std::filesystem::exists(file); }, 60s));
+    EXPECT_EQ(program->quit(), 0);
+    EXPECT_EQ(fraction_different(read_png(file), shown, 0), 0.0);
 }
 
 }  // namespace

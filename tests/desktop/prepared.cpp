@@ -63,7 +63,8 @@ std::string hash_of(const std::string& text) {
     return hasher.hex();
 }
 
-/// Values of an 8-bit file.
+}  // namespace
+
 Image8 read_png(const fs::path& file) {
     const ImageF image = read_image(file).image;
     Image8 picture(image.width, image.height, 3);
@@ -76,8 +77,6 @@ Image8 read_png(const fs::path& file) {
     }
     return picture;
 }
-
-}  // namespace
 
 fs::path prepared_calibration() {
     const CacheLock lock;

@@ -15,6 +15,9 @@ std::filesystem::path prepared_calibration();
 /// document in it.
 Document prepare_session(const std::filesystem::path& file, Quality quality = Quality::draft);
 
+/// Values of an 8-bit file, 3 channels.
+Image8 read_png(const std::filesystem::path& file);
+
 /// The projector's input for a look, by `livery render`: another program run, another OpenGL
 /// context, the CPU's compensation. 3 channels, device values.
 Image8 expected_drive(const Document& document, int look_id);

@@ -52,19 +52,20 @@ void TwoMonitors::use(std::shared_ptr<RunningStudio> running) {
     program = studio->program.get();
 }
 
-void TwoMonitors::start(const DesktopOptions& options) {
+void TwoMonitors::start(const DesktopOptions& options, const std::vector<std::string>& arguments) {
     auto running = std::make_shared<RunningStudio>();
     running->document = prepare_session(running->session_file());
     // The user's settings outlive a session: nobody has picked a projector yet.
     std::filesystem::remove(user_folder() / "desktop.json");
     running->desktop = std::make_unique<Desktop>(options);
     use(running);
-    start_program();
+    start_program(arguments);
 }
 
-void TwoMonitors::start_program() {
+void TwoMonitors::start_program(const std::vector<std::string>& arguments) {
     studio->program.reset();
     StudioStart how;
+    how.more_arguments = arguments;
     how.session = studio->session_file();
     studio->program = std::make_unique<StudioProgram>(*desktop, how);
     program = studio->program.get();

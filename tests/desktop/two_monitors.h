@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -33,8 +34,8 @@ std::string saved(const Image8& picture, const std::string& name);
 class TwoMonitors : public testing::Test {
   protected:
     /// A program of the test's own; the projector is not picked yet.
-    void start(const DesktopOptions& options = {});
-    void start_program();
+    void start(const DesktopOptions& options = {}, const std::vector<std::string>& arguments = {});
+    void start_program(const std::vector<std::string>& arguments = {});
     /// Another desktop and session from here on; its program is not started.
     void use(std::shared_ptr<RunningStudio> running);
     void pick_projector();
