@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -114,41 +116,50 @@ CompensationStats CompensationCounts::read(std::size_t covered_pixels) const {
 }
 
 struct GpuCompensation::State {
-    int width, height;
-    unsigned pixel_count;
-    Program program;
+    int width = 0, height = 0;
+    unsigned pixel_count = 0;
+    std::map<std::pair<bool, bool>, Program> programs;  ///< by non-additive and gamut mapping
+    Program* program = nullptr;
     Texture2D rho, nodes, start, linear_of;
     Buffer pixels, coefficients, boundary;
 
-    explicit State(const CompensationTable& table)
-        : width(table.width),
-          height(table.height),
-          pixel_count(static_cast<unsigned>(table.pixels.size())) {
+    void use(const CompensationTable& table) {
+        const bool non_additive = table.non_additive.grid > 0;
+        const bool mapped = !table.gamut.coefficients.empty();
+        width = table.width;
+        height = table.height;
+        pixel_count = static_cast<unsigned>(table.pixels.size());
         if (pixel_count == 0) return;
-        program = Program(source_for(table));
+        program = &programs[{non_additive, mapped}];
+        if (!*program) *program = Program(source_for(table));
         rho = curve_texture(rho_of(table));
         pixels = Buffer(table.pixels);
         coefficients = Buffer(table.coefficients);
-        if (!table.gamut.coefficients.empty()) boundary = boundary_buffer(table.gamut);
-        if (table.non_additive.grid > 0) {
+        if (mapped) boundary = boundary_buffer(table.gamut);
+        if (non_additive) {
             nodes = grid_texture(table.non_additive.grid, table.non_additive.n_from_nodes);
             start = grid_texture(table.non_additive.start_grid, table.non_additive.start);
             linear_of = curve_texture(table.non_additive.linear_of_node);
         }
         for (std::size_t k = 0; k < 3; ++k) {
-            program.set(fmt::format("last_of_rho[{}]", k),
-                        static_cast<int>(rho_of(table)[k].size()) - 1);
+            program->set(fmt::format("last_of_rho[{}]", k),
+                         static_cast<int>(rho_of(table)[k].size()) - 1);
         }
-        program.set("pixel_count", pixel_count);
-        program.set("dither_per_column", dither::kPerColumn);
-        program.set("dither_per_row", dither::kPerRow);
+        program->set("pixel_count", pixel_count);
+        program->set("dither_per_column", dither::kPerColumn);
+        program->set("dither_per_row", dither::kPerRow);
     }
 };
 
-GpuCompensation::GpuCompensation(const CompensationTable& table)
-    : state_(std::make_unique<State>(table)) {}
+GpuCompensation::GpuCompensation() : state_(std::make_unique<State>()) {}
+
+GpuCompensation::GpuCompensation(const CompensationTable& table) : GpuCompensation() { use(table); }
 
 GpuCompensation::~GpuCompensation() = default;
+
+void GpuCompensation::use(const CompensationTable& table) { state_->use(table); }
+
+int GpuCompensation::programs() const { return static_cast<int>(state_->programs.size()); }
 
 void GpuCompensation::run(unsigned radiance_texture, Texture2D& drive, CompensationCounts& counts) {
     const State& s = *state_;
@@ -175,7 +186,7 @@ void GpuCompensation::run(unsigned radiance_texture, Texture2D& drive, Compensat
     s.coefficients.bind_storage_block(1);
     if (s.boundary.bytes() > 0) s.boundary.bind_storage_block(2);
     counts.buffer_.bind_storage_block(3);
-    dispatch(s.program, (s.pixel_count + kGroup - 1) / kGroup, 1);
+    dispatch(*s.program, (s.pixel_count + kGroup - 1) / kGroup, 1);
 }
 
 }  // namespace livery

@@ -25,10 +25,15 @@ class CompensationCounts {
 /// Needs a current OpenGL context, the same for its whole life.
 class GpuCompensation {
   public:
+    GpuCompensation();
     explicit GpuCompensation(const CompensationTable& table);
     ~GpuCompensation();
     GpuCompensation(const GpuCompensation&) = delete;
     GpuCompensation& operator=(const GpuCompensation&) = delete;
+
+    /// Another table from here on; a program is compiled for its kind when it is the first of it.
+    void use(const CompensationTable& table);
+    int programs() const;  ///< compiled so far
 
     /// Reads the radiance texture (RGBA16F, working space, coverage in alpha, of the table's size),
     /// writes the whole of `drive` (RGBA8). Throws std::invalid_argument on another size or format.

@@ -110,7 +110,11 @@ class GlDrivePath : public DrivePath {
                                  std::size_t covered_pixels) override {
         const Texture2D& wanted = radiance.slot->texture;
         auto slot = drives_.lend(wanted.width(), wanted.height());
-        if (setup->table) prepare(setup);
+        if (setup->table && corrects_for_ != setup) {
+            corrects_for_ = nullptr;  // until it worked
+            correction_.use(*setup->table);
+            corrects_for_ = setup;
+        }
         if (!setup->table && !srgb_) srgb_ = srgb_program();
         UnderWay& run = under_way_[side];
         run.covered_pixels = setup->table ? std::optional(covered_pixels) : std::nullopt;
@@ -118,7 +122,7 @@ class GlDrivePath : public DrivePath {
         // Drivers that draw later and compute at once would stamp both ends after the work.
         flush_gl();
         if (setup->table) {
-            correction_->run(wanted.name(), slot->texture, run.counts);
+            correction_.run(wanted.name(), slot->texture, run.counts);
         } else {
             wanted.bind(0);
             screen_.run(*srgb_, slot->framebuffer);
@@ -148,17 +152,10 @@ class GlDrivePath : public DrivePath {
         return {nullptr, finished(std::move(slot))};
     }
 
-    int programs() const override { return programs_made_ + (srgb_ ? 1 : 0); }
+    int programs() const override { return correction_.programs() + (srgb_ ? 1 : 0); }
     int textures() const override { return radiances_.made() + drives_.made(); }
 
   private:
-    void prepare(const std::shared_ptr<const ProjectorSetup>& setup) {
-        if (corrects_for_ == setup) return;
-        correction_ = std::make_unique<GpuCompensation>(*setup->table);
-        corrects_for_ = setup;
-        ++programs_made_;
-    }
-
     static Program srgb_program() {
         Program program = Program::screen_pass(load_shader("compensation/srgb.frag"));
         program.set("rec709_from_working", glm::mat3(rec709_from_working()));
@@ -172,10 +169,9 @@ class GlDrivePath : public DrivePath {
     };
     std::array<UnderWay, 2> under_way_;
     std::shared_ptr<const ProjectorSetup> corrects_for_;
-    std::unique_ptr<GpuCompensation> correction_;
+    GpuCompensation correction_;
     std::optional<Program> srgb_;
     ScreenPass screen_;
-    int programs_made_ = 0;
     TexturePool radiances_{TexelFormat::rgba16f}, drives_{TexelFormat::rgba8};
 };
 

@@ -196,6 +196,32 @@ TEST_F(GpuPass, EmptyCalibrationIsBlack) {
     EXPECT_EQ(*std::max_element(result.gpu.values.begin(), result.gpu.values.end()), 0);
 }
 
+TEST_F(GpuPass, TablesFollowOneAnotherAndCompileOnceAKind) {
+    const synthetic::World world = synthetic::make_world(40, 40, 93);
+    const ColourCalibration calibration = synthetic::calibrate(world);
+    Texture2D wanted(40, 40, TexelFormat::rgba16f), drive(40, 40, TexelFormat::rgba8);
+    wanted.upload(random_wanted(world, 94).values);
+    const ImageF seen = read_floats(wanted);
+    GpuCompensation pass;
+    CompensationCounts counts;
+    const auto expect_oracle = [&](const CompensationTable& table) {
+        pass.use(table);
+        pass.run(wanted.name(), drive, counts);
+        const Image8 oracle = compensate(table, seen);
+        const Image8 sent = read_bytes(drive, 3);
+        for (std::size_t i = 0; i < oracle.values.size(); ++i) {
+            ASSERT_NEAR(sent.values[i], oracle.values[i], 1) << i;
+        }
+    };
+    for (const double white : {0.3, 0.4}) {
+        SCOPED_TRACE(white);
+        expect_oracle(bake(calibration, white));
+        expect_oracle(bake(calibration, white, GamutMapping::preserve));
+        expect_oracle(bake(synthetic::calibrate_segment(world), white));
+    }
+    EXPECT_EQ(pass.programs(), 3);
+}
+
 TEST_F(GpuPass, RefusesATextureThatDoesNotFit) {
     GpuCompensation pass(bake(synthetic::calibrate(synthetic::make_world(20, 20, 90)), 0.4));
     CompensationCounts counts;
