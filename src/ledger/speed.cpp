@@ -170,8 +170,9 @@ void time_frames(SpeedLedger& result,
         const Scene& look = scene.looks[static_cast<std::size_t>(k) % scene.looks.size()];
         FramePlan plan = plan_frame(look, quality, FrameStage::radiance);
 
-        auto began = Clock::now();
+        const auto began = Clock::now();
         renderer.render(look, plan, progress);
+        const double rendered_ms = milliseconds_since(began);
         const auto wanted = renderer.picture();
         shade.push_back(milliseconds_since(began));
         collect(passes, plan);
@@ -181,12 +182,13 @@ void time_frames(SpeedLedger& result,
         cpu_ms.push_back(milliseconds_since(before_cpu));
         cpu_frame.push_back(milliseconds_since(began));
 
-        // The same with the correction in OpenGL; reading what it counted waits until it is done.
+        // The same with the correction in OpenGL, which fetches no picture; reading what it counted
+        // waits until it is done.
         const auto before_gpu = Clock::now();
         gpu.run(renderer.texture(), input, counts);
         counts.read(covered);
         gpu_ms.push_back(milliseconds_since(before_gpu));
-        gpu_frame.push_back(shade.back() + gpu_ms.back());
+        gpu_frame.push_back(rendered_ms + gpu_ms.back());
     }
     const auto pixels = static_cast<double>(table.pixels.size());
     effect(result, "paint swap: shading and mixing")
@@ -215,7 +217,8 @@ void time_frames(SpeedLedger& result,
     passes.ms[PassKind::relief] = artwork.relief_ms;
     passes.work_items[PassKind::artwork] = passes.work_items[PassKind::relief] =
         artwork.body_fragments;
-    passes.ms[PassKind::compensation] = cpu_ms;
+    // The desktop corrects where it shades.
+    passes.ms[PassKind::compensation] = renderer.device() == ShadingDevice::gl ? gpu_ms : cpu_ms;
     passes.work_items[PassKind::compensation] = pixels;
     for (const auto& [key, ms] : passes.ms) {
         const LedgerLevel level = worked_level_of(name, ms, passes.work_items[key]);
