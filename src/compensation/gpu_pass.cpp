@@ -87,6 +87,20 @@ const std::array<std::vector<float>, 3>& rho_of(const CompensationTable& table) 
     return table.non_additive.grid > 0 ? table.non_additive.rho : table.drive_from_n;
 }
 
+/// What lies beyond a block's end a shader may read as zeros: that must not become a picture.
+void check_size(const CompensationTable& table) {
+    const std::size_t planes = table.gamut.coefficients.empty() ? 12 : 16;
+    const std::size_t needed = planes * sizeof(float) * table.pixels.size();
+    const std::size_t largest = largest_storage_block();
+    if (needed <= largest) return;
+    throw Refused(
+        fmt::format("this OpenGL reads {} MB at once, the calibration's {} pixels are {} MB",
+                    largest >> 20u,
+                    table.pixels.size(),
+                    needed >> 20u),
+        "Correct on the processor (livery desktop --shading processor).");
+}
+
 /// The planes of the table's boundary one after the other, as the shader counts them.
 Buffer boundary_buffer(const GamutBoundary& gamut) {
     const std::array planes = {&gamut.coefficients,
@@ -126,6 +140,7 @@ struct GpuCompensation::State {
     void use(const CompensationTable& table) {
         const bool non_additive = table.non_additive.grid > 0;
         const bool mapped = !table.gamut.coefficients.empty();
+        check_size(table);
         width = table.width;
         height = table.height;
         pixel_count = static_cast<unsigned>(table.pixels.size());

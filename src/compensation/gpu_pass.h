@@ -32,6 +32,7 @@ class GpuCompensation {
     GpuCompensation& operator=(const GpuCompensation&) = delete;
 
     /// Another table from here on; a program is compiled for its kind when it is the first of it.
+    /// Throws Refused for one with more pixels than this OpenGL's storage blocks hold.
     void use(const CompensationTable& table);
     int programs() const;  ///< compiled so far
 

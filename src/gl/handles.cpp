@@ -284,6 +284,12 @@ void Buffer::bind_storage_block(unsigned index) const {
     check_gl("binding a storage block");
 }
 
+std::size_t largest_storage_block() {
+    GLint64 bytes = 0;
+    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &bytes);
+    return static_cast<std::size_t>(bytes);
+}
+
 VertexArray::VertexArray() {
     GLuint name = 0;
     glCreateVertexArrays(1, &name);

@@ -155,6 +155,9 @@ class Buffer {
     std::size_t bytes_ = 0;
 };
 
+/// Bytes that a shader sees of one storage block; 2^24 at least.
+std::size_t largest_storage_block();
+
 /// Where the vertex shader's inputs come from. Keeps names only: the buffers must outlive it.
 class VertexArray {
   public:

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "compensation/white_segment.h"
+#include "core/error.h"
 #include "gl/check.h"
 #include "gl/context.h"
 #include "gl/handles.h"
@@ -220,6 +221,23 @@ TEST_F(GpuPass, TablesFollowOneAnotherAndCompileOnceAKind) {
         expect_oracle(bake(synthetic::calibrate_segment(world), white));
     }
     EXPECT_EQ(pass.programs(), 3);
+}
+
+TEST_F(GpuPass, RefusesMorePixelsThanAStorageBlockHolds) {
+    const HeadlessContext software(GlDevice::software);
+    CompensationTable table;
+    table.width = 4096;
+    table.height = static_cast<int>(largest_storage_block() / (12 * sizeof(float) * 4096)) + 1;
+    const auto count =
+        static_cast<std::size_t>(table.width) * static_cast<std::size_t>(table.height);
+    table.pixels.resize(count);
+    GpuCompensation pass;
+    EXPECT_THROW(pass.use(table), Refused);
+    // And with a mapping, which has more of each pixel, fewer.
+    table.pixels.resize(count * 4 / 5);
+    table.gamut.coefficients.resize(1);
+    EXPECT_THROW(pass.use(table), Refused);
+    EXPECT_EQ(pass.programs(), 0);
 }
 
 TEST_F(GpuPass, RefusesATextureThatDoesNotFit) {
