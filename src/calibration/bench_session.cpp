@@ -17,10 +17,6 @@ constexpr double kOtherExposure = 0.01;
 constexpr int kMostLatency = 6;
 constexpr double kProjectorFrame_s = 1.0 / 60.0;
 
-Image8 uniform(int width, int height, std::uint8_t value) {
-    return Image8(width, height, 3, value);
-}
-
 std::string seconds(double value) {
     char text[32];
     std::snprintf(text, sizeof(text), "%.3g s", value);
@@ -69,8 +65,10 @@ BenchSession::BenchSession(const BenchPorts& ports,
 
 Photograph BenchSession::photograph(const std::string& name) {
     progress_.update(std::min(1.0, static_cast<double>(photographs_) / expected_),
-                     "photographing " + name);
+                     (fixed() ? "reading the photographs of " : "photographing ") + name);
     Photograph photo = ports_.photograph(exposure_s_);
+    if (photo.taken_at < 0.0) photo.taken_at = photographs_;
+    if (!fixed()) photo.name = name;
     ++photographs_;
     if (photo.image.empty() || photo.image.channels != 3)
         throw FileError("camera",
@@ -79,8 +77,7 @@ Photograph BenchSession::photograph(const std::string& name) {
                             std::to_string(photo.image.height) + "x" +
                             std::to_string(photo.image.channels),
                         "a picture of 3 channels");
-    photo.name = name;
-    check_photograph(photo);
+    check_photograph(photo, name);
     if (met_s_ > 0.0 && std::abs(photo.exposure_s / met_s_ - 1.0) > kOtherExposure)
         throw Refused("automatic exposure: the photograph of " + name + " was exposed for " +
                           seconds(photo.exposure_s) + ", those before it for " + seconds(met_s_),
@@ -89,7 +86,7 @@ Photograph BenchSession::photograph(const std::string& name) {
 }
 
 /// All photographs have the first one's size and finite numbers for the most part.
-void BenchSession::check_photograph(const Photograph& photo) {
+void BenchSession::check_photograph(const Photograph& photo, const std::string& shown) {
     const ImageF& image = photo.image;
     const auto size_of = [](int width, int height) {
         return std::to_string(width) + "x" + std::to_string(height);
@@ -98,9 +95,10 @@ void BenchSession::check_photograph(const Photograph& photo) {
         width_ = image.width;
         height_ = image.height;
     }
+    const std::string source = fixed() ? photo.name : "camera";
     if (image.width != width_ || image.height != height_)
-        throw FileError("camera",
-                        "size of the photograph of " + photo.name,
+        throw FileError(source,
+                        "size of the photograph of " + shown,
                         size_of(image.width, image.height),
                         size_of(width_, height_) + " as the first photograph");
     std::size_t looked_at = 0, finite = 0;
@@ -110,8 +108,8 @@ void BenchSession::check_photograph(const Photograph& photo) {
     }
     if (2 * finite < looked_at)
         throw FileError(
-            "camera",
-            "values of the photograph of " + photo.name,
+            source,
+            "values of the photograph of " + shown,
             percent(1.0 - static_cast<double>(finite) / static_cast<double>(looked_at)) +
                 " not finite",
             "finite numbers");
@@ -175,12 +173,12 @@ void BenchSession::find_lit() {
 
 /// Black long enough for any latency, then white until it is seen; false when it is not.
 bool BenchSession::see_white(int width, int height) {
-    ports_.show(uniform(width, height, 0));
+    ports_.show(Image8(width, height, 3, 0));
     for (int i = 0; i <= kMostLatency; ++i) photograph("black");
     black_ = photograph("black");
     const std::vector<float> black = thin(black_);
     noise_ = std::max(noise_between(black, thin(photograph("black"))), 1e-6);
-    ports_.show(uniform(width, height, 255));
+    ports_.show(Image8(width, height, 3, 255));
     for (latency_ = 0; latency_ <= kMostLatency; ++latency_) {
         white_ = photograph("white");
         const std::vector<float> white = thin(white_);
@@ -343,16 +341,23 @@ Photograph BenchSession::take_mean(const Image8& drive, const std::string& name,
     // Black holds too little light to tell the lamp's brightness.
     const bool dark =
         std::all_of(drive.values.begin(), drive.values.end(), [](auto v) { return v < 32; });
-    if (!dark && high - low > 0.01 * high)
-        throw Refused("the photographs of " + name + " differ by " + percent((high - low) / high) +
-                          " in brightness",
-                      "let the lamp warm up for 20 minutes, switch off automatic exposure, eco and "
-                      "dynamic-contrast modes, expose for whole projector frames, and repeat");
+    if (!dark) check_shots(name, (high - low) / high);
     for (std::size_t i = 0; i < sum.size(); ++i) {
         const auto value = static_cast<float>(sum[i] / shots);
         mean.image.values[i] = over[i] ? std::max(value, limit) : value;
     }
+    mean.taken_at += 0.5 * (shots - 1);
     return mean;
+}
+
+std::vector<Photograph> BenchSession::take_all(const Image8& drive,
+                                               const std::string& role,
+                                               int shots) {
+    if (!fixed()) return {take_mean(drive, role, shots)};
+    ports_.show(drive);
+    std::vector<Photograph> taken;
+    for (int left = ports_.turn_to(role); left > 0; --left) taken.push_back(photograph(role));
+    return taken;
 }
 
 }  // namespace livery

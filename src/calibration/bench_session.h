@@ -12,7 +12,8 @@
 namespace livery {
 
 /// A run of pictures and photographs through the ports: waits for latency, checks that each picture
-/// arrived, keeps one exposure.
+/// arrived, keeps one exposure. Where the photographs are what they are (`BenchPorts::turn_to`)
+/// there is nothing to wait for and nothing to repeat.
 class BenchSession {
   public:
     BenchSession(const BenchPorts& ports, const Progress& progress, int expected_photographs);
@@ -31,13 +32,16 @@ class BenchSession {
     /// stays there. Throws Refused when their brightness differs by more than 1%.
     Photograph take_mean(const Image8& drive, const std::string& name, int shots);
 
+    /// The mean of `shots` photographs; where they are what they are, each of the role's.
+    std::vector<Photograph> take_all(const Image8& drive, const std::string& role, int shots);
+
+    /// Whether the photographs are what they are.
+    bool fixed() const { return static_cast<bool>(ports_.turn_to); }
     int latency() const { return latency_; }
-    int photographs() const { return photographs_; }  ///< taken so far
-    double exposure_s() const { return exposure_s_; }
 
   private:
     Photograph photograph(const std::string& name);
-    void check_photograph(const Photograph& photo);
+    void check_photograph(const Photograph& photo, const std::string& shown);
     void refuse_curved_files();
     bool see_white(int width, int height);
     void find_lit();

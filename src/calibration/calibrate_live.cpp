@@ -55,11 +55,12 @@ class LiveCalibration {
     CaptureVerdict judge(bool with_stripes) const {
         return judge_captures(captures, options_.width, options_.height, drives_, with_stripes);
     }
-    /// Taken just now, in the mean of so many shots.
-    void add(const std::string& role, Photograph photograph, int shots = 1) {
-        add_capture(captures,
-                    {role, std::move(photograph)},
-                    static_cast<double>(bench_.photographs()) - 0.5 * (shots + 1));
+    void add(const std::string& role, Photograph photograph) {
+        add_capture(captures, {role, std::move(photograph)});
+    }
+    void photograph(const Pattern& pattern, int shots = 1) {
+        for (Photograph& shot : bench_.take_all(pattern.drive, pattern.role, shots))
+            add(pattern.role, std::move(shot));
     }
     void photograph_geometry();
 
@@ -80,21 +81,25 @@ void LiveCalibration::photograph_stripes(const Pattern& stripes, const Pattern& 
     for (int attempt = 1;; ++attempt) {
         // A small mock-up may lie inside one stripe of two pictures in a row.
         Photograph first = bench_.take(stripes.drive, stripes.role, false);
-        const auto first_at = static_cast<double>(bench_.photographs() - 1);
         Photograph second = bench_.take(inverse.drive, inverse.role, true);
         const bool broken =
             broken_share(first.image, second.image, white_.image, black_.image) > 0.2;
         if (broken && attempt < kAttempts && broken_.empty()) continue;
         if (broken && broken_.empty()) broken_ = stripes.role;
-        add_capture(captures, {stripes.role, std::move(first)}, first_at);
+        add(stripes.role, std::move(first));
         add(inverse.role, std::move(second));
         return;
     }
 }
 
-/// White and black first: they tell of each pair of stripes whether both had arrived.
+/// White and black first: they tell of each pair of stripes whether both had arrived. What was
+/// photographed before is judged once all of it is there.
 void LiveCalibration::photograph_geometry() {
     const std::vector<Pattern> patterns = geometry_patterns(options_.width, options_.height);
+    if (bench_.fixed()) {
+        for (const Pattern& pattern : patterns) photograph(pattern);
+        return;
+    }
     const std::size_t white = patterns.size() - 2, black = patterns.size() - 1;
     white_ = bench_.take(patterns[white].drive, "white", false);
     add("white", white_);
@@ -212,27 +217,41 @@ LiveResult calibrate_live(const BenchPorts& bench,
                        (options.mockup.width == options.width &&
                         options.mockup.height == options.height && options.mockup.channels == 1),
                    "the mock-up's mask is not one channel of the projector's size");
+    check_argument(!bench.turn_to || !bench.measure_xyz,
+                   "a colorimeter reads what is shown now, these photographs were taken before");
+    check_argument(!options.map || bench.turn_to,
+                   "a map that is known beforehand is one of photographs taken before");
     BenchPorts ports = bench;
     if (!options.mockup.empty() && ports.show) ports.show = shown_on(options.mockup, bench.show);
     const ColourOptions& colour = options.colour;
     LiveResult result;
     result.patterns =
-        colour_patterns(options.width, options.height, colour.dark_drive, colour.bright_drive);
+        !options.patterns.empty()
+            ? options.patterns
+            : colour_patterns(
+                  options.width, options.height, colour.dark_drive, colour.bright_drive);
 
     const auto start = std::chrono::steady_clock::now();
-    const int geometry_count =
-        2 * (gray_code_bits(options.width) + gray_code_bits(options.height)) + 2;
+    constexpr int kToMeet = 17;  // latency and exposure, and white and black once more
+    const auto geometry = geometry_roles(options.width, options.height).size();
+    const auto expected = (options.map ? 0 : static_cast<int>(geometry)) +
+                          (bench.turn_to ? 0 : kToMeet) +
+                          static_cast<int>(result.patterns.size()) * options.shots;
     Progress capturing = progress;
     if (progress.report)
         capturing.report = [&](double fraction, std::string_view stage) {
             progress.report(0.9 * fraction, stage);
         };
-    BenchSession session(ports, capturing, geometry_count + 6 * options.shots + 17);
-    session.meet(options.width, options.height);
+    BenchSession session(ports, capturing, expected);
+    const bool fixed = session.fixed();
+    if (!fixed) session.meet(options.width, options.height);
     LiveCalibration live(session, options);
-    live.photograph_geometry();
     std::vector<std::string> odd_map;
-    result.map = map_of_captures(live.captures, options.width, options.height, odd_map);
+    const auto find_map = [&] {
+        return map_of_captures(live.captures, options.width, options.height, odd_map);
+    };
+    if (!options.map) live.photograph_geometry();
+    if (!fixed) result.map = find_map();  // the colorimeter is aimed by it
     result.latency_photographs = session.latency();
 
     // The six pictures; the colorimeter reads each while it is known to be shown
@@ -258,9 +277,7 @@ LiveResult calibrate_live(const BenchPorts& bench,
         if (role == "blue") xyz.primaries_xyz[2] = value_into();
     };
     const auto photograph = [&](const Pattern& pattern) {
-        live.add(pattern.role,
-                 session.take_mean(pattern.drive, pattern.role, options.shots),
-                 options.shots);
+        live.photograph(pattern, options.shots);
         result.colour_photographs += options.shots;
         if (full_range) measure(pattern.role);
     };
@@ -274,24 +291,29 @@ LiveResult calibrate_live(const BenchPorts& bench,
             measure(pattern.role);
         }
     // Again at the end: what moved or changed on the way
-    for (const std::uint8_t drive : {std::uint8_t{255}, std::uint8_t{0}}) {
-        const std::string role = drive ? "white" : "black";
-        live.add(role, session.take(Image8(options.width, options.height, 3, drive), role));
-    }
+    if (!fixed)
+        for (const std::uint8_t drive : {std::uint8_t{255}, std::uint8_t{0}}) {
+            const std::string role = drive ? "white" : "black";
+            live.add(role, session.take(Image8(options.width, options.height, 3, drive), role));
+        }
     const auto judge_start = std::chrono::steady_clock::now();
-    CaptureVerdict verdict = live.judge(false);
+    // Before anything is solved: the projector must not be blamed for a shadow.
+    CaptureVerdict verdict = live.judge(fixed && !options.map);
+    if (fixed) result.map = options.map ? *options.map : find_map();
     verdict.warnings.insert(verdict.warnings.end(), odd_map.begin(), odd_map.end());
     const double judge_seconds = seconds_since(judge_start);
 
     // Is white the sum of the channels? If not, mosaics of colours
-    const double additivity =
-        pool_mixing(sample_colours(live.captures.colours, result.map)).additivity_error;
-    if (additivity > kAdditivityWarning && colour.mode == ColourMode::robust)
-        for (Pattern& pattern : mosaic_patterns(options.width, options.height, kMosaics)) {
-            photograph(pattern);
-            result.patterns.push_back(std::move(pattern));
-        }
-    if (additivity <= kAdditivityWarning) xyz.white_xyz.reset();  // it would only add its noise
+    if (options.patterns.empty()) {
+        const double additivity =
+            pool_mixing(sample_colours(live.captures.colours, result.map)).additivity_error;
+        if (additivity > kAdditivityWarning && colour.mode == ColourMode::robust)
+            for (Pattern& pattern : mosaic_patterns(options.width, options.height, kMosaics)) {
+                photograph(pattern);
+                result.patterns.push_back(std::move(pattern));
+            }
+        if (additivity <= kAdditivityWarning) xyz.white_xyz.reset();  // only its noise
+    }
     ports.show(Image8(options.width, options.height, 3));
     result.capture_seconds = seconds_since(start) - judge_seconds;
 
@@ -301,9 +323,10 @@ LiveResult calibrate_live(const BenchPorts& bench,
         solving.report = [&](double fraction, std::string_view stage) {
             progress.report(0.9 + 0.1 * fraction, stage);
         };
-    result.captures = live.captures.colours;
-    result.calibration = calibrate_judged(
-        std::move(live.captures), verdict, result.patterns, result.map, with_xyz, solving);
+    result.calibration =
+        calibrate_judged(live.captures, verdict, result.patterns, result.map, with_xyz, solving);
+    result.captures = std::move(live.captures.colours);
+    if (fixed) result.colour_photographs = static_cast<int>(result.captures.size());
     if (session.latency() > 0) {
         result.calibration.warnings.push_back(
             "the projector's picture reaches the camera " + std::to_string(session.latency()) +

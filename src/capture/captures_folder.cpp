@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <memory>
 
 #include "capture/manifest_io.h"
 #include "core/channels.h"
@@ -137,6 +138,40 @@ CapturesFolder read_captures_folder(const std::filesystem::path& folder,
     const auto manifest = folder / "manifest.json";
     if (std::filesystem::exists(manifest, error)) return read_captures_manifest(manifest);
     return match_by_name(folder, patterns_manifest);
+}
+
+BenchPorts ports_of(const CapturesFolder& folder) {
+    struct Reading {
+        CapturesFolder folder;
+        std::vector<std::size_t> waiting;  ///< places of the role's photographs, the last one first
+    };
+    // Shared by two ports, and by every copy of them.
+    const auto reading = std::make_shared<Reading>(Reading{folder, {}});
+    BenchPorts ports;
+    ports.show = [](const Image8&) {};
+    ports.turn_to = [reading](const std::string& role) {
+        const std::vector<Capture>& captures = reading->folder.captures;
+        reading->waiting.clear();
+        for (std::size_t k = captures.size(); k-- > 0;) {
+            if (captures[k].role == role) reading->waiting.push_back(k);
+        }
+        if (reading->waiting.empty()) {
+            throw FileError(reading->folder.folder,
+                            "captures",
+                            "no photograph of " + role,
+                            "one photograph or more of each picture that was shown");
+        }
+        return static_cast<int>(reading->waiting.size());
+    };
+    ports.photograph = [reading](double) {
+        check_argument(!reading->waiting.empty(), "ports_of: no photograph is left of this role");
+        const std::size_t place = reading->waiting.back();
+        reading->waiting.pop_back();
+        Photograph photograph = load_photograph(reading->folder.captures[place]);
+        photograph.taken_at = static_cast<double>(place);
+        return photograph;
+    };
+    return ports;
 }
 
 Photograph load_photograph(const Capture& capture) {

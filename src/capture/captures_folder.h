@@ -33,6 +33,11 @@ struct CapturesFolder {
 CapturesFolder read_captures_folder(const std::filesystem::path& folder,
                                     const std::filesystem::path& patterns_manifest = {});
 
+/// The folder as a camera: `turn_to` looks a role up, `photograph` loads its photographs in the
+/// order of the folder, and their `taken_at` is their place in it. Nothing is shown: it was, when
+/// they were taken. There is no colorimeter. Throws FileError for a role without a photograph.
+BenchPorts ports_of(const CapturesFolder& folder);
+
 /// Loads one photograph as RGB, transfer curve undone: values, black level and saturation stay on
 /// the scale of the file. Floating-point files saturate nowhere unless the manifest says so. Throws
 /// FileError, also for NaN and infinity.

@@ -62,4 +62,24 @@ void write_patterns_folder(const std::filesystem::path& folder,
     write_patterns_manifest(folder / "manifest.json", manifest);
 }
 
+Image8 read_pattern(const std::filesystem::path& file, int width, int height) {
+    const ImageFile picture = read_image(file);
+    const ImageF& image = picture.image;
+    if (image.width != width || image.height != height || image.channels < 3) {
+        const auto size = [](int w, int h) { return std::to_string(w) + "x" + std::to_string(h); };
+        throw FileError(file,
+                        "size",
+                        size(image.width, image.height) + " with " +
+                            std::to_string(image.channels) + " channels",
+                        "the projector's " + size(width, height) + " with 3");
+    }
+    Image8 drive(width, height, 3);
+    for (std::size_t i = 0; i < drive.values.size(); ++i) {
+        const float value = image.values[i / 3 * static_cast<std::size_t>(image.channels) + i % 3];
+        drive.values[i] = static_cast<std::uint8_t>(
+            static_cast<double>(value) * 255.0 / picture.full_scale + 0.5);
+    }
+    return drive;
+}
+
 }  // namespace livery

@@ -48,4 +48,8 @@ void write_patterns_folder(const std::filesystem::path& folder,
 /// Reads what write_patterns_folder wrote. Throws FileError.
 PatternsManifest read_patterns_manifest(const std::filesystem::path& manifest);
 
+/// The picture in a pattern's file: device values, RGB, of a projector of that size. Throws
+/// FileError for another size and for fewer than three channels.
+Image8 read_pattern(const std::filesystem::path& file, int width, int height);
+
 }  // namespace livery

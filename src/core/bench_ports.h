@@ -18,7 +18,8 @@ struct Photograph {
     double exposure_s = 1.0;
     double black_level = 0.0;                                       ///< file units
     double saturates_at = std::numeric_limits<double>::infinity();  ///< file units
-    std::string name;  ///< file name or pattern role, for messages
+    std::string name;        ///< file name or pattern role, for messages
+    double taken_at = -1.0;  ///< when, in photographs; negative: in the order in which they come
 };
 
 /// Linear camera colour per second: (value - black_level) / exposure_s.
@@ -32,6 +33,10 @@ using ShowPicture = std::function<void(const Image8& drive)>;
 /// Photographs what is shown; exposure 0 asks the camera to keep its last exposure.
 using TakePhotograph = std::function<Photograph(double exposure_s)>;
 
+/// Turns to the photographs of the picture called `role` (docs/files.md) and says how many there
+/// are; `photograph` then answers with one after the other. Throws FileError where there is none.
+using TurnToRole = std::function<int(const std::string& role)>;
+
 /// A colorimeter at the eye point, aimed at the point of the mock-up that projector pixel
 /// `pixel_in_projector` lights: absolute XYZ of the light that the mock-up sends to the eye there.
 using MeasureXyz = std::function<glm::dvec3(glm::dvec2 pixel_in_projector)>;
@@ -40,6 +45,10 @@ struct BenchPorts {
     ShowPicture show;
     TakePhotograph photograph;
     MeasureXyz measure_xyz;  ///< may be empty: no colorimeter at hand
+    /// Not empty where the photographs are what they are, taken by somebody else: in a folder, or
+    /// with a camera that the program has no hold of. None can be repeated, the exposures are those
+    /// that they have, and each is known to show the picture that it is said to show.
+    TurnToRole turn_to;
 };
 
 }  // namespace livery

@@ -15,29 +15,6 @@ namespace livery {
 
 namespace {
 
-Image8 read_pattern(const std::filesystem::path& file, const PatternsManifest& manifest) {
-    const ImageFile picture = read_image(file);
-    if (picture.image.width != manifest.projector_width ||
-        picture.image.height != manifest.projector_height || picture.image.channels != 3 ||
-        picture.full_scale != 255.0) {
-        throw FileError(
-            file,
-            "picture",
-            fmt::format("{}x{}, {} channels, full scale {}",
-                        picture.image.width,
-                        picture.image.height,
-                        picture.image.channels,
-                        picture.full_scale),
-            fmt::format(
-                "{}x{}, 3 channels, 8 bit", manifest.projector_width, manifest.projector_height));
-    }
-    Image8 drive(picture.image.width, picture.image.height, 3);
-    for (std::size_t i = 0; i < drive.values.size(); ++i) {
-        drive.values[i] = static_cast<std::uint8_t>(picture.image.values[i]);
-    }
-    return drive;
-}
-
 Image8 uniform(const BenchDescription& bench, int red, int green, int blue) {
     Image8 drive(bench.projector.view.width, bench.projector.view.height, 3);
     for (std::size_t i = 0; i < drive.pixel_count(); ++i) {
@@ -127,7 +104,8 @@ SimulatedCaptures photograph_patterns(const SimulatedCapturesRequest& request,
         progress.update(
             static_cast<double>(result.photographs) / static_cast<double>(manifest.patterns.size()),
             "photographing " + pattern.role);
-        const Image8 shown = read_pattern(request.patterns / pattern.file, manifest);
+        const Image8 shown =
+            read_pattern(request.patterns / pattern.file, projector.width, projector.height);
         ports.show(shown);
         const Photograph photograph = ports.photograph(request.exposure_s);
         const std::string name = fmt::format("{:03}.exr", result.photographs);

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 
 #include <gtest/gtest.h>
 
-#include "calibration/captures/captures.h"
+#include "calibration/colour/colour.h"
 #include "calibration/correspondence/patterns.h"
 #include "session/small_session.h"
 
@@ -97,13 +98,33 @@ void move(RoledPhotograph& shot, int dx, int dy) {
                         to.pixel(x, y));
 }
 
+/// Photographs that are what they are; in the order in which they were taken.
+BenchPorts ports_of(const Shots& shots) {
+    BenchPorts ports;
+    const auto waiting = std::make_shared<std::vector<std::size_t>>();
+    ports.show = [](const Image8&) {};
+    ports.turn_to = [&shots, waiting](const std::string& role) {
+        for (std::size_t k = shots.size(); k-- > 0;)
+            if (shots[k].role == role) waiting->push_back(k);
+        return static_cast<int>(waiting->size());
+    };
+    ports.photograph = [&shots, waiting](double) {
+        Photograph photograph = shots[waiting->back()].photograph;
+        photograph.taken_at = static_cast<double>(waiting->back());
+        waiting->pop_back();
+        return photograph;
+    };
+    return ports;
+}
+
 /// Why and fix of the refusal, else the warnings.
-std::string said_of(Shots shots) {
-    Captures loaded;
-    for (RoledPhotograph& shot : shots) add_capture(loaded, std::move(shot));
+std::string said_of(const Shots& shots) {
     try {
-        const ColourCalibration calibration =
-            calibrate_from_captures(std::move(loaded), all_patterns(), std::nullopt, {});
+        LiveOptions options;
+        options.width = kWidth;
+        options.height = kHeight;
+        options.patterns = colour_patterns(kWidth, kHeight, 0, 255);
+        const ColourCalibration calibration = calibrate_live(ports_of(shots), options).calibration;
         return "accepted: " + testing::all_warnings(calibration);
     } catch (const Refused& refused) {
         return "refused: " + refused.why() + "; " + refused.fix();
@@ -121,7 +142,7 @@ class SpoiledCaptures : public ::testing::TestWithParam<Fault> {};
 TEST_P(SpoiledCaptures, AreNamed) {
     Shots shots = photographs();
     GetParam().spoil(shots);
-    const std::string said = said_of(std::move(shots));
+    const std::string said = said_of(shots);
     std::printf("%s\n", said.c_str());
     for (const char* part : GetParam().said)
         EXPECT_NE(said.find(part), std::string::npos) << part << "\n" << said;

@@ -43,6 +43,7 @@ CaptureSummary summary_of(const RoledPhotograph& capture, int block) {
     summary.role = capture.role;
     summary.name = capture.role;
     if (!photo.name.empty() && photo.name != capture.role) summary.name += " (" + photo.name + ")";
+    summary.taken_at = photo.taken_at;
     summary.saturates_at = photo.saturates_at;
     summary.full_light = (photo.saturates_at - photo.black_level) / photo.exposure_s;
     summary.has_black_level = photo.black_level > 0.0;

@@ -1,6 +1,7 @@
 #include "calibration/captures/captures.h"
 
-#include <map>
+#include <algorithm>
+#include <utility>
 
 #include "calibration/correspondence/gray_order.h"
 #include "core/error.h"
@@ -28,21 +29,18 @@ void divide_light(Photograph& photo, double factor) {
 }
 
 /// Each as if it had been taken when bright-gray was, at the exposure of the others.
-void take_out(const CaptureVerdict& verdict, Captures& captures) {
-    const auto taken_at = [&](const std::string& role, std::size_t nth) {
-        for (const CaptureSummary& summary : captures.summaries)
-            if (summary.role == role && nth-- == 0) return summary.taken_at;
-        return 0.0;
-    };
-    const double reference = verdict.drift.light_at(taken_at("bright-gray", 0));
-    std::map<std::string, std::size_t> shots;
-    for (RoledPhotograph& colour : captures.colours) {
-        const std::size_t nth = shots[colour.role]++;
-        if (colour.role == "dark-gray") continue;  // hardly any of its light is the lamp's
-        double light = verdict.drift.light_at(taken_at(colour.role, nth)) / reference;
-        const auto gain = verdict.gains.find(colour.role);
+void take_out(const CaptureVerdict& verdict, std::vector<RoledPhotograph>& colours) {
+    const auto bright = std::find_if(colours.begin(), colours.end(), [](const auto& colour) {
+        return colour.role == "bright-gray";
+    });
+    if (bright == colours.end()) return;  // refused by name where the colours are sampled
+    const double reference = verdict.drift.light_at(bright->photograph.taken_at);
+    for (auto& [role, photograph] : colours) {
+        if (role == "dark-gray") continue;  // hardly any of its light is the lamp's
+        double light = verdict.drift.light_at(photograph.taken_at) / reference;
+        const auto gain = verdict.gains.find(role);
         if (gain != verdict.gains.end()) light /= gain->second;
-        if (light != 1.0) divide_light(colour.photograph, light);
+        if (light != 1.0) divide_light(photograph, light);
     }
 }
 
@@ -53,12 +51,16 @@ bool is_geometry_role(const std::string& role) {
            role == "black";
 }
 
-void add_capture(Captures& captures, RoledPhotograph photograph, double taken_at) {
+void add_capture(Captures& captures, RoledPhotograph photograph) {
     ImageF& image = photograph.photograph.image;
-    const double before = captures.summaries.empty() ? -1.0 : captures.summaries.back().taken_at;
-    captures.summaries.push_back(summarise(photograph));
-    captures.summaries.back().taken_at = taken_at >= 0.0 ? taken_at : before + 1.0;
-    captures.sizes.insert({image.width, image.height});
+    std::vector<CaptureSummary>& summaries = captures.summaries;
+    CaptureSummary summary = summarise(photograph);
+    const auto later = std::upper_bound(
+        summaries.begin(), summaries.end(), summary, [](const auto& one, const auto& other) {
+            return one.taken_at < other.taken_at;
+        });
+    summaries.insert(later, std::move(summary));
+    captures.width = image.width;
     const bool geometry = is_geometry_role(photograph.role);
     if (geometry) image = mean_of_channels(image);
     (geometry ? captures.geometry : captures.colours).push_back(std::move(photograph));
@@ -69,15 +71,13 @@ CaptureVerdict judge_captures(const Captures& captures,
                               int projector_height,
                               const ShownDrives& drives,
                               bool with_stripes) {
-    if (captures.sizes.size() != 1) return {};
     if (with_stripes)
         if (const auto which =
                 exchanged_stripes(captures.geometry, projector_width, projector_height))
             throw Refused("the photographs of " + *which + " are exchanged",
                           "check which file has which role in manifest.json, and that each "
                           "picture is shown when its photograph is taken");
-    return check_captures(
-        captures.summaries, summary_block_px(captures.sizes.begin()->first), drives);
+    return check_captures(captures.summaries, summary_block_px(captures.width), drives);
 }
 
 ProjectorToCamera map_of_captures(const Captures& captures,
@@ -95,14 +95,14 @@ ProjectorToCamera map_of_captures(const Captures& captures,
     return map;
 }
 
-ColourCalibration calibrate_judged(Captures captures,
+ColourCalibration calibrate_judged(Captures& captures,
                                    const CaptureVerdict& verdict,
                                    const std::vector<Pattern>& patterns,
                                    const ProjectorToCamera& map,
                                    const ColourOptions& options,
                                    const Progress& progress) {
     captures.geometry.clear();
-    take_out(verdict, captures);
+    take_out(verdict, captures.colours);
     ColourCalibration calibration =
         calibrate_colour(captures.colours, patterns, map, options, progress);
     if (!verdict.warnings.empty()) {
@@ -111,21 +111,6 @@ ColourCalibration calibrate_judged(Captures captures,
         seal(calibration);
     }
     return calibration;
-}
-
-ColourCalibration calibrate_from_captures(Captures captures,
-                                          const std::vector<Pattern>& patterns,
-                                          const std::optional<ProjectorToCamera>& map,
-                                          const ColourOptions& options,
-                                          const Progress& progress) {
-    check_argument(!patterns.empty(), "calibrate_from_captures: no patterns");
-    const Image8& drive = patterns.front().drive;
-    // Before anything is solved: the projector must not be blamed for a shadow.
-    CaptureVerdict verdict = judge_captures(
-        captures, drive.width, drive.height, {options.dark_drive, options.bright_drive}, !map);
-    const ProjectorToCamera places =
-        map ? *map : map_of_captures(captures, drive.width, drive.height, verdict.warnings);
-    return calibrate_judged(std::move(captures), verdict, patterns, places, options, progress);
 }
 
 }  // namespace livery

@@ -1,11 +1,7 @@
-// The photographs of one calibration and the way from them to a calibration: the same for a folder
-// of files and for a live bench, so that both are told the same causes by the same names.
+// The photographs of one calibration and the way from them to a calibration.
 #pragma once
 
-#include <optional>
-#include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "calibration/captures/capture_check.h"
@@ -18,23 +14,21 @@
 
 namespace livery {
 
-/// Photographs in the order in which they were taken, and what the checks keep of each.
+/// Photographs of one size, and what the checks keep of each.
 struct Captures {
     std::vector<RoledPhotograph> geometry;  ///< of one channel
     std::vector<RoledPhotograph> colours;
-    std::vector<CaptureSummary> summaries;
-    std::set<std::pair<int, int>> sizes;  ///< width, height
+    std::vector<CaptureSummary> summaries;  ///< in the order in which they were taken
+    int width = 0;                          ///< of the photographs
 };
 
 /// Gray code, white and black, of which decoding needs one channel.
 bool is_geometry_role(const std::string& role);
 
-/// `taken_at`: when, in photographs; negative: one after the photograph before.
-void add_capture(Captures& captures, RoledPhotograph photograph, double taken_at = -1.0);
+void add_capture(Captures& captures, RoledPhotograph photograph);
 
 /// What the photographs so far say of themselves: stripes in each other's place, and all of
-/// check_captures(). Photographs of several sizes are left to those who use them, who refuse them
-/// by name. `with_stripes`: places are decoded from them. Throws Refused.
+/// check_captures(). `with_stripes`: places are decoded from them. Throws Refused.
 CaptureVerdict judge_captures(const Captures& captures,
                               int projector_width,
                               int projector_height,
@@ -48,20 +42,13 @@ ProjectorToCamera map_of_captures(const Captures& captures,
                                   int projector_height,
                                   std::vector<std::string>& warnings);
 
-/// Takes a steady change of the lamp out of the colours and solves; what was warned of comes first.
-ColourCalibration calibrate_judged(Captures captures,
+/// Takes a steady change of the lamp out of `captures`' colours and solves; what was warned of
+/// comes first.
+ColourCalibration calibrate_judged(Captures& captures,
                                    const CaptureVerdict& verdict,
                                    const std::vector<Pattern>& patterns,
                                    const ProjectorToCamera& map,
                                    const ColourOptions& options,
                                    const Progress& progress = {});
-
-/// All of it: judges the photographs, decodes the map unless there is one and solves.
-/// Throws Refused, FileError, std::invalid_argument.
-ColourCalibration calibrate_from_captures(Captures captures,
-                                          const std::vector<Pattern>& patterns,
-                                          const std::optional<ProjectorToCamera>& map,
-                                          const ColourOptions& options,
-                                          const Progress& progress = {});
 
 }  // namespace livery

@@ -25,7 +25,6 @@ namespace {
 constexpr double kSigmas = 20.0;        // of T - S over its noise
 constexpr double kShareOfPeak = 0.005;  // of T - S over the mock-up's largest
 constexpr double kConditionLimit = 10.0;
-constexpr double kLargestShotSpread = 0.01;
 constexpr int kFarthestFromBorder = 5;    // projector pixels
 constexpr std::uint32_t kBlock_px = 16;   // the largest blocks of gray-levels
 constexpr float kUnknownScatter = 0.01f;  // of the scattered light's square: 10%
@@ -231,7 +230,9 @@ ColourCalibration calibrate_colour(const std::vector<RoledPhotograph>& captures,
                           " projector pixels have a place in the camera's picture",
                       "repeat the geometry photographs; check focus and that the camera sees the "
                       "lit mock-up");
-    refuse_drift(samples, kLargestShotSpread);
+    for (const SampledPicture& picture : samples.pictures)
+        // Dark pictures hold too little light to tell the lamp's brightness.
+        if (picture.role != "dark-gray") check_shots(picture.role, picture.shot_spread);
 
     progress.update(0.3, "separating the channels");
     const PooledMixing pooled = pool_mixing(samples);

@@ -56,7 +56,12 @@ ColourCalibration calibrate_colour(const std::vector<RoledPhotograph>& captures,
 struct LiveOptions {
     int width = 0, height = 0;  ///< projector pixels
     ColourOptions colour;
-    int shots = 1;  ///< photographs a colour picture
+    int shots = 1;  ///< photographs a colour picture, of a camera that takes as many as asked for
+    /// Pictures for the colours: the six roles and those mosaics that are wanted. Empty: the six
+    /// for this size, and mosaics where white turns out not to be the sum of its channels.
+    std::vector<Pattern> patterns;
+    /// Of photographs that were taken before: no Gray code is asked for where it is known.
+    std::optional<ProjectorToCamera> map;
     /// Projector pixels that the mock-up itself takes, where its pose is known (non-zero: mock-up;
     /// empty: not known). These alone are lit, and the colorimeter is held to them.
     Image8 mockup;
@@ -64,12 +69,17 @@ struct LiveOptions {
 struct LiveResult {
     ColourCalibration calibration;
     ProjectorToCamera map;
-    /// The colour ones, shots averaged, for a second look with other options.
+    /// The colour ones, a steady change of the lamp taken out, for a second look with other
+    /// options.
     std::vector<RoledPhotograph> captures;
     std::vector<Pattern> patterns;
     double capture_seconds = 0.0, solve_seconds = 0.0;
     int colour_photographs = 0, latency_photographs = 0;
 };
+/// Whether the photographs are taken now (their latency and exposure are found first, what fails is
+/// repeated, a colorimeter reads what is shown) or are what they are (`BenchPorts::turn_to`), the
+/// same pictures are asked for, and the photographs are judged and solved the same way. Throws
+/// Refused, FileError, std::invalid_argument.
 LiveResult calibrate_live(const BenchPorts& bench,
                           const LiveOptions& options,
                           const Progress& progress = {});

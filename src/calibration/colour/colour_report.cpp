@@ -37,15 +37,12 @@ std::string percent(double fraction) {
     return text;
 }
 
-void refuse_drift(const ColourSamples& samples, double limit) {
-    for (const SampledPicture& picture : samples.pictures)
-        // Dark pictures hold too little light to tell the lamp's brightness.
-        if (picture.role != "dark-gray" && picture.shot_spread > limit)
-            throw Refused(
-                "the photographs of " + picture.role + " differ by " +
-                    percent(picture.shot_spread) + " in brightness",
-                "let the lamp warm up for 20 minutes, switch off automatic exposure, eco and "
-                "dynamic-contrast modes, expose for whole projector frames, and repeat");
+void check_shots(const std::string& role, double spread) {
+    if (spread > 0.01)
+        throw Refused(
+            "the photographs of " + role + " differ by " + percent(spread) + " in brightness",
+            "let the lamp warm up for 20 minutes, switch off automatic exposure, eco and "
+            "dynamic-contrast modes, expose for whole projector frames, and repeat");
 }
 
 void refuse_not_additive(double error, double white_over_sum) {

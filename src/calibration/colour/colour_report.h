@@ -14,8 +14,8 @@ namespace livery {
 /// "3.4%"
 std::string percent(double fraction);
 
-/// Throws Refused when shots of one picture differ in brightness by more than `limit`.
-void refuse_drift(const ColourSamples& samples, double limit);
+/// Throws Refused when the shots of one picture differ in brightness by more than 1%.
+void check_shots(const std::string& role, double spread);
 /// `white_over_sum`: luminance-like sum of white over that of red + green + blue.
 [[noreturn]] void refuse_not_additive(double error, double white_over_sum);
 [[noreturn]] void refuse_invalid(const ColourSamples& samples,

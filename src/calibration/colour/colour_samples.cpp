@@ -14,12 +14,6 @@ constexpr std::array<const char*, kPictureCount> kRoles{
     "dark-gray", "bright-gray", "red", "green", "blue", "gray-levels"};
 constexpr double kSaturatedShare = 0.98;
 
-bool is_known_elsewhere(const std::string& role) {
-    const auto starts = [&](const char* text) { return role.rfind(text, 0) == 0; };
-    return starts("gray-column-") || starts("gray-row-") || starts("phase-") || starts("verify-") ||
-           role == "white" || role == "black";
-}
-
 std::string name_of(const RoledPhotograph& capture) {
     return capture.photograph.name.empty() ? capture.role : capture.photograph.name;
 }
@@ -151,7 +145,6 @@ ColourSamples sample_colours(const std::vector<RoledPhotograph>& captures,
     for (const RoledPhotograph& capture : captures) {
         const auto role = std::find(kRoles.begin(), kRoles.end(), capture.role);
         if (role == kRoles.end() && capture.role.rfind("colors-", 0) != 0) {
-            if (is_known_elsewhere(capture.role)) continue;
             throw FileError(name_of(capture),
                             "role",
                             capture.role,

@@ -1,6 +1,7 @@
 // Gray code photographs -> where each projector pixel is seen by the camera.
 #pragma once
 
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,13 +26,19 @@ struct GrayCodeResult {
     double lit_threshold = 0.0;     ///< white - black over which a pixel counts as lit, file units
 };
 
+/// Throws FileError where `roles`, those of photographs in `source`, lack one of this projector's
+/// Gray code, or hold a finer bit, which means another projector. Other roles are ignored.
+void check_gray_code(const std::filesystem::path& source,
+                     const std::vector<std::string>& roles,
+                     int projector_width,
+                     int projector_height);
+
 /// Decodes by the sign of each bit pair. `lit_threshold` is white - black in file units (mean of
 /// the channels); negative picks it from the noise of the black picture. Lit pixels that answer
 /// to the stripes with less than a third of white - black, or to more than three bits of an axis
 /// with less than a fifth (lit by other parts only), are left out. Several photographs of one role
 /// are averaged.
-/// Throws Refused when too little decodes, FileError for missing roles and unequal sizes. Roles
-/// of other kinds are ignored.
+/// Throws Refused when too little decodes, FileError for unequal sizes and as check_gray_code().
 GrayCodeResult decode_gray_code(const std::vector<RoledPhotograph>& photographs,
                                 int projector_width,
                                 int projector_height,

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 #include "calibration/correspondence/gray_code.h"
 #include "calibration/correspondence/patterns.h"
@@ -318,51 +319,45 @@ GrayCodeResult decode_gray_code(std::span<const ImageF> in_pattern_order,
     return decode_in_order(in_pattern_order, projector_width, projector_height, lit_threshold);
 }
 
+void check_gray_code(const std::filesystem::path& source,
+                     const std::vector<std::string>& roles,
+                     int projector_width,
+                     int projector_height) {
+    check_projector_size(projector_width, projector_height);
+    const std::string projector =
+        std::to_string(projector_width) + "x" + std::to_string(projector_height) + " projector";
+    const auto holds = [&](const std::string& role) {
+        return std::find(roles.begin(), roles.end(), role) != roles.end();
+    };
+    for (const auto& [axis, count] :
+         {std::pair("column", projector_width), std::pair("row", projector_height)}) {
+        const std::string finer =
+            std::string("gray-") + axis + "-" + std::to_string(gray_code_bits(count));
+        if (holds(finer)) throw FileError(source, "role", finer, "no such bit for a " + projector);
+    }
+    const std::vector<std::string> wanted = geometry_roles(projector_width, projector_height);
+    for (const std::string& role : wanted)
+        if (!holds(role))
+            throw FileError(
+                source,
+                "role",
+                "no photograph of " + role,
+                std::to_string(wanted.size()) + " Gray code photographs for a " + projector);
+}
+
 GrayCodeResult decode_gray_code(const std::vector<RoledPhotograph>& photographs,
                                 int projector_width,
                                 int projector_height,
                                 double lit_threshold) {
-    check_projector_size(projector_width, projector_height);
-    const std::string projector =
-        std::to_string(projector_width) + "x" + std::to_string(projector_height) + " projector";
-    const auto all_of = [&](const std::string& role) {
+    std::vector<std::string> roles;
+    for (const RoledPhotograph& photograph : photographs) roles.push_back(photograph.role);
+    check_gray_code("captures", roles, projector_width, projector_height);
+    std::vector<ImageF> pictures;
+    const RoledPhotograph* first = nullptr;
+    for (const std::string& role : geometry_roles(projector_width, projector_height)) {
         std::vector<const RoledPhotograph*> found;
         for (const RoledPhotograph& candidate : photographs)
             if (candidate.role == role) found.push_back(&candidate);
-        return found;
-    };
-
-    // A finer code than expected means another projector.
-    const auto refuse_more = [&](const std::string& axis, int count) {
-        const std::string role = "gray-" + axis + "-" + std::to_string(gray_code_bits(count));
-        if (!all_of(role).empty())
-            throw FileError("captures", "role", role, "no such bit for a " + projector);
-    };
-    refuse_more("column", projector_width);
-    refuse_more("row", projector_height);
-
-    std::vector<std::string> roles;
-    for (const bool columns : {true, false}) {
-        const int bits = gray_code_bits(columns ? projector_width : projector_height);
-        for (int bit = 0; bit < bits; ++bit) {
-            const std::string role =
-                std::string(columns ? "gray-column-" : "gray-row-") + std::to_string(bit);
-            roles.push_back(role);
-            roles.push_back(role + "-inverse");
-        }
-    }
-    roles.insert(roles.end(), {"white", "black"});
-
-    std::vector<ImageF> pictures;
-    const RoledPhotograph* first = nullptr;
-    for (const std::string& role : roles) {
-        const auto found = all_of(role);
-        if (found.empty())
-            throw FileError(
-                "captures",
-                "role",
-                "no photograph of " + role,
-                std::to_string(roles.size()) + " Gray code photographs for a " + projector);
         if (!first) first = found.front();
         for (const RoledPhotograph* one : found) {
             const ImageF& image = one->photograph.image;

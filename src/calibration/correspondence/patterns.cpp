@@ -133,10 +133,25 @@ int gray_code_bits(int count) {
     return std::max(1, static_cast<int>(std::bit_width(static_cast<unsigned>(count - 1))));
 }
 
+std::vector<std::string> geometry_roles(int width, int height) {
+    std::vector<std::string> roles;
+    const auto add_axis = [&](const std::string& axis, int count) {
+        for (int bit = 0; bit < gray_code_bits(count); ++bit) {
+            roles.push_back("gray-" + axis + "-" + std::to_string(bit));
+            roles.push_back(roles.back() + "-inverse");
+        }
+    };
+    add_axis("column", width);
+    add_axis("row", height);
+    roles.insert(roles.end(), {"white", "black"});
+    return roles;
+}
+
 std::vector<Pattern> geometry_patterns(int width, int height) {
     check_size(width, height);
+    const std::vector<std::string> roles = geometry_roles(width, height);
     std::vector<Pattern> patterns;
-    const auto add_axis = [&](const std::string& axis, int count, bool columns) {
+    const auto add_axis = [&](int count, bool columns) {
         const int bits = gray_code_bits(count);
         for (int bit = 0; bit < bits; ++bit)
             for (const bool inverse : {false, true}) {
@@ -146,14 +161,11 @@ std::vector<Pattern> geometry_patterns(int width, int height) {
                     const std::uint8_t value = set != inverse ? 255 : 0;
                     return Drive{value, value, value};
                 };
-                patterns.push_back(
-                    {"gray-" + axis + "-" + std::to_string(bit) + (inverse ? "-inverse" : ""),
-                     draw(width, height, drive_of),
-                     {}});
+                patterns.push_back({roles[patterns.size()], draw(width, height, drive_of), {}});
             }
     };
-    add_axis("column", width, true);
-    add_axis("row", height, false);
+    add_axis(width, true);
+    add_axis(height, false);
     patterns.push_back(uniform("white", width, height, 255, 255, 255));
     patterns.push_back(uniform("black", width, height, 0, 0, 0));
     return patterns;

@@ -17,6 +17,9 @@ struct Pattern {
 /// Bits of the Gray code that numbers `count` columns or rows.
 int gray_code_bits(int count);
 
+/// The roles of geometry_patterns(), in their order.
+std::vector<std::string> geometry_roles(int width, int height);
+
 /// Gray code both ways, each bit (0 the most significant) followed by its inverse, then white,
 /// black. Throws std::invalid_argument for sizes outside 2..16384.
 std::vector<Pattern> geometry_patterns(int width, int height);
