@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include <fmt/format.h>
 
 #include "calibration/captures/capture_evidence.h"
 #include "calibration/colour/colour_report.h"
@@ -17,11 +18,7 @@ constexpr double kOtherExposure = 0.01;
 constexpr int kMostLatency = 6;
 constexpr double kProjectorFrame_s = 1.0 / 60.0;
 
-std::string seconds(double value) {
-    char text[32];
-    std::snprintf(text, sizeof(text), "%.3g s", value);
-    return text;
-}
+std::string seconds(double value) { return fmt::format("{:.3g} s", value); }
 
 /// A photograph thinned to about 50000 pixels for comparisons: mean of the channels over black
 /// level.
@@ -71,12 +68,11 @@ Photograph BenchSession::photograph(const std::string& name) {
     if (!fixed()) photo.name = name;
     ++photographs_;
     if (photo.image.empty() || photo.image.channels != 3)
-        throw FileError("camera",
-                        "photograph",
-                        std::to_string(photo.image.width) + "x" +
-                            std::to_string(photo.image.height) + "x" +
-                            std::to_string(photo.image.channels),
-                        "a picture of 3 channels");
+        throw FileError(
+            "camera",
+            "photograph",
+            fmt::format("{}x{}x{}", photo.image.width, photo.image.height, photo.image.channels),
+            "a picture of 3 channels");
     check_photograph(photo, name);
     if (met_s_ > 0.0 && std::abs(photo.exposure_s / met_s_ - 1.0) > kOtherExposure)
         throw Refused("automatic exposure: the photograph of " + name + " was exposed for " +
@@ -88,9 +84,6 @@ Photograph BenchSession::photograph(const std::string& name) {
 /// All photographs have the first one's size and finite numbers for the most part.
 void BenchSession::check_photograph(const Photograph& photo, const std::string& shown) {
     const ImageF& image = photo.image;
-    const auto size_of = [](int width, int height) {
-        return std::to_string(width) + "x" + std::to_string(height);
-    };
     if (width_ == 0) {
         width_ = image.width;
         height_ = image.height;
@@ -99,8 +92,8 @@ void BenchSession::check_photograph(const Photograph& photo, const std::string& 
     if (image.width != width_ || image.height != height_)
         throw FileError(source,
                         "size of the photograph of " + shown,
-                        size_of(image.width, image.height),
-                        size_of(width_, height_) + " as the first photograph");
+                        fmt::format("{}x{}", image.width, image.height),
+                        fmt::format("{}x{} as the first photograph", width_, height_));
     std::size_t looked_at = 0, finite = 0;
     for (std::size_t i = 0; i < image.values.size(); i += 97) {
         ++looked_at;
@@ -115,16 +108,17 @@ void BenchSession::check_photograph(const Photograph& photo, const std::string& 
             "finite numbers");
 }
 
-double BenchSession::white_mean() const {
+/// Mean of the lit pixels over black, file units.
+double BenchSession::lit_mean(const Photograph& photo) const {
     double sum = 0.0, count = 0.0;
     for (const std::uint32_t i : lit_)
         for (std::size_t c = 0; c < 3; ++c) {
-            const float value = white_.image.values[3 * static_cast<std::size_t>(i) + c];
+            const float value = photo.image.values[3 * static_cast<std::size_t>(i) + c];
             if (!std::isfinite(value)) continue;
-            sum += static_cast<double>(value) - white_.black_level;
+            sum += static_cast<double>(value) - photo.black_level;
             count += 1.0;
         }
-    return sum / std::max(count, 1.0) / (white_.saturates_at - white_.black_level);
+    return sum / std::max(count, 1.0);
 }
 
 /// `asked`, `found`: the ratio of two exposures, and of the brightness of white that came of them.
@@ -215,12 +209,13 @@ void BenchSession::meet(int width, int height) {
                 peak >= 0.97 ? 0.25 : std::clamp(kTargetPeak / std::max(peak, 1e-3), 0.1, 16.0);
         exposure_s_ = whole_frames(exposure_s_);
         if (exposure_s_ == before) break;
-        const double kept_s = white_.exposure_s, mean = white_mean();
+        const double kept_s = white_.exposure_s, mean = lit_mean(white_);
         white_ = photograph("white");
         find_lit();
         peak = white_peak();
         // Where all of it is at full scale it cannot become brighter.
-        if (mean < 0.9 && sets_its_own(white_.exposure_s / kept_s, white_mean() / mean))
+        if (mean < 0.9 * (white_.saturates_at - white_.black_level) &&
+            sets_its_own(white_.exposure_s / kept_s, lit_mean(white_) / mean))
             refuse_own_exposure(kept_s, white_.exposure_s);
         if (white_.exposure_s == kept_s) {  // whatever it is asked for
             exposure_s_ = kept_s;
@@ -312,36 +307,22 @@ Photograph BenchSession::take_mean(const Image8& drive, const std::string& name,
     if (shots <= 1) return mean;
     const auto limit =
         static_cast<float>(mean.black_level + 0.98 * (mean.saturates_at - mean.black_level));
-    const auto brightness = [&](const Photograph& photo) {
-        double sum = 0.0;
-        for (const std::uint32_t i : lit_)
-            for (std::size_t c = 0; c < 3; ++c) {
-                const auto value =
-                    static_cast<double>(photo.image.values[3 * static_cast<std::size_t>(i) + c]);
-                if (std::isfinite(value)) sum += value - photo.black_level;
-            }
-        return sum;
-    };
-    double low = brightness(mean), high = low;
-    std::vector<double> sum(mean.image.values.begin(), mean.image.values.end());
+    std::vector<double> sum(mean.image.values.size());
     std::vector<std::uint8_t> over(sum.size(), 0);
-    const auto note = [&](const Photograph& photo) {
-        for (std::size_t i = 0; i < sum.size(); ++i) over[i] |= photo.image.values[i] >= limit;
-    };
-    note(mean);
-    for (int shot = 1; shot < shots; ++shot) {
-        const Photograph next = photograph(name);
-        const double b = brightness(next);
-        low = std::min(low, b);
-        high = std::max(high, b);
-        for (std::size_t i = 0; i < sum.size(); ++i)
-            sum[i] += static_cast<double>(next.image.values[i]);
-        note(next);
+    std::vector<double> light;
+    for (int number = 0; number < shots; ++number) {
+        const Photograph shot = number == 0 ? mean : photograph(name);
+        light.push_back(lit_mean(shot));
+        for (std::size_t i = 0; i < sum.size(); ++i) {
+            sum[i] += static_cast<double>(shot.image.values[i]);
+            over[i] |= shot.image.values[i] >= limit;
+        }
     }
     // Black holds too little light to tell the lamp's brightness.
     const bool dark =
         std::all_of(drive.values.begin(), drive.values.end(), [](auto v) { return v < 32; });
-    if (!dark) check_shots(name, (high - low) / high);
+    const auto [low, high] = std::minmax_element(light.begin(), light.end());
+    if (!dark) check_shots(name, (*high - *low) / *high);
     for (std::size_t i = 0; i < sum.size(); ++i) {
         const auto value = static_cast<float>(sum[i] / shots);
         mean.image.values[i] = over[i] ? std::max(value, limit) : value;

@@ -46,7 +46,7 @@ class BenchSession {
     bool see_white(int width, int height);
     void find_lit();
     double white_peak() const;
-    double white_mean() const;
+    double lit_mean(const Photograph& photo) const;
     static bool sets_its_own(double asked, double found);
     [[noreturn]] static void refuse_own_exposure(double before_s, double after_s);
     bool differs(const Photograph& a, const Photograph& b) const;

@@ -63,6 +63,8 @@ class LiveCalibration {
             add(pattern.role, std::move(shot));
     }
     void photograph_geometry();
+    /// White - black in camera pixels, mean of the channels.
+    ImageF light() const;
 
   private:
     void photograph_stripes(const Pattern& stripes, const Pattern& inverse);
@@ -114,16 +116,9 @@ void LiveCalibration::photograph_geometry() {
                       "off motion interpolation and dynamic contrast");
 }
 
-/// White - black in camera pixels, mean of the channels.
-ImageF light_of(const Captures& captures) {
-    const auto image_of = [&](const char* role) -> const ImageF& {
-        return std::find_if(captures.geometry.begin(),
-                            captures.geometry.end(),
-                            [&](const RoledPhotograph& one) { return one.role == role; })
-            ->photograph.image;
-    };
-    ImageF light = image_of("white");
-    const ImageF& black = image_of("black");
+ImageF LiveCalibration::light() const {
+    ImageF light = mean_of_channels(white_.image);
+    const ImageF black = mean_of_channels(black_.image);
     for (std::size_t i = 0; i < light.values.size(); ++i) light.values[i] -= black.values[i];
     return light;
 }
@@ -263,18 +258,16 @@ LiveResult calibrate_live(const BenchPorts& bench,
     CameraToXyz& xyz = with_xyz.camera_to_xyz;
     if (measures) {
         xyz.has_primaries = true;
-        xyz.measured_at_px = place_to_measure(result.map, light_of(live.captures), options.mockup);
+        xyz.measured_at_px = place_to_measure(result.map, live.light(), options.mockup);
     }
     const auto measure = [&](const std::string& role) {
         if (!measures) return;
-        const auto value_into = [&]() -> glm::dvec3 {
-            return ports.measure_xyz(*xyz.measured_at_px);
-        };
-        if (role == "dark-gray") xyz.black_xyz = value_into();
-        if (role == "bright-gray") xyz.white_xyz = value_into();
-        if (role == "red") xyz.primaries_xyz[0] = value_into();
-        if (role == "green") xyz.primaries_xyz[1] = value_into();
-        if (role == "blue") xyz.primaries_xyz[2] = value_into();
+        const auto value = [&] { return ports.measure_xyz(*xyz.measured_at_px); };
+        if (role == "dark-gray") xyz.black_xyz = value();
+        if (role == "bright-gray") xyz.white_xyz = value();
+        if (role == "red") xyz.primaries_xyz[0] = value();
+        if (role == "green") xyz.primaries_xyz[1] = value();
+        if (role == "blue") xyz.primaries_xyz[2] = value();
     };
     const auto photograph = [&](const Pattern& pattern) {
         live.photograph(pattern, options.shots);

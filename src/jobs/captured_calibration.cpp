@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <set>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "calibration/captures/captures.h"
 #include "capture/patterns_folder.h"
 #include "core/error.h"
@@ -12,12 +15,6 @@
 namespace livery {
 
 namespace {
-
-bool holds(const CapturesFolder& folder, const std::string& role) {
-    return std::any_of(folder.captures.begin(), folder.captures.end(), [&](const Capture& capture) {
-        return capture.role == role;
-    });
-}
 
 /// Drive of the uniform picture with this role; the paper's mode takes s and t from here.
 std::optional<int> uniform_drive(const CapturesFolder& folder, const std::string& role) {
@@ -37,10 +34,11 @@ std::vector<Pattern> patterns_shown(const CapturesFolder& folder,
     const int width = folder.projector_width, height = folder.projector_height;
     std::vector<Pattern> patterns =
         colour_patterns(width, height, options.dark_drive, options.bright_drive);
+    std::set<std::string> roles, replaced, others;
+    for (const Capture& capture : folder.captures) roles.insert(capture.role);
     for (Pattern& mosaic : mosaic_patterns(width, height, kMosaics)) {
-        if (holds(folder, mosaic.role)) patterns.push_back(std::move(mosaic));
+        if (roles.contains(mosaic.role)) patterns.push_back(std::move(mosaic));
     }
-    std::set<std::string> replaced, others;
     for (const Capture& capture : folder.captures) {
         const auto known = std::find_if(patterns.begin(), patterns.end(), [&](const Pattern& one) {
             return one.role == capture.role;
@@ -55,10 +53,13 @@ std::vector<Pattern> patterns_shown(const CapturesFolder& folder,
         std::error_code error;
         const bool uniform = is_known && known->drive_values.size() == 3;
         if (is_known && !uniform && !std::filesystem::exists(capture.pattern, error)) {
-            warnings.push_back("the pattern of " + capture.role + ", " + capture.pattern.string() +
-                               ", is not there: the picture that livery patterns writes for a " +
-                               std::to_string(width) + "x" + std::to_string(height) +
-                               " projector is taken to be the one that was shown");
+            warnings.push_back(
+                fmt::format("the pattern of {}, {}, is not there: the picture that livery patterns "
+                            "writes for a {}x{} projector is taken to be the one that was shown",
+                            capture.role,
+                            capture.pattern.string(),
+                            width,
+                            height));
             continue;
         }
         Pattern shown{capture.role, read_pattern(capture.pattern, width, height), capture.drive};
@@ -134,17 +135,14 @@ ProjectorToCamera read_map(const std::filesystem::path& file,
                            int projector_height) {
     ImageFile picture = read_image(file);
     if (picture.image.width != projector_width || picture.image.height != projector_height) {
-        throw FileError(
-            file,
-            "size",
-            std::to_string(picture.image.width) + "x" + std::to_string(picture.image.height),
-            "the projector's " + std::to_string(projector_width) + "x" +
-                std::to_string(projector_height));
+        throw FileError(file,
+                        "size",
+                        fmt::format("{}x{}", picture.image.width, picture.image.height),
+                        fmt::format("the projector's {}x{}", projector_width, projector_height));
     }
     if (picture.channel_names != std::vector<std::string>{"X", "Y"}) {
-        std::string names;
-        for (const auto& name : picture.channel_names) names += (names.empty() ? "" : ",") + name;
-        throw FileError(file, "channels", names, "X,Y");
+        throw FileError(
+            file, "channels", fmt::format("{}", fmt::join(picture.channel_names, ",")), "X,Y");
     }
     ProjectorToCamera map{
         std::move(picture.image), Image8(projector_width, projector_height, 1), {}};

@@ -1,6 +1,11 @@
 #include "jobs/simulated_captures.h"
 
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include "capture/patterns_folder.h"
 #include "core/error.h"
@@ -17,10 +22,9 @@ namespace {
 
 Image8 uniform(const BenchDescription& bench, int red, int green, int blue) {
     Image8 drive(bench.projector.view.width, bench.projector.view.height, 3);
-    for (std::size_t i = 0; i < drive.pixel_count(); ++i) {
-        drive.values[3 * i] = static_cast<std::uint8_t>(red);
-        drive.values[3 * i + 1] = static_cast<std::uint8_t>(green);
-        drive.values[3 * i + 2] = static_cast<std::uint8_t>(blue);
+    const int rgb[] = {red, green, blue};
+    for (std::size_t i = 0; i < drive.values.size(); ++i) {
+        drive.values[i] = static_cast<std::uint8_t>(rgb[i % 3]);
     }
     return drive;
 }
@@ -28,35 +32,25 @@ Image8 uniform(const BenchDescription& bench, int red, int green, int blue) {
 /// The lit projector pixel nearest the middle of the mock-up.
 glm::dvec2 measuring_point(const Bench& bench) {
     const Image8& lit = bench.truth().lit;
-    const Image8& edge = bench.truth().edge;
-    glm::dvec2 sum(0.0);
-    double count = 0.0;
+    std::vector<glm::dvec2> places;
     for (int y = 0; y < lit.height; ++y) {
         for (int x = 0; x < lit.width; ++x) {
-            if (!lit.at(x, y)) continue;
-            sum += glm::dvec2(x, y);
-            count += 1.0;
+            if (lit.at(x, y)) places.emplace_back(x, y);
         }
     }
-    if (count == 0.0) {
+    if (places.empty()) {
         throw Refused("the bench's projector does not light the mock-up",
                       "check its pose in the bench file");
     }
-    const glm::dvec2 middle = sum / count;
-    glm::dvec2 best = middle;
-    double nearest = 1e30;
-    for (int y = 0; y < lit.height; ++y) {
-        for (int x = 0; x < lit.width; ++x) {
-            if (!lit.at(x, y) || edge.at(x, y)) continue;
-            const glm::dvec2 offset = glm::dvec2(x, y) - middle;
-            const double distance = offset.x * offset.x + offset.y * offset.y;
-            if (distance < nearest) {
-                nearest = distance;
-                best = {x, y};
-            }
-        }
-    }
-    return best + 0.5;
+    const glm::dvec2 middle = std::accumulate(places.begin(), places.end(), glm::dvec2(0.0)) /
+                              static_cast<double>(places.size());
+    std::erase_if(places, [&](glm::dvec2 at) {
+        return bench.truth().edge.at(static_cast<int>(at.x), static_cast<int>(at.y)) != 0;
+    });
+    const auto nearest = std::min_element(places.begin(), places.end(), [&](auto a, auto b) {
+        return glm::dot(a - middle, a - middle) < glm::dot(b - middle, b - middle);
+    });
+    return (nearest == places.end() ? middle : *nearest) + 0.5;
 }
 
 void write_primaries(const std::filesystem::path& file,

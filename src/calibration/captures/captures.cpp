@@ -9,16 +9,6 @@
 namespace livery {
 namespace {
 
-/// What decoding looks at, in a third of the memory.
-ImageF mean_of_channels(const ImageF& image) {
-    if (image.channels == 1) return image;
-    ImageF mean(image.width, image.height, 1);
-    for (std::size_t i = 0; i < mean.values.size(); ++i)
-        mean.values[i] =
-            (image.values[3 * i] + image.values[3 * i + 1] + image.values[3 * i + 2]) / 3.0f;
-    return mean;
-}
-
 /// Undoes a change of the light by `factor`. Room light is scaled with it: rightly for an exposure;
 /// for a lamp wrongly, by a hundredth of itself at most, since it may not change by more while the
 /// colours are photographed.

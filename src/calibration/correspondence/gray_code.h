@@ -26,6 +26,9 @@ struct GrayCodeResult {
     double lit_threshold = 0.0;     ///< white - black over which a pixel counts as lit, file units
 };
 
+/// What decoding looks at: the mean of red, green and blue, or the one channel there is.
+ImageF mean_of_channels(const ImageF& image);
+
 /// Throws FileError where `roles`, those of photographs in `source`, lack one of this projector's
 /// Gray code, or hold a finer bit, which means another projector. Other roles are ignored.
 void check_gray_code(const std::filesystem::path& source,

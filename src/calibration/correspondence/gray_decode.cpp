@@ -279,20 +279,13 @@ std::string size_of(const ImageF& image) {
     return std::to_string(image.width) + "x" + std::to_string(image.height);
 }
 
-/// Mean of the colour channels, in file units as if exposed like `like`.
-ImageF mean_of_channels(const Photograph& photograph, const Photograph& like) {
-    const ImageF& image = photograph.image;
-    ImageF mean(image.width, image.height, 1);
+/// Mean of the channels, in file units as if exposed like `like`.
+ImageF mean_exposed_as(const Photograph& photograph, const Photograph& like) {
+    ImageF mean = mean_of_channels(photograph.image);
     const auto gain = static_cast<float>(like.exposure_s / photograph.exposure_s);
     const auto black = static_cast<float>(photograph.black_level);
     const auto offset = static_cast<float>(like.black_level);
-    const auto channels = static_cast<std::size_t>(image.channels);
-    const std::size_t used = std::min<std::size_t>(channels, 3);  // a fourth one is no light
-    for (std::size_t i = 0; i < mean.values.size(); ++i) {
-        float sum = 0.0f;
-        for (std::size_t c = 0; c < used; ++c) sum += image.values[i * channels + c];
-        mean.values[i] = (sum / static_cast<float>(used) - black) * gain + offset;
-    }
+    for (float& value : mean.values) value = (value - black) * gain + offset;
     return mean;
 }
 
@@ -317,6 +310,19 @@ GrayCodeResult decode_gray_code(std::span<const ImageF> in_pattern_order,
                                 int projector_height,
                                 double lit_threshold) {
     return decode_in_order(in_pattern_order, projector_width, projector_height, lit_threshold);
+}
+
+ImageF mean_of_channels(const ImageF& image) {
+    if (image.channels == 1) return image;
+    ImageF mean(image.width, image.height, 1);
+    const auto channels = static_cast<std::size_t>(image.channels);
+    const std::size_t used = std::min<std::size_t>(channels, 3);  // a fourth one is no light
+    for (std::size_t i = 0; i < mean.values.size(); ++i) {
+        float sum = 0.0f;
+        for (std::size_t c = 0; c < used; ++c) sum += image.values[i * channels + c];
+        mean.values[i] = sum / static_cast<float>(used);
+    }
+    return mean;
 }
 
 void check_gray_code(const std::filesystem::path& source,
@@ -368,9 +374,9 @@ GrayCodeResult decode_gray_code(const std::vector<RoledPhotograph>& photographs,
                                 size_of(image),
                                 size_of(first->photograph.image) + " as " + first->role);
         }
-        ImageF mean = mean_of_channels(found.front()->photograph, first->photograph);
+        ImageF mean = mean_exposed_as(found.front()->photograph, first->photograph);
         for (std::size_t k = 1; k < found.size(); ++k) {
-            const ImageF next = mean_of_channels(found[k]->photograph, first->photograph);
+            const ImageF next = mean_exposed_as(found[k]->photograph, first->photograph);
             const auto share = static_cast<float>(1.0 / static_cast<double>(k + 1));
             for (std::size_t i = 0; i < mean.values.size(); ++i)
                 mean.values[i] += share * (next.values[i] - mean.values[i]);

@@ -50,16 +50,12 @@ std::optional<Stripes> sample(const std::vector<RoledPhotograph>& photographs,
     stripes.column_bits = gray_code_bits(projector_width);
     stripes.row_bits = gray_code_bits(projector_height);
     std::vector<const Photograph*> pictures;
-    for (const bool columns : {true, false})
-        for (int bit = 0; bit < (columns ? stripes.column_bits : stripes.row_bits); ++bit)
-            for (const char* suffix : {"", "-inverse"}) {
-                const std::string role = std::string(columns ? "gray-column-" : "gray-row-") +
-                                         std::to_string(bit) + suffix;
-                const Photograph* const picture = find(photographs, role);
-                if (!picture) return std::nullopt;
-                pictures.push_back(picture);
-                stripes.roles.push_back(role);
-            }
+    stripes.roles = geometry_roles(projector_width, projector_height);
+    stripes.roles.resize(stripes.roles.size() - 2);  // white and black
+    for (const std::string& role : stripes.roles) {
+        pictures.push_back(find(photographs, role));
+        if (!pictures.back()) return std::nullopt;
+    }
     const ImageF& first = pictures.front()->image;
     for (const Photograph* p : pictures)
         if (p->image.width != first.width || p->image.height != first.height) return std::nullopt;
