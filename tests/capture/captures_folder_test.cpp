@@ -120,6 +120,39 @@ TEST(CapturesFolder, ARoleMayComeAsOftenAsThereArePhotographsOfIt) {
     EXPECT_EQ(captures[1].file.filename(), "001.png");
 }
 
+TEST(CapturesFolder, AnswersAsACameraRoleByRole) {
+    const Folder made(R"({"projector": [8, 6], "exposure_s": 0.5, "captures": [
+        {"file": "000.png", "role": "red"},
+        {"file": "001.png", "role": "white", "exposure_s": 2},
+        {"file": "002.png", "role": "red", "black_level": 3}]})");
+    for (const int k : {1, 2})
+        write_png(made.folder / ("00" + std::to_string(k) + ".png"),
+                  Image8(4, 3, 3, static_cast<std::uint8_t>(10 * k)));
+    const BenchPorts ports = ports_of(read_captures_folder(made.folder.path()));
+    EXPECT_FALSE(ports.measure_xyz);
+    ports.show(Image8(8, 6, 3));
+    EXPECT_THROW(ports.photograph(0.0), std::invalid_argument);
+
+    EXPECT_EQ(ports.turn_to("red"), 2);
+    EXPECT_EQ(ports.photograph(7.0).name, "000.png");
+    const Photograph second = ports.photograph(7.0);
+    EXPECT_EQ(second.name, "002.png");
+    EXPECT_EQ(second.taken_at, 2.0);
+    EXPECT_EQ(second.exposure_s, 0.5);  // not the one asked for
+    EXPECT_EQ(second.black_level, 3.0);
+    EXPECT_EQ(second.image.at(1, 1, 2), 20.0f);
+    EXPECT_THROW(ports.photograph(0.0), std::invalid_argument);
+
+    // Turning to another role leaves what was not taken; the first photographs can be had again.
+    EXPECT_EQ(ports.turn_to("red"), 2);
+    EXPECT_EQ(ports.turn_to("white"), 1);
+    EXPECT_EQ(ports.photograph(0.0).taken_at, 1.0);
+    EXPECT_EQ(ports.turn_to("red"), 2);
+    EXPECT_EQ(ports.photograph(0.0).taken_at, 0.0);
+    EXPECT_TRUE(fails_with([&] { ports.turn_to("blue"); },
+                           {made.folder.path().string(), "captures", "no photograph of blue"}));
+}
+
 TEST(CapturesFolder, WithoutAManifestNamesAndCountsDecide) {
     const TemporaryFolder folder;
     const auto fails = [&](std::initializer_list<std::string_view> parts) {
