@@ -67,12 +67,6 @@ Photograph BenchSession::photograph(const std::string& name) {
     if (photo.taken_at < 0.0) photo.taken_at = photographs_;
     if (!fixed()) photo.name = name;
     ++photographs_;
-    if (photo.image.empty() || photo.image.channels != 3)
-        throw FileError(
-            "camera",
-            "photograph",
-            fmt::format("{}x{}x{}", photo.image.width, photo.image.height, photo.image.channels),
-            "a picture of 3 channels");
     check_photograph(photo, name);
     if (met_s_ > 0.0 && std::abs(photo.exposure_s / met_s_ - 1.0) > kOtherExposure)
         throw Refused("automatic exposure: the photograph of " + name + " was exposed for " +
@@ -84,11 +78,16 @@ Photograph BenchSession::photograph(const std::string& name) {
 /// All photographs have the first one's size and finite numbers for the most part.
 void BenchSession::check_photograph(const Photograph& photo, const std::string& shown) {
     const ImageF& image = photo.image;
+    const std::string source = fixed() ? photo.name : "camera";
+    if (image.empty() || image.channels != 3)
+        throw FileError(source,
+                        "photograph of " + shown,
+                        fmt::format("{}x{}x{}", image.width, image.height, image.channels),
+                        "a picture of 3 channels");
     if (width_ == 0) {
         width_ = image.width;
         height_ = image.height;
     }
-    const std::string source = fixed() ? photo.name : "camera";
     if (image.width != width_ || image.height != height_)
         throw FileError(source,
                         "size of the photograph of " + shown,

@@ -97,17 +97,19 @@ void LiveCalibration::photograph_stripes(const Pattern& stripes, const Pattern& 
 /// White and black first: they tell of each pair of stripes whether both had arrived. What was
 /// photographed before is judged once all of it is there.
 void LiveCalibration::photograph_geometry() {
-    const std::vector<Pattern> patterns = geometry_patterns(options_.width, options_.height);
+    const auto pattern = [&](std::size_t number) {
+        return geometry_pattern(options_.width, options_.height, number);
+    };
+    const std::size_t count = geometry_roles(options_.width, options_.height).size();
     if (bench_.fixed()) {
-        for (const Pattern& pattern : patterns) photograph(pattern);
+        for (std::size_t k = 0; k < count; ++k) photograph(pattern(k));
         return;
     }
-    const std::size_t white = patterns.size() - 2, black = patterns.size() - 1;
-    white_ = bench_.take(patterns[white].drive, "white", false);
+    white_ = bench_.take(pattern(count - 2).drive, "white", false);
     add("white", white_);
-    black_ = bench_.take(patterns[black].drive, "black", true);
+    black_ = bench_.take(pattern(count - 1).drive, "black", true);
     add("black", black_);
-    for (std::size_t i = 0; i < white; i += 2) photograph_stripes(patterns[i], patterns[i + 1]);
+    for (std::size_t k = 0; k + 2 < count; k += 2) photograph_stripes(pattern(k), pattern(k + 1));
     judge(true);
     if (!broken_.empty())
         throw Refused(broken_ + " and its inverse do not add up to white",

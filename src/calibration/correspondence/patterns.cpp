@@ -147,27 +147,33 @@ std::vector<std::string> geometry_roles(int width, int height) {
     return roles;
 }
 
-std::vector<Pattern> geometry_patterns(int width, int height) {
+Pattern geometry_pattern(int width, int height, std::size_t number) {
     check_size(width, height);
     const std::vector<std::string> roles = geometry_roles(width, height);
-    std::vector<Pattern> patterns;
-    const auto add_axis = [&](int count, bool columns) {
-        const int bits = gray_code_bits(count);
-        for (int bit = 0; bit < bits; ++bit)
-            for (const bool inverse : {false, true}) {
-                const auto drive_of = [&](int x, int y) {
-                    const int place = columns ? x : y;
-                    const bool set = (((place ^ (place >> 1)) >> (bits - 1 - bit)) & 1) != 0;
-                    const std::uint8_t value = set != inverse ? 255 : 0;
-                    return Drive{value, value, value};
-                };
-                patterns.push_back({roles[patterns.size()], draw(width, height, drive_of), {}});
-            }
+    check_argument(
+        number < roles.size(),
+        "geometry_pattern " + std::to_string(number) + " of " + std::to_string(roles.size()));
+    const std::string& role = roles[number];
+    if (role == "white") return uniform(role, width, height, 255, 255, 255);
+    if (role == "black") return uniform(role, width, height, 0, 0, 0);
+    const std::size_t of_columns = 2 * static_cast<std::size_t>(gray_code_bits(width));
+    const bool columns = number < of_columns, inverse = number % 2 == 1;
+    const int bit = static_cast<int>((columns ? number : number - of_columns) / 2);
+    const int shift = gray_code_bits(columns ? width : height) - 1 - bit;
+    const auto drive_of = [&](int x, int y) {
+        const int place = columns ? x : y;
+        const bool set = (((place ^ (place >> 1)) >> shift) & 1) != 0;
+        const std::uint8_t value = set != inverse ? 255 : 0;
+        return Drive{value, value, value};
     };
-    add_axis(width, true);
-    add_axis(height, false);
-    patterns.push_back(uniform("white", width, height, 255, 255, 255));
-    patterns.push_back(uniform("black", width, height, 0, 0, 0));
+    return {role, draw(width, height, drive_of), {}};
+}
+
+std::vector<Pattern> geometry_patterns(int width, int height) {
+    check_size(width, height);
+    std::vector<Pattern> patterns;
+    for (std::size_t k = 0; k < geometry_roles(width, height).size(); ++k)
+        patterns.push_back(geometry_pattern(width, height, k));
     return patterns;
 }
 

@@ -23,6 +23,8 @@ std::vector<std::string> geometry_roles(int width, int height);
 /// Gray code both ways, each bit (0 the most significant) followed by its inverse, then white,
 /// black. Throws std::invalid_argument for sizes outside 2..16384.
 std::vector<Pattern> geometry_patterns(int width, int height);
+/// One of them: all together are a gigabyte for a projector of 8 megapixels.
+Pattern geometry_pattern(int width, int height, std::size_t number);
 
 /// The six pictures of the method for drives s and t: dark-gray, bright-gray, red, green, blue,
 /// gray-levels. The blocks of gray-levels are squares of 8 to 16 px; of every 16 x 16, a quarter
