@@ -57,7 +57,7 @@ Window::Window(const WindowOptions& options, const Window* share)
         throw std::runtime_error("no window with OpenGL 4.5: " + glfw_error());
     }
     GLFWwindow* before = glfwGetCurrentContext();
-    make_current();
+    Window::make_current();  // this one's, whoever derives from it
     read_names();
     glfwMakeContextCurrent(before);
 }

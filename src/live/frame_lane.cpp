@@ -307,6 +307,21 @@ std::shared_ptr<FinishedFrame> FrameLane::draw_picture(const FrameDescription& d
     throw;
 }
 
+FramePlan FrameLane::plan_side(const FrameDescription& description, std::size_t index) const {
+    const std::size_t light = nearest_of(solved_, keys_of(description), index);
+    FramePlan plan =
+        plan_frame(scene_of(description, index), solved_[light]->quality, FrameStage::projector);
+    PlannedPass& pass = *find_pass(plan, PassKind::compensation);
+    const auto& table = description.setup->table;
+    if (!table) pass.why = "without a calibration the frame goes out as sRGB";
+    pass.why += device_ == ShadingDevice::gl ? ", made on the graphics card, which shades it"
+                                             : ", made on the processor, which shades it";
+    pass.work_items =
+        static_cast<double>(table ? table->pixels.size()
+                                  : lights_[light].renderer->surface_map().coverage.pixel_count());
+    return plan;
+}
+
 void FrameLane::draw_side(const FrameDescription& description, std::size_t index) {
     Side& side = sides_[index];
     const Scene scene = scene_of(description, index);
@@ -317,7 +332,7 @@ void FrameLane::draw_side(const FrameDescription& description, std::size_t index
                          side.exposure_ev == scene.exposure_ev && side.light == light;
     const bool ahead = !std::exchange(side.told, true);
     if (ahead && painted && side.setup == description.setup) return;
-    FramePlan plan = plan_frame(scene, solved_[light]->quality, FrameStage::projector);
+    FramePlan plan = plan_side(description, index);
     for (PlannedPass& pass : plan.passes) pass.ms = 0.0;
     if (ahead) {
         add_milliseconds(plan, side.plan, false);
@@ -329,7 +344,7 @@ void FrameLane::draw_side(const FrameDescription& description, std::size_t index
         side.radiance = {};
         const auto start = Clock::now();
         RadianceRenderer& renderer = *lights_[light].renderer;
-        FramePlan drawn = plan_frame(scene, solved_[light]->quality, FrameStage::projector);
+        FramePlan drawn = plan_side(description, index);
         renderer.render(scene, drawn);
         auto radiance = path_->take(renderer);
         side.shade_ms += milliseconds_since(start);
@@ -358,13 +373,6 @@ void FrameLane::correct_side(const std::shared_ptr<const ProjectorSetup>& setup,
     if (setup->table && !light.covered_pixels) {
         light.covered_pixels = count_covered(*light.renderer->picture());
     }
-    PlannedPass& pass = *find_pass(side.plan, PassKind::compensation);
-    if (!setup->table) pass.why = "without a calibration the frame goes out as sRGB";
-    pass.why += device_ == ShadingDevice::gl ? ", made on the graphics card, which shades it"
-                                             : ", made on the processor, which shades it";
-    pass.work_items =
-        static_cast<double>(setup->table ? setup->table->pixels.size()
-                                         : light.renderer->surface_map().coverage.pixel_count());
     side.drive = path_->correct(index, setup, side.radiance, light.covered_pixels.value_or(0));
     side.to_measure = true;
 }

@@ -94,6 +94,8 @@ class FrameLane {
                      const Progress& progress);
     std::shared_ptr<FinishedFrame> draw_picture(const FrameDescription& description);
     Scene scene_of(const FrameDescription& description, std::size_t side) const;
+    /// Its passes, the correction's for the description's setup and this lane's device.
+    FramePlan plan_side(const FrameDescription& description, std::size_t index) const;
     void draw_side(const FrameDescription& description, std::size_t side);
     void correct_side(const std::shared_ptr<const ProjectorSetup>& setup, std::size_t index);
     void measure_side(std::size_t index);

@@ -354,6 +354,10 @@ TEST_P(FrameThreadOnADevice, ThePlanSaysWhereThePictureIsMade) {
         << pass.why;
     EXPECT_GT(*pass.ms, 0.0);
     EXPECT_EQ(*pass.ms, frame->compensate_ms);
+    // A picture that is there already was made there, too.
+    const auto again = gallery_.whole(show());
+    ASSERT_TRUE(again);
+    EXPECT_EQ(find_pass(again->plan, PassKind::compensation)->why, pass.why);
     // What the card has stays there until it is asked for, and is gone with its thread.
     EXPECT_EQ(frame->pictures->drive.image == nullptr, on_card);
     EXPECT_EQ(frame->pictures->radiance[0].image == nullptr, on_card);
