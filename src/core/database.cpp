@@ -237,6 +237,15 @@ void refuse_linked_journal(const std::filesystem::path& file) {
 
 }  // namespace
 
+void remove_logs_of(const std::filesystem::path& database) {
+    std::error_code error;
+    for (const char* suffix : {"-wal", "-shm", "-journal"}) {
+        auto log = database;
+        log += suffix;
+        std::filesystem::remove(log, error);
+    }
+}
+
 void Database::check_schema(const std::vector<std::string>& schema) {
     const auto text = [](const DatabaseValue& value) {
         const auto* found = std::get_if<std::string>(&value);

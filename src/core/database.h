@@ -50,6 +50,10 @@ class Database {
     std::unique_ptr<State> state_;
 };
 
+/// Removes what SQLite keeps beside a database: a log that a killed program left there would be
+/// taken up into the next file of that name. Nobody may have the database open.
+void remove_logs_of(const std::filesystem::path& database);
+
 /// BEGIN IMMEDIATE ... COMMIT; rolled back when destroyed without commit().
 class Transaction {
   public:

@@ -90,9 +90,8 @@ void SessionFile::create(const std::filesystem::path& file,
     unfinished += ".new";
     std::error_code error;
     const auto remove_unfinished = [&] {
-        for (const char* suffix : {"", "-wal", "-shm"}) {
-            std::filesystem::remove(unfinished.string() + suffix, error);
-        }
+        std::filesystem::remove(unfinished, error);
+        remove_logs_of(unfinished);
     };
     remove_unfinished();
     try {
@@ -114,6 +113,7 @@ void SessionFile::create(const std::filesystem::path& file,
         remove_unfinished();
         throw FileError(file, failure.field(), failure.found(), failure.expected());
     }
+    remove_logs_of(file);
     std::filesystem::rename(unfinished, file, error);
     if (error) throw FileError(file, "", "cannot rename: " + error.message(), "a writable folder");
     sync_folder(file.parent_path());

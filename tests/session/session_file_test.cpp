@@ -237,6 +237,25 @@ TEST(SessionFile, FullDiskKeepsChangesUntilTheyCanBeSaved) {
     EXPECT_EQ(text_of(session.document()), text_of(car()));
 }
 
+TEST(SessionFile, TakesNothingFromTheLogOfAFileThatIsGone) {
+    const TemporaryFolder folder;
+    const auto file = folder / "a.livery", log = folder / "a.livery-wal", kept = folder / "kept";
+    SessionFile::create(file, {{"", "", text_of(car())}});
+    {
+        // As a killed program leaves it, when somebody removes the session and begins another
+        Session session = Session::open(file);
+        session.execute(SetExposure{2.0});
+        ASSERT_GT(std::filesystem::file_size(log), 0u);
+        std::filesystem::copy_file(log, kept);
+    }
+    std::filesystem::remove(file);
+    std::filesystem::rename(kept, log);
+    SessionFile::create(file, {{"", "", text_of(car())}});
+    Session session = Session::open(file);
+    EXPECT_FALSE(session.can_undo());
+    EXPECT_EQ(text_of(session.document()), text_of(car()));
+}
+
 TEST(SessionFile, IsWholeOrNotThereWhenTheDiskIsFull) {
     const TemporaryFolder folder(memory_folder());
     const std::string document = text_of(car());
