@@ -3,7 +3,9 @@
 
 #include <functional>
 #include <limits>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -11,6 +13,12 @@
 #include "core/image.h"
 
 namespace livery {
+
+/// A photograph's file as a camera gave it: RAW, JPEG.
+struct CameraFile {
+    std::string name;  ///< with its ending
+    std::vector<unsigned char> bytes;
+};
 
 /// One photograph in the camera's own units.
 struct Photograph {
@@ -20,6 +28,7 @@ struct Photograph {
     double saturates_at = std::numeric_limits<double>::infinity();  ///< file units
     std::string name;        ///< file name or pattern role, for messages
     double taken_at = -1.0;  ///< when, in photographs; negative: in the order in which they come
+    std::shared_ptr<const CameraFile> file;  ///< what `image` was read from; null: nothing else
 };
 
 /// Linear camera colour per second: (value - black_level) / exposure_s.

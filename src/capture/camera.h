@@ -1,0 +1,66 @@
+// A camera that the program has hold of: over a cable, as a video stream, or simulated.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/bench_ports.h"
+#include "core/error.h"
+
+namespace livery {
+
+/// Why a camera did not do what it was asked for.
+enum class CameraTrouble {
+    gone,       ///< cable pulled, switched off, asleep: it may come back
+    silent,     ///< it is there and does not answer in time
+    held,       ///< another program has it
+    card_full,  ///< nowhere to put a photograph
+    refused,    ///< it says no: busy, no such setting, lens cap, no focus
+    unusable,   ///< what it gave is no photograph that can be used
+};
+
+class CameraFault : public Refused {
+  public:
+    CameraFault(CameraTrouble trouble, std::string why, std::string fix)
+        : Refused(std::move(why), std::move(fix)), trouble_(trouble) {}
+    CameraTrouble trouble() const { return trouble_; }
+
+  private:
+    CameraTrouble trouble_;
+};
+
+/// One setting as the camera offers it.
+struct CameraSetting {
+    std::string name;                  ///< "exposure", "iso", "aperture", "format", "focus", ...
+    std::string value;                 ///< in the camera's own words: "1/60", "RAW"
+    std::vector<std::string> choices;  ///< empty: anything, or it cannot be set
+    bool can_be_set = false;
+};
+
+struct CameraState {
+    std::vector<CameraSetting> settings;
+    std::optional<double> battery;      ///< 0 to 1
+    std::optional<int> shots_left;      ///< on its card
+    std::vector<std::string> warnings;  ///< what would spoil photographs: automatic exposure, ...
+};
+
+/// All calls block, for as long as a deadline of the camera's own at most; one thread at a time.
+/// They throw CameraFault; a camera that is `gone` is looked for anew by the next call.
+class Camera {
+  public:
+    virtual ~Camera() = default;
+    /// What to call it: "Nikon D7500 at usb:001,004".
+    virtual std::string name() const = 0;
+    virtual CameraState state() = 0;
+    /// Chooses one of `choices`, or the nearest number. Throws CameraFault `refused` where the
+    /// camera has no such setting or value, or keeps another.
+    virtual void set(const std::string& setting, const std::string& value) = 0;
+    /// Photographs what is there now: TakePhotograph. The exposure that was really used stands in
+    /// the photograph: the nearest that the camera has.
+    virtual Photograph photograph(double exposure_s) = 0;
+    /// What it sees now, for looking at: sRGB, 3 channels. Empty where it cannot.
+    virtual Image8 live_view() = 0;
+};
+
+}  // namespace livery
