@@ -106,7 +106,7 @@ void draw_figures(const std::vector<GradedFigure>& figures) {
 
 void draw_calibration_in_use(const ColourCalibration& calibration) {
     const auto figures = grade_figures(calibration);
-    const CalibrationGrade grade = grade_of(figures);
+    const OverallGrade grade = grade_of(figures);
     ImGui::PushFont(large_font());
     ImGui::TextColored(colour_of(grade.grade), "%s", to_string(grade.grade).c_str());
     ImGui::PopFont();

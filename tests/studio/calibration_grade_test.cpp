@@ -23,7 +23,7 @@ ColourCalibration good_calibration() {
 TEST(Grade, IsGoodWhenEveryFigureIs) {
     const auto figures = grade_figures(good_calibration());
     EXPECT_EQ(figures.size(), 5u);
-    const CalibrationGrade grade = grade_of(figures);
+    const OverallGrade grade = grade_of(figures);
     EXPECT_EQ(grade.grade, Grade::good);
     EXPECT_TRUE(grade.fix.empty());
 }
@@ -31,7 +31,7 @@ TEST(Grade, IsGoodWhenEveryFigureIs) {
 TEST(Grade, IsTheWorstFigures) {
     ColourCalibration calibration = good_calibration();
     calibration.ambient_fraction = 0.03;
-    CalibrationGrade grade = grade_of(grade_figures(calibration));
+    OverallGrade grade = grade_of(grade_figures(calibration));
     EXPECT_EQ(grade.grade, Grade::usable);
     EXPECT_EQ(grade.reason, "Room light 3.0 % (good under 1 %, usable under 5 %)");
     EXPECT_EQ(grade.fix, "Darken the room.");
