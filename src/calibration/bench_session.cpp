@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "calibration/captures/capture_evidence.h"
+#include "calibration/captures/mockup_light.h"
 #include "calibration/colour/colour_report.h"
 #include "core/error.h"
 #include "core/statistics.h"
@@ -63,6 +64,7 @@ BenchSession::BenchSession(const BenchPorts& ports,
 Photograph BenchSession::photograph(const std::string& name) {
     progress_.update(std::min(1.0, static_cast<double>(photographs_) / expected_),
                      (fixed() ? "reading the photographs of " : "photographing ") + name);
+    if (ports_.announce) ports_.announce(name);
     Photograph photo = ports_.photograph(exposure_s_);
     if (photo.taken_at < 0.0) photo.taken_at = photographs_;
     if (!fixed()) photo.name = name;
@@ -144,25 +146,7 @@ double BenchSession::white_peak() const {
     return peak;
 }
 
-/// Lit pixels: a tenth of the brightest ones and more.
-void BenchSession::find_lit() {
-    const float gain = static_cast<float>(white_.exposure_s / black_.exposure_s);
-    std::vector<float> light(white_.image.pixel_count());
-    for (std::size_t i = 0; i < light.size(); ++i) {
-        float sum = 0.0f;
-        for (std::size_t c = 0; c < 3; ++c)
-            sum += white_.image.values[3 * i + c] - static_cast<float>(white_.black_level) -
-                   gain * (black_.image.values[3 * i + c] - static_cast<float>(black_.black_level));
-        light[i] = std::isfinite(sum) ? sum : 0.0f;
-    }
-    const float limit = 0.1f * quantile(light, 0.9999);
-    std::vector<std::uint32_t> lit;
-    for (std::size_t i = 0; i < light.size(); ++i)
-        if (light[i] > limit) lit.push_back(static_cast<std::uint32_t>(i));
-    const std::size_t step = lit.size() / 40000 + 1;
-    lit_.clear();
-    for (std::size_t i = 0; i < lit.size(); i += step) lit_.push_back(lit[i]);
-}
+void BenchSession::find_lit() { lit_ = lit_pixels(light_over_black(white_, black_), 40000); }
 
 /// Black long enough for any latency, then white until it is seen; false when it is not.
 bool BenchSession::see_white(int width, int height) {
@@ -312,6 +296,8 @@ Photograph BenchSession::take_mean(const Image8& drive, const std::string& name,
     for (int number = 0; number < shots; ++number) {
         const Photograph shot = number == 0 ? mean : photograph(name);
         light.push_back(lit_mean(shot));
+        if (number > 0)
+            mean.kept_as.insert(mean.kept_as.end(), shot.kept_as.begin(), shot.kept_as.end());
         for (std::size_t i = 0; i < sum.size(); ++i) {
             sum[i] += static_cast<double>(shot.image.values[i]);
             over[i] |= shot.image.values[i] >= limit;

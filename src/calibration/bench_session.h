@@ -28,6 +28,9 @@ class BenchSession {
     /// before on the lit pixels; it is repeated some times, then refused.
     Photograph take(const Image8& drive, const std::string& name, bool compared_to_last = true);
 
+    /// One more of what is shown.
+    Photograph again(const std::string& name) { return photograph(name); }
+
     /// Mean of several photographs of one picture. A value at 98% of full scale in any of them
     /// stays there. Throws Refused when their brightness differs by more than 1%.
     Photograph take_mean(const Image8& drive, const std::string& name, int shots);

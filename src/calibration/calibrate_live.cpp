@@ -51,11 +51,13 @@ class LiveCalibration {
           drives_{options.colour.dark_drive, options.colour.bright_drive} {}
 
     Captures captures;
+    std::vector<std::pair<std::string, std::string>> kept;  ///< roles and files of a recording
 
     CaptureVerdict judge(bool with_stripes) const {
         return judge_captures(captures, options_.width, options_.height, drives_, with_stripes);
     }
     void add(const std::string& role, Photograph photograph) {
+        for (const std::string& file : photograph.kept_as) kept.emplace_back(role, file);
         add_capture(captures, {role, std::move(photograph)});
     }
     void photograph(const Pattern& pattern, int shots = 1) {
@@ -321,6 +323,7 @@ LiveResult calibrate_live(const BenchPorts& bench,
     result.calibration =
         calibrate_judged(live.captures, verdict, result.patterns, result.map, with_xyz, solving);
     result.captures = std::move(live.captures.colours);
+    result.kept = std::move(live.kept);
     if (fixed) result.colour_photographs = static_cast<int>(result.captures.size());
     if (session.latency() > 0) {
         result.calibration.warnings.push_back(

@@ -201,6 +201,23 @@ void write_patterns_manifest(const std::filesystem::path& manifest,
     write_json_file(manifest, json);
 }
 
+void write_captures_manifest(const CapturesFolder& folder) {
+    Json json;
+    json["format_version"] = kNewestVersion;
+    json["projector"] = {folder.projector_width, folder.projector_height};
+    json["captures"] = Json::array();
+    for (const Capture& capture : folder.captures) {
+        Json entry = {{"file", capture.file.string()},
+                      {"role", capture.role},
+                      {"exposure_s", capture.exposure_s},
+                      {"transfer", capture.transfer},
+                      {"black_level", capture.black_level}};
+        if (capture.saturates_at > 0.0) entry["saturates_at"] = capture.saturates_at;
+        json["captures"].push_back(std::move(entry));
+    }
+    write_json_file(folder.folder / "manifest.json", json);
+}
+
 std::vector<double> read_response(const std::filesystem::path& file) {
     return parse_response(read_text_file(file), file);
 }

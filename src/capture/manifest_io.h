@@ -18,6 +18,9 @@ CapturesFolder read_captures_manifest(const std::filesystem::path& manifest);
 void write_patterns_manifest(const std::filesystem::path& manifest,
                              const PatternsManifest& patterns);
 
+/// Writes the folder's manifest.json; photographs are named relative to it. Throws FileError.
+void write_captures_manifest(const CapturesFolder& folder);
+
 /// A camera's response: linear light for equally spaced file values from 0 to full scale, both as
 /// fractions of full scale; never falls. Throws FileError.
 std::vector<double> read_response(const std::filesystem::path& file);

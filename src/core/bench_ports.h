@@ -29,6 +29,8 @@ struct Photograph {
     std::string name;        ///< file name or pattern role, for messages
     double taken_at = -1.0;  ///< when, in photographs; negative: in the order in which they come
     std::shared_ptr<const CameraFile> file;  ///< what `image` was read from; null: nothing else
+    /// Files of a recording that it was kept in: one, or of a mean all.
+    std::vector<std::string> kept_as;
 };
 
 /// Linear camera colour per second: (value - black_level) / exposure_s.
@@ -50,10 +52,14 @@ using TurnToRole = std::function<int(const std::string& role)>;
 /// `pixel_in_projector` lights: absolute XYZ of the light that the mock-up sends to the eye there.
 using MeasureXyz = std::function<glm::dvec3(glm::dvec2 pixel_in_projector)>;
 
+/// Told what the next photograph is to show ("gray-column-3", "white at half the exposure").
+using AnnouncePicture = std::function<void(const std::string& what)>;
+
 struct BenchPorts {
     ShowPicture show;
     TakePhotograph photograph;
-    MeasureXyz measure_xyz;  ///< may be empty: no colorimeter at hand
+    MeasureXyz measure_xyz;    ///< may be empty: no colorimeter at hand
+    AnnouncePicture announce;  ///< may be empty: nobody wants to know
     /// Not empty where the photographs are what they are, taken by somebody else: in a folder, or
     /// with a camera that the program has no hold of. None can be repeated, the exposures are those
     /// that they have, and each is known to show the picture that it is said to show.

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <glm/mat3x3.hpp>
@@ -73,6 +74,8 @@ struct LiveResult {
     /// options.
     std::vector<RoledPhotograph> captures;
     std::vector<Pattern> patterns;
+    /// Photographs that it was made of, of those that were recorded: role and file of each.
+    std::vector<std::pair<std::string, std::string>> kept;
     double capture_seconds = 0.0, solve_seconds = 0.0;
     int colour_photographs = 0, latency_photographs = 0;
 };

@@ -1,0 +1,24 @@
+// The projector's light in photographs of a mock-up.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/bench_ports.h"
+#include "core/image.h"
+
+namespace livery {
+
+/// Places of camera pixels.
+using LitPixels = std::vector<std::uint32_t>;
+
+/// What a photograph holds over one of black, mean of the channels, file units a second: 1 channel.
+ImageF light_over_black(const Photograph& photograph, const Photograph& black);
+
+/// Pixels with at least a tenth of the brightest ones' light, thinned to some 40000 where asked.
+LitPixels lit_pixels(const ImageF& light, std::size_t thinned_to = 0);
+
+/// Mean over these pixels; 0 for none.
+double lit_mean(const ImageF& light, const LitPixels& lit);
+
+}  // namespace livery

@@ -1,0 +1,310 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "capture/captures_folder.h"
+#include "capture/manifest_io.h"
+#include "capture/recording.h"
+#include "core/error.h"
+#include "core/hash.h"
+#include "core/image_io.h"
+#include "core/json.h"
+#include "core/paths.h"
+
+namespace livery {
+
+namespace {
+
+constexpr int kNewestVersion = 1;
+/// A picture that is shown anew in the middle of its photographs: the slowest projector's delay.
+constexpr int kSettling = 6;
+
+std::string hash_of(const Image8& drive) {
+    Hasher hasher;
+    const int size[] = {drive.width, drive.height, drive.channels};
+    hasher.add(std::span<const int>(size));
+    hasher.add(std::span<const std::uint8_t>(drive.values));
+    return hasher.hex();
+}
+
+Json json_of(const RecordedPhotograph& photograph) {
+    Json json = {{"file", photograph.file},
+                 {"of", photograph.of},
+                 {"asked_s", photograph.asked_s},
+                 {"exposure_s", photograph.exposure_s},
+                 {"black_level", photograph.black_level}};
+    if (std::isfinite(photograph.saturates_at)) json["saturates_at"] = photograph.saturates_at;
+    return json;
+}
+
+RecordedPhotograph photograph_from(const JsonReader& json) {
+    json.allow_only({"file", "of", "asked_s", "exposure_s", "black_level", "saturates_at"});
+    RecordedPhotograph photograph;
+    photograph.file = json["file"].text();
+    const std::filesystem::path name(photograph.file);
+    if (name.filename() != name || photograph.file.empty()) {
+        json["file"].fail("\"" + photograph.file + "\"", "the name of a file in the same folder");
+    }
+    photograph.of = json["of"].text();
+    photograph.asked_s = json["asked_s"].number_between(0.0, 1e6);
+    photograph.exposure_s = json["exposure_s"].number_between(1e-9, 1e6);
+    photograph.black_level = json["black_level"].number_between(0.0, 1e9);
+    photograph.saturates_at = json.has("saturates_at")
+                                  ? json["saturates_at"].number_between(0.0, 1e9)
+                                  : std::numeric_limits<double>::infinity();
+    return photograph;
+}
+
+RecordedShowing showing_from(const JsonReader& json) {
+    json.allow_only({"picture", "photographs", "measured"});
+    RecordedShowing showing;
+    showing.picture = json["picture"].text();
+    const JsonReader photographs = json["photographs"];
+    for (std::size_t k = 0; k < photographs.size(); ++k) {
+        showing.photographs.push_back(photograph_from(photographs.at(k)));
+    }
+    if (!json.has("measured")) return showing;
+    const JsonReader measured = json["measured"];
+    for (std::size_t k = 0; k < measured.size(); ++k) {
+        const auto values = measured.at(k).numbers(5);
+        showing.measured.push_back({{values[0], values[1]}, {values[2], values[3], values[4]}});
+    }
+    return showing;
+}
+
+Photograph load(const std::filesystem::path& folder, const RecordedPhotograph& recorded) {
+    Capture capture;
+    capture.file = folder / recorded.file;
+    capture.exposure_s = recorded.exposure_s;
+    Photograph photograph = load_photograph(capture);
+    photograph.black_level = recorded.black_level;
+    photograph.saturates_at = recorded.saturates_at;
+    photograph.kept_as = {recorded.file};
+    return photograph;
+}
+
+}  // namespace
+
+Recording::Recording(std::filesystem::path folder, std::string bench)
+    : folder_(std::move(folder)), bench_words_(std::move(bench)) {
+    make_output_folder(folder_);
+    const auto file = folder_ / "recording.json";
+    if (std::error_code error; std::filesystem::exists(file, error)) read(file);
+}
+
+Recording::~Recording() {
+    try {
+        flush();
+    } catch (const FileError&) {
+        // Whoever wants to know has called flush().
+    }
+}
+
+void Recording::read(const std::filesystem::path& file) {
+    const Json json = read_json_file(file);
+    const JsonReader root(file, json);
+    root.require_format_version(kNewestVersion);
+    root.allow_only({"format_version", "bench", "showings"});
+    if (const std::string of = root["bench"].text(); of != bench_words_) {
+        throw Refused("the photographs in " + folder_.string() + " were taken with " + of +
+                          ", not with " + bench_words_,
+                      "go on with what they were taken with, or choose an empty folder");
+    }
+    const JsonReader showings = root["showings"];
+    for (std::size_t k = 0; k < showings.size(); ++k) {
+        showings_.push_back(showing_from(showings.at(k)));
+        for (const RecordedPhotograph& photograph : showings_.back().photographs) {
+            int number = 0;
+            if (std::sscanf(photograph.file.c_str(), "%d", &number) == 1)
+                files_ = std::max(files_, number + 1);
+        }
+    }
+}
+
+std::string Recording::text() const {
+    Json json = {{"format_version", kNewestVersion}, {"bench", bench_words_}};
+    json["showings"] = Json::array();
+    for (const RecordedShowing& showing : showings_) {
+        if (showing.photographs.empty() && showing.measured.empty()) continue;
+        Json entry = {{"picture", showing.picture}, {"photographs", Json::array()}};
+        for (const auto& photograph : showing.photographs)
+            entry["photographs"].push_back(json_of(photograph));
+        for (const auto& [place, xyz] : showing.measured)
+            entry["measured"].push_back({place.x, place.y, xyz.x, xyz.y, xyz.z});
+        json["showings"].push_back(std::move(entry));
+    }
+    return json.dump(1) + "\n";
+}
+
+BenchPorts Recording::ports(const BenchPorts& bench) {
+    check_argument(!bench.turn_to, "photographs that lie in a folder are not recorded again");
+    bench_ = bench;
+    place_.reset();
+    shown_.clear();
+    BenchPorts ports;
+    ports.show = [this](const Image8& drive) { show(drive); };
+    ports.photograph = [this](double asked_s) { return photograph(asked_s); };
+    ports.announce = [this](const std::string& what) {
+        announced_ = what;
+        if (bench_.announce) bench_.announce(what);
+    };
+    if (bench.measure_xyz) ports.measure_xyz = [this](glm::dvec2 place) { return measure(place); };
+    return ports;
+}
+
+void Recording::show(const Image8& drive) {
+    drive_ = drive;
+    const std::string picture = hash_of(drive);
+    const std::size_t from = place_ ? *place_ + 1 : 0;
+    std::size_t found = from;
+    while (found < showings_.size() && showings_[found].picture != picture) ++found;
+    {
+        const std::lock_guard lock(mutex_);
+        if (found == showings_.size()) {
+            found = from;
+            showings_.insert(showings_.begin() + static_cast<std::ptrdiff_t>(from),
+                             RecordedShowing{picture, {}, {}});
+        }
+    }
+    place_ = found;
+    next_ = measured_ = 0;
+    if (!showings_[found].photographs.empty() || !bench_.show) return;
+    shown_.clear();
+    bench_.show(drive);
+    shown_ = picture;
+}
+
+/// Shows what has been answered for so far from the folder, and waits until it must be there.
+void Recording::bring_up(double asked_s) {
+    const std::string& picture = showings_[*place_].picture;
+    if (shown_ == picture) return;
+    shown_.clear();
+    if (bench_.show) bench_.show(drive_);
+    for (int i = 0; i < kSettling; ++i) bench_.photograph(asked_s);
+    shown_ = picture;
+}
+
+Photograph Recording::photograph(double asked_s) {
+    check_argument(place_.has_value(), "a photograph before anything was shown");
+    RecordedShowing& showing = showings_[*place_];
+    if (next_ < showing.photographs.size() && showing.photographs[next_].asked_s == asked_s) {
+        Photograph known = load(folder_, showing.photographs[next_]);
+        ++next_;
+        ++answered_;
+        return known;
+    }
+    return take(asked_s);
+}
+
+Photograph Recording::take(double asked_s) {
+    if (!bench_.photograph) {
+        throw FileError(folder_,
+                        "photographs",
+                        fmt::format("none of {} at {:.4g} s in its place", announced_, asked_s),
+                        "a recording of the whole run");
+    }
+    bring_up(asked_s);
+    Photograph photograph = bench_.photograph(asked_s);
+    ++taken_;
+    keep(photograph, asked_s);
+    ++next_;
+    return photograph;
+}
+
+void Recording::keep(Photograph& photograph, double asked_s) {
+    flush();  // The last one's: two at a time would not be safer.
+    const std::string suffix =
+        photograph.file ? std::filesystem::path(photograph.file->name).extension().string()
+                        : ".exr";
+    RecordedPhotograph recorded{fmt::format("{:04}{}", files_++, suffix),
+                                announced_,
+                                asked_s,
+                                photograph.exposure_s,
+                                photograph.black_level,
+                                photograph.saturates_at};
+    photograph.kept_as = {recorded.file};
+    const auto file = folder_ / recorded.file;
+    {
+        const std::lock_guard lock(mutex_);
+        auto& photographs = showings_[*place_].photographs;
+        photographs.resize(next_);  // What comes behind was asked for otherwise.
+        photographs.push_back(std::move(recorded));
+    }
+    // On a thread of its own, so that a camera need not wait for the disk.
+    writing_ = std::async(std::launch::async,
+                          [file,
+                           image = photograph.image,
+                           camera_file = photograph.file,
+                           list = folder_ / "recording.json",
+                           text = text()] {
+                              if (camera_file) {
+                                  write_text_file(
+                                      file,
+                                      {reinterpret_cast<const char*>(camera_file->bytes.data()),
+                                       camera_file->bytes.size()});
+                              } else {
+                                  write_exr(file, image);
+                              }
+                              write_text_file(list, text);  // It names only what is there.
+                          });
+}
+
+void Recording::flush() {
+    if (writing_.valid()) writing_.get();
+}
+
+glm::dvec3 Recording::measure(glm::dvec2 pixel) {
+    check_argument(place_.has_value(), "a measurement before anything was shown");
+    RecordedShowing& showing = showings_[*place_];
+    if (measured_ < showing.measured.size() && showing.measured[measured_].first == pixel) {
+        return showing.measured[measured_++].second;
+    }
+    bring_up(0.0);
+    const glm::dvec3 xyz = bench_.measure_xyz(pixel);
+    const std::lock_guard lock(mutex_);
+    showing.measured.resize(measured_);
+    showing.measured.emplace_back(pixel, xyz);
+    ++measured_;
+    return xyz;
+}
+
+void Recording::write_manifest(int projector_width,
+                               int projector_height,
+                               const std::vector<std::pair<std::string, std::string>>& kept) {
+    flush();
+    CapturesFolder captures{folder_, projector_width, projector_height, {}};
+    for (const auto& [role, file] : kept) {
+        for (const RecordedShowing& showing : showings_) {
+            for (const RecordedPhotograph& photograph : showing.photographs) {
+                if (photograph.file != file) continue;
+                Capture capture;
+                capture.role = role;
+                capture.file = file;
+                capture.exposure_s = photograph.exposure_s;
+                capture.black_level = photograph.black_level;
+                if (std::isfinite(photograph.saturates_at))
+                    capture.saturates_at = photograph.saturates_at;
+                captures.captures.push_back(std::move(capture));
+            }
+        }
+    }
+    write_captures_manifest(captures);
+}
+
+void Recording::take_again(std::size_t place) {
+    check_argument(place < showings_.size(), "a picture that was not shown");
+    const std::lock_guard lock(mutex_);
+    showings_[place].photographs.clear();
+    showings_[place].measured.clear();
+}
+
+std::vector<RecordedShowing> Recording::showings() const {
+    const std::lock_guard lock(mutex_);
+    return showings_;
+}
+
+}  // namespace livery
