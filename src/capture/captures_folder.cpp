@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "capture/manifest_io.h"
+#include "capture/transfer.h"
 #include "core/channels.h"
 #include "core/colour.h"
 #include "core/error.h"
@@ -93,21 +94,6 @@ ImageF rgb_of(const std::filesystem::path& file, ImageFile picture) {
         }
     }
     return rgb;
-}
-
-/// Linear light from a file value, both in file units.
-std::function<double(double)> linearisation(const std::string& transfer, double full_scale) {
-    if (transfer == "linear") return {};
-    if (transfer == "srgb") {
-        return [=](double value) { return full_scale * srgb_decode(value / full_scale); };
-    }
-    return [=, table = read_response(transfer)](double value) {
-        const double last = static_cast<double>(table.size() - 1);
-        const double place = std::clamp(value / full_scale, 0.0, 1.0) * last;
-        const auto below = static_cast<std::size_t>(std::min(place, last - 1.0));
-        const double t = place - static_cast<double>(below);
-        return full_scale * ((1.0 - t) * table[below] + t * table[below + 1]);
-    };
 }
 
 void check_finite(const std::filesystem::path& file, const ImageF& image) {

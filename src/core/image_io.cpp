@@ -10,12 +10,11 @@
 #include <memory>
 #include <string_view>
 
-#include <dlfcn.h>
-
 #include "core/error.h"
-#include "core/image_io_module.h"
+#include "core/module.h"
 #include "core/paths.h"
-#include "core/radiance_hdr.h"
+#include "core/pictures/image_io_module.h"
+#include "core/pictures/radiance_hdr.h"
 
 namespace livery {
 
@@ -30,25 +29,9 @@ constexpr std::uintmax_t kMaxValues = 240'000'000;
 constexpr std::uintmax_t kBelievedValues = 64'000'000, kMostValuesPerByte = 1'032;
 constexpr const char* kReadable = "a complete EXR, HDR, PNG, TIFF, JPEG or RAW picture";
 
-/// Found beside the program: in an installation, or in a build. Stays open until the end.
 const ImageIoTable& module_table() {
-    static const ImageIoTable& table = []() -> const ImageIoTable& {
-        const std::filesystem::path places[] = {executable_folder() / "../lib/livery",
-                                                executable_folder() / "../lib"};
-        std::string tried;
-        for (const auto& place : places) {
-            const auto file = (place / kModuleName).lexically_normal();
-            if (std::error_code error; !std::filesystem::exists(file, error)) {
-                tried += (tried.empty() ? "" : ", ") + file.parent_path().string();
-                continue;
-            }
-            void* library = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-            void* symbol = library ? ::dlsym(library, kImageIoTableSymbol) : nullptr;
-            if (!symbol) throw FileError(file, "", ::dlerror(), "Livery's picture reader");
-            return *reinterpret_cast<const ImageIoTable* (*)()>(symbol)();
-        }
-        throw FileError(kModuleName, "", "nothing in " + tried, "Livery's picture reader");
-    }();
+    static const ImageIoTable& table = *reinterpret_cast<const ImageIoTable* (*)()>(
+        symbol_of_module(kModuleName, kImageIoTableSymbol, "Livery's picture reader"))();
     return table;
 }
 

@@ -1,6 +1,6 @@
 #include <sstream>
 
-#include "core/png_damage.h"
+#include "core/pictures/png_damage.h"
 #include "fuzz/fuzz.h"
 
 LIVERY_FUZZ(bytes) {

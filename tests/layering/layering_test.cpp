@@ -207,7 +207,7 @@ TEST(Layering, PlantedIncludesAreFound) {
           "core/b.h:1: core may not include mesh/mesh.h",
           "core/b.h:2: <embree3/rtcore.h> stays in tracing",
           "core/c.cpp:1: c.h is not named from its folder",
-          "core/c.cpp:2: <OpenImageIO/imageio.h> stays in core/image_io"}) {
+          "core/c.cpp:2: <OpenImageIO/imageio.h> stays in core/pictures/image_io"}) {
         EXPECT_NE(text.find(part), std::string::npos) << part << " not in\n" << text;
     }
 }

@@ -1,4 +1,4 @@
-#include "core/image_io_module.h"
+#include "core/pictures/image_io_module.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -13,7 +13,7 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
-#include "core/png_damage.h"
+#include "core/pictures/png_damage.h"
 
 namespace {
 

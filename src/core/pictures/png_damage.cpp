@@ -1,4 +1,4 @@
-#include "core/png_damage.h"
+#include "core/pictures/png_damage.h"
 
 #include <cstdint>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "core/radiance_hdr.h"
+#include "core/pictures/radiance_hdr.h"
 
 #include <array>
 #include <charconv>

@@ -1,0 +1,17 @@
+// From the numbers in a photograph's file to light.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace livery {
+
+/// Linear light from a file value, both in file units from 0 to `full_scale`: "linear" (an empty
+/// function), "srgb", or a response file's path. Throws FileError.
+std::function<double(double)> linearisation(const std::string& transfer, double full_scale);
+
+/// The same as a table of the 256 values of an 8-bit file.
+std::vector<float> linear_from_eight_bits(const std::string& transfer);
+
+}  // namespace livery

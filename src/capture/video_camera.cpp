@@ -1,0 +1,296 @@
+#include "capture/video_camera.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <condition_variable>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "capture/transfer.h"
+#include "capture/video_module.h"
+#include "core/module.h"
+
+namespace livery {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// V4L2 counts exposures in tenths of a millisecond; 1 is "manual" there.
+constexpr double kExposureUnit_s = 1e-4, kManual = 1.0;
+
+const VideoTable& module_table() {
+    static const VideoTable& table = *reinterpret_cast<const VideoTable* (*)()>(
+        symbol_of_module("livery_video.so", kVideoTableSymbol, "Livery's video input"))();
+    return table;
+}
+
+/// A source that is open.
+class Video {
+  public:
+    Video(const std::string& source, int timeout_ms) : table_(module_table()) {
+        VideoError error;
+        video_ = table_.open(source.c_str(), timeout_ms, &error);
+        if (!video_) {
+            throw CameraFault(CameraTrouble::gone,
+                              "video " + source + " does not open: " + error.text,
+                              "check the cable or the address, and that no other program has it");
+        }
+    }
+    ~Video() { table_.close(video_); }
+    Video(const Video&) = delete;
+    Video& operator=(const Video&) = delete;
+
+    std::optional<VideoFrame> read() {
+        VideoFrame frame;
+        if (!table_.read(video_, &frame, &error_)) return std::nullopt;
+        return frame;
+    }
+    const char* problem() const { return error_.text; }
+    double get(VideoSetting setting) { return table_.get(video_, setting); }
+    bool set(VideoSetting setting, double value) { return table_.set(video_, setting, value); }
+
+  private:
+    const VideoTable& table_;
+    void* video_;
+    VideoError error_;
+};
+
+bool is_device(const std::string& source) {
+    return !source.empty() && source.size() < 4 &&
+           std::all_of(source.begin(), source.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+bool is_file(const std::string& source) {
+    std::error_code error;
+    return source.find("://") == std::string::npos && !is_device(source) &&
+           std::filesystem::is_regular_file(source, error);
+}
+
+class VideoCamera : public Camera {
+  public:
+    explicit VideoCamera(const VideoCameraOptions& options)
+        : options_(options), linear_(linear_from_eight_bits(options.transfer)) {
+        open();
+    }
+    ~VideoCamera() override { close(); }
+    VideoCamera(const VideoCamera&) = delete;
+    VideoCamera& operator=(const VideoCamera&) = delete;
+
+    std::string name() const override {
+        return is_device(options_.source) ? "video camera /dev/video" + options_.source
+                                          : "video " + options_.source;
+    }
+    CameraState state() override;
+    void set(const std::string& setting, const std::string& value) override;
+    Photograph photograph(double exposure_s) override;
+    Image8 live_view() override;
+
+  private:
+    void open();
+    void close();
+    void grab();
+    void set_exposure(double exposure_s);
+    void expect_open() {
+        if (!video_) open();
+    }
+    /// The next frame that began after `after`, in `newest_`, which is locked meanwhile.
+    void next_frame(std::unique_lock<std::mutex>& lock, std::uint64_t number);
+    [[noreturn]] void fail_gone(const std::string& why);
+
+    VideoCameraOptions options_;
+    std::vector<float> linear_;  ///< of each 8-bit value, on the scale of the file
+    std::unique_ptr<Video> video_;
+    double exposure_s_ = 0.0;
+    bool sets_exposure_ = false, manual_ = false;
+
+    // A device or a stream is read all the time, so that what it shows is now.
+    std::thread grabber_;
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    bool stop_ = false;
+    std::string ended_;         ///< why no frame comes any more
+    std::uint64_t number_ = 0;  ///< of the newest frame
+    Image8 newest_;             ///< RGB
+};
+
+void VideoCamera::open() {
+    video_ = std::make_unique<Video>(options_.source, options_.timeout_ms);
+    exposure_s_ = options_.nominal_exposure_s;
+    ended_.clear();
+    stop_ = false;
+    if (is_file(options_.source)) return;
+    if (is_device(options_.source)) {
+        video_->set(VideoSetting::buffered_frames, 1.0);
+        manual_ = video_->set(VideoSetting::automatic_exposure, kManual);
+        const double found = video_->get(VideoSetting::exposure);
+        sets_exposure_ = found > 0.0 && video_->set(VideoSetting::exposure, found);
+        if (found > 0.0) exposure_s_ = found * kExposureUnit_s;
+    }
+    grabber_ = std::thread([this] { grab(); });
+}
+
+void VideoCamera::close() {
+    {
+        const std::lock_guard lock(mutex_);
+        stop_ = true;
+    }
+    if (grabber_.joinable()) grabber_.join();
+    video_.reset();
+}
+
+void VideoCamera::grab() {
+    for (;;) {
+        const std::optional<VideoFrame> frame = video_->read();
+        const std::lock_guard lock(mutex_);
+        if (!frame) ended_ = video_->problem();
+        if (stop_ || !frame) {
+            changed_.notify_all();
+            return;
+        }
+        if (newest_.width != frame->width || newest_.height != frame->height)
+            newest_ = Image8(frame->width, frame->height, 3);
+        for (std::size_t k = 0; k < newest_.values.size(); k += 3) {
+            newest_.values[k] = frame->bgr[k + 2];
+            newest_.values[k + 1] = frame->bgr[k + 1];
+            newest_.values[k + 2] = frame->bgr[k];
+        }
+        ++number_;
+        changed_.notify_all();
+    }
+}
+
+void VideoCamera::fail_gone(const std::string& why) {
+    close();
+    throw CameraFault(CameraTrouble::gone,
+                      name() + " sends no more pictures: " + why,
+                      "check its cable, power and network; it is looked for again");
+}
+
+void VideoCamera::next_frame(std::unique_lock<std::mutex>& lock, std::uint64_t number) {
+    const auto deadline = Clock::now() + std::chrono::milliseconds(options_.timeout_ms);
+    const bool came =
+        changed_.wait_until(lock, deadline, [&] { return number_ >= number || !ended_.empty(); });
+    if (came && ended_.empty()) return;
+    const std::string why =
+        ended_.empty() ? fmt::format("none for {} ms", options_.timeout_ms) : ended_;
+    lock.unlock();
+    fail_gone(why);
+}
+
+void VideoCamera::set_exposure(double exposure_s) {
+    if (!(exposure_s > 0.0) || !sets_exposure_) return;
+    if (std::abs(exposure_s / exposure_s_ - 1.0) < 1e-3) return;
+    video_->set(VideoSetting::exposure, std::max(1.0, std::round(exposure_s / kExposureUnit_s)));
+    const double found = video_->get(VideoSetting::exposure);
+    if (found > 0.0) exposure_s_ = found * kExposureUnit_s;
+    std::unique_lock lock(mutex_);
+    next_frame(lock, number_ + static_cast<std::uint64_t>(options_.settling_frames));
+}
+
+Photograph VideoCamera::photograph(double exposure_s) {
+    expect_open();
+    set_exposure(exposure_s);
+    Photograph photograph;
+    photograph.exposure_s = exposure_s_;
+    photograph.black_level = static_cast<double>(linear_.front());
+    photograph.saturates_at = static_cast<double>(linear_.back());
+    const auto add = [&](const Image8& frame) {
+        if (photograph.image.empty()) photograph.image = ImageF(frame.width, frame.height, 3);
+        if (photograph.image.width != frame.width || photograph.image.height != frame.height)
+            throw CameraFault(CameraTrouble::unusable,
+                              fmt::format("{} changed its picture from {}x{} to {}x{}",
+                                          name(),
+                                          photograph.image.width,
+                                          photograph.image.height,
+                                          frame.width,
+                                          frame.height),
+                              "leave the camera's resolution alone while it photographs");
+        for (std::size_t k = 0; k < frame.values.size(); ++k)
+            photograph.image.values[k] += linear_[frame.values[k]];
+    };
+    if (grabber_.joinable()) {
+        std::unique_lock lock(mutex_);
+        // The one on its way began before; the one after it did not.
+        std::uint64_t wanted = number_ + 2;
+        for (int k = 0; k < options_.frames; ++k) {
+            next_frame(lock, wanted);
+            add(newest_);
+            wanted = number_ + 1;
+        }
+    } else {
+        for (int k = 0; k < options_.frames; ++k) {
+            const auto frame = video_->read();
+            if (!frame) fail_gone(video_->problem());
+            Image8 rgb(frame->width, frame->height, 3);
+            for (std::size_t i = 0; i < rgb.values.size(); ++i)
+                rgb.values[i] = frame->bgr[i - i % 3 + 2 - i % 3];
+            add(rgb);
+        }
+    }
+    for (float& value : photograph.image.values) value /= static_cast<float>(options_.frames);
+    return photograph;
+}
+
+Image8 VideoCamera::live_view() {
+    expect_open();
+    if (!grabber_.joinable()) return {};  // The frames of a file are photographs.
+    std::unique_lock lock(mutex_);
+    next_frame(lock, 1);
+    return newest_;
+}
+
+CameraState VideoCamera::state() {
+    expect_open();
+    CameraState state;
+    state.settings.push_back(
+        {"exposure", fmt::format("{:.4g} s", exposure_s_), {}, sets_exposure_});
+    if (is_device(options_.source))
+        state.settings.push_back(
+            {"gain", fmt::format("{:g}", video_->get(VideoSetting::gain)), {}, true});
+    state.settings.push_back({"frames", std::to_string(options_.frames), {}, true});
+    if (is_device(options_.source) && !manual_)
+        state.warnings.push_back("automatic exposure cannot be switched off from here");
+    if (!is_file(options_.source) && !sets_exposure_)
+        state.warnings.push_back(
+            "its exposure cannot be set from here: set it by hand in the camera, and switch "
+            "automatic exposure, gain and white balance off");
+    return state;
+}
+
+void VideoCamera::set(const std::string& setting, const std::string& value) {
+    expect_open();
+    double number = 0.0;
+    try {
+        number = std::stod(value);
+    } catch (const std::exception&) {
+        throw CameraFault(CameraTrouble::refused,
+                          fmt::format("{}: {} \"{}\" is no number", name(), setting, value),
+                          "give a number");
+    }
+    if (setting == "frames" && number >= 1.0 && number <= 1000.0) {
+        options_.frames = static_cast<int>(number);
+    } else if (setting == "exposure" && sets_exposure_ && number > 0.0) {
+        set_exposure(number);
+    } else if (setting != "gain" || !video_->set(VideoSetting::gain, number)) {
+        throw CameraFault(CameraTrouble::refused,
+                          fmt::format("{} does not take {} {}", name(), setting, value),
+                          "set it in the camera's own menu or page");
+    }
+}
+
+}  // namespace
+
+std::unique_ptr<Camera> open_video_camera(const VideoCameraOptions& options) {
+    check_argument(options.frames >= 1 && options.settling_frames >= 0 && options.timeout_ms > 0,
+                   "a video camera's frames and deadlines are positive");
+    return std::make_unique<VideoCamera>(options);
+}
+
+}  // namespace livery
