@@ -47,6 +47,7 @@ class BenchSession {
     void check_photograph(const Photograph& photo, const std::string& shown);
     void refuse_curved_files();
     bool see_white(int width, int height);
+    void wait_for_all_of_white();
     void find_lit();
     double white_peak() const;
     double lit_mean(const Photograph& photo) const;

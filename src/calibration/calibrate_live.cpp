@@ -231,7 +231,7 @@ LiveResult calibrate_live(const BenchPorts& bench,
                   options.width, options.height, colour.dark_drive, colour.bright_drive);
 
     const auto start = std::chrono::steady_clock::now();
-    constexpr int kToMeet = 17;  // latency and exposure, and white and black once more
+    constexpr int kToMeet = 18;  // latency and exposure, and white and black once more
     const auto geometry = geometry_roles(options.width, options.height).size();
     const auto expected = (options.map ? 0 : static_cast<int>(geometry)) +
                           (bench.turn_to ? 0 : kToMeet) +
@@ -328,7 +328,8 @@ LiveResult calibrate_live(const BenchPorts& bench,
     if (session.latency() > 0) {
         result.calibration.warnings.push_back(
             "the projector's picture reaches the camera " + std::to_string(session.latency()) +
-            " photographs late; each was awaited; a game mode shortens it");
+            (session.latency() == 1 ? " photograph" : " photographs") +
+            " late; each was awaited; a game mode shortens it");
         seal(result.calibration);
     }
     result.solve_seconds = judge_seconds + seconds_since(solve_start);

@@ -16,7 +16,7 @@
 namespace livery {
 namespace {
 
-constexpr int kPhotographs = 32;
+constexpr int kPhotographs = 33;
 constexpr int kFlickerShots = 5;
 constexpr int kStripe_px = 4;
 
@@ -123,7 +123,7 @@ void PreflightRun::see_size() {
                : grade_of(pixels, 1e5, 2e4)});
     const int late = result_.latency_photographs;
     add({"Delay",
-         late == 0 ? "none" : fmt::format("{} photographs", late),
+         late == 0 ? "none" : fmt::format("{} photograph{}", late, late == 1 ? "" : "s"),
          "good: none, usable up to 3 photographs",
          "How many photographs still see the picture before. Each picture is awaited.",
          "Switch the projector to its game mode, and motion interpolation off.",

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <future>
 #include <mutex>
 #include <optional>
@@ -27,7 +28,7 @@ struct RecordedPhotograph {
 
 /// One picture as long as it was shown.
 struct RecordedShowing {
-    std::string picture;  ///< hash of the device values
+    std::string picture;  ///< hash of the device values; empty: what was there before the first
     std::vector<RecordedPhotograph> photographs;
     std::vector<std::pair<glm::dvec2, glm::dvec3>> measured;  ///< places and XYZ of a colorimeter
 };
@@ -59,6 +60,9 @@ class Recording {
                         const std::vector<std::pair<std::string, std::string>>& kept);
     /// The next run photographs this one anew. Throws std::invalid_argument.
     void take_again(std::size_t showing);
+    /// Forgets the photograph that was taken last by this object's run, if any: what it showed is
+    /// taken again. Throws FileError.
+    void drop_last();
     std::vector<RecordedShowing> showings() const;
     /// Photographs that were taken by this object, and that were answered from the folder.
     int taken() const { return taken_; }
@@ -69,12 +73,14 @@ class Recording {
 
   private:
     void show(const Image8& drive);
+    void turn_to(const std::string& picture);
     Photograph photograph(double asked_s);
     glm::dvec3 measure(glm::dvec2 pixel);
     Photograph take(double asked_s);
     void bring_up(double asked_s);
     void keep(Photograph& photograph, double asked_s);
     void read(const std::filesystem::path& file);
+    void write(std::function<void()> first);
     std::string text() const;  ///< of recording.json
 
     std::filesystem::path folder_;
@@ -87,6 +93,7 @@ class Recording {
     std::string shown_;                 ///< what really is: a hash; empty: nothing is known
     std::size_t next_ = 0;              ///< of the showing's photographs
     std::size_t measured_ = 0;          ///< of its measurements
+    std::string last_taken_;            ///< file of this run's newest photograph
     int taken_ = 0, answered_ = 0, files_ = 0;
     std::future<void> writing_;
 };

@@ -145,6 +145,7 @@ BenchPorts Recording::ports(const BenchPorts& bench) {
     bench_ = bench;
     place_.reset();
     shown_.clear();
+    last_taken_.clear();
     BenchPorts ports;
     ports.show = [this](const Image8& drive) { show(drive); };
     ports.photograph = [this](double asked_s) { return photograph(asked_s); };
@@ -156,23 +157,25 @@ BenchPorts Recording::ports(const BenchPorts& bench) {
     return ports;
 }
 
-void Recording::show(const Image8& drive) {
-    drive_ = drive;
-    const std::string picture = hash_of(drive);
+void Recording::turn_to(const std::string& picture) {
     const std::size_t from = place_ ? *place_ + 1 : 0;
     std::size_t found = from;
     while (found < showings_.size() && showings_[found].picture != picture) ++found;
-    {
+    if (found == showings_.size()) {
+        found = from;
         const std::lock_guard lock(mutex_);
-        if (found == showings_.size()) {
-            found = from;
-            showings_.insert(showings_.begin() + static_cast<std::ptrdiff_t>(from),
-                             RecordedShowing{picture, {}, {}});
-        }
+        showings_.insert(showings_.begin() + static_cast<std::ptrdiff_t>(from),
+                         RecordedShowing{picture, {}, {}});
     }
     place_ = found;
     next_ = measured_ = 0;
-    if (!showings_[found].photographs.empty() || !bench_.show) return;
+}
+
+void Recording::show(const Image8& drive) {
+    drive_ = drive;
+    const std::string picture = hash_of(drive);
+    turn_to(picture);
+    if (!showings_[*place_].photographs.empty() || !bench_.show) return;
     shown_.clear();
     bench_.show(drive);
     shown_ = picture;
@@ -189,7 +192,7 @@ void Recording::bring_up(double asked_s) {
 }
 
 Photograph Recording::photograph(double asked_s) {
-    check_argument(place_.has_value(), "a photograph before anything was shown");
+    if (!place_) turn_to("");  // whatever the projector showed before
     RecordedShowing& showing = showings_[*place_];
     if (next_ < showing.photographs.size() && showing.photographs[next_].asked_s == asked_s) {
         Photograph known = load(folder_, showing.photographs[next_]);
@@ -234,23 +237,40 @@ void Recording::keep(Photograph& photograph, double asked_s) {
         photographs.resize(next_);  // What comes behind was asked for otherwise.
         photographs.push_back(std::move(recorded));
     }
-    // On a thread of its own, so that a camera need not wait for the disk.
-    writing_ = std::async(std::launch::async,
-                          [file,
-                           image = photograph.image,
-                           camera_file = photograph.file,
-                           list = folder_ / "recording.json",
-                           text = text()] {
-                              if (camera_file) {
-                                  write_text_file(
-                                      file,
-                                      {reinterpret_cast<const char*>(camera_file->bytes.data()),
-                                       camera_file->bytes.size()});
-                              } else {
-                                  write_exr(file, image);
-                              }
-                              write_text_file(list, text);  // It names only what is there.
-                          });
+    last_taken_ = photograph.kept_as.front();
+    write([file, image = photograph.image, camera_file = photograph.file] {
+        if (!camera_file) return write_exr(file, image);
+        write_text_file(
+            file,
+            {reinterpret_cast<const char*>(camera_file->bytes.data()), camera_file->bytes.size()});
+    });
+}
+
+/// The list after `first`, so that it names only what is there; on a thread of its own, so that a
+/// camera need not wait for the disk.
+void Recording::write(std::function<void()> first) {
+    writing_ =
+        std::async(std::launch::async,
+                   [first = std::move(first), list = folder_ / "recording.json", text = text()] {
+                       first();
+                       write_text_file(list, text);
+                   });
+}
+
+void Recording::drop_last() {
+    flush();
+    if (last_taken_.empty()) return;
+    {
+        const std::lock_guard lock(mutex_);
+        for (RecordedShowing& showing : showings_) {
+            std::erase_if(showing.photographs, [&](const RecordedPhotograph& photograph) {
+                return photograph.file == last_taken_;
+            });
+        }
+    }
+    last_taken_.clear();
+    write([] {});
+    flush();
 }
 
 void Recording::flush() {

@@ -24,6 +24,7 @@ using Clock = std::chrono::steady_clock;
 
 // V4L2 counts exposures in tenths of a millisecond; 1 is "manual" there.
 constexpr double kExposureUnit_s = 1e-4, kManual = 1.0;
+constexpr int kMostRestarts = 4;  // Whoever walks about in front of the camera must not hold it up.
 
 const VideoTable& module_table() {
     static const VideoTable& table = *reinterpret_cast<const VideoTable* (*)()>(
@@ -71,6 +72,16 @@ bool is_file(const std::string& source) {
     std::error_code error;
     return source.find("://") == std::string::npos && !is_device(source) &&
            std::filesystem::is_regular_file(source, error);
+}
+
+/// Whether a thousandth of the pixels differ by more than any camera's noise: another picture.
+bool shows_another(const Image8& before, const Image8& now) {
+    if (before.values.size() != now.values.size()) return false;
+    constexpr int kBeyondNoise = 16;
+    std::size_t differing = 0, looked_at = 0;
+    for (std::size_t k = 0; k < now.values.size(); k += 7, ++looked_at)
+        differing += std::abs(static_cast<int>(now.values[k]) - before.values[k]) > kBeyondNoise;
+    return 1000 * differing > looked_at;
 }
 
 class VideoCamera : public Camera {
@@ -201,25 +212,35 @@ Photograph VideoCamera::photograph(double exposure_s) {
     photograph.exposure_s = exposure_s_;
     photograph.black_level = static_cast<double>(linear_.front());
     photograph.saturates_at = static_cast<double>(linear_.back());
+    Image8 before;
+    int added = 0, seen = 0;
     const auto add = [&](const Image8& frame) {
-        if (photograph.image.empty()) photograph.image = ImageF(frame.width, frame.height, 3);
-        if (photograph.image.width != frame.width || photograph.image.height != frame.height)
+        ImageF& sum = photograph.image;
+        if (sum.empty()) sum = ImageF(frame.width, frame.height, 3);
+        if (sum.width != frame.width || sum.height != frame.height)
             throw CameraFault(CameraTrouble::unusable,
                               fmt::format("{} changed its picture from {}x{} to {}x{}",
                                           name(),
-                                          photograph.image.width,
-                                          photograph.image.height,
+                                          sum.width,
+                                          sum.height,
                                           frame.width,
                                           frame.height),
                               "leave the camera's resolution alone while it photographs");
+        // Those before were still on their way when the picture changed.
+        if (++seen <= kMostRestarts * options_.frames && shows_another(before, frame)) {
+            std::fill(sum.values.begin(), sum.values.end(), 0.0f);
+            added = 0;
+        }
         for (std::size_t k = 0; k < frame.values.size(); ++k)
-            photograph.image.values[k] += linear_[frame.values[k]];
+            sum.values[k] += linear_[frame.values[k]];
+        ++added;
+        before = frame;
     };
     if (grabber_.joinable()) {
         std::unique_lock lock(mutex_);
         // The one on its way began before; the one after it did not.
         std::uint64_t wanted = number_ + 2;
-        for (int k = 0; k < options_.frames; ++k) {
+        while (added < options_.frames) {
             next_frame(lock, wanted);
             add(newest_);
             wanted = number_ + 1;
@@ -231,6 +252,7 @@ Photograph VideoCamera::photograph(double exposure_s) {
             Image8 rgb(frame->width, frame->height, 3);
             for (std::size_t i = 0; i < rgb.values.size(); ++i)
                 rgb.values[i] = frame->bgr[i - i % 3 + 2 - i % 3];
+            before = {};  // Whoever made the file has cut it into photographs.
             add(rgb);
         }
     }

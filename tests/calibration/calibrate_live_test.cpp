@@ -131,7 +131,7 @@ TEST(CalibrateLive, WaitsForALateProjector) {
             largest_relative_difference(result.calibration.xyz_from_camera, live.xyz_from_camera),
             2e-3);
         ASSERT_EQ(result.calibration.warnings.size(), 1u);
-        EXPECT_HAS(result.calibration.warnings[0], std::to_string(latency) + " photographs late");
+        EXPECT_HAS(result.calibration.warnings[0], std::to_string(latency) + " photograph");
     }
 }
 

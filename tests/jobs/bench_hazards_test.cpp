@@ -157,7 +157,7 @@ TEST(BenchHazards, LateProjectorIsAwaited) {
     const Judged judged = session_on(description);
     expect_within(judged, kClean);
     EXPECT_EQ(judged.live.latency_photographs, 1);
-    EXPECT_HAS(all_warnings(judged.live.calibration), "1 photographs late");
+    EXPECT_HAS(all_warnings(judged.live.calibration), "1 photograph late");
 }
 
 TEST(BenchHazards, SmallLampDriftIsFollowed) {

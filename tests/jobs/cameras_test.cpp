@@ -1,0 +1,262 @@
+// Whole calibrations through cameras as they are: over the network, with the simulated bench in
+// front of their lenses.
+#include <atomic>
+#include <chrono>
+#include <limits>
+#include <memory>
+#include <mutex>
+
+#include <gtest/gtest.h>
+
+#include "capture/patient_camera.h"
+#include "capture/video_camera.h"
+#include "jobs/capture_run.h"
+#include "jobs/captured_calibration.h"
+#include "session/small_session.h"
+#include "support/bad_disk.h"
+#include "support/jpeg.h"
+#include "support/message_of.h"
+#include "support/mjpeg_server.h"
+#include "support/temporary_folder.h"
+
+namespace livery {
+namespace {
+
+using testing::judged;
+using testing::live_options;
+using testing::MjpegServer;
+using testing::small_bench_description;
+using testing::small_bench_product;
+
+/// A network camera in front of the bench: a new picture whenever another drive is shown.
+class FilmedBench {
+  public:
+    explicit FilmedBench(const BenchDescription& description)
+        : bench(description, small_bench_product()), ports_(bench.ports()) {
+        show(Image8(description.projector.view.width, description.projector.view.height, 3));
+    }
+    void show(const Image8& drive) {
+        ports_.show(drive);
+        // Two photographs, so that successive frames differ in their noise
+        std::string jpegs[] = {jpeg(), jpeg()};
+        const std::lock_guard lock(mutex_);
+        std::swap(jpegs_, jpegs);
+    }
+    std::string frame() {
+        const std::lock_guard lock(mutex_);
+        return jpegs_[frames_++ % 2];
+    }
+    MeasureXyz colorimeter() { return ports_.measure_xyz; }
+
+    Bench bench;
+
+  private:
+    std::string jpeg() {
+        const Photograph photograph = ports_.photograph(bench.default_exposure_s());
+        Image8 rgb(photograph.image.width, photograph.image.height, 3);
+        for (std::size_t k = 0; k < rgb.values.size(); ++k)
+            rgb.values[k] = static_cast<std::uint8_t>(photograph.image.values[k] + 0.5f);
+        return testing::jpeg_of(rgb);
+    }
+
+    BenchPorts ports_;
+    std::mutex mutex_;
+    std::string jpegs_[2];
+    int frames_ = 0;
+};
+
+BenchDescription filmed_description() {
+    BenchDescription description = small_bench_description();
+    description.camera.encoding = CameraEncoding::srgb8;
+    description.camera.black_level_units = 0.0;
+    return description;
+}
+
+TEST(Cameras, AVideoCameraCalibratesAsTheBenchDoes) {
+    const BenchDescription description = filmed_description();
+    FilmedBench filmed(description);
+    MjpegServer server([&] { return filmed.frame(); }, 60.0);
+    VideoCameraOptions video;
+    video.source = server.address();
+    const auto camera = open_video_camera(video);
+
+    double in_camera_s = 0.0;
+    BenchPorts ports;
+    ports.show = [&](const Image8& drive) { filmed.show(drive); };
+    ports.photograph = [&](double exposure_s) {
+        const auto start = std::chrono::steady_clock::now();
+        Photograph photograph = camera->photograph(exposure_s);
+        in_camera_s +=
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        return photograph;
+    };
+    ports.measure_xyz = filmed.colorimeter();
+    const TemporaryFolder folder;
+    Recording recording(folder.path(), "the bench, filmed");
+    LiveResult live = calibrate_recorded(recording, ports, live_options(description));
+    std::printf("    %d photographs, %.1f s in the camera, %.1f s in all\n",
+                recording.taken(),
+                in_camera_s,
+                live.capture_seconds);
+    EXPECT_GT(live.calibration.valid_fraction, 0.85);
+    const Comparison& seen = judged(filmed.bench, std::move(live)).comparison;
+
+    Bench direct(small_bench_description(), small_bench_product());
+    const Comparison& best =
+        judged(direct, calibrate_live(direct.ports(), live_options(description))).comparison;
+    // Eight bits against fourteen: a step at a tenth of white is 3% of it, of which the noise of
+    // frames and neighbours leaves a third.
+    EXPECT_LT(seen.interior.median, best.interior.median + 0.5);
+
+    // The recording is a captures folder as any other; its colours are then the camera's own.
+    CapturedCalibrationRequest request;
+    request.captures = folder.path();
+    const ColourCalibration again = calibrate_from_folder(request);
+    EXPECT_GT(again.valid_fraction, 0.85);
+}
+
+/// A bench whose photographs somebody spoils or interrupts, and all of them counted.
+struct Interrupted {
+    BenchDescription description = small_bench_description();
+    Bench bench{description, small_bench_product()};
+    int photographs = 0;
+    std::function<void(Photograph&, int number)> happens = [](Photograph&, int) {};
+
+    BenchPorts ports() {
+        BenchPorts ports = bench.ports();
+        ports.photograph = [this, take = ports.photograph](double exposure_s) {
+            Photograph photograph = take(exposure_s);
+            happens(photograph, photographs++);
+            return photograph;
+        };
+        return ports;
+    }
+    LiveResult run(Recording& recording) {
+        return calibrate_recorded(recording, ports(), live_options(description));
+    }
+};
+
+TEST(Cameras, ARecordingReplaysToTheSameCalibration) {
+    const TemporaryFolder folder;
+    Interrupted room;
+    ColourCalibration first;
+    {
+        Recording recording(folder.path(), "bench");
+        first = room.run(recording).calibration;
+    }
+    Recording replay(folder.path(), "bench");
+    BenchPorts nothing;
+    nothing.show = [](const Image8&) {};
+    nothing.measure_xyz = [](glm::dvec2) -> glm::dvec3 { throw std::runtime_error("read anew"); };
+    const ColourCalibration second =
+        calibrate_live(replay.ports(nothing), live_options(room.description)).calibration;
+    EXPECT_EQ(second.status.values, first.status.values);
+    EXPECT_EQ(second.dark.values, first.dark.values);
+    EXPECT_EQ(second.span.values, first.span.values);
+    EXPECT_EQ(second.xyz_from_camera, first.xyz_from_camera);
+    EXPECT_EQ(second.response[1].drive_from_n, first.response[1].drive_from_n);
+    EXPECT_EQ(replay.taken(), 0);
+}
+
+TEST(Cameras, ACaptureThatWasKilledGoesOnWhereItStopped) {
+    struct Killed {};
+    for (const int killed_at : {2, 9, 30, 55}) {
+        const TemporaryFolder folder;
+        Interrupted room;
+        room.happens = [&](Photograph&, int number) {
+            if (number == killed_at) throw Killed();
+        };
+        {
+            Recording recording(folder.path(), "bench");
+            EXPECT_THROW(room.run(recording), Killed);
+        }
+        room.happens = [](Photograph&, int) {};
+        Recording recording(folder.path(), "bench");
+        const Comparison& seen = judged(room.bench, room.run(recording)).comparison;
+        EXPECT_EQ(recording.answered(), killed_at) << "at most the one under way is lost";
+        EXPECT_LT(seen.interior.median, 0.4) << killed_at;
+    }
+}
+
+TEST(Cameras, APhotographThatCannotBeUsedIsTakenAgain) {
+    const std::vector<std::pair<std::function<void(Photograph&)>, const char*>> spoils{
+        {[](Photograph& photograph) { photograph.image = ImageF(100, 70, 3); },
+         "as the first photograph"},
+        {[](Photograph& photograph) { photograph.exposure_s *= 1.4; }, "automatic exposure"},
+        {[](Photograph& photograph) {
+             photograph.image = ImageF(432, 288, 3, std::numeric_limits<float>::quiet_NaN());
+         },
+         "not finite"}};
+    for (const auto& [spoil, said] : spoils) {
+        const TemporaryFolder folder;
+        Interrupted room;
+        room.happens = [&, spoil = spoil](Photograph& photograph, int number) {
+            if (number == 30) spoil(photograph);
+        };
+        Recording recording(folder.path(), "bench");
+        EXPECT_NE(message_of([&] { room.run(recording); }).find(said), std::string::npos)
+            << message_of([&] { room.run(recording); });
+        const int taken = recording.taken();
+        const LiveResult live = room.run(recording);
+        EXPECT_GE(recording.answered(), taken - 1) << said;
+        EXPECT_GT(live.calibration.valid_fraction, 0.95) << said;
+    }
+}
+
+TEST(Cameras, AFullDiskIsSaidAndNothingIsLost) {
+    const TemporaryFolder folder;
+    Interrupted room;
+    Recording recording(folder.path(), "bench");
+    std::unique_ptr<FullDisk> disk;
+    room.happens = [&](Photograph&, int number) {
+        if (number == 20) disk = std::make_unique<FullDisk>(4096);
+    };
+    const std::string said = message_of([&] { room.run(recording); });
+    disk.reset();
+    EXPECT_NE(said.find(folder.path().string()), std::string::npos) << said;
+    Recording again(folder.path(), "bench");
+    const LiveResult live = room.run(again);
+    EXPECT_GE(again.answered(), 18);
+    EXPECT_GT(live.calibration.valid_fraction, 0.95);
+}
+
+TEST(Cameras, ACameraThatIsPulledIsWaitedFor) {
+    const BenchDescription description = filmed_description();
+    FilmedBench filmed(description);
+    MjpegServer server([&] { return filmed.frame(); }, 60.0);
+    VideoCameraOptions video;
+    video.source = server.address();
+    video.frames = 2;
+    video.timeout_ms = 1500;
+    const auto camera = open_video_camera(video);
+    std::vector<CameraWait> waits;
+    BenchPorts ports;
+    int shown = 0;
+    ports.show = [&](const Image8& drive) {
+        filmed.show(drive);
+        if (++shown == 12) server.pull_cable(true);
+    };
+    ports.photograph = patient(*camera, {}, [&](const CameraWait& wait) {
+        waits.push_back(wait);
+        if (waits.size() == 2) server.pull_cable(false);
+    });
+    ports.measure_xyz = filmed.colorimeter();
+    const TemporaryFolder folder;
+    Recording recording(folder.path(), "the bench, filmed");
+    EXPECT_GT(
+        calibrate_recorded(recording, ports, live_options(description)).calibration.valid_fraction,
+        0.85);
+    ASSERT_GE(waits.size(), 3u);
+    EXPECT_NE(waits.front().why.find(server.address()), std::string::npos);
+    EXPECT_FALSE(waits.front().fix.empty());
+    EXPECT_TRUE(waits.back().why.empty()) << "told that it goes on";
+    // A stop is heard while the camera is away.
+    server.pull_cable(true);
+    std::atomic<bool> stop{true};
+    Progress progress;
+    progress.stop = &stop;
+    EXPECT_THROW(patient(*camera, progress, [](const CameraWait&) {})(0.0), Cancelled);
+}
+
+}  // namespace
+}  // namespace livery
