@@ -5,6 +5,7 @@
 
 #include "calibration/bench_session.h"
 #include "calibration/captures/captures.h"
+#include "calibration/captures/mockup_light.h"
 #include "calibration/colour/colour.h"
 #include "calibration/colour/colour_report.h"
 #include "calibration/colour/colour_samples.h"
@@ -171,38 +172,6 @@ glm::dvec2 place_to_measure(const ProjectorToCamera& map,
         throw Refused("no even, well-lit place of 13 px on the mock-up for the colorimeter",
                       "bring the projector nearer, so that the mock-up fills more of its picture");
     return best;
-}
-
-/// Pixels within reach of the mock-up: a pose that is a little off, a lens that is a little soft.
-Image8 around(const Image8& mockup) {
-    const int reach = std::max(2, mockup.width / 200);
-    Image8 rows(mockup.width, mockup.height, 1), all = rows;
-    const auto spread = [&](const Image8& from, Image8& to, int dx, int dy) {
-        for (int y = 0; y < from.height; ++y)
-            for (int x = 0; x < from.width; ++x) {
-                if (!from.at(x, y)) continue;
-                for (int k = -reach; k <= reach; ++k) {
-                    const int u = x + k * dx, v = y + k * dy;
-                    if (u >= 0 && v >= 0 && u < to.width && v < to.height) to.at(u, v) = 255;
-                }
-            }
-    };
-    spread(mockup, rows, 1, 0);
-    spread(rows, all, 0, 1);
-    return all;
-}
-
-/// A port that lights the mock-up alone. What stands around it stays dark in the show; if it were
-/// lit here, its light on the mock-up would be taken for what the mock-up's own pixels send.
-ShowPicture shown_on(const Image8& mockup, const ShowPicture& show) {
-    return [lit = around(mockup), show](const Image8& drive) {
-        Image8 alone = drive;
-        for (std::size_t i = 0; i < alone.pixel_count(); ++i)
-            if (!lit.values[i])
-                std::fill_n(
-                    alone.values.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, std::uint8_t{0});
-        show(alone);
-    };
 }
 
 }  // namespace

@@ -136,13 +136,11 @@ void PreflightRun::see_exposure() {
     const double frames = white_.exposure_s * 60.0;
     const bool whole = std::abs(frames - std::round(frames)) < 0.05 && frames > 0.95;
     add({"Exposure",
-         white_.exposure_s >= 1.0 ? fmt::format("{:.3g} s", white_.exposure_s)
-                                  : fmt::format("1/{:.4g} s", 1.0 / white_.exposure_s),
+         fmt::format("{:.3g} s, {:.3g} frames", white_.exposure_s, frames),
          "good from 3 projector frames or a whole number of them, usable from 1",
-         fmt::format(
-             "{:.3g} frames of a projector at 60 Hz. Shorter ones catch a colour wheel or a "
-             "dimmed lamp in the middle.",
-             frames),
+         "Frames of a projector at 60 Hz. Shorter exposures catch a colour wheel or a dimmed lamp "
+         "in "
+         "the middle.",
          "Close the lens or lower ISO, so that the exposure becomes longer.",
          whole || frames >= 2.95 ? Grade::good
          : frames >= 0.95        ? Grade::usable
@@ -361,7 +359,9 @@ Preflight preflight(const BenchPorts& bench,
     check_argument(!bench.turn_to, "photographs that were taken before need no preflight");
     check_argument(options.width >= 16 && options.height >= 16,
                    "a preflight needs the projector's size");
-    return PreflightRun(bench, options, progress, on_figure).run();
+    BenchPorts ports = bench;
+    if (!options.mockup.empty() && ports.show) ports.show = shown_on(options.mockup, bench.show);
+    return PreflightRun(ports, options, progress, on_figure).run();
 }
 
 }  // namespace livery

@@ -27,9 +27,7 @@ bool may_come_back(CameraTrouble trouble) {
 
 }  // namespace
 
-TakePhotograph patient(Camera& camera,
-                       const Progress& progress,
-                       std::function<void(const CameraWait&)> on_wait) {
+TakePhotograph patient(Camera& camera, const Progress& progress, TellWait on_wait) {
     return [&camera, progress, on_wait = std::move(on_wait)](double exposure_s) {
         for (bool waited = false;; waited = true) {
             try {

@@ -59,6 +59,7 @@ Command albedo_command();
 Command bench_command();
 Command brdf_command();
 Command calibrate_color_command();
+Command capture_command();
 Command check_command();
 Command compensate_command();
 Command demo_command();

@@ -62,6 +62,7 @@ int run(const std::vector<std::string>& arguments) {
                                      paints_command(),
                                      patterns_command(),
                                      photograph_command(),
+                                     capture_command(),
                                      calibrate_color_command(),
                                      measure_brdf_command(),
                                      fit_brdf_command(),

@@ -66,4 +66,10 @@ struct BenchPorts {
     TurnToRole turn_to;
 };
 
+/// What a capture waits for that somebody can put right; empty `why`: for nothing any more.
+struct CaptureWait {
+    std::string why, fix;
+};
+using TellWait = std::function<void(const CaptureWait&)>;
+
 }  // namespace livery

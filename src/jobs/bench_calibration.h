@@ -1,11 +1,17 @@
-// A simulated bench calibrated through its three ports, as the demo and the desktop do it.
+// A bench calibrated through its ports, simulated or real, as the demo, `livery capture` and the
+// desktop do it.
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "calibration/colour/colour.h"
+#include "capture/recording.h"
 #include "core/image.h"
 #include "core/progress.h"
 #include "scene/colour_calibration.h"
 #include "scene/product.h"
+#include "scene/view.h"
 #include "twin/bench.h"
 
 namespace livery {
@@ -13,14 +19,33 @@ namespace livery {
 struct BenchCalibration {
     ColourCalibration calibration;  ///< with what the camera does not see predicted from the pose
     LiveResult live;                ///< its own calibration is moved out
-    ImageF geometry;                ///< projector_irradiance() of the bench's pose
+    ImageF geometry;                ///< projector_irradiance() of the pose; empty: it is not known
     double predict_seconds = 0.0;
 };
 
-/// Shows the patterns on the bench, photographs them, solves, and predicts from the bench file's
-/// pose. Throws Refused, Cancelled.
+struct BenchCalibrationRequest {
+    std::string made_with;  ///< projector and camera, in words
+    int width = 0, height = 0;
+    /// Where the projector stands, and the mock-up: it alone is then lit, and what the camera does
+    /// not see is predicted. Both or none.
+    std::optional<View> projector;
+    std::shared_ptr<const Product> product;
+    std::optional<CameraToXyz> camera_to_xyz;
+    Recording* recording = nullptr;  ///< keeps everything in it; not for photographs taken before
+};
+
+/// What the pictures of this request are; also what a preflight needs.
+LiveOptions live_options_of(const BenchCalibrationRequest& request);
+
+/// Shows the patterns, photographs them, solves, and predicts. Throws as calibrate_live() and
+/// calibrate_recorded().
+BenchCalibration calibrate_through_ports(const BenchPorts& ports,
+                                         const BenchCalibrationRequest& request,
+                                         const Progress& progress);
+
+/// The same on a simulated bench with its file's pose.
 BenchCalibration calibrate_through_ports(Bench& bench,
-                                         const Product& product,
+                                         std::shared_ptr<const Product> product,
                                          const Progress& progress);
 
 }  // namespace livery

@@ -79,7 +79,7 @@ CalibratedBench calibrate_bench(const DemoOptions& options,
         return std::make_unique<Bench>(description, product, progress);
     });
 
-    BenchCalibration calibrated = calibrate_through_ports(*result.bench, *product, progress);
+    BenchCalibration calibrated = calibrate_through_ports(*result.bench, product, progress);
     times.add("photograph the patterns", calibrated.live.capture_seconds);
     times.add("solve the calibration", calibrated.live.solve_seconds);
     times.add("predict hidden pixels", calibrated.predict_seconds);

@@ -142,7 +142,7 @@ void BenchThread::Implementation::calibrate(const BenchChoice& with) {
     try {
         trace({with, std::nullopt}, progress);
         const std::string key = bench_key(with.bench, *with.product);
-        const auto folder = calibrate_on_bench(*bench, *with.product, progress);
+        const auto folder = calibrate_on_bench(*bench, with.product, progress);
         note_bench(folder, key);
         result.finished = folder;
     } catch (const Cancelled&) {

@@ -86,22 +86,33 @@ std::filesystem::path calibrate_on_bench(const std::string& bench,
                                          std::shared_ptr<const Product> product,
                                          const Progress& progress) {
     Bench traced(read_bench_file(bench), product, progress);
-    return calibrate_on_bench(traced, *product, progress);
+    return calibrate_on_bench(traced, std::move(product), progress);
 }
 
 std::filesystem::path calibrate_on_bench(Bench& bench,
-                                         const Product& product,
+                                         std::shared_ptr<const Product> product,
                                          const Progress& progress) {
-    // Before the work: a folder that cannot be written is said at once.
+    check_calibrations_folder();  // Before the work.
+    const ColourCalibration calibration =
+        calibrate_through_ports(bench, std::move(product), progress).calibration;
+    progress.update(1.0, "keeping the calibration");
+    return keep_calibration(calibration, bench.description().projector.view);
+}
+
+void check_calibrations_folder() { make_output_folder(calibrations_folder()); }
+
+std::filesystem::path keep_calibration(const ColourCalibration& calibration,
+                                       const std::optional<View>& projector) {
     const auto all = calibrations_folder();
     make_output_folder(all);
-    const ColourCalibration calibration =
-        calibrate_through_ports(bench, product, progress).calibration;
-    progress.update(1.0, "keeping the calibration");
     const std::string name = fmt::format(
         "{:%Y-%m-%dT%H-%M-%SZ}-{}", fmt::gmtime(std::time(nullptr)), calibration.id.substr(0, 8));
     const UnfinishedFolder unfinished(all / ("." + name));
-    write_setup(unfinished.path(), calibration, bench.description().projector.view);
+    if (projector) {
+        write_setup(unfinished.path(), calibration, *projector);
+    } else {
+        write_calibration(unfinished.path(), calibration);
+    }
     std::error_code error;
     std::filesystem::rename(unfinished.path(), all / name, error);
     if (error) throw FileError(all / name, "", error.message(), "a folder that can be made");

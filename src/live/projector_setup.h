@@ -44,8 +44,15 @@ std::filesystem::path calibrate_on_bench(const std::string& bench,
                                          const Progress& progress);
 /// The same on a bench that is already traced with this product as its mock-up.
 std::filesystem::path calibrate_on_bench(Bench& bench,
-                                         const Product& product,
+                                         std::shared_ptr<const Product> product,
                                          const Progress& progress);
+
+/// Where the next calibration will be kept can be written. Throws FileError.
+void check_calibrations_folder();
+/// Keeps a calibration as the newest; without `projector` where it stands must still be said
+/// (`add_projector`). Throws FileError.
+std::filesystem::path keep_calibration(const ColourCalibration& calibration,
+                                       const std::optional<View>& projector);
 
 /// Folders of the calibrations kept in the user's folder, newest first.
 std::vector<std::filesystem::path> kept_calibrations();

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/log.h"
-#include "gl/handles.h"
+#include "projection/picture_port.h"
 #include "studio/results.h"
 #include "studio/window/shell.h"
 
@@ -115,20 +115,8 @@ void show_signal_test(Shell& shell, bool shown) {
         return;
     }
     const auto monitor = find_monitor(shell.studio.monitors, shell.projector_monitor);
-    const Image8 rgb =
-        signal_test_picture(monitor ? monitor->width : 1280, monitor ? monitor->height : 800);
-    Image8 rgba(rgb.width, rgb.height, 4, 255);
-    for (std::size_t i = 0; i < rgb.pixel_count(); ++i) {
-        std::copy_n(&rgb.values[3 * i], 3, &rgba.values[4 * i]);
-    }
-    const auto texture = std::make_shared<Texture2D>(rgb.width, rgb.height, TexelFormat::rgba8);
-    texture->upload(std::span<const std::uint8_t>(rgba.values));
-    auto picture = std::make_shared<ProjectorPicture>();
-    picture->texture = texture->name();
-    picture->size_px = {rgb.width, rgb.height};
-    picture->ready = std::make_shared<const Fence>(Fence::after_everything_so_far());
-    picture->owner = texture;
-    shell.results->show_instead(std::move(picture));
+    shell.results->show_instead(projector_picture(
+        signal_test_picture(monitor ? monitor->width : 1280, monitor ? monitor->height : 800), 0));
 }
 
 ProjectorFacts projector_facts(const Shell& shell) {

@@ -46,7 +46,7 @@ struct Calibrated {
             *view = resized(*view, view->width / 4, view->height / 4);
         }
         Bench bench(description, car().product);
-        result = calibrate_through_ports(bench, *car().product, {});
+        result = calibrate_through_ports(bench, car().product, {});
         samples = sample_colours(result.live.captures, result.live.map);
     }
 };

@@ -66,6 +66,7 @@ TEST(Program, HelpNamesEveryCommandAndEachHasAnExample) {
                              "paints",
                              "patterns",
                              "photograph",
+                             "capture",
                              "calibrate color",
                              "measure brdf",
                              "fit brdf",

@@ -229,14 +229,14 @@ TEST(Cameras, ACameraThatIsPulledIsWaitedFor) {
     video.frames = 2;
     video.timeout_ms = 1500;
     const auto camera = open_video_camera(video);
-    std::vector<CameraWait> waits;
+    std::vector<CaptureWait> waits;
     BenchPorts ports;
     int shown = 0;
     ports.show = [&](const Image8& drive) {
         filmed.show(drive);
         if (++shown == 12) server.pull_cable(true);
     };
-    ports.photograph = patient(*camera, {}, [&](const CameraWait& wait) {
+    ports.photograph = patient(*camera, {}, [&](const CaptureWait& wait) {
         waits.push_back(wait);
         if (waits.size() == 2) server.pull_cable(false);
     });
@@ -255,7 +255,7 @@ TEST(Cameras, ACameraThatIsPulledIsWaitedFor) {
     std::atomic<bool> stop{true};
     Progress progress;
     progress.stop = &stop;
-    EXPECT_THROW(patient(*camera, progress, [](const CameraWait&) {})(0.0), Cancelled);
+    EXPECT_THROW(patient(*camera, progress, [](const CaptureWait&) {})(0.0), Cancelled);
 }
 
 }  // namespace

@@ -103,7 +103,7 @@ TEST(Room, LightFromTheTableIsNotTakenForTheMockupsOwn) {
         Bench bench(description, small_bench_product());
         const Image8 mockup = mockup_mask(small_bench_product()->mesh, description.projector.view);
         LiveResult live;
-        live.calibration = calibrate_through_ports(bench, *small_bench_product(), {}).calibration;
+        live.calibration = calibrate_through_ports(bench, small_bench_product(), {}).calibration;
         return testing::judged(bench, std::move(live), &mockup).comparison.interior;
     };
     BenchDescription room = half_size("room");

@@ -190,7 +190,7 @@ TEST_F(ProjectorSetupTest, CalibrationsOfTheBenchAreKeptNewestFirst) {
     EXPECT_TRUE(kept_calibrations().empty());
     const auto product = testing::small_bench_product();
     Bench bench(testing::small_bench_description(), product);
-    const auto made = calibrate_on_bench(bench, *product, {});
+    const auto made = calibrate_on_bench(bench, product, {});
     const auto setup = load_setup(made, 20.0, product->mesh);
     EXPECT_GT(setup->calibration->valid_fraction, 0.9);
     EXPECT_GT(setup->calibration->predicted_fraction, 0.0);
@@ -211,7 +211,7 @@ TEST_F(ProjectorSetupTest, AStoppedCalibrationLeavesNothingBehind) {
     Progress progress;
     progress.stop = &stop;
     progress.report = [&](double fraction, std::string_view) { stop = fraction > 0.5; };
-    EXPECT_THROW(calibrate_on_bench(bench, *product, progress), Cancelled);
+    EXPECT_THROW(calibrate_on_bench(bench, product, progress), Cancelled);
     EXPECT_TRUE(std::filesystem::is_empty(user_folder() / "calibrations"));
 }
 
@@ -222,7 +222,7 @@ TEST_F(ProjectorSetupTest, AFolderThatCannotBeMadeIsSaidBeforeTheWork) {
     Bench bench(testing::small_bench_description(), product);
     Progress progress;
     progress.report = [](double, std::string_view) { FAIL() << "work began"; };
-    EXPECT_TRUE(fails_with([&] { calibrate_on_bench(bench, *product, progress); },
+    EXPECT_TRUE(fails_with([&] { calibrate_on_bench(bench, product, progress); },
                            {"calibrations", "a folder that can be made"}));
 }
 

@@ -173,6 +173,9 @@ void check_moved(const Evidence& e, Warnings& warnings) {
     }
 }
 
+/// Of white's light.
+constexpr float kDark = 0.1f;
+
 /// The photographs of one role say the same.
 void check_repeats(const Evidence& e) {
     for (std::size_t k = 1; k < e.all->size(); ++k) {
@@ -182,7 +185,9 @@ void check_repeats(const Evidence& e) {
         if (&*first == &again || !e.black || again.role == "black" || again.role == "dark-gray")
             continue;
         const Region region = region_of(ratio_to(first->light, e.lit, [&](std::size_t i) {
-            return first->saturated[i] || again.saturated[i]
+            // Where the picture is dark there is only noise to compare.
+            const bool dark = first->light.values[i] < kDark * e.reference.values[i];
+            return dark || first->saturated[i] || again.saturated[i]
                        ? std::numeric_limits<float>::quiet_NaN()
                        : again.light.values[i];
         }));

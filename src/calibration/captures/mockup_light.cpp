@@ -7,6 +7,29 @@
 
 namespace livery {
 
+namespace {
+
+/// Pixels within reach of the mock-up: a pose that is a little off, a lens that is a little soft.
+Image8 around(const Image8& mockup) {
+    const int reach = std::max(2, mockup.width / 200);
+    Image8 rows(mockup.width, mockup.height, 1), all = rows;
+    const auto spread = [&](const Image8& from, Image8& to, int dx, int dy) {
+        for (int y = 0; y < from.height; ++y)
+            for (int x = 0; x < from.width; ++x) {
+                if (!from.at(x, y)) continue;
+                for (int k = -reach; k <= reach; ++k) {
+                    const int u = x + k * dx, v = y + k * dy;
+                    if (u >= 0 && v >= 0 && u < to.width && v < to.height) to.at(u, v) = 255;
+                }
+            }
+    };
+    spread(mockup, rows, 1, 0);
+    spread(rows, all, 0, 1);
+    return all;
+}
+
+}  // namespace
+
 ImageF light_over_black(const Photograph& photograph, const Photograph& black) {
     const auto scale = static_cast<float>(1.0 / (3.0 * photograph.exposure_s));
     const auto black_scale = static_cast<float>(1.0 / (3.0 * black.exposure_s));
@@ -39,6 +62,17 @@ double lit_mean(const ImageF& light, const LitPixels& lit) {
     double sum = 0.0;
     for (const std::uint32_t i : lit) sum += static_cast<double>(light.values[i]);
     return lit.empty() ? 0.0 : sum / static_cast<double>(lit.size());
+}
+
+ShowPicture shown_on(const Image8& mockup, const ShowPicture& show) {
+    return [lit = around(mockup), show](const Image8& drive) {
+        Image8 alone = drive;
+        for (std::size_t i = 0; i < alone.pixel_count(); ++i)
+            if (!lit.values[i])
+                std::fill_n(
+                    alone.values.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, std::uint8_t{0});
+        show(alone);
+    };
 }
 
 }  // namespace livery

@@ -21,4 +21,9 @@ LitPixels lit_pixels(const ImageF& light, std::size_t thinned_to = 0);
 /// Mean over these pixels; 0 for none.
 double lit_mean(const ImageF& light, const LitPixels& lit);
 
+/// A port that lights the mock-up alone (non-zero pixels), and what is near it: a pose that is a
+/// little off, a lens that is a little soft. What stands around it stays dark in the show; if it
+/// were lit here, its light on the mock-up would be taken for what the mock-up's own pixels send.
+ShowPicture shown_on(const Image8& mockup, const ShowPicture& show);
+
 }  // namespace livery

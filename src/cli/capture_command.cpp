@@ -1,0 +1,419 @@
+// livery capture
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "calibration/preflight.h"
+#include "capture/patient_camera.h"
+#include "cli/command.h"
+#include "cli/console.h"
+#include "core/error.h"
+#include "gl/window.h"
+#include "jobs/bench_calibration.h"
+#include "jobs/calibration_folder.h"
+#include "jobs/camera_to_xyz_file.h"
+#include "jobs/capture_bench.h"
+#include "jobs/watched_captures.h"
+#include "projection/picture_port.h"
+#include "scene/library.h"
+
+namespace livery {
+
+namespace {
+
+struct CaptureArguments {
+    std::string camera, monitor, product, pose, camera_to_xyz, out, calibration;
+    std::vector<std::string> again;
+    double every_s = 0.0;
+    bool list = false, preflight_only = false, without_preflight = false, anew = false;
+};
+
+/// A line that is read while the work goes on.
+void say(const std::string& line) {
+    finish_progress_line();
+    std::fputs((line + "\n").c_str(), stderr);
+}
+
+void say_wait(const CaptureWait& wait) {
+    say(wait.why.empty() ? "it goes on" : fmt::format("waiting: {}; {}", wait.why, wait.fix));
+}
+
+Outcome listed() {
+    Outcome outcome;
+    outcome.figures = {{"cameras", Json::array()}, {"monitors", Json::array()}};
+    for (const ListedCamera& camera : list_cameras()) {
+        outcome.figures["cameras"].push_back({{"camera", camera.choice},
+                                              {"name", camera.name},
+                                              {"problem", camera.problem},
+                                              {"fix", camera.fix}});
+        outcome.text += fmt::format("--camera {:<24} {}\n", camera.choice, camera.name);
+        if (!camera.problem.empty())
+            outcome.text += fmt::format("    {}: {}\n", camera.problem, camera.fix);
+    }
+    try {
+        const WindowSystem window_system;
+        for (const Monitor& monitor : list_monitors()) {
+            outcome.figures["monitors"].push_back({{"monitor", monitor.number},
+                                                   {"name", monitor.name},
+                                                   {"width", monitor.width},
+                                                   {"height", monitor.height}});
+            outcome.text += fmt::format("--monitor {:<23} {}, {}x{}\n",
+                                        monitor.number,
+                                        monitor.name,
+                                        monitor.width,
+                                        monitor.height);
+        }
+    } catch (const std::runtime_error&) {
+        outcome.text +=
+            "no display, so no monitors: only a simulated bench has its own projector\n";
+    }
+    return outcome;
+}
+
+/// A projector on a monitor, for as long as the object lives.
+class MonitorProjector {
+  public:
+    explicit MonitorProjector(const std::string& wanted) {
+        for (const Monitor& each : list_monitors()) {
+            if (std::to_string(each.number) == wanted || each.id == wanted || each.name == wanted)
+                monitor_ = each;
+        }
+        if (!monitor_)
+            throw std::invalid_argument(fmt::format(
+                "--monitor: found \"{}\", expected one that livery capture --list names", wanted));
+        WindowOptions hidden;
+        hidden.title = "Livery (capture)";
+        hidden.size_px = {16, 16};
+        hidden.visible = false;
+        context_ = std::make_unique<Window>(hidden);
+        screen_ = std::make_unique<ProjectorScreen>(*context_);
+        context_->make_current();
+        screen_->use_monitor(monitor_->id);
+    }
+    const Monitor& monitor() const { return *monitor_; }
+    ShowPicture port(const Progress& progress) {
+        return show_on({[this](auto picture) { screen_->present(std::move(picture)); },
+                        [this] { return screen_->shown(); }},
+                       progress,
+                       say_wait);
+    }
+
+  private:
+    WindowSystem window_system_;
+    std::optional<Monitor> monitor_;
+    std::unique_ptr<Window> context_;
+    std::unique_ptr<ProjectorScreen> screen_;
+};
+
+Json json_of(const GradedFigure& figure) {
+    return {{"name", figure.name},
+            {"value", figure.value},
+            {"grade", to_string(figure.grade)},
+            {"scale", figure.scale},
+            {"meaning", figure.meaning},
+            {"fix", figure.fix}};
+}
+
+std::string line_of(const GradedFigure& figure) {
+    std::string line =
+        fmt::format("{:<6}  {:<26} {}", to_string(figure.grade), figure.name, figure.value);
+    if (!figure.scale.empty()) line += fmt::format(" ({})", figure.scale);
+    if (figure.grade != Grade::good)
+        line += fmt::format("\n        {} {}", figure.meaning, figure.fix);
+    return line;
+}
+
+/// What a run needs besides ports.
+struct CaptureCommandRun {
+    CaptureArguments arguments;
+    BenchCalibrationRequest request;
+    Outcome outcome;
+
+    void refuse(const Refused& refused) {
+        outcome.exit_code = 1;
+        outcome.figures["refused"] = {{{"why", refused.why()}, {"fix", refused.fix()}}};
+        outcome.text += fmt::format("refused: {}\nfix: {}\n", refused.why(), refused.fix());
+        if (!arguments.out.empty())
+            outcome.text += "What was photographed is kept in " + arguments.out +
+                            "; the same command goes on with it.\n";
+    }
+    void report(const BenchCalibration& made);
+};
+
+void CaptureCommandRun::report(const BenchCalibration& made) {
+    const ColourCalibration& calibration = made.calibration;
+    outcome.figures["valid_fraction"] = calibration.valid_fraction;
+    outcome.figures["additivity_error"] = calibration.additivity_error;
+    outcome.figures["condition_p99"] = calibration.condition_p99;
+    outcome.figures["warnings"] = calibration.warnings;
+    outcome.figures["capture_seconds"] = made.live.capture_seconds;
+    outcome.figures["latency_photographs"] = made.live.latency_photographs;
+    outcome.text += fmt::format(
+        "captured in {:.1f} s: {:.1f}% of the lit pixels valid, additivity error {:.2f}%, "
+        "condition {:.2f}\n",
+        made.live.capture_seconds,
+        100.0 * calibration.valid_fraction,
+        100.0 * calibration.additivity_error,
+        calibration.condition_p99);
+    for (const std::string& warning : calibration.warnings)
+        outcome.text += "warning: " + warning + "\n";
+    if (arguments.calibration.empty()) return;
+    if (request.projector) {
+        write_setup(arguments.calibration, calibration, *request.projector);
+    } else {
+        write_calibration(arguments.calibration, calibration);
+    }
+    outcome.figures["calibration"] = {{"id", calibration.id}, {"folder", arguments.calibration}};
+    outcome.text += fmt::format("calibration {} in {}\n", calibration.id, arguments.calibration);
+}
+
+/// The preflight's lines as they come; whether a capture makes sense.
+bool look_before(CaptureCommandRun& run, const BenchPorts& ports, const Progress& progress) {
+    const LiveOptions options = live_options_of(run.request);
+    run.outcome.figures["preflight"] = Json::array();
+    bool fit = true;
+    preflight(ports,
+              {options.width, options.height, options.mockup},
+              progress,
+              [&](const GradedFigure& figure) {
+                  run.outcome.figures["preflight"].push_back(json_of(figure));
+                  say(line_of(figure));
+                  fit = fit && figure.grade != Grade::bad;
+              });
+    return fit;
+}
+
+/// Pictures are taken again by the roles that the recording has them under.
+void take_again(Recording& recording, const std::vector<std::string>& roles) {
+    const auto showings = recording.showings();
+    for (const std::string& role : roles) {
+        bool found = false;
+        for (std::size_t k = 0; k < showings.size(); ++k) {
+            const auto& photographs = showings[k].photographs;
+            if (photographs.empty() || photographs.back().of != role) continue;
+            recording.take_again(k);
+            found = true;
+        }
+        if (!found)
+            throw std::invalid_argument(
+                fmt::format("--again: found \"{}\", expected a picture of the capture", role));
+    }
+}
+
+Outcome capture_with_camera(CaptureCommandRun run,
+                            const CameraChoice& choice,
+                            const Progress& progress) {
+    CaptureBench bench = open_capture_bench(choice, run.request.product, progress);
+    std::unique_ptr<MonitorProjector> projector;
+    std::string shown_on = "its own projector";
+    if (bench.show) {
+        if (!run.arguments.monitor.empty())
+            throw std::invalid_argument(
+                "--monitor: found with a simulated bench, which has a projector of its own");
+        run.request.projector = bench.projector;
+        if (!run.request.product)
+            run.request.product = find_product(bench.simulated->description().product.string());
+        run.request.width = bench.projector->width;
+        run.request.height = bench.projector->height;
+    } else {
+        if (run.arguments.monitor.empty())
+            throw std::invalid_argument(
+                "--monitor: found none, expected the projector's (livery capture --list)");
+        projector = std::make_unique<MonitorProjector>(run.arguments.monitor);
+        const Monitor& monitor = projector->monitor();
+        run.request.width = monitor.width;
+        run.request.height = monitor.height;
+        shown_on = fmt::format("{} at {}x{}", monitor.name, monitor.width, monitor.height);
+        if (run.request.projector)
+            check_projector(
+                *run.request.projector, run.arguments.pose, monitor.width, monitor.height);
+        for (const SignalWarning& warning : check_signal(monitor, {0, 0}))
+            say(fmt::format("Usable  {}\n        {} {}", warning.what, warning.cause, warning.fix));
+        bench.show = projector->port(progress);
+    }
+    run.request.made_with = bench.name + ", " + shown_on;
+    for (const std::string& warning : bench.camera->state().warnings) say("warning: " + warning);
+    BenchPorts ports;
+    ports.show = bench.show;
+    ports.photograph = patient(*bench.camera, progress, say_wait);
+    ports.measure_xyz = bench.measure_xyz;
+    if (run.request.camera_to_xyz) ports.measure_xyz = {};
+
+    std::optional<Recording> recording;
+    if (!run.arguments.preflight_only) {
+        if (run.arguments.anew && std::filesystem::exists(run.arguments.out + "/recording.json"))
+            std::filesystem::remove(run.arguments.out + "/recording.json");
+        recording.emplace(run.arguments.out, run.request.made_with);
+        take_again(*recording, run.arguments.again);
+        run.request.recording = &*recording;
+    }
+    const bool goes_on = recording && !recording->showings().empty();
+    if (!run.arguments.without_preflight && !goes_on) {
+        const bool fit = look_before(run, ports, progress);
+        if (run.arguments.preflight_only || !fit) {
+            run.outcome.exit_code = fit ? 0 : 1;
+            run.outcome.text = fit ? "The bench is fit for a capture.\n"
+                                   : "The bench is not fit for a capture: see what is Bad above. "
+                                     "--no-preflight captures all the same.\n";
+            return run.outcome;
+        }
+    }
+    try {
+        run.report(calibrate_through_ports(ports, run.request, progress));
+    } catch (const Refused& refused) {
+        run.refuse(refused);
+    }
+    run.outcome.figures["folder"] = run.arguments.out;
+    run.outcome.figures["photographs_taken"] = recording->taken();
+    run.outcome.figures["photographs_kept_from_before"] = recording->answered();
+    run.outcome.figures["simulated"] = bench.simulated != nullptr;
+    run.outcome.text += fmt::format("{} photographs taken, {} kept from before, in {}\n",
+                                    recording->taken(),
+                                    recording->answered(),
+                                    run.arguments.out);
+    return run.outcome;
+}
+
+/// Shows each picture for some seconds, for somebody with a camera.
+void show_all(MonitorProjector& projector,
+              const std::vector<Pattern>& patterns,
+              double every_s,
+              const Progress& progress) {
+    const ShowPicture show = projector.port(progress);
+    for (std::size_t k = 0; k < patterns.size(); ++k) {
+        show(patterns[k].drive);
+        say(fmt::format("shoot {} of {}: {}", k + 1, patterns.size(), patterns[k].role));
+        for (double waited_s = 0.0; waited_s < every_s; waited_s += 0.02) {
+            progress.check_stop();
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        }
+    }
+    show(Image8(patterns[0].drive.width, patterns[0].drive.height, 3));
+}
+
+Outcome capture_by_hand(CaptureCommandRun run,
+                        const CameraChoice& choice,
+                        const Progress& progress) {
+    if (run.arguments.monitor.empty())
+        throw std::invalid_argument(
+            "--monitor: found none, expected the projector's (livery capture --list)");
+    MonitorProjector projector(run.arguments.monitor);
+    run.request.width = projector.monitor().width;
+    run.request.height = projector.monitor().height;
+    run.request.made_with = "photographs in " + choice.what;
+    LiveOptions options = live_options_of(run.request);
+    std::vector<Pattern> patterns = geometry_patterns(options.width, options.height);
+    for (Pattern& pattern : colour_patterns(options.width, options.height, 0, 255))
+        patterns.push_back(std::move(pattern));
+    std::vector<std::string> roles;
+    for (const Pattern& pattern : patterns) roles.push_back(pattern.role);
+    WatchedCaptures watched(choice.what, roles);
+    watched.look();
+    watched.look();
+    if (watched.state().files == 0) show_all(projector, patterns, run.arguments.every_s, progress);
+    say(fmt::format("copy the {} photographs to {}", roles.size(), choice.what));
+    try {
+        run.report(calibrate_through_ports(
+            watched.ports(progress, [](const WatchedState& state) { say(text_of(state)); }),
+            run.request,
+            progress));
+    } catch (const Refused& refused) {
+        run.refuse(refused);
+    }
+    return run.outcome;
+}
+
+}  // namespace
+
+Command capture_command() {
+    const auto arguments = std::make_shared<CaptureArguments>();
+    Command command;
+    command.name = "capture";
+    command.summary = "show the patterns, photograph them with a camera, and calibrate";
+    command.example = "livery capture --camera video:0 --monitor 2 --out captures";
+    command.options = {
+        {"--list", "", "name the cameras and monitors that there are", &arguments->list, false, {}},
+        {"--camera",
+         "CAMERA",
+         "bench[:NAME], video:NUMBER|FILE|ADDRESS, or folder:DIR for photographs of any camera",
+         &arguments->camera,
+         false,
+         {}},
+        {"--monitor", "N", "the projector's number or name", &arguments->monitor, false, {}},
+        {"--out",
+         "DIR",
+         "photographs, as a captures folder; a capture that was stopped goes on",
+         &arguments->out,
+         false,
+         {}},
+        {"--calibration", "DIR", "write the calibration there", &arguments->calibration, false, {}},
+        {"--preflight",
+         "",
+         "only find out whether the bench is fit",
+         &arguments->preflight_only,
+         false,
+         {}},
+        {"--no-preflight",
+         "",
+         "capture without looking first",
+         &arguments->without_preflight,
+         false,
+         {}},
+        {"--product", "FILE|NAME", "the mock-up, with --pose", &arguments->product, false, {}},
+        {"--pose",
+         "FILE",
+         "the projector's camera file: the mock-up alone is lit, and hidden pixels are predicted",
+         &arguments->pose,
+         false,
+         {}},
+        {"--camera-to-xyz",
+         "FILE",
+         "matrix or measured primaries (default: camera RGB is linear Rec.709)",
+         &arguments->camera_to_xyz,
+         false,
+         {}},
+        {"--again",
+         "ROLE...",
+         "take these pictures of the capture in --out again",
+         &arguments->again,
+         false,
+         {}},
+        {"--anew", "", "take all of the capture in --out again", &arguments->anew, false, {}},
+        {"--every",
+         "S",
+         "with folder: seconds that each picture is shown (default 5)",
+         &arguments->every_s,
+         false,
+         {}},
+    };
+    command.run = [arguments](const CommonOptions&, const Progress& progress) {
+        if (arguments->list) return listed();
+        if (arguments->camera.empty())
+            throw std::invalid_argument(
+                "--camera: found none, expected one (livery capture --list)");
+        const CameraChoice choice = parse_camera_choice(arguments->camera);
+        const bool by_hand = choice.kind == CameraChoice::Kind::folder;
+        if (arguments->out.empty() && !arguments->preflight_only && !by_hand)
+            throw std::invalid_argument("--out: found none, expected a folder for the photographs");
+        if (arguments->pose.empty() != arguments->product.empty() &&
+            choice.kind != CameraChoice::Kind::bench)
+            throw std::invalid_argument("--pose and --product: found one, expected both or none");
+        CaptureCommandRun run;
+        run.arguments = *arguments;
+        if (run.arguments.every_s <= 0.0) run.arguments.every_s = 5.0;
+        if (!arguments->product.empty()) run.request.product = find_product(arguments->product);
+        if (!arguments->pose.empty()) run.request.projector = read_camera_file(arguments->pose);
+        if (!arguments->camera_to_xyz.empty())
+            run.request.camera_to_xyz = read_camera_to_xyz(arguments->camera_to_xyz);
+        return by_hand ? capture_by_hand(std::move(run), choice, progress)
+                       : capture_with_camera(std::move(run), choice, progress);
+    };
+    return command;
+}
+
+}  // namespace livery

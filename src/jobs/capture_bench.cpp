@@ -1,0 +1,134 @@
+#include "jobs/capture_bench.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "capture/video_camera.h"
+#include "core/colour.h"
+#include "core/paths.h"
+#include "scene/library.h"
+
+namespace livery {
+
+namespace {
+
+constexpr double kLiveWhite = 0.9;  ///< of the live view's full scale
+
+/// The simulated camera as any other one.
+class BenchCamera : public Camera {
+  public:
+    explicit BenchCamera(Bench& bench)
+        : bench_(bench), ports_(bench.ports()), exposure_s_(bench.default_exposure_s()) {}
+
+    std::string name() const override { return "camera of bench " + bench_.description().name; }
+    CameraState state() override {
+        CameraState state;
+        state.settings.push_back({"exposure", fmt::format("{:.4g} s", exposure_s_), {}, true});
+        return state;
+    }
+    void set(const std::string& setting, const std::string& value) override {
+        char* end = nullptr;
+        const double seconds = std::strtod(value.c_str(), &end);
+        if (setting != "exposure" || end == value.c_str() || !(seconds > 0.0) || seconds > 3600.0)
+            throw CameraFault(CameraTrouble::refused,
+                              fmt::format("{} does not take {} {}", name(), setting, value),
+                              "its exposure in seconds can be set");
+        exposure_s_ = seconds;
+    }
+    Photograph photograph(double exposure_s) override {
+        if (exposure_s > 0.0) exposure_s_ = exposure_s;
+        return ports_.photograph(exposure_s_);
+    }
+    Image8 live_view() override {
+        const Photograph seen = ports_.photograph(exposure_s_);
+        Image8 srgb(seen.image.width, seen.image.height, 3);
+        const double full = kLiveWhite * (seen.saturates_at - seen.black_level);
+        for (std::size_t k = 0; k < srgb.values.size(); ++k) {
+            const double light =
+                (static_cast<double>(seen.image.values[k]) - seen.black_level) / full;
+            srgb.values[k] =
+                static_cast<std::uint8_t>(255.0 * srgb_encode(std::clamp(light, 0.0, 1.0)) + 0.5);
+        }
+        return srgb;
+    }
+
+  private:
+    Bench& bench_;
+    BenchPorts ports_;
+    double exposure_s_;
+};
+
+}  // namespace
+
+CameraChoice parse_camera_choice(const std::string& text) {
+    const std::size_t colon = text.find(':');
+    const std::string kind = text.substr(0, colon);
+    const std::string what = colon == std::string::npos ? "" : text.substr(colon + 1);
+    if (kind == "bench") return {CameraChoice::Kind::bench, what.empty() ? "default" : what};
+    if (kind == "video" && !what.empty()) return {CameraChoice::Kind::video, what};
+    if (kind == "folder" && !what.empty()) return {CameraChoice::Kind::folder, what};
+    throw std::invalid_argument(
+        fmt::format("--camera: found \"{}\", expected bench[:NAME|FILE], video:NUMBER|FILE|ADDRESS "
+                    "or folder:DIR",
+                    text));
+}
+
+std::string text_of(const CameraChoice& choice) {
+    switch (choice.kind) {
+        case CameraChoice::Kind::bench:
+            return "bench:" + choice.what;
+        case CameraChoice::Kind::video:
+            return "video:" + choice.what;
+        case CameraChoice::Kind::folder:
+            return "folder:" + choice.what;
+    }
+    throw std::invalid_argument("unknown kind of camera");
+}
+
+std::vector<ListedCamera> list_cameras() {
+    std::vector<ListedCamera> cameras;
+    std::error_code error;
+    for (int number = 0; number < 64; ++number) {
+        const std::string device = fmt::format("/dev/video{}", number);
+        if (std::filesystem::exists(device, error))
+            cameras.push_back({fmt::format("video:{}", number), "video camera " + device, "", ""});
+    }
+    for (const std::string& bench : shipped_names("calibration"))
+        cameras.push_back({"bench:" + bench, "simulated bench " + bench, "", ""});
+    return cameras;
+}
+
+CaptureBench open_capture_bench(const CameraChoice& choice,
+                                std::shared_ptr<const Product> product,
+                                const Progress& progress) {
+    CaptureBench bench;
+    switch (choice.kind) {
+        case CameraChoice::Kind::bench: {
+            const BenchDescription description = read_bench_file(choice.what);
+            if (!product) product = find_product(description.product.string());
+            bench.simulated = std::make_unique<Bench>(description, std::move(product), progress);
+            bench.camera = std::make_unique<BenchCamera>(*bench.simulated);
+            const BenchPorts ports = bench.simulated->ports();
+            bench.show = ports.show;
+            bench.measure_xyz = ports.measure_xyz;
+            bench.projector = description.projector.view;
+            break;
+        }
+        case CameraChoice::Kind::video: {
+            VideoCameraOptions options;
+            options.source = choice.what;
+            bench.camera = open_video_camera(options);
+            break;
+        }
+        case CameraChoice::Kind::folder:
+            throw std::invalid_argument("a folder has no camera");
+    }
+    bench.name = bench.camera->name();
+    return bench;
+}
+
+}  // namespace livery

@@ -1,0 +1,50 @@
+// What a capture is made with: a camera of any kind, and the simulated bench where it is one.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "capture/camera.h"
+#include "core/bench_ports.h"
+#include "core/progress.h"
+#include "scene/product.h"
+#include "twin/bench.h"
+
+namespace livery {
+
+/// As people write it: "bench" or "bench:NAME|FILE", "video:N|FILE|ADDRESS", "folder:DIR".
+struct CameraChoice {
+    enum class Kind { bench, video, folder };
+    Kind kind = Kind::bench;
+    std::string what;  ///< behind the colon
+    bool operator==(const CameraChoice&) const = default;
+};
+/// Throws std::invalid_argument that says what there is.
+CameraChoice parse_camera_choice(const std::string& text);
+std::string text_of(const CameraChoice& choice);
+
+/// A camera that could be chosen now.
+struct ListedCamera {
+    std::string choice;        ///< "video:0"
+    std::string name;          ///< for people
+    std::string problem, fix;  ///< why it cannot be used at the moment; empty: it can
+};
+std::vector<ListedCamera> list_cameras();
+
+struct CaptureBench {
+    std::string name;  ///< of the camera, in words
+    std::unique_ptr<Bench> simulated;
+    std::unique_ptr<Camera> camera;
+    ShowPicture show;               ///< of a simulated bench; empty: a projector is needed
+    MeasureXyz measure_xyz;         ///< of a simulated bench
+    std::optional<View> projector;  ///< of a simulated bench: where it stands
+};
+/// Not for folders, which have no camera. `product`: the mock-up of a simulated bench; null: the
+/// one that its file names. Throws CameraFault, FileError.
+CaptureBench open_capture_bench(const CameraChoice& choice,
+                                std::shared_ptr<const Product> product,
+                                const Progress& progress);
+
+}  // namespace livery
