@@ -28,6 +28,15 @@ Rigid3 read_pose(const JsonReader& object) {
     return {read_rotation(object["rotation"]), place_mm(object["translation_mm"])};
 }
 
+Json json_of(const Rigid3& pose) {
+    Json rotation = Json::array();
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column) rotation.push_back(pose.rotation[column][row]);
+    }
+    const glm::dvec3& t = pose.translation;
+    return {{"rotation", rotation}, {"translation_mm", {t.x, t.y, t.z}}};
+}
+
 void read_lens(const JsonReader& object, View& view) {
     // From a fisheye on a sensor of few pixels to a telescope; coefficients grow with the power of
     // the focal length that they stand for.

@@ -11,6 +11,7 @@ glm::dmat3 read_rotation(const JsonReader& field);
 
 /// {"rotation": [9], "translation_mm": [3]}; both must be there.
 Rigid3 read_pose(const JsonReader& object);
+Json json_of(const Rigid3& pose);
 
 /// The fields `matrix` (fx, 0, cx, 0, fy, cy, 0, 0, 1; pixel centres at integers) and, where it is
 /// there, `distortion`.

@@ -1,6 +1,10 @@
 #include "scene/product.h"
 
 #include <algorithm>
+#include <set>
+
+#include <glm/common.hpp>
+#include <glm/matrix.hpp>
 
 #include "core/error.h"
 #include "core/json.h"
@@ -33,6 +37,30 @@ void move(Mesh& mesh, const Rigid3& world_from_mesh) {
     }
 }
 
+void rename_parts(const ProductFile& said, const std::filesystem::path& file, Mesh& mesh) {
+    const std::string known = part_names(mesh);
+    for (const auto& [name, new_name] : said.part_names) {
+        if (has_part(mesh, name)) continue;
+        throw FileError(file, "part_names", "\"" + name + "\"", "a part of the mesh: " + known);
+    }
+    const auto rename = [&](Part& part) {
+        const auto named = said.part_names.find(part.name);
+        if (named != said.part_names.end()) part.name = named->second;
+    };
+    for (Part& part : mesh.parts) rename(part);
+    for (MeshVariant& variant : mesh.variants) {
+        for (auto& [index, part] : variant.parts) rename(part);
+    }
+    std::set<std::string> names;
+    for (const Part& part : mesh.parts) {
+        if (names.insert(part.name).second) continue;
+        throw FileError(file,
+                        "part_names",
+                        "two parts called \"" + part.name + "\"",
+                        "a name of its own for each of " + known);
+    }
+}
+
 }  // namespace
 
 Product load_product(const std::filesystem::path& file, std::optional<LengthUnit> unit) {
@@ -47,15 +75,25 @@ Product load_product(const std::filesystem::path& file, std::optional<LengthUnit
     product.name = said.name;
     product.product_scale = said.product_scale;
     product.mesh = load_mesh(said.mesh, &product.notes, unit ? unit : said.unit);
-    if (said.world_from_mesh) move(product.mesh, *said.world_from_mesh);
+    apply(said, file, product.mesh);
+    return product;
+}
+
+void apply(const ProductFile& said, const std::filesystem::path& file, Mesh& mesh) {
+    if (said.mesh_scale != 1.0) {
+        for (auto& position : mesh.positions_mm) {
+            position = glm::vec3(said.mesh_scale * glm::dvec3(position));
+        }
+    }
+    if (said.world_from_mesh) move(mesh, *said.world_from_mesh);
+    rename_parts(said, file, mesh);
     for (std::size_t k = 0; k < said.parts.size(); ++k) {
-        if (has_part(product.mesh, said.parts[k])) continue;
+        if (has_part(mesh, said.parts[k])) continue;
         throw FileError(file,
                         "parts[" + std::to_string(k) + "]",
                         "\"" + said.parts[k] + "\"",
-                        "a part of the mesh: " + part_names(product.mesh));
+                        "a part of the mesh: " + part_names(mesh));
     }
-    return product;
 }
 
 ProductFile parse_product_file(const std::string& text, const std::filesystem::path& file) {
@@ -63,9 +101,20 @@ ProductFile parse_product_file(const std::string& text, const std::filesystem::p
     const JsonReader root(file, json);
     ProductFile product;
     root.require_format_version(1);
-    root.allow_only(
-        {"format_version", "name", "mesh", "unit", "product_scale", "pose", "parts", "front"});
+    root.allow_only({"format_version",
+                     "name",
+                     "mesh",
+                     "unit",
+                     "mesh_scale",
+                     "product_scale",
+                     "pose",
+                     "part_names",
+                     "parts",
+                     "front"});
     product.name = root.has("name") ? root["name"].text() : file.stem().string();
+    if (root.has("mesh_scale")) {
+        product.mesh_scale = root["mesh_scale"].number_between(1e-6, 1e6);
+    }
     if (root.has("product_scale")) {
         product.product_scale = root["product_scale"].number_between(1e-3, 1e6);
     }
@@ -77,8 +126,9 @@ ProductFile parse_product_file(const std::string& text, const std::filesystem::p
         if (!product.unit) root["unit"].fail(root["unit"].found(), "mm, cm, m or in");
     }
     if (root.has("front")) {
-        const std::string front = root["front"].text();
-        if (front != "+x" && front != "-x" && front != "+z" && front != "-z") {
+        product.front = root["front"].text();
+        const std::set<std::string> sides{"+x", "-x", "+z", "-z"};
+        if (!sides.contains(product.front)) {
             root["front"].fail(root["front"].found(), "+x, -x, +z or -z");
         }
     }
@@ -86,12 +136,58 @@ ProductFile parse_product_file(const std::string& text, const std::filesystem::p
         root["pose"].allow_only({"rotation", "translation_mm"});
         product.world_from_mesh = read_pose(root["pose"]);
     }
+    if (root.has("part_names")) {
+        const JsonReader names = root["part_names"];
+        for (const std::string& name : names.keys()) {
+            product.part_names[name] = names[name].text();
+            if (product.part_names[name].empty()) names[name].fail("an empty name", "a name");
+        }
+    }
     if (root.has("parts")) {
         for (std::size_t k = 0; k < root["parts"].size(); ++k) {
             product.parts.push_back(root["parts"].at(k).text());
         }
     }
     return product;
+}
+
+std::string text_of(const ProductFile& product, const std::filesystem::path& file) {
+    const auto folder = std::filesystem::absolute(file).lexically_normal().parent_path();
+    const auto mesh = std::filesystem::absolute(product.mesh).lexically_normal();
+    const auto beside = mesh.lexically_relative(folder);
+    const bool below = !beside.empty() && *beside.begin() != "..";
+    Json json = {{"format_version", 1},
+                 {"name", product.name},
+                 {"mesh", (below ? beside : mesh).string()},
+                 {"mesh_scale", product.mesh_scale},
+                 {"product_scale", product.product_scale}};
+    if (product.unit) json["unit"] = to_string(*product.unit);
+    if (product.world_from_mesh) json["pose"] = json_of(*product.world_from_mesh);
+    if (!product.part_names.empty()) json["part_names"] = product.part_names;
+    if (!product.parts.empty()) json["parts"] = product.parts;
+    if (!product.front.empty()) json["front"] = product.front;
+    return json.dump(4) + "\n";
+}
+
+glm::dmat3 upright_rotation(UpAxis up, int quarter_turns) {
+    const int axis = static_cast<int>(up) / 2;
+    const double sign = static_cast<int>(up) % 2 == 0 ? 1.0 : -1.0;
+    // Rows: what becomes x, y and z.
+    glm::dmat3 rows(1.0);
+    if (axis == 0) rows = {{0.0, -sign, 0.0}, {sign, 0.0, 0.0}, {0.0, 0.0, 1.0}};
+    if (axis == 1) rows = {{1.0, 0.0, 0.0}, {0.0, sign, 0.0}, {0.0, 0.0, sign}};
+    if (axis == 2) rows = {{1.0, 0.0, 0.0}, {0.0, 0.0, sign}, {0.0, -sign, 0.0}};
+    const glm::dmat3 quarter =
+        glm::transpose(glm::dmat3{{0.0, 0.0, 1.0}, {0.0, 1.0, 0.0}, {-1.0, 0.0, 0.0}});
+    glm::dmat3 rotation = glm::transpose(rows);
+    for (int k = 0; k < (quarter_turns % 4 + 4) % 4; ++k) rotation = quarter * rotation;
+    return rotation;
+}
+
+Rigid3 standing_pose(const Bounds& mesh_mm, const glm::dmat3& world_from_mesh) {
+    const glm::dvec3 a = world_from_mesh * mesh_mm.low, b = world_from_mesh * mesh_mm.high;
+    const glm::dvec3 low = glm::min(a, b), middle = 0.5 * (a + b);
+    return {world_from_mesh, {-middle.x, -low.y, -middle.z}};
 }
 
 int part_index(const Product& product, const std::string& name) {

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <gtest/gtest.h>
 
 #include "core/image_io.h"
@@ -14,9 +15,9 @@
 namespace livery {
 namespace {
 
-class ProductFile : public testing::Test {
+class ProductOfAFile : public testing::Test {
   protected:
-    ProductFile() { folder_.write("plate.glb", make_plate().glb()); }
+    ProductOfAFile() { folder_.write("plate.glb", make_plate().glb()); }
     std::filesystem::path write(const Json& json) {
         return folder_.write("product.json", json.dump());
     }
@@ -29,7 +30,7 @@ Json some_product() {
         "pose": {"rotation": [0, -1, 0, 1, 0, 0, 0, 0, 1], "translation_mm": [5, 6, 7]}})");
 }
 
-TEST_F(ProductFile, NamesItsMeshItsScaleAndItsPose) {
+TEST_F(ProductOfAFile, NamesItsMeshItsScaleAndItsPose) {
     const Product plate = load_product(write(some_product()));
     EXPECT_EQ(plate.name, "Plate");
     EXPECT_EQ(plate.product_scale, 25.0);
@@ -39,13 +40,13 @@ TEST_F(ProductFile, NamesItsMeshItsScaleAndItsPose) {
     EXPECT_EQ(part_index(plate, "plate"), 0);
 }
 
-TEST_F(ProductFile, AMeshAloneIsAProductToo) {
+TEST_F(ProductOfAFile, AMeshAloneIsAProductToo) {
     const Product plate = load_product(folder_ / "plate.glb");
     EXPECT_EQ(plate.name, "plate");
     EXPECT_EQ(plate.product_scale, 1.0);
 }
 
-TEST_F(ProductFile, AnUnknownPartIsAnsweredWithTheKnownOnes) {
+TEST_F(ProductOfAFile, AnUnknownPartIsAnsweredWithTheKnownOnes) {
     const Product plate = load_product(folder_ / "plate.glb");
     try {
         part_index(plate, "door");
@@ -73,6 +74,17 @@ const Broken kBroken[] = {
     {"unknown part",
      [](Json& p) { p["parts"] = {"door"}; },
      "parts[0]: found \"door\", expected a part"},
+    {"mesh scale of zero", [](Json& p) { p["mesh_scale"] = 0; }, "mesh_scale: found 0"},
+    {"name for a part that is not there",
+     [](Json& p) {
+         p["part_names"] = {{"door", "body"}};
+     },
+     "part_names: found \"door\", expected a part of the mesh: plate"},
+    {"part without a name",
+     [](Json& p) {
+         p["part_names"] = {{"plate", ""}};
+     },
+     "part_names.plate: found an empty name"},
     {"misspelt field", [](Json& p) { p["scale"] = 25; }, "the unknown field \"scale\""},
     {"pose in metres",
      [](Json& p) { p["pose"]["translation_m"] = 1; },
@@ -85,7 +97,84 @@ const Broken kBroken[] = {
      "pose.rotation: found a mirror"},
 };
 
-TEST_F(ProductFile, EachMistakeIsNamed) {
+TEST_F(ProductOfAFile, ComesBackAsItWasWritten) {
+    ProductFile said;
+    said.name = "Car \"A\"";
+    said.mesh = folder_ / "plate.glb";
+    said.unit = LengthUnit::in;
+    said.mesh_scale = 0.04;
+    said.product_scale = 25.0;
+    said.world_from_mesh =
+        standing_pose({{-1, 2, 3}, {5, 6, 9}}, upright_rotation(UpAxis::minus_z, 1));
+    said.part_names = {{"plate", "body"}};
+    said.parts = {"body"};
+    said.front = "-z";
+    const auto file = folder_ / "own.product.json";
+    const ProductFile read = parse_product_file(text_of(said, file), file);
+    EXPECT_EQ(read.name, said.name);
+    EXPECT_EQ(read.mesh, said.mesh);
+    EXPECT_EQ(read.unit, said.unit);
+    EXPECT_EQ(read.mesh_scale, said.mesh_scale);
+    EXPECT_EQ(read.product_scale, said.product_scale);
+    ASSERT_TRUE(read.world_from_mesh);
+    EXPECT_EQ(read.world_from_mesh->rotation, said.world_from_mesh->rotation);
+    EXPECT_EQ(read.world_from_mesh->translation, said.world_from_mesh->translation);
+    EXPECT_EQ(read.part_names, said.part_names);
+    EXPECT_EQ(read.parts, said.parts);
+    EXPECT_EQ(read.front, said.front);
+    // Beside the file it may move along with it; elsewhere it is named whole.
+    EXPECT_EQ(Json::parse(text_of(said, file))["mesh"], "plate.glb");
+    EXPECT_EQ(Json::parse(text_of(said, "/elsewhere/own.json"))["mesh"], said.mesh.string());
+}
+
+TEST_F(ProductOfAFile, ResizesBeforeItMovesAndNamesParts) {
+    Json json = some_product();
+    json["mesh_scale"] = 0.5;
+    json["part_names"] = {{"plate", "body"}};
+    json["parts"] = {"body"};
+    const Product plate = load_product(write(json));
+    EXPECT_EQ(part_index(plate, "body"), 0);
+    EXPECT_LT(glm::distance(plate.mesh.positions_mm[1], glm::vec3(5, 506, 7)), 1e-3f);
+    EXPECT_NEAR(glm::length(plate.mesh.normals[0]), 1.0f, 1e-6f);
+}
+
+TEST(Upright, EachAxisBecomesUpWithoutAMirror) {
+    const glm::dvec3 ups[] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+    for (int k = 0; k < 6; ++k) {
+        for (int turns = -1; turns < 4; ++turns) {
+            const glm::dmat3 rotation = upright_rotation(static_cast<UpAxis>(k), turns);
+            EXPECT_EQ(rotation * ups[k], glm::dvec3(0, 1, 0)) << k;
+            EXPECT_EQ(glm::determinant(rotation), 1.0) << k;
+        }
+    }
+    // Counter-clockwise from above: what points at the viewer (+z) goes to the right.
+    EXPECT_EQ(upright_rotation(UpAxis::plus_y, 1) * glm::dvec3(0, 0, 1), glm::dvec3(1, 0, 0));
+    EXPECT_EQ(upright_rotation(UpAxis::plus_y, 4), glm::dmat3(1.0));
+}
+
+TEST(Upright, AProductStandsOnTheGroundOverTheOrigin) {
+    const Rigid3 pose =
+        standing_pose({{10, 20, 30}, {14, 22, 36}}, upright_rotation(UpAxis::plus_z, 0));
+    EXPECT_EQ(pose * glm::dvec3(10, 20, 30), glm::dvec3(-2, 0, 1));
+    EXPECT_EQ(pose * glm::dvec3(14, 22, 36), glm::dvec3(2, 6, -1));
+}
+
+TEST_F(ProductOfAFile, TwoPartsOfOneNameAreRefused) {
+    Mesh mesh = make_sphere({}, 10.0, 4, "door");
+    append(mesh, make_sphere({50, 0, 0}, 10.0, 4, "hood"), "");
+    ProductFile said;
+    said.part_names = {{"door", "body"}, {"hood", "body"}};
+    EXPECT_TRUE(fails_with([&] { apply(said, "a.json", mesh); },
+                           {"part_names: found two parts called \"body\"", "door, hood"}));
+    // Names may change places.
+    mesh.parts[0].name = "door";
+    mesh.parts[1].name = "hood";
+    said.part_names = {{"door", "hood"}, {"hood", "door"}};
+    apply(said, "a.json", mesh);
+    EXPECT_EQ(mesh.parts[0].name, "hood");
+}
+
+TEST_F(ProductOfAFile, EachMistakeIsNamed) {
     for (const auto& broken : kBroken) {
         Json json = some_product();
         broken.damage(json);
@@ -98,7 +187,7 @@ TEST_F(ProductFile, EachMistakeIsNamed) {
                            {"a.json: line 1, column", "not JSON"}));
 }
 
-class SceneOfALook : public ProductFile {
+class SceneOfALook : public ProductOfAFile {
   protected:
     SceneOfALook() : plate_(std::make_shared<Product>(load_product(folder_ / "plate.glb"))) {
         look_.file = folder_ / "look.json";
