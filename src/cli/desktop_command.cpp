@@ -6,14 +6,16 @@
 #include <fmt/format.h>
 
 #include "cli/command.h"
+#include "core/error.h"
 #include "live/frame_thread.h"
+#include "studio/product/new_session.h"
 #include "studio/window/app.h"
 
 namespace livery {
 
 Command desktop_command() {
     struct Arguments {
-        std::string session, product, unit, size, ui_map, trace, shading = "auto";
+        std::string file, session, product, unit, size, ui_map, trace, shading = "auto";
         double ui_scale = 0.0;
     };
     const auto arguments = std::make_shared<Arguments>();
@@ -23,7 +25,13 @@ Command desktop_command() {
     command.example = "livery desktop --session roadster.livery";
     command.options = {
         // File managers give a file without an option.
-        {"file", "FILE", "a session, as --session", &arguments->session, false, {}},
+        {"file",
+         "FILE",
+         "a session, as --session; a mesh (.glb, .gltf, .ply, .obj) or product file (.json) begins "
+         "a new session with it",
+         &arguments->file,
+         false,
+         {}},
         {"--session",
          "FILE",
          "the session, made when it is not there (default: in your folder)",
@@ -67,6 +75,18 @@ Command desktop_command() {
     command.run = [arguments](const CommonOptions&, const Progress&) {
         DesktopOptions options;
         options.session = arguments->session;
+        if (is_product_path(arguments->file)) {
+            options.new_product = arguments->file;
+            std::error_code error;
+            if (!std::filesystem::is_regular_file(options.new_product, error)) {
+                throw FileError(arguments->file, "", "no such file", "a mesh or a product file");
+            }
+        } else if (!arguments->file.empty()) {
+            if (!arguments->session.empty()) {
+                throw std::invalid_argument("--session: found a session twice, expected one");
+            }
+            options.session = arguments->file;
+        }
         options.product = arguments->product;
         options.unit = parse_unit(arguments->unit);
         options.ui_map = arguments->ui_map;

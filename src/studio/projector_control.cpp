@@ -6,13 +6,13 @@
 #include "projection/picture_port.h"
 #include "studio/results.h"
 #include "studio/window/shell.h"
+#include "studio/window/shell_state.h"
 
 namespace livery {
 
 namespace {
 
 constexpr double kNumbersShown_s = 4.0;
-constexpr const char* kMonitorKey = "projector-monitor";
 
 /// Two outputs that show the same part of the desktop: what is on one is on both.
 const Monitor* twin_of(const std::vector<Monitor>& monitors, const Monitor& monitor) {

@@ -10,6 +10,8 @@
 #include "studio/artwork/artwork_edit.h"
 #include "studio/look_files.h"
 #include "studio/paint/library_panel.h"
+#include "studio/product/new_session.h"
+#include "studio/product/open_session.h"
 #include "studio/projector_control.h"
 #include "studio/save_picture.h"
 #include "studio/window/shell.h"
@@ -113,7 +115,12 @@ Action action(std::string id,
 }
 
 void add_file_actions(std::vector<Action>& list) {
+    list.push_back(
+        action("new-session", "File", "New session…", {ctrl(GLFW_KEY_N)}, ask_for_product));
+    list.push_back(
+        action("open-session", "File", "Open session…", {ctrl(GLFW_KEY_O)}, ask_for_session));
     list.push_back(action("import-look", "File", "Import look…", {ctrl(GLFW_KEY_I)}, ask_for_look));
+    list.back().starts_group = true;
     list.push_back(action(
         "export-look", "File", "Export look…", {ctrl(GLFW_KEY_E)}, ask_where_to_export_look));
     list.push_back(action(

@@ -25,10 +25,13 @@
 #include "studio/paint/library_panel.h"
 #include "studio/paint/users_library.h"
 #include "studio/plan_panel.h"
+#include "studio/product/new_session.h"
+#include "studio/product/open_session.h"
 #include "studio/projector_control.h"
 #include "studio/quality_costs.h"
 #include "studio/window/actions.h"
 #include "studio/window/imgui_window.h"
+#include "studio/window/keys.h"
 #include "studio/window/native_place.h"
 #include "studio/window/running_window.h"
 #include "studio/window/shell.h"
@@ -50,10 +53,9 @@ constexpr double kLongestOpening_s = 1.2;
 constexpr double kOnItsWayToTheScreen_s = 0.15;
 constexpr double kGiveWay_s = 0.004;
 
-// Not Caps Lock and Num Lock.
-constexpr int kRealModifiers = GLFW_MOD_CONTROL | GLFW_MOD_SHIFT | GLFW_MOD_ALT | GLFW_MOD_SUPER;
-
-bool monitors_have_changed = false;  // Set by GLFW's callback, which carries no pointer.
+// Set by GLFW's callbacks, which carry no pointer.
+bool monitors_have_changed = false;
+std::vector<std::filesystem::path> dropped_files;
 
 double now_s() { return seconds_of(std::chrono::steady_clock::now()); }
 
@@ -100,68 +102,6 @@ void tell_drawing_problems(Studio& studio) {
     }
 }
 
-KeyboardOwner keyboard_owner(const Shell& shell) {
-    const ImGuiContext& g = *ImGui::GetCurrentContext();
-    KeyboardOwner owner;
-    // As of the last frame; WantTextInput is older by one.
-    owner.text_field = g.ActiveId != 0 && g.ActiveId == g.InputTextState.ID;
-    owner.dialog = ImGui::GetTopMostPopupModal() != nullptr;
-    owner.ballot_letters = ballot_letters(shell.studio);
-    owner.keyboard_navigation =
-        g.IO.NavVisible || g.OpenPopupStack.Size > 0 || shell.studio.panels.library->owns_arrows;
-    return owner;
-}
-
-/// Runs what a key means; true when it meant something.
-bool handle_key(Shell& shell, const InputEvent& event) {
-    if (event.kind == InputEvent::Kind::focus) {
-        if (!event.down) shell.studio.showing_b = false;
-        if (event.down) refresh_library(shell.studio);
-        return false;
-    }
-    if (event.code == GLFW_KEY_TAB && (event.modifiers & ~GLFW_MOD_SHIFT & kRealModifiers) == 0) {
-        if (event.down) shell.tab_step = (event.modifiers & GLFW_MOD_SHIFT) != 0 ? -1 : 1;
-        return true;
-    }
-    const KeyChord chord{event.code,
-                         (event.modifiers & GLFW_MOD_CONTROL) != 0,
-                         (event.modifiers & GLFW_MOD_SHIFT) != 0};
-    if (!event.down) {
-        // Whatever the modifiers are by now: what was held is let go.
-        for (const Action& action : all_actions()) {
-            const bool its_key =
-                std::any_of(action.chords.begin(), action.chords.end(), [&](const KeyChord& c) {
-                    return c.key == event.code;
-                });
-            if (action.released && its_key) action.released(shell);
-        }
-        return false;
-    }
-    if ((event.modifiers & (GLFW_MOD_ALT | GLFW_MOD_SUPER)) != 0) return false;
-    const KeyboardOwner owner = keyboard_owner(shell);
-    const Action* action = action_for(chord, owner);
-    // Dear ImGui has a meaning of its own for Tab and would use it for its list of windows.
-    if (!action && chord.key == GLFW_KEY_TAB) return true;
-    if (!action) return chord.key == GLFW_KEY_SPACE && !owner.text_field && !owner.dialog;
-    // Esc closes an open menu, and that is all it does then.
-    ImGuiContext& g = *ImGui::GetCurrentContext();
-    if (action->id == "give-up" && !owner.dialog && g.OpenPopupStack.Size > 0) {
-        ImGui::ClosePopupToLevel(0, false);
-        g.NavDisableHighlight = true;
-        g.NavLayer = ImGuiNavLayer_Main;
-        return true;
-    }
-    const bool repeats = action->id == "undo" || action->id == "redo" || action->id == "larger" ||
-                         action->id == "smaller" || action->id == "next-look" ||
-                         action->id == "previous-look" || action->id == "next-tab" ||
-                         action->id == "previous-tab";
-    if (event.repeated && !repeats) return true;
-    run_action(*action, shell);
-    if (action->id != "give-up") return true;
-    if (ImGui::IsAnyItemActive()) ImGui::ClearActiveID();
-    return false;  // Panels may have something of their own to give up.
-}
-
 /// The earliest moment at which something on the window changes by itself.
 std::optional<double> next_change_s(const Shell& shell) {
     std::optional<double> next;
@@ -191,6 +131,27 @@ std::optional<double> next_change_s(const Shell& shell) {
     return next;
 }
 
+/// Keeps a projector dark while one session's window goes and the next one's comes.
+struct DarkProjector {
+    Window context;
+    ProjectorScreen screen;
+
+    explicit DarkProjector(const std::string& monitor)
+        : context({"Livery (dark)", {16, 16}, false, true}), screen(context) {
+        screen.set_black(true);
+        screen.use_monitor(monitor);
+        screen.monitors_changed();
+    }
+};
+
+/// What one session's window hands to the next one's.
+struct Handover {
+    std::shared_ptr<OpenedSession> opened;
+    std::unique_ptr<DarkProjector> dark;  ///< none: there was no projector
+    std::shared_ptr<Trace> trace;         ///< shared as in the shell
+    bool black = false;                   ///< it was so before
+};
+
 class Desktop {
   public:
     Desktop(const DesktopOptions& options, Session session)
@@ -203,14 +164,28 @@ class Desktop {
             });
     }
 
-    int run() {
+    Desktop(const DesktopOptions& options, Handover before)
+        : options_(options),
+          dark_(std::move(before.dark)),
+          shell_(std::move(before.opened->session)) {
+        std::promise<std::shared_ptr<const Product>> read;
+        read.set_value(before.opened->product);
+        product_ = read.get_future();
+        shell_.trace = std::move(before.trace);
+        shell_.black = before.black;
+    }
+
+    /// What to go on with; nothing: the program ends.
+    std::optional<Handover> run() {
         prepare();
-        while (!shell_.quit && !glfwWindowShouldClose(window_->native())) {
+        while (!shell_.quit && !shell_.next_session && !glfwWindowShouldClose(window_->native())) {
             wait_for_something();
             draw_frame();
         }
+        std::optional<Handover> next;
+        if (shell_.next_session && !shell_.quit) next = hand_over();
         finish();
-        return 0;
+        return next;
     }
 
   private:
@@ -227,12 +202,16 @@ class Desktop {
         window_options.size_px = place.size_px;
         window_options.visible = false;
         window_ = std::make_unique<Window>(window_options);
+        shell_.window = window_.get();
         put_window(window_->native(), place);
         window_->make_current();
         glfwSwapInterval(0);
         log_line(LogLevel::info, "drawing with " + window_->renderer());
         imgui_ = std::make_unique<ImGuiWindow>(*window_);
         glfwSetMonitorCallback([](GLFWmonitor*, int) { monitors_have_changed = true; });
+        glfwSetDropCallback(window_->native(), [](GLFWwindow*, int count, const char** paths) {
+            dropped_files.assign(paths, paths + count);
+        });
         studio.product = product_.get();
         shell_.product_bounds = bounds_of(studio.product->mesh);
         studio.picker = std::make_unique<PartPicker>(studio.product);
@@ -242,18 +221,37 @@ class Desktop {
         open_ballots(shell_);
         keep_shown_looks_valid(studio);
         contexts_ = start_threads(shell_, *window_, options_.shading);
+        if (shell_.black) set_black(shell_, true);
         tell_product_notes(studio);
         tell_drawing_problems(studio);
         tell_unsaved(shell_);
         monitors_changed(shell_);
         glfwShowWindow(window_->native());
         if (const auto file = studio.session.file()) {
+            remember_recent_session(studio.settings, *file);
             running_window_.emplace(*file, [this] {
                 asked_for_ = true;
                 wake_main_thread();
             });
         }
+        if (!options_.new_product.empty()) begin_new_session(shell_, options_.new_product);
         frames_to_draw_ = kFramesAfterInput;
+    }
+
+    /// The next session's window stands where this one does, with the same projector.
+    Handover hand_over() {
+        Handover next;
+        next.opened = std::move(shell_.next_session);
+        next.trace = shell_.trace;
+        next.black = shell_.black;
+        Session& session = next.opened->session;
+        session.set_workspace(kWindowKey, text_of(place_of(window_->native())));
+        session.set_workspace(kMonitorKey, shell_.projector_monitor);
+        if (shell_.studio.projector->state() == ProjectorScreen::State::showing) {
+            next.dark = std::make_unique<DarkProjector>(shell_.projector_monitor);
+        }
+        log_line(LogLevel::info, "goes on with " + session.file().value_or("").string());
+        return next;
     }
 
     void wait_for_something() {
@@ -284,6 +282,10 @@ class Desktop {
             monitors_changed(shell_);
             frames_to_draw_ = kFramesAfterInput;
         }
+        if (!dropped_files.empty()) {
+            take_dropped_files(shell_, std::exchange(dropped_files, {}));
+            frames_to_draw_ = kFramesAfterInput;
+        }
     }
 
     void draw_frame() {
@@ -301,6 +303,7 @@ class Desktop {
         take_results(shell_);
         if (studio.opening && has_opened()) {
             studio.opening = false;
+            dark_.reset();
             give_icon(studio, native);
         }
         save_again_now_and_then(shell_);
@@ -384,6 +387,7 @@ class Desktop {
         draw_layout(shell_);
         draw_notices(shell_);
         draw_help(shell_);
+        draw_new_session(shell_);
         shell_.studio.file_dialog->draw();
     }
 
@@ -419,11 +423,13 @@ class Desktop {
         shell_.monitor_numbers.reset();
         stop_threads(shell_);
         shell_.stage.photograph_texture = {};
+        shell_.new_session.reset();
         shell_.studio.panels = PanelStates();  // their textures go
         imgui_.reset();
     }
 
     DesktopOptions options_;
+    std::unique_ptr<DarkProjector> dark_;  ///< until the mock-up has its first picture
     std::future<std::shared_ptr<const Product>> product_;
     std::unique_ptr<Window> window_;
     Contexts contexts_;
@@ -452,7 +458,12 @@ class Desktop {
 std::optional<Session> session_or_running_window(const DesktopOptions& options) {
     try {
         return open_session(options);
-    } catch (const Refused&) {
+    } catch (const Refused& refused) {
+        if (!options.new_product.empty()) {
+            throw Refused(refused.why(),
+                          "drop " + options.new_product.filename().string() +
+                              " on its window, or name a session with --session");
+        }
         if (!ask_running_window(session_file(options))) throw;
         log_line(LogLevel::info, "the session is open already; its window was asked for");
         return std::nullopt;
@@ -469,7 +480,13 @@ int run_desktop(const DesktopOptions& options) {
     log_line(LogLevel::info, "Livery " LIVERY_VERSION " opens");
     auto session = session_or_running_window(options);
     if (!session) return 0;
-    return Desktop(options, std::move(*session)).run();
+    auto next = Desktop(options, std::move(*session)).run();
+    DesktopOptions later = options;
+    later.size_px.reset();  // as the window was left
+    later.new_product.clear();
+    later.trace.clear();  // handed over
+    while (next) next = Desktop(later, std::move(*next)).run();
+    return 0;
 }
 
 }  // namespace livery

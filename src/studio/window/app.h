@@ -17,6 +17,7 @@ struct DesktopOptions {
     std::filesystem::path session;        ///< empty: the one in the user's folder
     std::string product;                  ///< empty: the session's; for a new session "car"
     std::optional<LengthUnit> unit;       ///< of the product's file, for a new session
+    std::filesystem::path new_product;    ///< begins a new session with it; empty: none
     std::optional<double> ui_scale;       ///< instead of the screen's and the user's own
     std::optional<glm::ivec2> size_px;    ///< instead of the remembered one
     std::filesystem::path ui_map, trace;  ///< empty: not written

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
+#include <string>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -10,6 +12,7 @@
 #include "studio/kit/theme.h"
 #include "studio/paint/library_panel.h"
 #include "studio/paint/swatch_textures.h"
+#include "studio/product/open_session.h"
 #include "studio/window/actions.h"
 #include "studio/window/shell.h"
 
@@ -30,6 +33,28 @@ void draw_menu_entry(const Action& action, Shell& shell) {
         run_action(action, shell);
     }
     name_last_item("menu:" + action.id);
+}
+
+/// Those that are gone stay in the list, in grey: a memory stick may come back.
+void draw_recent_sessions(Shell& shell) {
+    const auto files = recent_sessions(shell.studio.settings);
+    const bool open = ImGui::BeginMenu("Recent", !files.empty());
+    name_last_item("menu:recent");
+    if (!open) return;
+    const auto shown = shell.studio.session.file();
+    for (std::size_t k = 0; k < files.size(); ++k) {
+        std::error_code error;
+        const bool there = std::filesystem::is_regular_file(files[k], error);
+        const std::string label = files[k].stem().string() + "##" + std::to_string(k);
+        const std::string where =
+            there ? files[k].parent_path().filename().string() : std::string("not there");
+        if (ImGui::MenuItem(label.c_str(), where.c_str(), shown == files[k], there)) {
+            open_other_session(shell, files[k]);
+        }
+        name_last_item("recent:" + files[k].stem().string());
+        tooltip(files[k].string());
+    }
+    ImGui::EndMenu();
 }
 
 /// A region of the window that scrolls on its own.
@@ -146,7 +171,9 @@ void draw_menu_bar(Shell& shell) {
         name_last_item(std::string("menu:") + menu);
         if (!open) continue;
         for (const Action& action : all_actions()) {
-            if (action.menu == menu) draw_menu_entry(action, shell);
+            if (action.menu != menu) continue;
+            draw_menu_entry(action, shell);
+            if (action.id == "open-session") draw_recent_sessions(shell);
         }
         ImGui::EndMenu();
     }

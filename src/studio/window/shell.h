@@ -15,6 +15,7 @@
 #include "gl/window.h"
 #include "live/orbit.h"
 #include "mesh/mesh.h"
+#include "studio/product/new_session.h"
 #include "studio/studio.h"
 #include "studio/window/trace.h"
 
@@ -124,6 +125,9 @@ struct Shell {
     int tab_step = 0;  ///< Tab was pressed: 1, with Shift: -1
     bool help_open = false, about_open = false, ballots_open = false;
     bool signal_test_open = false;
+    std::unique_ptr<NewSession> new_session;      ///< its page; none: closed
+    std::uint64_t new_sessions = 0;               ///< pages opened so far
+    std::shared_ptr<OpenedSession> next_session;  ///< shared with the thread that opened it
     bool quit = false;
     bool clicked_a_view = false;
     float stage_x = 0.0f, stage_y = 0.0f;  ///< upper left corner of the stage, pixels

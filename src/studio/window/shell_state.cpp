@@ -53,6 +53,20 @@ const char* name_of(ProjectorScreen::State state) {
     return "off";
 }
 
+const char* name_of(NewSession::Stage stage) {
+    switch (stage) {
+        case NewSession::Stage::reading:
+            return "reading";
+        case NewSession::Stage::unreadable:
+            return "unreadable";
+        case NewSession::Stage::asking:
+            return "asking";
+        case NewSession::Stage::creating:
+            return "creating";
+    }
+    return "reading";
+}
+
 const std::string* find(const Workspace& workspace, const std::string& name) {
     const auto found = workspace.find(name);
     return found == workspace.end() ? nullptr : &found->second;
@@ -89,7 +103,7 @@ void restore_workspace(Shell& shell) {
     restore(workspace, "left-width", shell.left_width_em, 11.0f, 30.0f);
     restore(workspace, "right-width", shell.right_width_em, 17.0f, 40.0f);
     // A new session has the projector that the one before had.
-    const std::string* monitor = find(workspace, "projector-monitor");
+    const std::string* monitor = find(workspace, kMonitorKey);
     shell.projector_monitor = monitor ? *monitor : setting(studio.settings, kProjectorSetting);
     if (const std::string* view = find(workspace, "view")) {
         for (const auto v :
@@ -160,6 +174,11 @@ MapState state_of_shell(const Shell& shell) {
     state["calibrating"] = text(studio.bench->calibrating().running);
     state["solving"] = text(studio.frames->solving().has_value());
     state["busy"] = text(studio.background->is_busy());
+    state["session"] = quoted(session.file().value_or("").string());
+    state["new_session"] = quoted(shell.new_session ? name_of(shell.new_session->stage) : "closed");
+    state["new_session_pictured"] =
+        text(shell.new_session != nullptr && shell.new_session->picture.name() != 0);
+    state["new_session_says"] = quoted(shell.new_session ? shell.new_session->problem : "");
     state["scale"] = fmt::format("{:.3f}", studio.ui_scale);
     Json notices = Json::array();
     for (const Notice& notice : studio.notices) notices.push_back(notice.what);

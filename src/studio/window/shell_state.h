@@ -10,6 +10,7 @@ namespace livery {
 struct Shell;
 
 inline constexpr const char* kWindowKey = "window";
+inline constexpr const char* kMonitorKey = "projector-monitor";
 
 void restore_workspace(Shell& shell);
 /// Writes what differs from what is remembered; sizes and places only when they rest for a moment,

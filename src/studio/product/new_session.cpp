@@ -1,0 +1,204 @@
+#include "studio/product/new_session.h"
+
+#include "core/error.h"
+#include "core/paths.h"
+#include "scene/library.h"
+#include "studio/kit/file_places.h"
+#include "studio/kit/user_folders.h"
+#include "studio/look_files.h"
+#include "studio/product/mesh_picture.h"
+#include "studio/product/open_session.h"
+#include "studio/window/shell.h"
+
+namespace livery {
+
+namespace {
+
+/// What was read of a file, on the way to the page.
+struct Read {
+    Mesh mesh;
+    MeshFacts facts;
+    SuggestedAnswers suggested;
+    bool is_product_file = false;
+};
+
+Read read_given(const std::filesystem::path& file) {
+    Read read;
+    read.is_product_file = has_suffix_of(file, {".json"});
+    if (read.is_product_file) {
+        Product product = load_product(file);
+        read.mesh = std::move(product.mesh);
+        read.facts = facts_of(read.mesh, file);
+        read.suggested.answers.mesh_is_product = false;
+        read.suggested.answers.product_scale = product.product_scale;
+        read.suggested.answers.part_names = read.facts.parts;
+        return read;
+    }
+    read.mesh = load_mesh(file, nullptr, LengthUnit::mm);
+    read.facts = facts_of(read.mesh, file);
+    read.suggested = suggested_answers(read.facts);
+    return read;
+}
+
+bool is_there(const std::filesystem::path& file) {
+    std::error_code error;
+    return std::filesystem::exists(file, error);
+}
+
+std::string words_of(const std::exception_ptr& why) {
+    try {
+        std::rethrow_exception(why);
+    } catch (const Refused& refused) {
+        return refused.why() + "; " + refused.fix();
+    } catch (const std::exception& error) {
+        return error.what();
+    }
+}
+
+/// The page that asked, if it is still open.
+NewSession* page_of(Shell& shell, std::uint64_t number) {
+    const bool still_open = shell.new_session && shell.new_session->number == number;
+    return still_open ? shell.new_session.get() : nullptr;
+}
+
+}  // namespace
+
+bool is_product_path(const std::filesystem::path& file) {
+    return has_suffix_of(file, {".glb", ".gltf", ".ply", ".obj", ".json"});
+}
+
+std::filesystem::path product_file_beside(const std::filesystem::path& session) {
+    return std::filesystem::path(session).replace_extension(".product.json");
+}
+
+std::filesystem::path unused_session_file(const std::filesystem::path& folder,
+                                          const std::string& name) {
+    for (int k = 1;; ++k) {
+        const std::string number = k == 1 ? "" : "-" + std::to_string(k);
+        const auto file = folder / (name + number + ".livery");
+        if (!is_there(file) && !is_there(product_file_beside(file))) return file;
+    }
+}
+
+OpenedSession create_session(const NewSession& asked) {
+    const auto product_file =
+        asked.is_product_file ? asked.given : product_file_beside(asked.session);
+    const auto refuse_if_there = [](const std::filesystem::path& file) {
+        if (!is_there(file)) return;
+        throw Refused(file.string() + " is there already",
+                      "choose another name; nothing is written over");
+    };
+    refuse_if_there(asked.session);
+    if (!asked.is_product_file) {
+        refuse_if_there(product_file);
+        make_output_folder(asked.session.parent_path());
+        const std::string name = asked.session.stem().string();
+        write_text_file(product_file,
+                        text_of(product_file_of(asked.facts, asked.answers, name), product_file));
+    }
+    try {
+        auto product = find_product(product_file.string());
+        return {Session::open(asked.session, product_file.string()), std::move(product)};
+    } catch (...) {
+        std::error_code error;
+        if (!asked.is_product_file) std::filesystem::remove(product_file, error);
+        throw;
+    }
+}
+
+void begin_new_session(Shell& shell, const std::filesystem::path& file) {
+    const std::uint64_t number = ++shell.new_sessions;
+    shell.new_session = std::make_unique<NewSession>();
+    shell.new_session->number = number;
+    shell.new_session->given = std::filesystem::absolute(file).lexically_normal();
+    const auto page = [&shell, number] { return page_of(shell, number); };
+    shell.studio.background->run(
+        [page, given = shell.new_session->given](const Progress&) -> Background::Then {
+            const auto read = std::make_shared<Read>(read_given(given));
+            return [page, read] {
+                NewSession* asked = page();
+                if (!asked) return;
+                asked->facts = std::move(read->facts);
+                asked->suggested = std::move(read->suggested);
+                asked->answers = asked->suggested.answers;
+                asked->mesh = std::make_shared<const Mesh>(std::move(read->mesh));
+                asked->is_product_file = read->is_product_file;
+                std::string name = asked->given.stem().string();
+                if (name.ends_with(".product")) name.resize(name.size() - 8);
+                asked->session =
+                    unused_session_file(default_session_file().parent_path(), file_name_of(name));
+                asked->stage = NewSession::Stage::asking;
+            };
+        },
+        [page](const std::exception_ptr& why) {
+            NewSession* asked = page();
+            if (!asked) return;
+            asked->stage = NewSession::Stage::unreadable;
+            asked->problem = words_of(why);
+        });
+}
+
+void ask_for_product(Shell& shell) {
+    FileQuestion question;
+    question.title = "New session";
+    question.action = "Next";
+    question.suffixes = {".glb", ".gltf", ".ply", ".obj", ".json"};
+    question.suggested = documents_folder();
+    question.then = [&shell](const auto& file) { begin_new_session(shell, file); };
+    shell.studio.file_dialog->ask(std::move(question));
+}
+
+void start_creating(Shell& shell) {
+    NewSession& asked = *shell.new_session;
+    asked.problem = asked.is_product_file ? "" : problem_of(asked.answers);
+    if (asked.problem.empty()) asked.problem = why_not_to_leave(shell.studio);
+    if (!asked.problem.empty()) return;
+    asked.stage = NewSession::Stage::creating;
+    const auto answered = std::make_shared<NewSession>();
+    answered->given = asked.given;
+    answered->facts = asked.facts;
+    answered->answers = asked.answers;
+    answered->is_product_file = asked.is_product_file;
+    answered->session = asked.session;
+    shell.studio.background->run(
+        [&shell, answered](const Progress&) -> Background::Then {
+            const auto opened = std::make_shared<OpenedSession>(create_session(*answered));
+            return [&shell, opened] { shell.next_session = opened; };
+        },
+        [&shell, number = asked.number](const std::exception_ptr& why) {
+            NewSession* page = page_of(shell, number);
+            if (!page) return notify_failure(shell.studio, "The session was not made.", why);
+            page->stage = NewSession::Stage::asking;
+            page->problem = words_of(why);
+        });
+}
+
+void ask_for_mesh_picture(Shell& shell, glm::ivec2 size_px) {
+    NewSession& asked = *shell.new_session;
+    const auto wanted = std::pair(asked.answers.up, asked.answers.quarter_turns);
+    if (asked.pictured == wanted || !asked.mesh) return;
+    asked.pictured = wanted;
+    const auto still_wanted = [&shell, number = asked.number, wanted] {
+        const NewSession* page = page_of(shell, number);
+        return page && page->pictured == wanted;
+    };
+    shell.studio.background->run(
+        [&shell, mesh = asked.mesh, wanted, size_px, still_wanted](
+            const Progress&) -> Background::Then {
+            const auto picture = std::make_shared<const Image8>(
+                mesh_picture(*mesh, upright_rotation(wanted.first, wanted.second), size_px));
+            return [&shell, picture, still_wanted] {
+                if (!still_wanted()) return;
+                Texture2D texture(TextureShape{picture->width, picture->height, 0, 1},
+                                  TexelFormat::rgba8,
+                                  TexelFilter::linear);
+                texture.upload(std::span<const std::uint8_t>(picture->values));
+                shell.new_session->picture = std::move(texture);
+            };
+        },
+        [&shell](const std::exception_ptr& why) {
+            notify_failure(shell.studio, "The mesh's picture could not be drawn.", why);
+        });
+}
+
+}  // namespace livery

@@ -1,0 +1,74 @@
+// The page that makes a session of a product of one's own: a mesh is read, a few questions are
+// asked once with what they come to in millimetres, and a product file is written beside the
+// session.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <glm/vec2.hpp>
+
+#include "gl/handles.h"
+#include "session/session.h"
+#include "studio/product/product_answers.h"
+
+namespace livery {
+
+struct Shell;
+
+/// A session and what it shows, ready for a window.
+struct OpenedSession {
+    Session session;
+    std::shared_ptr<const Product> product;
+};
+
+struct NewSession {
+    enum class Stage { reading, unreadable, asking, creating };
+    Stage stage = Stage::reading;
+    std::filesystem::path given;  ///< a mesh, or a product file
+    std::uint64_t number = 0;     ///< what was asked for another page is not for this one
+    std::string problem;          ///< why there is no session yet; empty: nobody tried
+
+    std::shared_ptr<const Mesh> mesh;  ///< shared with the thread that draws its picture
+    MeshFacts facts;
+    SuggestedAnswers suggested;
+    ProductAnswers answers;
+    bool is_product_file = false;   ///< it says all itself
+    std::filesystem::path session;  ///< the file to be made
+    bool other_scale = false;       ///< typed, not one of the usual
+
+    bool to_open = true;
+    std::optional<std::pair<UpAxis, int>> pictured;  ///< what the picture shows, or will
+    Texture2D picture;
+};
+
+/// What `livery desktop FILE` and the dialogs take as a product.
+bool is_product_path(const std::filesystem::path& file);
+
+/// `folder`/NAME.livery, with a number where there is such a session or its product file.
+std::filesystem::path unused_session_file(const std::filesystem::path& folder,
+                                          const std::string& name);
+/// Where the product of a session made in the window lies: NAME.product.json beside NAME.livery.
+std::filesystem::path product_file_beside(const std::filesystem::path& session);
+
+/// Makes the session and, for a mesh, its product file. Throws Refused where one of them is there
+/// already, FileError; then neither was made.
+OpenedSession create_session(const NewSession& asked);
+
+/// Opens the page with a mesh or product file, which is read in the background.
+void begin_new_session(Shell& shell, const std::filesystem::path& file);
+/// Asks for the file by the dialog first.
+void ask_for_product(Shell& shell);
+void draw_new_session(Shell& shell);  ///< once a frame
+
+// What the page asks for.
+/// Makes the session in the background; the window then goes on with it.
+void start_creating(Shell& shell);
+/// The mesh as it would stand; drawn in the background when it has changed.
+void ask_for_mesh_picture(Shell& shell, glm::ivec2 size_px);
+
+}  // namespace livery

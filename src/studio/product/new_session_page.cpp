@@ -1,0 +1,290 @@
+// The page of a new session, over the window.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include "studio/kit/theme.h"
+#include "studio/kit/widgets.h"
+#include "studio/kit/words.h"
+#include "studio/window/shell.h"
+
+namespace livery {
+
+namespace {
+
+constexpr std::array kScales{1.0, 4.0, 10.0, 25.0};
+constexpr float kPictureWidth_em = 22.0f, kPictureHeight_em = 15.0f;
+
+/// A choice among the row's others; true when it was pressed.
+bool choice(const std::string& label, bool on, const std::string& name, bool first = false) {
+    if (!first) place_in_row(button_width(label.c_str()));
+    const bool pressed = chip(label.c_str(), on);
+    name_last_item("new-session:" + name);
+    return pressed;
+}
+
+void row(const char* label) {
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(label);
+    ImGui::SameLine(em(7.5f));
+}
+
+/// Below the choices of a row, under them.
+void reason(const std::string& why) {
+    if (why.empty()) return;
+    ImGui::Indent(em(7.5f));
+    dim_text(why);
+    ImGui::Unindent(em(7.5f));
+}
+
+void draw_unit(NewSession& asked) {
+    row("Its unit is");
+    ImGui::BeginGroup();
+    for (const LengthUnit unit : {LengthUnit::mm, LengthUnit::cm, LengthUnit::m, LengthUnit::in}) {
+        const std::string label = unit == LengthUnit::in ? "inch" : to_string(unit);
+        if (choice(label,
+                   asked.answers.unit == unit,
+                   std::string("unit:") + to_string(unit),
+                   unit == LengthUnit::mm)) {
+            asked.answers.unit = unit;
+        }
+    }
+    ImGui::EndGroup();
+    reason(asked.suggested.unit_why);
+    ProductAnswers as_it_is = asked.answers;
+    as_it_is.mesh_is_product = false;
+    reason("So it is " + size_text(mock_up_size_mm(asked.facts, as_it_is)) + " large.");
+}
+
+void draw_up(NewSession& asked) {
+    static constexpr std::array<std::pair<const char*, UpAxis>, 6> axes{{{"+x", UpAxis::plus_x},
+                                                                         {"−x", UpAxis::minus_x},
+                                                                         {"+y", UpAxis::plus_y},
+                                                                         {"−y", UpAxis::minus_y},
+                                                                         {"+z", UpAxis::plus_z},
+                                                                         {"−z", UpAxis::minus_z}}};
+    static constexpr std::array names{"+x", "-x", "+y", "-y", "+z", "-z"};
+    row("Up is");
+    ImGui::BeginGroup();
+    for (std::size_t k = 0; k < axes.size(); ++k) {
+        const auto& [label, up] = axes[k];
+        if (choice(label, asked.answers.up == up, std::string("up:") + names[k], k == 0)) {
+            asked.answers.up = up;
+        }
+    }
+    place_in_row(button_width("Turn"));
+    if (ImGui::Button("Turn")) {
+        asked.answers.quarter_turns = (asked.answers.quarter_turns + 1) % 4;
+    }
+    name_last_item("new-session:turn");
+    tooltip("By a right angle, as it stands");
+    ImGui::EndGroup();
+    reason(asked.suggested.up_why);
+}
+
+void draw_scale(NewSession& asked) {
+    ProductAnswers& answers = asked.answers;
+    row("On the bench");
+    ImGui::BeginGroup();
+    for (const double scale : kScales) {
+        const bool on = answers.product_scale == scale && !asked.other_scale;
+        if (choice(scale_text(scale), on, "scale:" + readable_number(scale), scale == kScales[0])) {
+            answers.product_scale = scale;
+            asked.other_scale = false;
+        }
+    }
+    const bool usual =
+        std::find(kScales.begin(), kScales.end(), answers.product_scale) != kScales.end();
+    if (choice("other", asked.other_scale || !usual, "scale:other")) asked.other_scale = true;
+    if (asked.other_scale || !usual) {
+        place_in_row(em(7.0f));
+        ImGui::SetNextItemWidth(em(5.0f));
+        ImGui::InputDouble("##scale", &answers.product_scale, 0.0, 0.0, "1:%.6g");
+        name_last_item("new-session:scale");
+        tooltip("Millimetres of the product for one of the model");
+    }
+    ImGui::EndGroup();
+    reason(asked.suggested.scale_why);
+    if (answers.product_scale == 1.0) return;
+    row("The mesh is of");
+    ImGui::BeginGroup();
+    if (choice("the product", answers.mesh_is_product, "of:product", true)) {
+        answers.mesh_is_product = true;
+    }
+    if (choice("the model on the bench", !answers.mesh_is_product, "of:model")) {
+        answers.mesh_is_product = false;
+    }
+    ImGui::EndGroup();
+}
+
+void draw_sizes(const NewSession& asked) {
+    ImGui::PushFont(heading_font());
+    ImGui::TextUnformatted(
+        ("On the bench: " + size_text(mock_up_size_mm(asked.facts, asked.answers))).c_str());
+    name_last_item("new-session:size");
+    ImGui::PopFont();
+    if (asked.answers.product_scale == 1.0) return;
+    dim_text("A " + scale_text(asked.answers.product_scale) + " of a product of " +
+             size_text(product_size_mm(asked.facts, asked.answers)) + ".");
+}
+
+void draw_parts(NewSession& asked) {
+    auto& names = asked.answers.part_names;
+    const bool renames = !asked.is_product_file;
+    ImGui::Dummy({0.0f, em(0.3f)});
+    ImGui::TextUnformatted(names.size() == 1 ? "Its part is called" : "Its parts are called");
+    const float row_height = ImGui::GetFrameHeightWithSpacing();
+    const float height =
+        row_height * static_cast<float>(std::clamp<std::size_t>(names.size(), 1, 5));
+    ImGui::BeginChild("parts", {0.0f, height}, false, ImGuiWindowFlags_NavFlattened);
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        ImGui::PushID(static_cast<int>(k));
+        ImGui::SetNextItemWidth(em(14.0f));
+        begin_disabled(!renames);
+        ImGui::InputText("##name", &names[k]);
+        name_last_item(fmt::format("new-session:part:{}", k));
+        end_disabled();
+        if (names[k] != asked.facts.parts[k]) {
+            ImGui::SameLine();
+            dim_text("in the file: " + asked.facts.parts[k]);
+        }
+        ImGui::PopID();
+    }
+    ImGui::EndChild();
+    dim_text("Once it is open: click a part, then a paint.");
+}
+
+void draw_picture(Shell& shell) {
+    NewSession& asked = *shell.new_session;
+    const ImVec2 size{em(kPictureWidth_em), em(kPictureHeight_em)};
+    if (shell.window) {
+        ask_for_mesh_picture(shell, {static_cast<int>(size.x), static_cast<int>(size.y)});
+    }
+    const ImVec2 from = ImGui::GetCursorScreenPos();
+    ImGui::Dummy(size);
+    name_last_item("new-session:picture");
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const ImVec2 to{from.x + size.x, from.y + size.y};
+    list.AddRectFilled(from, to, IM_COL32(22, 22, 22, 255), em(0.3f));
+    if (asked.picture.name() != 0) {
+        list.AddImage(
+            reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(asked.picture.name())),
+            from,
+            to);
+    }
+}
+
+void draw_session_file(Shell& shell) {
+    NewSession& asked = *shell.new_session;
+    ImGui::Dummy({0.0f, em(0.3f)});
+    row("Session");
+    std::string file = asked.session.string();
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - em(6.5f));
+    if (ImGui::InputText("##session", &file)) asked.session = file;
+    name_last_item("new-session:file");
+    ImGui::SameLine();
+    if (ImGui::Button("Change…", {em(6.0f), 0.0f})) {
+        FileQuestion question;
+        question.kind = FileQuestion::Kind::save;
+        question.title = "Where the session is saved";
+        question.action = "Choose";
+        question.suffixes = {".livery"};
+        question.only_new = true;
+        question.suggested = asked.session;
+        question.then = [&shell](const auto& chosen) {
+            if (shell.new_session) shell.new_session->session = chosen;
+        };
+        shell.studio.file_dialog->ask(std::move(question));
+    }
+    name_last_item("new-session:change");
+}
+
+void draw_questions(Shell& shell) {
+    NewSession& asked = *shell.new_session;
+    begin_disabled(asked.stage == NewSession::Stage::creating);
+    ImGui::BeginGroup();
+    draw_picture(shell);
+    draw_sizes(asked);
+    ImGui::EndGroup();
+    ImGui::SameLine(0.0f, em(1.2f));
+    ImGui::BeginChild("questions", {0.0f, em(kPictureHeight_em + 6.5f)}, false);
+    if (asked.is_product_file) {
+        dim_text("The product file says what its mesh is: its unit, its size and how it stands.");
+    } else {
+        draw_unit(asked);
+        draw_up(asked);
+        draw_scale(asked);
+    }
+    draw_parts(asked);
+    ImGui::EndChild();
+    draw_session_file(shell);
+    end_disabled();
+}
+
+void draw_given(Shell& shell) {
+    const NewSession& asked = *shell.new_session;
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(asked.given.filename().string().c_str());
+    tooltip(asked.given.string());
+    if (asked.facts.triangles > 0) {
+        ImGui::SameLine();
+        dim_text(readable_number(static_cast<double>(asked.facts.triangles)) + " triangles");
+    }
+    ImGui::SameLine(ImGui::GetContentRegionMax().x - em(9.0f));
+    if (ImGui::Button("Another file…", {em(9.0f), 0.0f})) ask_for_product(shell);
+    name_last_item("new-session:mesh");
+    ImGui::Separator();
+}
+
+/// True when the page is done with.
+bool draw_buttons(Shell& shell) {
+    const NewSession& asked = *shell.new_session;
+    using Stage = NewSession::Stage;
+    const float width = em(9.0f);
+    ImGui::SetCursorPosX(ImGui::GetContentRegionMax().x - 2.0f * width -
+                         ImGui::GetStyle().ItemSpacing.x);
+    begin_disabled(asked.stage == Stage::creating);
+    const bool cancelled = ImGui::Button("Cancel", {width, 0.0f});
+    name_last_item("new-session:cancel");
+    end_disabled();
+    ImGui::SameLine();
+    begin_disabled(asked.stage != Stage::asking);
+    if (ImGui::Button("Create session", {width, 0.0f})) start_creating(shell);
+    name_last_item("new-session:create");
+    end_disabled();
+    return (cancelled || was_pressed(ImGuiKey_Escape)) && asked.stage != Stage::creating;
+}
+
+}  // namespace
+
+void draw_new_session(Shell& shell) {
+    // A file dialog that the page asked for comes instead of it for a while.
+    if (!shell.new_session || shell.studio.file_dialog->is_open()) {
+        if (shell.new_session) shell.new_session->to_open = true;
+        return;
+    }
+    NewSession& asked = *shell.new_session;
+    const char* title = "New session###new-session";
+    if (std::exchange(asked.to_open, false)) ImGui::OpenPopup(title);
+    const ImVec2 window = ImGui::GetMainViewport()->Size;
+    ImGui::SetNextWindowSize({std::min(em(58.0f), 0.96f * window.x), 0.0f});
+    ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Always, {0.5f, 0.5f});
+    if (!ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_NoResize)) return;
+    draw_given(shell);
+    using Stage = NewSession::Stage;
+    if (asked.stage == Stage::reading) dim_text("Reading the file…");
+    if (asked.stage == Stage::asking || asked.stage == Stage::creating) draw_questions(shell);
+    if (asked.stage == Stage::creating) dim_text("Making the session…");
+    if (!asked.problem.empty()) warning_text(asked.problem);
+    if (draw_buttons(shell)) {
+        shell.new_session.reset();
+        ImGui::CloseCurrentPopup();
+    }
+    ImGui::EndPopup();
+}
+
+}  // namespace livery

@@ -1,0 +1,138 @@
+#include "studio/product/product_answers.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+
+#include "scene/library.h"
+#include "studio/kit/file_places.h"
+#include "studio/kit/words.h"
+
+namespace livery {
+
+namespace {
+
+/// What stands on a bench in front of a projector is smaller than this.
+constexpr double kLargestMockUp_mm = 500.0;
+/// A model is chosen that one projector lights as a whole.
+constexpr double kLargestModel_mm = 200.0;
+constexpr std::array kUsualScales{4.0, 10.0, 25.0, 50.0, 100.0, 1000.0};
+
+double longest(const glm::dvec3& size) { return std::max({size.x, size.y, size.z}); }
+
+glm::dvec3 size_in_numbers(const MeshFacts& facts) { return facts.bounds.high - facts.bounds.low; }
+
+double mesh_scale(const ProductAnswers& answers) {
+    return answers.mesh_is_product ? 1.0 / answers.product_scale : 1.0;
+}
+
+}  // namespace
+
+MeshFacts facts_of(const Mesh& mesh_in_mm, const std::filesystem::path& file) {
+    MeshFacts facts;
+    facts.file = file;
+    facts.states_metres = has_suffix_of(file, {".glb", ".gltf"});
+    facts.bounds = bounds_of(mesh_in_mm);
+    facts.parts = part_names(mesh_in_mm);
+    facts.triangles = mesh_in_mm.triangles.size();
+    return facts;
+}
+
+SuggestedAnswers suggested_answers(const MeshFacts& facts) {
+    SuggestedAnswers suggested;
+    ProductAnswers& answers = suggested.answers;
+    answers.part_names = facts.parts;
+    const glm::dvec3 size = size_in_numbers(facts);
+    const std::string longest_side = readable_number(longest(size));
+    if (facts.states_metres) {
+        answers.unit = LengthUnit::m;
+        suggested.unit_why = "glTF files are in metres.";
+        suggested.up_why = "In glTF files y is up.";
+    } else {
+        answers.unit = guess_unit(longest(size)).unit;
+        suggested.unit_why =
+            fmt::format("The file states no unit. Its longest side is {}: most likely {}.",
+                        longest_side,
+                        to_string(answers.unit));
+        const bool z_up = size.z < size.y;
+        answers.up = z_up ? UpAxis::plus_z : UpAxis::plus_y;
+        suggested.up_why = fmt::format("The file does not say. It is lower along {} than along {}.",
+                                       z_up ? "z" : "y",
+                                       z_up ? "y" : "z");
+    }
+    const double size_mm = longest(size) * mm_per(answers.unit);
+    if (size_mm < kLargestMockUp_mm) {
+        answers.mesh_is_product = false;
+        suggested.scale_why = "It is as small as what stands on a bench.";
+    } else {
+        const auto fits = [&](double scale) { return size_mm / scale < kLargestModel_mm; };
+        const auto* usual = std::find_if(kUsualScales.begin(), kUsualScales.end(), fits);
+        answers.product_scale = usual == kUsualScales.end() ? kUsualScales.back() : *usual;
+        suggested.scale_why = "It is too large for a bench, so a smaller model stands for it.";
+    }
+    return suggested;
+}
+
+glm::dvec3 mock_up_size_mm(const MeshFacts& facts, const ProductAnswers& answers) {
+    const glm::dvec3 turned = upright_rotation(answers.up, answers.quarter_turns) *
+                              (size_in_numbers(facts) * mm_per(answers.unit));
+    return glm::abs(turned) * mesh_scale(answers);
+}
+
+glm::dvec3 product_size_mm(const MeshFacts& facts, const ProductAnswers& answers) {
+    return mock_up_size_mm(facts, answers) * answers.product_scale;
+}
+
+std::string size_text(const glm::dvec3& size_mm) {
+    const auto side = [](double mm) {
+        return mm < 10.0 ? fmt::format("{:.2g}", mm) : readable_number(std::round(mm));
+    };
+    return fmt::format("{} x {} x {} mm", side(size_mm.x), side(size_mm.y), side(size_mm.z));
+}
+
+std::string scale_text(double product_scale) {
+    if (product_scale == 1.0) return "real size";
+    if (product_scale < 1.0) return readable_number(1.0 / product_scale) + ":1 model";
+    return "1:" + readable_number(product_scale) + " model";
+}
+
+std::string problem_of(const ProductAnswers& answers) {
+    if (!(answers.product_scale >= kLeastScale && answers.product_scale <= kMostScale)) {
+        return fmt::format("The model's scale must lie between 1:{:.0f} and {:.0f}:1.",
+                           kMostScale,
+                           1 / kLeastScale);
+    }
+    std::set<std::string> names;
+    for (const std::string& name : answers.part_names) {
+        if (name.find_first_not_of(' ') == std::string::npos) return "Each part needs a name.";
+        if (!names.insert(name).second) {
+            return "Two parts are called \"" + name + "\"; each needs a name of its own.";
+        }
+    }
+    return "";
+}
+
+ProductFile product_file_of(const MeshFacts& facts,
+                            const ProductAnswers& answers,
+                            const std::string& name) {
+    ProductFile product;
+    product.name = name;
+    product.mesh = facts.file;
+    product.unit = answers.unit;
+    product.mesh_scale = mesh_scale(answers);
+    product.product_scale = answers.product_scale;
+    const double mm = mm_per(answers.unit) * product.mesh_scale;
+    product.world_from_mesh = standing_pose({facts.bounds.low * mm, facts.bounds.high * mm},
+                                            upright_rotation(answers.up, answers.quarter_turns));
+    for (std::size_t k = 0; k < facts.parts.size() && k < answers.part_names.size(); ++k) {
+        if (answers.part_names[k] == facts.parts[k]) continue;
+        product.part_names[facts.parts[k]] = answers.part_names[k];
+    }
+    return product;
+}
+
+}  // namespace livery

@@ -1,0 +1,123 @@
+// A product of one's own, from a scan on the disk to the mock-up, and other sessions in the same
+// window.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <fstream>
+#include <iostream>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "core/json.h"
+#include "core/paths.h"
+#include "desktop/two_monitors.h"
+#include "mesh/scan_writer.h"
+#include "session/session.h"
+
+namespace livery {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// A body with a cabin, as a scanner gives it: in metres, z up, somewhere in the room, no normals.
+/// About 2 `rings`^2 triangles.
+ScanWriter car_scan(int rings) {
+    ScanWriter scan;
+    const double pi = std::numbers::pi;
+    for (int i = 0; i <= rings; ++i) {
+        const double along = pi * i / rings;
+        for (int k = 0; k < rings; ++k) {
+            const double around = 2.0 * pi * k / rings;
+            const double x = -std::cos(along),
+                         round = std::pow(std::max(0.0, std::sin(along)), 0.4);
+            const double cabin = std::exp(-6.0 * (x + 0.1) * (x + 0.1));
+            const double up = std::sin(around) * round;
+            const double z = 0.45 + 0.4 * up + (up > 0.0 ? 0.65 * cabin * up : 0.0);
+            scan.positions.emplace_back(12.0 + 2.3 * x, -3.0 + 0.95 * std::cos(around) * round, z);
+        }
+    }
+    for (int i = 0; i < rings; ++i) {
+        for (int k = 0; k < rings; ++k) {
+            const int next = (k + 1) % rings;
+            const int a = i * rings + k, b = i * rings + next;
+            scan.faces.push_back({a, b, b + rings});
+            scan.faces.push_back({a, b + rings, a + rings});
+        }
+    }
+    return scan;
+}
+
+class OwnProduct : public TwoMonitors {
+  protected:
+    std::filesystem::path write_scan(int rings) {
+        const auto file = studio->folder / "carscan.ply";
+        std::ofstream(file, std::ios::binary) << car_scan(rings).binary_ply(std::endian::little);
+        return file;
+    }
+    std::filesystem::path made_session() { return program->state("session").get<std::string>(); }
+    /// Made by a test: gone when it starts.
+    void start_afresh() {
+        start();
+        std::filesystem::remove_all(default_session_file().parent_path());
+        pick_projector();
+        ASSERT_TRUE(projector_shows(drive_of_place(0)));
+    }
+    bool projector_is_lit() {
+        const Image8 seen = projector_picture();
+        std::size_t lit = 0;
+        for (const auto value : seen.values) lit += value > 30 ? 1 : 0;
+        return lit > seen.values.size() / 200;
+    }
+    void type_into_dialog(const std::filesystem::path& file) {
+        program->item("file-dialog:path");
+        desktop->type(file.string());
+        desktop->press_key("Return");
+    }
+    std::string last_notice() {
+        const auto notices = program->state("notices");
+        return notices.empty() ? "" : notices.back().get<std::string>();
+    }
+};
+
+TEST_F(OwnProduct, AScanOfAMillionTrianglesIsOnTheMockUpInAFewClicks) {
+    start_afresh();
+    const auto scan = write_scan(708);
+    const auto began = std::chrono::steady_clock::now();
+    const auto seconds = [&] {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    };
+    program->click("menu:File");
+    program->click("menu:new-session");
+    type_into_dialog(scan);
+    ASSERT_TRUE(wait_until([&] { return program->state("new_session") == "asking"; }, 60s))
+        << program->state("new_session_says");
+    std::cout << "the scan is read after " << seconds() << " s\n";
+    program->wait_for_state("new_session_pictured", true);
+    program->item("new-session:create");
+    saved(desktop->read(desktop->operator_area()), "page");
+    program->click("new-session:part:0");
+    desktop->press_key("ctrl+a");
+    desktop->type("body");
+    program->click("new-session:create");
+    ASSERT_TRUE(wait_until([&] { return made_session().filename() == "carscan.livery"; }, 60s));
+    std::cout << "its session is open after " << seconds() << " s\n";
+    ASSERT_TRUE(wait_until([&] { return program->state("shown_number") != 0; }, 60s));
+    EXPECT_TRUE(wait_until([&] { return projector_is_lit(); }, 60s));
+    std::cout << "it is on the mock-up after " << seconds() << " s and 5 clicks\n";
+    EXPECT_TRUE(program->has_item("part:body"));
+    EXPECT_TRUE(wait_until([&] { return program->state("preview_number") != 0; }, 60s));
+    std::cout << "and in the window after " << seconds() << " s\n";
+    sleep_ms(1000);
+    saved(desktop->read(desktop->operator_area()), "window");
+    saved(projector_picture(), "projector");
+
+    const Json product = read_json_file(made_session().replace_extension(".product.json"));
+    EXPECT_EQ(product["unit"], "m");
+    EXPECT_EQ(product["product_scale"], 25);
+    EXPECT_EQ(product["part_names"], Json::object({{"scan", "body"}}));
+    EXPECT_EQ(program->quit(), 0);
+}
+
+}  // namespace
+}  // namespace livery
