@@ -32,6 +32,9 @@ Image8 uniform(const PreflightOptions& size, int r, int g, int b) {
     return picture;
 }
 
+/// To so many parts of one, and never a negative nothing.
+double rounded(double value, double parts) { return std::round(value * parts) / parts + 0.0; }
+
 /// White where `lit(x, y)`.
 template <typename Lit>
 Image8 white_where(const PreflightOptions& size, const Lit& lit) {
@@ -112,11 +115,17 @@ void PreflightRun::see_size() {
     const bool known = mockup > 0;
     // Without a pose: what the camera sees lit, of its own picture.
     add({"Size in the camera",
-         known ? fmt::format("{:.0f} px for {} projector px on the mock-up", pixels, mockup)
-               : fmt::format("{:.0f} px lit", pixels),
+         known
+             ? fmt::format("{:.2f} camera px a projector px", pixels / static_cast<double>(mockup))
+             : fmt::format("{:.0f} px lit", pixels),
          known ? "good from 1 camera px a projector px, usable from 0.4"
                : "good from 100000 px, usable from 20000",
-         "How many camera pixels see the projector's light.",
+         known ? fmt::format(
+                     "{:.0f} camera pixels see the projector's light; the mock-up takes {} of the "
+                     "projector's.",
+                     pixels,
+                     mockup)
+               : std::string("How many camera pixels see the projector's light."),
          "Bring the camera nearer or zoom in; move the projector so that the mock-up fills more of "
          "its picture.",
          known ? grade_of(pixels / static_cast<double>(mockup), 1.0, 0.4)
@@ -264,7 +273,7 @@ void PreflightRun::see_dynamics() {
     const bool good = brighter < 0.03 && brighter > -0.12 && drift < 0.01;
     const bool usable = brighter < 0.08 && brighter > -0.20 && drift < 0.03;
     add({"Dynamic modes",
-         fmt::format("{:+.1f} % in a dark picture", 100.0 * brighter),
+         fmt::format("{:+.1f} % in a dark picture", rounded(100.0 * brighter, 10.0)),
          "good -12 to 3 %, usable -20 to 8 %",
          fmt::format("White in a picture that is nearly black, against white in a white one; it "
                      "changed by {:.1f} % from one photograph to the next.",
@@ -317,7 +326,7 @@ void PreflightRun::see_drift() {
     const double change =
         mean_light(light_over_black(last, black_)) / mean_light(white_light_) - 1.0;
     add({"Warm-up drift",
-         fmt::format("{:+.2f} % in {:.1f} min", 100.0 * change, minutes),
+         fmt::format("{:+.2f} % in {:.1f} min", rounded(100.0 * change, 100.0), minutes),
          "good under 0.5 %, usable under 2 %",
          "How far white has changed since the first photograph. A steady drift is taken out of the "
          "colours, a large one means a lamp that is still cold.",

@@ -53,6 +53,13 @@ class Recording {
     /// needs no recording: std::invalid_argument.
     BenchPorts ports(const BenchPorts& bench);
 
+    /// Told of each photograph of a run as it comes, from the camera or from the folder, with the
+    /// place of its showing in showings(); on the run's thread.
+    void tell(std::function<void(std::size_t showing, const Photograph&)> on_photograph) {
+        on_photograph_ = std::move(on_photograph);
+    }
+    const std::string& announced() const { return announced_; }  ///< what the run asked for last
+
     /// Writes manifest.json beside the photographs: those of `kept` (role and file of each) become
     /// a captures folder that anybody's program can read (docs/files.md). Throws FileError.
     void write_manifest(int projector_width,
@@ -85,6 +92,7 @@ class Recording {
 
     std::filesystem::path folder_;
     std::string bench_words_, announced_;
+    std::function<void(std::size_t, const Photograph&)> on_photograph_;
     BenchPorts bench_;
     mutable std::mutex mutex_;  ///< held to change showings_
     std::vector<RecordedShowing> showings_;

@@ -198,6 +198,7 @@ Photograph Recording::photograph(double asked_s) {
         Photograph known = load(folder_, showing.photographs[next_]);
         ++next_;
         ++answered_;
+        if (on_photograph_) on_photograph_(*place_, known);
         return known;
     }
     return take(asked_s);
@@ -215,6 +216,7 @@ Photograph Recording::take(double asked_s) {
     ++taken_;
     keep(photograph, asked_s);
     ++next_;
+    if (on_photograph_) on_photograph_(*place_, photograph);
     return photograph;
 }
 

@@ -8,6 +8,9 @@ LiveResult calibrate_recorded(Recording& recording,
                               const BenchPorts& bench,
                               const LiveOptions& options,
                               const Progress& progress) {
+    // Until it is made anew it is not a whole captures folder.
+    std::error_code ignored;
+    std::filesystem::remove(recording.folder() / "manifest.json", ignored);
     try {
         LiveResult result = calibrate_live(recording.ports(bench), options, progress);
         recording.write_manifest(options.width, options.height, result.kept);

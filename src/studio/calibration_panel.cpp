@@ -82,6 +82,8 @@ void fact(const char* label, const std::string& value, const std::string& whole 
     if (!whole.empty()) tooltip(whole);
 }
 
+}  // namespace
+
 void draw_figures(const std::vector<GradedFigure>& figures) {
     for (const GradedFigure& figure : figures) {
         ImGui::PushID(figure.name.c_str());
@@ -103,6 +105,8 @@ void draw_figures(const std::vector<GradedFigure>& figures) {
         ImGui::PopID();
     }
 }
+
+namespace {
 
 void draw_calibration_in_use(const ColourCalibration& calibration) {
     const auto figures = grade_figures(calibration);
@@ -234,6 +238,9 @@ void draw_calibrating(Studio& studio) {
         "Shows the patterns on the bench, photographs them and solves. The picture on the "
         "mock-up stays; the calibrations before are kept.");
     end_disabled();
+    if (ImGui::Button("Capture with a camera…", {-FLT_MIN, 0.0f})) state.capture_wanted = true;
+    name_last_item("open-capture");
+    tooltip("A camera of your own, or the simulated bench step by step.");
     if (!calibrating.refused_why.empty() && !state.dismissed) {
         warning_text(sentence("refused: " + calibrating.refused_why));
         name_last_item("calibration-refused");
@@ -271,6 +278,8 @@ void ask_for_projector(Studio& studio, const std::filesystem::path& folder) {
     studio.file_dialog->ask(std::move(question));
 }
 
+}  // namespace
+
 void load_calibration(Studio& studio, const std::filesystem::path& folder) {
     std::error_code error;
     // What is no calibration at all is named by the command.
@@ -283,6 +292,8 @@ void load_calibration(Studio& studio, const std::filesystem::path& folder) {
         commit(studio, SetCalibration{folder.string()});
     }
 }
+
+namespace {
 
 void draw_kept(Studio& studio) {
     heading("Go back to");

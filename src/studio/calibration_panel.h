@@ -5,9 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "core/grade.h"
 #include "studio/kit/held.h"
 
 namespace livery {
+
+struct Studio;
 
 struct CalibrationPanelState {
     std::vector<std::filesystem::path> kept;
@@ -16,7 +19,13 @@ struct CalibrationPanelState {
     Held<double> held_percentile;
     std::string list_problem;
     std::filesystem::path taken;  ///< the finished calibration that was put to use
+    bool capture_wanted = false;  ///< its button was pressed
     bool dismissed = false;       ///< the refusal was read
 };
+
+/// A row a figure, its grade at the right; what it means and what helps while the pointer is on it.
+void draw_figures(const std::vector<GradedFigure>& figures);
+/// Puts a calibration's folder to use; asks for its projector where it does not say.
+void load_calibration(Studio& studio, const std::filesystem::path& folder);
 
 }  // namespace livery

@@ -96,8 +96,7 @@ void draw_look_thumbnail(Studio& studio,
     }
     const auto found = state.pictures.find(look_name);
     if (found == state.pictures.end()) return;
-    const auto texture = static_cast<std::uintptr_t>(found->second.name());
-    list.AddImage(reinterpret_cast<ImTextureID>(texture), corner, end);
+    list.AddImage(imgui_texture(found->second.name()), corner, end);
 }
 
 }  // namespace livery

@@ -3,6 +3,7 @@
 #include "studio/artwork/artwork_panel.h"
 #include "studio/ballot_panel.h"
 #include "studio/calibration_panel.h"
+#include "studio/capture/capture_panel.h"
 #include "studio/light/lighting_panel.h"
 #include "studio/look_thumbnails.h"
 #include "studio/paint/library_panel.h"
@@ -19,6 +20,7 @@ PanelStates::PanelStates()
       plan(std::make_unique<PlanPanelState>()),
       calibration(std::make_unique<CalibrationPanelState>()),
       ballot(std::make_unique<BallotPanelState>()),
+      capture(std::make_unique<CapturePanelState>()),
       thumbnails(std::make_unique<LookThumbnailState>()) {}
 
 PanelStates::~PanelStates() = default;

@@ -13,6 +13,7 @@ struct LightingPanelState;
 struct PlanPanelState;
 struct CalibrationPanelState;
 struct BallotPanelState;
+struct CapturePanelState;
 struct LookThumbnailState;
 
 /// Always there. Owns textures: destroy it with the window's context current.
@@ -29,6 +30,7 @@ struct PanelStates {
     std::unique_ptr<PlanPanelState> plan;
     std::unique_ptr<CalibrationPanelState> calibration;
     std::unique_ptr<BallotPanelState> ballot;
+    std::unique_ptr<CapturePanelState> capture;
     std::unique_ptr<LookThumbnailState> thumbnails;
 };
 

@@ -24,10 +24,6 @@ struct Pointer {
     bool hovered = false, pressed = false, held = false, released = false;
 };
 
-ImTextureID imgui_texture(unsigned name) {
-    return reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(name));
-}
-
 void draw_view_buttons(Shell& shell) {
     struct Choice {
         StageView view;

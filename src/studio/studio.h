@@ -13,6 +13,7 @@
 #include "evaluation/ballots.h"
 #include "gl/window.h"
 #include "live/bench_thread.h"
+#include "live/capture_thread.h"
 #include "live/frame_thread.h"
 #include "live/preview_thread.h"
 #include "projection/projector_screen.h"
@@ -50,6 +51,7 @@ struct Studio {
     std::unique_ptr<FrameThread> frames;
     std::unique_ptr<PreviewThread> previews;
     std::unique_ptr<BenchThread> bench;
+    std::unique_ptr<CaptureThread> capture;
     std::unique_ptr<ProjectorScreen> projector;
     std::unique_ptr<PartPicker> picker;
     std::unique_ptr<BallotStore> ballots;

@@ -116,7 +116,7 @@ TEST(Preflight, CountsCameraPixelsOnTheMockUp) {
     std::fill_n(mockup.values.begin(), 20000, std::uint8_t{255});
     const Preflight result = room.run(mockup);
     EXPECT_EQ(figure(result, "Size in the camera").grade, Grade::good);
-    EXPECT_HAS(figure(result, "Size in the camera").value, "20000 projector px");
+    EXPECT_HAS(figure(result, "Size in the camera").meaning, "takes 20000 of the");
 }
 
 TEST(Preflight, FindsAPictureThatIsScaled) {

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "core/json.h"
-#include "core/paths.h"
 #include "support/run_program.h"
+#include "support/small_bench_file.h"
 #include "support/temporary_folder.h"
 
 namespace livery {
@@ -13,22 +13,8 @@ ProgramRun livery_run(const std::vector<std::string>& arguments) {
     return run_program(LIVERY_PROGRAM, arguments);
 }
 
-/// The shipped bench with few pixels, so that a capture takes seconds.
 std::string small_bench(const TemporaryFolder& folder) {
-    Json bench = read_json_file(shipped_path("calibration/default.json"));
-    const auto shrink = [](Json& view, double factor) {
-        for (const char* size : {"width", "height"})
-            view[size] = static_cast<int>(view[size].get<double>() * factor);
-        for (const std::size_t k : {std::size_t{0}, std::size_t{2}, std::size_t{4}, std::size_t{5}})
-            view["matrix"][k] = view["matrix"][k].get<double>() * factor;
-        for (auto& place : view["at_px"]) place = place.get<double>() * factor;
-    };
-    shrink(bench["projector"], 0.25);
-    shrink(bench["camera"], 0.25);
-    bench["name"] = "small";
-    const auto file = folder / "small.json";
-    write_json_file(file, bench);
-    return "bench:" + file.string();
+    return "bench:" + testing::small_bench_file(folder).string();
 }
 
 TEST(Capture, OnTheSimulatedBench) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include <imgui.h>
 #include <imgui_internal.h>
@@ -295,6 +296,10 @@ bool section_header(const char* label, bool* keep) {
 void progress_bar(double fraction, const std::string& text) {
     ImGui::ProgressBar(
         static_cast<float>(std::clamp(fraction, 0.0, 1.0)), {-FLT_MIN, 0.0f}, text.c_str());
+}
+
+void* imgui_texture(unsigned name) {
+    return reinterpret_cast<void*>(static_cast<std::uintptr_t>(name));
 }
 
 bool was_pressed(int imgui_key) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(imgui_key)); }

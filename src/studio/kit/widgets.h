@@ -65,6 +65,9 @@ bool section_header(const char* label, bool* keep = nullptr);
 /// A bar with its fraction in words on top.
 void progress_bar(double fraction, const std::string& text);
 
+/// An OpenGL texture as Dear ImGui names it.
+void* imgui_texture(unsigned name);
+
 bool was_pressed(int imgui_key);  ///< ImGuiKey_..., with key repeat
 
 }  // namespace livery

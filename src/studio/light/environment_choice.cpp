@@ -107,7 +107,7 @@ void draw_thumbnail(const LightingPanelState& state, double rotation_rad) {
     }
     // The left edge is azimuth -180 degrees; straight up and down is left out.
     const auto left = static_cast<float>(rotation_rad / (2.0 * std::numbers::pi));
-    ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(state.thumbnail.name())),
+    ImGui::Image(imgui_texture(state.thumbnail.name()),
                  {width, height},
                  {left, 0.14f},
                  {left + 1.0f, 0.78f});

@@ -63,9 +63,8 @@ void draw_swatch(Studio& studio, const Material& material, const ImVec2& corner,
     const int size_px = std::clamp(static_cast<int>(std::ceil(side_px / 32.0f)) * 32, 64, 256);
     const std::string key = key_of(material, size_px);
     if (const auto found = state.swatches.find(key); found != state.swatches.end()) {
-        const auto name = static_cast<std::uintptr_t>(found->second.name());
         ImGui::GetWindowDrawList()->AddImage(
-            reinterpret_cast<ImTextureID>(name), corner, {corner.x + side_px, corner.y + side_px});
+            imgui_texture(found->second.name()), corner, {corner.x + side_px, corner.y + side_px});
         return;
     }
     draw_plain_disc(material, corner, side_px);

@@ -171,10 +171,7 @@ void draw_picture(Shell& shell) {
     const ImVec2 to{from.x + size.x, from.y + size.y};
     list.AddRectFilled(from, to, IM_COL32(22, 22, 22, 255), em(0.3f));
     if (asked.picture.name() != 0) {
-        list.AddImage(
-            reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(asked.picture.name())),
-            from,
-            to);
+        list.AddImage(imgui_texture(asked.picture.name()), from, to);
     }
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/log.h"
 #include "studio/artwork/artwork_edit.h"
+#include "studio/capture/capture_panel.h"
 #include "studio/look_files.h"
 #include "studio/paint/library_panel.h"
 #include "studio/product/new_session.h"
@@ -134,6 +135,10 @@ void add_file_actions(std::vector<Action>& list) {
     list.push_back(action(
         "save-picture", "File", "Save picture…", {ctrl(GLFW_KEY_S)}, ask_where_to_save_picture));
     list.back().starts_group = true;
+    list.push_back(action("capture", "Projector", "Capture with a camera…", {}, [](Shell& s) {
+        show_capture(s, !s.capture_open);
+    }));
+    list.back().checked = [](const Shell& s) { return s.capture_open; };
     list.push_back(
         action("ballot", "File", "Ballot", {}, [](Shell& s) { s.ballots_open = !s.ballots_open; }));
     list.back().checked = [](const Shell& s) { return s.ballots_open; };

@@ -125,7 +125,8 @@ std::optional<double> next_change_s(const Shell& shell) {
     // A blinking text cursor.
     if (ImGui::GetIO().WantTextInput) consider(shell.studio.now_s + 0.4);
     // Progress is read, not told.
-    if (shell.studio.frames->solving() || shell.studio.bench->calibrating().running) {
+    if (shell.studio.frames->solving() || shell.studio.bench->calibrating().running ||
+        shell.capture_open) {
         consider(shell.studio.now_s + 0.25);
     }
     return next;

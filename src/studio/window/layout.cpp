@@ -4,11 +4,14 @@
 #include <cmath>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 #include <imgui.h>
 
 #include "studio/ballot_panel.h"
+#include "studio/calibration_panel.h"
+#include "studio/capture/capture_panel.h"
 #include "studio/kit/theme.h"
 #include "studio/paint/library_panel.h"
 #include "studio/paint/swatch_textures.h"
@@ -101,6 +104,12 @@ void draw_right_column(Shell& shell) {
                                                      {"Calibrate", draw_calibration_panel},
                                                      {"Frame", draw_plan_panel}}};
     take_swatches(shell.studio);
+    if (std::exchange(shell.studio.panels.calibration->capture_wanted, false))
+        show_capture(shell, true);
+    if (shell.capture_open) {
+        shell.studio.panels.library->owns_arrows = false;
+        return draw_capture_panel(shell);
+    }
     if (shell.ballots_open) {
         shell.studio.panels.library->owns_arrows = false;
         return draw_ballot_panel(shell.studio, shell.ballots_open);
@@ -154,7 +163,13 @@ void draw_columns(Shell& shell, float height, ImVec2 spacing) {
                  false,
                  ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoScrollbar);
     ImGui::PopStyleVar();
-    with_spacing(spacing, [&] { draw_stage(shell); });
+    with_spacing(spacing, [&] {
+        if (shell.capture_open) {
+            draw_capture_stage(shell);
+        } else {
+            draw_stage(shell);
+        }
+    });
     ImGui::EndChild();
     draw_splitter("right-splitter", shell.right_width_em, -1.0f, 17.0f, 40.0f, height);
     begin_region("right", {right, height});

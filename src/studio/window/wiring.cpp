@@ -11,6 +11,7 @@
 #include "scene/library.h"
 #include "scene/view.h"
 #include "studio/calibration_panel.h"
+#include "studio/capture/capture_panel.h"
 #include "studio/kit/words.h"
 #include "studio/paint/users_library.h"
 #include "studio/results.h"
@@ -371,7 +372,7 @@ Contexts start_threads(Shell& shell, const Window& window, ShadingDevice shading
     hidden.title = "Livery (drawing)";
     hidden.size_px = {16, 16};
     hidden.visible = false;
-    for (int i = 0; i < 3; ++i) contexts.push_back(std::make_unique<Window>(hidden, &window));
+    for (int i = 0; i < 4; ++i) contexts.push_back(std::make_unique<Window>(hidden, &window));
     shell.results = std::make_shared<Results>(shell.trace);
     Results* results = shell.results.get();
     studio.background = std::make_unique<Background>(wake_main_thread);
@@ -386,6 +387,7 @@ Contexts start_threads(Shell& shell, const Window& window, ShadingDevice shading
     studio.projector = std::make_unique<ProjectorScreen>(
         window, [results](const ShownPicture& picture) { results->shown(picture); });
     results->use(studio.projector.get());
+    studio.capture = std::make_unique<CaptureThread>(*contexts[3], wake_main_thread);
     studio.bench->use(studio.session.document().bench, studio.product);
     refresh_library(studio);
     find_first_calibration(shell);
@@ -396,6 +398,7 @@ Contexts start_threads(Shell& shell, const Window& window, ShadingDevice shading
 void stop_threads(Shell& shell) {
     Studio& studio = shell.studio;
     studio.background.reset();
+    studio.capture.reset();
     studio.frames.reset();
     studio.previews.reset();
     studio.bench.reset();
@@ -415,6 +418,7 @@ void take_results(Shell& shell) {
     studio.photograph = studio.bench->newest_photograph();
     start_first_calibration(shell);
     take_calibration(shell);
+    take_capture(shell);
     if (studio.glowing_part && studio.now_s >= studio.glowing_until_s) studio.glowing_part.reset();
     const auto newest = shell.results->newest_frame();
     if (newest && !newest->problem.empty() && newest->number > shell.problem_number) {

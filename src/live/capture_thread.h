@@ -1,0 +1,102 @@
+// Photographing with a camera on a thread of its own: live view, preflight, and the capture of a
+// calibration, kept as it happens.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/bench_ports.h"
+#include "core/grade.h"
+#include "core/image.h"
+#include "core/progress.h"
+#include "gl/context.h"
+#include "jobs/capture_bench.h"
+#include "scene/product.h"
+#include "scene/view.h"
+
+namespace livery {
+
+/// What is photographed, and with what. A simulated bench has its own projector and pose.
+struct CaptureSetup {
+    CameraChoice camera;
+    std::shared_ptr<const Product> product;
+    std::string projector;               ///< its name, in words; empty: none is chosen
+    int width = 0, height = 0;           ///< its pixels
+    std::optional<View> projector_view;  ///< where it stands, if that is known
+    /// Shows on it, on the capture's thread with its context current.
+    std::function<ShowPicture(const Progress&, TellWait)> projector_port;
+};
+
+/// A picture that was photographed.
+struct CaptureTile {
+    std::string of;                      ///< "gray-column-3"
+    std::shared_ptr<const Image8> seen;  ///< small, sRGB
+    int photographs = 0;
+};
+
+/// Brightness of a photograph's pixels, of full scale.
+struct CaptureHistogram {
+    std::array<float, 64> share{};  ///< the largest but black's is 1
+    double clipped = 0.0;           ///< of all pixels, in any channel
+};
+
+/// What it does now and what came of it.
+struct CaptureView {
+    enum class Doing { nothing, opening, watching, preflight, capturing };
+    Doing doing = Doing::nothing;
+    std::string camera;  ///< its name; empty: none is open
+    std::vector<CameraSetting> settings;
+    std::vector<std::string> warnings;  ///< of the camera
+    double fraction = 0.0;
+    std::string stage;
+    double elapsed_s = 0.0;
+    std::optional<double> remaining_s;
+    bool paused = false;
+    bool waits_for_next = false;                ///< somebody shoots by hand, and says when
+    CaptureWait wait;                           ///< what it waits for; empty: nothing
+    std::string why, fix;                       ///< why the last thing that was asked for failed
+    std::vector<GradedFigure> figures;          ///< of the newest preflight
+    std::shared_ptr<const Image8> live, shown;  ///< sRGB; device values, small
+    std::vector<CaptureTile> tiles;             ///< by showing
+    CaptureHistogram histogram;                 ///< of the newest photograph or live view
+    int taken = 0, kept_from_before = 0;
+    bool can_go_on = false;                         ///< a capture that was stopped lies there
+    std::optional<std::filesystem::path> finished;  ///< the calibration that came of it
+};
+
+class CaptureThread {
+  public:
+    /// A context of the share group, current nowhere; it must outlive this. `on_change` is called
+    /// on the capture's thread and must not throw.
+    CaptureThread(GlContext& context, std::function<void()> on_change);
+    ~CaptureThread();
+    CaptureThread(const CaptureThread&) = delete;
+    CaptureThread& operator=(const CaptureThread&) = delete;
+
+    /// Opens that camera (for a live view) in place of the one before; stops what runs.
+    void use(CaptureSetup setup);
+    void close();  ///< lets the camera go
+    void start_preflight();
+    /// Goes on with what was stopped, unless `anew`.
+    void start_capture(bool anew);
+    void take_again(std::size_t showing);  ///< at once while it captures, else goes on with that
+    void set_paused(bool paused);          ///< before the next picture
+    void next();                           ///< the picture by hand was taken
+    void cancel();                         ///< returns at once
+    CaptureView view() const;
+
+    /// Where the photographs of the window's captures lie.
+    static std::filesystem::path folder();
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace livery

@@ -1,0 +1,41 @@
+// Photographing with a camera, in the window: the column with what is asked for, and the stage with
+// what is seen.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gl/handles.h"
+#include "live/capture_thread.h"
+
+namespace livery {
+
+struct Shell;
+
+struct CapturePanelState {
+    std::vector<ListedCamera> cameras;
+    std::string problem;  ///< why they could not be listed
+    double listed_at_s = -1.0;
+    std::optional<CameraChoice> chosen;
+    std::string address = "http://";      ///< of a network camera, being typed
+    bool keeps_pose = true;               ///< the projector stands where the calibration has it
+    std::optional<std::size_t> selected;  ///< a tile
+    bool was_busy = false;
+    std::filesystem::path taken;  ///< the finished calibration that was put to use
+    std::map<std::shared_ptr<const Image8>, Texture2D> textures;  ///< of what is on the window
+    CaptureView view;  ///< as of this frame of the window
+};
+
+/// Takes over what the capture's thread has: its pictures off the projector when it is done, its
+/// calibration into use. Once a frame of the window.
+void take_capture(Shell& shell);
+/// Instead of the tabs, and instead of the stage, while `shell.capture_open`.
+void draw_capture_panel(Shell& shell);
+void draw_capture_stage(Shell& shell);
+/// Opens or closes both; the camera is let go with them.
+void show_capture(Shell& shell, bool shown);
+
+}  // namespace livery

@@ -1,0 +1,155 @@
+#include "live/capture_thread.h"
+
+#include <chrono>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "core/paths.h"
+#include "live/capture_pictures.h"
+#include "scene/library.h"
+#include "support/small_bench_file.h"
+#include "support/temporary_folder.h"
+
+namespace livery {
+namespace {
+
+using Doing = CaptureView::Doing;
+
+/// A user's folder of the test's own.
+class Home {
+  public:
+    Home() {
+        if (const char* before = std::getenv("LIVERY_HOME")) before_ = before;
+        ::setenv("LIVERY_HOME", folder_.path().c_str(), 1);
+    }
+    ~Home() { ::setenv("LIVERY_HOME", before_.c_str(), 1); }
+    Home(const Home&) = delete;
+    Home& operator=(const Home&) = delete;
+    const TemporaryFolder& folder() const { return folder_; }
+
+  private:
+    TemporaryFolder folder_;
+    std::string before_;
+};
+
+template <typename Done>
+CaptureView wait_until(const CaptureThread& capture, const Done& done) {
+    for (int k = 0; k < 60000; ++k) {
+        const CaptureView view = capture.view();
+        if (done(view)) return view;
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    ADD_FAILURE() << "it does not come: " << capture.view().stage << " " << capture.view().why;
+    return capture.view();
+}
+
+bool rests(const CaptureView& view) { return view.doing == Doing::watching; }
+
+struct CaptureRoom {
+    Home home;
+    HeadlessContext context{GlDevice::automatic};
+    std::unique_ptr<CaptureThread> capture;
+
+    CaptureRoom() {
+        context.release();
+        capture = std::make_unique<CaptureThread>(context, [] {});
+        CaptureSetup setup;
+        setup.camera = {CameraChoice::Kind::bench,
+                        testing::small_bench_file(home.folder()).string()};
+        setup.product = find_product("car");
+        capture->use(setup);
+        wait_until(*capture, [](const CaptureView& view) { return view.live != nullptr; });
+    }
+};
+
+TEST(CaptureThread, LooksAndCaptures) {
+    CaptureRoom room;
+    EXPECT_NE(room.capture->view().camera.find("bench small"), std::string::npos);
+    room.capture->start_preflight();
+    const CaptureView looked = wait_until(*room.capture, [](const CaptureView& view) {
+        return view.figures.size() == 11 && rests(view);
+    });
+    EXPECT_TRUE(looked.why.empty()) << looked.why;
+    room.capture->start_capture(true);
+    const CaptureView made = wait_until(*room.capture, [](const CaptureView& view) {
+        return view.finished.has_value() || !view.why.empty();
+    });
+    ASSERT_TRUE(made.finished) << made.why;
+    EXPECT_TRUE(std::filesystem::exists(*made.finished / "projector.json"));
+    EXPECT_GT(made.taken, 50);
+    EXPECT_GT(made.tiles.size(), 40u);
+    for (const CaptureTile& tile : made.tiles)
+        EXPECT_EQ(tile.of.empty(), tile.seen == nullptr);
+    wait_until(*room.capture, rests);
+    EXPECT_FALSE(room.capture->view().can_go_on) << "it is whole";
+
+    // One picture again: nothing else is taken.
+    const auto green = std::find_if(
+        made.tiles.begin(), made.tiles.end(), [](const auto& tile) { return tile.of == "green"; });
+    ASSERT_NE(green, made.tiles.end());
+    room.capture->take_again(static_cast<std::size_t>(green - made.tiles.begin()));
+    const CaptureView again = wait_until(*room.capture, [&](const CaptureView& view) {
+        return (view.finished && view.finished != made.finished) || !view.why.empty();
+    });
+    ASSERT_TRUE(again.finished) << again.why;
+    EXPECT_EQ(again.taken, 2);
+    EXPECT_GT(again.kept_from_before, 50);
+}
+
+TEST(CaptureThread, GoesOnAfterItWasStoppedAndPauses) {
+    CaptureRoom room;
+    room.capture->start_capture(true);
+    wait_until(*room.capture, [](const CaptureView& view) { return view.taken > 20; });
+    room.capture->set_paused(true);
+    std::this_thread::sleep_for(std::chrono::seconds(2));  // longer than the rest would take
+    EXPECT_FALSE(room.capture->view().finished);
+    EXPECT_EQ(room.capture->view().doing, Doing::capturing);
+    room.capture->cancel();
+    wait_until(*room.capture, rests);
+    const int taken = room.capture->view().taken;
+    EXPECT_TRUE(room.capture->view().can_go_on);
+    EXPECT_TRUE(room.capture->view().why.empty()) << "a stop is no failure";
+    room.capture->set_paused(false);
+    room.capture->start_capture(false);
+    const CaptureView made = wait_until(*room.capture, [](const CaptureView& view) {
+        return view.finished.has_value() || !view.why.empty();
+    });
+    ASSERT_TRUE(made.finished) << made.why;
+    EXPECT_EQ(made.kept_from_before, taken);
+}
+
+TEST(CaptureThread, SaysWhyACameraDoesNotOpen) {
+    Home home;
+    HeadlessContext context{GlDevice::automatic};
+    context.release();
+    CaptureThread capture(context, [] {});
+    CaptureSetup setup;
+    setup.camera = {CameraChoice::Kind::video, (home.folder() / "none.avi").string()};
+    capture.use(setup);
+    const CaptureView view = wait_until(capture, [](const auto& v) { return !v.why.empty(); });
+    EXPECT_NE(view.why.find("none.avi"), std::string::npos);
+    EXPECT_FALSE(view.fix.empty());
+    EXPECT_EQ(view.doing, Doing::nothing);
+}
+
+TEST(CapturePictures, AreSmallAndTrue) {
+    Photograph photograph;
+    photograph.image = ImageF(100, 60, 3, 1000.0f + 900.0f);
+    photograph.black_level = 1000.0;
+    photograph.saturates_at = 2000.0;
+    const Image8 small = small_photograph(photograph, 30);
+    EXPECT_EQ(small.width, 25);
+    EXPECT_EQ(small.height, 15);
+    EXPECT_EQ(small.at(3, 3, 1), 255) << "white at nine tenths of full scale";
+    const CaptureHistogram histogram = histogram_of(photograph);
+    EXPECT_EQ(histogram.share[57], 1.0f);
+    EXPECT_EQ(histogram.clipped, 0.0);
+    for (float& value : photograph.image.values) value = 1990.0f;
+    EXPECT_EQ(histogram_of(photograph).clipped, 1.0);
+    EXPECT_EQ(small_picture(Image8(90, 30, 3, 7), 30).at(2, 2, 0), 7);
+    EXPECT_EQ(histogram_of(Image8(9, 9, 3, 255)).clipped, 1.0);
+}
+
+}  // namespace
+}  // namespace livery
