@@ -14,6 +14,8 @@
 #include "desktop/two_monitors.h"
 #include "mesh/scan_writer.h"
 #include "session/session.h"
+#include "support/child_process.h"
+#include "support/screen_watch.h"
 
 namespace livery {
 namespace {
@@ -74,11 +76,93 @@ class OwnProduct : public TwoMonitors {
         desktop->type(file.string());
         desktop->press_key("Return");
     }
-    std::string last_notice() {
-        const auto notices = program->state("notices");
-        return notices.empty() ? "" : notices.back().get<std::string>();
+    bool is_told(const std::string& words) {
+        return wait_until(
+            [&] { return program->state("notices").dump().find(words) != std::string::npos; }, 60s);
+    }
+    bool goes_on_with(const std::filesystem::path& file) {
+        return wait_until([&] { return made_session() == file; }, 60s);
+    }
+    void open(const std::filesystem::path& file) {
+        program->press_key("ctrl+o");
+        type_into_dialog(file);
+    }
+    /// Nothing of the desktop behind has this colour otherwise.
+    void paint_desktop_red() {
+        ChildOptions options;
+        options.arguments = {"xsetroot", "-solid", "#ff0000"};
+        options.output = studio->folder / "xsetroot";
+        ASSERT_EQ(ChildProcess(options).wait(20s), 0) << tail_of(options.output);
     }
 };
+
+bool has_red(const Image8& picture) {
+    for (std::size_t k = 0; k < picture.pixel_count(); ++k) {
+        const auto* rgb = &picture.values[3 * k];
+        if (rgb[0] == 255 && rgb[1] == 0 && rgb[2] == 0) return true;
+    }
+    return false;
+}
+
+TEST_F(OwnProduct, OtherSessionsComeInTheSameWindowWhileTheProjectorStaysDark) {
+    start_afresh();
+    paint_desktop_red();
+    const auto first = studio->session_file(), second = studio->folder / "second.livery";
+    const auto broken = studio->folder / "broken.livery";
+    prepare_session(second);
+    std::ofstream(broken) << "not a session";
+
+    open(broken);
+    EXPECT_TRUE(is_told("The session broken.livery was not opened."));
+    EXPECT_EQ(made_session(), first);
+    EXPECT_TRUE(projector_shows(drive_of_place(0)));
+    {
+        const Session elsewhere = Session::open(second);
+        open(second);
+        EXPECT_TRUE(is_told("The session second.livery was not opened."));
+        EXPECT_EQ(made_session(), first);
+    }
+    const auto windows_before = desktop->windows();
+    ScreenWatch watch(*desktop, desktop->projector_area(), has_red);
+    open(second);
+    ASSERT_TRUE(goes_on_with(second));
+    EXPECT_TRUE(projector_shows(drive_of_place(0)));
+    const auto seen = watch.stop();
+    EXPECT_GT(seen.looks, 10);
+    EXPECT_EQ(seen.wrong, 0) << "the desktop was on the projector";
+    EXPECT_EQ(desktop->windows().size(), windows_before.size());
+
+    // What is done now belongs to the second.
+    program->press_key("ctrl+d");
+    program->wait_for_state("looks", document.looks.size() + 1);
+    program->press_key("b");
+    program->wait_for_state("black", true);
+    program->click("menu:File");
+    program->click("menu:recent");
+    program->click("recent:session");
+    ASSERT_TRUE(goes_on_with(first));
+    program->wait_for_state("looks", document.looks.size());
+    EXPECT_EQ(program->state("black"), true) << "it was black before";
+    EXPECT_TRUE(projector_is_black());
+    program->press_key("b");
+    EXPECT_TRUE(projector_shows(drive_of_place(0)));
+    EXPECT_EQ(program->quit(), 0);
+    EXPECT_EQ(Session::open(second).document().looks.size(), document.looks.size() + 1);
+}
+
+TEST_F(OwnProduct, AMeshOnTheCommandLineBeginsANewSession) {
+    start();
+    std::filesystem::remove_all(default_session_file().parent_path());
+    start_program({write_scan(20).string()});
+    ASSERT_TRUE(wait_until([&] { return program->state("new_session") == "asking"; }, 60s));
+    program->click("new-session:up:+y");
+    program->click("new-session:scale:10");
+    program->click("new-session:of:model");
+    program->press_key("Escape");
+    program->wait_for_state("new_session", "closed");
+    EXPECT_EQ(made_session(), studio->session_file());
+    EXPECT_EQ(program->quit(), 0);
+}
 
 TEST_F(OwnProduct, AScanOfAMillionTrianglesIsOnTheMockUpInAFewClicks) {
     start_afresh();

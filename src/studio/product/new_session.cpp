@@ -89,9 +89,9 @@ OpenedSession create_session(const NewSession& asked) {
                       "choose another name; nothing is written over");
     };
     refuse_if_there(asked.session);
+    make_output_folder(asked.session.parent_path());
     if (!asked.is_product_file) {
         refuse_if_there(product_file);
-        make_output_folder(asked.session.parent_path());
         const std::string name = asked.session.stem().string();
         write_text_file(product_file,
                         text_of(product_file_of(asked.facts, asked.answers, name), product_file));
@@ -151,6 +151,12 @@ void ask_for_product(Shell& shell) {
 void start_creating(Shell& shell) {
     NewSession& asked = *shell.new_session;
     asked.problem = asked.is_product_file ? "" : problem_of(asked.answers);
+    asked.session = typed_path(asked.session.string(), default_session_file().parent_path());
+    if (asked.session.empty()) {
+        asked.problem = "Say where the session is saved.";
+    } else if (asked.session.extension() != ".livery") {
+        asked.session += ".livery";
+    }
     if (asked.problem.empty()) asked.problem = why_not_to_leave(shell.studio);
     if (!asked.problem.empty()) return;
     asked.stage = NewSession::Stage::creating;

@@ -1,0 +1,335 @@
+// What is suggested for a mesh, what the answers come to, and the session made of them.
+#include "studio/product/new_session.h"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <thread>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "core/json.h"
+#include "core/paths.h"
+#include "mesh/scan_writer.h"
+#include "scene/library.h"
+#include "studio/product/mesh_picture.h"
+#include "studio/product/open_session.h"
+#include "studio/window/shell.h"
+#include "support/file_error.h"
+#include "support/temporary_folder.h"
+
+namespace livery {
+namespace {
+
+/// A box of these sides about `middle`, in a file's numbers.
+Mesh box(const glm::vec3& sides, const glm::vec3& middle = {}) {
+    ScanWriter scan = box_scan(0.5f * sides);
+    for (glm::vec3& position : scan.positions) position += middle;
+    return read_mesh(
+        scan.binary_ply(std::endian::little), "/no folder/box.ply", nullptr, LengthUnit::mm);
+}
+
+TEST(SuggestedAnswers, AScanOfACarInMetresWithZUpIsSeenThrough) {
+    const MeshFacts facts = facts_of(box({4.6f, 1.9f, 1.45f}, {12, -3, 0.7f}), "car.ply");
+    const auto [answers, unit_why, up_why, scale_why] = suggested_answers(facts);
+    EXPECT_EQ(answers.unit, LengthUnit::m);
+    EXPECT_NE(unit_why.find("4.6"), std::string::npos) << unit_why;
+    EXPECT_EQ(answers.up, UpAxis::plus_z);
+    EXPECT_TRUE(answers.mesh_is_product);
+    EXPECT_EQ(answers.product_scale, 25.0);
+    EXPECT_EQ(size_text(product_size_mm(facts, answers)), "4,600 x 1,450 x 1,900 mm");
+    EXPECT_EQ(size_text(mock_up_size_mm(facts, answers)), "184 x 58 x 76 mm");
+    EXPECT_FALSE(up_why.empty() || scale_why.empty());
+}
+
+TEST(SuggestedAnswers, WhatIsSmallIsTheModelItself) {
+    const MeshFacts facts = facts_of(box({180, 60, 75}), "car.obj");
+    const ProductAnswers answers = suggested_answers(facts).answers;
+    EXPECT_EQ(answers.unit, LengthUnit::mm);
+    EXPECT_EQ(answers.up, UpAxis::plus_y);
+    EXPECT_FALSE(answers.mesh_is_product);
+    EXPECT_EQ(answers.product_scale, 1.0);
+    EXPECT_EQ(mock_up_size_mm(facts, answers), glm::dvec3(180, 60, 75));
+    ProductAnswers model = answers;
+    model.product_scale = 25.0;
+    EXPECT_EQ(mock_up_size_mm(facts, model), glm::dvec3(180, 60, 75));
+    EXPECT_EQ(product_size_mm(facts, model), glm::dvec3(4500, 1500, 1875));
+}
+
+TEST(SuggestedAnswers, GltfSaysItsUnitAndWhatIsUp) {
+    const MeshFacts facts = facts_of(box({30, 1, 0.5f}), "bus.GLB");
+    EXPECT_EQ(suggested_answers(facts).answers.unit, LengthUnit::m);
+    EXPECT_EQ(suggested_answers(facts).answers.up, UpAxis::plus_y);
+}
+
+TEST(ProductAnswers, ScalesHaveWords) {
+    EXPECT_EQ(scale_text(1.0), "real size");
+    EXPECT_EQ(scale_text(25.0), "1:25 model");
+    EXPECT_EQ(scale_text(0.1), "10:1 model");
+}
+
+TEST(ProductAnswers, NamesAndScalesThatCannotBeAreRefusedInWords) {
+    ProductAnswers answers;
+    answers.part_names = {"body", "glass"};
+    EXPECT_EQ(problem_of(answers), "");
+    answers.part_names = {"body", "body"};
+    EXPECT_NE(problem_of(answers).find("\"body\""), std::string::npos);
+    answers.part_names = {"body", "  "};
+    EXPECT_EQ(problem_of(answers), "Each part needs a name.");
+    answers.part_names = {"body"};
+    for (const double scale : {0.0, -1.0, 1e7, std::nan("")}) {
+        answers.product_scale = scale;
+        EXPECT_NE(problem_of(answers), "") << scale;
+    }
+}
+
+struct Seen {
+    double filled = 0.0;  ///< share of the picture
+    int brightest = 0;
+};
+Seen seen_in(const Image8& picture) {
+    Seen seen;
+    for (std::size_t k = 0; k < picture.pixel_count(); ++k) {
+        seen.filled += picture.values[4 * k + 3] > 127 ? 1.0 : 0.0;
+        seen.brightest = std::max<int>(seen.brightest, picture.values[4 * k]);
+    }
+    seen.filled /= static_cast<double>(picture.pixel_count());
+    return seen;
+}
+
+TEST(MeshPicture, ShowsTheProductAsItWouldStand) {
+    const Mesh mesh = box({4.6f, 1.9f, 1.45f}, {12, -3, 0.7f});
+    const glm::ivec2 size{220, 150};
+    const Image8 lying = mesh_picture(mesh, upright_rotation(UpAxis::plus_z, 0), size);
+    EXPECT_EQ(glm::ivec2(lying.width, lying.height), size);
+    const Seen seen = seen_in(lying);
+    EXPECT_GT(seen.filled, 0.2);
+    EXPECT_LT(seen.filled, 0.9);
+    EXPECT_GT(seen.brightest, 120);
+    // On its end it is narrow, and the corners of the picture stay empty.
+    const Seen upright = seen_in(mesh_picture(mesh, upright_rotation(UpAxis::plus_x, 0), size));
+    EXPECT_LT(upright.filled, seen.filled);
+    EXPECT_GT(upright.filled, 0.05);
+    EXPECT_THROW(mesh_picture(mesh, glm::dmat3(1.0), {0, 10}), std::invalid_argument);
+}
+
+/// The window's state without a window, on a session in a file.
+class OneWindow : public testing::Test {
+  protected:
+    OneWindow() : shell_(first_session()) {
+        shell_.studio.background = std::make_unique<Background>([] {});
+        shell_.studio.file_dialog = std::make_unique<FileDialog>(shell_.studio.settings);
+    }
+    ~OneWindow() override { unsetenv("LIVERY_HOME"); }
+
+    Session first_session() {
+        setenv("LIVERY_HOME", (folder_ / "home").c_str(), 1);
+        return Session::open(folder_ / "first.livery", "sphere");
+    }
+    std::filesystem::path write_box(const std::string& name) {
+        ScanWriter scan = box_scan({2.3f, 0.95f, 0.725f});
+        return folder_.write(name, scan.binary_ply(std::endian::little));
+    }
+    void finish_work() {
+        while (shell_.studio.background->is_busy()) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        }
+        shell_.studio.background->take_results();
+    }
+    NewSession asked_of(const std::filesystem::path& mesh) {
+        NewSession asked;
+        asked.given = mesh;
+        asked.facts = facts_of(load_mesh(mesh, nullptr, LengthUnit::mm), mesh);
+        asked.answers = suggested_answers(asked.facts).answers;
+        asked.answers.part_names = {"body"};
+        asked.session = folder_ / "made" / "car.livery";
+        return asked;
+    }
+    std::string only_notice() {
+        const auto& notices = shell_.studio.notices;
+        EXPECT_EQ(notices.size(), 1u);
+        return notices.empty() ? "" : notices[0].what + " " + notices[0].cause;
+    }
+
+    TemporaryFolder folder_;
+    Shell shell_;
+};
+
+TEST_F(OneWindow, ASessionOfAMeshHasItsProductBesideIt) {
+    const NewSession asked = asked_of(write_box("car.ply"));
+    {
+        const OpenedSession made = create_session(asked);
+        EXPECT_EQ(made.product->product_scale, 25.0);
+        EXPECT_EQ(made.product->mesh.parts.at(0).name, "body");
+        const Bounds bounds = bounds_of(made.product->mesh);
+        EXPECT_LT(glm::distance(bounds.low, glm::dvec3(-92, 0, -38)), 1e-3);
+        EXPECT_LT(glm::distance(bounds.high, glm::dvec3(92, 58, 38)), 1e-3);
+        EXPECT_EQ(made.session.document().product, (folder_ / "made/car.product.json").string());
+    }
+    // Nothing is written over.
+    EXPECT_THROW(create_session(asked), Refused);
+    std::filesystem::remove(asked.session);
+    EXPECT_THROW(create_session(asked), Refused);
+    EXPECT_EQ(unused_session_file(folder_ / "made", "car"), folder_ / "made/car-2.livery");
+}
+
+TEST_F(OneWindow, ASessionThatCannotBeMadeLeavesNothingBehind) {
+    NewSession asked = asked_of(write_box("car.ply"));
+    std::filesystem::remove(asked.given);
+    EXPECT_TRUE(fails_with([&] { create_session(asked); }, {"car.ply: found no such file"}));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "made/car.product.json"));
+    EXPECT_FALSE(std::filesystem::exists(asked.session));
+}
+
+TEST_F(OneWindow, AMeshThatIsDroppedIsAskedAbout) {
+    take_dropped_files(shell_, {write_box("my car.ply")});
+    ASSERT_TRUE(shell_.new_session);
+    EXPECT_EQ(shell_.new_session->stage, NewSession::Stage::reading);
+    finish_work();
+    const NewSession& asked = *shell_.new_session;
+    ASSERT_EQ(asked.stage, NewSession::Stage::asking) << asked.problem;
+    EXPECT_EQ(asked.facts.triangles, 12u);
+    EXPECT_EQ(asked.answers.unit, LengthUnit::m);
+    EXPECT_EQ(asked.session.filename(), "my-car.livery");
+    start_creating(shell_);
+    finish_work();
+    ASSERT_TRUE(shell_.next_session);
+    EXPECT_EQ(shell_.next_session->session.file(), asked.session);
+}
+
+TEST_F(OneWindow, AProductFileHasAnsweredAll) {
+    write_box("car.ply");
+    const auto file = folder_.write(
+        "car.product.json",
+        R"({"format_version": 1, "mesh": "car.ply", "unit": "cm", "product_scale": 4})");
+    take_dropped_files(shell_, {file});
+    finish_work();
+    ASSERT_TRUE(shell_.new_session && shell_.new_session->is_product_file);
+    EXPECT_EQ(shell_.new_session->session.filename(), "car.livery");
+    EXPECT_EQ(size_text(mock_up_size_mm(shell_.new_session->facts, shell_.new_session->answers)),
+              "46 x 19 x 15 mm");
+    start_creating(shell_);
+    finish_work();
+    ASSERT_TRUE(shell_.next_session);
+    EXPECT_EQ(shell_.next_session->session.document().product, file.string());
+    EXPECT_EQ(shell_.next_session->product->product_scale, 4.0);
+}
+
+TEST_F(OneWindow, WhatCannotBeReadSaysSoOnThePage) {
+    begin_new_session(shell_, folder_.write("broken.ply", "ply\nformat nonsense\n"));
+    finish_work();
+    ASSERT_TRUE(shell_.new_session);
+    EXPECT_EQ(shell_.new_session->stage, NewSession::Stage::unreadable);
+    EXPECT_NE(shell_.new_session->problem.find("broken.ply"), std::string::npos);
+    EXPECT_TRUE(shell_.studio.notices.empty());
+}
+
+TEST_F(OneWindow, ThePageKeepsWhatWasAnsweredWhenTheSessionCannotBeMade) {
+    begin_new_session(shell_, write_box("car.ply"));
+    finish_work();
+    shell_.new_session->answers.product_scale = 10.0;
+    shell_.new_session->session = folder_ / "first.livery";
+    start_creating(shell_);
+    finish_work();
+    ASSERT_TRUE(shell_.new_session && !shell_.next_session);
+    EXPECT_EQ(shell_.new_session->stage, NewSession::Stage::asking);
+    EXPECT_EQ(shell_.new_session->answers.product_scale, 10.0);
+    EXPECT_NE(shell_.new_session->problem.find("is there already"), std::string::npos)
+        << shell_.new_session->problem;
+    shell_.new_session->answers.part_names = {""};
+    start_creating(shell_);
+    EXPECT_EQ(shell_.new_session->problem, "Each part needs a name.");
+    shell_.new_session->answers.part_names = {"body"};
+    shell_.new_session->session = " ";
+    start_creating(shell_);
+    EXPECT_EQ(shell_.new_session->problem, "Say where the session is saved.");
+    // A bare name is one in the folder of sessions.
+    shell_.new_session->session = "my v1.2";
+    start_creating(shell_);
+    finish_work();
+    ASSERT_TRUE(shell_.next_session) << shell_.new_session->problem;
+    EXPECT_EQ(shell_.next_session->session.file(), folder_ / "home/sessions/my v1.2.livery");
+}
+
+TEST_F(OneWindow, APageThatWasClosedHearsNothingMore) {
+    begin_new_session(shell_, write_box("car.ply"));
+    shell_.new_session.reset();
+    finish_work();
+    EXPECT_FALSE(shell_.new_session);
+    begin_new_session(shell_, write_box("car.ply"));
+    begin_new_session(shell_, write_box("van.ply"));
+    finish_work();
+    EXPECT_EQ(shell_.new_session->facts.file.filename(), "van.ply");
+}
+
+TEST_F(OneWindow, OtherThingsThatAreDroppedAreSaidNotToBeFor) {
+    const auto look =
+        folder_.write("look.json", R"({"format_version": 1, "name": "x", "parts": {}})");
+    for (const std::vector<std::filesystem::path>& files :
+         {std::vector{folder_.write("notes.txt", "x")},
+          {look},
+          {folder_.path()},
+          {write_box("a.ply"), write_box("b.ply")}}) {
+        shell_.studio.notices.clear();
+        take_dropped_files(shell_, files);
+        finish_work();
+        EXPECT_NE(only_notice().find(".glb"), std::string::npos) << files[0];
+        EXPECT_FALSE(shell_.new_session || shell_.next_session) << files[0];
+    }
+}
+
+TEST_F(OneWindow, ASessionThatIsDroppedIsNext) {
+    Session::open(folder_ / "second.livery", "sphere");
+    take_dropped_files(shell_, {folder_ / "second.livery"});
+    finish_work();
+    ASSERT_TRUE(shell_.next_session);
+    EXPECT_EQ(shell_.next_session->session.file(), folder_ / "second.livery");
+    EXPECT_EQ(shell_.next_session->product->name, "Sphere");
+}
+
+TEST_F(OneWindow, WhatCannotBeOpenedLeavesTheSessionThatIs) {
+    const auto refused_with = [&](const std::filesystem::path& file, const std::string& words) {
+        shell_.studio.notices.clear();
+        open_other_session(shell_, file);
+        finish_work();
+        EXPECT_FALSE(shell_.next_session) << file;
+        const std::string notice = only_notice();
+        EXPECT_NE(notice.find(words), std::string::npos) << notice;
+    };
+    refused_with(folder_ / "gone.livery", "no such file");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "gone.livery"));
+    refused_with(folder_.write("broken.livery", "not a session"), "broken.livery");
+    refused_with(folder_ / "first.livery", "This session is open already.");
+    {
+        const Session elsewhere = Session::open(folder_ / "elsewhere.livery", "sphere");
+        refused_with(folder_ / "elsewhere.livery", "is open in another Livery");
+    }
+    const auto mesh = write_box("car.ply");
+    Session::open(folder_ / "of mesh.livery", mesh.string());
+    std::filesystem::remove(mesh);
+    refused_with(folder_ / "of mesh.livery", "car.ply");
+    shell_.studio.session = Session::unsaved(shell_.studio.session.document(), "a test");
+    refused_with(folder_ / "second.livery", "not saved yet");
+}
+
+TEST_F(OneWindow, TheLastTenSessionsAreKnownTheNewestFirst) {
+    UserSettings settings;
+    settings.file = folder_ / "desktop.json";
+    for (int k = 0; k < 12; ++k) {
+        remember_recent_session(settings, folder_ / ("s" + std::to_string(k) + ".livery"));
+    }
+    remember_recent_session(settings, folder_ / "s5.livery");
+    const auto files = recent_sessions(settings);
+    ASSERT_EQ(files.size(), kMostRecentSessions);
+    EXPECT_EQ(files[0], folder_ / "s5.livery");
+    EXPECT_EQ(files[1], folder_ / "s11.livery");
+    EXPECT_EQ(files[9], folder_ / "s2.livery");
+    EXPECT_TRUE(recent_sessions({}).empty());
+}
+
+}  // namespace
+}  // namespace livery
