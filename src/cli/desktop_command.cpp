@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -80,6 +81,10 @@ Command desktop_command() {
             std::error_code error;
             if (!std::filesystem::is_regular_file(options.new_product, error)) {
                 throw FileError(arguments->file, "", "no such file", "a mesh or a product file");
+            }
+            // A session that is not there is the one to be made of it, not one of the car.
+            if (!std::filesystem::exists(options.session, error)) {
+                options.new_session = std::exchange(options.session, {});
             }
         } else if (!arguments->file.empty()) {
             if (!arguments->session.empty()) {

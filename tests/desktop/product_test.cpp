@@ -152,15 +152,31 @@ TEST_F(OwnProduct, OtherSessionsComeInTheSameWindowWhileTheProjectorStaysDark) {
 
 TEST_F(OwnProduct, AMeshOnTheCommandLineBeginsANewSession) {
     start();
-    std::filesystem::remove_all(default_session_file().parent_path());
+    const auto kept = studio->session_file();
     start_program({write_scan(20).string()});
     ASSERT_TRUE(wait_until([&] { return program->state("new_session") == "asking"; }, 60s));
-    program->click("new-session:up:+y");
-    program->click("new-session:scale:10");
-    program->click("new-session:of:model");
     program->press_key("Escape");
     program->wait_for_state("new_session", "closed");
-    EXPECT_EQ(made_session(), studio->session_file());
+    EXPECT_EQ(made_session(), kept);
+    EXPECT_EQ(program->quit(), 0);
+
+    // One that is not there yet is made of the mesh, not of the shipped car.
+    studio->program.reset();
+    StudioStart how;
+    how.session = studio->folder / "van.livery";
+    how.more_arguments = {write_scan(20).string()};
+    studio->program = std::make_unique<StudioProgram>(*desktop, how);
+    program = studio->program.get();
+    ASSERT_TRUE(wait_until([&] { return program->state("new_session") == "asking"; }, 60s));
+    EXPECT_FALSE(std::filesystem::exists(how.session));
+    program->click("new-session:scale:10");
+    program->click("new-session:of:model");
+    program->click("new-session:create");
+    ASSERT_TRUE(goes_on_with(how.session));
+    const Json product = read_json_file(studio->folder / "van.product.json");
+    EXPECT_EQ(product["product_scale"], 10);
+    EXPECT_EQ(product["mesh_scale"], 1);
+    EXPECT_EQ(product["mesh"], "carscan.ply");
     EXPECT_EQ(program->quit(), 0);
 }
 

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "core/image_io.h"
+#include "core/paths.h"
 #include "desktop/prepared.h"
 #include "desktop/studio_program.h"
 
@@ -98,6 +99,7 @@ class Photographer {
         settle();
         take("import-look");
         program().click("file-dialog:cancel");
+        take_new_session();
         take_ballot();
         take_calibrating();
         program().click("show-numbers");
@@ -113,6 +115,19 @@ class Photographer {
 
   private:
     StudioProgram& program() { return *program_; }
+
+    void take_new_session() {
+        desktop_.press_key("ctrl+n");
+        program().item("file-dialog:path");
+        desktop_.type(shipped_path("assets/car.glb").string());
+        desktop_.press_key("Return");
+        program().wait_for_state("new_session_pictured", true);
+        program().click("new-session:scale:25");
+        program().move_away();
+        settle();
+        take("new-session");
+        program().click("new-session:cancel");
+    }
 
     void take_ballot() {
         program().click("menu:File");

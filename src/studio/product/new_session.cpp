@@ -106,11 +106,14 @@ OpenedSession create_session(const NewSession& asked) {
     }
 }
 
-void begin_new_session(Shell& shell, const std::filesystem::path& file) {
+void begin_new_session(Shell& shell,
+                       const std::filesystem::path& file,
+                       const std::filesystem::path& session) {
     const std::uint64_t number = ++shell.new_sessions;
     shell.new_session = std::make_unique<NewSession>();
     shell.new_session->number = number;
     shell.new_session->given = std::filesystem::absolute(file).lexically_normal();
+    if (!session.empty()) shell.new_session->session = std::filesystem::absolute(session);
     const auto page = [&shell, number] { return page_of(shell, number); };
     shell.studio.background->run(
         [page, given = shell.new_session->given](const Progress&) -> Background::Then {
@@ -123,11 +126,12 @@ void begin_new_session(Shell& shell, const std::filesystem::path& file) {
                 asked->answers = asked->suggested.answers;
                 asked->mesh = std::make_shared<const Mesh>(std::move(read->mesh));
                 asked->is_product_file = read->is_product_file;
+                asked->stage = NewSession::Stage::asking;
+                if (!asked->session.empty()) return;
                 std::string name = asked->given.stem().string();
                 if (name.ends_with(".product")) name.resize(name.size() - 8);
                 asked->session =
                     unused_session_file(default_session_file().parent_path(), file_name_of(name));
-                asked->stage = NewSession::Stage::asking;
             };
         },
         [page](const std::exception_ptr& why) {

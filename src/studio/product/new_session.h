@@ -59,8 +59,11 @@ std::filesystem::path product_file_beside(const std::filesystem::path& session);
 /// already, FileError; then neither was made.
 OpenedSession create_session(const NewSession& asked);
 
-/// Opens the page with a mesh or product file, which is read in the background.
-void begin_new_session(Shell& shell, const std::filesystem::path& file);
+/// Opens the page with a mesh or product file, which is read in the background. Without a file for
+/// the session one is suggested, in the user's folder.
+void begin_new_session(Shell& shell,
+                       const std::filesystem::path& file,
+                       const std::filesystem::path& session = {});
 /// Asks for the file by the dialog first.
 void ask_for_product(Shell& shell);
 void draw_new_session(Shell& shell);  ///< once a frame

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
 #include "studio/kit/theme.h"
@@ -137,10 +138,6 @@ void draw_parts(NewSession& asked) {
     const bool renames = !asked.is_product_file;
     ImGui::Dummy({0.0f, em(0.3f)});
     ImGui::TextUnformatted(names.size() == 1 ? "Its part is called" : "Its parts are called");
-    const float row_height = ImGui::GetFrameHeightWithSpacing();
-    const float height =
-        row_height * static_cast<float>(std::clamp<std::size_t>(names.size(), 1, 5));
-    ImGui::BeginChild("parts", {0.0f, height}, false, ImGuiWindowFlags_NavFlattened);
     for (std::size_t k = 0; k < names.size(); ++k) {
         ImGui::PushID(static_cast<int>(k));
         ImGui::SetNextItemWidth(em(14.0f));
@@ -154,7 +151,6 @@ void draw_parts(NewSession& asked) {
         }
         ImGui::PopID();
     }
-    ImGui::EndChild();
     dim_text("Once it is open: click a part, then a paint.");
 }
 
@@ -271,6 +267,8 @@ void draw_new_session(Shell& shell) {
     ImGui::SetNextWindowSize({std::min(em(58.0f), 0.96f * window.x), 0.0f});
     ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Always, {0.5f, 0.5f});
     if (!ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_NoResize)) return;
+    // A notice that comes meanwhile stays behind it.
+    ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());
     draw_given(shell);
     using Stage = NewSession::Stage;
     if (asked.stage == Stage::reading) dim_text("Reading the file…");

@@ -30,6 +30,7 @@
 #include "studio/projector_control.h"
 #include "studio/quality_costs.h"
 #include "studio/window/actions.h"
+#include "studio/window/handover.h"
 #include "studio/window/imgui_window.h"
 #include "studio/window/keys.h"
 #include "studio/window/native_place.h"
@@ -132,27 +133,6 @@ std::optional<double> next_change_s(const Shell& shell) {
     return next;
 }
 
-/// Keeps a projector dark while one session's window goes and the next one's comes.
-struct DarkProjector {
-    Window context;
-    ProjectorScreen screen;
-
-    explicit DarkProjector(const std::string& monitor)
-        : context({"Livery (dark)", {16, 16}, false, true}), screen(context) {
-        screen.set_black(true);
-        screen.use_monitor(monitor);
-        screen.monitors_changed();
-    }
-};
-
-/// What one session's window hands to the next one's.
-struct Handover {
-    std::shared_ptr<OpenedSession> opened;
-    std::unique_ptr<DarkProjector> dark;  ///< none: there was no projector
-    std::shared_ptr<Trace> trace;         ///< shared as in the shell
-    bool black = false;                   ///< it was so before
-};
-
 class Desktop {
   public:
     Desktop(const DesktopOptions& options, Session session)
@@ -174,6 +154,8 @@ class Desktop {
         product_ = read.get_future();
         shell_.trace = std::move(before.trace);
         shell_.black = before.black;
+        handed_out_before_ = before.handed_out;
+        frames_drawn_ = before.frames_drawn;
     }
 
     /// What to go on with; nothing: the program ends.
@@ -208,7 +190,7 @@ class Desktop {
         window_->make_current();
         glfwSwapInterval(0);
         log_line(LogLevel::info, "drawing with " + window_->renderer());
-        imgui_ = std::make_unique<ImGuiWindow>(*window_);
+        imgui_ = std::make_unique<ImGuiWindow>(*window_, handed_out_before_);
         glfwSetMonitorCallback([](GLFWmonitor*, int) { monitors_have_changed = true; });
         glfwSetDropCallback(window_->native(), [](GLFWwindow*, int count, const char** paths) {
             dropped_files.assign(paths, paths + count);
@@ -235,7 +217,8 @@ class Desktop {
                 wake_main_thread();
             });
         }
-        if (!options_.new_product.empty()) begin_new_session(shell_, options_.new_product);
+        if (!options_.new_product.empty())
+            begin_new_session(shell_, options_.new_product, options_.new_session);
         frames_to_draw_ = kFramesAfterInput;
     }
 
@@ -245,6 +228,8 @@ class Desktop {
         next.opened = std::move(shell_.next_session);
         next.trace = shell_.trace;
         next.black = shell_.black;
+        next.handed_out = imgui_->handed_out();
+        next.frames_drawn = frames_drawn_;
         Session& session = next.opened->session;
         session.set_workspace(kWindowKey, text_of(place_of(window_->native())));
         session.set_workspace(kMonitorKey, shell_.projector_monitor);
@@ -446,6 +431,7 @@ class Desktop {
     glm::ivec2 least_size_px_{0};
     std::atomic<bool> asked_for_{false};  ///< by another start
     std::optional<RunningWindow> running_window_;
+    ImGuiWindow::HandedOut handed_out_before_;
     int frames_drawn_ = 0;
     int frames_to_draw_ = 0;
     std::vector<std::array<int, 4>> monitor_places_;

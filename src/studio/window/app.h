@@ -18,6 +18,7 @@ struct DesktopOptions {
     std::string product;                  ///< empty: the session's; for a new session "car"
     std::optional<LengthUnit> unit;       ///< of the product's file, for a new session
     std::filesystem::path new_product;    ///< begins a new session with it; empty: none
+    std::filesystem::path new_session;    ///< where that is saved; empty: a place is suggested
     std::optional<double> ui_scale;       ///< instead of the screen's and the user's own
     std::optional<glm::ivec2> size_px;    ///< instead of the remembered one
     std::filesystem::path ui_map, trace;  ///< empty: not written

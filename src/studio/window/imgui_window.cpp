@@ -138,7 +138,8 @@ struct ImGuiWindow::State {
     }
 };
 
-ImGuiWindow::ImGuiWindow(Window& window) : state_(new State{window}) {
+ImGuiWindow::ImGuiWindow(Window& window, const HandedOut& before) : state_(new State{window}) {
+    state_->handed_out = before;
     GLFWwindow* native = window.native();
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();

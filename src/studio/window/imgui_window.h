@@ -13,8 +13,14 @@ namespace livery {
 /// One a program, main thread.
 class ImGuiWindow {
   public:
-    /// The window's context is current and stays so.
-    explicit ImGuiWindow(Window& window);
+    /// What was handed out since the start: a driver of the program (--ui-map) goes by it.
+    struct HandedOut {
+        int clicks = 0;   ///< buttons let go
+        int notches = 0;  ///< of the wheel
+        int keys = 0;     ///< let go, Shift and its like apart
+    };
+    /// The window's context is current and stays so. `before`: by the window that this one follows.
+    ImGuiWindow(Window& window, const HandedOut& before);
     ~ImGuiWindow();
     ImGuiWindow(const ImGuiWindow&) = delete;
     ImGuiWindow& operator=(const ImGuiWindow&) = delete;
@@ -30,12 +36,6 @@ class ImGuiWindow {
 
     bool has_input() const;
 
-    /// What was handed out since the start: a driver of the program (--ui-map) goes by it.
-    struct HandedOut {
-        int clicks = 0;   ///< buttons let go
-        int notches = 0;  ///< of the wheel
-        int keys = 0;     ///< let go, Shift and its like apart
-    };
     const HandedOut& handed_out() const;
 
   private:
