@@ -113,6 +113,26 @@ TEST(RawPicture, BlackIsSubtractedAndSaturationIsFullScale) {
     EXPECT_NEAR(read.image.at(33, 33, 2), 65'535.0, 1.0);
 }
 
+/// However the camera says that it was held, so that pixels keep their places in a sequence.
+TEST(RawPicture, IsNotTurned) {
+    const TemporaryFolder folder;
+    std::string file = dng(10'000, 20'000, 5'000, 0);
+    constexpr std::ptrdiff_t half = 64 * 32 * 2;
+    std::fill_n(file.end() - 2 * half, half, '\0');         // the upper half is dark
+    const std::string held("\x12\x01\x03\0\x01\0\0\0", 8);  // Orientation, one short
+    const std::size_t entry = file.find(held);
+    ASSERT_NE(entry, std::string::npos);
+    for (const char orientation : {'\1', '\3', '\6', '\x8'}) {
+        file[entry + held.size()] = orientation;
+        const auto read = read_image(folder.write("a.dng", file));
+        for (const int x : {20, 44}) {
+            EXPECT_EQ(read.image.at(x, 10, 1), 0.0f) << "orientation " << int{orientation};
+            EXPECT_NEAR(read.image.at(x, 54, 1), 20'000.0f, 1.0f)
+                << "orientation " << int{orientation};
+        }
+    }
+}
+
 TEST(RawPicture, BadFilesSayWhy) {
     const TemporaryFolder folder;
     const auto whole = dng(1, 2, 3, 0);

@@ -38,13 +38,15 @@ void say(PictureError* error, std::string text) {
 }
 
 /// Values as stored: no colour conversion, no premultiplied alpha. RAW: the camera's own linear
-/// RGB without white balance, brightening or recovered highlights.
+/// RGB without white balance, brightening or recovered highlights, as the sensor lies.
 OIIO::ImageSpec reading_options() {
     OIIO::ImageSpec options;
     options.attribute("oiio:UnassociatedAlpha", 1);
     options.attribute("raw:ColorSpace", "raw");
     options.attribute("raw:use_camera_wb", 0);
     options.attribute("raw:auto_bright", 0);
+    // A camera that looks down is unsure which way is up, and may change its mind between shots.
+    options.attribute("raw:user_flip", 0);
     const float no_balance[4] = {1.0f, 1.0f, 1.0f, 1.0f};
     options.attribute("raw:user_mul", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 4), no_balance);
     return options;
