@@ -53,8 +53,8 @@ class Camera {
     /// What to call it: "Nikon D7500 at usb:001,004".
     virtual std::string name() const = 0;
     virtual CameraState state() = 0;
-    /// Chooses one of `choices`, or the nearest number. Throws CameraFault `refused` where the
-    /// camera has no such setting or value, or keeps another.
+    /// Chooses one of `choices`, or where there are none any value. Throws CameraFault `refused`
+    /// where the camera has no such setting or value, or keeps another.
     virtual void set(const std::string& setting, const std::string& value) = 0;
     /// Photographs what is there now: TakePhotograph. The exposure that was really used stands in
     /// the photograph: the nearest that the camera has.

@@ -161,7 +161,7 @@ BenchPorts ports_of(const CapturesFolder& folder) {
 }
 
 Photograph load_photograph(const Capture& capture) {
-    auto picture = read_image(capture.file);
+    auto picture = read_image(capture.file, kMostPicturePixels, capture.raw_half);
     const double full_scale = picture.full_scale;
     const bool floating_point = picture.floating_point;
     Photograph photograph;

@@ -18,6 +18,8 @@ struct Capture {
     std::string transfer = "linear";  ///< "linear", "srgb" or the path of a response file
     double black_level = 0.0;         ///< file units, before the transfer is undone
     double saturates_at = 0.0;        ///< file units, before the transfer; 0: the file's full scale
+    /// One pixel of each square of a RAW file's colour filter, in place of all, interpolated.
+    bool raw_half = false;
 };
 
 struct CapturesFolder {

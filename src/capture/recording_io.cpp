@@ -80,6 +80,7 @@ Photograph load(const std::filesystem::path& folder, const RecordedPhotograph& r
     Capture capture;
     capture.file = folder / recorded.file;
     capture.exposure_s = recorded.exposure_s;
+    capture.raw_half = true;  // As cameras on a cable read theirs.
     Photograph photograph = load_photograph(capture);
     photograph.black_level = recorded.black_level;
     photograph.saturates_at = recorded.saturates_at;

@@ -23,9 +23,9 @@ struct VideoCameraOptions {
 };
 
 /// Exposure is set by hand and automatic gain switched off where the camera allows it; else
-/// `state()` warns. A photograph is the mean of frames in a row that show one picture and began after
-/// it was asked for: what is still on its way is passed over, of a file the next frames are taken.
-/// Throws CameraFault.
+/// `state()` warns. A photograph is the mean of frames in a row that show one picture and began
+/// after it was asked for: what is still on its way is passed over, of a file the next frames are
+/// taken. Throws CameraFault.
 std::unique_ptr<Camera> open_video_camera(const VideoCameraOptions& options);
 
 }  // namespace livery

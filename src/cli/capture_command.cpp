@@ -340,7 +340,8 @@ Command capture_command() {
         {"--list", "", "name the cameras and monitors that there are", &arguments->list, false, {}},
         {"--camera",
          "CAMERA",
-         "bench[:NAME], video:NUMBER|FILE|ADDRESS, or folder:DIR for photographs of any camera",
+         "bench[:NAME], tethered[:PORT], video:NUMBER|FILE|ADDRESS, or folder:DIR for any other "
+         "camera",
          &arguments->camera,
          false,
          {}},

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <limits>
 #include <memory>
+#include <span>
 #include <string_view>
 
 #include "core/error.h"
@@ -35,18 +36,20 @@ const ImageIoTable& module_table() {
     return table;
 }
 
+/// Of the file's suffix in any case.
+bool has_suffix_among(const std::filesystem::path& file,
+                      std::span<const std::string_view> suffixes) {
+    std::string suffix = file.extension().string();
+    for (char& letter : suffix) {
+        if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
+    }
+    return std::find(suffixes.begin(), suffixes.end(), suffix) != suffixes.end();
+}
+
 /// OpenImageIO's name of the format by content, or by extension for the many kinds of RAW; only
 /// these readers are ever tried on a file.
 const char* format_of(const std::filesystem::path& file, std::string_view start) {
-    static constexpr std::string_view raw_extensions[] = {
-        ".arw", ".cr2", ".cr3", ".dng", ".nef", ".orf", ".pef", ".raf", ".rw2", ".srw"};
-    std::string extension = file.extension().string();
-    for (char& letter : extension) {
-        if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
-    }
-    for (const auto raw : raw_extensions) {
-        if (extension == raw) return "raw";
-    }
+    if (is_raw_suffix(file)) return "raw";
     using namespace std::string_view_literals;
     static constexpr std::pair<std::string_view, const char*> signatures[] = {
         {"\x76\x2f\x31\x01"sv, "openexr"},
@@ -185,8 +188,9 @@ void check_png_channels(int channels) {
 
 }  // namespace
 
-ImageFile read_image(const std::filesystem::path& file, std::size_t max_pixels) {
+ImageFile read_image(const std::filesystem::path& file, std::size_t max_pixels, bool raw_half) {
     const char* format = format_of(file, start_of(file));
+    if (raw_half && format == std::string_view("raw")) format = kRawHalf;
     if (format && std::string_view(format) == "hdr") {
         const std::string bytes = read_text_file(file, kMaxBytes);
         if (auto picture = decode_radiance_hdr(bytes, max_pixels)) {
@@ -228,29 +232,16 @@ void write_png(const std::filesystem::path& file, const Image16& image) {
     write_image(file, "png", image, 16, {});
 }
 
+bool is_raw_suffix(const std::filesystem::path& file) {
+    static constexpr std::string_view suffixes[] = {
+        ".arw", ".cr2", ".cr3", ".dng", ".nef", ".orf", ".pef", ".raf", ".rw2", ".srw"};
+    return has_suffix_among(file, suffixes);
+}
+
 bool has_picture_suffix(const std::filesystem::path& file) {
-    static constexpr std::string_view suffixes[] = {".exr",
-                                                    ".hdr",
-                                                    ".png",
-                                                    ".tif",
-                                                    ".tiff",
-                                                    ".jpg",
-                                                    ".jpeg",
-                                                    ".arw",
-                                                    ".cr2",
-                                                    ".cr3",
-                                                    ".dng",
-                                                    ".nef",
-                                                    ".orf",
-                                                    ".pef",
-                                                    ".raf",
-                                                    ".rw2",
-                                                    ".srw"};
-    std::string suffix = file.extension().string();
-    std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](char c) {
-        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    });
-    return std::find(std::begin(suffixes), std::end(suffixes), suffix) != std::end(suffixes);
+    static constexpr std::string_view suffixes[] = {
+        ".exr", ".hdr", ".png", ".tif", ".tiff", ".jpg", ".jpeg"};
+    return has_suffix_among(file, suffixes) || is_raw_suffix(file);
 }
 
 }  // namespace livery

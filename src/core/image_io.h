@@ -20,16 +20,24 @@ struct ImageFile {
 
 /// Whether a file's suffix, in any case, is one of a picture or of a camera's RAW file.
 bool has_picture_suffix(const std::filesystem::path& file);
+/// Of a camera's RAW file.
+bool is_raw_suffix(const std::filesystem::path& file);
+
+/// Pixels of a picture that are read unless more are asked for.
+inline constexpr std::size_t kMostPicturePixels = 100'000'000;
 
 /// EXR, HDR, PNG, TIFF, JPEG, RAW. Values as stored: integers 0 to full_scale, floats untouched
 /// (NaN and Inf included: the caller decides). Throws FileError; a declared size over
-/// `max_pixels` is refused before anything is allocated.
-ImageFile read_image(const std::filesystem::path& file, std::size_t max_pixels = 100'000'000);
+/// `max_pixels` is refused before anything is allocated. `raw_half`: of RAW one pixel of each
+/// square of the colour filter, nothing interpolated.
+ImageFile read_image(const std::filesystem::path& file,
+                     std::size_t max_pixels = kMostPicturePixels,
+                     bool raw_half = false);
 
 /// The same of bytes that stand in another file, RAW apart; `name` stands in messages.
 ImageFile read_image_bytes(std::string_view bytes,
                            const std::filesystem::path& name,
-                           std::size_t max_pixels = 100'000'000);
+                           std::size_t max_pixels = kMostPicturePixels);
 
 /// Linear float EXR (32 bit). channel_names defaults to R,G,B(,A) or Y.
 void write_exr(const std::filesystem::path& file,

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "capture/tethered_camera.h"
 #include "capture/video_camera.h"
 #include "core/colour.h"
 #include "core/paths.h"
@@ -69,11 +70,12 @@ CameraChoice parse_camera_choice(const std::string& text) {
     const std::string kind = text.substr(0, colon);
     const std::string what = colon == std::string::npos ? "" : text.substr(colon + 1);
     if (kind == "bench") return {CameraChoice::Kind::bench, what.empty() ? "default" : what};
+    if (kind == "tethered") return {CameraChoice::Kind::tethered, what};
     if (kind == "video" && !what.empty()) return {CameraChoice::Kind::video, what};
     if (kind == "folder" && !what.empty()) return {CameraChoice::Kind::folder, what};
     throw std::invalid_argument(
-        fmt::format("--camera: found \"{}\", expected bench[:NAME|FILE], video:NUMBER|FILE|ADDRESS "
-                    "or folder:DIR",
+        fmt::format("--camera: found \"{}\", expected bench[:NAME|FILE], tethered[:PORT], "
+                    "video:NUMBER|FILE|ADDRESS or folder:DIR",
                     text));
 }
 
@@ -81,6 +83,8 @@ std::string text_of(const CameraChoice& choice) {
     switch (choice.kind) {
         case CameraChoice::Kind::bench:
             return "bench:" + choice.what;
+        case CameraChoice::Kind::tethered:
+            return "tethered:" + choice.what;
         case CameraChoice::Kind::video:
             return "video:" + choice.what;
         case CameraChoice::Kind::folder:
@@ -91,6 +95,14 @@ std::string text_of(const CameraChoice& choice) {
 
 std::vector<ListedCamera> list_cameras() {
     std::vector<ListedCamera> cameras;
+    for (const FoundCamera& found : list_tethered_cameras()) {
+        ListedCamera camera{"tethered:" + found.port, found.model + " at " + found.port, "", ""};
+        if (!found.held_by.empty()) {
+            camera.problem = "it is open in " + found.held_by;
+            camera.fix = "close that program, or eject the camera in the file manager";
+        }
+        cameras.push_back(std::move(camera));
+    }
     std::error_code error;
     for (int number = 0; number < 64; ++number) {
         const std::string device = fmt::format("/dev/video{}", number);
@@ -116,6 +128,12 @@ CaptureBench open_capture_bench(const CameraChoice& choice,
             bench.show = ports.show;
             bench.measure_xyz = ports.measure_xyz;
             bench.projector = description.projector.view;
+            break;
+        }
+        case CameraChoice::Kind::tethered: {
+            TetheredOptions options;
+            options.port = choice.what;
+            bench.camera = open_tethered_camera(options);
             break;
         }
         case CameraChoice::Kind::video: {

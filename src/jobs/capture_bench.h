@@ -14,9 +14,10 @@
 
 namespace livery {
 
-/// As people write it: "bench" or "bench:NAME|FILE", "video:N|FILE|ADDRESS", "folder:DIR".
+/// As people write it: "bench" or "bench:NAME|FILE", "tethered" (the first on USB), "tethered:PORT",
+/// "video:N|FILE|ADDRESS", "folder:DIR".
 struct CameraChoice {
-    enum class Kind { bench, video, folder };
+    enum class Kind { bench, tethered, video, folder };
     Kind kind = Kind::bench;
     std::string what;  ///< behind the colon
     bool operator==(const CameraChoice&) const = default;

@@ -1,93 +1,22 @@
 #include <algorithm>
 #include <cstdint>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "core/image_io.h"
+#include "support/dng.h"
 #include "support/file_error.h"
 #include "support/temporary_folder.h"
 
 namespace livery {
 namespace {
 
-std::string little_endian(std::uint32_t value, int bytes) {
-    std::string text;
-    for (int k = 0; k < bytes; ++k) text.push_back(static_cast<char>(value >> (8 * k)));
-    return text;
-}
-
-/// A 64x64 DNG (a TIFF with a Bayer pattern R G / G B, 16 bit) that is uniform in each colour and
-/// asks for a white balance of 2, 1, 1.43.
+/// Uniform in each colour, asking for a white balance of 2, 1, 1.43.
 std::string dng(std::uint16_t red, std::uint16_t green, std::uint16_t blue, std::uint32_t black) {
-    constexpr std::uint32_t side = 64, entry_count = 24;
-    constexpr std::uint32_t data_at = 8 + 2 + 12 * entry_count + 4;
-    std::vector<std::tuple<std::uint32_t, std::string>> entries;  // tag, the entry's 12 bytes
-    std::string data;
-    const auto add = [&](std::uint32_t tag, std::uint32_t type, std::uint32_t n, std::string raw) {
-        std::string value = raw;
-        if (raw.size() > 4) {
-            value = little_endian(data_at + static_cast<std::uint32_t>(data.size()), 4);
-            data += raw;
-        }
-        value.resize(4);
-        entries.emplace_back(
-            tag, little_endian(tag, 2) + little_endian(type, 2) + little_endian(n, 4) + value);
-    };
-    const auto shorts = [&](std::uint32_t tag, std::uint32_t value) {
-        add(tag, 3, 1, little_endian(value, 2));
-    };
-    const auto longs = [&](std::uint32_t tag, std::uint32_t value) {
-        add(tag, 4, 1, little_endian(value, 4));
-    };
-    const auto ratios = [&](std::uint32_t tag, std::uint32_t type, std::vector<double> values) {
-        std::string raw;
-        for (const double value : values) {
-            raw += little_endian(static_cast<std::uint32_t>(value * 1e4), 4) +
-                   little_endian(10'000, 4);
-        }
-        add(tag, type, static_cast<std::uint32_t>(values.size()), raw);
-    };
-    longs(254, 0);
-    longs(256, side);
-    longs(257, side);
-    shorts(258, 16);
-    shorts(259, 1);      // not compressed
-    shorts(262, 32803);  // colour filter array
-    add(271, 2, 6, std::string("Maker\0", 6));
-    add(272, 2, 6, std::string("Model\0", 6));
-    shorts(274, 1);
-    shorts(277, 1);
-    longs(278, side);
-    longs(279, side * side * 2);
-    shorts(284, 1);
-    add(33421, 3, 2, little_endian(2, 2) + little_endian(2, 2));
-    add(33422, 1, 4, std::string("\0\1\1\2", 4));
-    add(50706, 1, 4, std::string("\1\4\0\0", 4));
-    add(50708, 2, 12, std::string("Maker Model\0", 12));
-    longs(50714, black);
-    longs(50717, 65535);
-    ratios(50721, 10, {1, 0, 0, 0, 1, 0, 0, 0, 1});
-    ratios(50728, 5, {0.5, 1.0, 0.7});
-    shorts(50778, 21);
-    longs(50730, 0);
-    longs(273, data_at + static_cast<std::uint32_t>(data.size()));
-    std::sort(entries.begin(), entries.end());
-
-    std::string file = std::string("II*\0", 4) + little_endian(8, 4) +
-                       little_endian(static_cast<std::uint32_t>(entries.size()), 2);
-    for (const auto& [tag, entry] : entries) file += entry;
-    file.resize(data_at);
-    file += data;
-    for (std::uint32_t y = 0; y < side; ++y) {
-        for (std::uint32_t x = 0; x < side; ++x) {
-            const bool odd_x = x % 2 == 1, odd_y = y % 2 == 1;
-            file += little_endian(odd_x != odd_y ? green : odd_x ? blue : red, 2);
-        }
-    }
-    return file;
+    return testing::dng_of(
+        64, 64, black, [=](int x, int y) { return testing::bayer(x, y, red, green, blue); });
 }
 
 TEST(RawPicture, GivesTheCamerasOwnLinearColour) {

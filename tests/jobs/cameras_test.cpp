@@ -9,14 +9,17 @@
 #include <gtest/gtest.h>
 
 #include "capture/patient_camera.h"
+#include "capture/tethered_camera.h"
 #include "capture/video_camera.h"
 #include "jobs/capture_run.h"
 #include "jobs/captured_calibration.h"
 #include "session/small_session.h"
 #include "support/bad_disk.h"
+#include "support/dng.h"
 #include "support/jpeg.h"
 #include "support/message_of.h"
 #include "support/mjpeg_server.h"
+#include "support/ptpip_camera.h"
 #include "support/temporary_folder.h"
 
 namespace livery {
@@ -113,6 +116,59 @@ TEST(Cameras, AVideoCameraCalibratesAsTheBenchDoes) {
     request.captures = folder.path();
     const ColourCalibration again = calibrate_from_folder(request);
     EXPECT_GT(again.valid_fraction, 0.85);
+}
+
+TEST(Cameras, ATetheredCameraCalibratesAsTheBenchDoes) {
+    const TemporaryFolder home;
+    ::setenv("HOME", home.path().c_str(), 1);  // libgphoto2 writes there
+    const BenchDescription description = small_bench_description();
+    Bench bench(description, small_bench_product());
+    const BenchPorts on_bench = bench.ports();
+    on_bench.show(Image8(description.projector.view.width, description.projector.view.height, 3));
+    std::mutex mutex;
+    // Each of the bench's pixels as a square of the sensor's colour filter
+    testing::PtpIpCamera responder([&](const testing::PtpSettings& settings) {
+        const std::lock_guard lock(mutex);
+        const Photograph seen = on_bench.photograph(settings.exposure_s);
+        const auto sample = [&](int x, int y) {
+            const int channel = x % 2 != y % 2 ? 1 : x % 2 == 1 ? 2 : 0;
+            return static_cast<std::uint16_t>(4.0f * seen.image.at(x / 2, y / 2, channel));
+        };
+        return testing::PtpPicture{
+            "IMG_0001.DNG",
+            testing::dng_of(2 * seen.image.width, 2 * seen.image.height, 4096, sample)};
+    });
+    TetheredOptions options;
+    options.port = responder.port();
+    const auto camera = open_tethered_camera(options);
+    double in_camera_s = 0.0;
+    BenchPorts ports;
+    ports.show = [&](const Image8& drive) {
+        const std::lock_guard lock(mutex);
+        on_bench.show(drive);
+    };
+    ports.photograph = [&](double exposure_s) {
+        const auto start = std::chrono::steady_clock::now();
+        Photograph photograph = camera->photograph(exposure_s);
+        in_camera_s +=
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        return photograph;
+    };
+    ports.measure_xyz = on_bench.measure_xyz;
+    const TemporaryFolder folder;
+    Recording recording(folder.path(), "the bench, tethered");
+    LiveResult live = calibrate_recorded(recording, ports, live_options(description));
+    std::printf("    %d photographs, %.1f s in the camera, %.1f s in all\n",
+                recording.taken(),
+                in_camera_s,
+                live.capture_seconds);
+    const Comparison& seen = judged(bench, std::move(live)).comparison;
+    Bench direct(description, small_bench_product());
+    const Comparison& best =
+        judged(direct, calibrate_live(direct.ports(), live_options(description))).comparison;
+    // The same numbers but for the nearest shutter speed and rounding: the camera's noise.
+    EXPECT_LT(seen.interior.median, best.interior.median + 0.05);
+    EXPECT_EQ(responder.on_card(), 0u);
 }
 
 /// A bench whose photographs somebody spoils or interrupts, and all of them counted.

@@ -79,8 +79,7 @@ TEST(CaptureThread, LooksAndCaptures) {
     EXPECT_TRUE(std::filesystem::exists(*made.finished / "projector.json"));
     EXPECT_GT(made.taken, 50);
     EXPECT_GT(made.tiles.size(), 40u);
-    for (const CaptureTile& tile : made.tiles)
-        EXPECT_EQ(tile.of.empty(), tile.seen == nullptr);
+    for (const CaptureTile& tile : made.tiles) EXPECT_EQ(tile.of.empty(), tile.seen == nullptr);
     wait_until(*room.capture, rests);
     EXPECT_FALSE(room.capture->view().can_go_on) << "it is whole";
 

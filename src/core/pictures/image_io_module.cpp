@@ -39,17 +39,24 @@ void say(PictureError* error, std::string text) {
 
 /// Values as stored: no colour conversion, no premultiplied alpha. RAW: the camera's own linear
 /// RGB without white balance, brightening or recovered highlights, as the sensor lies.
-OIIO::ImageSpec reading_options() {
+OIIO::ImageSpec reading_options(bool raw_half) {
     OIIO::ImageSpec options;
     options.attribute("oiio:UnassociatedAlpha", 1);
     options.attribute("raw:ColorSpace", "raw");
     options.attribute("raw:use_camera_wb", 0);
+    options.attribute("raw:half_size", raw_half ? 1 : 0);
     options.attribute("raw:auto_bright", 0);
     // A camera that looks down is unsure which way is up, and may change its mind between shots.
     options.attribute("raw:user_flip", 0);
     const float no_balance[4] = {1.0f, 1.0f, 1.0f, 1.0f};
     options.attribute("raw:user_mul", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 4), no_balance);
     return options;
+}
+
+bool has_even_width(const char* file) {
+    const auto input = OIIO::ImageInput::create("raw");
+    OIIO::ImageSpec spec;
+    return input && input->open(file, spec, reading_options(false)) && spec.width % 2 == 0;
 }
 
 void* open_picture(const char* file,
@@ -71,8 +78,11 @@ void* open_picture(const char* file,
             return nullptr;
         }
     }
+    const bool raw = std::string_view(format).starts_with("raw");
+    // LibRaw's rows of half a picture are longer than it says where the whole has an odd width.
+    const bool raw_half = std::string_view(format) == livery::kRawHalf && has_even_width(file);
     auto picture = std::make_unique<Picture>();
-    picture->input = OIIO::ImageInput::create(format);
+    picture->input = OIIO::ImageInput::create(raw ? "raw" : format);
     if (!picture->input) {
         say(error, OIIO::geterror());
         return nullptr;
@@ -86,7 +96,7 @@ void* open_picture(const char* file,
         picture->input->set_ioproxy(picture->memory.get());
     }
     OIIO::ImageSpec spec;
-    if (!picture->input->open(file, spec, reading_options())) {
+    if (!picture->input->open(file, spec, reading_options(raw_half))) {
         say(error, picture->input->geterror());
         return nullptr;
     }

@@ -17,6 +17,9 @@ struct PictureError {
     char text[512] = "";
 };
 
+/// A format's name to `open`: RAW, one pixel of each square of the colour filter.
+inline constexpr const char* kRawHalf = "raw-half";
+
 struct ImageIoTable {
     /// Reads a header of the format named, of a file or, where `bytes` is not null, of those, which
     /// stay there until `close`; null and the reason when it cannot.

@@ -1,0 +1,259 @@
+#include "capture/gphoto_link.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <condition_variable>
+#include <deque>
+#include <future>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include <fcntl.h>
+#include <netdb.h>
+#include <poll.h>
+#include <pthread.h>
+#include <signal.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace livery {
+
+namespace {
+
+constexpr auto kGoodbye = std::chrono::seconds(1);
+constexpr int kMostToConnect_ms = 3000;
+
+template <typename T, int (*Free)(T*)>
+struct Freed {
+    void operator()(T* it) const { Free(it); }
+};
+using PortList = std::unique_ptr<GPPortInfoList, Freed<GPPortInfoList, gp_port_info_list_free>>;
+using AbilitiesList =
+    std::unique_ptr<CameraAbilitiesList, Freed<CameraAbilitiesList, gp_abilities_list_free>>;
+using NameList = std::unique_ptr<CameraList, Freed<CameraList, gp_list_free>>;
+
+template <typename List, typename T>
+List make(int (*create)(T**)) {
+    T* it = nullptr;
+    create(&it);
+    return List(it);
+}
+
+/// libgphoto2 takes the port of a network camera twice: for commands and for events.
+std::string port_of_gphoto(const std::string& port) {
+    constexpr std::string_view kNetwork = "ptpip:";
+    if (!port.starts_with(kNetwork)) return port;
+    const std::size_t colon = port.find(':', kNetwork.size());
+    return colon == std::string::npos ? port : port + port.substr(colon);
+}
+
+/// libgphoto2 2.5.30 closes file 0 where a network camera's connection fails half way: whatever
+/// was opened next would have that number, and would be closed by the next failure. So nothing else
+/// is let into its place.
+class KeepFileZero {
+  public:
+    KeepFileZero() : kept_(::fcntl(0, F_DUPFD_CLOEXEC, 3)) {
+        if (kept_ >= 0) return;
+        const int null = ::open("/dev/null", O_RDWR | O_CLOEXEC);
+        if (null > 0) ::dup2(null, 0);
+        kept_ = null == 0 ? ::fcntl(0, F_DUPFD_CLOEXEC, 3) : null;
+    }
+    ~KeepFileZero() {
+        if (::fcntl(0, F_GETFD) == -1) ::dup2(kept_, 0);
+        ::close(kept_);
+    }
+    KeepFileZero(const KeepFileZero&) = delete;
+    KeepFileZero& operator=(const KeepFileZero&) = delete;
+
+  private:
+    int kept_;
+};
+
+/// Whether somebody answers there: libgphoto2 takes minutes to find out.
+bool is_reachable(const std::string& port) {
+    const std::string address = port.substr(port.find(':') + 1);
+    const std::size_t colon = address.find(':');
+    const std::string host = address.substr(0, colon);
+    const std::string service = colon == std::string::npos ? "15740" : address.substr(colon + 1);
+    addrinfo wanted{};
+    wanted.ai_socktype = SOCK_STREAM;
+    addrinfo* found = nullptr;
+    if (::getaddrinfo(host.c_str(), service.c_str(), &wanted, &found) != 0) return false;
+    const std::unique_ptr<addrinfo, void (*)(addrinfo*)> freed(found, ::freeaddrinfo);
+    for (const addrinfo* one = found; one; one = one->ai_next) {
+        const int tried =
+            ::socket(one->ai_family, one->ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+        if (tried < 0) continue;
+        bool connected = ::connect(tried, one->ai_addr, one->ai_addrlen) == 0;
+        if (!connected && errno == EINPROGRESS) {
+            pollfd waiting{tried, POLLOUT, 0};
+            int error = 0;
+            socklen_t size = sizeof(error);
+            connected = ::poll(&waiting, 1, kMostToConnect_ms) == 1 &&
+                        ::getsockopt(tried, SOL_SOCKET, SO_ERROR, &error, &size) == 0 && error == 0;
+        }
+        ::close(tried);
+        if (connected) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+GphotoCamera::GphotoCamera(const std::string& port) : context_(gp_context_new()) {
+    gp_context_set_error_func(
+        context_,
+        [](GPContext*, const char* text, void* self) {
+            static_cast<GphotoCamera*>(self)->said_ = text;
+        },
+        this);
+    const KeepFileZero kept;
+    try {
+        open(port);
+    } catch (const GphotoError&) {
+        if (camera_) gp_camera_unref(camera_);
+        gp_context_unref(context_);
+        throw;
+    }
+}
+
+GphotoCamera::~GphotoCamera() {
+    const KeepFileZero kept;
+    if (is_open_) gp_camera_exit(camera_, context_);
+    if (camera_) gp_camera_unref(camera_);
+    gp_context_unref(context_);
+}
+
+void GphotoCamera::check(int result) {
+    if (result >= 0) return;
+    std::string what = said_.empty() ? gp_result_as_string(result) : std::exchange(said_, "");
+    std::replace(what.begin(), what.end(), '\n', ' ');
+    throw GphotoError{result, what};
+}
+
+void GphotoCamera::open(const std::string& port) {
+    const auto ports = make<PortList>(gp_port_info_list_new);
+    check(gp_port_info_list_load(ports.get()));
+    const auto abilities = make<AbilitiesList>(gp_abilities_list_new);
+    check(gp_abilities_list_load(abilities.get(), context_));
+    std::string path = port_of_gphoto(port);
+    model_ = "PTP/IP Camera";
+    if (path.starts_with("ptpip:") && !is_reachable(port))
+        throw GphotoError{GP_ERROR_IO, "nobody answers at " + port};
+    if (!path.starts_with("ptpip:")) {
+        const auto found = gphoto_cameras_on_usb();
+        const auto wanted = std::find_if(found.begin(), found.end(), [&](const auto& one) {
+            return path.empty() || one.second == path;
+        });
+        if (wanted == found.end())
+            throw GphotoError{
+                GP_ERROR_IO_USB_FIND,
+                path.empty() ? "no camera is found on USB" : "no camera is found at " + path};
+        model_ = wanted->first;
+        path = wanted->second;
+    }
+    check(gp_camera_new(&camera_));
+    const int place = gp_port_info_list_lookup_path(ports.get(), path.c_str());
+    check(place);
+    GPPortInfo info;
+    check(gp_port_info_list_get_info(ports.get(), place, &info));
+    check(gp_camera_set_port_info(camera_, info));
+    const int model = gp_abilities_list_lookup_model(abilities.get(), model_.c_str());
+    check(model);
+    CameraAbilities what;
+    check(gp_abilities_list_get_abilities(abilities.get(), model, &what));
+    check(gp_camera_set_abilities(camera_, what));
+    const int opened = gp_camera_init(camera_, context_);
+    // A camera that cannot be opened refuses nothing in particular: it is not there.
+    if (opened == GP_ERROR)
+        throw GphotoError{GP_ERROR_IO, said_.empty() ? "it cannot be opened" : said_};
+    check(opened);
+    is_open_ = true;
+}
+
+using Task = std::packaged_task<void(std::unique_ptr<GphotoCamera>&)>;
+
+/// Kept by the thread as well, so that one that hangs ends by itself.
+struct GphotoLink::Shared {
+    std::string port;
+    std::mutex mutex;
+    std::condition_variable changed;
+    std::deque<Task> jobs;
+    bool stop = false;
+    std::promise<void> gone;
+
+    void serve();
+};
+
+void GphotoLink::Shared::serve() {
+    // libgphoto2 writes to a camera that has hung up; here that is an error, not the program's end.
+    sigset_t pipe;
+    sigemptyset(&pipe);
+    sigaddset(&pipe, SIGPIPE);
+    pthread_sigmask(SIG_BLOCK, &pipe, nullptr);
+    std::unique_ptr<GphotoCamera> camera;
+    std::unique_lock lock(mutex);
+    for (;;) {
+        changed.wait(lock, [&] { return stop || !jobs.empty(); });
+        if (stop) break;
+        auto job = std::move(jobs.front());
+        jobs.pop_front();
+        lock.unlock();
+        job(camera);
+        lock.lock();
+    }
+    lock.unlock();
+    camera.reset();
+    gone.set_value();
+}
+
+GphotoLink::GphotoLink(std::string port) : shared_(std::make_shared<Shared>()) {
+    shared_->port = std::move(port);
+    std::thread([shared = shared_] { shared->serve(); }).detach();
+}
+
+GphotoLink::~GphotoLink() {
+    auto gone = shared_->gone.get_future();
+    {
+        const std::lock_guard lock(shared_->mutex);
+        shared_->stop = true;
+    }
+    shared_->changed.notify_all();
+    gone.wait_for(kGoodbye);
+}
+
+bool GphotoLink::run(std::chrono::milliseconds deadline, std::function<void(GphotoCamera&)> job) {
+    Task task([job = std::move(job), port = shared_->port](std::unique_ptr<GphotoCamera>& camera) {
+        if (!camera) camera = std::make_unique<GphotoCamera>(port);
+        job(*camera);
+    });
+    auto done = task.get_future();
+    {
+        const std::lock_guard lock(shared_->mutex);
+        shared_->jobs.push_back(std::move(task));
+    }
+    shared_->changed.notify_all();
+    if (done.wait_for(deadline) != std::future_status::ready) return false;
+    done.get();
+    return true;
+}
+
+std::vector<std::pair<std::string, std::string>> gphoto_cameras_on_usb() {
+    GPContext* context = gp_context_new();
+    const auto names = make<NameList>(gp_list_new);
+    gp_camera_autodetect(names.get(), context);
+    gp_context_unref(context);
+    std::vector<std::pair<std::string, std::string>> found;
+    for (int k = 0; k < gp_list_count(names.get()); ++k) {
+        const char *model = nullptr, *port = nullptr;
+        gp_list_get_name(names.get(), k, &model);
+        gp_list_get_value(names.get(), k, &port);
+        if (model && port && std::string_view(port).starts_with("usb:"))
+            found.emplace_back(model, port);
+    }
+    return found;
+}
+
+}  // namespace livery
