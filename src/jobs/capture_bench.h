@@ -14,8 +14,8 @@
 
 namespace livery {
 
-/// As people write it: "bench" or "bench:NAME|FILE", "tethered" (the first on USB), "tethered:PORT",
-/// "video:N|FILE|ADDRESS", "folder:DIR".
+/// As people write it: "bench" or "bench:NAME|FILE", "tethered" (the first on USB) or
+/// "tethered:PORT", "video:N|FILE|ADDRESS", "folder:DIR".
 struct CameraChoice {
     enum class Kind { bench, tethered, video, folder };
     Kind kind = Kind::bench;
