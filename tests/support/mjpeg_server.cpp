@@ -1,44 +1,19 @@
 #include "support/mjpeg_server.h"
 
 #include <chrono>
-#include <stdexcept>
 #include <utility>
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "support/loopback.h"
+
 namespace livery::testing {
-
-namespace {
-
-bool send_all(int connection, const std::string& bytes) {
-    std::size_t sent = 0;
-    while (sent < bytes.size()) {
-        const ssize_t n =
-            ::send(connection, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
-        if (n <= 0) return false;
-        sent += static_cast<std::size_t>(n);
-    }
-    return true;
-}
-
-}  // namespace
 
 MjpegServer::MjpegServer(std::function<std::string()> picture, double frames_per_second)
     : picture_(std::move(picture)), frames_per_second_(frames_per_second) {
-    listening_ = ::socket(AF_INET, SOCK_STREAM, 0);
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    socklen_t size = sizeof(address);
-    if (::bind(listening_, reinterpret_cast<sockaddr*>(&address), sizeof(address)) != 0 ||
-        ::listen(listening_, 4) != 0 ||
-        ::getsockname(listening_, reinterpret_cast<sockaddr*>(&address), &size) != 0)
-        throw std::runtime_error("no port on loopback");
-    port_ = ntohs(address.sin_port);
+    listening_ = listen_on_loopback(port_);
     thread_ = std::thread([this] { serve(); });
 }
 

@@ -4,15 +4,15 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
-#include <stdexcept>
 #include <utility>
 
-#include <arpa/inet.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
+
+#include "support/loopback.h"
 
 namespace livery::testing {
 
@@ -88,16 +88,6 @@ std::string property(std::uint16_t code,
     return bytes;
 }
 
-bool send_all(int socket, const std::string& bytes) {
-    std::size_t sent = 0;
-    while (sent < bytes.size()) {
-        const ssize_t n = ::send(socket, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
-        if (n <= 0) return false;
-        sent += static_cast<std::size_t>(n);
-    }
-    return true;
-}
-
 std::string packet(std::uint32_t type, const std::string& payload) {
     return little(static_cast<std::uint32_t>(payload.size() + 8)) + little(type) + payload;
 }
@@ -155,16 +145,7 @@ struct PtpIpCamera::Connection {
 
 PtpIpCamera::PtpIpCamera(std::function<PtpPicture(const PtpSettings&)> shoot)
     : shoot_(std::move(shoot)) {
-    listening_ = ::socket(AF_INET, SOCK_STREAM, 0);
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    socklen_t size = sizeof(address);
-    if (::bind(listening_, reinterpret_cast<sockaddr*>(&address), sizeof(address)) != 0 ||
-        ::listen(listening_, 8) != 0 ||
-        ::getsockname(listening_, reinterpret_cast<sockaddr*>(&address), &size) != 0)
-        throw std::runtime_error("no port on loopback");
-    port_ = ntohs(address.sin_port);
+    listening_ = listen_on_loopback(port_);
     listener_ = std::thread([this] { listen(); });
 }
 
