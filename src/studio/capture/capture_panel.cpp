@@ -262,6 +262,8 @@ void take_capture(Shell& shell) {
     if (!studio.capture) return;
     CapturePanelState& state = *studio.panels.capture;
     state.view = studio.capture->view();
+    // Not when it is closed: the frame that is being drawn then shows them.
+    if (!shell.capture_open) state.textures.clear();
     const bool busy = is_busy(state.view);
     if (std::exchange(state.was_busy, busy) && !busy) shell.results->show_instead(nullptr);
     if (!state.view.finished || *state.view.finished == state.taken) return;
@@ -280,7 +282,6 @@ void show_capture(Shell& shell, bool shown) {
         if (state.chosen) choose(shell, *state.chosen);
     } else {
         shell.studio.capture->close();
-        state.textures.clear();
     }
 }
 

@@ -110,6 +110,7 @@ void begin_new_session(Shell& shell,
                        const std::filesystem::path& file,
                        const std::filesystem::path& session) {
     const std::uint64_t number = ++shell.new_sessions;
+    if (shell.new_session) shell.closed_page = std::move(shell.new_session);
     shell.new_session = std::make_unique<NewSession>();
     shell.new_session->number = number;
     shell.new_session->given = std::filesystem::absolute(file).lexically_normal();

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -255,6 +256,7 @@ bool draw_buttons(Shell& shell) {
 }  // namespace
 
 void draw_new_session(Shell& shell) {
+    shell.closed_page.reset();  // What was drawn of it is on the screen by now.
     // A file dialog that the page asked for comes instead of it for a while.
     if (!shell.new_session || shell.studio.file_dialog->is_open()) {
         if (shell.new_session) shell.new_session->to_open = true;
@@ -276,7 +278,7 @@ void draw_new_session(Shell& shell) {
     if (asked.stage == Stage::creating) dim_text("Making the session…");
     if (!asked.problem.empty()) warning_text(asked.problem);
     if (draw_buttons(shell)) {
-        shell.new_session.reset();
+        shell.closed_page = std::move(shell.new_session);
         ImGui::CloseCurrentPopup();
     }
     ImGui::EndPopup();

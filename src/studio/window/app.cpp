@@ -409,6 +409,7 @@ class Desktop {
         shell_.monitor_numbers.reset();
         stop_threads(shell_);
         shell_.stage.photograph_texture = {};
+        shell_.closed_page.reset();
         shell_.new_session.reset();
         shell_.studio.panels = PanelStates();  // their textures go
         imgui_.reset();

@@ -127,6 +127,7 @@ struct Shell {
     bool signal_test_open = false;
     bool capture_open = false;
     std::unique_ptr<NewSession> new_session;      ///< its page; none: closed
+    std::unique_ptr<NewSession> closed_page;      ///< its picture may be in this frame's drawing
     std::uint64_t new_sessions = 0;               ///< pages opened so far
     std::shared_ptr<OpenedSession> next_session;  ///< shared with the thread that opened it
     bool quit = false;

@@ -9,6 +9,7 @@
 #include "core/json.h"
 #include "core/paths.h"
 #include "studio/artwork/artwork_edit.h"
+#include "studio/capture/capture_panel.h"
 #include "studio/kit/tab_order.h"
 #include "studio/projector_control.h"
 #include "studio/window/shell.h"
@@ -65,6 +66,22 @@ const char* name_of(NewSession::Stage stage) {
             return "creating";
     }
     return "reading";
+}
+
+const char* name_of(CaptureView::Doing doing) {
+    switch (doing) {
+        case CaptureView::Doing::nothing:
+            return "nothing";
+        case CaptureView::Doing::opening:
+            return "opening";
+        case CaptureView::Doing::watching:
+            return "watching";
+        case CaptureView::Doing::preflight:
+            return "preflight";
+        case CaptureView::Doing::capturing:
+            return "capturing";
+    }
+    return "nothing";
 }
 
 const std::string* find(const Workspace& workspace, const std::string& name) {
@@ -179,6 +196,8 @@ MapState state_of_shell(const Shell& shell) {
     state["new_session_pictured"] =
         text(shell.new_session != nullptr && shell.new_session->picture.name() != 0);
     state["new_session_says"] = quoted(shell.new_session ? shell.new_session->problem : "");
+    state["capture"] =
+        quoted(shell.capture_open ? name_of(studio.panels.capture->view.doing) : "closed");
     state["scale"] = fmt::format("{:.3f}", studio.ui_scale);
     Json notices = Json::array();
     for (const Notice& notice : studio.notices) notices.push_back(notice.what);
