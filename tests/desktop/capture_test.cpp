@@ -18,7 +18,7 @@ TEST_F(CaptureWindow, ShowsALiveViewAndLeavesNothingBehind) {
     program->wait_for_state("capture", "watching");
     program->item("live-view");
     program->item("capture-start");
-    // Its pictures are gone with it, but not while they are drawn: what is made next would say so.
+    // What is made next would say if a picture had gone while it was drawn.
     program->click("capture-close");
     program->wait_for_state("capture", "closed");
     program->click("menu:File");
