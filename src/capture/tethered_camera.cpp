@@ -17,6 +17,7 @@
 
 #include "capture/captures_folder.h"
 #include "capture/gphoto_link.h"
+#include "capture/gphoto_settings.h"
 #include "capture/transfer.h"
 #include "core/image_io.h"
 #include "core/paths.h"
@@ -32,141 +33,6 @@ using Clock = std::chrono::steady_clock;
 constexpr double kUnknownExposure_s = 1.0;
 /// Of full scale: of the two greens of a square one alone may be at its end.
 constexpr double kSureOfSquare = 0.95;
-
-/// Widgets by what they do; cameras call them otherwise.
-using Names = std::array<const char*, 3>;
-constexpr Names kExposure{"shutterspeed", "shutterspeed2", "exptime"};
-constexpr Names kIso{"iso", "isospeed", "500f"};
-constexpr Names kAperture{"aperture", "f-number", "fnumber"};
-constexpr Names kFormat{"imageformat", "imagequality", "imagequality2"};
-constexpr Names kProgram{"expprogram", "autoexposuremode", "exposuremode"};
-constexpr Names kFocus{"focusmode", "focusmode2", "afmode"};
-constexpr Names kBattery{"batterylevel", "battery", "5001"};
-
-struct NamedWidget {
-    const char* setting;
-    const Names* widgets;
-};
-constexpr std::array<NamedWidget, 6> kSettings{{{"exposure", &kExposure},
-                                                {"iso", &kIso},
-                                                {"aperture", &kAperture},
-                                                {"format", &kFormat},
-                                                {"program", &kProgram},
-                                                {"focus", &kFocus}}};
-
-struct FreeWidget {
-    void operator()(CameraWidget* widget) const { gp_widget_free(widget); }
-};
-using Widget = std::unique_ptr<CameraWidget, FreeWidget>;
-
-/// The first of these that the camera has; null: none.
-Widget find_widget(GphotoCamera& gphoto, const Names& names, std::string* found = nullptr) {
-    for (const char* name : names) {
-        CameraWidget* widget = nullptr;
-        if (gp_camera_get_single_config(gphoto.camera(), name, &widget, gphoto.context()) < 0) {
-            gphoto.forget();
-            continue;
-        }
-        Widget owned(widget);
-        CameraWidgetType type{};
-        gp_widget_get_type(widget, &type);
-        const bool readable = type == GP_WIDGET_RADIO || type == GP_WIDGET_MENU ||
-                              type == GP_WIDGET_TEXT || type == GP_WIDGET_RANGE;
-        if (!readable) continue;  // a switch that has its name
-        if (found) *found = name;
-        return owned;
-    }
-    return nullptr;
-}
-
-std::string value_of(CameraWidget* widget) {
-    CameraWidgetType type{};
-    gp_widget_get_type(widget, &type);
-    if (type == GP_WIDGET_RANGE) {
-        float value = 0.0f;
-        gp_widget_get_value(widget, &value);
-        return fmt::format("{:g}", value);
-    }
-    const char* text = nullptr;
-    gp_widget_get_value(widget, &text);
-    return text ? text : "";
-}
-
-CameraSetting setting_of(const char* name, CameraWidget* widget) {
-    CameraSetting setting;
-    setting.name = name;
-    setting.value = value_of(widget);
-    int read_only = 0;
-    gp_widget_get_readonly(widget, &read_only);
-    setting.can_be_set = read_only == 0;
-    for (int k = 0; k < gp_widget_count_choices(widget); ++k) {
-        const char* choice = nullptr;
-        if (gp_widget_get_choice(widget, k, &choice) >= 0 && choice)
-            setting.choices.emplace_back(choice);
-    }
-    return setting;
-}
-
-/// Sets it and reads it back.
-CameraSetting set_widget(GphotoCamera& gphoto,
-                         const char* name,
-                         const Names& names,
-                         const std::string& value) {
-    std::string widget_name;
-    const Widget widget = find_widget(gphoto, names, &widget_name);
-    if (!widget)
-        throw GphotoError{GP_ERROR_NOT_SUPPORTED, fmt::format("it has no setting {}", name)};
-    const CameraSetting now = setting_of(name, widget.get());
-    if (!now.choices.empty() &&
-        std::find(now.choices.begin(), now.choices.end(), value) == now.choices.end())
-        throw GphotoError{GP_ERROR_BAD_PARAMETERS,
-                          fmt::format("{} {} is none of its choices", name, value)};
-    CameraWidgetType type{};
-    gp_widget_get_type(widget.get(), &type);
-    const auto number = static_cast<float>(std::atof(value.c_str()));
-    gphoto.check(type == GP_WIDGET_RANGE ? gp_widget_set_value(widget.get(), &number)
-                                         : gp_widget_set_value(widget.get(), value.c_str()));
-    gphoto.check(gp_camera_set_single_config(
-        gphoto.camera(), widget_name.c_str(), widget.get(), gphoto.context()));
-    const Widget again = find_widget(gphoto, names);
-    return again ? setting_of(name, again.get()) : CameraSetting{};
-}
-
-/// On all cards; none: it does not say.
-std::optional<int> shots_left(GphotoCamera& gphoto) {
-    ::CameraStorageInformation* stores = nullptr;
-    int count = 0;
-    if (gp_camera_get_storageinfo(gphoto.camera(), &stores, &count, gphoto.context()) < 0) {
-        gphoto.forget();
-        return std::nullopt;
-    }
-    std::optional<int> left;
-    for (int k = 0; k < count; ++k)
-        if (stores[k].fields & GP_STORAGEINFO_FREESPACEIMAGES)
-            left = left.value_or(0) + static_cast<int>(stores[k].freeimages);
-    std::free(stores);
-    return left;
-}
-
-bool is_manual(const std::string& program) {
-    return program.empty() || program == "M" || program.find("anual") != std::string::npos;
-}
-
-/// The offered time nearest to this, in ratio.
-std::string nearest_time(const CameraSetting& exposure, double seconds) {
-    std::string best;
-    double least = 1e300;
-    for (const std::string& choice : exposure.choices) {
-        const double time = seconds_of_shutter_speed(choice);
-        if (!(time > 0.0)) continue;
-        const double distance = std::abs(std::log(time / seconds));
-        if (distance < least) {
-            least = distance;
-            best = choice;
-        }
-    }
-    return best;
-}
 
 /// A photograph as it came off the card.
 struct Taken {
