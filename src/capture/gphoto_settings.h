@@ -50,6 +50,10 @@ CameraSetting set_widget(GphotoCamera& gphoto,
 std::optional<int> shots_left(GphotoCamera& gphoto);
 /// Of the dial.
 bool is_manual(const std::string& program);
+/// How long the shutter is open where the camera says this; negative: no time. The series 1/30,
+/// 1/60, 1/125 is of exact halves (1/32, 1/64, 1/128), with thirds or halves of a stop between,
+/// said in round numbers that are up to 7% off (ISO 516).
+double open_time_s(const CameraSetting& exposure, const std::string& said);
 /// The offered time nearest to this, in ratio; empty: it offers none.
 std::string nearest_time(const CameraSetting& exposure, double seconds);
 

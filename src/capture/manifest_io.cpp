@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "capture/transfer.h"
 #include "core/error.h"
 #include "core/json.h"
 #include "core/paths.h"
@@ -220,6 +221,12 @@ void write_captures_manifest(const CapturesFolder& folder) {
 
 std::vector<double> read_response(const std::filesystem::path& file) {
     return parse_response(read_text_file(file), file);
+}
+
+void write_response(const std::filesystem::path& file,
+                    const std::vector<double>& linear_from_file) {
+    write_json_file(file,
+                    {{"format_version", kNewestVersion}, {"linear_from_file", linear_from_file}});
 }
 
 std::vector<double> parse_response(const std::string& text, const std::filesystem::path& file) {

@@ -84,7 +84,7 @@ void expose(GphotoCamera& gphoto, CameraWidget* widget, double exposure_s, Taken
         taken.problem = "automatic exposure: it does not let its time be set (" + error.what + ")";
         return;
     }
-    taken.exposure_s = seconds_of_shutter_speed(exposure.value);
+    taken.exposure_s = open_time_s(exposure, exposure.value);
     if (!(taken.exposure_s > 0.0))
         taken.problem = "its exposure is " + exposure.value + ", which is no time";
 }
@@ -358,7 +358,7 @@ Photograph TetheredCamera::decoded(const Taken& taken) const {
             if (picture.image.channels != 3 || picture.full_scale != 255.0)
                 throw FileError(
                     name, "", fmt::format("{} channels", picture.image.channels), "a colour JPEG");
-            const std::vector<float> linear = linear_from_eight_bits("srgb");
+            const std::vector<float> linear = linear_from_eight_bits(options_.transfer);
             for (float& value : picture.image.values)
                 value = linear[static_cast<std::size_t>(value)];
             photograph.image = std::move(picture.image);

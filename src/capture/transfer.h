@@ -1,6 +1,7 @@
 // From the numbers in a photograph's file to light.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -13,5 +14,9 @@ std::function<double(double)> linearisation(const std::string& transfer, double 
 
 /// The same as a table of the 256 values of an 8-bit file.
 std::vector<float> linear_from_eight_bits(const std::string& transfer);
+
+/// Writes a response file (docs/files.md): linear light for equally spaced file values, both from 0
+/// to 1. Throws FileError.
+void write_response(const std::filesystem::path& file, const std::vector<double>& linear_from_file);
 
 }  // namespace livery

@@ -8,8 +8,10 @@
 
 #include <fmt/format.h>
 
+#include "calibration/camera_response.h"
 #include "calibration/preflight.h"
 #include "capture/patient_camera.h"
+#include "capture/transfer.h"
 #include "cli/command.h"
 #include "cli/console.h"
 #include "core/error.h"
@@ -27,7 +29,8 @@ namespace livery {
 namespace {
 
 struct CaptureArguments {
-    std::string camera, monitor, product, pose, camera_to_xyz, out, calibration;
+    std::string camera, monitor, product, pose, camera_to_xyz, out, calibration, response,
+        fit_response;
     std::vector<std::string> again;
     double every_s = 0.0;
     bool list = false, preflight_only = false, without_preflight = false, anew = false;
@@ -205,10 +208,37 @@ void take_again(Recording& recording, const std::vector<std::string>& roles) {
     }
 }
 
+Outcome fit_response(CaptureCommandRun run,
+                     const BenchPorts& ports,
+                     const std::string& camera,
+                     const Progress& progress) {
+    try {
+        const CameraResponse response = fit_camera_response(
+            photograph_exposures(ports, run.request.width, run.request.height, progress));
+        write_response(run.arguments.fit_response, response.linear_from_file);
+        run.outcome.figures = {{"response", run.arguments.fit_response},
+                               {"residual", response.residual}};
+        run.outcome.text = fmt::format("response of {} in {}, {:.2f}% of full scale left\n",
+                                       camera,
+                                       run.arguments.fit_response,
+                                       100.0 * response.residual);
+    } catch (const Refused& refused) {
+        run.refuse(refused);
+    }
+    return run.outcome;
+}
+
 Outcome capture_with_camera(CaptureCommandRun run,
                             const CameraChoice& choice,
                             const Progress& progress) {
-    CaptureBench bench = open_capture_bench(choice, run.request.product, progress);
+    const std::string& fitted = run.arguments.fit_response;
+    CaptureBench bench =
+        open_capture_bench(choice,
+                           run.request.product,
+                           progress,
+                           !fitted.empty()                  ? "linear"
+                           : run.arguments.response.empty() ? "srgb"
+                                                            : run.arguments.response);
     std::unique_ptr<MonitorProjector> projector;
     std::string shown_on = "its own projector";
     if (bench.show) {
@@ -243,6 +273,8 @@ Outcome capture_with_camera(CaptureCommandRun run,
     ports.photograph = patient(*bench.camera, progress, say_wait);
     ports.measure_xyz = bench.measure_xyz;
     if (run.request.camera_to_xyz) ports.measure_xyz = {};
+
+    if (!fitted.empty()) return fit_response(std::move(run), ports, bench.camera->name(), progress);
 
     std::optional<Recording> recording;
     if (!run.arguments.preflight_only) {
@@ -378,6 +410,13 @@ Command capture_command() {
          &arguments->camera_to_xyz,
          false,
          {}},
+        {"--fit-response",
+         "FILE",
+         "find the curve of a camera that gives no RAW, from white at other exposures",
+         &arguments->fit_response,
+         false,
+         {}},
+        {"--response", "FILE", "undo that curve (default: sRGB)", &arguments->response, false, {}},
         {"--again",
          "ROLE...",
          "take these pictures of the capture in --out again",
@@ -399,7 +438,8 @@ Command capture_command() {
                 "--camera: found none, expected one (livery capture --list)");
         const CameraChoice choice = parse_camera_choice(arguments->camera);
         const bool by_hand = choice.kind == CameraChoice::Kind::folder;
-        if (arguments->out.empty() && !arguments->preflight_only && !by_hand)
+        if (arguments->out.empty() && !arguments->preflight_only && !by_hand &&
+            arguments->fit_response.empty())
             throw std::invalid_argument("--out: found none, expected a folder for the photographs");
         if (arguments->pose.empty() != arguments->product.empty() &&
             choice.kind != CameraChoice::Kind::bench)

@@ -116,7 +116,8 @@ std::vector<ListedCamera> list_cameras() {
 
 CaptureBench open_capture_bench(const CameraChoice& choice,
                                 std::shared_ptr<const Product> product,
-                                const Progress& progress) {
+                                const Progress& progress,
+                                const std::string& transfer) {
     CaptureBench bench;
     switch (choice.kind) {
         case CameraChoice::Kind::bench: {
@@ -133,12 +134,14 @@ CaptureBench open_capture_bench(const CameraChoice& choice,
         case CameraChoice::Kind::tethered: {
             TetheredOptions options;
             options.port = choice.what;
+            options.transfer = transfer;
             bench.camera = open_tethered_camera(options);
             break;
         }
         case CameraChoice::Kind::video: {
             VideoCameraOptions options;
             options.source = choice.what;
+            options.transfer = transfer;
             bench.camera = open_video_camera(options);
             break;
         }

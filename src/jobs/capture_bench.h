@@ -43,9 +43,11 @@ struct CaptureBench {
     std::optional<View> projector;  ///< of a simulated bench: where it stands
 };
 /// Not for folders, which have no camera. `product`: the mock-up of a simulated bench; null: the
-/// one that its file names. Throws CameraFault, FileError.
+/// one that its file names. `transfer`: of cameras that give no RAW, undone: "srgb", "linear" or a
+/// response file. Throws CameraFault, FileError.
 CaptureBench open_capture_bench(const CameraChoice& choice,
                                 std::shared_ptr<const Product> product,
-                                const Progress& progress);
+                                const Progress& progress,
+                                const std::string& transfer = "srgb");
 
 }  // namespace livery

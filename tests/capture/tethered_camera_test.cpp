@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "capture/gphoto_settings.h"
 #include "capture/patient_camera.h"
 #include "capture/recording.h"
 #include "core/colour.h"
@@ -76,7 +77,7 @@ TEST(TetheredCamera, SaysHowItIsSet) {
     const CameraState state = camera->state();
     EXPECT_EQ(setting(state, "iso").value, "100");
     EXPECT_EQ(setting(state, "aperture").value, "f/8");
-    EXPECT_EQ(seconds_of_shutter_speed(setting(state, "exposure").value), 0.1);
+    EXPECT_EQ(seconds_of_shutter_speed(setting(state, "exposure").value), 0.125);
     EXPECT_GT(setting(state, "exposure").choices.size(), 20u);
     EXPECT_TRUE(setting(state, "exposure").can_be_set);
     EXPECT_EQ(state.shots_left, 600);
@@ -93,7 +94,9 @@ TEST(TetheredCamera, PhotographsRawAsTheSensorHasIt) {
     const auto camera = open_tethered_camera(quick(responder));
     for (const double asked_s : {0.0, 0.051, 0.5}) {
         const Photograph photograph = camera->photograph(asked_s);
-        const double exposure_s = asked_s > 0.4 ? 0.5 : asked_s > 0.0 ? 0.05 : 0.1;
+        const double exposure_s = std::exp2(asked_s > 0.4   ? -1.0
+                                            : asked_s > 0.0 ? -13.0 / 3.0
+                                                            : -3.0);
         EXPECT_DOUBLE_EQ(photograph.exposure_s, exposure_s) << "the nearest that it has";
         EXPECT_EQ(photograph.image.width, 32) << "one pixel of each square of the filter";
         EXPECT_EQ(photograph.image.height, 24);
@@ -168,7 +171,7 @@ TEST_P(TetheredMishaps, AreNamedAndGoneWhenTheyAre) {
         bool works = false;
         for (int k = 0; k < 100 && !works; ++k) {
             try {
-                works = camera->photograph(0.2).exposure_s == 0.2;
+                works = camera->photograph(0.25).exposure_s == 0.25;
             } catch (const CameraFault&) {
                 std::this_thread::sleep_for(std::chrono::milliseconds(100));
             }
@@ -177,7 +180,7 @@ TEST_P(TetheredMishaps, AreNamedAndGoneWhenTheyAre) {
     } else {
         int waits = 0;
         const TakePhotograph port = patient(*camera, {}, [&](const CaptureWait&) { ++waits; });
-        EXPECT_EQ(port(0.2).exposure_s, 0.2);
+        EXPECT_EQ(port(0.25).exposure_s, 0.25);
     }
 }
 
@@ -230,6 +233,22 @@ TEST(TetheredCamera, ReadsShutterSpeeds) {
     EXPECT_DOUBLE_EQ(seconds_of_shutter_speed("10/13"), 10.0 / 13.0);
     for (const char* none : {"bulb", "auto", "", "1/", "1/0", "-1", "0"})
         EXPECT_LT(seconds_of_shutter_speed(none), 0.0) << none;
+}
+
+TEST(TetheredCamera, KnowsHowLongARoundNumberIs) {
+    const CameraSetting thirds{
+        "exposure", "", {"bulb", "1/125", "1/100", "1/80", "1/60", "1/30", "0.3", "1", "15"}, true};
+    EXPECT_DOUBLE_EQ(open_time_s(thirds, "1/60"), 1.0 / 64.0);
+    EXPECT_DOUBLE_EQ(open_time_s(thirds, "1/100"), std::exp2(-20.0 / 3.0));
+    EXPECT_DOUBLE_EQ(open_time_s(thirds, "0.3"), std::exp2(-5.0 / 3.0));
+    EXPECT_DOUBLE_EQ(open_time_s(thirds, "15"), 16.0);
+    EXPECT_LT(open_time_s(thirds, "bulb"), 0.0);
+    const CameraSetting halves{"exposure", "", {"1/125", "1/90", "1/60", "1/45", "1/30"}, true};
+    EXPECT_DOUBLE_EQ(open_time_s(halves, "1/90"), std::exp2(-6.5));
+    // A camera that counts in frames means what it says.
+    const CameraSetting frames{"exposure", "", {"0.0167s", "0.0333s", "0.0500s", "0.0667s"}, true};
+    EXPECT_DOUBLE_EQ(open_time_s(frames, "0.0500s"), 0.05);
+    EXPECT_EQ(nearest_time(thirds, 0.0156), "1/60");
 }
 
 }  // namespace

@@ -2,14 +2,17 @@
 // front of their lenses.
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <mutex>
 
 #include <gtest/gtest.h>
 
+#include "calibration/camera_response.h"
 #include "capture/patient_camera.h"
 #include "capture/tethered_camera.h"
+#include "capture/transfer.h"
 #include "capture/video_camera.h"
 #include "jobs/capture_run.h"
 #include "jobs/captured_calibration.h"
@@ -169,6 +172,59 @@ TEST(Cameras, ATetheredCameraCalibratesAsTheBenchDoes) {
     // The same numbers but for the nearest shutter speed and rounding: the camera's noise.
     EXPECT_LT(seen.interior.median, best.interior.median + 0.05);
     EXPECT_EQ(responder.on_card(), 0u);
+}
+
+TEST(Cameras, ACameraThatGivesOnlyJpegShowsItsCurve) {
+    const TemporaryFolder home;
+    ::setenv("HOME", home.path().c_str(), 1);  // libgphoto2 writes there
+    const BenchDescription description = small_bench_description();
+    Bench bench(description, small_bench_product());
+    const BenchPorts on_bench = bench.ports();
+    std::mutex mutex;
+    // A picture style of its own, that is not sRGB
+    const auto styled = [](double linear) {
+        const double y = std::pow(linear, 1.0 / 1.9);
+        return 0.8 * y + 0.2 * y * y * (3.0 - 2.0 * y);
+    };
+    testing::PtpIpCamera responder([&](const testing::PtpSettings& settings) {
+        const std::lock_guard lock(mutex);
+        const Photograph seen = on_bench.photograph(settings.exposure_s);
+        Image8 rgb(seen.image.width, seen.image.height, 3);
+        for (std::size_t k = 0; k < rgb.values.size(); ++k) {
+            const double linear = (static_cast<double>(seen.image.values[k]) - seen.black_level) /
+                                  (seen.saturates_at - seen.black_level);
+            rgb.values[k] =
+                static_cast<std::uint8_t>(255.0 * styled(std::clamp(linear, 0.0, 1.0)) + 0.5);
+        }
+        return testing::PtpPicture{"IMG_0001.JPG", testing::jpeg_of(rgb)};
+    });
+    const auto ports_of_camera = [&](Camera& camera) {
+        BenchPorts ports;
+        ports.show = [&](const Image8& drive) {
+            const std::lock_guard lock(mutex);
+            on_bench.show(drive);
+        };
+        ports.photograph = [&camera](double exposure_s) { return camera.photograph(exposure_s); };
+        ports.measure_xyz = on_bench.measure_xyz;
+        return ports;
+    };
+    TetheredOptions options;
+    options.port = responder.port();
+    options.transfer = "linear";
+    const LiveOptions live = live_options(description);
+    CameraResponse response;
+    {
+        const auto camera = open_tethered_camera(options);
+        response = fit_camera_response(
+            photograph_exposures(ports_of_camera(*camera), live.width, live.height));
+    }
+    options.transfer = (home / "response.json").string();
+    write_response(options.transfer, response.linear_from_file);
+    const auto camera = open_tethered_camera(options);
+    const Comparison& seen =
+        judged(bench, calibrate_live(ports_of_camera(*camera), live)).comparison;
+    // Eight bits and a fitted curve against fourteen and none: as the video camera's.
+    EXPECT_LT(seen.interior.median, 0.76);
 }
 
 /// A bench whose photographs somebody spoils or interrupts, and all of them counted.

@@ -39,10 +39,24 @@ constexpr std::uint16_t kBattery = 0x5001, kCompression = 0x5004, kFNumber = 0x5
                         kExposureIndex = 0x500f;
 constexpr std::uint32_t kStore = 0x00010001;
 
-// In 0.1 ms
-const std::vector<std::uint32_t> kTimes{5,    10,   20,   40,    80,    125,   167,   333,  500,
-                                        667,  833,  1000, 1167,  1333,  1667,  2000,  2500, 3333,
-                                        5000, 6667, 8000, 10000, 15000, 20000, 40000, 80000};
+// In 0.1 ms, in thirds of a stop as cameras say them
+const std::vector<std::uint32_t> kTimes{
+    5,     6,     8,     10,    13,    15,    20,    25,    31,    40,   50,
+    63,    80,    100,   125,   166,   200,   250,   333,   400,   500,  666,
+    769,   1000,  1250,  1666,  2000,  2500,  3000,  4000,  5000,  6000, 8000,
+    10000, 13000, 16000, 20000, 25000, 32000, 40000, 50000, 60000, 80000};
+
+/// How long the shutter is open: the steps themselves are exact.
+double open_s(std::uint32_t said) {
+    return std::exp2(std::round(3.0 * std::log2(said / 1e4)) / 3.0);
+}
+
+std::uint32_t said(double open_for_s) {
+    return *std::min_element(kTimes.begin(), kTimes.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return std::abs(std::log(open_s(a) / open_for_s)) <
+               std::abs(std::log(open_s(b) / open_for_s));
+    });
+}
 
 template <typename T>
 std::string little(T value) {
@@ -382,7 +396,7 @@ void PtpIpCamera::answer(Connection& connection,
         case kGetPropValue: {
             const PtpSettings now = settings();
             const bool automatic = mishap == PtpMishap::automatic_exposure;
-            const auto time = static_cast<std::uint32_t>(std::lround(now.exposure_s * 1e4));
+            const std::uint32_t time = said(now.exposure_s);
             const auto f_number = static_cast<std::uint16_t>(std::lround(now.f_number * 100.0));
             const auto iso = static_cast<std::uint16_t>(now.iso);
             const auto whole = [&](const std::string& description, std::size_t size) {
@@ -430,7 +444,7 @@ void PtpIpCamera::answer(Connection& connection,
                         return connection.respond(kAccessDenied, transaction);
                     if (std::find(kTimes.begin(), kTimes.end(), time) == kTimes.end())
                         return connection.respond(kInvalidValue, transaction);
-                    settings_.exposure_s = time / 1e4;
+                    settings_.exposure_s = open_s(time);
                     break;
                 }
                 case kExposureIndex:

@@ -17,7 +17,7 @@ namespace livery::testing {
 
 /// What the camera is set to when it photographs.
 struct PtpSettings {
-    double exposure_s = 0.1;
+    double exposure_s = 0.125;  ///< the shutter is open; what it says is a round number near it
     int iso = 100;
     double f_number = 8.0;
     bool raw = true;  ///< its image format
