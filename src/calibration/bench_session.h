@@ -41,6 +41,9 @@ class BenchSession {
     /// Whether the photographs are what they are.
     bool fixed() const { return static_cast<bool>(ports_.turn_to); }
     int latency() const { return latency_; }
+    /// Once met: what half the exposure gives of white, over what it should give: 1 where numbers
+    /// are proportional to light; 0: the camera keeps its exposure.
+    double linearity() const { return linearity_; }
 
   private:
     Photograph photograph(const std::string& name);
@@ -64,6 +67,7 @@ class BenchSession {
     std::vector<std::uint32_t> lit_;  ///< some of the lit camera pixels
     ImageF last_;                     ///< what they were in the photograph before
     Photograph black_, white_;
+    double linearity_ = 0.0;
     double noise_ = 0.0;  ///< of one photograph's thinned values
 };
 

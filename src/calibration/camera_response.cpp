@@ -22,7 +22,7 @@ constexpr double kMostSpread = 16.0;
 constexpr double kLeastRange = 4.0, kMostResidual = 0.03, kMostExposureError = 0.1;
 
 /// A block of pixels of one channel that saw one light in every photograph.
-struct Place {
+struct LightPlace {
     std::vector<double> value;  ///< in each photograph; negative: clipped, or not of one light
 };
 
@@ -41,7 +41,7 @@ double value_of_block(const ImageF& image, int x, int y, int channel) {
     return one_light ? sum / (kBlock * kBlock) : -1.0;
 }
 
-std::vector<Place> places_of(const std::vector<Photograph>& photographs) {
+std::vector<LightPlace> places_of(const std::vector<Photograph>& photographs) {
     const ImageF& first = photographs.front().image;
     for (const Photograph& photograph : photographs)
         check_argument(photograph.image.width == first.width &&
@@ -51,10 +51,10 @@ std::vector<Place> places_of(const std::vector<Photograph>& photographs) {
     const int across = first.width / kBlock, blocks = across * (first.height / kBlock);
     // Odd, so that it does not walk down one column.
     const int step = (blocks * first.channels / kMostBlocks) | 1;
-    std::vector<Place> places;
+    std::vector<LightPlace> places;
     for (int block = 0; block < blocks; block += step)
         for (int channel = 0; channel < first.channels; ++channel) {
-            Place place;
+            LightPlace place;
             int usable = 0;
             for (const Photograph& photograph : photographs) {
                 place.value.push_back(value_of_block(
@@ -72,17 +72,17 @@ std::vector<Place> places_of(const std::vector<Photograph>& photographs) {
 double weight_of(double value) { return value * value / (128.0 * 128.0); }
 
 /// ln light of a value that lies between two levels, as a row of the unknowns.
-struct Row {
+struct LevelWeights {
     int below;
     double above_share;
 };
-Row row_of(double value) {
+LevelWeights row_of(double value) {
     const int below = std::clamp(static_cast<int>(value), 1, kLevels - 2);
     return {below, value - below};
 }
 
 double at(const Eigen::VectorXd& unknowns, double value) {
-    const Row row = row_of(value);
+    const LevelWeights row = row_of(value);
     return (1.0 - row.above_share) * unknowns[row.below] +
            row.above_share * unknowns[row.below + 1];
 }
@@ -90,12 +90,12 @@ double at(const Eigen::VectorXd& unknowns, double value) {
 /// The unknowns: ln light of each level, then how far each exposure is from what it says, in
 /// logarithms: shutters repeat to some tenths of a percent.
 struct Problem {
-    const std::vector<Place>& places;
+    const std::vector<LightPlace>& places;
     std::vector<double> log_exposure;
     Eigen::MatrixXd normal;
     Eigen::VectorXd right;
 
-    Problem(const std::vector<Place>& of_places, const std::vector<Photograph>& photographs)
+    Problem(const std::vector<LightPlace>& of_places, const std::vector<Photograph>& photographs)
         : places(of_places) {
         for (const Photograph& photograph : photographs)
             log_exposure.push_back(std::log(photograph.exposure_s));
@@ -116,14 +116,14 @@ struct Problem {
         // their faults in common.
         constexpr double kTotal = 200.0 * 1e4;
         double sum = 0.0;
-        for (const Place& place : places)
+        for (const LightPlace& place : places)
             for (const double value : place.value) sum += value >= 0.0 ? weight_of(value) : 0.0;
         if (!(sum > 0.0)) return;
-        for (const Place& place : places) add_place(place, kTotal / sum);
+        for (const LightPlace& place : places) add_place(place, kTotal / sum);
     }
 
     /// The light of the place is eliminated: what is left is the spread about the weighted mean.
-    void add_place(const Place& place, double scale) {
+    void add_place(const LightPlace& place, double scale) {
         struct Entry {
             Eigen::Index index;
             double factor;
@@ -133,7 +133,7 @@ struct Problem {
         for (std::size_t k = 0; k < place.value.size(); ++k) {
             if (place.value[k] < 0.0) continue;
             const double weight = scale * weight_of(place.value[k]);
-            const Row row = row_of(place.value[k]);
+            const LevelWeights row = row_of(place.value[k]);
             const std::array entries{Entry{row.below, 1.0 - row.above_share},
                                      Entry{row.below + 1, row.above_share},
                                      Entry{kLevels + static_cast<Eigen::Index>(k), -1.0}};
@@ -185,7 +185,7 @@ struct Problem {
 /// as the fit was, as a share of the light.
 double residual_of(const Problem& problem, const Eigen::VectorXd& unknowns) {
     double square = 0.0, weights = 0.0;
-    for (const Place& place : problem.places) {
+    for (const LightPlace& place : problem.places) {
         double sum = 0.0, sum_square = 0.0, weight_sum = 0.0;
         for (std::size_t k = 0; k < place.value.size(); ++k) {
             if (place.value[k] < 0.0) continue;
@@ -216,7 +216,7 @@ CameraResponse fit_camera_response(const std::vector<Photograph>& photographs) {
         throw Refused(fmt::format("the exposures differ by a factor of {:.2g} only",
                                   longest->exposure_s / shortest->exposure_s),
                       "let the program set the exposure: turn the dial to M");
-    const std::vector<Place> places = places_of(photographs);
+    const std::vector<LightPlace> places = places_of(photographs);
     if (places.empty())
         throw Refused("nothing in the photographs is neither black nor clipped in two of them",
                       "point the camera at what the projector lights, and set its exposure so that "

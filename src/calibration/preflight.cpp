@@ -65,6 +65,7 @@ class PreflightRun {
     void see_size();
     void see_exposure();
     void see_clipping();
+    void see_linearity();
     void see_native_pixels();
     void see_focus();
     void see_sum();
@@ -147,13 +148,27 @@ void PreflightRun::see_exposure() {
     add({"Exposure",
          fmt::format("{:.3g} s, {:.3g} frames", white_.exposure_s, frames),
          "good from 3 projector frames or a whole number of them, usable from 1",
-         "Frames of a projector at 60 Hz. Shorter exposures catch a colour wheel or a dimmed lamp "
-         "in "
-         "the middle.",
+         "Frames of a projector at 60 Hz. Shorter exposures catch a colour wheel or a dimmed "
+         "lamp in the middle.",
          "Close the lens or lower ISO, so that the exposure becomes longer.",
          whole || frames >= 2.95 ? Grade::good
          : frames >= 0.95        ? Grade::usable
                                  : Grade::bad});
+}
+
+/// The sum of channels and the native pixels, which come later, believe the numbers.
+void PreflightRun::see_linearity() {
+    const double found = session_.linearity();
+    if (!(found > 0.0)) return;  // its exposure cannot be set: nothing to compare
+    const double off = std::abs(found - 1.0);
+    add({"Half the exposure",
+         fmt::format("{:.1f} % of white's light", 50.0 * found),
+         "good from 49 to 51 %, usable from 47.5 to 52.5 %",
+         "A camera whose numbers are proportional to light sees half.",
+         "Take RAW photographs, or fit the camera's curve.",
+         off <= 0.02   ? Grade::good
+         : off <= 0.05 ? Grade::usable
+                       : Grade::bad});
 }
 
 void PreflightRun::see_clipping() {
@@ -348,6 +363,7 @@ Preflight PreflightRun::run() {
     see_size();
     see_exposure();
     see_clipping();
+    see_linearity();
     see_native_pixels();
     see_focus();
     see_sum();

@@ -25,12 +25,13 @@ struct Preflight {
 };
 
 /// Shows, photographs and measures, in this order: the projector's light in the camera's picture
-/// and how large it is, how late a picture arrives, the exposure, clipping, native pixels (a
-/// projector or a cable that scales turns a fine checkerboard's light into another amount, since
-/// drives are mixed and not light), focus, white against the sum of its channels, dynamic modes,
-/// room light, flicker, and the lamp's drift from the first white to the last. What makes the rest
-/// pointless (no light, no exposure) ends the list with a bad figure. `on_figure` is called with
-/// each as it comes. Throws std::invalid_argument for photographs that were taken before
+/// and how large it is, how late a picture arrives, the exposure, clipping, whether half the
+/// exposure gives half the light, native pixels (a projector or a cable that scales turns a fine
+/// checkerboard's light into another amount, since drives are mixed and not light), focus, white
+/// against the sum of its channels, dynamic modes, room light, flicker, and the lamp's drift from
+/// the first white to the last. What makes the rest pointless (no light, no exposure) ends the list
+/// with a bad figure. `on_figure` is called with each as it comes. Throws std::invalid_argument for
+/// photographs that were taken before
 /// (`turn_to`), and what the ports throw but Refused.
 Preflight preflight(const BenchPorts& bench,
                     const PreflightOptions& options,

@@ -39,6 +39,7 @@ struct CameraSetting {
 };
 
 struct CameraState {
+    std::string model;  ///< in its own words; the same camera has it at every port
     std::vector<CameraSetting> settings;
     std::optional<double> battery;      ///< 0 to 1
     std::optional<int> shots_left;      ///< on its card
@@ -59,6 +60,9 @@ class Camera {
     /// Photographs what is there now: TakePhotograph. The exposure that was really used stands in
     /// the photograph: the nearest that the camera has.
     virtual Photograph photograph(double exposure_s) = 0;
+    /// How 8-bit numbers become light from here on: "srgb" unless said, "linear", or a response
+    /// file's path. RAW has no curve. Throws FileError.
+    virtual void use_transfer(const std::string& transfer) = 0;
     /// What it sees now, for looking at: sRGB, 3 channels. Empty where it cannot.
     virtual Image8 live_view() = 0;
 };

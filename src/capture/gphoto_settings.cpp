@@ -1,6 +1,7 @@
 #include "capture/gphoto_settings.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
 
@@ -98,6 +99,14 @@ std::optional<int> shots_left(GphotoCamera& gphoto) {
 
 bool is_manual(const std::string& program) {
     return program.empty() || program == "M" || program.find("anual") != std::string::npos;
+}
+
+bool is_raw_format(const std::string& format) {
+    std::string upper;
+    for (const char c : format)
+        upper += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    return upper.find("RAW") != std::string::npos || upper.find("NEF") != std::string::npos ||
+           upper.find("DNG") != std::string::npos;
 }
 
 double open_time_s(const CameraSetting& exposure, const std::string& said) {

@@ -19,6 +19,7 @@ inline constexpr Names kAperture{"aperture", "f-number", "fnumber"};
 inline constexpr Names kFormat{"imageformat", "imagequality", "imagequality2"};
 inline constexpr Names kProgram{"expprogram", "autoexposuremode", "exposuremode"};
 inline constexpr Names kFocus{"focusmode", "focusmode2", "afmode"};
+inline constexpr Names kModel{"cameramodel", "model", "cameraname"};
 inline constexpr Names kBattery{"batterylevel", "battery", "5001"};
 
 struct NamedWidget {
@@ -50,6 +51,8 @@ CameraSetting set_widget(GphotoCamera& gphoto,
 std::optional<int> shots_left(GphotoCamera& gphoto);
 /// Of the dial.
 bool is_manual(const std::string& program);
+/// Of its files: RAW, alone or beside a JPEG.
+bool is_raw_format(const std::string& format);
 /// How long the shutter is open where the camera says this; negative: no time. The series 1/30,
 /// 1/60, 1/125 is of exact halves (1/32, 1/64, 1/128), with thirds or halves of a stop between,
 /// said in round numbers that are up to 7% off (ISO 516).

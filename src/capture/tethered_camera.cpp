@@ -230,6 +230,9 @@ class TetheredCamera : public Camera {
     CameraState state() override;
     void set(const std::string& setting, const std::string& value) override;
     Photograph photograph(double exposure_s) override;
+    void use_transfer(const std::string& transfer) override {
+        linear_ = linear_from_eight_bits(transfer);
+    }
     Image8 live_view() override;
 
   private:
@@ -268,44 +271,47 @@ class TetheredCamera : public Camera {
 
     TetheredOptions options_;
     std::string name_;
+    std::vector<float> linear_ = linear_from_eight_bits("srgb");  ///< of a JPEG's values
     double exposure_s_ = 0.0;
     bool has_live_view_ = true, has_exposure_ = false;
     std::unique_ptr<GphotoLink> link_;
 };
 
 CameraState TetheredCamera::state() {
-    struct Answer {
-        CameraState state;
-        std::string model;
-    };
-    Answer answer = ask(options_.answer, [](GphotoCamera& gphoto) {
-        Answer found;
-        found.model = gphoto.model();
+    CameraState state = ask(options_.answer, [](GphotoCamera& gphoto) {
+        CameraState found;
+        const Widget model = find_widget(gphoto, kModel);
+        found.model = model ? value_of(model.get()) : gphoto.model();
         for (const NamedWidget& named : kSettings)
             if (const Widget widget = find_widget(gphoto, *named.widgets))
-                found.state.settings.push_back(setting_of(named.setting, widget.get()));
+                found.settings.push_back(setting_of(named.setting, widget.get()));
         if (const Widget battery = find_widget(gphoto, kBattery)) {
             const double percent = std::atof(value_of(battery.get()).c_str());
-            if (percent > 0.0) found.state.battery = percent / 100.0;
+            if (percent > 0.0) found.battery = percent / 100.0;
         }
-        found.state.shots_left = shots_left(gphoto);
+        found.shots_left = shots_left(gphoto);
         return found;
     });
-    for (const CameraSetting& setting : answer.state.settings) {
+    for (const CameraSetting& setting : state.settings) {
         has_exposure_ = has_exposure_ || setting.name == "exposure";
         if (setting.name == "program" && !is_manual(setting.value))
-            answer.state.warnings.push_back("automatic exposure: its dial stands on " +
-                                            setting.value + "; turn it to M");
+            state.warnings.push_back("automatic exposure: its dial stands on " + setting.value +
+                                     "; turn it to M");
+        if (setting.name == "format" && !is_raw_format(setting.value) &&
+            std::any_of(setting.choices.begin(), setting.choices.end(), is_raw_format))
+            state.warnings.push_back(
+                "it gives " + setting.value +
+                ", whose numbers a picture style bends: set its format to RAW");
         if (setting.name == "focus" && setting.value.find("utomatic") != std::string::npos)
-            answer.state.warnings.push_back("automatic focus: switch it to manual");
+            state.warnings.push_back("automatic focus: switch it to manual");
     }
     if (!has_exposure_)
-        answer.state.warnings.push_back(
+        state.warnings.push_back(
             "its exposure time cannot be set or read from here: set it by hand, the same for all");
-    if (answer.state.battery && *answer.state.battery < 0.2)
-        answer.state.warnings.push_back("its battery is nearly empty");
-    if (answer.state.shots_left == 0) answer.state.warnings.push_back("its card is full");
-    return std::move(answer.state);
+    if (state.battery && *state.battery < 0.2)
+        state.warnings.push_back("its battery is nearly empty");
+    if (state.shots_left == 0) state.warnings.push_back("its card is full");
+    return state;
 }
 
 void TetheredCamera::set(const std::string& setting, const std::string& value) {
@@ -358,9 +364,8 @@ Photograph TetheredCamera::decoded(const Taken& taken) const {
             if (picture.image.channels != 3 || picture.full_scale != 255.0)
                 throw FileError(
                     name, "", fmt::format("{} channels", picture.image.channels), "a colour JPEG");
-            const std::vector<float> linear = linear_from_eight_bits(options_.transfer);
             for (float& value : picture.image.values)
-                value = linear[static_cast<std::size_t>(value)];
+                value = linear_[static_cast<std::size_t>(value)];
             photograph.image = std::move(picture.image);
             photograph.saturates_at = 255.0;
         }

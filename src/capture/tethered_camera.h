@@ -14,8 +14,6 @@ struct TetheredOptions {
     /// "usb:001,004" as listed, or "ptpip:HOST" or "ptpip:HOST:PORT"; empty: the first that is
     /// found on USB.
     std::string port;
-    /// Of JPEG, undone: "srgb", "linear", or the path of a response file (docs/files.md).
-    std::string transfer = "srgb";
     std::chrono::milliseconds answer{8000};  ///< to everything but a photograph
     /// A photograph, besides its exposure: libgphoto2 itself would wait for ever.
     std::chrono::milliseconds photograph{20000};

@@ -86,10 +86,7 @@ bool shows_another(const Image8& before, const Image8& now) {
 
 class VideoCamera : public Camera {
   public:
-    explicit VideoCamera(const VideoCameraOptions& options)
-        : options_(options), linear_(linear_from_eight_bits(options.transfer)) {
-        open();
-    }
+    explicit VideoCamera(const VideoCameraOptions& options) : options_(options) { open(); }
     ~VideoCamera() override { close(); }
     VideoCamera(const VideoCamera&) = delete;
     VideoCamera& operator=(const VideoCamera&) = delete;
@@ -101,6 +98,9 @@ class VideoCamera : public Camera {
     CameraState state() override;
     void set(const std::string& setting, const std::string& value) override;
     Photograph photograph(double exposure_s) override;
+    void use_transfer(const std::string& transfer) override {
+        linear_ = linear_from_eight_bits(transfer);
+    }
     Image8 live_view() override;
 
   private:
@@ -116,7 +116,8 @@ class VideoCamera : public Camera {
     [[noreturn]] void fail_gone(const std::string& why);
 
     VideoCameraOptions options_;
-    std::vector<float> linear_;  ///< of each 8-bit value, on the scale of the file
+    std::vector<float> linear_ =
+        linear_from_eight_bits("srgb");  ///< of each 8-bit value, on the scale of the file
     std::unique_ptr<Video> video_;
     double exposure_s_ = 0.0;
     bool sets_exposure_ = false, manual_ = false;
@@ -271,6 +272,7 @@ Image8 VideoCamera::live_view() {
 CameraState VideoCamera::state() {
     expect_open();
     CameraState state;
+    state.model = name();
     state.settings.push_back(
         {"exposure", fmt::format("{:.4g} s", exposure_s_), {}, sets_exposure_});
     if (is_device(options_.source))

@@ -15,8 +15,6 @@ struct VideoCameraOptions {
     int frames = 8;           ///< averaged to a photograph: eight quantise a third as coarsely
     int settling_frames = 4;  ///< thrown away after the exposure was changed
     int timeout_ms = 4000;
-    /// Undone: "linear", "srgb", or the path of a response file (docs/files.md).
-    std::string transfer = "srgb";
     /// What a photograph says of its exposure where the camera cannot be asked: a stream's exposure
     /// is fixed in the camera itself, and only ratios count.
     double nominal_exposure_s = 1.0 / 30.0;

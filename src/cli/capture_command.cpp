@@ -8,16 +8,15 @@
 
 #include <fmt/format.h>
 
-#include "calibration/camera_response.h"
 #include "calibration/preflight.h"
 #include "capture/patient_camera.h"
-#include "capture/transfer.h"
 #include "cli/command.h"
 #include "cli/console.h"
 #include "core/error.h"
 #include "gl/window.h"
 #include "jobs/bench_calibration.h"
 #include "jobs/calibration_folder.h"
+#include "jobs/camera_curve.h"
 #include "jobs/camera_to_xyz_file.h"
 #include "jobs/capture_bench.h"
 #include "jobs/watched_captures.h"
@@ -29,11 +28,11 @@ namespace livery {
 namespace {
 
 struct CaptureArguments {
-    std::string camera, monitor, product, pose, camera_to_xyz, out, calibration, response,
-        fit_response;
+    std::string camera, monitor, product, pose, camera_to_xyz, out, calibration;
     std::vector<std::string> again;
     double every_s = 0.0;
-    bool list = false, preflight_only = false, without_preflight = false, anew = false;
+    bool list = false, preflight_only = false, without_preflight = false, anew = false,
+         fit_response = false;
 };
 
 /// A line that is read while the work goes on.
@@ -155,11 +154,16 @@ void CaptureCommandRun::report(const BenchCalibration& made) {
     outcome.figures["condition_p99"] = calibration.condition_p99;
     outcome.figures["warnings"] = calibration.warnings;
     outcome.figures["capture_seconds"] = made.live.capture_seconds;
+    outcome.figures["camera_seconds"] = made.live.camera_seconds;
+    outcome.figures["projector_seconds"] = made.live.projector_seconds;
     outcome.figures["latency_photographs"] = made.live.latency_photographs;
     outcome.text += fmt::format(
-        "captured in {:.1f} s: {:.1f}% of the lit pixels valid, additivity error {:.2f}%, "
+        "captured in {:.1f} s, of which {:.1f} s the camera's and {:.1f} s the projector's: "
+        "{:.1f}% of the lit pixels valid, additivity error {:.2f}%, "
         "condition {:.2f}\n",
         made.live.capture_seconds,
+        made.live.camera_seconds,
+        made.live.projector_seconds,
         100.0 * calibration.valid_fraction,
         100.0 * calibration.additivity_error,
         calibration.condition_p99);
@@ -209,19 +213,18 @@ void take_again(Recording& recording, const std::vector<std::string>& roles) {
 }
 
 Outcome fit_response(CaptureCommandRun run,
+                     Camera& camera,
                      const BenchPorts& ports,
-                     const std::string& camera,
                      const Progress& progress) {
     try {
-        const CameraResponse response = fit_camera_response(
-            photograph_exposures(ports, run.request.width, run.request.height, progress));
-        write_response(run.arguments.fit_response, response.linear_from_file);
-        run.outcome.figures = {{"response", run.arguments.fit_response},
-                               {"residual", response.residual}};
-        run.outcome.text = fmt::format("response of {} in {}, {:.2f}% of full scale left\n",
-                                       camera,
-                                       run.arguments.fit_response,
-                                       100.0 * response.residual);
+        const CameraCurve curve =
+            fit_camera_curve(camera, ports, run.request.width, run.request.height, progress);
+        run.outcome.figures = {{"response", curve.file.string()}, {"residual", curve.residual}};
+        run.outcome.text = fmt::format(
+            "The curve of {} is in {}; with it, photographs of one light differ by {:.2f} %.\n",
+            camera.name(),
+            curve.file.string(),
+            100.0 * curve.residual);
     } catch (const Refused& refused) {
         run.refuse(refused);
     }
@@ -231,14 +234,7 @@ Outcome fit_response(CaptureCommandRun run,
 Outcome capture_with_camera(CaptureCommandRun run,
                             const CameraChoice& choice,
                             const Progress& progress) {
-    const std::string& fitted = run.arguments.fit_response;
-    CaptureBench bench =
-        open_capture_bench(choice,
-                           run.request.product,
-                           progress,
-                           !fitted.empty()                  ? "linear"
-                           : run.arguments.response.empty() ? "srgb"
-                                                            : run.arguments.response);
+    CaptureBench bench = open_capture_bench(choice, run.request.product, progress);
     std::unique_ptr<MonitorProjector> projector;
     std::string shown_on = "its own projector";
     if (bench.show) {
@@ -274,7 +270,9 @@ Outcome capture_with_camera(CaptureCommandRun run,
     ports.measure_xyz = bench.measure_xyz;
     if (run.request.camera_to_xyz) ports.measure_xyz = {};
 
-    if (!fitted.empty()) return fit_response(std::move(run), ports, bench.camera->name(), progress);
+    if (run.arguments.fit_response)
+        return fit_response(std::move(run), *bench.camera, ports, progress);
+    if (bench.curve) say("8-bit numbers are read with " + bench.curve->string());
 
     std::optional<Recording> recording;
     if (!run.arguments.preflight_only) {
@@ -410,17 +408,16 @@ Command capture_command() {
          &arguments->camera_to_xyz,
          false,
          {}},
-        {"--fit-response",
-         "FILE",
-         "find the curve of a camera that gives no RAW, from white at other exposures",
-         &arguments->fit_response,
-         false,
-         {}},
-        {"--response", "FILE", "undo that curve (default: sRGB)", &arguments->response, false, {}},
         {"--again",
          "ROLE...",
          "take these pictures of the capture in --out again",
          &arguments->again,
+         false,
+         {}},
+        {"--fit-response",
+         "",
+         "find the curve of a camera that gives no RAW, and keep it",
+         &arguments->fit_response,
          false,
          {}},
         {"--anew", "", "take all of the capture in --out again", &arguments->anew, false, {}},
@@ -439,7 +436,7 @@ Command capture_command() {
         const CameraChoice choice = parse_camera_choice(arguments->camera);
         const bool by_hand = choice.kind == CameraChoice::Kind::folder;
         if (arguments->out.empty() && !arguments->preflight_only && !by_hand &&
-            arguments->fit_response.empty())
+            !arguments->fit_response)
             throw std::invalid_argument("--out: found none, expected a folder for the photographs");
         if (arguments->pose.empty() != arguments->product.empty() &&
             choice.kind != CameraChoice::Kind::bench)

@@ -11,6 +11,7 @@
 #include "capture/video_camera.h"
 #include "core/colour.h"
 #include "core/paths.h"
+#include "jobs/camera_curve.h"
 #include "scene/library.h"
 
 namespace livery {
@@ -44,6 +45,7 @@ class BenchCamera : public Camera {
         if (exposure_s > 0.0) exposure_s_ = exposure_s;
         return ports_.photograph(exposure_s_);
     }
+    void use_transfer(const std::string&) override {}  // Its numbers are the sensor's.
     Image8 live_view() override {
         const Photograph seen = ports_.photograph(exposure_s_);
         Image8 srgb(seen.image.width, seen.image.height, 3);
@@ -116,8 +118,7 @@ std::vector<ListedCamera> list_cameras() {
 
 CaptureBench open_capture_bench(const CameraChoice& choice,
                                 std::shared_ptr<const Product> product,
-                                const Progress& progress,
-                                const std::string& transfer) {
+                                const Progress& progress) {
     CaptureBench bench;
     switch (choice.kind) {
         case CameraChoice::Kind::bench: {
@@ -134,14 +135,12 @@ CaptureBench open_capture_bench(const CameraChoice& choice,
         case CameraChoice::Kind::tethered: {
             TetheredOptions options;
             options.port = choice.what;
-            options.transfer = transfer;
             bench.camera = open_tethered_camera(options);
             break;
         }
         case CameraChoice::Kind::video: {
             VideoCameraOptions options;
             options.source = choice.what;
-            options.transfer = transfer;
             bench.camera = open_video_camera(options);
             break;
         }
@@ -149,6 +148,8 @@ CaptureBench open_capture_bench(const CameraChoice& choice,
             throw std::invalid_argument("a folder has no camera");
     }
     bench.name = bench.camera->name();
+    bench.curve = kept_camera_curve(*bench.camera);
+    if (bench.curve) bench.camera->use_transfer(bench.curve->string());
     return bench;
 }
 

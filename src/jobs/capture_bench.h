@@ -1,6 +1,7 @@
 // What a capture is made with: a camera of any kind, and the simulated bench where it is one.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -38,16 +39,16 @@ struct CaptureBench {
     std::string name;  ///< of the camera, in words
     std::unique_ptr<Bench> simulated;
     std::unique_ptr<Camera> camera;
+    /// What its 8-bit numbers are read with, fitted before; none: sRGB, or it has no curve.
+    std::optional<std::filesystem::path> curve;
     ShowPicture show;               ///< of a simulated bench; empty: a projector is needed
     MeasureXyz measure_xyz;         ///< of a simulated bench
     std::optional<View> projector;  ///< of a simulated bench: where it stands
 };
 /// Not for folders, which have no camera. `product`: the mock-up of a simulated bench; null: the
-/// one that its file names. `transfer`: of cameras that give no RAW, undone: "srgb", "linear" or a
-/// response file. Throws CameraFault, FileError.
+/// one that its file names. Throws CameraFault, FileError.
 CaptureBench open_capture_bench(const CameraChoice& choice,
                                 std::shared_ptr<const Product> product,
-                                const Progress& progress,
-                                const std::string& transfer = "srgb");
+                                const Progress& progress);
 
 }  // namespace livery

@@ -15,6 +15,7 @@
 #include "core/paths.h"
 #include "core/worker.h"
 #include "jobs/bench_calibration.h"
+#include "jobs/camera_curve.h"
 #include "jobs/watched_captures.h"
 #include "live/capture_pictures.h"
 #include "live/low_priority.h"
@@ -32,7 +33,8 @@ constexpr auto kBetweenLooks = std::chrono::milliseconds(20);
 
 struct CaptureJobs {
     CaptureSetup setup;
-    bool open = false, shut = false, preflight = false, capture = false, anew = false;
+    bool open = false, shut = false, preflight = false, fit = false, capture = false, anew = false;
+    std::vector<std::pair<std::string, std::string>> settings;  ///< of the camera, to be made
     bool watching = false;           ///< the camera is open, and nothing else is to be done
     std::vector<std::size_t> again;  ///< showings
     CaptureView view;
@@ -54,8 +56,11 @@ struct CaptureThread::Implementation {
 
     Worker<CaptureJobs>::Turn next(CaptureJobs& asked);
     void open(const CaptureSetup& with);
+    void show_state();
+    void set(const std::vector<std::pair<std::string, std::string>>& settings);
     void watch();
     void preflight_now();
+    void fit_curve();
     void capture(bool anew, const std::vector<std::size_t>& again);
     void capture_with_camera(bool anew, const std::vector<std::size_t>& again);
     void capture_by_hand();
@@ -142,13 +147,35 @@ void CaptureThread::Implementation::open(const CaptureSetup& with) {
     attempt(CaptureView::Doing::opening, [&] {
         if (is_by_hand()) return;
         bench = open_capture_bench(setup.camera, setup.product, progress());
-        const CameraState state = bench.camera->state();
+        show_state();
         publish([&](CaptureView& view) {
             view.camera = bench.name;
-            view.settings = state.settings;
-            view.warnings = state.warnings;
+            view.may_have_curve = setup.camera.kind != CameraChoice::Kind::bench;
+            if (bench.curve) view.curve = "the curve kept in " + bench.curve->string();
         });
     });
+}
+
+void CaptureThread::Implementation::show_state() {
+    const CameraState state = bench.camera->state();
+    publish([&](CaptureView& view) {
+        view.settings = state.settings;
+        view.warnings = state.warnings;
+    });
+}
+
+void CaptureThread::Implementation::set(
+    const std::vector<std::pair<std::string, std::string>>& settings) {
+    publish([](CaptureView& view) { view.why.clear(); });
+    try {
+        for (const auto& [setting, value] : settings) bench.camera->set(setting, value);
+        show_state();
+    } catch (const CameraFault& fault) {
+        publish([&](CaptureView& view) {
+            view.why = fault.why();
+            view.fix = fault.fix();
+        });
+    }
 }
 
 void CaptureThread::Implementation::watch() {
@@ -219,6 +246,20 @@ void CaptureThread::Implementation::preflight_now() {
               [this](const GradedFigure& figure) {
                   publish([&](CaptureView& view) { view.figures.push_back(figure); });
               });
+}
+
+void CaptureThread::Implementation::fit_curve() {
+    const BenchCalibrationRequest what = request();
+    const CameraCurve curve =
+        fit_camera_curve(*bench.camera, ports(), what.width, what.height, progress());
+    publish([&](CaptureView& view) {
+        view.curve = fmt::format(
+            "the curve just fitted: with it, photographs of one light differ by {:.2f} %. It is "
+            "kept "
+            "in {}",
+            100.0 * curve.residual,
+            curve.file.string());
+    });
 }
 
 /// Every photograph as it comes, from the camera or from the folder, becomes a tile.
@@ -323,8 +364,12 @@ Worker<CaptureJobs>::Turn CaptureThread::Implementation::next(CaptureJobs& asked
             bench = {};
             publish([](CaptureView& view) { view = {}; });
         }};
+    if (!asked.settings.empty() && bench.camera)
+        return {[this, settings = std::exchange(asked.settings, {})] { set(settings); }};
     if (std::exchange(asked.preflight, false))
         return {[this] { attempt(CaptureView::Doing::preflight, [this] { preflight_now(); }); }};
+    if (std::exchange(asked.fit, false))
+        return {[this] { attempt(CaptureView::Doing::fitting, [this] { fit_curve(); }); }};
     if (std::exchange(asked.capture, false)) {
         const bool anew = std::exchange(asked.anew, false);
         return {[this, anew, again = std::exchange(asked.again, {})] {
@@ -357,7 +402,8 @@ void CaptureThread::use(CaptureSetup setup) {
     implementation_->worker.change([&](CaptureJobs& asked) {
         implementation_->abandon = true;
         asked.setup = std::move(setup);
-        asked.preflight = asked.capture = asked.watching = asked.shut = false;
+        asked.preflight = asked.fit = asked.capture = asked.watching = asked.shut = false;
+        asked.settings.clear();
         asked.open = true;
     });
 }
@@ -365,13 +411,23 @@ void CaptureThread::use(CaptureSetup setup) {
 void CaptureThread::close() {
     implementation_->worker.change([&](CaptureJobs& asked) {
         implementation_->abandon = true;
-        asked.open = asked.preflight = asked.capture = asked.watching = false;
+        asked.open = asked.preflight = asked.fit = asked.capture = asked.watching = false;
+        asked.settings.clear();
         asked.shut = true;
     });
 }
 
+void CaptureThread::set(const std::string& setting, const std::string& value) {
+    implementation_->worker.change(
+        [&](CaptureJobs& asked) { asked.settings.emplace_back(setting, value); });
+}
+
 void CaptureThread::start_preflight() {
     implementation_->worker.change([](CaptureJobs& asked) { asked.preflight = true; });
+}
+
+void CaptureThread::start_curve_fit() {
+    implementation_->worker.change([](CaptureJobs& asked) { asked.fit = true; });
 }
 
 void CaptureThread::start_capture(bool anew) {
@@ -398,7 +454,7 @@ void CaptureThread::next() { implementation_->next_picture = true; }
 
 void CaptureThread::cancel() {
     implementation_->worker.use([&](CaptureJobs& asked) {
-        asked.preflight = asked.capture = false;
+        asked.preflight = asked.fit = asked.capture = false;
         implementation_->abandon = true;
     });
 }

@@ -48,11 +48,13 @@ struct CaptureHistogram {
 
 /// What it does now and what came of it.
 struct CaptureView {
-    enum class Doing { nothing, opening, watching, preflight, capturing };
+    enum class Doing { nothing, opening, watching, preflight, fitting, capturing };
     Doing doing = Doing::nothing;
     std::string camera;  ///< its name; empty: none is open
     std::vector<CameraSetting> settings;
     std::vector<std::string> warnings;  ///< of the camera
+    bool may_have_curve = false;        ///< its files may be of 8 bits
+    std::string curve;                  ///< what they are read with, in words
     double fraction = 0.0;
     std::string stage;
     double elapsed_s = 0.0;
@@ -83,6 +85,10 @@ class CaptureThread {
     void use(CaptureSetup setup);
     void close();  ///< lets the camera go
     void start_preflight();
+    /// Sets the camera: CameraState::settings.
+    void set(const std::string& setting, const std::string& value);
+    /// Fits the curve of a camera that gives no RAW, and keeps it for its model.
+    void start_curve_fit();
     /// Goes on with what was stopped, unless `anew`.
     void start_capture(bool anew);
     void take_again(std::size_t showing);  ///< at once while it captures, else goes on with that

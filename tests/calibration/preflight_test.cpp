@@ -100,7 +100,7 @@ Image8 scaled(const Image8& drive, double factor) {
 TEST(Preflight, IsGoodInAGoodRoom) {
     Room room;
     const Preflight result = room.run();
-    EXPECT_EQ(result.figures.size(), 11u);
+    EXPECT_EQ(result.figures.size(), 12u);
     // Some 50,000 of the camera's 60,000 pixels see light, which is not many.
     expect_only(result, Grade::usable, {"Size in the camera"}, "a good room");
     EXPECT_GT(result.exposure_s, 0.05);

@@ -25,7 +25,7 @@ TEST(Capture, OnTheSimulatedBench) {
         {"capture", "--camera", camera, "--out", out, "--calibration", calibration, "--json"});
     ASSERT_EQ(first.exit_code, 0) << first.err;
     const Json made = Json::parse(first.out);
-    EXPECT_EQ(made["preflight"].size(), 11u);
+    EXPECT_EQ(made["preflight"].size(), 12u);
     EXPECT_TRUE(made["simulated"].get<bool>());
     EXPECT_GT(made["valid_fraction"].get<double>(), 0.9);
     EXPECT_EQ(made["photographs_kept_from_before"], 0);
@@ -57,7 +57,7 @@ TEST(Capture, LooksOnly) {
         livery_run({"capture", "--camera", small_bench(folder), "--preflight", "--json"});
     // A quarter of the pixels: the finest stripes are blurred, and that is said.
     const Json figures = Json::parse(run.out)["preflight"];
-    ASSERT_EQ(figures.size(), 11u);
+    ASSERT_EQ(figures.size(), 12u);
     EXPECT_EQ(figures[0]["name"], "Size in the camera");
     for (const Json& figure : figures)
         for (const char* field : {"name", "value", "grade", "meaning", "fix"})

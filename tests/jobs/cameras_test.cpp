@@ -9,11 +9,11 @@
 
 #include <gtest/gtest.h>
 
-#include "calibration/camera_response.h"
 #include "capture/patient_camera.h"
 #include "capture/tethered_camera.h"
-#include "capture/transfer.h"
 #include "capture/video_camera.h"
+#include "jobs/camera_curve.h"
+#include "jobs/capture_bench.h"
 #include "jobs/capture_run.h"
 #include "jobs/captured_calibration.h"
 #include "session/small_session.h"
@@ -78,6 +78,19 @@ BenchDescription filmed_description() {
     return description;
 }
 
+/// What the camera and the projector do not take is ours.
+void print_times(const Recording& recording, const LiveResult& live) {
+    const double theirs = live.camera_seconds + live.projector_seconds;
+    std::printf(
+        "    %d photographs: %.1f s in the camera, %.1f s in the projector, %.1f s in all: "
+        "%.1f%% more\n",
+        recording.taken(),
+        live.camera_seconds,
+        live.projector_seconds,
+        live.capture_seconds,
+        100.0 * (live.capture_seconds / theirs - 1.0));
+}
+
 TEST(Cameras, AVideoCameraCalibratesAsTheBenchDoes) {
     const BenchDescription description = filmed_description();
     FilmedBench filmed(description);
@@ -86,24 +99,14 @@ TEST(Cameras, AVideoCameraCalibratesAsTheBenchDoes) {
     video.source = server.address();
     const auto camera = open_video_camera(video);
 
-    double in_camera_s = 0.0;
     BenchPorts ports;
     ports.show = [&](const Image8& drive) { filmed.show(drive); };
-    ports.photograph = [&](double exposure_s) {
-        const auto start = std::chrono::steady_clock::now();
-        Photograph photograph = camera->photograph(exposure_s);
-        in_camera_s +=
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        return photograph;
-    };
+    ports.photograph = [&](double exposure_s) { return camera->photograph(exposure_s); };
     ports.measure_xyz = filmed.colorimeter();
     const TemporaryFolder folder;
     Recording recording(folder.path(), "the bench, filmed");
     LiveResult live = calibrate_recorded(recording, ports, live_options(description));
-    std::printf("    %d photographs, %.1f s in the camera, %.1f s in all\n",
-                recording.taken(),
-                in_camera_s,
-                live.capture_seconds);
+    print_times(recording, live);
     EXPECT_GT(live.calibration.valid_fraction, 0.85);
     const Comparison& seen = judged(filmed.bench, std::move(live)).comparison;
 
@@ -144,27 +147,17 @@ TEST(Cameras, ATetheredCameraCalibratesAsTheBenchDoes) {
     TetheredOptions options;
     options.port = responder.port();
     const auto camera = open_tethered_camera(options);
-    double in_camera_s = 0.0;
     BenchPorts ports;
     ports.show = [&](const Image8& drive) {
         const std::lock_guard lock(mutex);
         on_bench.show(drive);
     };
-    ports.photograph = [&](double exposure_s) {
-        const auto start = std::chrono::steady_clock::now();
-        Photograph photograph = camera->photograph(exposure_s);
-        in_camera_s +=
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        return photograph;
-    };
+    ports.photograph = [&](double exposure_s) { return camera->photograph(exposure_s); };
     ports.measure_xyz = on_bench.measure_xyz;
     const TemporaryFolder folder;
     Recording recording(folder.path(), "the bench, tethered");
     LiveResult live = calibrate_recorded(recording, ports, live_options(description));
-    std::printf("    %d photographs, %.1f s in the camera, %.1f s in all\n",
-                recording.taken(),
-                in_camera_s,
-                live.capture_seconds);
+    print_times(recording, live);
     const Comparison& seen = judged(bench, std::move(live)).comparison;
     Bench direct(description, small_bench_product());
     const Comparison& best =
@@ -177,6 +170,7 @@ TEST(Cameras, ATetheredCameraCalibratesAsTheBenchDoes) {
 TEST(Cameras, ACameraThatGivesOnlyJpegShowsItsCurve) {
     const TemporaryFolder home;
     ::setenv("HOME", home.path().c_str(), 1);  // libgphoto2 writes there
+    ::setenv("LIVERY_HOME", home.path().c_str(), 1);
     const BenchDescription description = small_bench_description();
     Bench bench(description, small_bench_product());
     const BenchPorts on_bench = bench.ports();
@@ -208,23 +202,28 @@ TEST(Cameras, ACameraThatGivesOnlyJpegShowsItsCurve) {
         ports.measure_xyz = on_bench.measure_xyz;
         return ports;
     };
-    TetheredOptions options;
-    options.port = responder.port();
-    options.transfer = "linear";
     const LiveOptions live = live_options(description);
-    CameraResponse response;
+    const CameraChoice choice{CameraChoice::Kind::tethered, responder.port()};
+    const auto median = [&] {
+        const CaptureBench opened = open_capture_bench(choice, nullptr, {});
+        return judged(bench, calibrate_live(ports_of_camera(*opened.camera), live))
+            .comparison.interior.median;
+    };
+    // Taken for sRGB
+    EXPECT_THROW(median(), Refused);
     {
-        const auto camera = open_tethered_camera(options);
-        response = fit_camera_response(
-            photograph_exposures(ports_of_camera(*camera), live.width, live.height));
+        CaptureBench opened = open_capture_bench(choice, nullptr, {});
+        EXPECT_FALSE(opened.curve);
+        const CameraCurve curve = fit_camera_curve(
+            *opened.camera, ports_of_camera(*opened.camera), live.width, live.height, {});
+        EXPECT_EQ(curve.file.parent_path(), home / "cameras");
+        EXPECT_LT(curve.residual, 0.01);
     }
-    options.transfer = (home / "response.json").string();
-    write_response(options.transfer, response.linear_from_file);
-    const auto camera = open_tethered_camera(options);
-    const Comparison& seen =
-        judged(bench, calibrate_live(ports_of_camera(*camera), live)).comparison;
+    // It is known the next time.
+    EXPECT_TRUE(open_capture_bench(choice, nullptr, {}).curve);
     // Eight bits and a fitted curve against fourteen and none: as the video camera's.
-    EXPECT_LT(seen.interior.median, 0.76);
+    EXPECT_LT(median(), 0.76);
+    ::unsetenv("LIVERY_HOME");
 }
 
 /// A bench whose photographs somebody spoils or interrupts, and all of them counted.

@@ -1,6 +1,7 @@
 #include "live/capture_thread.h"
 
 #include <chrono>
+#include <cmath>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -8,6 +9,8 @@
 #include "core/paths.h"
 #include "live/capture_pictures.h"
 #include "scene/library.h"
+#include "support/jpeg.h"
+#include "support/ptpip_camera.h"
 #include "support/small_bench_file.h"
 #include "support/temporary_folder.h"
 
@@ -68,7 +71,7 @@ TEST(CaptureThread, LooksAndCaptures) {
     EXPECT_NE(room.capture->view().camera.find("bench small"), std::string::npos);
     room.capture->start_preflight();
     const CaptureView looked = wait_until(*room.capture, [](const CaptureView& view) {
-        return view.figures.size() == 11 && rests(view);
+        return view.figures.size() == 12 && rests(view);
     });
     EXPECT_TRUE(looked.why.empty()) << looked.why;
     room.capture->start_capture(true);
@@ -116,6 +119,61 @@ TEST(CaptureThread, GoesOnAfterItWasStoppedAndPauses) {
     });
     ASSERT_TRUE(made.finished) << made.why;
     EXPECT_EQ(made.kept_from_before, taken);
+}
+
+/// Light from nothing to full across the picture, through a curve that is not sRGB.
+testing::PtpPicture ramp_in_jpeg(const testing::PtpSettings& settings) {
+    Image8 picture(256, 64, 3);
+    for (int y = 0; y < picture.height; ++y)
+        for (int x = 0; x < picture.width; ++x)
+            for (int c = 0; c < 3; ++c) {
+                const double light = std::min(1.0, x / 8 / 32.0 * settings.exposure_s / 0.25);
+                picture.at(x, y, c) =
+                    static_cast<std::uint8_t>(255.0 * std::pow(light, 1.0 / 1.8) + 0.5);
+            }
+    return {"IMG_0001.JPG", testing::jpeg_of(picture)};
+}
+
+TEST(CaptureThread, SetsACameraAndFitsItsCurve) {
+    Home home;
+    ::setenv("HOME", home.folder().path().c_str(), 1);  // libgphoto2 writes there
+    testing::PtpIpCamera responder(ramp_in_jpeg);
+    HeadlessContext context{GlDevice::automatic};
+    context.release();
+    CaptureThread capture(context, [] {});
+    int shown = 0;
+    CaptureSetup setup;
+    setup.camera = {CameraChoice::Kind::tethered, responder.port()};
+    setup.width = setup.height = 16;
+    setup.projector_port = [&](const Progress&, const TellWait&) {
+        return [&](const Image8&) { ++shown; };
+    };
+    capture.use(setup);
+    const CaptureView opened = wait_until(capture, rests);
+    EXPECT_TRUE(opened.may_have_curve);
+    EXPECT_TRUE(opened.curve.empty());
+    const auto iso = [](const CaptureView& view) {
+        for (const CameraSetting& setting : view.settings)
+            if (setting.name == "iso") return setting.value;
+        return std::string();
+    };
+    capture.set("iso", "400");
+    wait_until(capture, [&](const CaptureView& view) { return iso(view) == "400"; });
+    capture.set("iso", "123");
+    wait_until(capture, [](const CaptureView& view) { return !view.why.empty(); });
+    EXPECT_EQ(responder.settings().iso, 400);
+
+    capture.start_curve_fit();
+    const CaptureView fitted = wait_until(capture, [](const CaptureView& view) {
+        return rests(view) && (!view.curve.empty() || view.why.find("iso") == std::string::npos);
+    });
+    EXPECT_FALSE(fitted.curve.empty()) << fitted.why;
+    EXPECT_EQ(shown, 1);
+    // A camera that is opened again has it.
+    capture.use(setup);
+    wait_until(capture, [](const CaptureView& view) {
+        return rests(view) && view.curve.find(user_folder() / "cameras") != std::string::npos;
+    });
 }
 
 TEST(CaptureThread, SaysWhyACameraDoesNotOpen) {

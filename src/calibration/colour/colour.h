@@ -77,6 +77,8 @@ struct LiveResult {
     /// Photographs that it was made of, of those that were recorded: role and file of each.
     std::vector<std::pair<std::string, std::string>> kept;
     double capture_seconds = 0.0, solve_seconds = 0.0;
+    /// Of capture_seconds, within the camera's and the projector's ports; 0: nobody looked.
+    double camera_seconds = 0.0, projector_seconds = 0.0;
     int colour_photographs = 0, latency_photographs = 0;
 };
 /// Whether the photographs are taken now (their latency and exposure are found first, what fails is

@@ -26,7 +26,8 @@ using Doing = CaptureView::Doing;
 constexpr double kBetweenListings_s = 3.0;
 
 bool is_busy(const CaptureView& view) {
-    return view.doing == Doing::preflight || view.doing == Doing::capturing;
+    return view.doing == Doing::preflight || view.doing == Doing::fitting ||
+           view.doing == Doing::capturing;
 }
 
 void list_what_there_is(Shell& shell) {
@@ -103,6 +104,25 @@ void ask_for_folder(Shell& shell) {
     shell.studio.file_dialog->ask(std::move(question));
 }
 
+/// In the camera's own words; a list where it can be set from here.
+void draw_setting(CaptureThread& capture, const CameraSetting& setting) {
+    if (!setting.can_be_set || setting.choices.empty()) {
+        dim_text(fmt::format("{}: {}.", setting.name, setting.value));
+        return;
+    }
+    ImGui::SetNextItemWidth(em(9.0f));
+    if (ImGui::BeginCombo(
+            setting.name.c_str(), setting.value.c_str(), ImGuiComboFlags_HeightLarge)) {
+        for (const std::string& choice : setting.choices) {
+            if (ImGui::Selectable(choice.c_str(), choice == setting.value))
+                capture.set(setting.name, choice);
+            name_last_item("camera-" + setting.name + ":" + choice);
+        }
+        ImGui::EndCombo();
+    }
+    name_last_item("camera-" + setting.name);
+}
+
 void draw_cameras(Shell& shell) {
     CapturePanelState& state = *shell.studio.panels.capture;
     heading("Camera");
@@ -137,10 +157,11 @@ void draw_cameras(Shell& shell) {
     const CaptureView& view = state.view;
     if (view.doing == Doing::opening) dim_text("Being opened…");
     if (view.camera.empty()) return;
-    std::string facts = sentence(view.camera);
-    for (const CameraSetting& setting : view.settings)
-        facts += fmt::format(" {}: {}.", setting.name, setting.value);
-    dim_text(facts);
+    dim_text(sentence(view.camera));
+    begin_disabled(is_busy(state.view));
+    for (const CameraSetting& setting : view.settings) draw_setting(*shell.studio.capture, setting);
+    end_disabled();
+    if (!view.curve.empty()) dim_text("Its 8-bit files are read with " + view.curve + ".");
     for (const std::string& warning : view.warnings) warning_text(sentence(warning));
 }
 
@@ -230,6 +251,14 @@ void draw_start(Shell& shell, bool can_show) {
         tooltip(
             "Finds in half a minute what would spoil a capture: a scaled picture, dynamic modes, "
             "focus, room light, flicker.");
+        if (view.may_have_curve) {
+            if (ImGui::Button("Fit the camera's curve", {-FLT_MIN, 0.0f}))
+                capture.start_curve_fit();
+            name_last_item("fit-curve");
+            tooltip(
+                "For a camera that gives no RAW: photographs white at other exposures and finds "
+                "what its numbers mean. Kept for the next time.");
+        }
     }
     const char* start = view.can_go_on && !by_hand ? "Go on with the capture" : "Start the capture";
     if (ImGui::Button(start, {-FLT_MIN, em(2.4f)})) capture.start_capture(!view.can_go_on);

@@ -78,6 +78,8 @@ const char* name_of(CaptureView::Doing doing) {
             return "watching";
         case CaptureView::Doing::preflight:
             return "preflight";
+        case CaptureView::Doing::fitting:
+            return "fitting";
         case CaptureView::Doing::capturing:
             return "capturing";
     }
