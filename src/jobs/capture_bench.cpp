@@ -95,6 +95,19 @@ std::string text_of(const CameraChoice& choice) {
     throw std::invalid_argument("unknown kind of camera");
 }
 
+CameraChoice camera_at_address(const std::string& address) {
+    const auto follows = [&](const std::string& beginning) {
+        return address.starts_with(beginning) && address.size() > beginning.size();
+    };
+    if (follows("ptpip:")) return {CameraChoice::Kind::tethered, address};
+    for (const char* video : {"http://", "https://", "rtsp://"})
+        if (follows(video)) return {CameraChoice::Kind::video, address};
+    throw std::invalid_argument(fmt::format(
+        "address of a camera: found \"{}\", expected ptpip:HOST of a still camera, or http://… or "
+        "rtsp://… of a network camera",
+        address));
+}
+
 std::vector<ListedCamera> list_cameras() {
     std::vector<ListedCamera> cameras;
     for (const FoundCamera& found : list_tethered_cameras()) {

@@ -26,6 +26,10 @@ struct CameraChoice {
 /// Throws std::invalid_argument that says what there is.
 CameraChoice parse_camera_choice(const std::string& text);
 std::string text_of(const CameraChoice& choice);
+/// Of a camera that no list can name, its address as people know it: "ptpip:HOST" or
+/// "ptpip:HOST:PORT" of a still camera, "http://..." or "rtsp://..." of a network camera's video.
+/// Throws std::invalid_argument that says what there is.
+CameraChoice camera_at_address(const std::string& address);
 
 /// A camera that could be chosen now.
 struct ListedCamera {

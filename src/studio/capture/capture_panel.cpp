@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cfloat>
+#include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
@@ -93,6 +94,16 @@ void choose(Shell& shell, const CameraChoice& choice) {
     shell.studio.capture->use(setup_of(shell, choice));
 }
 
+void connect(Shell& shell) {
+    CapturePanelState& state = *shell.studio.panels.capture;
+    state.address_problem.clear();
+    try {
+        choose(shell, camera_at_address(state.address));
+    } catch (const std::invalid_argument& error) {
+        state.address_problem = error.what();
+    }
+}
+
 void ask_for_folder(Shell& shell) {
     FileQuestion question;
     question.kind = FileQuestion::Kind::folder;
@@ -144,15 +155,19 @@ void draw_cameras(Shell& shell) {
     }
     name_last_item("camera");
     ImGui::SetNextItemWidth(-button_width("Connect") - ImGui::GetStyle().ItemSpacing.x);
-    const bool entered =
-        ImGui::InputText("##address", &state.address, ImGuiInputTextFlags_EnterReturnsTrue);
+    const bool entered = ImGui::InputTextWithHint("##address",
+                                                  "on the network: ptpip:… or http://…",
+                                                  &state.address,
+                                                  ImGuiInputTextFlags_EnterReturnsTrue);
     name_last_item("camera-address");
-    tooltip("A network camera: the address of its video, http://… or rtsp://…");
+    tooltip(
+        "A camera on the network. A still camera (PTP/IP): ptpip:HOST or ptpip:HOST:PORT. A "
+        "network camera: the address of its video, http://… or rtsp://…");
     ImGui::SameLine();
-    if ((ImGui::Button("Connect") || entered) && state.address.size() > 7)
-        choose(shell, {CameraChoice::Kind::video, state.address});
+    if (ImGui::Button("Connect") || entered) connect(shell);
     name_last_item("camera-connect");
     end_disabled();
+    if (!state.address_problem.empty()) warning_text(sentence(state.address_problem));
     if (!state.problem.empty()) warning_text(state.problem);
     const CaptureView& view = state.view;
     if (view.doing == Doing::opening) dim_text("Being opened…");

@@ -20,7 +20,8 @@ struct CapturePanelState {
     std::string problem;  ///< why they could not be listed
     double listed_at_s = -1.0;
     std::optional<CameraChoice> chosen;
-    std::string address = "http://";      ///< of a network camera, being typed
+    std::string address;                  ///< of a camera on the network, being typed
+    std::string address_problem;          ///< why it is none
     bool keeps_pose = true;               ///< the projector stands where the calibration has it
     std::optional<std::size_t> selected;  ///< a tile
     bool was_busy = false;

@@ -86,6 +86,12 @@ const char* name_of(CaptureView::Doing doing) {
     return "nothing";
 }
 
+/// What the capture's column tells of a trouble.
+std::string words_of(const CapturePanelState& capture) {
+    if (!capture.address_problem.empty()) return capture.address_problem;
+    return capture.view.why.empty() ? capture.view.wait.why : capture.view.why;
+}
+
 const std::string* find(const Workspace& workspace, const std::string& name) {
     const auto found = workspace.find(name);
     return found == workspace.end() ? nullptr : &found->second;
@@ -200,6 +206,7 @@ MapState state_of_shell(const Shell& shell) {
     state["new_session_says"] = quoted(shell.new_session ? shell.new_session->problem : "");
     state["capture"] =
         quoted(shell.capture_open ? name_of(studio.panels.capture->view.doing) : "closed");
+    state["capture_says"] = quoted(words_of(*studio.panels.capture));
     state["scale"] = fmt::format("{:.3f}", studio.ui_scale);
     Json notices = Json::array();
     for (const Notice& notice : studio.notices) notices.push_back(notice.what);
