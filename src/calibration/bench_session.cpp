@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -15,7 +17,11 @@ namespace livery {
 namespace {
 
 constexpr double kTargetPeak = 0.80, kHighestPeak = 0.85, kLowestPeak = 0.60;
+constexpr double kDarkestPeak = 0.20;  // usable where nothing better can be set
+constexpr double kClippedPeak = 0.97;  // says nothing of how much too bright it is
 constexpr double kOtherExposure = 0.01;
+constexpr double kStep = 1.3;    // a little more than a third of a stop
+constexpr int kMostInVain = 3;   // by then it was asked for more than a stop
 constexpr double kMixed = 0.02;  // of white: an eighth of a photograph, or a lamp that flickers
 constexpr int kMostLatency = 6;
 constexpr double kProjectorFrame_s = 1.0 / 60.0;
@@ -202,11 +208,21 @@ void BenchSession::meet(int width, int height) {
     find_lit();
     const bool knows_full_scale = std::isfinite(white_.saturates_at);
     double peak = knows_full_scale ? white_peak() : kTargetPeak;
+    std::set<double> met_before;  // exposures
+    double too_long_s = std::numeric_limits<double>::infinity();
+    int in_vain = 0;  // how often in a row it was asked for another and kept its own
     for (int round = 0; knows_full_scale && round < 16; ++round) {
         const double before = exposure_s_;
-        if (peak > kHighestPeak || peak < kLowestPeak)
-            exposure_s_ *=
-                peak >= 0.97 ? 0.25 : std::clamp(kTargetPeak / std::max(peak, 1e-3), 0.1, 16.0);
+        met_before.insert(white_.exposure_s);
+        if (peak > kHighestPeak) too_long_s = std::min(too_long_s, white_.exposure_s);
+        if (peak > kHighestPeak || peak < kLowestPeak) {
+            exposure_s_ *= peak >= kClippedPeak
+                               ? 0.25
+                               : std::clamp(kTargetPeak / std::max(peak, 1e-3), 0.1, 16.0);
+            exposure_s_ *= std::pow(peak > kTargetPeak ? 1.0 / kStep : kStep, in_vain);
+            if (peak < kLowestPeak)  // not back to where it was too bright
+                exposure_s_ = std::min(exposure_s_, std::sqrt(white_.exposure_s * too_long_s));
+        }
         exposure_s_ = whole_frames(exposure_s_);
         if (exposure_s_ == before) break;
         const double kept_s = white_.exposure_s, mean = lit_mean(white_);
@@ -217,12 +233,17 @@ void BenchSession::meet(int width, int height) {
         if (mean < 0.9 * (white_.saturates_at - white_.black_level) &&
             sets_its_own(white_.exposure_s / kept_s, lit_mean(white_) / mean))
             refuse_own_exposure(kept_s, white_.exposure_s);
-        if (white_.exposure_s == kept_s) {  // whatever it is asked for
-            exposure_s_ = kept_s;
-            break;
-        }
+        // A shutter has steps and goes to the nearest, which may be the one before. Other cameras
+        // keep theirs whatever is asked.
+        in_vain = white_.exposure_s == kept_s ? in_vain + 1 : 0;
+        if (in_vain > 0) exposure_s_ = kept_s;
+        const bool fits = peak >= kLowestPeak && peak <= kHighestPeak;
+        if (in_vain > kMostInVain || (in_vain > 0 && fits)) break;
+        // Full stops: too dark again, between which and too bright there is none.
+        const bool again = in_vain == 0 && met_before.count(white_.exposure_s) > 0;
+        if (again && peak >= kDarkestPeak && peak < kLowestPeak) break;
     }
-    if (peak > kHighestPeak || peak < 0.2)
+    if (peak > kHighestPeak || peak < kDarkestPeak)
         throw Refused(
             "no exposure brings white on the mock-up near 80% of full scale; the last, " +
                 seconds(white_.exposure_s) + ", gave " + percent(peak),

@@ -22,6 +22,7 @@ struct LiveBench {
     glm::dmat3 xyz_from_camera{0.4, 0.2, 0.02, 0.3, 0.7, 0.1, 0.2, 0.1, 0.9};
     int latency = 0;
     double drift_per_photograph = 0.0;
+    double steps_per_stop = 0.0;  ///< of its shutter; 0: any time
     bool frozen = false;
     std::function<void(int photograph, int& latency)> before_photograph = [](int, int&) {};
 
@@ -51,7 +52,7 @@ struct LiveBench {
         };
         p.photograph = [this](double exposure_s) {
             before_photograph(photographs, late);
-            if (exposure_s > 0.0) bench.exposure_s = exposure_s;
+            if (exposure_s > 0.0) bench.exposure_s = nearest_time_s(exposure_s);
             const Photograph photo = bench.photograph(visible);
             if (late > 0 && --late == 0 && !frozen) visible = pending;
             ++photographs;
@@ -64,6 +65,10 @@ struct LiveBench {
             return xyz_from_camera * bench.camera_colour({d[0], d[1], d[2]}, place);
         };
         return p;
+    }
+    double nearest_time_s(double exposure_s) const {
+        if (steps_per_stop == 0.0) return exposure_s;
+        return std::exp2(std::round(steps_per_stop * std::log2(exposure_s)) / steps_per_stop);
     }
     LiveResult run(int shots = 1, const Progress& progress = {}) {
         LiveOptions options;
@@ -119,6 +124,24 @@ TEST(CalibrateLive, FindsExposureFromFarTooDarkAndFarTooBright) {
         EXPECT_GT(result.calibration.valid_fraction, 0.9) << start;
         EXPECT_NEAR(result.captures[0].photograph.exposure_s, 0.1, 0.02) << start;
     }
+}
+
+TEST(CalibrateLive, FindsExposureAmongTheStepsOfAShutter) {
+    constexpr int kBetweenStops = 5;
+    for (const double steps_per_stop : {3.0, 2.0, 1.0})
+        for (int k = 0; k < kBetweenStops; ++k) {
+            SCOPED_TRACE(::testing::Message() << steps_per_stop << " a stop, place " << k);
+            LiveBench live;
+            live.steps_per_stop = steps_per_stop;
+            live.bench.exposure_s = live.nearest_time_s(0.013);
+            live.bench.file_units_per_light *= std::exp2(k / static_cast<double>(kBetweenStops));
+            const LiveResult result = live.run();
+            float peak = 0.0f;
+            for (const float v : result.captures[1].photograph.image.values)
+                peak = std::max(peak, v);
+            EXPECT_LT((peak - 256.0) / 16000.0, 0.86);
+            EXPECT_GT((peak - 256.0) / 16000.0, steps_per_stop == 1.0 ? 0.4 : 0.59);
+        }
 }
 
 TEST(CalibrateLive, WaitsForALateProjector) {
