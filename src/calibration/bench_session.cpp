@@ -10,6 +10,7 @@
 #include "calibration/captures/capture_evidence.h"
 #include "calibration/captures/mockup_light.h"
 #include "calibration/colour/colour_report.h"
+#include "calibration/nothing_shown.h"
 #include "core/error.h"
 #include "core/statistics.h"
 
@@ -199,10 +200,11 @@ void BenchSession::meet(int width, int height) {
         throw FileError("camera", "exposure_s", std::to_string(exposure_s_), "a positive time");
     for (int longer = 0; !see_white(width, height); ++longer, exposure_s_ *= 8.0)
         if (longer == 5)
-            throw Refused(
+            throw NothingShown(
                 "the camera sees no light of the projector",
-                "switch the projector on, open the lens, aim the camera at the mock-up, and check "
-                "that pictures go to the projector's screen");
+                "switch the projector on or wake it, open the lens, aim the camera at the mock-up, "
+                "and check that pictures go to the projector's screen",
+                NothingShown::kAll);
 
     // Exposure: by photographs of white, until its peak fits
     find_lit();
@@ -227,6 +229,7 @@ void BenchSession::meet(int width, int height) {
         if (exposure_s_ == before) break;
         const double kept_s = white_.exposure_s, mean = lit_mean(white_);
         white_ = photograph("white");
+        expect_light(white_, kept_s, mean);
         find_lit();
         peak = white_peak();
         // Where all of it is at full scale it cannot become brighter.
@@ -254,6 +257,15 @@ void BenchSession::meet(int width, int height) {
     met_s_ = white_.exposure_s;
 }
 
+/// White, on the pixels that were lit by it before, against what they were then.
+void BenchSession::expect_light(const Photograph& white, double before_s, double before) const {
+    if (lit_mean(white) > 0.05 * std::min(1.0, white.exposure_s / before_s) * before) return;
+    throw NothingShown("the camera saw the projector's white and sees no light of it any more",
+                       "the projector went off, asleep or to another picture, or something stands "
+                       "before it: keep its screen on",
+                       1);
+}
+
 void BenchSession::refuse_own_exposure(double before_s, double after_s) {
     throw Refused("automatic exposure: white is as bright at " + seconds(after_s) + " as at " +
                       seconds(before_s) + ", so that the camera sets exposure or ISO by itself",
@@ -266,6 +278,7 @@ void BenchSession::refuse_curved_files() {
     exposure_s_ = 0.5 * exposure_s;
     const Photograph half = photograph("white at half the exposure");
     exposure_s_ = exposure_s;
+    expect_light(half, white_.exposure_s, lit_mean(white_));
     const double asked = half.exposure_s / white_.exposure_s;
     if (!(asked < 0.7)) return;  // the camera keeps its exposure: nothing to compare
     std::vector<float> ratio;
@@ -292,7 +305,9 @@ void BenchSession::refuse_curved_files() {
 }
 
 bool BenchSession::differs(const Photograph& a, const Photograph& b) const {
-    // A tenth of the lit pixels by a tenth of what white gives
+    // A tenth of the lit pixels by a tenth of their light, and by more than two dark photographs
+    // differ: three channels of 1.7 times the noise of their mean each
+    const float noise = 15.0f * static_cast<float>(noise_);
     std::size_t changed = 0;
     for (const std::uint32_t i : lit_) {
         float difference = 0.0f, sum = 0.0f;
@@ -302,7 +317,7 @@ bool BenchSession::differs(const Photograph& a, const Photograph& b) const {
             sum += std::abs(a.image.values[k] - static_cast<float>(a.black_level)) +
                    std::abs(b.image.values[k] - static_cast<float>(b.black_level));
         }
-        changed += difference > 0.1f * sum;
+        changed += difference > std::max(0.1f * sum, noise);
     }
     return static_cast<double>(changed) > 0.1 * static_cast<double>(lit_.size());
 }
@@ -316,10 +331,12 @@ Photograph BenchSession::take(const Image8& drive, const std::string& name, bool
     before.black_level = photo.black_level;
     for (int retry = 0; compared_to_last && !differs(photo, before); ++retry) {
         if (retry == kMostLatency)
-            throw Refused("the photograph of " + name + " shows no change from the picture before",
-                          "the projector's picture did not arrive: check that its screen is not "
-                          "frozen, asleep or mirrored from another, and that projector and camera "
-                          "are in focus");
+            // The one before may have been the last that changed: from a picture to no light.
+            throw NothingShown(
+                "the photograph of " + name + " shows no change from the picture before",
+                "the projector's picture did not arrive: check that its screen is not frozen, "
+                "asleep or mirrored from another, and that projector and camera are in focus",
+                2);
         photo = photograph(name);
     }
     last_ = photo.image;

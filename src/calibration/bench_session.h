@@ -19,13 +19,13 @@ class BenchSession {
     BenchSession(const BenchPorts& ports, const Progress& progress, int expected_photographs);
 
     /// Finds how many photographs still see the picture before, and the exposure at which white
-    /// peaks at about 80% of full scale (at most 85%) in every channel. Throws Refused when no
-    /// light of the projector reaches the camera, no exposure fits, the camera sets its own, or its
-    /// numbers are not proportional to light.
+    /// peaks at about 80% of full scale (at most 85%) in every channel. Throws NothingShown
+    /// when no light of the projector reaches the camera, Refused when no exposure fits, the camera
+    /// sets its own, or its numbers are not proportional to light.
     void meet(int width, int height);
 
     /// Shows and photographs. Where `compared_to_last`, the photograph must differ from the one
-    /// before on the lit pixels; it is repeated some times, then refused.
+    /// before on the lit pixels; it is repeated some times, then refused (NothingShown).
     Photograph take(const Image8& drive, const std::string& name, bool compared_to_last = true);
 
     /// One more of what is shown.
@@ -54,6 +54,7 @@ class BenchSession {
     void find_lit();
     double white_peak() const;
     double lit_mean(const Photograph& photo) const;
+    void expect_light(const Photograph& white, double before_s, double before) const;
     static bool sets_its_own(double asked, double found);
     [[noreturn]] static void refuse_own_exposure(double before_s, double after_s);
     bool differs(const Photograph& a, const Photograph& b) const;

@@ -67,6 +67,9 @@ class Recording {
                         const std::vector<std::pair<std::string, std::string>>& kept);
     /// The next run photographs this one anew. Throws std::invalid_argument.
     void take_again(std::size_t showing);
+    /// Forgets the photographs of so many pictures of the run, from the one that is shown back:
+    /// nobody knows what they are of. Throws FileError.
+    void drop_newest(int pictures);
     /// Forgets the photograph that was taken last by this object's run, if any: what it showed is
     /// taken again. Throws FileError.
     void drop_last();
@@ -96,6 +99,7 @@ class Recording {
     BenchPorts bench_;
     mutable std::mutex mutex_;  ///< held to change showings_
     std::vector<RecordedShowing> showings_;
+    std::vector<std::size_t> places_;   ///< of the run's showings so far, ascending
     std::optional<std::size_t> place_;  ///< of the showing now; none: nothing is shown yet
     Image8 drive_;                      ///< what the run takes to be shown
     std::string shown_;                 ///< what really is: a hash; empty: nothing is known

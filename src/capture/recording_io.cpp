@@ -145,6 +145,7 @@ BenchPorts Recording::ports(const BenchPorts& bench) {
     check_argument(!bench.turn_to, "photographs that lie in a folder are not recorded again");
     bench_ = bench;
     place_.reset();
+    places_.clear();
     shown_.clear();
     last_taken_.clear();
     BenchPorts ports;
@@ -169,6 +170,7 @@ void Recording::turn_to(const std::string& picture) {
                          RecordedShowing{picture, {}, {}});
     }
     place_ = found;
+    places_.push_back(found);
     next_ = measured_ = 0;
 }
 
@@ -269,6 +271,21 @@ void Recording::drop_last() {
             std::erase_if(showing.photographs, [&](const RecordedPhotograph& photograph) {
                 return photograph.file == last_taken_;
             });
+        }
+    }
+    last_taken_.clear();
+    write([] {});
+    flush();
+}
+
+void Recording::drop_newest(int pictures) {
+    flush();
+    {
+        const std::lock_guard lock(mutex_);
+        for (; pictures > 0 && !places_.empty(); --pictures) {
+            showings_[places_.back()].photographs.clear();
+            showings_[places_.back()].measured.clear();
+            places_.pop_back();
         }
     }
     last_taken_.clear();

@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "calibration/nothing_shown.h"
 #include "capture/camera.h"
 
 namespace livery {
@@ -45,6 +46,9 @@ LiveResult calibrate_recorded(Recording& recording,
         return result;
     } catch (const CameraFault&) {
         recording.flush();  // There is no photograph to blame.
+        throw;
+    } catch (const NothingShown& nothing) {
+        recording.drop_newest(nothing.pictures());
         throw;
     } catch (const Refused&) {
         recording.drop_last();

@@ -12,6 +12,7 @@
 #include "capture/patient_camera.h"
 #include "capture/tethered_camera.h"
 #include "capture/video_camera.h"
+#include "core/random.h"
 #include "jobs/camera_curve.h"
 #include "jobs/capture_bench.h"
 #include "jobs/capture_run.h"
@@ -31,6 +32,8 @@ namespace {
 using testing::judged;
 using testing::live_options;
 using testing::MjpegServer;
+using testing::Refusal;
+using testing::refusal_of;
 using testing::small_bench_description;
 using testing::small_bench_product;
 
@@ -132,17 +135,10 @@ TEST(Cameras, ATetheredCameraCalibratesAsTheBenchDoes) {
     const BenchPorts on_bench = bench.ports();
     on_bench.show(Image8(description.projector.view.width, description.projector.view.height, 3));
     std::mutex mutex;
-    // Each of the bench's pixels as a square of the sensor's colour filter
     testing::PtpIpCamera responder([&](const testing::PtpSettings& settings) {
         const std::lock_guard lock(mutex);
         const Photograph seen = on_bench.photograph(settings.exposure_s);
-        const auto sample = [&](int x, int y) {
-            const int channel = x % 2 != y % 2 ? 1 : x % 2 == 1 ? 2 : 0;
-            return static_cast<std::uint16_t>(4.0f * seen.image.at(x / 2, y / 2, channel));
-        };
-        return testing::PtpPicture{
-            "IMG_0001.DNG",
-            testing::dng_of(2 * seen.image.width, 2 * seen.image.height, 4096, sample)};
+        return testing::PtpPicture{"IMG_0001.DNG", testing::dng_of(seen)};
     });
     TetheredOptions options;
     options.port = responder.port();
@@ -286,6 +282,44 @@ TEST(Cameras, ACaptureThatWasKilledGoesOnWhereItStopped) {
         const Comparison& seen = judged(room.bench, room.run(recording)).comparison;
         EXPECT_EQ(recording.answered(), killed_at) << "at most the one under way is lost";
         EXPECT_LT(seen.interior.median, 0.4) << killed_at;
+    }
+}
+
+TEST(Cameras, AProjectorThatFellAsleepIsSaidAndNothingOfItsSleepIsKept) {
+    for (const int asleep_from : {4, 12, 31, 50}) {
+        SCOPED_TRACE(asleep_from);
+        const TemporaryFolder folder;
+        Interrupted room;
+        const CameraDescription& camera = room.description.camera;
+        Random noise(static_cast<std::uint64_t>(asleep_from));
+        bool asleep = false;
+        room.happens = [&](Photograph& photograph, int number) {
+            asleep = asleep || number == asleep_from;
+            if (!asleep) return;
+            // A dark room
+            for (float& value : photograph.image.values)
+                value = static_cast<float>(camera.black_level_units +
+                                           camera.read_noise_units * noise.normal());
+        };
+        int taken = 0;
+        {
+            Recording recording(folder.path(), "bench");
+            const Refusal refusal = refusal_of([&] { room.run(recording); });
+            EXPECT_TRUE(refusal.why.find("shows no change") != std::string::npos ||
+                        refusal.why.find("sees no light") != std::string::npos)
+                << refusal.why;
+            EXPECT_NE(refusal.fix.find("projector"), std::string::npos) << refusal.fix;
+            taken = recording.taken();
+        }
+        room.happens = [](Photograph&, int) {};
+        Recording recording(folder.path(), "bench");
+        const Comparison& seen = judged(room.bench, room.run(recording)).comparison;
+        std::printf("    asleep from %d: %d taken, then %d kept and %d taken\n",
+                    asleep_from,
+                    taken,
+                    recording.answered(),
+                    recording.taken());
+        EXPECT_LT(seen.interior.median, 0.4);
     }
 }
 

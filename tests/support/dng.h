@@ -8,6 +8,8 @@
 #include <tuple>
 #include <vector>
 
+#include "core/bench_ports.h"
+
 namespace livery::testing {
 
 inline std::string little_endian(std::uint32_t value, int bytes) {
@@ -92,6 +94,19 @@ inline std::string dng_of(int width,
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) file += little_endian(sample(x, y), 2);
     return file;
+}
+
+/// What the simulated bench's camera saw, each of its pixels as a square of a sensor's colour
+/// filter with four times the values.
+inline std::string dng_of(const Photograph& seen) {
+    const auto sample = [&](int x, int y) {
+        const int channel = x % 2 != y % 2 ? 1 : x % 2 == 1 ? 2 : 0;
+        return static_cast<std::uint16_t>(4.0f * seen.image.at(x / 2, y / 2, channel));
+    };
+    return dng_of(2 * seen.image.width,
+                  2 * seen.image.height,
+                  static_cast<std::uint32_t>(4.0 * seen.black_level),
+                  sample);
 }
 
 }  // namespace livery::testing
