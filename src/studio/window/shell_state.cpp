@@ -207,6 +207,10 @@ MapState state_of_shell(const Shell& shell) {
     state["capture"] =
         quoted(shell.capture_open ? name_of(studio.panels.capture->view.doing) : "closed");
     state["capture_says"] = quoted(words_of(*studio.panels.capture));
+    Json preflight = Json::object();
+    for (const GradedFigure& figure : studio.panels.capture->view.figures)
+        preflight[figure.name] = to_string(figure.grade);
+    state["preflight"] = preflight.dump();
     state["scale"] = fmt::format("{:.3f}", studio.ui_scale);
     Json notices = Json::array();
     for (const Notice& notice : studio.notices) notices.push_back(notice.what);

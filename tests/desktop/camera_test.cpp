@@ -1,0 +1,267 @@
+// The window's capture with a still camera that photographs what stands on the projector's monitor.
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "core/json.h"
+#include "desktop/two_monitors.h"
+#include "jobs/bench_calibration.h"
+#include "live/projector_setup.h"
+#include "scene/mockup_mask.h"
+#include "session/commands.h"
+#include "session/session.h"
+#include "session/small_session.h"
+#include "support/monitor_bench.h"
+
+namespace livery {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::MonitorBench;
+using testing::PtpMishap;
+using testing::small_bench_description;
+using testing::small_bench_product;
+using testing::smooth_colours;
+
+constexpr auto patience = 60s;
+constexpr int most_of_a_picture = 2;  ///< photographs of it
+constexpr int settling = 6;           ///< photographs of a picture that is shown anew
+
+const BenchDescription& description() {
+    static const BenchDescription small = small_bench_description();
+    return small;
+}
+
+BenchCalibrationRequest request() {
+    BenchCalibrationRequest request;
+    request.made_with = "the bench directly";
+    request.product = small_bench_product();
+    request.projector = description().projector.view;
+    request.width = request.projector->width;
+    request.height = request.projector->height;
+    return request;
+}
+
+/// Two that differ in their noise.
+struct DirectCalibrations {
+    ColourCalibration first, again;
+};
+const DirectCalibrations& directly() {
+    static const DirectCalibrations made = [] {
+        Bench bench(description(), small_bench_product());
+        BenchPorts ports = bench.ports();
+        ports.measure_xyz = {};  // Nobody in the window has a colorimeter either.
+        const auto calibrate = [&] {
+            return calibrate_through_ports(ports, request(), {}).calibration;
+        };
+        DirectCalibrations calibrations{calibrate(), {}};
+        calibrations.again = calibrate();
+        return calibrations;
+    }();
+    return made;
+}
+
+class CameraBeforeMonitor : public TwoMonitors {
+  protected:
+    /// A session that was calibrated on the bench directly, the small projector picked.
+    void SetUp() override {
+        auto running = std::make_shared<RunningStudio>();
+        home_ = running->folder / "home";
+        ::setenv("LIVERY_HOME", home_.c_str(), 1);
+        ::setenv("HOME", home_.c_str(), 1);  // libgphoto2 writes there
+        Session session = Session::open(running->session_file());
+        session.execute(SetQuality{Quality::draft});
+        session.execute(
+            SetCalibration{keep_calibration(directly().first, request().projector).string()});
+        running->document = session.document();
+        DesktopOptions options;
+        options.projector_px = {request().width, request().height};
+        running->desktop = std::make_unique<Desktop>(options);
+        use(running);
+        room = std::make_unique<MonitorBench>(*desktop, description(), small_bench_product());
+    }
+    void TearDown() override {
+        if (HasFailure() && program)
+            std::printf("%s\n%s\n",
+                        saved(desktop->read(desktop->operator_area()), "operator").c_str(),
+                        program->words().c_str());
+        ::unsetenv("LIVERY_HOME");
+    }
+
+    /// Opens the capture and connects to the camera by its address.
+    void connect() {
+        program->click("menu:Projector");
+        program->click("menu:capture");
+        program->click("camera-address");
+        program->press_key("ctrl+a");
+        desktop->type(room->camera().port());
+        program->click("camera-connect");
+        program->wait_for_state("capture", "watching");
+    }
+    std::string says() { return program->state("capture_says").get<std::string>(); }
+    /// Waits until the column says something with these words in it.
+    ::testing::AssertionResult says(const std::string& words) {
+        std::string said;
+        const bool right = wait_until(
+            [&] {
+                said = says();
+                return said.find(words) != std::string::npos;
+            },
+            patience);
+        if (right) return ::testing::AssertionSuccess();
+        return ::testing::AssertionFailure() << "it says \"" << said << "\", not " << words;
+    }
+    bool photographed(int count) {
+        return wait_until([&] { return room->camera().photographs() >= count; }, patience);
+    }
+    /// Photographs of the capture that are on the disk.
+    int kept() const {
+        const Json recording = read_json_file(home_ / "captures" / "last" / "recording.json");
+        std::size_t count = 0;
+        for (const Json& showing : recording["showings"]) count += showing["photographs"].size();
+        return static_cast<int>(count);
+    }
+
+    /// CIEDE2000 between what an observer sees of colours on the mock-up that are corrected
+    /// with this calibration and with the one that was made on the bench directly.
+    ErrorStatistics difference(const ColourCalibration& calibration) const {
+        const Image8 mockup = mockup_mask(request().product->mesh, *request().projector);
+        ImageF wanted = smooth_colours(mockup.width, mockup.height, 7);
+        for (std::size_t i = 0; i < mockup.values.size(); ++i)
+            wanted.values[4 * i + 3] = mockup.values[i] ? 1.0f : 0.0f;
+        const Bench& bench = room->bench();
+        ComparisonMasks masks{bench.truth().lit,
+                              bench.truth().edge,
+                              mockup,
+                              Image8(mockup.width, mockup.height, 1, 255)};
+        const auto seen = [&](const ColourCalibration& one) {
+            for (std::size_t i = 0; i < mockup.values.size(); ++i)
+                if (!is_valid(static_cast<PixelStatus>(one.status.values[i])))
+                    masks.valid.values[i] = 0;
+            const double white_y = design_white_luminance(one, 20.0, mockup);
+            return bench.observe_xyz(compensate(bake(one, white_y), wanted));
+        };
+        const ImageF of_direct = seen(directly().first), of_this = seen(calibration);
+        float white_y = 0.0f;
+        for (std::size_t i = 0; i < mockup.values.size(); ++i)
+            white_y = std::max(white_y, of_direct.values[3 * i + 1]);
+        const Comparison comparison =
+            compare_xyz(of_direct, of_this, static_cast<double>(white_y) * d65_xyz(), masks);
+        EXPECT_GT(comparison.interior.pixels, 1000u);
+        return comparison.interior;
+    }
+
+    /// Waits for the end of the capture; its calibration is then the session's, and corrects as
+    /// well as that of the bench itself.
+    void expect_as_direct() {
+        const std::string before = document.calibration;
+        ASSERT_TRUE(wait_until([&] { return program->has_item("capture-finished"); }, patience))
+            << says();
+        ASSERT_TRUE(wait_until([&] { return program->state("calibration") != before; }, patience));
+        document.calibration = program->state("calibration").get<std::string>();
+        EXPECT_EQ(says(), "");
+        const ColourCalibration captured = read_calibration(document.calibration);
+        const ErrorStatistics noise = difference(directly().again), seen = difference(captured);
+        std::printf(
+            "    CIEDE2000 from the bench directly: mean %.4f, p95 %.4f; of its noise %.4f, %.4f\n",
+            seen.mean,
+            seen.p95,
+            noise.mean,
+            noise.p95);
+        // Besides the noise: the nearest shutter speed, which is a shorter one
+        EXPECT_LT(seen.mean, 2.0 * noise.mean);
+    }
+
+    std::unique_ptr<MonitorBench> room;
+
+  private:
+    std::filesystem::path home_;
+};
+
+TEST_F(CameraBeforeMonitor, CalibratesAsTheBenchDoes) {
+    start_program();
+    pick_projector();
+    connect();
+    program->click("preflight");
+    ASSERT_TRUE(photographed(15));
+    program->wait_for_state("capture", "watching");
+    EXPECT_EQ(says(), "");
+    const nlohmann::json preflight = program->state("preflight");
+    EXPECT_GT(preflight.size(), 8u);
+    for (const auto& [line, grade] : preflight.items()) EXPECT_NE(grade, "Bad") << line;
+
+    const int before = room->camera().photographs();
+    const double shutter_s = room->shutter_s();
+    const auto start = std::chrono::steady_clock::now();
+    program->click("capture-start");
+    expect_as_direct();
+    EXPECT_EQ(room->camera().on_card(), 0u);
+    std::printf("    %d photographs: %.1f s in the camera, %.1f s from Start to the last\n",
+                room->camera().photographs() - before,
+                room->shutter_s() - shutter_s,
+                std::chrono::duration<double>(room->newest_at() - start).count());
+
+    // The mock-up is lit with it.
+    program->click("capture-close");
+    EXPECT_TRUE(projector_shows(drive_of_place(0)));
+    EXPECT_EQ(program->quit(), 0) << program->words();
+}
+
+TEST_F(CameraBeforeMonitor, WhateverHappensOnTheWayLosesOnePhotographAtMost) {
+    const auto taken = [&] { return room->camera().photographs(); };
+    start_program();
+    pick_projector();
+    connect();
+
+    // Projector in standby from the start, which looks like a lens cap.
+    room->sleep_from(0);
+    program->click("capture-start");
+    EXPECT_TRUE(says("sees no light of the projector"));
+    EXPECT_EQ(kept(), 0) << "nobody knows what they show";
+    room->wake();
+    const int first = taken();
+    program->click("capture-start");
+    ASSERT_TRUE(photographed(first + 24));
+
+    // The cable: goes on by itself
+    room->camera().set(PtpMishap::unplugged);
+    EXPECT_TRUE(says("not there any more"));
+    const int pulled = taken();
+    room->camera().set(PtpMishap::none);
+    ASSERT_TRUE(photographed(pulled + 3));
+    EXPECT_EQ(says(), "");
+
+    // Standby again: the pictures between which nothing changed are lost, not those before.
+    room->sleep_from(taken());
+    const int asleep = taken();
+    EXPECT_TRUE(says("shows no change from the picture before"));
+    program->wait_for_state("capture", "watching");
+    EXPECT_GE(kept(), asleep - first - 1 - 2 * most_of_a_picture);
+    room->wake();
+    const int kept_asleep = kept(), awake = taken();
+    program->click("capture-start");
+    ASSERT_TRUE(photographed(awake + 10));
+
+    program->process().send(SIGKILL);
+    program->process().wait(patience);
+    const int killed = taken(), kept_killed = kept();
+    EXPECT_GE(kept_killed, kept_asleep + killed - awake - 1) << "one at most";
+    start_program();
+    connect();
+    program->click("capture-start");
+    expect_as_direct();
+    EXPECT_LE(taken() - killed, kept() - kept_killed + settling);
+    std::printf("    %d on the disk of %d when it was killed, %d and %d in the end\n",
+                kept_killed,
+                killed,
+                kept(),
+                taken());
+    EXPECT_EQ(program->quit(), 0) << program->words();
+}
+
+}  // namespace
+}  // namespace livery
