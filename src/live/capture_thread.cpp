@@ -283,7 +283,12 @@ void CaptureThread::Implementation::look_at(Recording& recording) {
 
 void CaptureThread::Implementation::finish(const BenchCalibration& made) {
     const auto kept = keep_calibration(made.calibration, request().projector);
-    publish([&](CaptureView& view) { view.finished = kept; });
+    publish([&](CaptureView& view) {
+        view.finished = kept;
+        view.capture_s = made.live.capture_seconds;
+        view.camera_s = made.live.camera_seconds;
+        view.projector_s = made.live.projector_seconds;
+    });
 }
 
 void CaptureThread::Implementation::capture_with_camera(bool anew,

@@ -68,6 +68,9 @@ struct CaptureView {
     std::vector<CaptureTile> tiles;             ///< by showing
     CaptureHistogram histogram;                 ///< of the newest photograph or live view
     int taken = 0, kept_from_before = 0;
+    /// Of the finished capture from its start to the last photograph, and what of it was waiting
+    /// for the camera and for the projector.
+    double capture_s = 0.0, camera_s = 0.0, projector_s = 0.0;
     bool can_go_on = false;                         ///< a capture that was stopped lies there
     std::optional<std::filesystem::path> finished;  ///< the calibration that came of it
 };

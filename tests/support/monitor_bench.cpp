@@ -1,5 +1,6 @@
 #include "support/monitor_bench.h"
 
+#include <chrono>
 #include <stdexcept>
 #include <utility>
 
@@ -41,19 +42,13 @@ PtpPicture MonitorBench::photograph(const PtpSettings& settings) {
         throw std::logic_error("the projector's monitor is not on the screen any more");
     }
     const std::string file = dng_of(ports_.photograph(settings.exposure_s));
-    newest_at_ = Clock::now();
-    shutter_s_ += std::chrono::duration<double>(newest_at_ - start).count();
+    shutter_s_ += std::chrono::duration<double>(Clock::now() - start).count();
     return {fmt::format("IMG_{:04}.DNG", number % 10000), file};
 }
 
 double MonitorBench::shutter_s() const {
     const std::lock_guard lock(mutex_);
     return shutter_s_;
-}
-
-Clock::time_point MonitorBench::newest_at() const {
-    const std::lock_guard lock(mutex_);
-    return newest_at_;
 }
 
 }  // namespace livery::testing

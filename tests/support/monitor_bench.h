@@ -3,7 +3,6 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -31,9 +30,8 @@ class MonitorBench {
     void sleep_from(int photograph) { asleep_from_ = photograph; }
     void wake() { sleep_from(std::numeric_limits<int>::max()); }
 
-    /// Seconds that it has spent making photographs, and when the newest was made.
+    /// Seconds that it has spent making photographs.
     double shutter_s() const;
-    std::chrono::steady_clock::time_point newest_at() const;
 
   private:
     PtpPicture photograph(const PtpSettings& settings);
@@ -46,7 +44,6 @@ class MonitorBench {
     mutable std::mutex mutex_;
     int photographs_ = 0;
     double shutter_s_ = 0.0;
-    std::chrono::steady_clock::time_point newest_at_;
     PtpIpCamera camera_;  ///< last: its threads use all of the above
 };
 

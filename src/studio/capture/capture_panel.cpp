@@ -292,9 +292,17 @@ void draw_start(Shell& shell, bool can_show) {
             dim_text("The other photographs are kept. Choose one in the middle to take it again.");
     }
     if (view.finished) {
-        dim_text(fmt::format("Calibrated: {} photographs taken, {} kept from before.",
-                             view.taken,
-                             view.kept_from_before));
+        std::string text = fmt::format("Calibrated: {} photographs taken, {} kept from before",
+                                       view.taken,
+                                       view.kept_from_before);
+        if (!by_hand)
+            text += fmt::format(
+                ", in {:.1f} s, of which {:.1f} s in the camera and {:.1f} s in "
+                "the projector",
+                view.capture_s,
+                view.camera_s,
+                view.projector_s);
+        dim_text(text + ".");
         name_last_item("capture-finished");
     }
 }

@@ -211,6 +211,9 @@ MapState state_of_shell(const Shell& shell) {
     for (const GradedFigure& figure : studio.panels.capture->view.figures)
         preflight[figure.name] = to_string(figure.grade);
     state["preflight"] = preflight.dump();
+    const CaptureView& capture = studio.panels.capture->view;
+    state["capture_times"] = fmt::format(
+        "[{:.3f}, {:.3f}, {:.3f}]", capture.capture_s, capture.camera_s, capture.projector_s);
     state["scale"] = fmt::format("{:.3f}", studio.ui_scale);
     Json notices = Json::array();
     for (const Notice& notice : studio.notices) notices.push_back(notice.what);
