@@ -195,7 +195,7 @@ void BenchSession::wait_for_all_of_white() {
 
 void BenchSession::meet(int width, int height) {
     exposure_s_ = 0.0;  // the camera's own
-    exposure_s_ = photograph("black").exposure_s;
+    exposure_s_ = photograph("what is there").exposure_s;
     if (!(exposure_s_ > 0.0))
         throw FileError("camera", "exposure_s", std::to_string(exposure_s_), "a positive time");
     for (int longer = 0; !see_white(width, height); ++longer, exposure_s_ *= 8.0)

@@ -183,7 +183,11 @@ std::string programs_with(const std::string& port) {
 /// What a number of libgphoto2 means for somebody who photographs.
 CameraFault fault_of(const std::string& camera, const std::string& port, const GphotoError& error) {
     const auto fault = [&](CameraTrouble trouble, const std::string& why, const char* fix) {
-        return CameraFault(trouble, fmt::format("{}: {} ({})", camera, why, error.what), fix);
+        const bool says_more = error.what != gp_result_as_string(GP_ERROR);
+        return CameraFault(
+            trouble,
+            fmt::format("{}: {}{}", camera, why, says_more ? " (" + error.what + ")" : ""),
+            fix);
     };
     std::string said = error.what;
     std::transform(said.begin(), said.end(), said.begin(), [](unsigned char c) {

@@ -16,8 +16,7 @@ constexpr std::size_t kLookedAt = 60000;
 void normalise(CaptureHistogram& histogram) {
     // What lies in the dark around the mock-up would leave nothing of the rest.
     const float most = *std::max_element(histogram.share.begin() + 1, histogram.share.end());
-    if (most > 0.0f)
-        for (float& share : histogram.share) share = std::min(1.0f, share / most);
+    for (float& share : histogram.share) share = std::min(1.0f, most > 0.0f ? share / most : share);
 }
 
 std::size_t bin_of(double share_of_full_scale) {

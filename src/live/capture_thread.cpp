@@ -183,6 +183,7 @@ void CaptureThread::Implementation::watch() {
         const Image8 seen = bench.camera->live_view();
         if (seen.empty()) {
             worker.use([](CaptureJobs& asked) { asked.watching = false; });
+            publish([](CaptureView& view) { view.has_live_view = false; });
             return;
         }
         const CaptureHistogram histogram = histogram_of(seen);

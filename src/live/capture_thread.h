@@ -53,6 +53,7 @@ struct CaptureView {
     std::string camera;  ///< its name; empty: none is open
     std::vector<CameraSetting> settings;
     std::vector<std::string> warnings;  ///< of the camera
+    bool has_live_view = true;          ///< as far as is known
     bool may_have_curve = false;        ///< its files may be of 8 bits
     std::string curve;                  ///< what they are read with, in words
     double fraction = 0.0;

@@ -28,6 +28,7 @@ using testing::small_bench_product;
 using testing::smooth_colours;
 
 constexpr auto patience = 60s;
+constexpr int pause_ms = 1500;        ///< the pictures before it have long been photographed
 constexpr int most_of_a_picture = 2;  ///< photographs of it
 constexpr int settling = 6;           ///< photographs of a picture that is shown anew
 
@@ -238,6 +239,19 @@ TEST_F(CameraBeforeMonitor, WhateverHappensOnTheWayLosesOnePhotographAtMost) {
     const int pulled = taken();
     room->camera().set(PtpMishap::none);
     ASSERT_TRUE(photographed(pulled + 3));
+    EXPECT_EQ(says(), "");
+
+    // The projector unplugged during a pause: waited for
+    program->click("capture-pause");
+    sleep_ms(pause_ms);
+    const int unplugged = taken();
+    desktop->unplug_projector();
+    program->wait_for_state("projector", "waiting");
+    program->click("capture-pause");
+    EXPECT_TRUE(says("the projector does not show the picture"));
+    EXPECT_EQ(taken(), unplugged);
+    desktop->plug_projector();
+    ASSERT_TRUE(photographed(unplugged + 3));
     EXPECT_EQ(says(), "");
 
     // Standby again: the pictures between which nothing changed are lost, not those before.

@@ -206,6 +206,8 @@ TEST(CapturePictures, AreSmallAndTrue) {
     EXPECT_EQ(histogram_of(photograph).clipped, 1.0);
     EXPECT_EQ(small_picture(Image8(90, 30, 3, 7), 30).at(2, 2, 0), 7);
     EXPECT_EQ(histogram_of(Image8(9, 9, 3, 255)).clipped, 1.0);
+    // Nothing but black
+    EXPECT_EQ(histogram_of(Image8(9, 9, 3)).share[0], 1.0f);
 }
 
 }  // namespace

@@ -225,16 +225,6 @@ void draw_running(Shell& shell) {
     const CaptureView& view = shell.studio.panels.capture->view;
     progress_bar(view.fraction, fmt::format("{:.0f} %", 100.0 * view.fraction));
     name_last_item("capture-progress");
-    std::string text = sentence(view.stage);
-    text += fmt::format(" {} so far", time_text(view.elapsed_s));
-    if (view.remaining_s && !view.waits_for_next)
-        text += fmt::format(", about {} more", time_text(*view.remaining_s));
-    dim_text(text + ".");
-    if (!view.wait.why.empty()) {
-        warning_text(sentence("it waits: " + view.wait.why));
-        name_last_item("capture-waits");
-        dim_text(sentence(view.wait.fix));
-    }
     if (view.waits_for_next) {
         if (ImGui::Button("It is taken: the next picture", {-FLT_MIN, em(3.0f)})) capture.next();
         name_last_item("capture-next");
@@ -252,6 +242,17 @@ void draw_running(Shell& shell) {
     tooltip(
         "What was photographed is kept: the capture goes on from there when it is started "
         "again, also after the program was closed.");
+    // Below the buttons, which else would move with every line that is wrapped.
+    std::string text = sentence(view.stage);
+    text += fmt::format(" {} so far", time_text(view.elapsed_s));
+    if (view.remaining_s && !view.waits_for_next)
+        text += fmt::format(", about {} more", time_text(*view.remaining_s));
+    dim_text(text + ".");
+    if (!view.wait.why.empty()) {
+        warning_text(sentence("it waits: " + view.wait.why));
+        name_last_item("capture-waits");
+        dim_text(sentence(view.wait.fix));
+    }
 }
 
 void draw_start(Shell& shell, bool can_show) {

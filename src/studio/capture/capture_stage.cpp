@@ -166,11 +166,12 @@ void draw_capture_stage(Shell& shell) {
     forget_textures(state);
     const ImVec2 space = ImGui::GetContentRegionAvail();
     const bool has_tiles = !view.tiles.empty();
+    const char* const live = view.has_live_view ? "Live view" : "This camera gives no live view";
     const float gap = ImGui::GetStyle().ItemSpacing.x;
     const float upper = has_tiles ? std::floor(0.42f * space.y) : space.y - em(6.0f);
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     if (!has_tiles) {
-        draw_fitted(state, view.live, corner, {space.x, upper}, "Live view");
+        draw_fitted(state, view.live, corner, {space.x, upper}, live);
         draw_histogram(
             view.histogram, {corner.x, corner.y + upper + gap}, {space.x, em(6.0f) - gap});
         ImGui::Dummy(space);
@@ -184,7 +185,7 @@ void draw_capture_stage(Shell& shell) {
                 capturing ? view.shown : view.live,
                 corner,
                 {half, upper},
-                capturing ? "Shown" : "Live view");
+                capturing ? "Shown" : live);
     Picture newest;
     std::string of = "Seen";
     const auto last =
