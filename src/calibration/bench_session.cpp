@@ -25,6 +25,8 @@ constexpr double kStep = 1.3;    // a little more than a third of a stop
 constexpr int kMostInVain = 3;   // by then it was asked for more than a stop
 constexpr double kMixed = 0.02;  // of white: an eighth of a photograph, or a lamp that flickers
 constexpr int kMostLatency = 6;
+constexpr double kLonger = 8.0;  // three stops
+constexpr int kMostLonger = 5;
 constexpr double kProjectorFrame_s = 1.0 / 60.0;
 
 std::string seconds(double value) { return fmt::format("{:.3g} s", value); }
@@ -51,6 +53,15 @@ double noise_between(const std::vector<float>& a, const std::vector<float>& b) {
     for (std::size_t i = 0; i < a.size(); ++i)
         if (std::isfinite(a[i] - b[i])) distance.push_back(std::abs(a[i] - b[i]));
     return 1.4826 * static_cast<double>(median(distance));
+}
+
+bool is_brighter(const std::vector<float>& white, const std::vector<float>& black, double noise) {
+    std::size_t brighter = 0;
+    for (std::size_t i = 0; i < white.size(); ++i)
+        // Where a lit room is bright its own noise exceeds the picture's median.
+        brighter += static_cast<double>(white[i] - black[i]) >
+                    std::max(10.0 * noise, 0.1 * static_cast<double>(black[i]));
+    return static_cast<double>(brighter) > 5e-4 * static_cast<double>(white.size());
 }
 
 /// Whole projector frames where the exposure holds a few: a wheel's colours then weigh equally.
@@ -166,13 +177,7 @@ bool BenchSession::see_white(int width, int height) {
     ports_.show(Image8(width, height, 3, 255));
     for (latency_ = 0; latency_ <= kMostLatency; ++latency_) {
         white_ = photograph("white");
-        const std::vector<float> white = thin(white_);
-        std::size_t brighter = 0;
-        for (std::size_t i = 0; i < white.size(); ++i)
-            // Where a lit room is bright its own noise exceeds the picture's median.
-            brighter += static_cast<double>(white[i] - black[i]) >
-                        std::max(10.0 * noise_, 0.1 * static_cast<double>(black[i]));
-        if (static_cast<double>(brighter) > 5e-4 * static_cast<double>(white.size())) {
+        if (is_brighter(thin(white_), black, noise_)) {
             wait_for_all_of_white();
             return true;
         }
@@ -193,18 +198,48 @@ void BenchSession::wait_for_all_of_white() {
     }
 }
 
+/// White, which is shown, at ever longer exposures, then black at the same: few photographs, as
+/// long ones take minutes. The shortest at which white is brighter is kept; false when none is.
+bool BenchSession::find_longer_exposure(int width, int height) {
+    struct Longer {
+        double asked_s;
+        std::vector<float> white;
+    };
+    const double first_s = exposure_s_;
+    double longest_s = black_.exposure_s;
+    std::vector<Longer> all;
+    for (int k = 0; k < kMostLonger; ++k) {
+        exposure_s_ *= kLonger;
+        const Photograph white = photograph("white");
+        if (!(white.exposure_s > 1.01 * longest_s)) break;  // its longest
+        longest_s = white.exposure_s;
+        all.push_back({exposure_s_, thin(white)});
+    }
+    exposure_s_ = first_s;
+    if (all.empty()) return false;
+    ports_.show(Image8(width, height, 3, 0));
+    for (int i = 0; i <= kMostLatency; ++i) photograph("black");
+    for (const Longer& longer : all) {
+        exposure_s_ = longer.asked_s;
+        const std::vector<float> black = thin(photograph("black"));
+        const double noise = std::max(noise_between(black, thin(photograph("black"))), 1e-6);
+        if (is_brighter(longer.white, black, noise)) return true;
+    }
+    return false;
+}
+
 void BenchSession::meet(int width, int height) {
     exposure_s_ = 0.0;  // the camera's own
     exposure_s_ = photograph("what is there").exposure_s;
     if (!(exposure_s_ > 0.0))
         throw FileError("camera", "exposure_s", std::to_string(exposure_s_), "a positive time");
-    for (int longer = 0; !see_white(width, height); ++longer, exposure_s_ *= 8.0)
-        if (longer == 5)
-            throw NothingShown(
-                "the camera sees no light of the projector",
-                "switch the projector on or wake it, open the lens, aim the camera at the mock-up, "
-                "and check that pictures go to the projector's screen",
-                NothingShown::kAll);
+    if (!see_white(width, height) &&
+        !(find_longer_exposure(width, height) && see_white(width, height)))
+        throw NothingShown(
+            "the camera sees no light of the projector",
+            "switch the projector on or wake it, open the lens, aim the camera at the mock-up, "
+            "and check that pictures go to the projector's screen",
+            NothingShown::kAll);
 
     // Exposure: by photographs of white, until its peak fits
     find_lit();

@@ -50,6 +50,7 @@ class BenchSession {
     void check_photograph(const Photograph& photo, const std::string& shown);
     void refuse_curved_files();
     bool see_white(int width, int height);
+    bool find_longer_exposure(int width, int height);
     void wait_for_all_of_white();
     void find_lit();
     double white_peak() const;
