@@ -1,4 +1,5 @@
-// The window's capture with a still camera that photographs what stands on the projector's monitor.
+// Captures with a still camera that photographs what stands on the projector's monitor: in the
+// window, and in a terminal.
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -16,6 +17,7 @@
 #include "session/session.h"
 #include "session/small_session.h"
 #include "support/monitor_bench.h"
+#include "support/run_program.h"
 
 namespace livery {
 namespace {
@@ -156,16 +158,8 @@ class CameraBeforeMonitor : public TwoMonitors {
         return comparison.interior;
     }
 
-    /// Waits for the end of the capture; its calibration is then the session's, and corrects as
-    /// well as that of the bench itself.
-    void expect_as_direct() {
-        const std::string before = document.calibration;
-        ASSERT_TRUE(wait_until([&] { return program->has_item("capture-finished"); }, patience))
-            << says();
-        ASSERT_TRUE(wait_until([&] { return program->state("calibration") != before; }, patience));
-        document.calibration = program->state("calibration").get<std::string>();
-        EXPECT_EQ(says(), "");
-        const ColourCalibration captured = read_calibration(document.calibration);
+    /// It corrects as well as that of the bench itself.
+    void expect_close(const ColourCalibration& captured) const {
         const ErrorStatistics noise = difference(directly().again), seen = difference(captured);
         std::printf(
             "    CIEDE2000 from the bench directly: mean %.4f, p95 %.4f; of its noise %.4f, %.4f\n",
@@ -175,6 +169,18 @@ class CameraBeforeMonitor : public TwoMonitors {
             noise.p95);
         // Besides the noise: the nearest shutter speed, which is a shorter one
         EXPECT_LT(seen.mean, 2.0 * noise.mean);
+    }
+
+    /// Waits for the end of the capture; its calibration is then the session's, and corrects as
+    /// well as that of the bench itself.
+    void expect_as_direct() {
+        const std::string before = document.calibration;
+        ASSERT_TRUE(wait_until([&] { return program->has_item("capture-finished"); }, patience))
+            << says();
+        ASSERT_TRUE(wait_until([&] { return program->state("calibration") != before; }, patience));
+        document.calibration = program->state("calibration").get<std::string>();
+        EXPECT_EQ(says(), "");
+        expect_close(read_calibration(document.calibration));
     }
 
     std::unique_ptr<MonitorBench> room;
@@ -215,6 +221,29 @@ TEST_F(CameraBeforeMonitor, CalibratesAsTheBenchDoes) {
     program->click("capture-close");
     EXPECT_TRUE(projector_shows(drive_of_place(0)));
     EXPECT_EQ(program->quit(), 0) << program->words();
+}
+
+TEST_F(CameraBeforeMonitor, CalibratesFromTheTerminalAsTheBenchDoes) {
+    const auto calibration = studio->folder / "calibration";
+    const ProgramRun run =
+        run_program(LIVERY_PROGRAM,
+                    {"capture",
+                     "--camera",
+                     "tethered:" + room->camera().port(),
+                     "--monitor",
+                     "2",
+                     "--product",
+                     "car",
+                     "--pose",
+                     (std::filesystem::path(document.calibration) / "projector.json").string(),
+                     "--no-preflight",
+                     "--out",
+                     (studio->folder / "captures").string(),
+                     "--calibration",
+                     calibration.string()});
+    ASSERT_EQ(run.exit_code, 0) << run.out << run.err;
+    expect_close(read_calibration(calibration));
+    EXPECT_EQ(room->camera().on_card(), 0u);
 }
 
 TEST_F(CameraBeforeMonitor, WhateverHappensOnTheWayLosesOnePhotographAtMost) {
