@@ -91,7 +91,6 @@ class Recording {
     void keep(Photograph& photograph, double asked_s);
     void read(const std::filesystem::path& file);
     void write(std::function<void()> first);
-    std::string text() const;  ///< of recording.json
 
     std::filesystem::path folder_;
     std::string bench_words_, announced_;

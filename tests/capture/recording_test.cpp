@@ -244,5 +244,25 @@ TEST(Recording, SaysWhatIsWrong) {
     }
 }
 
+/// Nor on from one that leaves no number after it.
+TEST(Recording, IsNumberedOnFromTheHighestOfItsFiles) {
+    for (const auto& [known, next] : {std::pair("0041.exr", "0042.exr"),
+                                      std::pair("2147483647.exr", "0000.exr"),
+                                      std::pair("99999999999.exr", "0000.exr"),
+                                      std::pair("-8.exr", "0000.exr")}) {
+        const TemporaryFolder folder;
+        write_text_file(folder.path() / "recording.json",
+                        std::string(R"({"format_version": 1, "bench": "b", "showings": [
+                            {"picture": "x", "photographs": [{"file": ")") +
+                            known +
+                            R"(", "of": "", "asked_s": 0, "exposure_s": 1, "black_level": 0}]}]})");
+        CountingBench bench;
+        Recording recording(folder.path(), "b");
+        EXPECT_EQ(run(recording.ports(bench.ports()), 1, 1).front().kept_as,
+                  std::vector<std::string>{next})
+            << known;
+    }
+}
+
 }  // namespace
 }  // namespace livery

@@ -171,6 +171,11 @@ put("product", "all.json",
     {"format_version": 1, "name": "Car", "mesh": "car.glb", "unit": "cm", "product_scale": 25,
      "pose": {"rotation": [1, 0, 0, 0, 1, 0, 0, 0, 1], "translation_mm": [0, 0, 0]},
      "parts": ["body", "glass"]})
+put("product", "renamed.json",
+    {"format_version": 1, "name": "Scan", "mesh": "/no folder/scan.ply", "unit": "m",
+     "mesh_scale": 0.04, "product_scale": 25,
+     "pose": {"rotation": [1, 0, 0, 0, 0, 1, 0, -1, 0], "translation_mm": [1, 2, 3]},
+     "part_names": {"": "body", "object 2": "glass"}, "front": "-z"})
 CAMERA = {"format_version": 1, "width": 1280, "height": 800,
           "matrix": [2000, 0, 639.5, 0, 2000, 1100, 0, 0, 1], "distortion": [-0.05, 0.1, 0, 0, 0],
           "rotation": [1, 0, 0, 0, -1, 0, 0, 0, -1], "translation_mm": [0, 0, 1500]}
@@ -198,6 +203,14 @@ put("captures", "sphere.json",
      "captures": [{"file": "0.png", "exposure_s": 0.1, "black_level": 3, "light_position_mm": [40, 0, 300]}]})
 put("captures", "response.json",
     {"format_version": 1, "linear_from_file": [0, 0.02, 0.07, 0.16, 0.29, 0.46, 0.69, 1]})
+put("recording", "two.json",
+    {"format_version": 1, "bench": "projector 64x32, the camera", "showings": [
+        {"picture": "", "photographs": []},
+        {"picture": "0" * 32, "photographs": [
+            {"file": "0000.dng", "of": "white", "asked_s": 0, "exposure_s": 0.1, "black_level": 64,
+             "saturates_at": 16000},
+            {"file": "0001.exr", "of": "white", "asked_s": 0.5, "exposure_s": 0.5, "black_level": 0}],
+         "measured": [[10, 20, 4, 5, 6]]}]})
 CURVE = {"drive_from_n": [0, 100, 255], "largest_violation": 0}
 put("calibration", "all.json",
     {"format_version": 1, "kind": "colour calibration", "id": "0" * 32, "created": "2026-01-01",
@@ -239,6 +252,7 @@ for name, fields in {
     put("commands", name + ".json", {name: fields})
 for name, text in {"size": "1280x800", "eye": "10,-20.5,3e2", "unit": "cm"}.items():
     put("command_line", name, text)
+put("photograph_names", "counted", "DSC_0099.NEF\nDSC_100.NEF\nDSC_0100.NEF\nIMG 7(2).jpg\n7\n")
 put("names", "plain", " Ada\u00a0 Lovelace ")
 put("names", "greek", "ΣΊΣΥΦΟΣ Straße")
 put("window_place", "place", "1280x800+10+-20 maximised")

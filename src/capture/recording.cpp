@@ -1,25 +1,23 @@
-#include <algorithm>
+#include "capture/recording.h"
+
 #include <cmath>
-#include <cstdio>
-#include <limits>
 #include <span>
 
 #include <fmt/format.h>
 
 #include "capture/captures_folder.h"
 #include "capture/manifest_io.h"
-#include "capture/recording.h"
+#include "capture/recording_list_io.h"
 #include "core/error.h"
 #include "core/hash.h"
 #include "core/image_io.h"
-#include "core/json.h"
 #include "core/paths.h"
+#include "core/utf8.h"
 
 namespace livery {
 
 namespace {
 
-constexpr int kNewestVersion = 1;
 /// A picture that is shown anew in the middle of its photographs: the slowest projector's delay.
 constexpr int kSettling = 6;
 
@@ -29,51 +27,6 @@ std::string hash_of(const Image8& drive) {
     hasher.add(std::span<const int>(size));
     hasher.add(std::span<const std::uint8_t>(drive.values));
     return hasher.hex();
-}
-
-Json json_of(const RecordedPhotograph& photograph) {
-    Json json = {{"file", photograph.file},
-                 {"of", photograph.of},
-                 {"asked_s", photograph.asked_s},
-                 {"exposure_s", photograph.exposure_s},
-                 {"black_level", photograph.black_level}};
-    if (std::isfinite(photograph.saturates_at)) json["saturates_at"] = photograph.saturates_at;
-    return json;
-}
-
-RecordedPhotograph photograph_from(const JsonReader& json) {
-    json.allow_only({"file", "of", "asked_s", "exposure_s", "black_level", "saturates_at"});
-    RecordedPhotograph photograph;
-    photograph.file = json["file"].text();
-    const std::filesystem::path name(photograph.file);
-    if (name.filename() != name || photograph.file.empty()) {
-        json["file"].fail("\"" + photograph.file + "\"", "the name of a file in the same folder");
-    }
-    photograph.of = json["of"].text();
-    photograph.asked_s = json["asked_s"].number_between(0.0, 1e6);
-    photograph.exposure_s = json["exposure_s"].number_between(1e-9, 1e6);
-    photograph.black_level = json["black_level"].number_between(0.0, 1e9);
-    photograph.saturates_at = json.has("saturates_at")
-                                  ? json["saturates_at"].number_between(0.0, 1e9)
-                                  : std::numeric_limits<double>::infinity();
-    return photograph;
-}
-
-RecordedShowing showing_from(const JsonReader& json) {
-    json.allow_only({"picture", "photographs", "measured"});
-    RecordedShowing showing;
-    showing.picture = json["picture"].text();
-    const JsonReader photographs = json["photographs"];
-    for (std::size_t k = 0; k < photographs.size(); ++k) {
-        showing.photographs.push_back(photograph_from(photographs.at(k)));
-    }
-    if (!json.has("measured")) return showing;
-    const JsonReader measured = json["measured"];
-    for (std::size_t k = 0; k < measured.size(); ++k) {
-        const auto values = measured.at(k).numbers(5);
-        showing.measured.push_back({{values[0], values[1]}, {values[2], values[3], values[4]}});
-    }
-    return showing;
 }
 
 Photograph load(const std::filesystem::path& folder, const RecordedPhotograph& recorded) {
@@ -106,39 +59,14 @@ Recording::~Recording() {
 }
 
 void Recording::read(const std::filesystem::path& file) {
-    const Json json = read_json_file(file);
-    const JsonReader root(file, json);
-    root.require_format_version(kNewestVersion);
-    root.allow_only({"format_version", "bench", "showings"});
-    if (const std::string of = root["bench"].text(); of != bench_words_) {
-        throw Refused("the photographs in " + folder_.string() + " were taken with " + of +
-                          ", not with " + bench_words_,
+    RecordingList list = parse_recording_list(read_text_file(file), file);
+    if (list.bench != bench_words_) {
+        throw Refused("the photographs in " + folder_.string() + " were taken with " +
+                          printable(list.bench) + ", not with " + bench_words_,
                       "go on with what they were taken with, or choose an empty folder");
     }
-    const JsonReader showings = root["showings"];
-    for (std::size_t k = 0; k < showings.size(); ++k) {
-        showings_.push_back(showing_from(showings.at(k)));
-        for (const RecordedPhotograph& photograph : showings_.back().photographs) {
-            int number = 0;
-            if (std::sscanf(photograph.file.c_str(), "%d", &number) == 1)
-                files_ = std::max(files_, number + 1);
-        }
-    }
-}
-
-std::string Recording::text() const {
-    Json json = {{"format_version", kNewestVersion}, {"bench", bench_words_}};
-    json["showings"] = Json::array();
-    for (const RecordedShowing& showing : showings_) {
-        if (showing.photographs.empty() && showing.measured.empty()) continue;
-        Json entry = {{"picture", showing.picture}, {"photographs", Json::array()}};
-        for (const auto& photograph : showing.photographs)
-            entry["photographs"].push_back(json_of(photograph));
-        for (const auto& [place, xyz] : showing.measured)
-            entry["measured"].push_back({place.x, place.y, xyz.x, xyz.y, xyz.z});
-        json["showings"].push_back(std::move(entry));
-    }
-    return json.dump(1) + "\n";
+    showings_ = std::move(list.showings);
+    files_ = next_file_number(showings_);
 }
 
 BenchPorts Recording::ports(const BenchPorts& bench) {
@@ -254,12 +182,13 @@ void Recording::keep(Photograph& photograph, double asked_s) {
 /// The list after `first`, so that it names only what is there; on a thread of its own, so that a
 /// camera need not wait for the disk.
 void Recording::write(std::function<void()> first) {
-    writing_ =
-        std::async(std::launch::async,
-                   [first = std::move(first), list = folder_ / "recording.json", text = text()] {
-                       first();
-                       write_text_file(list, text);
-                   });
+    writing_ = std::async(std::launch::async,
+                          [first = std::move(first),
+                           list = folder_ / "recording.json",
+                           text = text_of(RecordingList{bench_words_, showings_})] {
+                              first();
+                              write_text_file(list, text);
+                          });
 }
 
 void Recording::drop_last() {
