@@ -31,6 +31,33 @@ if command -v desktop-file-validate >/dev/null; then
 else
     skip "desktop-file-validate is not there"
 fi
+# What a file manager makes of the files that the program opens: their kind, and who opens that.
+if command -v update-mime-database >/dev/null && command -v update-desktop-database >/dev/null &&
+    command -v gio >/dev/null && [ -d /usr/share/mime/packages ]; then
+    mkdir -p "$work/desktop/mime/packages" "$work/desktop/applications" "$work/meshes"
+    cp "$prefix/share/mime/packages/livery.xml" "$work/desktop/mime/packages"
+    # Only what can be started is offered.
+    sed "s|^Exec=livery|Exec=/bin/true|" "$prefix/share/applications/livery.desktop" \
+        >"$work/desktop/applications/livery.desktop"
+    update-mime-database "$work/desktop/mime" 2>"$work/err" || fail "the kinds of files"
+    update-desktop-database "$work/desktop/applications" || fail "the kinds that are opened"
+    printf 'glTF\2\0\0\0' >"$work/meshes/a.glb"
+    printf '{"asset": {"version": "2.0"}}' >"$work/meshes/a.gltf"
+    printf 'ply\nformat ascii 1.0\n' >"$work/meshes/a.ply"
+    printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$work/meshes/a.obj"
+    printf 'SQLite format 3\0' >"$work/meshes/a.livery"
+    desktop() { env XDG_DATA_HOME="$work/desktop" XDG_DATA_DIRS=/usr/share HOME="$work" gio "$@"; }
+    for file in "$work"/meshes/*; do
+        kind=$(desktop info -a standard::content-type "$file" | sed -n 's/.*content-type: //p')
+        desktop mime "$kind" >"$work/out" 2>&1 || true
+        grep -q 'livery\.desktop' "$work/out" || {
+            fail "nobody offers Livery for ${file##*/}, which is \"$kind\""
+            cat "$work/out" >&2
+        }
+    done
+else
+    skip "the kinds of files: update-mime-database, update-desktop-database or gio is not there"
+fi
 if command -v mandoc >/dev/null; then
     mandoc -Tlint "$prefix/share/man/man1/livery.1" || fail "the manual page"
 else
