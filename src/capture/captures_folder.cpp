@@ -165,6 +165,7 @@ Photograph load_photograph(const Capture& capture) {
     const double full_scale = picture.full_scale;
     const bool floating_point = picture.floating_point;
     Photograph photograph;
+    photograph.settings = picture.settings;
     photograph.name = capture.file.filename().string();
     photograph.exposure_s = capture.exposure_s;
     photograph.black_level = capture.black_level;

@@ -11,6 +11,7 @@
 #include <glm/vec3.hpp>
 
 #include "core/image.h"
+#include "core/pictures/exposure_settings.h"
 
 namespace livery {
 
@@ -26,8 +27,9 @@ struct Photograph {
     double exposure_s = 1.0;
     double black_level = 0.0;                                       ///< file units
     double saturates_at = std::numeric_limits<double>::infinity();  ///< file units
-    std::string name;        ///< file name or pattern role, for messages
-    double taken_at = -1.0;  ///< when, in photographs; negative: in the order in which they come
+    ExposureSettings settings;  ///< as its file tells; `exposure_s` is what counts
+    std::string name;           ///< file name or pattern role, for messages
+    double taken_at = -1.0;     ///< when, in photographs; negative: in the order in which they come
     std::shared_ptr<const CameraFile> file;  ///< what `image` was read from; null: nothing else
     /// Files of a recording that it was kept in: one, or of a mean all.
     std::vector<std::string> kept_as;

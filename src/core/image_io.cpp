@@ -142,7 +142,7 @@ void write_image(const std::filesystem::path& file,
     PictureError error;
     const bool encoded = module_table().encode(
         format,
-        {image.width, image.height, image.channels, integer_bits},
+        {image.width, image.height, image.channels, integer_bits, {}},
         image.values.data(),
         names.empty() ? nullptr : names.data(),
         [](void* context, const void* data, std::size_t size) {
@@ -173,6 +173,7 @@ ImageFile read_pixels(const std::filesystem::path& file,
     for (int c = 0; c < header.channels; ++c) {
         result.channel_names.emplace_back(module_table().channel_name(picture.get(), c));
     }
+    result.settings = header.settings;
     result.floating_point = header.integer_bits == 0;
     result.full_scale = result.floating_point ? 1.0 : header.integer_bits == 8 ? 255.0 : 65535.0;
     if (!module_table().read(picture.get(), result.image.values.data(), &error)) {
@@ -194,7 +195,7 @@ ImageFile read_image(const std::filesystem::path& file, std::size_t max_pixels, 
     if (format && std::string_view(format) == "hdr") {
         const std::string bytes = read_text_file(file, kMaxBytes);
         if (auto picture = decode_radiance_hdr(bytes, max_pixels)) {
-            return {std::move(*picture), {"R", "G", "B"}, 1.0, true};
+            return {std::move(*picture), {"R", "G", "B"}, 1.0, true, {}};
         }
     }
     std::error_code error;

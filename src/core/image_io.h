@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/image.h"
+#include "core/pictures/exposure_settings.h"
 
 namespace livery {
 
@@ -16,6 +17,7 @@ struct ImageFile {
     std::vector<std::string> channel_names;
     double full_scale = 1.0;  ///< 255 for 8 bit, 65535 for 16 bit, 1 for floating point
     bool floating_point = false;
+    ExposureSettings settings;  ///< by its EXIF or like fields
 };
 
 /// Whether a file's suffix, in any case, is one of a picture or of a camera's RAW file.

@@ -21,6 +21,24 @@ constexpr auto kBetweenLooks = std::chrono::milliseconds(250);
 constexpr std::size_t kLargestFile = std::size_t{1} << 30u;
 /// While fewer have come it is said how many, not which are missing.
 constexpr double kShareToName = 0.6;
+/// Of the files that were exposed otherwise; after so many it is all of them.
+constexpr std::size_t kMostNamed = 12;
+
+/// The one of `files` that most of them are like, by `alike`; the first of equals. Not of none.
+template <typename NamedFile, typename Alike>
+const auto& usual_of(const std::vector<const NamedFile*>& files, const Alike& alike) {
+    const NamedFile* usual = files.front();
+    std::ptrdiff_t most = 0;
+    for (const NamedFile* file : files) {
+        const auto count = std::count_if(files.begin(), files.end(), [&](const NamedFile* other) {
+            return alike(file->second, other->second);
+        });
+        if (count <= most) continue;
+        usual = file;
+        most = count;
+    }
+    return usual->second;
+}
 
 }  // namespace
 
@@ -29,6 +47,20 @@ std::string text_of(const WatchedState& state) {
     if (!state.missing.empty())
         text += fmt::format("; missing: {}", fmt::join(state.missing, ", "));
     for (const auto& odd : state.odd) text += fmt::format("; {} {}", odd.file, odd.why);
+    if (state.exposed_otherwise.empty()) return text;
+    text += fmt::format("; {} were exposed otherwise than the others ({}):",
+                        state.exposed_otherwise.size(),
+                        text_of(state.usual_exposure));
+    const std::size_t named = std::min(state.exposed_otherwise.size(), kMostNamed);
+    for (std::size_t k = 0; k < named; ++k)
+        text += fmt::format(" {} {:+.1f} stops,",
+                            state.exposed_otherwise[k].file,
+                            state.exposed_otherwise[k].stops);
+    if (named < state.exposed_otherwise.size())
+        text += fmt::format(" and {} more,", state.exposed_otherwise.size() - named);
+    text.back() = ';';
+    text += " the camera's automatic was on: turn its dial to M, with automatic ISO off, and ";
+    text += state.complete ? "these are not used" : "photograph these pictures again";
     return text;
 }
 
@@ -48,7 +80,9 @@ void WatchedCaptures::read(const std::filesystem::path& path, File& file) {
         Capture capture;
         capture.file = path;
         capture.exposure_s = 1.0;
-        file.glimpse = glimpse_of(load_photograph(capture));
+        const Photograph photograph = load_photograph(capture);
+        file.settings = photograph.settings;
+        file.glimpse = glimpse_of(photograph);
     } catch (const FileError& error) {
         file.problem = error.field().empty()
                            ? "cannot be read: " + error.found()
@@ -90,10 +124,9 @@ bool WatchedCaptures::look() {
     return !(state_ == before);
 }
 
-void WatchedCaptures::identify_all() {
-    WatchedState state;
-    state.wanted = roles_.size();
-    std::vector<const std::pair<const std::string, File>*> sorted;
+std::vector<const WatchedCaptures::NamedFile*> WatchedCaptures::comparable_files(
+    WatchedState& state) const {
+    std::vector<const NamedFile*> sorted;
     for (const auto& entry : files_) {
         if (!entry.second.read) continue;
         if (entry.second.problem.empty()) {
@@ -105,48 +138,64 @@ void WatchedCaptures::identify_all() {
     std::sort(sorted.begin(), sorted.end(), [](const auto* a, const auto* b) {
         return comes_before(a->first, b->first);
     });
-    // The same file copied twice, under whatever name; the size that most have
+    // The same file copied twice, under whatever name
     std::map<std::string, std::string> first_with;
-    std::map<std::pair<int, int>, int> sizes;
-    for (const auto* entry : sorted)
-        ++sizes[{entry->second.glimpse.width, entry->second.glimpse.height}];
-    const auto usual =
-        std::max_element(sizes.begin(), sizes.end(), [](const auto& a, const auto& b) {
-            return a.second < b.second;
-        });
-    std::vector<Glimpse> photographs;
-    std::vector<std::string> names;
-    for (const auto* entry : sorted) {
-        const File& file = entry->second;
-        const auto [same, fresh] = first_with.emplace(file.bytes_hash, entry->first);
-        if (!fresh) {
-            state.odd.push_back({entry->first, "is the same file as " + same->second});
-            continue;
-        }
-        if (std::pair(file.glimpse.width, file.glimpse.height) != usual->first) {
-            state.odd.push_back({entry->first,
+    std::erase_if(sorted, [&](const NamedFile* file) {
+        const auto [same, fresh] = first_with.emplace(file->second.bytes_hash, file->first);
+        if (!fresh) state.odd.push_back({file->first, "is the same file as " + same->second});
+        return !fresh;
+    });
+    if (sorted.empty()) return sorted;
+    const Glimpse usual =
+        usual_of(sorted, [](const File& a, const File& b) {
+            return a.glimpse.width == b.glimpse.width && a.glimpse.height == b.glimpse.height;
+        }).glimpse;
+    std::erase_if(sorted, [&](const NamedFile* file) {
+        const Glimpse& glimpse = file->second.glimpse;
+        const bool other = glimpse.width != usual.width || glimpse.height != usual.height;
+        if (other)
+            state.odd.push_back({file->first,
                                  fmt::format("has {}x{} pixels, the others {}x{}",
-                                             file.glimpse.width,
-                                             file.glimpse.height,
-                                             usual->first.first,
-                                             usual->first.second)});
-            continue;
-        }
-        photographs.push_back(file.glimpse);
-        names.push_back(entry->first);
-    }
-    state.files = photographs.size();
+                                             glimpse.width,
+                                             glimpse.height,
+                                             usual.width,
+                                             usual.height)});
+        return other;
+    });
+    state.usual_exposure = usual_of(sorted, [](const File& a, const File& b) {
+                               return a.settings != ExposureSettings{} &&
+                                      b.settings != ExposureSettings{} &&
+                                      !are_exposed_otherwise(a.settings, b.settings);
+                           }).settings;
+    std::erase_if(sorted, [&](const NamedFile* file) {
+        const bool other = are_exposed_otherwise(file->second.settings, state.usual_exposure);
+        if (other)
+            state.exposed_otherwise.push_back(
+                {file->first, stops_over(file->second.settings, state.usual_exposure)});
+        return other;
+    });
+    return sorted;
+}
+
+void WatchedCaptures::identify_all() {
+    WatchedState state;
+    state.wanted = roles_.size();
+    const std::vector<const NamedFile*> files = comparable_files(state);
+    state.files = files.size();
+    std::vector<Glimpse> photographs;
+    for (const NamedFile* file : files) photographs.push_back(file->second.glimpse);
     const IdentifiedPhotographs identified = identify(photographs, roles_);
     for (std::size_t r = 0; r < roles_.size(); ++r) {
         const auto& place = identified.photograph_of_role[r];
-        file_of_role_[r] = place ? names[*place] : "";
+        file_of_role_[r] = place ? files[*place]->first : "";
         state.found += place.has_value();
         if (!place) state.missing.push_back(roles_[r]);
     }
     const bool many = static_cast<double>(photographs.size()) >=
                       kShareToName * static_cast<double>(roles_.size());
     if (!many) state.missing.clear();
-    for (const auto& odd : identified.odd) state.odd.push_back({names[odd.photograph], odd.why});
+    for (const auto& odd : identified.odd)
+        state.odd.push_back({files[odd.photograph]->first, odd.why});
     state.complete = identified.complete();
     state_ = std::move(state);
 }
@@ -154,11 +203,15 @@ void WatchedCaptures::identify_all() {
 CapturesFolder WatchedCaptures::captures(int projector_width, int projector_height) const {
     check_argument(state_.complete, "photographs are missing");
     CapturesFolder folder{folder_, projector_width, projector_height, {}};
+    const bool all_say_so =
+        std::all_of(file_of_role_.begin(), file_of_role_.end(), [&](const std::string& name) {
+            return files_.at(name).settings.time_s > 0.0;
+        });
     for (std::size_t r = 0; r < roles_.size(); ++r) {
         Capture capture;
         capture.role = roles_[r];
         capture.file = folder_ / file_of_role_[r];
-        capture.exposure_s = 1.0;
+        capture.exposure_s = all_say_so ? state_.usual_exposure.time_s : 1.0;
         folder.captures.push_back(std::move(capture));
     }
     return folder;

@@ -7,11 +7,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calibration/captures/identify.h"
 #include "capture/captures_folder.h"
 #include "core/bench_ports.h"
+#include "core/pictures/exposure_settings.h"
 #include "core/progress.h"
 
 namespace livery {
@@ -26,10 +28,20 @@ struct WatchedState {
         bool operator==(const Odd&) const = default;
     };
     std::vector<Odd> odd;  ///< files without a role, and files that cannot be read, with the reason
+    /// Files that were exposed otherwise than most, by as many stops more: they are not used, for
+    /// their camera changes between the pictures what is to be compared.
+    struct OtherExposure {
+        std::string file;
+        double stops = 0.0;
+        bool operator==(const OtherExposure&) const = default;
+    };
+    std::vector<OtherExposure> exposed_otherwise;
+    ExposureSettings usual_exposure;  ///< of most files; nothing where none says how
     bool complete = false;
     bool operator==(const WatchedState&) const = default;
 };
-/// "48 of 50 photographs; missing: gray-row-3-inverse; IMG_0031.NEF shows the same as ...".
+/// "48 of 50 photographs; missing: gray-row-3-inverse; IMG_0031.NEF shows the same as ...", and
+/// what to do where the camera's automatic was on.
 std::string text_of(const WatchedState& state);
 
 class WatchedCaptures {
@@ -45,7 +57,8 @@ class WatchedCaptures {
     /// A camera that knows nothing of pictures but their roles (`turn_to`), which waits for all of
     /// them: `on_state` is called after every look that changed anything. Throws Cancelled.
     BenchPorts ports(const Progress& progress, std::function<void(const WatchedState&)> on_state);
-    /// The photographs as a captures folder. Call it when the state is complete.
+    /// The photographs as a captures folder, exposed as they say or, where one does not, for one
+    /// second each. Call it when the state is complete.
     CapturesFolder captures(int projector_width, int projector_height) const;
 
   private:
@@ -54,9 +67,13 @@ class WatchedCaptures {
         std::filesystem::file_time_type time{};
         bool read = false;
         std::string bytes_hash, problem;
+        ExposureSettings settings;
         Glimpse glimpse;
     };
+    using NamedFile = std::pair<const std::string, File>;
     void read(const std::filesystem::path& path, File& file);
+    /// In the order of their names; `state` gets what is wrong with the others.
+    std::vector<const NamedFile*> comparable_files(WatchedState& state) const;
     void identify_all();
 
     std::filesystem::path folder_;

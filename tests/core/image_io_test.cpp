@@ -11,7 +11,10 @@
 
 #include "core/paths.h"
 #include "core/random.h"
+#include "support/dng.h"
+#include "support/exif.h"
 #include "support/file_error.h"
+#include "support/jpeg.h"
 #include "support/temporary_folder.h"
 
 namespace livery {
@@ -308,6 +311,51 @@ TEST(ImageIo, WritingSaysWhatIsWrong) {
     EXPECT_THROW(write_png(folder / "a.png", Image8(2, 2, 4)), std::invalid_argument);
     EXPECT_THROW(write_png(folder / "a.png", Image8()), std::invalid_argument);
     EXPECT_THROW(write_exr(folder / "a.exr", ImageF(2, 2, 3), {"X", "Y"}), std::invalid_argument);
+}
+
+TEST(ImageIo, ReadsHowAPhotographWasExposed) {
+    const TemporaryFolder folder;
+    const auto read = [&](const char* name, const std::string& bytes) {
+        return read_image(folder.write(name, bytes)).settings;
+    };
+    const ExposureSettings said{1.0 / 125.0, 8.0, 200.0};
+    const Image16 picture(8, 4, 3, 1000);
+    const std::string jpeg = testing::jpeg_of(Image8(8, 4, 3, 90));
+    const auto raw = testing::dng_of(
+        64, 64, 0, [](int, int) { return std::uint16_t{900}; }, said);
+    const ExposureSettings of_jpeg = read("a.jpg", testing::with_exif(jpeg, said)),
+                           of_raw = read("a.dng", raw),
+                           of_tiff = read("a.tif", testing::tiff_of(picture, said));
+    for (const ExposureSettings& settings : {of_jpeg, of_raw, of_tiff}) {
+        EXPECT_NEAR(settings.time_s, said.time_s, 1e-9);
+        EXPECT_NEAR(settings.f_number, said.f_number, 1e-6);
+    }
+    EXPECT_EQ(of_jpeg.iso, said.iso);
+    EXPECT_EQ(of_raw.iso, said.iso);
+    EXPECT_EQ(of_tiff.iso, 0.0) << "a TIFF's is not read";
+    // A lens without contacts, a file without any of it, and what no camera can have done
+    const ExposureSettings some = read("b.jpg", testing::with_exif(jpeg, {2.0, 0.0, 100.0}));
+    EXPECT_EQ(some, (ExposureSettings{2.0, 0.0, 100.0}));
+    EXPECT_EQ(read("c.jpg", jpeg), ExposureSettings{});
+    std::string zero = testing::with_exif(jpeg, {0.25, 4.0, 100.0});
+    const std::string quarter = testing::little_endian(10, 4) + testing::little_endian(40, 4);
+    zero.replace(zero.find(quarter), 8, testing::little_endian(10, 4) + std::string(4, '\0'));
+    EXPECT_EQ(read("d.jpg", zero), (ExposureSettings{0.0, 4.0, 100.0}));
+}
+
+TEST(ExposureSettings, AreComparedByWhatBothSay) {
+    const ExposureSettings usual{1.0 / 125.0, 8.0, 100.0};
+    EXPECT_FALSE(are_exposed_otherwise(usual, {0.008001, 8.0, 100.0}));
+    EXPECT_FALSE(are_exposed_otherwise(usual, {}));
+    EXPECT_FALSE(are_exposed_otherwise(usual, {1.0 / 125.0, 0.0, 0.0}));
+    EXPECT_TRUE(are_exposed_otherwise(usual, {1.0 / 128.0, 8.0, 100.0}));
+    EXPECT_TRUE(are_exposed_otherwise(usual, {1.0 / 250.0, 8.0, 200.0})) << "as bright";
+    EXPECT_DOUBLE_EQ(stops_over({1.0 / 250.0, 8.0, 200.0}, usual), 0.0);
+    EXPECT_DOUBLE_EQ(stops_over({1.0 / 125.0, 4.0, 200.0}, usual), 3.0);
+    EXPECT_DOUBLE_EQ(stops_over(usual, {1.0 / 125.0, 0.0, 400.0}), -2.0);
+    EXPECT_EQ(text_of(usual), "1/125 s, f/8, ISO 100");
+    EXPECT_EQ(text_of({0.5, 5.6, 0.0}), "0.5 s, f/5.6");
+    EXPECT_EQ(text_of(ExposureSettings{}), "");
 }
 
 }  // namespace

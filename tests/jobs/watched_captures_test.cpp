@@ -1,5 +1,9 @@
 #include "jobs/watched_captures.h"
 
+#include <chrono>
+#include <condition_variable>
+#include <cstdio>
+#include <mutex>
 #include <thread>
 
 #include <fmt/format.h>
@@ -7,7 +11,10 @@
 
 #include "calibration/correspondence/patterns.h"
 #include "core/image_io.h"
+#include "core/paths.h"
 #include "session/small_session.h"
+#include "support/exif.h"
+#include "support/jpeg.h"
 #include "support/message_of.h"
 #include "support/temporary_folder.h"
 
@@ -44,6 +51,16 @@ struct Card {
     }
     std::string name(std::size_t k) const { return fmt::format("DSC_{:04}.png", 95 + k); }
     std::filesystem::path file(std::size_t k) const { return folder.path() / name(k); }
+    /// As a camera that tells how it was exposed writes it, into another folder.
+    void put_told(std::size_t k,
+                  const ExposureSettings& settings,
+                  const std::filesystem::path& into) const {
+        const ImageF read = read_image(file(k)).image;
+        Image16 picture(read.width, read.height, 3);
+        for (std::size_t v = 0; v < picture.values.size(); ++v)
+            picture.values[v] = static_cast<std::uint16_t>(read.values[v]);
+        write_text_file(into, testing::tiff_of(picture, settings));
+    }
 };
 const Card& card() {
     static const Card shot;
@@ -117,6 +134,140 @@ TEST(WatchedCaptures, SaysWhatCannotBeUsed) {
     std::filesystem::remove(here.path() / card().name(3));
     EXPECT_TRUE(watched.look());
     EXPECT_EQ(watched.state().missing, std::vector<std::string>{card().roles[3]});
+}
+
+/// An automatic that was left on for some of the pictures
+TEST(WatchedCaptures, NamesWhatWasExposedOtherwise) {
+    const TemporaryFolder here;
+    WatchedCaptures watched(here.path(), card().roles);
+    const ExposureSettings usual{1.0 / 125.0, 8.0, 100.0}, longer{1.0 / 50.0, 8.0, 100.0},
+        darker{1.0 / 125.0, 16.0, 100.0};
+    const auto name = [](std::size_t k) { return fmt::format("DSC_{:04}.tif", 95 + k); };
+    for (std::size_t k = 0; k < card().roles.size(); ++k)
+        card().put_told(k, k == 5 ? longer : k == 30 ? darker : usual, here.path() / name(k));
+    look_at_all(watched);
+    EXPECT_FALSE(watched.state().complete);
+    EXPECT_EQ(watched.state().missing, (std::vector{card().roles[5], card().roles[30]}));
+    EXPECT_TRUE(watched.state().odd.empty());
+    EXPECT_EQ(
+        text_of(watched.state()),
+        fmt::format("{} of {} photographs; missing: {}, {}; 2 were exposed otherwise than the "
+                    "others (1/125 s, f/8): {} +1.3 stops, {} -2.0 stops; the "
+                    "camera's automatic was on: turn its dial to M, with automatic ISO off, "
+                    "and photograph these pictures again",
+                    card().roles.size() - 2,
+                    card().roles.size(),
+                    card().roles[5],
+                    card().roles[30],
+                    name(5),
+                    name(30)));
+    // One again in the place of the old, one besides it
+    card().put_told(5, usual, here.path() / name(5));
+    card().put_told(30, usual, here / "DSC_0125a.tif");
+    look_at_all(watched);
+    EXPECT_TRUE(watched.state().complete) << text_of(watched.state());
+    EXPECT_NE(text_of(watched.state()).find("and these are not used"), std::string::npos);
+    const CapturesFolder captures = watched.captures(320, 200);
+    EXPECT_EQ(captures.captures[30].file.filename(), "DSC_0125a.tif");
+    for (const Capture& capture : captures.captures)
+        EXPECT_NEAR(capture.exposure_s, 1.0 / 125.0, 1e-9);
+}
+
+TEST(WatchedCaptures, TakesNoPicturesOfAnAutomaticTogether) {
+    const TemporaryFolder here;
+    WatchedCaptures watched(here.path(), card().roles);
+    const auto jpeg = [](const ImageF& read, std::size_t serial, double time_s) {
+        Image8 picture(read.width, read.height, 3);
+        for (std::size_t v = 0; v < picture.values.size(); ++v)
+            picture.values[v] = static_cast<std::uint8_t>(read.values[v] / 257.0f);
+        // No two photographs are alike to the last bit.
+        picture.values[0] = static_cast<std::uint8_t>(6 * serial);
+        return testing::with_exif(testing::jpeg_of(picture), {time_s, 5.6, 400.0});
+    };
+    std::vector<ImageF> pictures;
+    for (std::size_t k = 0; k < card().roles.size(); ++k) {
+        pictures.push_back(read_image(card().file(k)).image);
+        here.write(fmt::format("IMG_{:04}.JPG", k),
+                   jpeg(pictures[k], k, 0.01 * (1.0 + 0.1 * static_cast<double>(k % 20))));
+    }
+    look_at_all(watched);
+    EXPECT_FALSE(watched.state().complete);
+    EXPECT_GE(watched.state().exposed_otherwise.size(), card().roles.size() - 3);
+    EXPECT_NE(text_of(watched.state()).find(" and 27 more;"), std::string::npos)
+        << text_of(watched.state());
+    // All of them on manual, copied to the others
+    for (std::size_t k = 0; k < card().roles.size(); ++k)
+        here.write(fmt::format("IMG_{:04}.JPG", 300 + k), jpeg(pictures[k], k, 0.0125));
+    look_at_all(watched);
+    EXPECT_TRUE(watched.state().complete) << text_of(watched.state());
+    EXPECT_NEAR(watched.captures(320, 200).captures[0].exposure_s, 0.0125, 1e-9);
+}
+
+/// Files that do not say how they were exposed count as exposed alike, for a second.
+TEST(WatchedCaptures, BelievesThatSilentFilesAreExposedAlike) {
+    const TemporaryFolder here;
+    WatchedCaptures watched(here.path(), card().roles);
+    for (std::size_t k = 0; k < card().roles.size(); ++k)
+        card().put_told(k,
+                        k == 9 ? ExposureSettings{} : ExposureSettings{0.02, 8.0, 100.0},
+                        here.path() / fmt::format("DSC_{:04}.tif", k));
+    look_at_all(watched);
+    ASSERT_TRUE(watched.state().complete) << text_of(watched.state());
+    EXPECT_EQ(watched.captures(320, 200).captures[0].exposure_s, 1.0);
+}
+
+/// As the window and the terminal watch; how long the word takes is printed.
+TEST(WatchedCaptures, SaysWhatIsMissingSoonAfterTheLastFile) {
+    using Clock = std::chrono::steady_clock;
+    const TemporaryFolder here;
+    WatchedCaptures watched(here.path(), card().roles);
+    constexpr std::uint64_t seed = 23;
+    const auto order = shuffled(card().roles.size(), seed);
+    const std::size_t gone = order[3], twice = order[40];
+    std::mutex mutex;
+    std::condition_variable told;
+    std::vector<std::pair<Clock::time_point, WatchedState>> states;
+    std::atomic<bool> stop{false};
+    Progress progress;
+    progress.stop = &stop;
+    std::thread watching([&] {
+        const BenchPorts ports = watched.ports(progress, [&](const WatchedState& state) {
+            const std::lock_guard lock(mutex);
+            states.emplace_back(Clock::now(), state);
+            told.notify_one();
+        });
+        try {
+            EXPECT_EQ(ports.turn_to(card().roles[gone]), 1);
+        } catch (const Cancelled&) {
+            ADD_FAILURE() << "stopped: " << text_of(watched.state());
+        }
+    });
+    const auto copy = [&](std::size_t k, const std::string& name) {
+        std::filesystem::copy_file(card().file(k), here.path() / name);
+    };
+    for (const std::size_t k : order)
+        if (k != gone) copy(k, card().name(k));
+    copy(twice, "DSC_0900.png");
+    const auto last = Clock::now();
+    const auto named = [&](const WatchedState& state) {
+        return state.missing == std::vector{card().roles[gone]} && state.odd.size() == 1 &&
+               state.odd.front().file == "DSC_0900.png";
+    };
+    {
+        std::unique_lock lock(mutex);
+        const bool said = told.wait_for(lock, std::chrono::minutes(1), [&] {
+            return !states.empty() && named(states.back().second);
+        });
+        if (!said) stop = true;
+        if (said)
+            std::printf("seed %d: missing and doubled of %zu files named %.2f s after the last\n",
+                        static_cast<int>(seed),
+                        card().roles.size(),
+                        std::chrono::duration<double>(states.back().first - last).count());
+    }
+    copy(gone, card().name(gone));
+    watching.join();
+    EXPECT_TRUE(watched.state().complete);
 }
 
 TEST(WatchedCaptures, CalibratesWhenTheLastHasCome) {

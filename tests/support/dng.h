@@ -9,14 +9,9 @@
 #include <vector>
 
 #include "core/bench_ports.h"
+#include "support/exif.h"
 
 namespace livery::testing {
-
-inline std::string little_endian(std::uint32_t value, int bytes) {
-    std::string text;
-    for (int k = 0; k < bytes; ++k) text.push_back(static_cast<char>(value >> (8 * k)));
-    return text;
-}
 
 /// What the sensor's pixel has behind a Bayer filter R G / G B.
 inline std::uint16_t bayer(
@@ -25,15 +20,16 @@ inline std::uint16_t bayer(
 }
 
 /// A DNG (a TIFF with a colour filter array R G / G B, 16 bit, white at 65535) of so many of the
-/// sensor's pixels, that asks for a white balance of 2, 1, 1.43.
+/// sensor's pixels, that asks for a white balance of 2, 1, 1.43, exposed as it says.
 inline std::string dng_of(int width,
                           int height,
                           std::uint32_t black,
-                          const std::function<std::uint16_t(int x, int y)>& sample) {
-    constexpr std::uint32_t entry_count = 24;
+                          const std::function<std::uint16_t(int x, int y)>& sample,
+                          const ExposureSettings& said = {}) {
+    const std::uint32_t entry_count = said == ExposureSettings{} ? 24 : 25;
     const auto columns = static_cast<std::uint32_t>(width),
                rows = static_cast<std::uint32_t>(height);
-    constexpr std::uint32_t data_at = 8 + 2 + 12 * entry_count + 4;
+    const std::uint32_t data_at = 8 + 2 + 12 * entry_count + 4;
     std::vector<std::tuple<std::uint32_t, std::string>> entries;  // tag, the entry's 12 bytes
     std::string data;
     const auto add = [&](std::uint32_t tag, std::uint32_t type, std::uint32_t n, std::string raw) {
@@ -79,6 +75,11 @@ inline std::string dng_of(int width,
     add(50708, 2, 12, std::string("Maker Model\0", 12));
     longs(50714, black);
     longs(50717, 65535);
+    if (said != ExposureSettings{}) {
+        const auto at = data_at + static_cast<std::uint32_t>(data.size());
+        longs(34665, at);
+        data += exif_directory(at, said);
+    }
     ratios(50721, 10, {1, 0, 0, 0, 1, 0, 0, 0, 1});
     ratios(50728, 5, {0.5, 1.0, 0.7});
     shorts(50778, 21);

@@ -53,6 +53,20 @@ OIIO::ImageSpec reading_options(bool raw_half) {
     return options;
 }
 
+/// A damaged file may say anything: what no camera can have done counts as not said.
+double setting_of(const OIIO::ImageSpec& spec, const char* name, double least, double most) {
+    const double value = static_cast<double>(spec.get_float_attribute(name, 0.0f));
+    return value >= least && value <= most ? value : 0.0;
+}
+
+livery::ExposureSettings settings_of(const OIIO::ImageSpec& spec) {
+    // Of JPEG and EXR by EXIF's newer name, of RAW by its older one; of TIFF it is not read.
+    const double iso = setting_of(spec, "Exif:PhotographicSensitivity", 1.0, 1e8);
+    return {setting_of(spec, "ExposureTime", 1e-7, 1e5),
+            setting_of(spec, "FNumber", 0.1, 1e3),
+            iso > 0.0 ? iso : setting_of(spec, "Exif:ISOSpeedRatings", 1.0, 1e8)};
+}
+
 bool has_even_width(const char* file) {
     const auto input = OIIO::ImageInput::create("raw");
     OIIO::ImageSpec spec;
@@ -132,7 +146,7 @@ void* open_picture(const char* file,
             say(error, std::string("pixels of type ") + spec.format.c_str());
             return nullptr;
     }
-    picture->header = {spec.width, spec.height, spec.nchannels, integer_bits};
+    picture->header = {spec.width, spec.height, spec.nchannels, integer_bits, settings_of(spec)};
     *header = picture->header;
     return picture.release();
 } catch (const std::exception& exception) {

@@ -5,11 +5,14 @@
 
 #include <cstddef>
 
+#include "core/pictures/exposure_settings.h"
+
 namespace livery {
 
 struct PictureHeader {
     int width = 0, height = 0, channels = 0;
     int integer_bits = 0;  ///< 8 or 16; 0: 32-bit floating point
+    ExposureSettings settings;
 };
 
 /// One line, cut when longer.
