@@ -180,6 +180,62 @@ TEST_F(OwnProduct, AMeshOnTheCommandLineBeginsANewSession) {
     EXPECT_EQ(program->quit(), 0);
 }
 
+TEST_F(OwnProduct, NothingRunsBehindThePageOfAMeshAndWhatRunsIsNotStoppedUnasked) {
+    auto running = std::make_shared<RunningStudio>();
+    const auto first = running->session_file(), second = running->folder / "second.livery";
+    // A first start: nothing was calibrated.
+    ::setenv("LIVERY_HOME", (running->folder / "home").c_str(), 1);
+    Session::open(first);
+    Session::open(second);
+    running->desktop = std::make_unique<Desktop>();
+    use(running);
+    const auto scan = write_scan(20);
+    start_program({scan.string()});
+    ASSERT_TRUE(wait_until([&] { return program->state("new_session") == "asking"; }, 60s));
+    program->wait_for_state("new_session_pictured", true);
+    program->wait_for_state("busy", false);
+    sleep_ms(1500);
+    EXPECT_EQ(program->state("asked_number"), 0);
+    EXPECT_EQ(program->state("preview_number"), 0);
+    EXPECT_EQ(program->state("calibrating"), false);
+    program->press_key("Escape");
+    program->wait_for_state("calibrating", true);
+    EXPECT_NE(program->state("asked_number"), 0);
+
+    const char* const asked = "A calibration is running";
+    for (const bool by_key : {false, true}) {
+        open(second);
+        program->wait_for_state("question", asked);
+        if (by_key) {
+            program->press_key("Escape");
+        } else {
+            program->item("question:cancel");
+            saved(desktop->read(desktop->operator_area()), "question");
+            program->click("question:cancel");
+        }
+        program->wait_for_state("question", "");
+        EXPECT_EQ(made_session(), first);
+        EXPECT_EQ(program->state("calibrating"), true);
+    }
+    open(second);
+    program->click("question:ok");
+    ASSERT_TRUE(goes_on_with(second));
+
+    program->wait_for_state("calibrating", true);
+    program->press_key("ctrl+n");
+    type_into_dialog(scan);
+    program->click("new-session:create");
+    program->wait_for_state("question", asked);
+    program->click("question:cancel");
+    program->wait_for_state("question", "");
+    EXPECT_EQ(program->state("new_session"), "asking") << "the answers are still there";
+    EXPECT_EQ(program->state("calibrating"), true);
+    program->click("new-session:create");
+    program->click("question:ok");
+    ASSERT_TRUE(wait_until([&] { return made_session().filename() == "carscan.livery"; }, 60s));
+    EXPECT_EQ(program->quit(), 0);
+}
+
 TEST_F(OwnProduct, AScanOfAMillionTrianglesIsOnTheMockUpInAFewClicks) {
     start_afresh();
     const auto scan = write_scan(708);

@@ -61,6 +61,28 @@ NewSession* page_of(Shell& shell, std::uint64_t number) {
     return still_open ? shell.new_session.get() : nullptr;
 }
 
+/// In the background, as answered.
+void create(Shell& shell, NewSession& asked) {
+    asked.stage = NewSession::Stage::creating;
+    const auto answered = std::make_shared<NewSession>();
+    answered->given = asked.given;
+    answered->facts = asked.facts;
+    answered->answers = asked.answers;
+    answered->is_product_file = asked.is_product_file;
+    answered->session = asked.session;
+    shell.studio.background->run(
+        [&shell, answered](const Progress&) -> Background::Then {
+            const auto opened = std::make_shared<OpenedSession>(create_session(*answered));
+            return [&shell, opened] { shell.next_session = opened; };
+        },
+        [&shell, number = asked.number](const std::exception_ptr& why) {
+            NewSession* page = page_of(shell, number);
+            if (!page) return notify_failure(shell.studio, "The session was not made.", why);
+            page->stage = NewSession::Stage::asking;
+            page->problem = words_of(why);
+        });
+}
+
 }  // namespace
 
 bool is_product_path(const std::filesystem::path& file) {
@@ -164,24 +186,10 @@ void start_creating(Shell& shell) {
     }
     if (asked.problem.empty()) asked.problem = why_not_to_leave(shell.studio);
     if (!asked.problem.empty()) return;
-    asked.stage = NewSession::Stage::creating;
-    const auto answered = std::make_shared<NewSession>();
-    answered->given = asked.given;
-    answered->facts = asked.facts;
-    answered->answers = asked.answers;
-    answered->is_product_file = asked.is_product_file;
-    answered->session = asked.session;
-    shell.studio.background->run(
-        [&shell, answered](const Progress&) -> Background::Then {
-            const auto opened = std::make_shared<OpenedSession>(create_session(*answered));
-            return [&shell, opened] { shell.next_session = opened; };
-        },
-        [&shell, number = asked.number](const std::exception_ptr& why) {
-            NewSession* page = page_of(shell, number);
-            if (!page) return notify_failure(shell.studio, "The session was not made.", why);
-            page->stage = NewSession::Stage::asking;
-            page->problem = words_of(why);
-        });
+    const std::string doing = "Making " + asked.session.filename().string();
+    leave_session(shell, doing, "Stop and create", [&shell, number = asked.number] {
+        if (NewSession* page = page_of(shell, number)) create(shell, *page);
+    });
 }
 
 void ask_for_mesh_picture(Shell& shell, glm::ivec2 size_px) {

@@ -257,8 +257,8 @@ bool draw_buttons(Shell& shell) {
 
 void draw_new_session(Shell& shell) {
     shell.closed_page.reset();  // What was drawn of it is on the screen by now.
-    // A file dialog that the page asked for comes instead of it for a while.
-    if (!shell.new_session || shell.studio.file_dialog->is_open()) {
+    // A file dialog or a question that the page asked for comes instead of it for a while.
+    if (!shell.new_session || shell.studio.file_dialog->is_open() || shell.question) {
         if (shell.new_session) shell.new_session->to_open = true;
         return;
     }

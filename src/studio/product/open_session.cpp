@@ -53,6 +53,24 @@ std::string why_not_to_leave(const Studio& studio) {
     return "What was done in the session that is open is not saved yet (File, Save session as…).";
 }
 
+void leave_session(Shell& shell,
+                   const std::string& doing,
+                   const std::string& action,
+                   std::function<void()> then) {
+    const Studio& studio = shell.studio;
+    const bool captures =
+        studio.capture && studio.capture->view().doing == CaptureView::Doing::capturing;
+    const bool calibrates = studio.bench && studio.bench->calibrating().running;
+    if (!captures && !calibrates) return then();
+    Question question;
+    question.what = captures ? "A capture is running" : "A calibration is running";
+    question.cause = doing + (captures ? " stops it. What was photographed so far is kept."
+                                       : " stops it, and nothing of it is kept.");
+    question.action = action;
+    question.then = std::move(then);
+    shell.question = std::move(question);
+}
+
 void open_other_session(Shell& shell, const std::filesystem::path& given) {
     const auto file = std::filesystem::absolute(given).lexically_normal();
     Studio& studio = shell.studio;
@@ -67,12 +85,17 @@ void open_other_session(Shell& shell, const std::filesystem::path& given) {
         notify(studio, {Notice::Level::error, what, why, ""});
         return;
     }
-    studio.background->run(
-        [&shell, file](const Progress&) -> Background::Then {
-            const auto opened = std::make_shared<OpenedSession>(open_existing(file));
-            return [&shell, opened] { shell.next_session = opened; };
-        },
-        [&shell, what](const std::exception_ptr& why) { notify_failure(shell.studio, what, why); });
+    leave_session(
+        shell, "Opening " + file.filename().string(), "Stop and open", [&shell, file, what] {
+            shell.studio.background->run(
+                [&shell, file](const Progress&) -> Background::Then {
+                    const auto opened = std::make_shared<OpenedSession>(open_existing(file));
+                    return [&shell, opened] { shell.next_session = opened; };
+                },
+                [&shell, what](const std::exception_ptr& why) {
+                    notify_failure(shell.studio, what, why);
+                });
+        });
 }
 
 void ask_for_session(Shell& shell) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,13 @@ void take_dropped_files(Shell& shell, const std::vector<std::filesystem::path>& 
 /// Why another session may not take this one's place: something in it is on no disk. A sentence;
 /// empty: it may.
 std::string why_not_to_leave(const Studio& studio);
+
+/// Leaves the session by `then`, in words `doing` ("Opening car.livery") and on a button `action`
+/// ("Stop and open"). A calibration or a capture that this would stop is asked about first.
+void leave_session(Shell& shell,
+                   const std::string& doing,
+                   const std::string& action,
+                   std::function<void()> then);
 
 /// The newest first.
 std::vector<std::filesystem::path> recent_sessions(const UserSettings& settings);

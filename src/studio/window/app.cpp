@@ -375,6 +375,7 @@ class Desktop {
         draw_help(shell_);
         draw_new_session(shell_);
         shell_.studio.file_dialog->draw();
+        if (!shell_.studio.file_dialog->is_open()) draw_question(shell_.question);
     }
 
     void write_ui_map() {

@@ -15,6 +15,7 @@
 #include "gl/window.h"
 #include "live/orbit.h"
 #include "mesh/mesh.h"
+#include "studio/kit/question.h"
 #include "studio/product/new_session.h"
 #include "studio/studio.h"
 #include "studio/window/trace.h"
@@ -129,6 +130,7 @@ struct Shell {
     std::unique_ptr<NewSession> new_session;      ///< its page; none: closed
     std::unique_ptr<NewSession> closed_page;      ///< its picture may be in this frame's drawing
     std::uint64_t new_sessions = 0;               ///< pages opened so far
+    std::optional<Question> question;             ///< stands instead of the page meanwhile
     std::shared_ptr<OpenedSession> next_session;  ///< shared with the thread that opened it
     bool quit = false;
     bool clicked_a_view = false;

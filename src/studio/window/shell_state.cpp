@@ -204,6 +204,7 @@ MapState state_of_shell(const Shell& shell) {
     state["new_session_pictured"] =
         text(shell.new_session != nullptr && shell.new_session->picture.name() != 0);
     state["new_session_says"] = quoted(shell.new_session ? shell.new_session->problem : "");
+    state["question"] = quoted(shell.question ? shell.question->what : "");
     state["capture"] =
         quoted(shell.capture_open ? name_of(studio.panels.capture->view.doing) : "closed");
     state["capture_says"] = quoted(words_of(*studio.panels.capture));

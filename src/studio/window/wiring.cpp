@@ -286,7 +286,8 @@ void find_first_calibration(Shell& shell) {
 /// picture, while everything works uncorrected.
 void start_first_calibration(Shell& shell) {
     Studio& studio = shell.studio;
-    if (!shell.calibrates_after_first_frame || !studio.frame) return;
+    // Behind the page of a new session it would be for nothing.
+    if (!shell.calibrates_after_first_frame || !studio.frame || shell.new_session) return;
     shell.calibrates_after_first_frame = false;
     if (!needs_first_calibration(studio.session)) return;
     studio.bench->start_calibration();
@@ -353,6 +354,7 @@ bool preview_goes_first(const Shell& shell) {
 bool is_frame_under_way(const Shell& shell) {
     if (!shell.studio.setup) return false;
     const auto newest = shell.results->newest_frame();
+    if (shell.frame_number == 0) return false;
     if (!newest || newest->number < shell.frame_number) return true;
     // What is drawn here now would stand before the projector's swap in the driver's queue.
     return newest->problem.empty() && shell.results->awaits_projector();
@@ -433,6 +435,11 @@ void take_results(Shell& shell) {
 
 void ask_for_changes(Shell& shell) {
     ask_for_setup(shell);
+    // The program was started with a mesh: what stands behind its page may never be wanted.
+    if (shell.new_session && !shell.asked_frame) {
+        shell.frame_asked_s = shell.studio.now_s;
+        return;
+    }
     ask_for_frame(shell);
     ask_for_preview(shell);
     ask_for_photograph(shell);
