@@ -252,6 +252,7 @@ TEST_F(OwnProduct, AScanOfAMillionTrianglesIsOnTheMockUpInAFewClicks) {
     std::cout << "the scan is read after " << seconds() << " s\n";
     program->wait_for_state("new_session_pictured", true);
     program->item("new-session:create");
+    EXPECT_TRUE(program->has_item("new-session:lit"));
     saved(desktop->read(desktop->operator_area()), "page");
     program->click("new-session:part:0");
     desktop->press_key("ctrl+a");

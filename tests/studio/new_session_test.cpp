@@ -195,6 +195,13 @@ TEST_F(OneWindow, AMeshThatIsDroppedIsAskedAbout) {
     EXPECT_EQ(asked.facts.triangles, 12u);
     EXPECT_EQ(asked.answers.unit, LengthUnit::m);
     EXPECT_EQ(asked.session.filename(), "my-car.livery");
+    const auto share_at = [&](double product_scale) {
+        ProductAnswers answers = asked.answers;
+        answers.product_scale = product_scale;
+        return lit_share(asked.samples, product_file_of(asked.facts, answers, ""), asked.projector);
+    };
+    EXPECT_GT(share_at(25.0).value(), 0.98);
+    EXPECT_LT(share_at(10.0).value(), 0.7);
     start_creating(shell_);
     finish_work();
     ASSERT_TRUE(shell_.next_session);

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/paths.h"
+#include "live/projector_setup.h"
 #include "scene/library.h"
 #include "studio/kit/file_places.h"
 #include "studio/kit/user_folders.h"
@@ -19,16 +20,20 @@ struct Read {
     Mesh mesh;
     MeshFacts facts;
     SuggestedAnswers suggested;
+    std::vector<MeshSample> samples;
+    View projector;
     bool is_product_file = false;
 };
 
 Read read_given(const std::filesystem::path& file) {
     Read read;
+    read.projector = uncorrected_setup(Document{}.bench)->view;
     read.is_product_file = has_suffix_of(file, {".json"});
     if (read.is_product_file) {
         Product product = load_product(file);
         read.mesh = std::move(product.mesh);
         read.facts = facts_of(read.mesh, file);
+        read.samples = mesh_samples(read.mesh);
         read.suggested.answers.mesh_is_product = false;
         read.suggested.answers.product_scale = product.product_scale;
         read.suggested.answers.part_names = read.facts.parts;
@@ -36,6 +41,7 @@ Read read_given(const std::filesystem::path& file) {
     }
     read.mesh = load_mesh(file, nullptr, LengthUnit::mm);
     read.facts = facts_of(read.mesh, file);
+    read.samples = mesh_samples(read.mesh);
     read.suggested = suggested_answers(read.facts);
     return read;
 }
@@ -146,6 +152,8 @@ void begin_new_session(Shell& shell,
                 if (!asked) return;
                 asked->facts = std::move(read->facts);
                 asked->suggested = std::move(read->suggested);
+                asked->samples = std::move(read->samples);
+                asked->projector = read->projector;
                 asked->answers = asked->suggested.answers;
                 asked->mesh = std::make_shared<const Mesh>(std::move(read->mesh));
                 asked->is_product_file = read->is_product_file;

@@ -9,11 +9,13 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <glm/vec2.hpp>
 
 #include "gl/handles.h"
 #include "session/session.h"
+#include "studio/product/lit_share.h"
 #include "studio/product/product_answers.h"
 
 namespace livery {
@@ -35,6 +37,8 @@ struct NewSession {
 
     std::shared_ptr<const Mesh> mesh;  ///< shared with the thread that draws its picture
     MeshFacts facts;
+    std::vector<MeshSample> samples;  ///< of the mesh, in its numbers
+    View projector;                   ///< of the bench that new sessions have
     SuggestedAnswers suggested;
     ProductAnswers answers;
     bool is_product_file = false;   ///< it says all itself

@@ -129,6 +129,15 @@ void draw_sizes(const NewSession& asked) {
         ("On the bench: " + size_text(mock_up_size_mm(asked.facts, asked.answers))).c_str());
     name_last_item("new-session:size");
     ImGui::PopFont();
+    // A product file has placed its mesh itself.
+    const ProductFile product =
+        asked.is_product_file ? ProductFile{} : product_file_of(asked.facts, asked.answers, "");
+    if (const auto share = lit_share(asked.samples, product, asked.projector)) {
+        ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + em(kPictureWidth_em));
+        dim_text(lit_share_text(*share));
+        name_last_item("new-session:lit");
+        ImGui::PopTextWrapPos();
+    }
     if (asked.answers.product_scale == 1.0) return;
     dim_text("A " + scale_text(asked.answers.product_scale) + " of a product of " +
              size_text(product_size_mm(asked.facts, asked.answers)) + ".");
