@@ -169,6 +169,8 @@ TEST_F(OwnProduct, AMeshOnTheCommandLineBeginsANewSession) {
     program = studio->program.get();
     ASSERT_TRUE(wait_until([&] { return program->state("new_session") == "asking"; }, 60s));
     EXPECT_FALSE(std::filesystem::exists(how.session));
+    program->click("new-session:front:+x");
+    program->click("new-session:turn");
     program->click("new-session:scale:10");
     program->click("new-session:of:model");
     program->click("new-session:create");
@@ -176,6 +178,7 @@ TEST_F(OwnProduct, AMeshOnTheCommandLineBeginsANewSession) {
     const Json product = read_json_file(studio->folder / "van.product.json");
     EXPECT_EQ(product["product_scale"], 10);
     EXPECT_EQ(product["mesh_scale"], 1);
+    EXPECT_EQ(product["front"], "-z");
     EXPECT_EQ(product["mesh"], "carscan.ply");
     EXPECT_EQ(program->quit(), 0);
 }

@@ -122,7 +122,13 @@ class Photographer {
         desktop_.type(shipped_path("assets/car.glb").string());
         desktop_.press_key("Return");
         program().wait_for_state("new_session_pictured", true);
+        program().click("new-session:front:+x");
         program().click("new-session:scale:25");
+        // Not where the pictures are taken
+        program().click("new-session:file");
+        desktop_.press_key("ctrl+a");
+        desktop_.type("~/Documents/car.livery");
+        desktop_.press_key("Tab");
         program().move_away();
         settle();
         take("new-session");

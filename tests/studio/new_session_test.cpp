@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 #include <thread>
 
 #include <glm/geometric.hpp>
@@ -85,6 +86,28 @@ TEST(ProductAnswers, NamesAndScalesThatCannotBeAreRefusedInWords) {
         answers.product_scale = scale;
         EXPECT_NE(problem_of(answers), "") << scale;
     }
+}
+
+/// Where +x of a mesh whose y is up ends up, and what is said of its front.
+TEST(ProductAnswers, TheFrontTurnsWithTheProduct) {
+    const std::map<std::string, glm::dvec3> directions{
+        {"+x", {1, 0, 0}}, {"-x", {-1, 0, 0}}, {"+z", {0, 0, 1}}, {"-z", {0, 0, -1}}};
+    ProductAnswers answers;
+    answers.front = "+x";
+    for (int k = 0; k < 5; ++k, turn(answers)) {
+        const glm::dvec3 there =
+            upright_rotation(answers.up, answers.quarter_turns) * glm::dvec3(1, 0, 0);
+        EXPECT_LT(glm::distance(there, directions.at(answers.front)), 1e-12) << k;
+    }
+    EXPECT_EQ(answers.quarter_turns, 1);
+    set_up(answers, answers.up);
+    EXPECT_EQ(answers.front, "-z");
+    const MeshFacts facts = facts_of(box({180, 60, 75}), "car.obj");
+    EXPECT_EQ(product_file_of(facts, answers, "car").front, "-z");
+    set_up(answers, UpAxis::plus_z);
+    EXPECT_EQ(answers.front, "");
+    turn(answers);
+    EXPECT_EQ(answers.front, "");
 }
 
 struct Seen {

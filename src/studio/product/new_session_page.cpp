@@ -75,17 +75,36 @@ void draw_up(NewSession& asked) {
     for (std::size_t k = 0; k < axes.size(); ++k) {
         const auto& [label, up] = axes[k];
         if (choice(label, asked.answers.up == up, std::string("up:") + names[k], k == 0)) {
-            asked.answers.up = up;
+            set_up(asked.answers, up);
         }
     }
     place_in_row(button_width("Turn"));
     if (ImGui::Button("Turn")) {
-        asked.answers.quarter_turns = (asked.answers.quarter_turns + 1) % 4;
+        turn(asked.answers);
     }
     name_last_item("new-session:turn");
     tooltip("By a right angle, as it stands");
     ImGui::EndGroup();
     reason(asked.suggested.up_why);
+}
+
+/// As mesh_picture() shows it: +z comes near to the left, +x to the right.
+void draw_front(NewSession& asked) {
+    static constexpr std::array<std::pair<const char*, const char*>, 5> sides{{{"near left", "+z"},
+                                                                               {"near right", "+x"},
+                                                                               {"far right", "-z"},
+                                                                               {"far left", "-x"},
+                                                                               {"not said", ""}}};
+    row("Its front is");
+    ImGui::BeginGroup();
+    for (const auto& [label, front] : sides) {
+        const std::string name = std::string("front:") + front;
+        if (choice(label, asked.answers.front == front, name, label == sides[0].first)) {
+            asked.answers.front = front;
+        }
+    }
+    ImGui::EndGroup();
+    reason("In the picture. Its left and right are named after it.");
 }
 
 void draw_scale(NewSession& asked) {
@@ -214,12 +233,13 @@ void draw_questions(Shell& shell) {
     draw_sizes(asked);
     ImGui::EndGroup();
     ImGui::SameLine(0.0f, em(1.2f));
-    ImGui::BeginChild("questions", {0.0f, em(kPictureHeight_em + 6.5f)}, false);
+    ImGui::BeginChild("questions", {0.0f, em(kPictureHeight_em + 9.0f)}, false);
     if (asked.is_product_file) {
         dim_text("The product file says what its mesh is: its unit, its size and how it stands.");
     } else {
         draw_unit(asked);
         draw_up(asked);
+        draw_front(asked);
         draw_scale(asked);
     }
     draw_parts(asked);

@@ -77,6 +77,20 @@ SuggestedAnswers suggested_answers(const MeshFacts& facts) {
     return suggested;
 }
 
+void turn(ProductAnswers& answers) {
+    answers.quarter_turns = (answers.quarter_turns + 1) % 4;
+    // Counter-clockwise seen from above, as upright_rotation() turns.
+    constexpr std::array kAround{"+x", "-z", "-x", "+z"};
+    const auto* from = std::find(kAround.begin(), kAround.end(), answers.front);
+    if (from == kAround.end()) return;
+    answers.front = kAround[static_cast<std::size_t>(from - kAround.begin() + 1) % kAround.size()];
+}
+
+void set_up(ProductAnswers& answers, UpAxis up) {
+    if (answers.up != up) answers.front.clear();
+    answers.up = up;
+}
+
 glm::dvec3 mock_up_size_mm(const MeshFacts& facts, const ProductAnswers& answers) {
     const glm::dvec3 turned = upright_rotation(answers.up, answers.quarter_turns) *
                               (size_in_numbers(facts) * mm_per(answers.unit));
@@ -125,6 +139,7 @@ ProductFile product_file_of(const MeshFacts& facts,
     product.unit = answers.unit;
     product.mesh_scale = mesh_scale(answers);
     product.product_scale = answers.product_scale;
+    product.front = answers.front;
     const double mm = mm_per(answers.unit) * product.mesh_scale;
     product.world_from_mesh = standing_pose({facts.bounds.low * mm, facts.bounds.high * mm},
                                             upright_rotation(answers.up, answers.quarter_turns));

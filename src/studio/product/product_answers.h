@@ -26,6 +26,7 @@ struct ProductAnswers {
     LengthUnit unit = LengthUnit::mm;
     UpAxis up = UpAxis::plus_y;
     int quarter_turns = 0;                ///< around up
+    std::string front;                    ///< as it stands, in ProductFile's words
     bool mesh_is_product = true;          ///< else the mesh is the model on the bench
     double product_scale = 1.0;           ///< 25: the bench has a 1:25 model
     std::vector<std::string> part_names;  ///< one a part of the mesh
@@ -39,6 +40,11 @@ struct SuggestedAnswers {
 /// The unit is glTF's or guess_unit()'s; up is glTF's y, else the shorter of y and z; a mesh of
 /// half a metre or more is the product, and the model the largest usual one below 200 mm.
 SuggestedAnswers suggested_answers(const MeshFacts& facts);
+
+/// Turned by another right angle, its front with it.
+void turn(ProductAnswers& answers);
+/// Where another axis is up, it is not known where the front then points.
+void set_up(ProductAnswers& answers, UpAxis up);
 
 /// Width, height and depth as it stands, millimetres.
 glm::dvec3 mock_up_size_mm(const MeshFacts& facts, const ProductAnswers& answers);
