@@ -191,7 +191,7 @@ void check_png_channels(int channels) {
 
 ImageFile read_image(const std::filesystem::path& file, std::size_t max_pixels, bool raw_half) {
     const char* format = format_of(file, start_of(file));
-    if (raw_half && format == std::string_view("raw")) format = kRawHalf;
+    if (raw_half && format && std::string_view(format) == "raw") format = kRawHalf;
     if (format && std::string_view(format) == "hdr") {
         const std::string bytes = read_text_file(file, kMaxBytes);
         if (auto picture = decode_radiance_hdr(bytes, max_pixels)) {

@@ -75,5 +75,14 @@ TEST(RawPicture, BadFilesSayWhy) {
     EXPECT_TRUE(fails(whole.substr(0, whole.size() / 2)));
 }
 
+TEST(RawPicture, WhatIsNoPictureIsRefusedAtHalfSizeToo) {
+    const TemporaryFolder folder;
+    for (const char* name : {"a.dng", "a.png", "a.jpg"}) {
+        const auto file = folder.write(name, "half a photograph");
+        EXPECT_TRUE(fails_with([&] { read_image(file, kMostPicturePixels, true); },
+                               {std::string(name) + ": found", "expected"}));
+    }
+}
+
 }  // namespace
 }  // namespace livery
