@@ -24,6 +24,14 @@ constexpr double kShareToName = 0.6;
 /// Of the files that were exposed otherwise; after so many it is all of them.
 constexpr std::size_t kMostNamed = 12;
 
+Capture capture_of(const std::filesystem::path& file) {
+    Capture capture;
+    capture.file = file;
+    capture.exposure_s = 1.0;
+    capture.raw_half = true;  // As cameras on a cable read theirs: nothing made up, and soon read.
+    return capture;
+}
+
 /// The one of `files` that most of them are like, by `alike`; the first of equals. Not of none.
 template <typename NamedFile, typename Alike>
 const auto& usual_of(const std::vector<const NamedFile*>& files, const Alike& alike) {
@@ -77,10 +85,7 @@ void WatchedCaptures::read(const std::filesystem::path& path, File& file) {
         Hasher hasher;
         hasher.add(read_text_file(path, kLargestFile));
         file.bytes_hash = hasher.hex();
-        Capture capture;
-        capture.file = path;
-        capture.exposure_s = 1.0;
-        const Photograph photograph = load_photograph(capture);
+        const Photograph photograph = load_photograph(capture_of(path));
         file.settings = photograph.settings;
         file.glimpse = glimpse_of(photograph);
     } catch (const FileError& error) {
@@ -208,10 +213,9 @@ CapturesFolder WatchedCaptures::captures(int projector_width, int projector_heig
             return files_.at(name).settings.time_s > 0.0;
         });
     for (std::size_t r = 0; r < roles_.size(); ++r) {
-        Capture capture;
+        Capture capture = capture_of(folder_ / file_of_role_[r]);
         capture.role = roles_[r];
-        capture.file = folder_ / file_of_role_[r];
-        capture.exposure_s = all_say_so ? state_.usual_exposure.time_s : 1.0;
+        if (all_say_so) capture.exposure_s = state_.usual_exposure.time_s;
         folder.captures.push_back(std::move(capture));
     }
     return folder;

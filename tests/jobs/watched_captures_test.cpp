@@ -13,6 +13,7 @@
 #include "core/image_io.h"
 #include "core/paths.h"
 #include "session/small_session.h"
+#include "support/dng.h"
 #include "support/exif.h"
 #include "support/jpeg.h"
 #include "support/message_of.h"
@@ -201,6 +202,31 @@ TEST(WatchedCaptures, TakesNoPicturesOfAnAutomaticTogether) {
     look_at_all(watched);
     EXPECT_TRUE(watched.state().complete) << text_of(watched.state());
     EXPECT_NEAR(watched.captures(320, 200).captures[0].exposure_s, 0.0125, 1e-9);
+}
+
+/// A pixel for each square of the sensor's colour filter, as of a camera on a cable.
+TEST(WatchedCaptures, ReadsRawAsTheSensorLies) {
+    const TemporaryFolder here;
+    WatchedCaptures watched(here.path(), card().roles);
+    const ExposureSettings said{1.0 / 8.0, 5.6, 100.0};
+    for (std::size_t k = 0; k < card().roles.size(); ++k) {
+        const ImageF seen = read_image(card().file(k)).image;
+        const auto sample = [&](int x, int y) {
+            const auto value = [&](int c) {
+                return static_cast<std::uint16_t>(seen.at(x / 2, y / 2, c));
+            };
+            return testing::bayer(x, y, value(0), value(1), value(2));
+        };
+        here.write(fmt::format("DSC_{:04}.DNG", k),
+                   testing::dng_of(2 * seen.width, 2 * seen.height, 0, sample, said));
+    }
+    look_at_all(watched);
+    ASSERT_TRUE(watched.state().complete) << text_of(watched.state());
+    const CapturesFolder captures = watched.captures(320, 200);
+    const Photograph white = load_photograph(captures.captures[card().roles.size() / 2]);
+    EXPECT_EQ(white.image.width, 432);
+    EXPECT_EQ(white.image.height, 288);
+    EXPECT_NEAR(white.exposure_s, said.time_s, 1e-9);
 }
 
 /// Files that do not say how they were exposed count as exposed alike, for a second.
