@@ -1,6 +1,7 @@
 #include "capture/transfer.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstddef>
 
 #include "capture/manifest_io.h"
@@ -20,6 +21,12 @@ std::function<double(double)> linearisation(const std::string& transfer, double 
         const double t = place - static_cast<double>(below);
         return full_scale * ((1.0 - t) * table[below] + t * table[below + 1]);
     };
+}
+
+std::string usual_transfer(const std::filesystem::path& file) {
+    std::string suffix = file.extension().string();
+    for (char& c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return suffix == ".jpg" || suffix == ".jpeg" ? "srgb" : "linear";
 }
 
 std::vector<float> linear_from_eight_bits(const std::string& transfer) {

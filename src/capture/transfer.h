@@ -12,6 +12,10 @@ namespace livery {
 /// function), "srgb", or a response file's path. Throws FileError.
 std::function<double(double)> linearisation(const std::string& transfer, double full_scale);
 
+/// Of a file by its name, where nobody says: "srgb" for JPEG, which picture styles are only nearly;
+/// "linear" for the rest.
+std::string usual_transfer(const std::filesystem::path& file);
+
 /// The same as a table of the 256 values of an 8-bit file.
 std::vector<float> linear_from_eight_bits(const std::string& transfer);
 

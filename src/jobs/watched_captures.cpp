@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "capture/transfer.h"
 #include "core/error.h"
 #include "core/hash.h"
 #include "core/image_io.h"
@@ -27,6 +28,7 @@ constexpr std::size_t kMostNamed = 12;
 Capture capture_of(const std::filesystem::path& file) {
     Capture capture;
     capture.file = file;
+    capture.transfer = usual_transfer(file);
     capture.exposure_s = 1.0;
     capture.raw_half = true;  // As cameras on a cable read theirs: nothing made up, and soon read.
     return capture;

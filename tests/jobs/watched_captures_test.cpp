@@ -1,6 +1,7 @@
 #include "jobs/watched_captures.h"
 
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <cstdio>
 #include <mutex>
@@ -10,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "calibration/correspondence/patterns.h"
+#include "core/colour.h"
 #include "core/image_io.h"
 #include "core/paths.h"
 #include "session/small_session.h"
@@ -227,6 +229,34 @@ TEST(WatchedCaptures, ReadsRawAsTheSensorLies) {
     EXPECT_EQ(white.image.width, 432);
     EXPECT_EQ(white.image.height, 288);
     EXPECT_NEAR(white.exposure_s, said.time_s, 1e-9);
+}
+
+/// Numbers of a JPEG are no light: they are taken for sRGB, as those of a camera on a cable.
+TEST(WatchedCaptures, ReadsJpegAsSrgb) {
+    const TemporaryFolder here;
+    WatchedCaptures watched(here.path(), card().roles);
+    for (std::size_t k = 0; k < card().roles.size(); ++k) {
+        const ImageF seen = read_image(card().file(k)).image;
+        Image8 rgb(seen.width, seen.height, 3);
+        for (std::size_t i = 0; i < rgb.values.size(); ++i)
+            rgb.values[i] = static_cast<std::uint8_t>(
+                255.0 * srgb_encode(static_cast<double>(seen.values[i]) / 65535.0) + 0.5);
+        here.write(fmt::format("DSC_{:04}.JPG", k), testing::jpeg_of(rgb));
+    }
+    look_at_all(watched);
+    ASSERT_TRUE(watched.state().complete) << text_of(watched.state());
+    const CapturesFolder captures = watched.captures(320, 200);
+    const std::size_t white = card().roles.size() / 2;
+    const Photograph read = load_photograph(captures.captures[white]);
+    const ImageF meant = read_image(card().file(white)).image;
+    double off = 0.0, sum = 0.0;
+    for (std::size_t i = 0; i < meant.values.size(); ++i) {
+        off += std::abs(static_cast<double>(read.image.values[i]) / 255.0 -
+                        static_cast<double>(meant.values[i]) / 65535.0);
+        sum += static_cast<double>(meant.values[i]) / 65535.0;
+    }
+    // Eight bits and the compression; the numbers themselves would be far off.
+    EXPECT_LT(off / sum, 0.03);
 }
 
 /// Files that do not say how they were exposed count as exposed alike, for a second.
