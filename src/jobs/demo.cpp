@@ -26,6 +26,7 @@ void judge_looks(DemoResult& result,
                  const Progress& progress) {
     const BenchDescription& description = calibrated.bench->description();
     RadianceRenderer renderer(calibrated.product, description.projector.view, progress);
+    RadianceRenderer eye_renderer(calibrated.product, calibrated.bench->eye().view, progress);
     double done = 0.0;
     std::shared_ptr<const Environment> environment;
     for (const std::string& name : kDemoLooks) {
@@ -39,13 +40,16 @@ void judge_looks(DemoResult& result,
         StageTimes shading;
         timed(shading, "shade", [&] { renderer.render(scene, plan, progress); });
         times.add("render", shading.all().front().second);
-        const ImageF wanted = renderer.read_back();
-        DesignResult design = judge_design(look.name,
-                                           wanted,
-                                           xyz_from_wanted(wanted, calibrated.design_white_y),
-                                           calibrated,
-                                           options.out,
-                                           times);
+        WantedLook wanted;
+        wanted.working = renderer.read_back();
+        wanted.xyz = xyz_from_wanted(wanted.working, calibrated.design_white_y);
+        // The eye's own picture of the product, which knows nothing of the projector.
+        FramePlan eye_plan = plan_frame(scene, Quality::normal, FrameStage::radiance);
+        timed(times, "render for the eye", [&] {
+            eye_renderer.render(scene, eye_plan, progress);
+            wanted.eye_xyz = xyz_from_wanted(eye_renderer.read_back(), calibrated.design_white_y);
+        });
+        DesignResult design = judge_design(look.name, wanted, calibrated, options.out, times);
         for (const PlannedPass& pass : plan.passes) {
             const PassKind kind = pass.id.kind;
             if (pass.ms && (kind == PassKind::shade || kind == PassKind::resolve)) {

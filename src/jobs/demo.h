@@ -27,13 +27,23 @@ struct DemoOptions {
     double design_white_percentile = 20.0;
 };
 
+/// A look compared with what was shown of it. `uncorrected`: the wanted picture sRGB-encoded to 8
+/// bit, same white.
+struct JudgedPictures {
+    Comparison corrected;
+    Comparison uncorrected;
+    std::optional<Comparison> chart_corrected;  ///< camera matrix from a chart under daylight
+};
+
 /// One look or paint: what was wanted, and what the simulated audience saw.
 struct DesignResult {
     std::string name;
-    Comparison corrected;
-    Comparison uncorrected;  ///< the wanted picture sRGB-encoded to 8 bit, same white
-    std::optional<Comparison> chart_corrected;  ///< camera matrix from a chart under daylight
-    double out_of_gamut_fraction = 0.0;         ///< of the valid pixels, as compensation saw it
+    JudgedPictures seen;  ///< in the eye's picture, wherever on the mock-up the light falls
+    /// At each projector pixel by itself, on the place that it lights: the correction alone, with
+    /// no error of pose or lens in it.
+    JudgedPictures pixels;
+    double unlit_fraction = 0.0;         ///< of the mock-up that the eye sees: no light reaches it
+    double out_of_gamut_fraction = 0.0;  ///< of the valid pixels, as compensation saw it
     double shade_ms = 0.0, compensate_ms = 0.0;
     std::map<std::string, std::filesystem::path> pictures;  ///< by what they show, relative to out
 };

@@ -54,19 +54,19 @@ void judge_painted_spheres(DemoResult& result,
         scene.part_materials.assign(mesh.parts.size(), material_of(paint));
         FramePlan plan = plan_frame(scene, Quality::normal, FrameStage::radiance);
         timed(times, "render", [&] { renderer.render(scene, plan, progress); });
-        const ImageF sample_xyz = timed(times, "paint the sample", [&] {
-            return scaled(paint_radiance_xyz(mesh,
-                                             tracer,
-                                             description.projector.view,
-                                             description.eye_mm,
-                                             paint,
-                                             scene.lights,
-                                             4,
-                                             progress),
-                          calibrated.design_white_y);
+        WantedLook wanted;
+        wanted.working = renderer.read_back();
+        const auto sample_in = [&](const View& view) {
+            return scaled(
+                paint_radiance_xyz(
+                    mesh, tracer, view, description.eye_mm, paint, scene.lights, 4, progress),
+                calibrated.design_white_y);
+        };
+        timed(times, "paint the sample", [&] {
+            wanted.xyz = sample_in(description.projector.view);
+            wanted.eye_xyz = sample_in(calibrated.bench->eye().view);
         });
-        DesignResult design = judge_design(
-            paint.name, renderer.read_back(), sample_xyz, calibrated, options.out, times);
+        DesignResult design = judge_design(paint.name, wanted, calibrated, options.out, times);
         // What was wanted is the sample itself.
         auto sample = design.pictures.extract("wanted");
         sample.key() = "sample";

@@ -76,7 +76,7 @@ CalibratedBench calibrate_bench(const DemoOptions& options,
     CalibratedBench result;
     result.product = product;
     result.bench = timed(times, "set up the bench", [&] {
-        return std::make_unique<Bench>(description, product, progress);
+        return std::make_unique<Bench>(description, product, progress, EyePicture::traced);
     });
 
     BenchCalibration calibrated = calibrate_through_ports(*result.bench, product, progress);
@@ -114,46 +114,98 @@ CalibratedBench calibrate_bench(const DemoOptions& options,
     return result;
 }
 
+namespace {
+
+/// What is projected of one design.
+struct Drives {
+    Image8 corrected, uncorrected;
+    std::optional<Image8> chart_corrected;
+};
+
+template <typename Observe>
+JudgedPictures judged(const Drives& drives,
+                      const ImageF& wanted_xyz,
+                      const ComparisonMasks& masks,
+                      double design_white_y,
+                      StageTimes& times,
+                      const Observe& observe) {
+    const auto compared = [&](const Image8& drive) {
+        const ImageF shown_xyz = timed(times, "observe", [&] { return observe(drive); });
+        return timed(times, "compare", [&] {
+            return compare_xyz(wanted_xyz, shown_xyz, design_white_y * d65_xyz(), masks);
+        });
+    };
+    JudgedPictures result;
+    result.corrected = compared(drives.corrected);
+    result.uncorrected = compared(drives.uncorrected);
+    if (drives.chart_corrected) result.chart_corrected = compared(*drives.chart_corrected);
+    return result;
+}
+
+/// Masks of the eye's picture. What the projector's pixels at an edge light is at an edge too,
+/// however wide it looks from the eye.
+ComparisonMasks masks_of_eye(const CalibratedBench& calibrated, const ImageF& wanted_xyz) {
+    const Bench& bench = *calibrated.bench;
+    const Observer& eye = bench.eye().observer;
+    ComparisonMasks masks{eye.truth.lit,
+                          mostly_lit_by(eye, bench.truth().edge),
+                          mostly_lit_by(eye, calibrated.valid),
+                          bench.reachable_from_eye(wanted_xyz),
+                          mostly_lit_by(eye, calibrated.predicted)};
+    for (std::size_t i = 0; i < masks.edge.values.size(); ++i) {
+        masks.edge.values[i] |= eye.truth.edge.values[i];
+    }
+    return masks;
+}
+
+double unlit_fraction(const ObserverTruth& eye) {
+    std::size_t seen = 0, dark = 0;
+    for (std::size_t i = 0; i < eye.seen_by_eye.values.size(); ++i) {
+        seen += eye.seen_by_eye.values[i] != 0;
+        dark += eye.seen_by_eye.values[i] != 0 && eye.lit.values[i] == 0;
+    }
+    return seen == 0 ? 0.0 : static_cast<double>(dark) / static_cast<double>(seen);
+}
+
+}  // namespace
+
 DesignResult judge_design(const std::string& name,
-                          const ImageF& wanted_working,
-                          const ImageF& wanted_xyz,
+                          const WantedLook& wanted,
                           const CalibratedBench& calibrated,
                           const std::filesystem::path& out,
                           StageTimes& times) {
     const Bench& bench = *calibrated.bench;
-    const glm::dvec3 white_xyz = calibrated.design_white_y * d65_xyz();
     DesignResult result;
     result.name = name;
 
     CompensationStats stats;
     StageTimes compensation_time;
-    const Image8 corrected_drive = timed(compensation_time, "compensate", [&] {
-        return compensate(calibrated.table, wanted_working, &stats);
+    Drives drives;
+    drives.corrected = timed(compensation_time, "compensate", [&] {
+        return compensate(calibrated.table, wanted.working, &stats);
     });
     result.compensate_ms = 1000.0 * compensation_time.all().front().second;
     times.add("compensate", compensation_time.all().front().second);
     result.out_of_gamut_fraction = stats.out_of_gamut_fraction;
-    const Image8 uncorrected_drive = srgb_from_working(wanted_working);
+    drives.uncorrected = srgb_from_working(wanted.working);
+    if (calibrated.chart_table) {
+        drives.chart_corrected = compensate(*calibrated.chart_table, wanted.working);
+    }
 
     // What the audience sees, by the bench's spectral observer.
-    const ImageF corrected_xyz =
-        timed(times, "observe", [&] { return bench.observe_xyz(corrected_drive); });
-    const ImageF uncorrected_xyz =
-        timed(times, "observe", [&] { return bench.observe_xyz(uncorrected_drive); });
     ComparisonMasks masks{
         bench.truth().lit, bench.truth().edge, calibrated.valid, {}, calibrated.predicted};
-    masks.reachable = timed(times, "observe", [&] { return bench.reachable(wanted_xyz); });
-    timed(times, "compare", [&] {
-        result.corrected = compare_xyz(wanted_xyz, corrected_xyz, white_xyz, masks);
-        result.uncorrected = compare_xyz(wanted_xyz, uncorrected_xyz, white_xyz, masks);
-    });
-    if (calibrated.chart_table) {
-        const ImageF chart_xyz = timed(times, "observe", [&] {
-            return bench.observe_xyz(compensate(*calibrated.chart_table, wanted_working));
+    masks.reachable = timed(times, "observe", [&] { return bench.reachable(wanted.xyz); });
+    result.pixels =
+        judged(drives, wanted.xyz, masks, calibrated.design_white_y, times, [&](const auto& drive) {
+            return bench.observe_xyz(drive);
         });
-        result.chart_corrected = timed(
-            times, "compare", [&] { return compare_xyz(wanted_xyz, chart_xyz, white_xyz, masks); });
-    }
+    masks = timed(times, "observe", [&] { return masks_of_eye(calibrated, wanted.eye_xyz); });
+    result.seen = judged(
+        drives, wanted.eye_xyz, masks, calibrated.design_white_y, times, [&](const auto& drive) {
+            return bench.observe_from_eye(drive);
+        });
+    result.unlit_fraction = unlit_fraction(bench.eye().observer.truth);
 
     // What the camera photographs of the corrected and the uncorrected picture.
     const BenchPorts ports = calibrated.bench->ports();
@@ -163,30 +215,29 @@ DesignResult judge_design(const std::string& name,
             return developed(ports.photograph(0.0), calibrated.calibration.xyz_from_camera);
         });
     };
-    const ImageF corrected_photo = photograph(corrected_drive);
-    const ImageF uncorrected_photo = photograph(uncorrected_drive);
+    const ImageF corrected_photo = photograph(drives.corrected);
+    const ImageF uncorrected_photo = photograph(drives.uncorrected);
 
     timed(times, "write the pictures", [&] {
-        const PixelRectangle car = bounds_of_mask(masks.lit, 12);
         const PixelRectangle seen = bright_part(corrected_photo, calibrated.design_white_y);
         const auto picture = [&](const std::string& what, const Image8& image) {
             const std::filesystem::path file = "pictures/" + slug(name) + "-" + what + ".png";
             write_png(out / file, image);
             result.pictures[what] = file;
         };
-        const auto shown = [&](const ImageF& xyz) {
-            return crop(srgb_from_xyz(xyz, calibrated.design_white_y), car);
+        const auto at_eye = [&](const ImageF& xyz) {
+            return srgb_from_xyz(xyz, calibrated.design_white_y);
         };
         const auto seen_photo = [&](const ImageF& xyz) {
             return crop(srgb_from_xyz(xyz, calibrated.design_white_y), seen);
         };
-        picture("wanted", shown(wanted_xyz));
-        picture("uncorrected", shown(uncorrected_xyz));
-        picture("corrected", shown(corrected_xyz));
-        picture("difference", crop(difference_map(result.corrected.de00, 5.0), car));
+        picture("wanted", at_eye(wanted.eye_xyz));
+        picture("uncorrected", at_eye(bench.observe_from_eye(drives.uncorrected)));
+        picture("corrected", at_eye(bench.observe_from_eye(drives.corrected)));
+        picture("difference", difference_map(result.seen.corrected.de00, 5.0));
         picture("photograph-corrected", seen_photo(corrected_photo));
         picture("photograph-uncorrected", seen_photo(uncorrected_photo));
-        write_png(out / ("pictures/" + slug(name) + "-projector-input.png"), corrected_drive);
+        write_png(out / ("pictures/" + slug(name) + "-projector-input.png"), drives.corrected);
     });
     return result;
 }

@@ -49,11 +49,17 @@ CalibratedBench calibrate_bench(const DemoOptions& options,
                                 StageTimes& times,
                                 const Progress& progress);
 
+/// What a look should be: the picture to correct, and what it is judged against, the render itself
+/// or a painted sample's truth.
+struct WantedLook {
+    ImageF working;  ///< projector pixels, 1 = design white
+    ImageF xyz;      ///< of what each projector pixel lights, absolute
+    ImageF eye_xyz;  ///< in the eye's picture (`Bench::eye()`)
+};
+
 /// Shows a wanted picture corrected and uncorrected, observes both, writes the pictures.
-/// `wanted_xyz` is what it is judged against: the render itself, or a painted sample's truth.
 DesignResult judge_design(const std::string& name,
-                          const ImageF& wanted_working,
-                          const ImageF& wanted_xyz,
+                          const WantedLook& wanted,
                           const CalibratedBench& calibrated,
                           const std::filesystem::path& out,
                           StageTimes& times);

@@ -58,9 +58,9 @@ std::string cell(const ErrorStatistics& statistics) {
 
 /// "Good", "Usable" or "Bad" against a stated scale, with the reason.
 std::string verdict(const DesignResult& design) {
-    const ErrorStatistics& s = design.corrected.interior;
+    const ErrorStatistics& s = design.seen.corrected.interior;
     if (s.pixels == 0) return "Bad: no pixel of this look can be shown";
-    if (design.corrected.valid_fraction < 0.95)
+    if (design.seen.corrected.valid_fraction < 0.95)
         return "Bad: over 5% of the reachable pixels are masked";
     if (s.median <= 0.5 && s.p95 <= 1.5)
         return "Good: median at most 0.5, 95th percentile at most 1.5";
@@ -101,26 +101,32 @@ std::string design_section(const DesignResult& design) {
 
 std::string design_table(const DemoResult& result) {
     std::string html =
-        "<table><caption>CIEDE2000, median / 95th percentile, by the bench's spectral observer at "
-        "the "
-        "eye point</caption><tr><th>Look</th><th>Corrected</th><th>2 px edge band</th>"
+        "<table><caption>CIEDE2000, median / 95th percentile, by the bench's spectral observer in "
+        "the eye's picture of the mock-up: what the light does where it falls, pose and lens "
+        "included. The last column compares each projector pixel by itself with what was drawn for "
+        "it.</caption><tr><th>Look</th><th>Corrected</th><th>2 px edge band</th>"
         "<th>Out of reach (clipped)</th><th>Uncorrected</th><th>Chart-only camera matrix</th>"
         "<th>In reach</th><th>Valid of these</th><th>Predicted pixels alone</th><th>Predicted</th>"
-        "<th>Masked</th></tr>\n";
+        "<th>Masked</th><th>Unlit</th><th>At projector pixels</th></tr>\n";
     for (const DesignResult& design : result.designs) {
         html += fmt::format(
-            "<tr><th>{}</th>{}{}{}{}{}<td>{}</td><td>{}</td>{}<td>{}</td><td>{}</td></tr>\n",
+            "<tr><th>{}</th>{}{}{}{}{}<td>{}</td><td>{}</td>{}<td>{}</td><td>{}</td><td>{}</td>{}</"
+            "tr>"
+            "\n",
             escaped(design.name),
-            cell(design.corrected.interior),
-            cell(design.corrected.edge),
-            cell(design.corrected.clipped),
-            cell(design.uncorrected.interior),
-            design.chart_corrected ? cell(design.chart_corrected->interior) : "<td>not run</td>",
-            percent(design.corrected.reachable_fraction),
-            percent(design.corrected.valid_fraction),
-            cell(design.corrected.predicted),
-            percent(design.corrected.predicted_fraction),
-            percent(design.corrected.masked_fraction));
+            cell(design.seen.corrected.interior),
+            cell(design.seen.corrected.edge),
+            cell(design.seen.corrected.clipped),
+            cell(design.seen.uncorrected.interior),
+            design.seen.chart_corrected ? cell(design.seen.chart_corrected->interior)
+                                        : "<td>not run</td>",
+            percent(design.seen.corrected.reachable_fraction),
+            percent(design.seen.corrected.valid_fraction),
+            cell(design.seen.corrected.predicted),
+            percent(design.seen.corrected.predicted_fraction),
+            percent(design.seen.corrected.masked_fraction),
+            percent(design.unlit_fraction),
+            cell(design.pixels.corrected.interior));
     }
     return html + "</table>\n";
 }
@@ -207,25 +213,27 @@ Json figures_of(const DemoResult& result) {
     for (const DesignResult& design : result.designs) {
         Json entry = {
             {"name", design.name},
-            {"de00_median", figures_of(design.corrected.interior)["median"]},
-            {"de00_p95", figures_of(design.corrected.interior)["p95"]},
-            {"de00_uncompensated_median", figures_of(design.uncorrected.interior)["median"]},
-            {"de00", figures_of(design.corrected.interior)},
-            {"de00_edge_band", figures_of(design.corrected.edge)},
-            {"de00_clipped", figures_of(design.corrected.clipped)},
-            {"de00_predicted", figures_of(design.corrected.predicted)},
-            {"de00_reachable_with_masked", figures_of(design.corrected.reachable_with_masked)},
-            {"de00_uncompensated", figures_of(design.uncorrected.interior)},
-            {"reachable_fraction", design.corrected.reachable_fraction},
-            {"valid_fraction", design.corrected.valid_fraction},
-            {"masked_fraction", design.corrected.masked_fraction},
-            {"predicted_fraction", design.corrected.predicted_fraction},
+            {"de00_median", figures_of(design.seen.corrected.interior)["median"]},
+            {"de00_p95", figures_of(design.seen.corrected.interior)["p95"]},
+            {"de00_uncompensated_median", figures_of(design.seen.uncorrected.interior)["median"]},
+            {"de00", figures_of(design.seen.corrected.interior)},
+            {"de00_edge_band", figures_of(design.seen.corrected.edge)},
+            {"de00_clipped", figures_of(design.seen.corrected.clipped)},
+            {"de00_predicted", figures_of(design.seen.corrected.predicted)},
+            {"de00_reachable_with_masked", figures_of(design.seen.corrected.reachable_with_masked)},
+            {"de00_uncompensated", figures_of(design.seen.uncorrected.interior)},
+            {"reachable_fraction", design.seen.corrected.reachable_fraction},
+            {"valid_fraction", design.seen.corrected.valid_fraction},
+            {"unlit_fraction", design.unlit_fraction},
+            {"de00_projector_pixels", figures_of(design.pixels.corrected.interior)},
+            {"masked_fraction", design.seen.corrected.masked_fraction},
+            {"predicted_fraction", design.seen.corrected.predicted_fraction},
             {"out_of_gamut_fraction", design.out_of_gamut_fraction},
             {"shade_ms", design.shade_ms},
             {"compensate_ms", design.compensate_ms},
             {"verdict", verdict(design)}};
-        if (design.chart_corrected) {
-            entry["de00_chart_matrix"] = figures_of(design.chart_corrected->interior);
+        if (design.seen.chart_corrected) {
+            entry["de00_chart_matrix"] = figures_of(design.seen.chart_corrected->interior);
         }
         designs.push_back(entry);
     }
@@ -285,10 +293,11 @@ void write_report(const std::filesystem::path& file, const DemoResult& result) {
 
 std::string summary_of(const DemoResult& result) {
     std::string text = fmt::format(
-        "{} on the simulated bench \"{}\"; CIEDE2000 median / 95th percentile at the eye\n",
+        "{} on the simulated bench \"{}\"; CIEDE2000 median / 95th percentile in the eye's "
+        "picture\n",
         result.product_name,
         result.bench_name);
-    text += fmt::format("{:<24}{:>16}{:>18}{:>18}{:>16}{:>10}{:>11}{:>9}\n",
+    text += fmt::format("{:<24}{:>16}{:>18}{:>18}{:>16}{:>10}{:>11}{:>9}{:>18}\n",
                         "look",
                         "corrected",
                         "uncorrected",
@@ -296,22 +305,24 @@ std::string summary_of(const DemoResult& result) {
                         "predicted px",
                         "in reach",
                         "predicted",
-                        "masked");
+                        "masked",
+                        "at the pixels");
     const auto pair = [](const ErrorStatistics& s) {
         return s.pixels == 0 ? std::string("none")
                              : fmt::format("{:.2f} / {:.2f}", s.median, s.p95);
     };
     for (const DesignResult& design : result.designs) {
-        text +=
-            fmt::format("{:<24}{:>16}{:>18}{:>18}{:>16}{:>10}{:>11}{:>9}\n",
-                        design.name,
-                        pair(design.corrected.interior),
-                        pair(design.uncorrected.interior),
-                        design.chart_corrected ? pair(design.chart_corrected->interior) : "not run",
-                        pair(design.corrected.predicted),
-                        percent(design.corrected.reachable_fraction),
-                        percent(design.corrected.predicted_fraction),
-                        percent(design.corrected.masked_fraction));
+        text += fmt::format(
+            "{:<24}{:>16}{:>18}{:>18}{:>16}{:>10}{:>11}{:>9}{:>18}\n",
+            design.name,
+            pair(design.seen.corrected.interior),
+            pair(design.seen.uncorrected.interior),
+            design.seen.chart_corrected ? pair(design.seen.chart_corrected->interior) : "not run",
+            pair(design.seen.corrected.predicted),
+            percent(design.seen.corrected.reachable_fraction),
+            percent(design.seen.corrected.predicted_fraction),
+            percent(design.seen.corrected.masked_fraction),
+            pair(design.pixels.corrected.interior));
     }
     for (const auto& warning : result.calibration.warnings) text += "warning: " + warning + "\n";
     text += fmt::format("calibration {}; {:.1f} s in all; report and pictures: {}\n",

@@ -6,10 +6,8 @@
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
 
 #include "core/error.h"
-#include "core/parallel.h"
 #include "core/random.h"
 #include "tracing/tracer.h"
 #include "twin/interreflection.h"
@@ -49,10 +47,10 @@ struct Bench::State {
     std::shared_ptr<const Product> product;
     Mesh mesh;  ///< the product's with what stands around it
     SurfaceSet surfaces;
-    Receivers camera, observer;
+    Receivers camera;
     Gathers gathers;
-    Truth truth;
-    ImageF clear_xyz;       ///< the clear segment at 1, as primary_xyz
+    Observer observer;  ///< of the projector's pixels
+    std::optional<BenchEye> eye;
     ImageF camera_ambient;  ///< empty: no ambient light
     ImageF room_light;      ///< of mishaps, at 1; empty: none switches one on
 
@@ -61,8 +59,8 @@ struct Bench::State {
     std::uint32_t photographs = 0;
     double default_exposure_s = 0.0, exposure_s = 0.0;
 
-    void trace(const Progress& progress);
-    void measure_truth();
+    void trace(EyePicture eye_picture, const Progress& progress);
+    ImageF observed(const Observer& by, const Image8& drive) const;
     double metered_exposure_s() const;
     ImageF camera_light(LitPicture& picture);
     void show(const Image8& drive);
@@ -71,36 +69,49 @@ struct Bench::State {
     ImageF optics(ImageF units_per_s, double shift_px) const;
 };
 
-void Bench::State::trace(const Progress& progress) {
+void Bench::State::trace(EyePicture eye_picture, const Progress& progress) {
     const Tracer tracer(mesh);
+    const View& projector = description.projector.view;
     const TracedWorld world{mesh,
                             product->mesh.parts.size(),
                             tracer,
                             surfaces,
                             description,
-                            reference_distance_mm(description.projector.view, product->mesh)};
+                            reference_distance_mm(projector, product->mesh)};
     progress.update(0.0, "tracing the bench's camera");
     camera.paths = trace_camera(world, progress);
-    progress.update(0.5, "tracing the bench's projector");
-    ProjectorPaths traced = trace_projector(world, progress);
-    observer.paths = std::move(traced.paths);
-    truth.lit = std::move(traced.lit);
-    truth.edge = std::move(traced.edge);
-    truth.seen_by_eye = std::move(traced.seen_by_eye);
+    progress.update(0.4, "tracing the bench's projector");
+    ObservedPaths seen = trace_projector(world, progress);
     camera.width = description.camera.view.width;
     camera.height = description.camera.view.height;
-    observer.width = description.projector.view.width;
-    observer.height = description.projector.view.height;
     camera.factors = fold(description, surfaces, camera_sensor(description));
-    observer.factors = fold(description, surfaces, observer_sensor());
+    const Factors eye_factors = fold(description, surfaces, observer_sensor());
+
+    // Light between parts. The eye's picture takes no part in choosing the places, so that the
+    // photographs are the same with it and without.
+    GatherPlaces places(kGatherCellMm);
+    const auto blend = [&](const LightPaths& paths) {
+        return description.mockup.interreflection ? places.blend(paths)
+                                                  : std::vector<Gathers::Blend>();
+    };
     if (description.mockup.interreflection) {
-        progress.update(0.8, "tracing light between parts");
-        GatherPlaces places(kGatherCellMm);
+        progress.update(0.7, "tracing light between parts");
         places.add(camera.paths);
-        places.add(observer.paths);
+        places.add(seen.paths);
         gathers = places.gather(world, kGatherRays, progress);
-        camera.blends = places.blend(camera.paths);
-        observer.blends = places.blend(observer.paths);
+        camera.blends = blend(camera.paths);
+    }
+    const ImageF dark =
+        light_from_drive(description.projector, Image8(projector.width, projector.height, 3));
+    auto blends = blend(seen.paths);
+    observer = make_observer(std::move(seen), eye_factors, std::move(blends), gathers, dark);
+    if (eye_picture == EyePicture::traced) {
+        progress.update(0.9, "tracing the eye's picture");
+        const View view = eye_view(description.eye_mm, projector, product->mesh);
+        ObservedPaths paths = trace_eye(world, view, progress);
+        blends = blend(paths.paths);
+        eye = BenchEye{
+            view, make_observer(std::move(paths), eye_factors, std::move(blends), gathers, dark)};
     }
     if (description.ambient > 0.0) camera_ambient = receive_ambient(camera);
     if (has_room_light(description.mishaps)) {
@@ -114,32 +125,9 @@ void Bench::State::trace(const Progress& progress) {
     progress.update(1.0, "tracing done");
 }
 
-void Bench::State::measure_truth() {
-    const int width = observer.width, height = observer.height;
-    const ImageF dark = light_from_drive(description.projector, Image8(width, height, 3));
-    truth.black_xyz = receive_all(observer, gathers, dark);
-    truth.primary_xyz = ImageF(width, height, 9);
-    clear_xyz = ImageF(width, height, 3);
-    const LightPaths& paths = observer.paths;
-    parallel_for(paths.receiver.size(), 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const std::size_t pixel = paths.receiver[i];
-            const glm::vec3 ambient = receive_ambient(observer, i);
-            for (int c = 0; c < 3; ++c) {
-                truth.black_xyz.values[3 * pixel + static_cast<std::size_t>(c)] += ambient[c];
-            }
-            for (std::uint32_t t = paths.term_begin[i]; t < paths.term_begin[i + 1]; ++t) {
-                const auto& factors = observer.factors.direct[paths.terms[t].surface];
-                for (std::size_t k = 0; k < factors.size(); ++k) {
-                    float* out = k < 3 ? truth.primary_xyz.values.data() + 9 * pixel + 3 * k
-                                       : clear_xyz.values.data() + 3 * pixel;
-                    for (int c = 0; c < 3; ++c) {
-                        out[c] += static_cast<float>(paths.terms[t].weight * factors[k][c]);
-                    }
-                }
-            }
-        }
-    });
+ImageF Bench::State::observed(const Observer& by, const Image8& drive) const {
+    return observe(
+        by, gathers, light_from_drive(description.projector, drive), description.ambient > 0.0);
 }
 
 ImageF Bench::State::optics(ImageF units_per_s, double shift_px) const {
@@ -152,7 +140,7 @@ ImageF Bench::State::optics(ImageF units_per_s, double shift_px) const {
 }
 
 double Bench::State::metered_exposure_s() const {
-    const Image8 white(observer.width, observer.height, 3, 255);
+    const Image8 white(description.projector.view.width, description.projector.view.height, 3, 255);
     ImageF units = receive_all(camera, gathers, light_from_drive(description.projector, white));
     for (std::size_t k = 0; k < camera_ambient.values.size(); ++k) {
         units.values[k] += camera_ambient.values[k];
@@ -222,26 +210,28 @@ Photograph Bench::State::photograph(double wanted_exposure_s) {
 }
 
 glm::dvec3 Bench::State::measure_xyz(glm::dvec2 pixel) const {
+    const Receivers& seen = observer.receivers;
     const bool inside =
-        pixel.x >= 0.0 && pixel.y >= 0.0 && pixel.x < observer.width && pixel.y < observer.height;
+        pixel.x >= 0.0 && pixel.y >= 0.0 && pixel.x < seen.width && pixel.y < seen.height;
     const auto index =
-        inside ? static_cast<std::uint32_t>(pixel.y) * static_cast<std::uint32_t>(observer.width) +
+        inside ? static_cast<std::uint32_t>(pixel.y) * static_cast<std::uint32_t>(seen.width) +
                      static_cast<std::uint32_t>(pixel.x)
                : 0u;
-    const auto& receiver = observer.paths.receiver;
+    const auto& receiver = seen.paths.receiver;
     const auto found = std::lower_bound(receiver.begin(), receiver.end(), index);
     check_argument(
         inside && found != receiver.end() && *found == index,
         fmt::format(
             "bench: projector pixel {}, {} lights nothing of the mock-up", pixel.x, pixel.y));
     const auto i = static_cast<std::size_t>(found - receiver.begin());
-    const auto bounced = bounced_light(gathers, observer.factors, shown.light);
-    return glm::dvec3(receive(observer, bounced, shown.light, i) + receive_ambient(observer, i));
+    const auto bounced = bounced_light(gathers, seen.factors, shown.light);
+    return glm::dvec3(receive(seen, bounced, shown.light, i) + receive_ambient(seen, i));
 }
 
 Bench::Bench(const BenchDescription& description,
              std::shared_ptr<const Product> product,
-             const Progress& progress)
+             const Progress& progress,
+             EyePicture eye_picture)
     : state_(std::make_unique<State>()) {
     check_argument(product != nullptr && !product->mesh.triangles.empty(), "bench: no mock-up");
     check_view(description.projector.view, "a projector");
@@ -252,12 +242,12 @@ Bench::Bench(const BenchDescription& description,
     state_->product = std::move(product);
     state_->mesh = with_surroundings(state_->product->mesh, description);
     state_->surfaces = make_surfaces(description, state_->mesh);
-    state_->trace(progress);
-    state_->measure_truth();
+    state_->trace(eye_picture, progress);
     state_->default_exposure_s = description.camera.exposure_s > 0.0 ? description.camera.exposure_s
                                                                      : state_->metered_exposure_s();
     state_->exposure_s = state_->default_exposure_s;
-    const Image8 dark(state_->observer.width, state_->observer.height, 3);
+    const View& projector = description.projector.view;
+    const Image8 dark(projector.width, projector.height, 3);
     state_->show(dark);
     state_->show(dark);
 }
@@ -275,70 +265,30 @@ BenchPorts Bench::ports() {
 
 const BenchDescription& Bench::description() const { return state_->description; }
 double Bench::default_exposure_s() const { return state_->default_exposure_s; }
-const Bench::Truth& Bench::truth() const { return state_->truth; }
+
+const ObserverTruth& Bench::truth() const { return state_->observer.truth; }
 
 ImageF Bench::observe_xyz(const Image8& drive) const {
-    const Receivers& observer = state_->observer;
-    const ImageF light = light_from_drive(state_->description.projector, drive);
-    ImageF xyz = receive_all(observer, state_->gathers, light);
-    if (state_->description.ambient > 0.0) {
-        const ImageF ambient = receive_ambient(observer);
-        for (std::size_t k = 0; k < xyz.values.size(); ++k) xyz.values[k] += ambient.values[k];
-    }
-    return xyz;
+    return state_->observed(state_->observer, drive);
 }
 
 Image8 Bench::reachable(const ImageF& wanted_xyz) const {
-    const State& state = *state_;
-    const Truth& truth = state.truth;
-    check_argument(wanted_xyz.width == truth.lit.width && wanted_xyz.height == truth.lit.height &&
-                       wanted_xyz.channels == 3,
-                   fmt::format("bench: a wanted picture of {}x{}x{} for a projector of {}x{}",
-                               wanted_xyz.width,
-                               wanted_xyz.height,
-                               wanted_xyz.channels,
-                               truth.lit.width,
-                               truth.lit.height));
-    constexpr double kTolerance = 1e-4;
-    const double clear_strength = state.description.projector.white_segment;
-    Image8 answer(wanted_xyz.width, wanted_xyz.height, 1);
-    parallel_for(
-        state.observer.paths.receiver.size(), 4096, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                const std::size_t pixel = state.observer.paths.receiver[i];
-                glm::dmat3 xyz_from_light;
-                glm::dvec3 wanted, clear;
-                for (int c = 0; c < 3; ++c) {
-                    const auto channel = static_cast<std::size_t>(c);
-                    wanted[c] = double(wanted_xyz.values[3 * pixel + channel]) -
-                                truth.black_xyz.values[3 * pixel + channel];
-                    clear[c] = clear_strength * state.clear_xyz.values[3 * pixel + channel];
-                    for (int k = 0; k < 3; ++k) {
-                        xyz_from_light[k][c] =
-                            truth.primary_xyz
-                                .values[9 * pixel + 3 * static_cast<std::size_t>(k) + channel];
-                    }
-                }
-                if (!(std::abs(glm::determinant(xyz_from_light)) > 0.0)) continue;
-                const glm::dmat3 light_from_xyz = glm::inverse(xyz_from_light);
-                glm::dvec3 light = light_from_xyz * wanted;
-                // With a clear segment the light is l = light - m d, where m = min(l) >= 0 is what
-                // the channels have in common and d what the segment adds for it, in units of the
-                // primaries. min(light - m d) - m falls with m (1 + d > 0), so its root is unique.
-                if (clear_strength > 0.0) {
-                    const glm::dvec3 d = light_from_xyz * clear;
-                    double common = 1e30;
-                    for (int k = 0; k < 3; ++k) common = std::min(common, light[k] / (1.0 + d[k]));
-                    light -= std::max(0.0, common) * d;
-                }
-                bool inside = true;
-                for (int k = 0; k < 3; ++k) {
-                    inside = inside && light[k] >= -kTolerance && light[k] <= 1.0 + kTolerance;
-                }
-                answer.values[pixel] = inside ? 255 : 0;
-            }
-        });
-    return answer;
+    return livery::reachable(
+        state_->observer, wanted_xyz, state_->description.projector.white_segment);
+}
+
+const BenchEye& Bench::eye() const {
+    check_argument(state_->eye.has_value(), "bench: the eye's picture was not traced");
+    return *state_->eye;
+}
+
+ImageF Bench::observe_from_eye(const Image8& drive) const {
+    return state_->observed(eye().observer, drive);
+}
+
+Image8 Bench::reachable_from_eye(const ImageF& wanted_xyz) const {
+    return livery::reachable(
+        eye().observer, wanted_xyz, state_->description.projector.white_segment);
 }
 
 }  // namespace livery

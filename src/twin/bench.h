@@ -10,8 +10,20 @@
 #include "scene/product.h"
 #include "scene/view.h"
 #include "twin/description.h"
+#include "twin/observer.h"
 
 namespace livery {
+
+/// Whether the observer's own picture is traced besides what each projector pixel lights.
+enum class EyePicture { none, traced };
+
+/// The observer's picture: each pixel what the eye sees in one direction, whichever projector
+/// pixels light it. What the audience sees is judged here: light that falls on another place of
+/// the mock-up than was meant is wrong here, though it is right in the projector's pixels.
+struct BenchEye {
+    View view;  ///< in the mock-up's frame
+    Observer observer;
+};
 
 class Bench {
   public:
@@ -20,7 +32,8 @@ class Bench {
     /// reflectance for a part, a description that names a part there is not).
     Bench(const BenchDescription& description,
           std::shared_ptr<const Product> product,
-          const Progress& progress = {});
+          const Progress& progress = {},
+          EyePicture eye_picture = EyePicture::none);
     ~Bench();
     Bench(const Bench&) = delete;
     Bench& operator=(const Bench&) = delete;
@@ -41,21 +54,17 @@ class Bench {
     ImageF observe_xyz(const Image8& drive) const;
 
     /// Truth about each projector pixel.
-    struct Truth {
-        Image8 lit;          ///< 255 where at least half of the pixel lies on lit mock-up
-        Image8 edge;         ///< 255 within 2 px of a silhouette, depth or part edge
-        Image8 seen_by_eye;  ///< 255 where the eye sees at least half of what the pixel lights
-        ImageF black_xyz;    ///< drive 0 everywhere
-        /// 9 channels: full red, green, blue, each minus black, in wide surroundings of the same
-        /// drive; without the light that other parts throw on this one.
-        ImageF primary_xyz;
-    };
-    const Truth& truth() const;
+    const ObserverTruth& truth() const;
 
     /// Whether some drive shows `wanted_xyz` (3 channels, absolute) at each pixel, to 1e-4 of full
     /// drive: 255 or 0. Exact for white-segment projectors too. Counts the light of the pixel
     /// itself and of black, not what other parts throw on it.
     Image8 reachable(const ImageF& wanted_xyz) const;
+
+    /// The same in the eye's picture. Throw std::invalid_argument where it was not traced.
+    const BenchEye& eye() const;
+    ImageF observe_from_eye(const Image8& drive) const;
+    Image8 reachable_from_eye(const ImageF& wanted_xyz) const;
 
   private:
     struct State;

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/random.h"
+#include "twin/edges.h"
 #include "twin/pixel_rays.h"
 #include "twin/place.h"
 
@@ -123,6 +124,14 @@ void add_covers(const SurfaceFactors& shares, double share, std::vector<CoverTer
     }
 }
 
+void set_place(
+    PixelGround& ground, int x, int y, const glm::dvec3& position_mm, const glm::vec3& normal) {
+    for (int c = 0; c < 3; ++c) {
+        ground.place.at(x, y, c) = static_cast<float>(position_mm[c]);
+        ground.place.at(x, y, 3 + c) = normal[c];
+    }
+}
+
 /// Rows of `rectangle` in parallel, blocks of pixels in each; body(row, y, x0, x1, rays, hits).
 template <typename Body>
 std::vector<RowPaths> for_blocks(const TracedWorld& world,
@@ -152,12 +161,19 @@ std::vector<RowPaths> for_blocks(const TracedWorld& world,
 
 }  // namespace
 
-LightPaths trace_camera(const TracedWorld& world, const Progress& progress) {
-    const View& view = world.bench.camera.view;
+namespace {
+
+/// What a camera or an eye sees; `vignetting` is its lens's. `ground`, where given, is told what
+/// each pixel lies on.
+LightPaths trace_view(const TracedWorld& world,
+                      const View& view,
+                      double vignetting,
+                      const PixelRectangle& rectangle,
+                      PixelGround* ground,
+                      const Progress& progress) {
     const glm::dvec3 camera_mm = centre_in_world(view);
     const glm::dvec3 projector_mm = centre_in_world(world.bench.projector.view);
     const int samples = world.bench.samples_a_side * world.bench.samples_a_side;
-    const PixelRectangle rectangle = pixels_that_see(view, world.mesh);
     const PixelRays pixel_rays(view, rectangle, world.bench.samples_a_side);
 
     auto rows = for_blocks(
@@ -201,21 +217,26 @@ LightPaths trace_camera(const TracedWorld& world, const Progress& progress) {
             for (int x = x0; x < x1; ++x) {
                 const auto first = static_cast<std::size_t>((x - x0) * samples);
                 const glm::dvec2 off = glm::dvec2(x + 0.5, y + 0.5) - half;
-                const double share = (1.0 - world.bench.camera.vignetting * glm::dot(off, off) /
-                                                glm::dot(half, half)) /
-                                     samples;
+                const double share =
+                    (1.0 - vignetting * glm::dot(off, off) / glm::dot(half, half)) / samples;
                 glm::dvec3 position(0.0), normal(0.0);
-                int count = 0;
+                int count = 0, on_mockup = 0, lit_mockup = 0;
+                std::uint16_t part = 0;
+                bool differ = false;
                 for (std::size_t k = first; k < first + static_cast<std::size_t>(samples); ++k) {
                     if (!hits[k].valid()) continue;
                     const MeshPlace& place = places[k];
+                    differ = differ || (count > 0 && place.part != part);
+                    part = place.part;
                     ++count;
+                    on_mockup += place.part < world.mockup_parts;
                     position += place.position_mm;
                     normal += place.normal;
                     add_covers(surface_shares(world.surfaces, place.part, place.position_mm),
                                share,
                                row.covers);
                     if (!lights[k]) continue;
+                    lit_mockup += place.part < world.mockup_parts;
                     add_terms(surface_factors(world.surfaces,
                                               place.part,
                                               place.position_mm,
@@ -227,15 +248,44 @@ LightPaths trace_camera(const TracedWorld& world, const Progress& progress) {
                               row.terms);
                 }
                 if (count == 0) continue;
-                row.finish(static_cast<std::uint32_t>(y * view.width + x),
-                           position / double(count),
-                           normal);
+                position /= double(count);
+                row.finish(static_cast<std::uint32_t>(y * view.width + x), position, normal);
+                if (!ground) continue;
+                ground->part.at(x, y) = part;
+                ground->seen.at(x, y) = 2 * on_mockup >= samples ? 255 : 0;
+                ground->lit.at(x, y) = 2 * lit_mockup >= samples ? 255 : 0;
+                ground->mixed.at(x, y) =
+                    differ || count < samples || (lit_mockup > 0 && lit_mockup < count) ? 255 : 0;
+                set_place(*ground, x, y, position, row.paths.normal.back());
             }
         });
     return joined(rows);
 }
 
-ProjectorPaths trace_projector(const TracedWorld& world, const Progress& progress) {
+}  // namespace
+
+LightPaths trace_camera(const TracedWorld& world, const Progress& progress) {
+    const View& view = world.bench.camera.view;
+    return trace_view(world,
+                      view,
+                      world.bench.camera.vignetting,
+                      pixels_that_see(view, world.mesh),
+                      nullptr,
+                      progress);
+}
+
+ObservedPaths trace_eye(const TracedWorld& world, const View& eye, const Progress& progress) {
+    const PixelRectangle rectangle = pixels_that_see(eye, world.mesh);
+    PixelGround ground(eye);
+    ObservedPaths result;
+    result.paths = trace_view(world, eye, 0.0, rectangle, &ground, progress);
+    result.edge = edge_band(ground, eye, rectangle);
+    result.lit = std::move(ground.lit);
+    result.seen_by_eye = std::move(ground.seen);
+    return result;
+}
+
+ObservedPaths trace_projector(const TracedWorld& world, const Progress& progress) {
     const View& view = world.bench.projector.view;
     const glm::dvec3 projector_mm = centre_in_world(view);
     const glm::dvec3 eye_mm = world.bench.eye_mm;
@@ -244,13 +294,9 @@ ProjectorPaths trace_projector(const TracedWorld& world, const Progress& progres
     const PixelRectangle rectangle = pixels_that_see(view, world.mesh);
     const PixelRays pixel_rays(view, rectangle, world.bench.samples_a_side);
 
-    ProjectorPaths result;
-    result.lit = Image8(view.width, view.height, 1);
-    result.seen_by_eye = result.lit;
-    result.edge = result.lit;
-    Image8 mixed = result.lit;  // more than one part, or part of the pixel misses
-    Image16 part_of(view.width, view.height, 1, 0xffff);
-    ImageF place_of_pixel(view.width, view.height, 6);  // mean position and normal
+    ObservedPaths result;
+    result.seen_by_eye = Image8(view.width, view.height, 1);
+    PixelGround ground(view);
 
     auto rows = for_blocks(
         world,
@@ -273,7 +319,7 @@ ProjectorPaths trace_projector(const TracedWorld& world, const Progress& progres
                     if (!hits[k].valid()) continue;
                     const MeshPlace place = mesh_place(world.mesh, hits[k]);
                     ++hit_count;
-                    auto& part = part_of.at(x, y);
+                    auto& part = ground.part.at(x, y);
                     if (part != 0xffff && part != place.part) parts_differ = true;
                     part = place.part;
                     if (glm::dot(place.geometric_normal, projector_mm - place.position_mm) <= 0.0)
@@ -305,52 +351,22 @@ ProjectorPaths trace_projector(const TracedWorld& world, const Progress& progres
                               1.0,
                               row.terms);
                 }
-                if (hit_count > 0 && (hit_count < samples || parts_differ)) mixed.at(x, y) = 255;
+                if (hit_count > 0 && (hit_count < samples || parts_differ))
+                    ground.mixed.at(x, y) = 255;
                 if (lit == 0) continue;
                 for (auto& term : row.terms) term.weight /= static_cast<float>(lit);
                 for (auto& cover : row.covers) cover.share /= static_cast<float>(lit);
                 position /= double(lit);
-                if (2 * lit_mockup >= samples) result.lit.at(x, y) = 255;
+                if (2 * lit_mockup >= samples) ground.lit.at(x, y) = 255;
                 if (looked > 0 && 2 * seen >= looked) result.seen_by_eye.at(x, y) = 255;
                 row.finish(own, position, normal);
-                const glm::vec3 mean = row.paths.normal.back();
-                for (int c = 0; c < 3; ++c) {
-                    place_of_pixel.at(x, y, c) = static_cast<float>(position[c]);
-                    place_of_pixel.at(x, y, 3 + c) = mean[c];
-                }
+                set_place(ground, x, y, position, row.paths.normal.back());
             }
         });
     result.paths = joined(rows);
 
-    // Edges: mixed pixels, neighbours of another part, and neighbours off each other's tangent
-    // plane.
-    const auto is_edge = [&](int x, int y, int u, int v) {
-        if (part_of.at(x, y) != part_of.at(u, v)) return true;
-        if (!result.lit.at(x, y) || !result.lit.at(u, v)) return false;
-        const float* a = place_of_pixel.pixel(x, y);
-        const float* b = place_of_pixel.pixel(u, v);
-        const glm::dvec3 step(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
-        const double off_a = std::abs(step.x * a[3] + step.y * a[4] + step.z * a[5]);
-        const double off_b = std::abs(step.x * b[3] + step.y * b[4] + step.z * b[5]);
-        const double pixel_mm =
-            glm::length(glm::dvec3(a[0], a[1], a[2]) - projector_mm) / view.focal_px.x;
-        return std::min(off_a, off_b) > 2.0 * pixel_mm;
-    };
-    constexpr int kReach = 2;
-    for (int y = rectangle.top; y < rectangle.bottom; ++y) {
-        for (int x = rectangle.left; x < rectangle.right; ++x) {
-            bool edge = mixed.at(x, y) != 0;
-            if (!edge && x + 1 < view.width) edge = is_edge(x, y, x + 1, y);
-            if (!edge && y + 1 < view.height) edge = is_edge(x, y, x, y + 1);
-            if (!edge) continue;
-            for (int v = std::max(0, y - kReach); v <= std::min(view.height - 1, y + kReach); ++v) {
-                for (int u = std::max(0, x - kReach); u <= std::min(view.width - 1, x + kReach);
-                     ++u) {
-                    result.edge.at(u, v) = 255;
-                }
-            }
-        }
-    }
+    result.edge = edge_band(ground, view, rectangle);
+    result.lit = std::move(ground.lit);
     return result;
 }
 

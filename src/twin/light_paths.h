@@ -72,15 +72,18 @@ struct TracedWorld {
 /// Receivers are camera pixels; a term's weight is its share of the pixel's area.
 LightPaths trace_camera(const TracedWorld& world, const Progress& progress);
 
-/// Receivers are projector pixels, seen from the eye; weights are means over the lit part of the
-/// pixel.
-struct ProjectorPaths {
+/// What an observer's pixels see, with what is true of each.
+struct ObservedPaths {
     LightPaths paths;
     Image8 lit;          ///< 255 where at least half of the pixel lies on lit mock-up
     Image8 edge;         ///< 255 within 2 px of a silhouette, depth or part edge
-    Image8 seen_by_eye;  ///< 255 where the eye sees at least half of what is lit
+    Image8 seen_by_eye;  ///< 255 where the eye sees at least half of the mock-up in the pixel
 };
-ProjectorPaths trace_projector(const TracedWorld& world, const Progress& progress);
+/// Receivers are projector pixels, seen from the eye; weights are means over the lit part of the
+/// pixel. `seen_by_eye` counts what is lit.
+ObservedPaths trace_projector(const TracedWorld& world, const Progress& progress);
+/// Receivers are the pixels of the eye's picture; a term's weight is its share of the pixel's area.
+ObservedPaths trace_eye(const TracedWorld& world, const View& eye, const Progress& progress);
 
 /// What a point of the surface gets from the projector pixel that lights it.
 struct Illumination {
