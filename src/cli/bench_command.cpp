@@ -9,6 +9,7 @@
 #include "core/marked_block.h"
 #include "core/paths.h"
 #include "ledger/accuracy.h"
+#include "ledger/geometry_errors.h"
 #include "ledger/speed.h"
 #include "ledger/speed_plot.h"
 #include "ledger/speed_table.h"
@@ -66,6 +67,7 @@ Json json_of(const std::vector<LedgerEffect>& benched) {
                  {"longest_ms", level.longest_ms ? Json(*level.longest_ms) : Json(nullptr)},
                  {"work_items", level.work_items},
                  {"error", level.error ? Json(*level.error) : Json(nullptr)},
+                 {"p95", level.error_p95 ? Json(*level.error_p95) : Json(nullptr)},
                  {"unit", level.error ? Json(level.unit) : Json(nullptr)}});
         }
         effects.push_back({{"name", effect.name}, {"levels", levels}});
@@ -95,7 +97,9 @@ Command bench_command() {
     Command command;
     command.name = "bench";
     command.summary =
-        "time every stage on this machine, or measure how far reflectance models can be trusted";
+        "time every stage on this machine, or measure how far reflectance models can be trusted, "
+        "or "
+        "what a wrong pose costs";
     command.example = "livery bench --suite speed --out bench";
     command.options = {
         {"--out",
@@ -112,29 +116,33 @@ Command bench_command() {
          {}},
         {"--quick",
          "",
-         "half a minute: the sweep of two sizes and one quality, a hundredth of the inputs; "
-         "predictions stay",
+         "half a minute: the sweep of two sizes and one quality, a hundredth of the inputs, the "
+         "smallest and largest errors; predictions stay",
          &arguments->quick,
          false,
          {}},
         {"--suite",
          "NAME",
-         "speed, accuracy (of the reflectance models) or all (default speed)",
+         "speed, accuracy (of the reflectance models), geometry (what a wrong pose costs) or all "
+         "(default speed)",
          &arguments->suite,
          false,
-         {"speed", "accuracy", "all"}},
+         {"speed", "accuracy", "geometry", "all"}},
     };
     command.run = [arguments](const CommonOptions& common, const Progress& progress) {
-        const bool speed = arguments->suite != "accuracy", accuracy = arguments->suite != "speed";
+        const auto wanted = [&](const char* suite) {
+            return arguments->suite == suite || arguments->suite == "all";
+        };
         // What cannot be written is found before the work.
-        check_argument(arguments->markdown.empty() || !(speed && accuracy),
-                       "--markdown writes one suite's tables: choose --suite speed or accuracy");
+        check_argument(arguments->markdown.empty() || arguments->suite != "all",
+                       "--markdown writes one suite's tables: choose one with --suite");
         const auto kept = ledger_file();
         if (!arguments->out.empty()) make_output_folder(arguments->out);
         if (!arguments->markdown.empty()) check_marked_block(arguments->markdown, "bench");
+        const auto seed = static_cast<std::uint64_t>(common.seed);
         Outcome outcome;
         std::string markdown, plot;
-        if (speed) {
+        if (wanted("speed")) {
             const SpeedLedger result =
                 measure_speed(common.gl_device(), arguments->quick, progress);
             if (!arguments->quick) write_pass_costs(kept, result.renderer, result.pass_costs);
@@ -143,25 +151,25 @@ Command bench_command() {
             markdown = markdown_of(result);
             plot = sweep_svg(result.sweep);
         }
-        if (accuracy) {
-            const AccuracyLedger result = measure_accuracy(common.gl_device(),
-                                                           arguments->quick,
-                                                           static_cast<std::uint64_t>(common.seed),
-                                                           progress);
-            Json effects = json_of(effects_of(result));
-            if (speed) {
-                for (Json& effect : effects) outcome.figures["effects"].push_back(effect);
-            } else {
-                outcome.figures = {{"renderer", result.renderer}, {"effects", effects}};
+        const auto add = [&](const auto& result) {
+            outcome.figures["renderer"] = result.renderer;
+            for (Json& effect : json_of(effects_of(result))) {
+                outcome.figures["effects"].push_back(std::move(effect));
             }
             outcome.text += text_of(result);
             markdown = markdown_of(result);
+        };
+        if (wanted("accuracy")) {
+            add(measure_accuracy(common.gl_device(), arguments->quick, seed, progress));
+        }
+        if (wanted("geometry")) {
+            add(measure_geometry_errors(common.gl_device(), arguments->quick, seed, progress));
         }
         outcome.figures["suite"] = arguments->suite;
         if (!arguments->out.empty()) {
             const std::filesystem::path out = arguments->out;
             write_json_file(out / "bench.json", outcome.figures);
-            if (speed) write_text_file(out / "speed.svg", plot);
+            if (wanted("speed")) write_text_file(out / "speed.svg", plot);
         }
         if (!arguments->markdown.empty())
             replace_marked_block(arguments->markdown, "bench", markdown);

@@ -12,21 +12,13 @@
 #include "core/image_io.h"
 #include "jobs/bench_calibration.h"
 #include "jobs/calibration_folder.h"
+#include "jobs/eye_comparison.h"
 #include "scene/mockup_mask.h"
 #include "twin/chart.h"
 
 namespace livery {
 
 namespace {
-
-template <typename Holds>
-Image8 mask_of(const ColourCalibration& calibration, const Holds& holds) {
-    Image8 mask(calibration.width, calibration.height, 1);
-    for (std::size_t i = 0; i < mask.values.size(); ++i) {
-        mask.values[i] = holds(static_cast<PixelStatus>(calibration.status.values[i])) ? 255 : 0;
-    }
-    return mask;
-}
 
 /// A camera matrix as most people make it: from a chart under daylight. A chart has no absolute
 /// scale, so D65 is given the luminance that the measured primaries give it.
@@ -84,9 +76,8 @@ CalibratedBench calibrate_bench(const DemoOptions& options,
     times.add("solve the calibration", calibrated.live.solve_seconds);
     times.add("predict hidden pixels", calibrated.predict_seconds);
     result.calibration = std::move(calibrated.calibration);
-    result.valid = mask_of(result.calibration, is_valid);
-    result.predicted = mask_of(result.calibration,
-                               [](PixelStatus status) { return status == PixelStatus::predicted; });
+    result.valid = corrected_pixels(result.calibration);
+    result.predicted = corrected_pixels(result.calibration, true);
 
     timed(times, "write the calibration", [&] {
         write_setup(options.out / "calibration", result.calibration, description.projector.view);
@@ -142,22 +133,6 @@ JudgedPictures judged(const Drives& drives,
     return result;
 }
 
-/// Masks of the eye's picture. What the projector's pixels at an edge light is at an edge too,
-/// however wide it looks from the eye.
-ComparisonMasks masks_of_eye(const CalibratedBench& calibrated, const ImageF& wanted_xyz) {
-    const Bench& bench = *calibrated.bench;
-    const Observer& eye = bench.eye().observer;
-    ComparisonMasks masks{eye.truth.lit,
-                          mostly_lit_by(eye, bench.truth().edge),
-                          mostly_lit_by(eye, calibrated.valid),
-                          bench.reachable_from_eye(wanted_xyz),
-                          mostly_lit_by(eye, calibrated.predicted)};
-    for (std::size_t i = 0; i < masks.edge.values.size(); ++i) {
-        masks.edge.values[i] |= eye.truth.edge.values[i];
-    }
-    return masks;
-}
-
 double unlit_fraction(const ObserverTruth& eye) {
     std::size_t seen = 0, dark = 0;
     for (std::size_t i = 0; i < eye.seen_by_eye.values.size(); ++i) {
@@ -200,7 +175,9 @@ DesignResult judge_design(const std::string& name,
         judged(drives, wanted.xyz, masks, calibrated.design_white_y, times, [&](const auto& drive) {
             return bench.observe_xyz(drive);
         });
-    masks = timed(times, "observe", [&] { return masks_of_eye(calibrated, wanted.eye_xyz); });
+    masks = timed(times, "observe", [&] {
+        return masks_of_eye(bench, calibrated.valid, calibrated.predicted, wanted.eye_xyz);
+    });
     result.seen = judged(
         drives, wanted.eye_xyz, masks, calibrated.design_white_y, times, [&](const auto& drive) {
             return bench.observe_from_eye(drive);

@@ -15,6 +15,7 @@ struct LedgerLevel {
     double work_items = 0.0;
     std::optional<double> p95_ms, longest_ms;  ///< where a person waits for each one
     std::optional<double> error;               ///< where there is a truth to compare with
+    std::optional<double> error_p95;           ///< where `error` is a median
     std::string unit;                          ///< of the error
 };
 
