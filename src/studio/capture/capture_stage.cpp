@@ -84,6 +84,9 @@ void draw_histogram(const CaptureHistogram& histogram, ImVec2 corner, ImVec2 box
                            {x + bar - 1.0f, corner.y + box.y},
                            ImGui::GetColorU32(high ? colours::error : colours::dim_text));
     }
+    const bool seen = std::any_of(
+        histogram.share.begin(), histogram.share.end(), [](float share) { return share > 0.0f; });
+    if (!seen) return;
     const std::string text =
         fmt::format("Histogram; {:.2f} % at full scale", 100.0 * histogram.clipped);
     draw.AddText({corner.x + em(0.5f), corner.y + em(0.3f)},
@@ -166,7 +169,10 @@ void draw_capture_stage(Shell& shell) {
     forget_textures(state);
     const ImVec2 space = ImGui::GetContentRegionAvail();
     const bool has_tiles = !view.tiles.empty();
-    const char* const live = view.has_live_view ? "Live view" : "This camera gives no live view";
+    const char* const live = view.doing == Doing::nothing   ? "No camera yet: choose one"
+                             : view.doing == Doing::opening ? "Opening the camera"
+                             : view.has_live_view           ? "Live view"
+                                                            : "This camera gives no live view";
     const float gap = ImGui::GetStyle().ItemSpacing.x;
     const float upper = has_tiles ? std::floor(0.42f * space.y) : space.y - em(6.0f);
     const ImVec2 corner = ImGui::GetCursorScreenPos();
