@@ -1,0 +1,376 @@
+#include "calibration/registration/pixel_refinement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include <ceres/ceres.h>
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "calibration/registration/rotation.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "core/statistics.h"
+
+namespace livery {
+
+namespace {
+
+constexpr int kWanted = 2500;  // correspondences a sight
+constexpr int kRounds = 12;
+
+Rigid3 moved(const double* six, const Rigid3& pose) {
+    return {rotation_of({six[0], six[1], six[2]}) * pose.rotation,
+            rotation_of({six[0], six[1], six[2]}) * pose.translation +
+                glm::dvec3(six[3], six[4], six[5])};
+}
+
+View with_lens(const double* three, View view) {
+    view.focal_px *= std::exp(three[0]);
+    view.principal_px += glm::dvec2(three[1], three[2]);
+    return view;
+}
+
+/// Everything sought, as changes of what was given.
+struct State {
+    std::array<double, 6> pose{};               ///< projector_from_mesh, moved
+    std::vector<std::array<double, 6>> stereo;  ///< camera_from_projector, moved
+    std::array<double, 3> projector_lens{}, camera_lens{};
+    std::array<double, 1> scale{};  ///< logarithm
+};
+
+struct Given {
+    View projector;  ///< world: the mesh
+    std::vector<Rigid3> camera_from_projector;
+    std::vector<View> cameras;  ///< their lenses
+
+    View projector_of(const State& state) const {
+        View view = with_lens(state.projector_lens.data(), projector);
+        view.view_from_world = moved(state.pose.data(), projector.view_from_world);
+        return view;
+    }
+    View camera_of(const State& state, std::size_t k, const View& in_projector) const {
+        View view = with_lens(state.camera_lens.data(), cameras[k]);
+        view.view_from_world =
+            moved(state.stereo[k].data(), camera_from_projector[k]) * in_projector.view_from_world;
+        return view;
+    }
+};
+
+struct Correspondence {
+    std::size_t sight = 0;
+    glm::dvec2 projector_px{0.0}, camera_px{0.0};
+    glm::dvec3 place{0.0}, normal{0.0};  ///< of the tangent plane, the mesh's own size
+};
+
+/// Where the camera's ray meets the plane, in the projector's picture.
+std::optional<glm::dvec2> predicted(const View& projector,
+                                    const View& camera,
+                                    double scale,
+                                    const Correspondence& at) {
+    const Ray ray = ray_through(camera, at.camera_px);
+    const double toward = glm::dot(at.normal, ray.direction);
+    if (std::abs(toward) < 1e-3) return std::nullopt;
+    const double t = glm::dot(at.normal, scale * at.place - ray.origin) / toward;
+    return project(projector, ray.origin + t * ray.direction);
+}
+
+struct PixelError {
+    const Given* given = nullptr;
+    Correspondence at;
+    double sigma_px = 1.0;
+
+    bool operator()(const double* pose,
+                    const double* stereo,
+                    const double* projector_lens,
+                    const double* camera_lens,
+                    const double* scale,
+                    double* residual) const {
+        State state;
+        std::copy_n(pose, 6, state.pose.begin());
+        state.stereo.resize(at.sight + 1);
+        std::copy_n(stereo, 6, state.stereo[at.sight].begin());
+        std::copy_n(projector_lens, 3, state.projector_lens.begin());
+        std::copy_n(camera_lens, 3, state.camera_lens.begin());
+        const View projector = given->projector_of(state);
+        const View camera = given->camera_of(state, at.sight, projector);
+        const auto pixel = predicted(projector, camera, std::exp(scale[0]), at);
+        if (!pixel) return false;
+        residual[0] = (pixel->x - at.projector_px.x) / sigma_px;
+        residual[1] = (pixel->y - at.projector_px.y) / sigma_px;
+        return true;
+    }
+};
+
+template <std::size_t N>
+struct PriorError {
+    std::array<double, N> sigma{};
+    template <typename T>
+    bool operator()(const T* values, T* residual) const {
+        for (std::size_t k = 0; k < N; ++k) residual[k] = values[k] / sigma[k];
+        return true;
+    }
+};
+
+template <std::size_t N>
+void add_prior(ceres::Problem& problem, double* block, const std::array<double, N>& sigma) {
+    problem.AddResidualBlock(
+        new ceres::AutoDiffCostFunction<PriorError<N>, static_cast<int>(N), static_cast<int>(N)>(
+            new PriorError<N>{sigma}),
+        nullptr,
+        block);
+}
+
+/// What falls on the mesh with the views as they are now, and not farther from where it was seen
+/// than `within_px`.
+std::vector<Correspondence> correspondences_of(const Mesh& mesh,
+                                               const Tracer& tracer,
+                                               const std::vector<Sight>& sights,
+                                               const Given& given,
+                                               const State& state,
+                                               const Image8& ignored,
+                                               double within_px,
+                                               std::vector<double>* errors) {
+    const View projector = given.projector_of(state);
+    const double scale = std::exp(state.scale[0]);
+    // The mesh fills a part of the picture: so many pixels of it are wanted that enough fall on it.
+    const Bounds box = bounds_of(mesh);
+    const double across =
+        glm::length(box.high - box.low) * scale /
+        glm::length(centre_in_world(projector) - 0.5 * scale * (box.low + box.high)) *
+        projector.focal_px.x;
+    const int stride = std::max(1, static_cast<int>(across * 0.5 / std::sqrt(kWanted)));
+    std::vector<std::vector<Correspondence>> rows(
+        static_cast<std::size_t>(projector.height / stride));
+    const auto row_of = [&](std::size_t row) {
+        const int y = static_cast<int>(row) * stride + stride / 2;
+        std::vector<TraceRay> rays;
+        std::vector<int> columns;
+        for (int x = stride / 2; x < projector.width; x += stride) {
+            if (!ignored.empty() && ignored.at(x, y)) continue;
+            const Ray ray = ray_through(projector, {x + 0.5, y + 0.5});
+            TraceRay trace;
+            trace.origin = glm::vec3(ray.origin / scale);
+            trace.direction = glm::vec3(ray.direction);
+            rays.push_back(trace);
+            columns.push_back(x);
+        }
+        std::vector<Hit> hits(rays.size());
+        tracer.closest(rays, hits);
+        for (std::size_t i = 0; i < hits.size(); ++i) {
+            if (!hits[i].valid()) continue;
+            const SurfacePoint point = surface_point(mesh, hits[i]);
+            const glm::dvec3 normal(point.geometric_normal);
+            if (glm::dot(normal, glm::dvec3(rays[i].direction)) > -0.15) continue;
+            for (std::size_t k = 0; k < sights.size(); ++k) {
+                const ProjectorToCamera& map = sights[k].map;
+                const float* seen = map.camera_px.pixel(columns[i], y);
+                if (!std::isfinite(seen[0])) continue;
+                if (!map.edge.empty() && map.edge.at(columns[i], y)) continue;
+                rows[row].push_back({k,
+                                     {columns[i] + 0.5, y + 0.5},
+                                     {seen[0], seen[1]},
+                                     glm::dvec3(point.position_mm),
+                                     normal});
+            }
+        }
+    };
+    parallel_for(rows.size(), 4, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t row = begin; row < end; ++row) row_of(row);
+    });
+    std::vector<View> cameras;
+    for (std::size_t k = 0; k < sights.size(); ++k)
+        cameras.push_back(given.camera_of(state, k, projector));
+    std::vector<Correspondence> result;
+    for (const auto& row : rows)
+        for (const Correspondence& one : row) {
+            const glm::dvec3 to_camera = centre_in_world(cameras[one.sight]) - scale * one.place;
+            if (glm::dot(one.normal, to_camera) < 0.15 * glm::length(to_camera)) continue;
+            const auto pixel = predicted(projector, cameras[one.sight], scale, one);
+            if (!pixel) continue;
+            const double error = glm::length(*pixel - one.projector_px);
+            if (error > within_px) continue;
+            if (errors) errors->push_back(error);
+            result.push_back(one);
+        }
+    return result;
+}
+
+void describe(const ceres::Problem& problem,
+              State& state,
+              const LensPrior& prior,
+              const std::array<double, 3>& projector_sigma,
+              const std::array<double, 3>& camera_sigma,
+              const std::array<double, 6>& stereo_sigma,
+              PixelRefinement& result) {
+    ceres::Covariance::Options options;
+    options.algorithm_type = ceres::DENSE_SVD;
+    options.null_space_rank = -1;
+    ceres::Covariance covariance(options);
+    std::vector<std::pair<const double*, const double*>> blocks;
+    const auto same = [&](const double* block) { blocks.emplace_back(block, block); };
+    same(state.pose.data());
+    if (!prior.lens_fixed) {
+        same(state.projector_lens.data());
+        same(state.camera_lens.data());
+        same(state.stereo.front().data());
+    }
+    if (prior.scale_free) same(state.scale.data());
+    if (!covariance.Compute(blocks, const_cast<ceres::Problem*>(&problem)))
+        throw Refused("the pose has no covariance", "photograph more of the mock-up");
+    covariance.GetCovarianceBlock(state.pose.data(), state.pose.data(), result.covariance.data());
+    const auto tell =
+        [&](const double* block, const char* const* names, const double* sigma, int n) {
+            std::vector<double> square(static_cast<std::size_t>(n * n));
+            covariance.GetCovarianceBlock(block, block, square.data());
+            for (int k = 0; k < n; ++k)
+                result.lens.push_back({names[k],
+                                       block[k],
+                                       std::sqrt(square[static_cast<std::size_t>(k * n + k)]),
+                                       sigma[k]});
+        };
+    if (!prior.lens_fixed) {
+        constexpr const char* projector[] = {
+            "projector focal", "projector principal x", "projector principal y"};
+        constexpr const char* camera[] = {
+            "camera focal", "camera principal x", "camera principal y"};
+        constexpr const char* stereo[] = {"camera turn x",
+                                          "camera turn y",
+                                          "camera turn z",
+                                          "camera shift x",
+                                          "camera shift y",
+                                          "camera shift z"};
+        tell(state.projector_lens.data(), projector, projector_sigma.data(), 3);
+        tell(state.camera_lens.data(), camera, camera_sigma.data(), 3);
+        tell(state.stereo.front().data(), stereo, stereo_sigma.data(), 6);
+    }
+    constexpr const char* scale[] = {"mesh scale"};
+    if (prior.scale_free) tell(state.scale.data(), scale, &prior.scale, 1);
+}
+
+}  // namespace
+
+PixelRefinement refine_on_pixels(const Mesh& mesh,
+                                 const Tracer& tracer,
+                                 const View& projector,
+                                 const std::vector<Sight>& sights,
+                                 const Rigid3& world_from_mesh,
+                                 const Image8& ignored,
+                                 const LensPrior& prior,
+                                 const Progress& progress) {
+    Given given;
+    given.projector = projector;
+    given.projector.view_from_world = projector.view_from_world * world_from_mesh;
+    for (const Sight& sight : sights) {
+        given.cameras.push_back(sight.camera);
+        given.camera_from_projector.push_back(sight.camera.view_from_world *
+                                              inverse(projector.view_from_world));
+    }
+    State state;
+    state.stereo.resize(sights.size());
+    const double distance = glm::length(given.projector.view_from_world.translation);
+    const auto lens_sigma = [&](const View& view) {
+        return std::array<double, 3>{
+            prior.focal, prior.principal * view.width, prior.principal * view.width};
+    };
+    const std::array<double, 3> projector_sigma = lens_sigma(projector),
+                                camera_sigma = lens_sigma(sights.front().camera);
+    const double shift = prior.shift * distance;
+    const std::array<double, 6> stereo_sigma = {
+        prior.turn_rad, prior.turn_rad, prior.turn_rad, shift, shift, shift};
+    // Hardly a prior: a bound for what nothing holds, the turn of a sphere.
+    const std::array<double, 6> pose_sigma = {1.0, 1.0, 1.0, distance, distance, distance};
+
+    double within_px = 0.03 * projector.width, sigma_px = 2.0;
+    PixelRefinement result;
+    std::vector<double> before;
+    for (int round = 0; round < kRounds; ++round) {
+        progress.update(static_cast<double>(round) / kRounds, "refining pose and lenses");
+        std::vector<double> errors;
+        const std::vector<Correspondence> found =
+            correspondences_of(mesh, tracer, sights, given, state, ignored, within_px, &errors);
+        if (found.size() < 200)
+            throw Refused(
+                fmt::format("only {} of the pixels looked at fall on the mock-up", found.size()),
+                "light more of the mock-up, and let the camera see what the projector lights");
+        sigma_px = std::clamp(1.4826 / 1.4142 * median(errors), 0.02, 5.0);
+        ceres::Problem problem;
+        for (const Correspondence& one : found)
+            problem.AddResidualBlock(
+                new ceres::NumericDiffCostFunction<PixelError, ceres::CENTRAL, 2, 6, 6, 3, 3, 1>(
+                    new PixelError{&given, one, sigma_px}),
+                new ceres::CauchyLoss(2.0),
+                state.pose.data(),
+                state.stereo[one.sight].data(),
+                state.projector_lens.data(),
+                state.camera_lens.data(),
+                state.scale.data());
+        add_prior<6>(problem, state.pose.data(), pose_sigma);
+        add_prior<3>(problem, state.projector_lens.data(), projector_sigma);
+        add_prior<3>(problem, state.camera_lens.data(), camera_sigma);
+        for (auto& stereo : state.stereo) {
+            problem.AddParameterBlock(stereo.data(), 6);
+            add_prior<6>(problem, stereo.data(), stereo_sigma);
+            if (prior.lens_fixed) problem.SetParameterBlockConstant(stereo.data());
+        }
+        add_prior<1>(problem, state.scale.data(), {prior.scale});
+        if (!prior.scale_free) problem.SetParameterBlockConstant(state.scale.data());
+        if (prior.lens_fixed) {
+            problem.SetParameterBlockConstant(state.projector_lens.data());
+            problem.SetParameterBlockConstant(state.camera_lens.data());
+        }
+        ceres::Solver::Options options;
+        options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+        options.max_num_iterations = 8;
+        options.num_threads = thread_count();
+        options.logging_type = ceres::SILENT;
+        ceres::Solver::Summary summary;
+        ceres::Solve(options, &problem, &summary);
+        within_px = std::max(8.0 * sigma_px, 1.5);
+
+        const bool settled =
+            round > 3 && summary.initial_cost - summary.final_cost < 1e-4 * summary.initial_cost;
+        if (!settled && round + 1 < kRounds) continue;
+        describe(problem, state, prior, projector_sigma, camera_sigma, stereo_sigma, result);
+        break;
+    }
+
+    std::vector<double> every_error, errors;
+    const std::vector<Correspondence> all =
+        correspondences_of(mesh, tracer, sights, given, state, ignored, 1e9, &every_error);
+    std::vector<Correspondence> inliers;
+    double misfit = 0.0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        misfit += std::pow(std::min(every_error[i], kMisfitLimit_px), 2.0);
+        if (every_error[i] > within_px) continue;
+        inliers.push_back(all[i]);
+        errors.push_back(every_error[i]);
+    }
+    result.misfit_px =
+        std::sqrt(misfit / static_cast<double>(std::max<std::size_t>(all.size(), 1)));
+    result.projector = given.projector_of(state);
+    for (std::size_t k = 0; k < sights.size(); ++k)
+        result.cameras.push_back(given.camera_of(state, k, result.projector));
+    result.mesh_scale = std::exp(state.scale[0]);
+    result.correspondences = all.size();
+    result.inliers = inliers.size();
+    result.median_px = median(errors);
+    double squares = 0.0, squares_mm = 0.0;
+    const glm::dvec3 lamp = centre_in_world(result.projector);
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+        const double mm_per_px =
+            glm::length(result.mesh_scale * inliers[i].place - lamp) / result.projector.focal_px.x;
+        squares += errors[i] * errors[i];
+        squares_mm += std::pow(errors[i] * mm_per_px, 2.0);
+    }
+    const auto count = static_cast<double>(errors.size());
+    // What the mesh's own size sees: x_view = R (s x) + t has the pixels of R x + t / s.
+    result.projector.view_from_world.translation /= result.mesh_scale;
+    for (View& camera : result.cameras) camera.view_from_world.translation /= result.mesh_scale;
+    result.rms_px = std::sqrt(squares / (2.0 * count));
+    result.rms_mm = std::sqrt(squares_mm / count);
+    return result;
+}
+
+}  // namespace livery

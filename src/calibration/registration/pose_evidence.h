@@ -1,0 +1,52 @@
+// How much of a scan a pose explains, and what in the scan contradicts it.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "calibration/scan/scan.h"
+#include "mesh/mesh.h"
+#include "tracing/tracer.h"
+
+namespace livery {
+
+/// Counts of projector pixels, of those looked at.
+struct PoseEvidence {
+    int expected =
+        0;            ///< where the mesh would be lit, faces a camera, and nothing hides it from it
+    int agree = 0;    ///< of these: the scan has a point there, where the mesh is
+    int through = 0;  ///< where the scan has a point well behind the mesh: light cannot get there
+    int hidden = 0;   ///< where the scan has a point before the mesh: something else stands there
+    double agreement() const { return expected > 0 ? static_cast<double>(agree) / expected : 0.0; }
+    /// What poses are ordered by.
+    double score() const { return agree - 2.0 * through - 0.5 * (expected - agree); }
+};
+
+/// A mesh laid into a table or a wall agrees with it, but its outline is nowhere to be seen.
+struct OutlineEvidence {
+    int looked_at = 0;  ///< places at the border of the mesh's picture with a scan's point inside
+    int runs_on = 0;    ///< of these: the scan's surface goes on as a plane beyond the border
+    bool is_seen() const { return 2 * runs_on <= looked_at; }
+};
+
+/// Every how manieth pixel is looked at so that about `count` of the projector's are.
+int stride_for(const View& projector, int count);
+
+/// Traces the mesh from the projector. "Where the mesh is" means within `within_mm` along the ray,
+/// on a spot that `ignored` (one a projector pixel, empty: none) does not rule out.
+PoseEvidence evidence_of(const Tracer& tracer,
+                         const Mesh& mesh,
+                         const Rigid3& scan_from_mesh,
+                         const Scan& scan,
+                         std::span<const Sight> sights,
+                         const Image8& ignored,
+                         double within_mm,
+                         int stride);
+
+/// Looks from `projector`, whose world is the mesh, over its picture's border.
+OutlineEvidence outline_of(const Tracer& tracer,
+                           const View& projector,
+                           const Scan& scan,
+                           int stride);
+
+}  // namespace livery

@@ -1,0 +1,275 @@
+#include "calibration/registration/surface_samples.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <unordered_map>
+#include <unordered_set>
+
+#include <glm/geometric.hpp>
+
+#include "calibration/registration/rotation.h"
+#include "core/random.h"
+
+namespace livery {
+
+namespace {
+
+constexpr std::size_t kLeaf = 8;
+
+/// Normals within 15 degrees of the plane's count as on it.
+constexpr double kPlaneCosine = 0.966;
+
+/// The cube that a sample lies in and the eighth of all directions that it faces.
+std::uint64_t cell_of(const SurfaceSamples& samples, std::size_t i, double spacing_mm) {
+    std::uint64_t key = 0;
+    for (int c = 0; c < 3; ++c) {
+        const auto cell = static_cast<std::int64_t>(std::floor(samples.points[i][c] / spacing_mm));
+        key = (key << 20u) | (static_cast<std::uint64_t>(cell + (1 << 19)) & 0xfffffu);
+        key = (key << 1u) | (samples.normals[i][c] > 0.0 ? 1u : 0u);
+    }
+    return key;
+}
+
+struct Plane {
+    glm::dvec3 normal{0.0};
+    double offset = 0.0;
+    std::size_t count = 0;
+};
+
+bool lies_on(const Plane& plane, const glm::dvec3& point, const glm::dvec3& normal, double within) {
+    return std::abs(glm::dot(plane.normal, point) - plane.offset) < within &&
+           glm::dot(plane.normal, normal) > kPlaneCosine;
+}
+
+/// The plane through one sample and its normal that most of the samples lie on.
+Plane best_plane(const SurfaceSamples& samples,
+                 const std::vector<std::uint8_t>& taken,
+                 double within) {
+    Random random(11);
+    Plane best;
+    for (int attempt = 0; attempt < 300 && samples.size() > 0; ++attempt) {
+        const std::uint32_t a = random.below(static_cast<std::uint32_t>(samples.size()));
+        if (taken[a]) continue;
+        Plane plane{samples.normals[a], 0.0, 0};
+        // A second sample on it at a distance makes the normal sharper than one alone has it.
+        const std::uint32_t b = random.below(static_cast<std::uint32_t>(samples.size()));
+        const glm::dvec3 apart = samples.points[b] - samples.points[a];
+        if (!taken[b] && glm::dot(samples.normals[b], plane.normal) > kPlaneCosine &&
+            std::abs(glm::dot(apart, plane.normal)) < 0.2 * glm::length(apart)) {
+            const glm::dvec3 along = glm::normalize(apart);
+            plane.normal = glm::normalize(plane.normal - along * glm::dot(along, plane.normal));
+        }
+        plane.offset = glm::dot(plane.normal, samples.points[a]);
+        for (std::size_t i = 0; i < samples.size(); ++i)
+            if (!taken[i] && lies_on(plane, samples.points[i], samples.normals[i], within))
+                ++plane.count;
+        if (plane.count > best.count) best = plane;
+    }
+    return best;
+}
+
+/// Its extent: squares of the plane that samples on it lie in.
+std::size_t cells_of(const Plane& plane,
+                     const SurfaceSamples& samples,
+                     const std::vector<std::uint8_t>& taken,
+                     double spacing_mm) {
+    const glm::dmat3 upright = rotation_between(plane.normal, {0.0, 0.0, 1.0});
+    std::unordered_set<std::uint64_t> cells;
+    for (std::size_t i = 0; i < samples.size() && plane.count > 0; ++i) {
+        if (taken[i] || !lies_on(plane, samples.points[i], samples.normals[i], 0.5 * spacing_mm))
+            continue;
+        const glm::dvec3 place = upright * samples.points[i] / spacing_mm;
+        const auto x = static_cast<std::int32_t>(std::floor(place.x));
+        const auto y = static_cast<std::int32_t>(std::floor(place.y));
+        cells.insert((static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) << 32u) |
+                     static_cast<std::uint32_t>(y));
+    }
+    return cells.size();
+}
+
+}  // namespace
+
+SurfaceSamples thinned(const SurfaceSamples& samples, double spacing_mm) {
+    SurfaceSamples result;
+    std::unordered_set<std::uint64_t> taken;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (!taken.insert(cell_of(samples, i, spacing_mm)).second) continue;
+        result.points.push_back(samples.points[i]);
+        result.normals.push_back(samples.normals[i]);
+    }
+    return result;
+}
+
+SurfaceSamples cell_means(const SurfaceSamples& samples, double spacing_mm) {
+    SurfaceSamples sums;
+    std::vector<double> counts;
+    std::unordered_map<std::uint64_t, std::size_t> places;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const auto [found, is_new] =
+            places.try_emplace(cell_of(samples, i, spacing_mm), sums.size());
+        if (is_new) {
+            sums.points.emplace_back(0.0);
+            sums.normals.emplace_back(0.0);
+            counts.push_back(0.0);
+        }
+        sums.points[found->second] += samples.points[i];
+        sums.normals[found->second] += samples.normals[i];
+        counts[found->second] += 1.0;
+    }
+    for (std::size_t k = 0; k < sums.size(); ++k) {
+        sums.points[k] /= counts[k];
+        sums.normals[k] = glm::normalize(sums.normals[k]);
+    }
+    return sums;
+}
+
+SurfaceSamples sample_mesh(const Mesh& mesh, const Tracer& tracer, double spacing_mm) {
+    std::vector<double> area_to(mesh.triangles.size());
+    double area = 0.0;
+    const auto corner = [&](std::size_t triangle, int k) {
+        return glm::dvec3(mesh.positions_mm[mesh.triangles[triangle][k]]);
+    };
+    const auto area_vector = [&](std::size_t t) {
+        return 0.5 * glm::cross(corner(t, 1) - corner(t, 0), corner(t, 2) - corner(t, 0));
+    };
+    for (std::size_t t = 0; t < area_to.size(); ++t)
+        area_to[t] = area += glm::length(area_vector(t));
+    SurfaceSamples dense;
+    Random random(7);
+    const double wanted = std::min(8.0 * area / (spacing_mm * spacing_mm), 2e6);
+    const auto count = static_cast<std::size_t>(wanted);
+    for (std::size_t i = 0; i < count; ++i) {
+        const double at = area * (static_cast<double>(i) + random.uniform()) / wanted;
+        const auto found = std::lower_bound(area_to.begin(), area_to.end(), at);
+        const auto t =
+            std::min(static_cast<std::size_t>(found - area_to.begin()), area_to.size() - 1);
+        double u = random.uniform(), v = random.uniform();
+        if (u + v > 1.0) {
+            u = 1.0 - u;
+            v = 1.0 - v;
+        }
+        const glm::uvec3& at_corner = mesh.triangles[t];
+        const glm::dvec3 normal = (1.0 - u - v) * glm::dvec3(mesh.normals[at_corner[0]]) +
+                                  u * glm::dvec3(mesh.normals[at_corner[1]]) +
+                                  v * glm::dvec3(mesh.normals[at_corner[2]]);
+        if (!(glm::length(normal) > 1e-3)) continue;
+        dense.points.push_back(corner(t, 0) + u * (corner(t, 1) - corner(t, 0)) +
+                               v * (corner(t, 2) - corner(t, 0)));
+        dense.normals.push_back(glm::normalize(normal));
+    }
+    const SurfaceSamples even = thinned(dense, spacing_mm);
+    const std::vector<glm::vec3> points(even.points.begin(), even.points.end());
+    const std::vector<glm::vec3> normals(even.normals.begin(), even.normals.end());
+    const std::vector<float> open = ambient_openness(tracer, points, normals, 16, 1e6f);
+    SurfaceSamples result;
+    for (std::size_t i = 0; i < even.size(); ++i) {
+        if (open[i] < 0.1f) continue;
+        result.points.push_back(even.points[i]);
+        result.normals.push_back(even.normals[i]);
+    }
+    return result;
+}
+
+SurfaceSamples sample_scan(const Scan& scan, double spacing_mm) {
+    SurfaceSamples all;
+    for (std::size_t i = 0; i < scan.sigma_mm.values.size(); ++i) {
+        const float *p = &scan.points_mm.values[3 * i], *n = &scan.normals.values[3 * i];
+        if (!std::isfinite(p[0]) || !std::isfinite(n[0])) continue;
+        all.points.emplace_back(p[0], p[1], p[2]);
+        all.normals.emplace_back(n[0], n[1], n[2]);
+    }
+    return thinned(all, spacing_mm);
+}
+
+std::size_t largest_plane(const SurfaceSamples& samples, double spacing_mm) {
+    const std::vector<std::uint8_t> none(samples.size(), 0);
+    return cells_of(best_plane(samples, none, 0.5 * spacing_mm), samples, none, spacing_mm);
+}
+
+std::vector<std::uint8_t> on_large_planes(const SurfaceSamples& samples,
+                                          double spacing_mm,
+                                          std::size_t largest) {
+    std::vector<std::uint8_t> taken(samples.size(), 0);
+    for (int plane_number = 0; plane_number < 6; ++plane_number) {
+        const Plane plane = best_plane(samples, taken, 0.5 * spacing_mm);
+        if (cells_of(plane, samples, taken, spacing_mm) <= largest) break;
+        for (std::size_t i = 0; i < samples.size(); ++i)
+            if (lies_on(plane, samples.points[i], samples.normals[i], 0.6 * spacing_mm))
+                taken[i] = 1;
+    }
+    return taken;
+}
+
+NearestSample::NearestSample(const std::vector<glm::dvec3>& points)
+    : points_(points), index_(points.size()), axis_(points.size(), 0) {
+    std::iota(index_.begin(), index_.end(), 0u);
+    build(0, index_.size());
+    std::vector<glm::dvec3> ordered(points.size());
+    for (std::size_t i = 0; i < ordered.size(); ++i) ordered[i] = points[index_[i]];
+    points_ = std::move(ordered);
+}
+
+void NearestSample::build(std::size_t begin, std::size_t end) {
+    if (end - begin <= kLeaf) return;
+    glm::dvec3 low(1e300), high(-1e300);
+    for (std::size_t i = begin; i < end; ++i) {
+        low = glm::min(low, points_[index_[i]]);
+        high = glm::max(high, points_[index_[i]]);
+    }
+    const glm::dvec3 side = high - low;
+    const int axis = side.x >= side.y && side.x >= side.z ? 0 : side.y >= side.z ? 1 : 2;
+    const std::size_t middle = begin + (end - begin) / 2;
+    const auto at = [&](std::size_t i) { return index_.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t a, std::uint32_t b) {
+        return points_[a][axis] < points_[b][axis];
+    });
+    axis_[middle] = static_cast<std::uint8_t>(axis);
+    build(begin, middle);
+    build(middle + 1, end);
+}
+
+void NearestSample::search(std::size_t begin,
+                           std::size_t end,
+                           const glm::dvec3& place,
+                           double& best2,
+                           std::uint32_t& best) const {
+    const auto look_at = [&](std::size_t i) {
+        const glm::dvec3 apart = points_[i] - place;
+        const double distance2 = glm::dot(apart, apart);
+        if (distance2 < best2) {
+            best2 = distance2;
+            best = index_[i];
+        }
+    };
+    if (end - begin <= kLeaf) {
+        for (std::size_t i = begin; i < end; ++i) look_at(i);
+        return;
+    }
+    const std::size_t middle = begin + (end - begin) / 2;
+    look_at(middle);
+    const double beyond = place[axis_[middle]] - points_[middle][axis_[middle]];
+    const bool low_first = beyond < 0.0;
+    if (low_first) {
+        search(begin, middle, place, best2, best);
+    } else {
+        search(middle + 1, end, place, best2, best);
+    }
+    if (beyond * beyond >= best2) return;
+    if (low_first) {
+        search(middle + 1, end, place, best2, best);
+    } else {
+        search(begin, middle, place, best2, best);
+    }
+}
+
+std::optional<std::uint32_t> NearestSample::of(const glm::dvec3& place, double most_mm) const {
+    constexpr std::uint32_t kNone = 0xffffffffu;
+    double best2 = most_mm * most_mm;
+    std::uint32_t best = kNone;
+    search(0, points_.size(), place, best2, best);
+    if (best == kNone) return std::nullopt;
+    return best;
+}
+
+}  // namespace livery

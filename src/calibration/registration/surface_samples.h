@@ -1,0 +1,62 @@
+// Surfaces as points with normals, evenly spread: what alignment compares.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "calibration/scan/scan.h"
+#include "mesh/mesh.h"
+#include "tracing/tracer.h"
+
+namespace livery {
+
+struct SurfaceSamples {
+    std::vector<glm::dvec3> points;   ///< millimetres
+    std::vector<glm::dvec3> normals;  ///< unit, outside
+    std::size_t size() const { return points.size(); }
+};
+
+/// Points of the mesh about `spacing_mm` apart; what light from outside does not reach (seats, the
+/// inner side of a shell) is left out.
+SurfaceSamples sample_mesh(const Mesh& mesh, const Tracer& tracer, double spacing_mm);
+
+/// The scan's points that have a normal, about `spacing_mm` apart.
+SurfaceSamples sample_scan(const Scan& scan, double spacing_mm);
+
+/// One sample for each cube of that side and each way of facing.
+SurfaceSamples thinned(const SurfaceSamples& samples, double spacing_mm);
+
+/// The mean point and normal of each cube of that side and each way of facing.
+SurfaceSamples cell_means(const SurfaceSamples& samples, double spacing_mm);
+
+/// Which samples lie on planes of more than `largest` squares of side `spacing_mm`, which is that
+/// of the samples: tables and walls, when no face of the product is so large.
+std::vector<std::uint8_t> on_large_planes(const SurfaceSamples& samples,
+                                          double spacing_mm,
+                                          std::size_t largest);
+/// Squares of the plane on which most of the samples lie.
+std::size_t largest_plane(const SurfaceSamples& samples, double spacing_mm);
+
+/// The nearest sample, by a tree of halved boxes (Bentley 1975).
+class NearestSample {
+  public:
+    explicit NearestSample(const std::vector<glm::dvec3>& points);
+    /// Its index; nothing where none is within `most_mm`.
+    std::optional<std::uint32_t> of(const glm::dvec3& place, double most_mm) const;
+
+  private:
+    void build(std::size_t begin, std::size_t end);
+    void search(std::size_t begin,
+                std::size_t end,
+                const glm::dvec3& place,
+                double& best2,
+                std::uint32_t& best) const;
+    std::vector<glm::dvec3> points_;    ///< in the tree's order
+    std::vector<std::uint32_t> index_;  ///< of the point in that order
+    std::vector<std::uint8_t> axis_;    ///< along which a node's middle parts it
+};
+
+}  // namespace livery

@@ -1,0 +1,272 @@
+// Registration on the shipped benches, from what decoded photographs would tell: every product from
+// no starting value, its lenses 1% off and its mesh rough, and what is refused.
+#include <chrono>
+#include <cstdio>
+
+#include <gtest/gtest.h>
+
+#include "calibration/registration/register_scan.h"
+#include "calibration/registration/rotation.h"
+#include "calibration/support/traced_sights.h"
+#include "core/error.h"
+#include "core/statistics.h"
+#include "scene/product.h"
+#include "support/message_of.h"
+#include "support/reference_data.h"
+#include "twin/description.h"
+
+namespace livery {
+namespace {
+
+using testing::add_rectangle;
+using testing::roughened;
+using testing::traced_sight;
+
+struct World {
+    Mesh product;
+    Mesh all;
+    View projector, camera;  ///< world: the product's frame
+};
+
+World world_of(const std::string& bench_name, std::optional<Mesh> product = std::nullopt) {
+    const BenchDescription bench = read_bench_file(bench_name);
+    World world{product ? *product : load_product(bench.product).mesh,
+                {},
+                bench.projector.view,
+                bench.camera.view};
+    world.all = world.product;
+    for (const auto& [name, one] : bench.surroundings)
+        add_rectangle(world.all,
+                      glm::vec3(one.corner_mm),
+                      glm::vec3(one.side_a_mm),
+                      glm::vec3(one.side_b_mm));
+    return world;
+}
+
+/// A truck from the reference data, as long as the car and on the ground.
+Mesh truck(const std::filesystem::path& file) {
+    Mesh mesh = load_mesh(file);
+    const Bounds box = bounds_of(mesh);
+    const glm::dvec3 side = box.high - box.low;
+    const double factor = 170.0 / std::max({side.x, side.y, side.z});
+    for (glm::vec3& place : mesh.positions_mm)
+        place =
+            glm::vec3(factor * (glm::dvec3(place) - glm::dvec3(0.5 * (box.low.x + box.high.x),
+                                                               box.low.y,
+                                                               0.5 * (box.low.z + box.high.z))));
+    return mesh;
+}
+
+/// What the geometry's calibration says: the camera's frame is the world, focal lengths are off by
+/// a share, the projector's the other way.
+struct Given {
+    View projector;
+    std::vector<Sight> sights;
+};
+Given given_of(const World& world, double lens_off, std::uint64_t seed) {
+    Given given;
+    given.sights = {traced_sight(world.all, world.projector, world.camera, 0.1, seed)};
+    const Rigid3 world_from_camera = inverse(world.camera.view_from_world);
+    given.projector = world.projector;
+    given.projector.view_from_world = world.projector.view_from_world * world_from_camera;
+    given.sights[0].camera.view_from_world = Rigid3{};
+    given.projector.focal_px *= 1.0 - lens_off;
+    given.sights[0].camera.focal_px *= 1.0 + lens_off;
+    return given;
+}
+
+struct Errors {
+    double median_px = 0.0, p95_px = 0.0;
+};
+/// Over the lit mesh: how far from its true place each point is drawn in the projector's picture.
+/// Turns that the product leaves open are taken as they truly are.
+Errors errors_of(const World& world, const Registration& found) {
+    View projector = found.refined.projector;
+    if (found.free.count == 3) {
+        const glm::dvec3 centre = projector.view_from_world * found.free.through_mm;
+        projector.view_from_world.rotation = world.projector.view_from_world.rotation;
+        projector.view_from_world.translation =
+            centre - projector.view_from_world.rotation * found.free.through_mm;
+    }
+    const Tracer tracer(world.product);
+    std::vector<double> errors;
+    for (int y = 0; y < world.projector.height; y += 8)
+        for (int x = 0; x < world.projector.width; x += 8) {
+            const Ray ray = ray_through(world.projector, {x + 0.5, y + 0.5});
+            TraceRay trace;
+            trace.origin = glm::vec3(ray.origin);
+            trace.direction = glm::vec3(ray.direction);
+            const Hit hit = tracer.closest(trace);
+            if (!hit.valid()) continue;
+            const auto drawn = project(projector, surface_point(world.product, hit).position_mm);
+            errors.push_back(drawn ? glm::length(*drawn - glm::dvec2(x + 0.5, y + 0.5)) : 1e3);
+        }
+    return {quantile(errors, 0.5), quantile(errors, 0.95)};
+}
+
+Registration registered(
+    const World& world, const Mesh& mesh, double lens_off, std::uint64_t seed, const char* name) {
+    const Given given = given_of(world, lens_off, seed);
+    const auto start = std::chrono::steady_clock::now();
+    const Registration found = register_scan(mesh, given.projector, given.sights);
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const Errors errors = errors_of(world, found);
+    std::printf(
+        "    %s (seed %d): %.3f px median, %.3f px at 95%%; residual %.3f px, %.3f mm; "
+        "%zu of %zu; agreement %.2f; %.1f s\n",
+        name,
+        static_cast<int>(seed),
+        errors.median_px,
+        errors.p95_px,
+        found.refined.rms_px,
+        found.refined.rms_mm,
+        found.refined.inliers,
+        found.refined.correspondences,
+        found.evidence.agreement(),
+        seconds);
+    for (const Refined& one : found.refined.lens)
+        std::printf("        %s %+.5f +- %.5f (before %.5f)%s\n",
+                    one.name.c_str(),
+                    one.change,
+                    one.sigma,
+                    one.prior,
+                    one.is_identified() ? "" : ", not identified");
+    for (const std::string& warning : found.warnings) std::printf("        %s\n", warning.c_str());
+    return found;
+}
+
+void expect_registered(const World& world, const char* name) {
+    const Registration found = registered(world, roughened(world.product, 0.03), 0.01, 1, name);
+    const Errors errors = errors_of(world, found);
+    EXPECT_LT(errors.median_px, 0.5) << name;
+    EXPECT_LT(errors.p95_px, 1.0) << name;
+}
+
+TEST(Registration, FindsTheCar) { expect_registered(world_of("default"), "car"); }
+TEST(Registration, FindsThePlayer) { expect_registered(world_of("player"), "player"); }
+TEST(Registration, FindsTheSphereUpToItsTurns) { expect_registered(world_of("sphere"), "sphere"); }
+
+TEST(Registration, FindsTheTrucks) {
+    LIVERY_NEEDS_REFERENCE_DATA(data);
+    for (const char* name : {"vehicle-truck-green", "vehicle-truck-red"}) {
+        const auto file = data / "meshes" / (std::string(name) + ".glb");
+        expect_registered(world_of("default", truck(file)), name);
+    }
+}
+
+/// The mock-up turned about its middle and shifted, in front of the same devices, nothing else
+/// around.
+World turned_world(World world, const glm::dvec3& axis_angle, const glm::dvec3& shift_mm) {
+    const Bounds box = bounds_of(world.product);
+    const glm::dvec3 middle = 0.5 * (box.low + box.high);
+    const glm::dmat3 turn = rotation_of(axis_angle);
+    const Rigid3 motion{turn, middle + shift_mm - turn * middle};
+    // The world stays the product's frame.
+    world.all = world.product;
+    world.projector.view_from_world = world.projector.view_from_world * motion;
+    world.camera.view_from_world = world.camera.view_from_world * motion;
+    return world;
+}
+
+TEST(Registration, FindsWhatIsTurnedAnyWayAndStandsOnNothing) {
+    Random random(3);
+    for (int k = 0; k < 3; ++k) {
+        const glm::dvec3 axis(random.normal(), random.normal(), random.normal());
+        const glm::dvec3 axis_angle = glm::normalize(axis) * (1.0 + 2.0 * random.uniform());
+        const World world = turned_world(
+            world_of("default"), axis_angle, {20.0 * random.normal(), 10.0 * random.normal(), 0.0});
+        expect_registered(world, "car, turned");
+    }
+}
+
+TEST(Registration, BeginsSixtyDegreesAndTenCentimetresOffToo) {
+    const World world = world_of("default");
+    const Given given = given_of(world, 0.01, 2);
+    RegistrationOptions options;
+    const Rigid3 truth = world.camera.view_from_world;
+    options.start = Rigid3{rotation_of({0.6, 0.6, 0.6}) * truth.rotation,
+                           truth.translation + glm::dvec3(60.0, -50.0, 62.0)};
+    const Errors errors = errors_of(
+        world,
+        register_scan(roughened(world.product, 0.03), given.projector, given.sights, options));
+    EXPECT_LT(errors.median_px, 0.5);
+    EXPECT_LT(errors.p95_px, 1.0);
+}
+
+std::string refusal(const World& world, const Mesh& mesh) {
+    const Given given = given_of(world, 0.0, 1);
+    std::string said;
+    try {
+        const Registration found = register_scan(mesh, given.projector, given.sights);
+        std::printf("    accepted: agreement %.2f, inliers %zu of %zu, %.2f px\n",
+                    found.evidence.agreement(),
+                    found.refined.inliers,
+                    found.refined.correspondences,
+                    found.refined.misfit_px);
+    } catch (const Refused& refused) {
+        said = refused.why() + " / " + refused.fix();
+    }
+    std::printf("    %s\n", said.c_str());
+    return said;
+}
+
+TEST(Registration, RefusesTheMeshOfAnotherProduct) {
+    const World car = world_of("default"), player = world_of("player");
+    EXPECT_NE(refusal(car, player.product).find("does not fit"), std::string::npos);
+    EXPECT_NE(refusal(player, car.product).find("does not fit"), std::string::npos);
+}
+
+TEST(Registration, RefusesTheMirrorImage) {
+    // A car is its own mirror image but for what stands at one side of it.
+    Mesh product = world_of("default").product;
+    append(product, make_sphere({20.0, 30.0, 30.0}, 16.0, 24, "lump"), "");
+    Mesh mirrored = product;
+    for (glm::vec3& place : mirrored.positions_mm) place.z = -place.z;
+    for (glm::vec3& normal : mirrored.normals) normal.z = -normal.z;
+    for (glm::uvec3& triangle : mirrored.triangles) std::swap(triangle.y, triangle.z);
+    const World world = world_of("default", product);
+    EXPECT_NE(refusal(world, mirrored).find("mirror image"), std::string::npos);
+    EXPECT_EQ(refusal(world, product), "");
+}
+
+TEST(Registration, RefusesAProductOfTooFewPixels) {
+    World world = world_of("default");
+    world.projector.focal_px *= 0.06;
+    world.projector.principal_px = {640.0, 405.0};
+    EXPECT_NE(refusal(world, world.product).find("projector pixels"), std::string::npos);
+}
+
+/// A box standing on y = 0, its sides unlike.
+Mesh box(glm::vec3 side) {
+    Mesh mesh;
+    const glm::vec3 low(-0.5f * side.x, 0.0f, -0.5f * side.z);
+    const glm::vec3 x(side.x, 0, 0), y(0, side.y, 0), z(0, 0, side.z);
+    add_rectangle(mesh, low, z, y);
+    add_rectangle(mesh, low + x, y, z);
+    add_rectangle(mesh, low, x, z);
+    add_rectangle(mesh, low + y, z, x);
+    add_rectangle(mesh, low, y, x);
+    add_rectangle(mesh, low + z, x, y);
+    return mesh;
+}
+
+TEST(Registration, NamesASymmetricProduct) {
+    const World world = world_of("default", box({120.0f, 50.0f, 60.0f}));
+    const Registration found = registered(world, world.product, 0.0, 1, "box");
+    ASSERT_FALSE(found.equal_motions.empty());
+    EXPECT_NE(found.warnings.at(0).find("symmetric"), std::string::npos);
+    EXPECT_NEAR(angle_of(found.equal_motions[0].rotation), 3.14159, 0.02);
+}
+
+TEST(Registration, RefusesTwoPosesThatFitAlike) {
+    // What tells the ends apart lies below, where neither projector nor camera sees it.
+    Mesh product = box({120.0f, 50.0f, 60.0f});
+    append(product, make_sphere({-35.0, 8.0, 0.0}, 20.0, 24, "foot"), "");
+    World world = world_of("default", product);
+    world.all = product;
+    EXPECT_NE(refusal(world, product).find("fit alike"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace livery
