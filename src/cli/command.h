@@ -59,6 +59,8 @@ Command albedo_command();
 Command bench_command();
 Command brdf_command();
 Command calibrate_color_command();
+Command calibrate_register_command();
+Command calibrate_scan_command();
 Command capture_command();
 Command check_command();
 Command compensate_command();

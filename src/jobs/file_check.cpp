@@ -10,6 +10,7 @@
 #include "appearance/material_library.h"
 #include "appearance/measured/measured_paint.h"
 #include "appearance/measured/measured_reflectance.h"
+#include "calibration/registration/picked_points.h"
 #include "capture/captures_folder.h"
 #include "capture/patterns_folder.h"
 #include "capture/sphere_folder.h"
@@ -22,6 +23,7 @@
 #include "jobs/files_elsewhere.h"
 #include "scene/colour_calibration.h"
 #include "scene/look.h"
+#include "scene/mockup_pose.h"
 #include "scene/product.h"
 #include "scene/view.h"
 #include "session/session_file.h"
@@ -246,6 +248,9 @@ FileKind kind_of_json(const Path& file, const Progress& progress) {
     if (has("model") || has("parameters")) {
         return {"material", [](const Path& path, FileCheck&) { read_material_file(path); }};
     }
+    if (has("kind") && json["kind"] == "pose") {
+        return {"pose", [](const Path& path, FileCheck&) { read_pose_file(path); }};
+    }
     if (has("camera") || has("mockup") || has("base")) {
         return {"bench", [](const Path& path, FileCheck&) { read_bench_file(path); }};
     }
@@ -271,7 +276,8 @@ FileKind kind_of_json(const Path& file, const Progress& progress) {
                     path,
                     "",
                     "a JSON object of no known kind",
-                    "a material, look, product, bench, camera, camera-to-xyz or captures file");
+                    "a material, look, product, bench, camera, pose, camera-to-xyz or captures "
+                    "file");
             }};
 }
 
@@ -298,10 +304,16 @@ FileKind kind_of_csv(const Path& file) {
                 }};
     }
     if (csv.find("theta_i")) return {"measured", check_measured};
+    if (csv.find("u_px")) {
+        return {
+            "points", [](const Path& path, FileCheck& check) {
+                check.notes.push_back(std::to_string(read_picked_points(path).size()) + " points");
+            }};
+    }
     throw FileError(file,
                     "header",
                     "'" + csv.names().front().substr(0, 40) + "', ...",
-                    "the columns of spectra, directions or measured reflectance");
+                    "the columns of spectra, directions, measured reflectance or picked points");
 }
 
 FileKind kind_of(const Path& file, const Progress& progress) {

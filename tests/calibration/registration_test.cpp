@@ -268,5 +268,75 @@ TEST(Registration, RefusesTwoPosesThatFitAlike) {
     EXPECT_NE(refusal(world, product).find("fit alike"), std::string::npos);
 }
 
+// What rougher meshes and lenses that are farther off cost: docs/registration.md has the rows.
+TEST(Registration, LosesLittleByARoughMeshOrAWrongLens) {
+    const World world = world_of("default");
+    struct Row {
+        double mesh_rms_mm, lens_off;
+        double median_px = 0.5, p95_px = 1.0;  // the goals, where they are reached
+    };
+    for (const Row& row : {Row{0.0, 0.0},
+                           Row{0.1, 0.01},
+                           Row{0.3, 0.01, 1.0, 1.5},
+                           Row{1.0, 0.01, 8.0, 15.0},
+                           Row{0.03, 0.02},
+                           Row{0.03, 0.03}}) {
+        const Given given = given_of(world, row.lens_off, 1);
+        const Registration found =
+            register_scan(roughened(world.product, row.mesh_rms_mm), given.projector, given.sights);
+        const Errors errors = errors_of(world, found);
+        std::printf(
+            "    mesh %.2f mm rms, lenses %.0f%% off: %.3f px median, %.3f px at 95%%; "
+            "residual %.3f px\n",
+            row.mesh_rms_mm,
+            100.0 * row.lens_off,
+            errors.median_px,
+            errors.p95_px,
+            found.refined.rms_px);
+        EXPECT_LT(errors.median_px, row.median_px);
+        EXPECT_LT(errors.p95_px, row.p95_px);
+    }
+}
+
+// From a second position of the camera the same pose, better held.
+TEST(Registration, MergesPositionsOfTheCamera) {
+    const World world = world_of("default");
+    Given given = given_of(world, 0.01, 1);
+    const Registration one = register_scan(world.product, given.projector, given.sights);
+    View other = world.camera;
+    other.view_from_world =
+        look_at({120, 330, 480}, {0, 25, 0}, 0.4, other.width, other.height).view_from_world;
+    given.sights.push_back(traced_sight(world.all, world.projector, other, 0.1, 2));
+    given.sights[1].camera.view_from_world =
+        given.sights[1].camera.view_from_world * inverse(world.camera.view_from_world);
+    given.sights[1].camera.focal_px *= 1.01;
+    const Registration both = register_scan(world.product, given.projector, given.sights);
+    EXPECT_LT(errors_of(world, both).p95_px, 1.0);
+    double before = 0.0, after = 0.0;
+    for (std::size_t k = 0; k < 36; k += 7) {
+        before += std::log(one.refined.covariance[k]);
+        after += std::log(both.refined.covariance[k]);
+    }
+    EXPECT_LT(after, before);
+}
+
+TEST(Registration, FindsTheScaleWhereItIsFree) {
+    const World world = world_of("default");
+    const Given given = given_of(world, 0.0, 1);
+    Mesh larger = world.product;
+    for (glm::vec3& place : larger.positions_mm) place *= 1.03f;
+    RegistrationOptions options;
+    options.prior.scale_free = true;
+    options.prior.lens_fixed = true;
+    const Registration found = register_scan(larger, given.projector, given.sights, options);
+    EXPECT_NEAR(found.refined.mesh_scale, 1.0 / 1.03, 5e-4);
+    World scaled = world;
+    scaled.product = larger;
+    View truth = world.projector;
+    truth.view_from_world.translation *= 1.03;
+    scaled.projector = truth;
+    EXPECT_LT(errors_of(scaled, found).p95_px, 1.0);
+}
+
 }  // namespace
 }  // namespace livery

@@ -68,6 +68,8 @@ TEST(Program, HelpNamesEveryCommandAndEachHasAnExample) {
                              "photograph",
                              "capture",
                              "calibrate color",
+                             "calibrate register",
+                             "calibrate scan",
                              "measure brdf",
                              "fit brdf",
                              "compensate",

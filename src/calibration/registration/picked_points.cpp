@@ -314,6 +314,7 @@ PickedPose pose_from_points(const View& lens,
     const auto fit = fitted(lens, points, used, fits[0].view_from_mesh.rotation, true);
     if (!fit) throw Refused("the points do not hold the pose", "pick points farther apart");
     result.view_from_mesh = fit->view_from_mesh;
+    if (result.bad) result.bad_px = distance_px(lens, result.view_from_mesh, points[*result.bad]);
     result.covariance = fit->covariance;
     for (double& one : result.covariance) one *= sigma_px * sigma_px;
     result.held_px = held(lens, *fit, mesh_mm, sigma_px);

@@ -27,6 +27,7 @@ struct PickedPose {
     double rms_px = 0.0, rms_mm = 0.0;  ///< of the inliers' distances; mm at their depth
     std::vector<std::size_t> inliers;   ///< indices
     std::optional<std::size_t> bad;     ///< a click that was left out
+    double bad_px = 0.0;                ///< how far it lies from its place in this pose
     /// Rotation vector (rad) and translation (mm), applied on the view's side; row by row.
     std::array<double, 36> covariance{};
     double held_px = 0.0;  ///< largest standard deviation of a corner of the mesh's box

@@ -161,7 +161,8 @@ std::vector<Correspondence> correspondences_of(const Mesh& mesh,
         for (std::size_t i = 0; i < hits.size(); ++i) {
             if (!hits[i].valid()) continue;
             const SurfacePoint point = surface_point(mesh, hits[i]);
-            const glm::dvec3 normal(point.geometric_normal);
+            // A rough mesh's triangles face anywhere; its corners' normals are means over some.
+            const glm::dvec3 normal(point.normal);
             if (glm::dot(normal, glm::dvec3(rays[i].direction)) > -0.15) continue;
             for (std::size_t k = 0; k < sights.size(); ++k) {
                 const ProjectorToCamera& map = sights[k].map;

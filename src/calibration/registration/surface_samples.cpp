@@ -182,6 +182,24 @@ SurfaceSamples sample_scan(const Scan& scan, double spacing_mm) {
     return thinned(all, spacing_mm);
 }
 
+SurfacePlane main_plane(const SurfaceSamples& samples, double spacing_mm) {
+    const std::vector<std::uint8_t> none(samples.size(), 0);
+    const Plane plane = best_plane(samples, none, 0.3 * spacing_mm);
+    // The mean of what lies on it, sharper than the two samples it was made of.
+    SurfacePlane result{glm::dvec3(0.0), 0.0};
+    double count = 0.0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (!lies_on(plane, samples.points[i], samples.normals[i], 0.3 * spacing_mm)) continue;
+        result.normal += samples.normals[i];
+        count += 1.0;
+    }
+    result.normal = count > 0.0 ? glm::normalize(result.normal) : plane.normal;
+    for (std::size_t i = 0; i < samples.size() && count > 0.0; ++i)
+        if (lies_on(plane, samples.points[i], samples.normals[i], 0.3 * spacing_mm))
+            result.offset += glm::dot(result.normal, samples.points[i]) / count;
+    return result;
+}
+
 std::size_t largest_plane(const SurfaceSamples& samples, double spacing_mm) {
     const std::vector<std::uint8_t> none(samples.size(), 0);
     return cells_of(best_plane(samples, none, 0.5 * spacing_mm), samples, none, spacing_mm);

@@ -1,0 +1,89 @@
+// The mock-up scanned and registered from files: what `livery calibrate scan` and `livery calibrate
+// register` do.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibration/registration/picked_points.h"
+#include "calibration/registration/register_scan.h"
+#include "core/progress.h"
+#include "scene/mockup_pose.h"
+#include "scene/product.h"
+
+namespace livery {
+
+/// Lenses and poses of a camera and a projector, in one frame.
+struct CalibratedPair {
+    View camera, projector;
+};
+
+/// `camera.json` and `projector.json` of a geometry's calibration. Throws FileError.
+CalibratedPair read_calibrated_pair(const std::filesystem::path& folder);
+
+/// Structured light seen from one position of the camera or more.
+struct ScannedLight {
+    View projector;  ///< world: the first camera's calibration's
+    std::vector<Sight> sights;
+    std::vector<std::string> warnings;
+};
+
+/// Decodes Gray code photographs, a folder a position of the camera; `calibrations` is one folder
+/// for all, or one for each. The projector stands where it stood, so it joins the positions. Throws
+/// FileError, Refused, std::invalid_argument.
+ScannedLight decode_light(const std::vector<std::filesystem::path>& captures,
+                          const std::vector<std::filesystem::path>& calibrations,
+                          const Progress& progress = {});
+
+struct ScanFiles {
+    Mesh surface;            ///< product frame: millimetres, y up in the camera's picture
+    View projector, camera;  ///< world: that frame
+    Scan scan;
+    double spacing_mm = 0.0;
+};
+
+/// The scan as a product: its frame has its origin in the scan's middle, x to the camera's right, y
+/// up in its picture, z toward it. Neighbouring vertices are about `spacing_mm` apart, or as far as
+/// the projector's pixels. `without_table` leaves out the largest plane and what lies
+/// behind it.
+ScanFiles scan_product(const ScannedLight& light,
+                       double spacing_mm,
+                       int without_planes,
+                       const Progress& progress = {});
+
+/// Writes `scan.ply`, `projector.json` and `camera.json`. Throws FileError.
+void write_scan(const std::filesystem::path& folder, const ScanFiles& scan);
+
+/// In which picture points were picked.
+enum class PickView { either, camera, projector };
+
+struct RegistrationRequest {
+    std::shared_ptr<const Product> product;
+    std::string product_name;                     ///< as it was given
+    std::vector<std::filesystem::path> captures;  ///< empty: points alone
+    std::filesystem::path points;                 ///< empty: captures alone
+    std::vector<std::filesystem::path> calibrations;
+    PickView pick_view = PickView::either;
+    bool scale_free = false;
+    bool lens_fixed = false;
+};
+
+struct RegisteredMockup {
+    MockupPose pose;
+    View camera, projector;  ///< world: the product's frame
+    std::optional<Registration> by_scan;
+    std::optional<PickedPose> by_points;
+    std::string picked_in;  ///< "camera" or "projector"
+    std::vector<MeshPick> points;
+};
+
+/// From points, from captures, or from captures that begin with points. Points whose view is not
+/// said are taken in the one whose lens they fit. Throws FileError, Refused.
+RegisteredMockup register_mockup(const RegistrationRequest& request, const Progress& progress = {});
+
+/// Writes `camera.json`, `projector.json` and, last, `pose.json`. Throws FileError.
+void write_registration(const std::filesystem::path& folder, const RegisteredMockup& mockup);
+
+}  // namespace livery

@@ -1,0 +1,196 @@
+// From photographs of the full bench to the scan and the mock-up's pose, as the commands do it; and
+// what is said of folders that do not belong together.
+#include "jobs/registration.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include <gtest/gtest.h>
+
+#include "calibration/correspondence/patterns.h"
+#include "capture/patterns_folder.h"
+#include "core/paths.h"
+#include "core/statistics.h"
+#include "jobs/file_check.h"
+#include "jobs/simulated_captures.h"
+#include "scene/library.h"
+#include "support/message_of.h"
+#include "support/temporary_folder.h"
+
+namespace livery {
+namespace {
+
+/// The car on the full bench, photographed once; a geometry's calibration with exact lenses and one
+/// with focal lengths 1% off, both in the camera's frame.
+class BenchRegistration : public ::testing::Test {
+  protected:
+    static void SetUpTestSuite() {
+        shared_ = new TemporaryFolder;
+        bench_ = new BenchDescription(read_bench_file("default"));
+        const View& projector = bench_->projector.view;
+        std::vector<PatternFile> files;
+        for (const Pattern& one : geometry_patterns(projector.width, projector.height))
+            files.push_back({one.role, one.drive, one.drive_values});
+        write_patterns_folder(*shared_ / "patterns", projector.width, projector.height, files);
+        photograph_patterns({*bench_, *shared_ / "patterns", *shared_ / "captures"});
+        write_calibration_files("exact", 0.0);
+        write_calibration_files("off", 0.01);
+    }
+    static void TearDownTestSuite() {
+        delete bench_;
+        delete shared_;
+    }
+    static void write_calibration_files(const char* name, double lens_off) {
+        View camera = bench_->camera.view, projector = bench_->projector.view;
+        projector.view_from_world = projector.view_from_world * inverse(camera.view_from_world);
+        camera.view_from_world = {};
+        camera.focal_px *= 1.0 + lens_off;
+        projector.focal_px *= 1.0 - lens_off;
+        std::filesystem::create_directories(*shared_ / name);
+        write_camera_file(*shared_ / name / "camera.json", camera);
+        write_camera_file(*shared_ / name / "projector.json", projector);
+    }
+    static RegistrationRequest request(const char* calibration) {
+        RegistrationRequest asked;
+        asked.product = find_product("car");
+        asked.product_name = "car";
+        asked.captures = {*shared_ / "captures"};
+        asked.calibrations = {*shared_ / calibration};
+        return asked;
+    }
+    /// How far each lit place of the car is drawn from where it is, projector pixels.
+    static std::vector<double> errors_of(const View& projector) {
+        const std::shared_ptr<const Product> car = find_product("car");
+        const Mesh& mesh = car->mesh;
+        const Tracer tracer(mesh);
+        const View& truth = bench_->projector.view;
+        std::vector<double> errors;
+        for (int y = 0; y < truth.height; y += 8)
+            for (int x = 0; x < truth.width; x += 8) {
+                const Ray ray = ray_through(truth, {x + 0.5, y + 0.5});
+                TraceRay trace;
+                trace.origin = glm::vec3(ray.origin);
+                trace.direction = glm::vec3(ray.direction);
+                const Hit hit = tracer.closest(trace);
+                if (!hit.valid()) continue;
+                const auto drawn = project(projector, surface_point(mesh, hit).position_mm);
+                errors.push_back(drawn ? glm::length(*drawn - glm::dvec2(x + 0.5, y + 0.5)) : 1e3);
+            }
+        return errors;
+    }
+
+    static TemporaryFolder* shared_;
+    static BenchDescription* bench_;
+};
+TemporaryFolder* BenchRegistration::shared_ = nullptr;
+BenchDescription* BenchRegistration::bench_ = nullptr;
+
+TEST_F(BenchRegistration, ScansTheCarToAFifthOfAMillimetre) {
+    const ScannedLight light = decode_light({*shared_ / "captures"}, {*shared_ / "exact"});
+    const ScanFiles files = scan_product(light, 0.3, 0);
+    // What of the scan lies on the car: along the projector's rays that meet it.
+    const std::shared_ptr<const Product> car = find_product("car");
+    const Mesh& mesh = car->mesh;
+    const Tracer tracer(mesh);
+    const Rigid3 product_from_camera = inverse(bench_->camera.view.view_from_world);
+    const glm::dvec3 lamp = centre_in_world(bench_->projector.view);
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < files.scan.sigma_mm.values.size(); i += 3) {
+        const float* p = &files.scan.points_mm.values[3 * i];
+        if (!std::isfinite(p[0])) continue;
+        const glm::dvec3 apart = product_from_camera * glm::dvec3(p[0], p[1], p[2]) - lamp;
+        const double range = glm::length(apart);
+        TraceRay ray;
+        ray.origin = glm::vec3(lamp);
+        ray.direction = glm::vec3(apart / range);
+        const Hit hit = tracer.closest(ray);
+        if (hit.valid()) errors.push_back(std::abs(range - static_cast<double>(hit.t)));
+    }
+    std::printf("    %zu points on the car: %.3f mm median, %.3f mm at 95%%; %zu vertices\n",
+                errors.size(),
+                median(errors),
+                quantile(errors, 0.95),
+                files.surface.positions_mm.size());
+    EXPECT_GT(errors.size(), 30'000u);
+    EXPECT_LT(median(errors), 0.2);
+
+    const TemporaryFolder folder;
+    write_scan(folder / "scan", files);
+    for (const char* name : {"scan.ply", "camera.json", "projector.json"})
+        EXPECT_TRUE(check_file(folder / "scan" / name).ok()) << name;
+    const Mesh read = load_mesh(folder / "scan" / "scan.ply");
+    EXPECT_EQ(read.triangles.size(), files.surface.triangles.size());
+    // The projector draws the scan where its light fell.
+    const View projector = read_camera_file(folder / "scan" / "projector.json");
+    const auto place = project(projector, glm::dvec3(read.positions_mm[1000]));
+    ASSERT_TRUE(place);
+    EXPECT_NEAR(place->x - std::floor(place->x), 0.5, 0.02);
+    EXPECT_NEAR(place->y - std::floor(place->y), 0.5, 0.02);
+}
+
+TEST_F(BenchRegistration, RegistersTheCarFromPhotographs) {
+    for (const char* calibration : {"exact", "off"}) {
+        const RegisteredMockup found = register_mockup(request(calibration));
+        const std::vector<double> errors = errors_of(found.projector);
+        std::printf("    lenses %s: %.3f px median, %.3f px at 95%%; residual %.3f px, %.3f mm\n",
+                    calibration,
+                    median(errors),
+                    quantile(errors, 0.95),
+                    found.pose.rms_px,
+                    found.pose.rms_mm);
+        EXPECT_LT(median(errors), 0.5) << calibration;
+        EXPECT_LT(quantile(errors, 0.95), 1.0) << calibration;
+
+        const TemporaryFolder folder;
+        write_registration(folder / "out", found);
+        for (const char* name : {"pose.json", "camera.json", "projector.json"})
+            EXPECT_TRUE(check_file(folder / "out" / name).ok()) << name;
+        EXPECT_EQ(check_file(folder / "out" / "pose.json").kind, "pose");
+        const MockupPose read = read_pose_file(folder / "out" / "pose.json");
+        EXPECT_EQ(read.inliers, found.pose.inliers);
+        EXPECT_EQ(read.covariance, found.pose.covariance);
+    }
+}
+
+TEST_F(BenchRegistration, TakesPickedPointsInEitherPicture) {
+    const std::vector<glm::dvec3> places = {
+        {-80, 12, 30}, {75, 15, 32}, {10, 50, 20}, {-20, 52, -18}, {60, 30, -20}, {-70, 28, -25}};
+    for (const bool in_camera : {true, false}) {
+        const View& view = in_camera ? bench_->camera.view : bench_->projector.view;
+        const TemporaryFolder folder;
+        std::string text = "x_mm,y_mm,z_mm,u_px,v_px\n";
+        for (const glm::dvec3& place : places) {
+            const glm::dvec2 pixel = *project(view, place) - 0.5;
+            for (const double number : {place.x, place.y, place.z, pixel.x})
+                text += std::to_string(number) + ",";
+            text += std::to_string(pixel.y) + "\n";
+        }
+        folder.write("points.csv", text);
+        RegistrationRequest asked = request("exact");
+        asked.captures.clear();
+        asked.points = folder / "points.csv";
+        const RegisteredMockup found = register_mockup(asked);
+        EXPECT_EQ(found.picked_in, in_camera ? "camera" : "projector");
+        EXPECT_LT(quantile(errors_of(found.projector), 0.95), 0.05);
+        EXPECT_EQ(check_file(folder / "points.csv").kind, "points");
+    }
+}
+
+TEST_F(BenchRegistration, SaysWhatDoesNotBelongTogether) {
+    RegistrationRequest asked = request("exact");
+    View other = bench_->projector.view;
+    other.width = 1920;
+    std::filesystem::create_directories(*shared_ / "other");
+    write_camera_file(*shared_ / "other" / "projector.json", other);
+    write_camera_file(*shared_ / "other" / "camera.json", bench_->camera.view);
+    asked.calibrations = {*shared_ / "other"};
+    EXPECT_NE(message_of([&] { register_mockup(asked); }).find("1280x800"), std::string::npos);
+    asked.calibrations = {*shared_ / "nowhere"};
+    EXPECT_NE(message_of([&] { register_mockup(asked); }).find("camera.json"), std::string::npos);
+    asked = request("exact");
+    asked.calibrations = {*shared_ / "exact", *shared_ / "off"};
+    EXPECT_NE(message_of([&] { register_mockup(asked); }).find("one for each"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace livery
