@@ -1,7 +1,9 @@
 // Registration on the shipped benches, from what decoded photographs would tell: every product from
 // no starting value, its lenses 1% off and its mesh rough, and what is refused.
 #include <chrono>
+#include <cmath>
 #include <cstdio>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -257,6 +259,57 @@ TEST(Registration, NamesASymmetricProduct) {
     ASSERT_FALSE(found.equal_motions.empty());
     EXPECT_NE(found.warnings.at(0).find("symmetric"), std::string::npos);
     EXPECT_NEAR(angle_of(found.equal_motions[0].rotation), 3.14159, 0.02);
+}
+
+/// A bottle: a profile of (radius, height) turned about y, thinner at the top.
+Mesh bottle() {
+    constexpr int kSides = 120, kRings = 60;
+    Mesh mesh;
+    for (int ring = 0; ring <= kRings; ++ring) {
+        const double t = static_cast<double>(ring) / kRings;
+        const double radius =
+            ring == 0 || ring == kRings ? 0.0 : 14.0 + 18.0 / (1.0 + std::exp(18.0 * (t - 0.6)));
+        const double height = ring == 0 ? 0.0 : ring == kRings ? 110.0 : 110.0 * (ring - 1) / 58.0;
+        for (int side = 0; side < kSides; ++side) {
+            const double turn = 2.0 * std::numbers::pi * side / kSides;
+            mesh.positions_mm.emplace_back(
+                radius * std::cos(turn), height, -radius * std::sin(turn));
+        }
+    }
+    const auto at = [](int ring, int side) {
+        return static_cast<std::uint32_t>(ring * kSides + side % kSides);
+    };
+    for (int ring = 0; ring < kRings; ++ring)
+        for (int side = 0; side < kSides; ++side) {
+            if (ring > 0)
+                mesh.triangles.push_back({at(ring, side), at(ring, side + 1), at(ring + 1, side)});
+            if (ring + 1 < kRings)
+                mesh.triangles.push_back(
+                    {at(ring, side + 1), at(ring + 1, side + 1), at(ring + 1, side)});
+        }
+    mesh.triangle_part.assign(mesh.triangles.size(), 0);
+    mesh.uvs.assign(mesh.positions_mm.size(), glm::vec2(0.0f));
+    mesh.parts.resize(1);
+    compute_normals(mesh);
+    compute_tangents(mesh);
+    return mesh;
+}
+
+TEST(Registration, NamesASurfaceOfRevolution) {
+    const World world = world_of("default", bottle());
+    const Registration found = registered(world, roughened(world.product, 0.03), 0.01, 1, "bottle");
+    ASSERT_EQ(found.free.count, 1);
+    EXPECT_GT(std::abs(found.free.axis.y), 0.9999);
+    ASSERT_FALSE(found.warnings.empty());
+    EXPECT_NE(found.warnings[0].find("surface of revolution"), std::string::npos);
+    // The axis stands where it should, whatever the turn about it.
+    for (const double height : {5.0, 60.0, 105.0}) {
+        const glm::dvec3 place(0.0, height, 0.0);
+        const auto wanted = project(world.projector, place);
+        const auto drawn = project(found.refined.projector, place);
+        ASSERT_TRUE(wanted && drawn);
+        EXPECT_LT(glm::length(*wanted - *drawn), 1.0) << height;
+    }
 }
 
 TEST(Registration, RefusesTwoPosesThatFitAlike) {
