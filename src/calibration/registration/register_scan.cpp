@@ -278,7 +278,8 @@ PixelRefinement best_refined(const TargetMesh& target,
             inverse(refined[best].projector.view_from_world) * refined[k].projector.view_from_world;
         const double turn = angle_of(motion.rotation) / kDegree;
         const glm::dvec3 axis = axis_of(motion.rotation);
-        if (!maps_onto_itself(target.fine, target.tree, motion, 0.015 * target.size_mm))
+        const double within_mm = 0.015 * target.size_mm;
+        if (!maps_onto_itself(target.fine, target.tree, motion, within_mm))
             throw Refused(
                 fmt::format("two poses of the mesh fit alike, {:.0f} degrees apart: {:.2f} and "
                             "{:.2f} projector pixels",
@@ -289,8 +290,9 @@ PixelRefinement best_refined(const TargetMesh& target,
                 "the mock-up so that what tells its ends apart is lit, or pick points (--points)");
         result.equal_motions.push_back(motion);
         result.warnings.push_back(fmt::format(
-            "the product is symmetric: turned by {:.0f} degrees about ({:.2f}, {:.2f}, {:.2f}) it "
-            "looks the same",
+            "the product is symmetric to within {:.1f} mm: turned by {:.0f} degrees about ({:.2f}, "
+            "{:.2f}, {:.2f}) it fits alike",
+            within_mm,
             turn,
             axis.x,
             axis.y,
