@@ -26,9 +26,13 @@ Rigid3 moved(const double* six, const Rigid3& pose) {
                 glm::dvec3(six[3], six[4], six[5])};
 }
 
-View with_lens(const double* three, View view) {
-    view.focal_px *= std::exp(three[0]);
-    view.principal_px += glm::dvec2(three[1], three[2]);
+/// Changes of a lens: focal length (logarithm), principal point, distortion k1.
+using LensChange = std::array<double, 4>;
+
+View with_lens(const double* change, View view) {
+    view.focal_px *= std::exp(change[0]);
+    view.principal_px += glm::dvec2(change[1], change[2]);
+    view.distortion[0] += change[3];
     return view;
 }
 
@@ -36,7 +40,7 @@ View with_lens(const double* three, View view) {
 struct State {
     std::array<double, 6> pose{};               ///< projector_from_mesh, moved
     std::vector<std::array<double, 6>> stereo;  ///< camera_from_projector, moved
-    std::array<double, 3> projector_lens{}, camera_lens{};
+    LensChange projector_lens{}, camera_lens{};
     std::array<double, 1> scale{};  ///< logarithm
 };
 
@@ -91,8 +95,8 @@ struct PixelError {
         std::copy_n(pose, 6, state.pose.begin());
         state.stereo.resize(at.sight + 1);
         std::copy_n(stereo, 6, state.stereo[at.sight].begin());
-        std::copy_n(projector_lens, 3, state.projector_lens.begin());
-        std::copy_n(camera_lens, 3, state.camera_lens.begin());
+        std::copy_n(projector_lens, 4, state.projector_lens.begin());
+        std::copy_n(camera_lens, 4, state.camera_lens.begin());
         const View projector = given->projector_of(state);
         const View camera = given->camera_of(state, at.sight, projector);
         const auto pixel = predicted(projector, camera, std::exp(scale[0]), at);
@@ -201,8 +205,8 @@ std::vector<Correspondence> correspondences_of(const Mesh& mesh,
 void describe(const ceres::Problem& problem,
               State& state,
               const LensPrior& prior,
-              const std::array<double, 3>& projector_sigma,
-              const std::array<double, 3>& camera_sigma,
+              const LensChange& projector_sigma,
+              const LensChange& camera_sigma,
               const std::array<double, 6>& stereo_sigma,
               PixelRefinement& result) {
     ceres::Covariance::Options options;
@@ -233,17 +237,17 @@ void describe(const ceres::Problem& problem,
         };
     if (!prior.lens_fixed) {
         constexpr const char* projector[] = {
-            "projector focal", "projector principal x", "projector principal y"};
+            "projector focal", "projector principal x", "projector principal y", "projector k1"};
         constexpr const char* camera[] = {
-            "camera focal", "camera principal x", "camera principal y"};
+            "camera focal", "camera principal x", "camera principal y", "camera k1"};
         constexpr const char* stereo[] = {"camera turn x",
                                           "camera turn y",
                                           "camera turn z",
                                           "camera shift x",
                                           "camera shift y",
                                           "camera shift z"};
-        tell(state.projector_lens.data(), projector, projector_sigma.data(), 3);
-        tell(state.camera_lens.data(), camera, camera_sigma.data(), 3);
+        tell(state.projector_lens.data(), projector, projector_sigma.data(), 4);
+        tell(state.camera_lens.data(), camera, camera_sigma.data(), 4);
         tell(state.stereo.front().data(), stereo, stereo_sigma.data(), 6);
     }
     constexpr const char* scale[] = {"mesh scale"};
@@ -272,11 +276,11 @@ PixelRefinement refine_on_pixels(const Mesh& mesh,
     state.stereo.resize(sights.size());
     const double distance = glm::length(given.projector.view_from_world.translation);
     const auto lens_sigma = [&](const View& view) {
-        return std::array<double, 3>{
-            prior.focal, prior.principal * view.width, prior.principal * view.width};
+        const double principal = prior.principal * view.width;
+        return LensChange{prior.focal, principal, principal, prior.distortion};
     };
-    const std::array<double, 3> projector_sigma = lens_sigma(projector),
-                                camera_sigma = lens_sigma(sights.front().camera);
+    const LensChange projector_sigma = lens_sigma(projector),
+                     camera_sigma = lens_sigma(sights.front().camera);
     const double shift = prior.shift * distance;
     const std::array<double, 6> stereo_sigma = {
         prior.turn_rad, prior.turn_rad, prior.turn_rad, shift, shift, shift};
@@ -299,7 +303,7 @@ PixelRefinement refine_on_pixels(const Mesh& mesh,
         ceres::Problem problem;
         for (const Correspondence& one : found)
             problem.AddResidualBlock(
-                new ceres::NumericDiffCostFunction<PixelError, ceres::CENTRAL, 2, 6, 6, 3, 3, 1>(
+                new ceres::NumericDiffCostFunction<PixelError, ceres::CENTRAL, 2, 6, 6, 4, 4, 1>(
                     new PixelError{&given, one, sigma_px}),
                 new ceres::CauchyLoss(2.0),
                 state.pose.data(),
@@ -308,8 +312,8 @@ PixelRefinement refine_on_pixels(const Mesh& mesh,
                 state.camera_lens.data(),
                 state.scale.data());
         add_prior<6>(problem, state.pose.data(), pose_sigma);
-        add_prior<3>(problem, state.projector_lens.data(), projector_sigma);
-        add_prior<3>(problem, state.camera_lens.data(), camera_sigma);
+        add_prior<4>(problem, state.projector_lens.data(), projector_sigma);
+        add_prior<4>(problem, state.camera_lens.data(), camera_sigma);
         for (auto& stereo : state.stereo) {
             problem.AddParameterBlock(stereo.data(), 6);
             add_prior<6>(problem, stereo.data(), stereo_sigma);

@@ -14,13 +14,14 @@ namespace livery {
 
 /// How well the calibration is known beforehand: standard deviations.
 struct LensPrior {
-    double focal = 0.01;       ///< relative, of camera and projector each
-    double principal = 0.003;  ///< of the picture's width
-    double turn_rad = 0.005;   ///< of the camera against the projector
-    double shift = 0.005;      ///< the same, of the distance to the mock-up
-    bool scale_free = false;   ///< whether the mock-up is as large as its mesh says
-    double scale = 0.05;       ///< relative, where it is free
-    bool lens_fixed = false;   ///< nothing but the mock-up's pose (and scale) is sought
+    double focal = 0.01;        ///< relative, of camera and projector each
+    double principal = 0.003;   ///< of the picture's width
+    double distortion = 0.002;  ///< of k1, camera and projector each; what boards leave open
+    double turn_rad = 0.005;    ///< of the camera against the projector
+    double shift = 0.005;       ///< the same, of the distance to the mock-up
+    bool scale_free = false;    ///< whether the mock-up is as large as its mesh says
+    double scale = 0.05;        ///< relative, where it is free
+    bool lens_fixed = false;    ///< nothing but the mock-up's pose (and scale) is sought
 };
 
 /// One thing that was sought besides the pose.
@@ -54,9 +55,9 @@ struct PixelRefinement {
 /// Each projector pixel p that falls on the mesh and is seen by a camera at c: the camera's ray
 /// through c meets the mesh's tangent plane in a point, and that point's place in the projector's
 /// picture, minus p, is the residual. Minimised over the pose, with Gaussian priors over focal
-/// lengths, principal points and the camera's pose against the projector (distortion is kept), with
-/// a Cauchy loss (Ceres); planes are found anew until nothing changes. `ignored` as for
-/// evidence_of(). Throws Refused where fewer than 200 pixels fall on the mesh.
+/// lengths, principal points, the first term of distortion and the camera's pose against the
+/// projector, with a Cauchy loss (Ceres); planes are found anew until nothing changes. `ignored` as
+/// for evidence_of(). Throws Refused where fewer than 200 pixels fall on the mesh.
 PixelRefinement refine_on_pixels(const Mesh& mesh,
                                  const Tracer& tracer,
                                  const View& projector,
