@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "calibration/bench_session.h"
@@ -15,6 +16,8 @@
 
 namespace livery {
 namespace {
+
+constexpr int kToMeet = 18;  // photographs: latency and exposure, and white and black once more
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -66,6 +69,8 @@ class LiveCalibration {
             add(pattern.role, std::move(shot));
     }
     void photograph_geometry();
+    /// White and black, which everything else is compared with.
+    void photograph_ends(bool white_first);
     /// White - black in camera pixels, mean of the channels.
     ImageF light() const;
 
@@ -108,10 +113,7 @@ void LiveCalibration::photograph_geometry() {
         for (std::size_t k = 0; k < count; ++k) photograph(pattern(k));
         return;
     }
-    white_ = bench_.take(pattern(count - 2).drive, "white", false);
-    add("white", white_);
-    black_ = bench_.take(pattern(count - 1).drive, "black", true);
-    add("black", black_);
+    photograph_ends(true);
     for (std::size_t k = 0; k + 2 < count; k += 2) photograph_stripes(pattern(k), pattern(k + 1));
     judge(true);
     if (!broken_.empty())
@@ -119,6 +121,15 @@ void LiveCalibration::photograph_geometry() {
                       "the projector's picture arrives late or changes on its own, or the lamp's "
                       "brightness does: let it warm up, wait longer after each picture, and switch "
                       "off motion interpolation and dynamic contrast");
+}
+
+void LiveCalibration::photograph_ends(bool white_first) {
+    for (const bool white : {white_first, !white_first}) {
+        const std::string role = white ? "white" : "black";
+        const Image8 drive(options_.width, options_.height, 3, white ? 255 : 0);
+        (white ? white_ : black_) = bench_.take(drive, role, white != white_first);
+        add(role, white ? white_ : black_);
+    }
 }
 
 ImageF LiveCalibration::light() const {
@@ -174,6 +185,15 @@ glm::dvec2 place_to_measure(const ProjectorToCamera& map,
     return best;
 }
 
+/// A map that was photographed while everything was lit, for pictures that light the mock-up alone.
+void leave_out_unlit(const Image8& mockup, ProjectorToCamera& map) {
+    for (std::size_t i = 0; i < mockup.values.size(); ++i) {
+        if (mockup.values[i]) continue;
+        map.camera_px.values[2 * i] = std::numeric_limits<float>::quiet_NaN();
+        map.camera_px.values[2 * i + 1] = std::numeric_limits<float>::quiet_NaN();
+    }
+}
+
 }  // namespace
 
 LiveResult calibrate_live(const BenchPorts& bench,
@@ -187,8 +207,6 @@ LiveResult calibrate_live(const BenchPorts& bench,
                    "the mock-up's mask is not one channel of the projector's size");
     check_argument(!bench.turn_to || !bench.measure_xyz,
                    "a colorimeter reads what is shown now, these photographs were taken before");
-    check_argument(!options.map || bench.turn_to,
-                   "a map that is known beforehand is one of photographs taken before");
     BenchPorts ports = bench;
     if (!options.mockup.empty() && ports.show) ports.show = shown_on(options.mockup, bench.show);
     const ColourOptions& colour = options.colour;
@@ -200,9 +218,8 @@ LiveResult calibrate_live(const BenchPorts& bench,
                   options.width, options.height, colour.dark_drive, colour.bright_drive);
 
     const auto start = std::chrono::steady_clock::now();
-    constexpr int kToMeet = 18;  // latency and exposure, and white and black once more
     const auto geometry = geometry_roles(options.width, options.height).size();
-    const auto expected = (options.map ? 0 : static_cast<int>(geometry)) +
+    const auto expected = (options.map ? (bench.turn_to ? 0 : 2) : static_cast<int>(geometry)) +
                           (bench.turn_to ? 0 : kToMeet) +
                           static_cast<int>(result.patterns.size()) * options.shots;
     Progress capturing = progress;
@@ -218,8 +235,15 @@ LiveResult calibrate_live(const BenchPorts& bench,
     const auto find_map = [&] {
         return map_of_captures(live.captures, options.width, options.height, odd_map);
     };
-    if (!options.map) live.photograph_geometry();
-    if (!fixed) result.map = find_map();  // the colorimeter is aimed by it
+    if (!options.map) {
+        live.photograph_geometry();
+    } else if (!fixed) {
+        live.photograph_ends(false);  // the first colour picture is dark
+    }
+    if (!fixed) {  // it aims the colorimeter
+        result.map = options.map ? *options.map : find_map();
+        if (options.map && !options.mockup.empty()) leave_out_unlit(options.mockup, result.map);
+    }
     result.latency_photographs = session.latency();
 
     // The six pictures; the colorimeter reads each while it is known to be shown
@@ -302,6 +326,26 @@ LiveResult calibrate_live(const BenchPorts& bench,
         seal(result.calibration);
     }
     result.solve_seconds = judge_seconds + seconds_since(solve_start);
+    return result;
+}
+
+LiveMap photograph_map(const BenchPorts& bench,
+                       const LiveOptions& options,
+                       const Progress& progress) {
+    const auto start = std::chrono::steady_clock::now();
+    const int expected =
+        kToMeet + static_cast<int>(geometry_roles(options.width, options.height).size());
+    BenchSession session(bench, progress, expected);
+    if (!session.fixed()) session.meet(options.width, options.height);
+    LiveCalibration live(session, options);
+    live.photograph_geometry();
+    if (session.fixed()) live.judge(true);
+    bench.show(Image8(options.width, options.height, 3));
+    LiveMap result;
+    result.map = map_of_captures(live.captures, options.width, options.height, result.warnings);
+    result.camera_width = live.captures.width;
+    result.camera_height = live.captures.geometry.front().photograph.image.height;
+    result.capture_seconds = seconds_since(start);
     return result;
 }
 

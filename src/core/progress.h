@@ -20,6 +20,14 @@ struct Progress {
         check_stop();
         if (report) report(fraction, stage);
     }
+    /// For one part of the work, whose own 0 to 1 is `from` to `to` of the whole.
+    Progress part(double from, double to) const {
+        if (!report) return *this;
+        return {[whole = report, from, to](double fraction, std::string_view stage) {
+                    whole(from + (to - from) * fraction, stage);
+                },
+                stop};
+    }
     void check_stop() const {
         if (stop && stop->load(std::memory_order_relaxed)) throw Cancelled();
     }

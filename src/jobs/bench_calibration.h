@@ -9,6 +9,7 @@
 #include "capture/recording.h"
 #include "core/image.h"
 #include "core/progress.h"
+#include "jobs/room_pose.h"
 #include "scene/colour_calibration.h"
 #include "scene/product.h"
 #include "scene/view.h"
@@ -17,6 +18,8 @@
 namespace livery {
 
 struct BenchCalibration {
+    /// Where the projector was found to stand; not where the request said it.
+    std::optional<RoomPose> room;
     ColourCalibration calibration;  ///< with what the camera does not see predicted from the pose
     LiveResult live;                ///< its own calibration is moved out
     ImageF geometry;                ///< projector_irradiance() of the pose; empty: it is not known
@@ -30,6 +33,8 @@ struct BenchCalibrationRequest {
     /// not see is predicted. Both or none.
     std::optional<View> projector;
     std::shared_ptr<const Product> product;
+    /// Where the camera sees the projector's pixels, where that was photographed before.
+    std::optional<ProjectorToCamera> map;
     std::optional<CameraToXyz> camera_to_xyz;
     Recording* recording = nullptr;  ///< keeps everything in it; not for photographs taken before
 };
@@ -43,7 +48,9 @@ BenchCalibration calibrate_through_ports(const BenchPorts& ports,
                                          const BenchCalibrationRequest& request,
                                          const Progress& progress);
 
-/// The same on a simulated bench with its file's pose.
+/// The same on a simulated bench, whose pose and lenses are first found from photographs and from
+/// what its file's `data_sheets` say; a file without them says where everything stands. The turn of
+/// a sphere, which its photographs do not tell, is the file's.
 BenchCalibration calibrate_through_ports(Bench& bench,
                                          std::shared_ptr<const Product> product,
                                          const Progress& progress);

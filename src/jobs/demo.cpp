@@ -7,6 +7,7 @@
 #include "core/paths.h"
 #include "jobs/demo_sphere.h"
 #include "jobs/demo_stages.h"
+#include "jobs/eye_comparison.h"
 #include "jobs/report.h"
 #include "radiance/renderer.h"
 #include "scene/library.h"
@@ -25,7 +26,7 @@ void judge_looks(DemoResult& result,
                  StageTimes& times,
                  const Progress& progress) {
     const BenchDescription& description = calibrated.bench->description();
-    RadianceRenderer renderer(calibrated.product, description.projector.view, progress);
+    RadianceRenderer renderer(calibrated.product, calibrated.projector, progress);
     RadianceRenderer eye_renderer(calibrated.product, calibrated.bench->eye().view, progress);
     double done = 0.0;
     std::shared_ptr<const Environment> environment;
@@ -88,6 +89,12 @@ DemoResult run_demo(const DemoOptions& options, const Progress& progress) {
     result.renderer = context.renderer();
     result.bench_name = description.name;
     result.product_name = product->name;
+    result.room = calibrated.room;
+    result.picture_off_px = picture_offset(description.projector.view,
+                                           product->mesh,
+                                           calibrated.projector,
+                                           product->mesh,
+                                           calibrated.bench->truth().lit);
     result.design_white_y = calibrated.design_white_y;
     const Image8& lit = calibrated.bench->truth().lit;
     const PixelRectangle box = bounds_of_mask(lit, 0);

@@ -12,6 +12,7 @@
 #include "core/progress.h"
 #include "gl/context.h"
 #include "jobs/comparison.h"
+#include "jobs/room_pose.h"
 #include "scene/colour_calibration.h"
 #include "twin/description.h"
 
@@ -51,6 +52,9 @@ struct DesignResult {
 struct DemoResult {
     std::string bench_name, product_name, renderer;
     ColourCalibration calibration;  ///< planes dropped after writing: id, residuals, warnings
+    std::optional<RoomPose> room;   ///< nothing: pose and lens were read from the bench file
+    /// How far from its place the picture lands, projector pixels, by the bench's truth.
+    ErrorStatistics picture_off_px;
     double design_white_y = 0.0;
     double covered_fraction = 0.0;  ///< of the projector's picture, lit mock-up
     int mockup_length_px = 0;

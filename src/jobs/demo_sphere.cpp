@@ -40,7 +40,7 @@ void judge_painted_spheres(DemoResult& result,
     const BenchDescription& description = calibrated.bench->description();
     const Mesh& mesh = calibrated.product->mesh;
     const Tracer tracer(mesh);
-    RadianceRenderer renderer(calibrated.product, description.projector.view, progress);
+    RadianceRenderer renderer(calibrated.product, calibrated.projector, progress);
 
     Scene scene;
     scene.product = calibrated.product;
@@ -63,7 +63,7 @@ void judge_painted_spheres(DemoResult& result,
                 calibrated.design_white_y);
         };
         timed(times, "paint the sample", [&] {
-            wanted.xyz = sample_in(description.projector.view);
+            wanted.xyz = sample_in(calibrated.projector);
             wanted.eye_xyz = sample_in(calibrated.bench->eye().view);
         });
         DesignResult design = judge_design(paint.name, wanted, calibrated, options.out, times);

@@ -72,6 +72,12 @@ CalibratedBench calibrate_bench(const DemoOptions& options,
     });
 
     BenchCalibration calibrated = calibrate_through_ports(*result.bench, product, progress);
+    result.room = std::move(calibrated.room);
+    result.projector = result.room ? result.room->projector : description.projector.view;
+    if (result.room) {
+        times.add("photograph the Gray code", result.room->capture_seconds);
+        times.add("find where everything stands", result.room->solve_seconds);
+    }
     times.add("photograph the patterns", calibrated.live.capture_seconds);
     times.add("solve the calibration", calibrated.live.solve_seconds);
     times.add("predict hidden pixels", calibrated.predict_seconds);
@@ -80,13 +86,12 @@ CalibratedBench calibrate_bench(const DemoOptions& options,
     result.predicted = corrected_pixels(result.calibration, true);
 
     timed(times, "write the calibration", [&] {
-        write_setup(options.out / "calibration", result.calibration, description.projector.view);
+        write_setup(options.out / "calibration", result.calibration, result.projector);
     });
 
-    result.design_white_y =
-        design_white_luminance(result.calibration,
-                               options.design_white_percentile,
-                               mockup_mask(product->mesh, description.projector.view));
+    result.design_white_y = design_white_luminance(result.calibration,
+                                                   options.design_white_percentile,
+                                                   mockup_mask(product->mesh, result.projector));
     result.table = bake(result.calibration, result.design_white_y);
 
     timed(times, "solve again with the chart's matrix", [&] {

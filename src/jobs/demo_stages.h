@@ -11,6 +11,7 @@
 #include "compensation/compensation.h"
 #include "jobs/demo.h"
 #include "jobs/picture.h"
+#include "jobs/room_pose.h"
 #include "twin/bench.h"
 
 namespace livery {
@@ -33,6 +34,8 @@ auto timed(StageTimes& times, const std::string& stage, Work&& work);
 struct CalibratedBench {
     std::shared_ptr<const Product> product;
     std::unique_ptr<Bench> bench;
+    View projector;                ///< where it was found to stand
+    std::optional<RoomPose> room;  ///< how; nothing: read from the bench file
     ColourCalibration calibration;
     CompensationTable table;
     std::optional<CompensationTable> chart_table;  ///< the same photographs, camera matrix by chart
@@ -41,8 +44,9 @@ struct CalibratedBench {
     double design_white_y = 0.0;
 };
 
-/// Traces the bench, calibrates through its three ports, predicts from the bench file's pose what
-/// the camera did not see, and writes `out/calibration` with the projector's view beside it.
+/// Traces the bench, finds from photographs where everything stands, calibrates through its three
+/// ports, predicts from the pose what the camera did not see, and writes `out/calibration` with the
+/// projector's view beside it.
 CalibratedBench calibrate_bench(const DemoOptions& options,
                                 const BenchDescription& description,
                                 std::shared_ptr<const Product> product,

@@ -17,4 +17,12 @@ ComparisonMasks masks_of_eye(const Bench& bench,
                              const Image8& predicted,
                              const ImageF& wanted_eye_xyz);
 
+/// How far from its place a picture lands that is drawn for a believed view and mesh, in projector
+/// pixels, over the mock-up's vertices where `lit` (255). The meshes have the same vertices.
+ErrorStatistics picture_offset(const View& true_view,
+                               const Mesh& true_mesh,
+                               const View& believed_view,
+                               const Mesh& believed_mesh,
+                               const Image8& lit);
+
 }  // namespace livery

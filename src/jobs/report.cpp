@@ -8,8 +8,22 @@ namespace livery {
 
 namespace {
 
-constexpr const char* kPoseNote =
-    "pose and lens are read from the bench file; registration is not part of this run";
+/// Where the pose came from.
+std::string pose_note(const DemoResult& result) {
+    if (!result.room) return "pose and lens are read from the bench file";
+    return fmt::format(
+        "found from photographs, data sheets and a tape; {} of {} pixels looked at agree with the "
+        "mesh to {:.2f} projector pixels (root mean square)",
+        result.room->registration.refined.inliers,
+        result.room->registration.refined.correspondences,
+        result.room->registration.refined.rms_px);
+}
+
+std::string off_note(const DemoResult& result) {
+    return fmt::format("{:.2f} / {:.2f} projector pixels",
+                       result.picture_off_px.median,
+                       result.picture_off_px.p95);
+}
 
 /// The paper's Table 3: ten evaluators, designs a to d.
 constexpr int kPaperBest[] = {1, 6, 1, 2};
@@ -154,7 +168,8 @@ std::string calibration_section(const DemoResult& result) {
     row("Mock-up in the picture",
         fmt::format(
             "{} of it, {} pixels long", percent(result.covered_fraction), result.mockup_length_px));
-    row("Pose", kPoseNote);
+    row("Pose and lenses", pose_note(result));
+    row("Picture off its place, median / 95th percentile", off_note(result));
     html += "</table>\n";
     for (const auto& warning : c.warnings) {
         html += fmt::format("<p class=\"warning\">{}</p>\n", escaped(warning));
@@ -244,7 +259,9 @@ Json figures_of(const DemoResult& result) {
             {"simulated", true},
             {"product", result.product_name},
             {"renderer", result.renderer},
-            {"pose", kPoseNote},
+            {"pose", pose_note(result)},
+            {"pose_from_photographs", result.room.has_value()},
+            {"picture_off_px", figures_of(result.picture_off_px)},
             {"covered_fraction", result.covered_fraction},
             {"mockup_length_px", result.mockup_length_px},
             {"design_white_y", result.design_white_y},
@@ -324,6 +341,7 @@ std::string summary_of(const DemoResult& result) {
             percent(design.seen.corrected.masked_fraction),
             pair(design.pixels.corrected.interior));
     }
+    text += fmt::format("{}; picture off its place {}\n", pose_note(result), off_note(result));
     for (const auto& warning : result.calibration.warnings) text += "warning: " + warning + "\n";
     text += fmt::format("calibration {}; {:.1f} s in all; report and pictures: {}\n",
                         result.calibration.id,

@@ -153,28 +153,6 @@ std::vector<Perturbation> perturbations(bool quick, std::uint64_t seed) {
     return all;
 }
 
-/// How far what is drawn for a place lands from it, over the mock-up's vertices where the projector
-/// lights them.
-void measure_offset(const Belief& truth,
-                    const Belief& belief,
-                    const Image8& lit,
-                    GeometryErrorRow& row) {
-    std::vector<float> off_px;
-    for (std::size_t i = 0; i < truth.product->mesh.positions_mm.size(); ++i) {
-        const auto there =
-            project(truth.projector, glm::dvec3(truth.product->mesh.positions_mm[i]));
-        const auto drawn =
-            project(belief.projector, glm::dvec3(belief.product->mesh.positions_mm[i]));
-        if (!there || !drawn || there->x < 0.0 || there->y < 0.0) continue;
-        if (there->x >= lit.width || there->y >= lit.height) continue;
-        if (!lit.at(static_cast<int>(there->x), static_cast<int>(there->y))) continue;
-        off_px.push_back(static_cast<float>(glm::distance(*there, *drawn)));
-    }
-    const ErrorStatistics statistics = statistics_of(std::move(off_px));
-    row.off_median_px = statistics.median;
-    row.off_p95_px = statistics.p95;
-}
-
 }  // namespace
 
 GeometryErrorLedger measure_geometry_errors(GlDevice device,
@@ -224,7 +202,13 @@ GeometryErrorLedger measure_geometry_errors(GlDevice device,
         row.effect = all[k].effect;
         row.level = all[k].level;
         const Belief belief = all[k].apply(truth);
-        measure_offset(truth, belief, bench.truth().lit, row);
+        const ErrorStatistics off = picture_offset(truth.projector,
+                                                   truth.product->mesh,
+                                                   belief.projector,
+                                                   belief.product->mesh,
+                                                   bench.truth().lit);
+        row.off_median_px = off.median;
+        row.off_p95_px = off.p95;
         const Image8 drive = compensate(table, drawn(belief, belief.projector));
         const Comparison comparison =
             compare_xyz(wanted_xyz, bench.observe_from_eye(drive), white_y * d65_xyz(), masks);

@@ -93,10 +93,10 @@ std::filesystem::path calibrate_on_bench(Bench& bench,
                                          std::shared_ptr<const Product> product,
                                          const Progress& progress) {
     check_calibrations_folder();  // Before the work.
-    const ColourCalibration calibration =
-        calibrate_through_ports(bench, std::move(product), progress).calibration;
+    const BenchCalibration found = calibrate_through_ports(bench, std::move(product), progress);
     progress.update(1.0, "keeping the calibration");
-    return keep_calibration(calibration, bench.description().projector.view);
+    return keep_calibration(
+        found.calibration, found.room ? found.room->projector : bench.description().projector.view);
 }
 
 void check_calibrations_folder() { make_output_folder(calibrations_folder()); }

@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "scene/data_sheet.h"
 #include "scene/view.h"
 #include "twin/spectra.h"
 
@@ -96,6 +98,8 @@ struct BenchDescription {
     MockupDescription mockup;
     std::map<std::string, SurroundingDescription> surroundings;  ///< by name
     glm::dvec3 eye_mm{0.0};                                      ///< the observer
+    /// What its operator would know without a photograph; nothing: a bench for which nobody said.
+    std::optional<DataSheets> data_sheets;
     double ambient =
         0.0;  ///< luminance of a white diffuser in the room's light, over projector white
     Spectrum ambient_spectrum = illuminant_d65();

@@ -365,6 +365,18 @@ Json with_base(const std::string& text, const std::filesystem::path& file) {
     return merged;
 }
 
+DataSheets read_data_sheets(const JsonReader& json) {
+    json.allow_only(
+        {"throw_ratio", "lens_shift", "focal_mm", "sensor_width_mm", "lens_distance_mm"});
+    DataSheets sheets;
+    sheets.throw_ratio = json["throw_ratio"].number_between(0.1, 20.0);
+    sheets.lens_shift = json["lens_shift"].number_between(-2.0, 2.0);
+    sheets.focal_mm = json["focal_mm"].number_between(1.0, 5000.0);
+    sheets.sensor_width_mm = json["sensor_width_mm"].number_between(1.0, 200.0);
+    sheets.lens_distance_mm = json["lens_distance_mm"].number_between(1.0, 1e5);
+    return sheets;
+}
+
 }  // namespace
 
 BenchDescription read_bench_file(const std::filesystem::path& file_or_name) {
@@ -400,6 +412,7 @@ BenchDescription parse_bench(const std::string& text, const std::filesystem::pat
                      "mockup",
                      "surroundings",
                      "eye_mm",
+                     "data_sheets",
                      "ambient",
                      "ambient_spectrum",
                      "mishaps",
@@ -419,6 +432,7 @@ BenchDescription parse_bench(const std::string& text, const std::filesystem::pat
         bench.surroundings = read_surroundings(json["surroundings"]);
     }
     bench.eye_mm = place_mm(json["eye_mm"]);
+    if (json.has("data_sheets")) bench.data_sheets = read_data_sheets(json["data_sheets"]);
     read_number(json, "ambient", 0.0, 10.0, bench.ambient);
     if (json.has("ambient_spectrum")) {
         bench.ambient_spectrum = read_ambient_spectrum(json["ambient_spectrum"]);

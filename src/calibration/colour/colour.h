@@ -61,7 +61,7 @@ struct LiveOptions {
     /// Pictures for the colours: the six roles and those mosaics that are wanted. Empty: the six
     /// for this size, and mosaics where white turns out not to be the sum of its channels.
     std::vector<Pattern> patterns;
-    /// Of photographs that were taken before: no Gray code is asked for where it is known.
+    /// Where it is known already no Gray code is asked for.
     std::optional<ProjectorToCamera> map;
     /// Projector pixels that the mock-up itself takes, where its pose is known (non-zero: mock-up;
     /// empty: not known). These alone are lit, and the colorimeter is held to them.
@@ -88,6 +88,19 @@ struct LiveResult {
 LiveResult calibrate_live(const BenchPorts& bench,
                           const LiveOptions& options,
                           const Progress& progress = {});
+
+/// Where the camera sees each projector pixel, photographed and judged as calibrate_live() does it.
+struct LiveMap {
+    ProjectorToCamera map;
+    int camera_width = 0, camera_height = 0;
+    std::vector<std::string> warnings;
+    double capture_seconds = 0.0;
+};
+/// The Gray code alone, for whoever must know where things stand before colours are photographed:
+/// `options.map`, `patterns` and `shots` are not looked at. Throws as calibrate_live().
+LiveMap photograph_map(const BenchPorts& bench,
+                       const LiveOptions& options,
+                       const Progress& progress = {});
 
 /// Camera matrix from a colour chart lit by the projector's white (its colours' XYZ under that
 /// light must be known) or, as most do, under daylight: for comparison. Least squares of relative
