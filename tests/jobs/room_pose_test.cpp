@@ -1,0 +1,118 @@
+// Where everything stands on a bench, from its photographs: nothing of the file's pose is used.
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "jobs/bench_calibration.h"
+#include "jobs/eye_comparison.h"
+#include "scene/library.h"
+#include "twin/bench.h"
+
+namespace livery {
+namespace {
+
+/// A quarter of a shipped bench's pixels.
+BenchDescription half_size(const std::string& name) {
+    BenchDescription description = read_bench_file(name);
+    description.projector.view = resized(description.projector.view, 640, 400);
+    description.camera.view = resized(description.camera.view, 864, 576);
+    return description;
+}
+
+ErrorStatistics offset_of(const Bench& bench, const Product& product, const View& found) {
+    const ErrorStatistics off = picture_offset(
+        bench.description().projector.view, product.mesh, found, product.mesh, bench.truth().lit);
+    std::printf("    %s: picture off its place %.3f / %.3f px\n",
+                bench.description().name.c_str(),
+                off.median,
+                off.p95);
+    return off;
+}
+
+TEST(RoomPose, IsFoundFromPhotographsDataSheetsAndATape) {
+    for (const char* name : {"default", "hard"}) {
+        const BenchDescription description = half_size(name);
+        const auto product = find_product(description.product.string());
+        Bench bench(description, product);
+        const RoomPose room =
+            find_room(bench.ports(), 640, 400, description.data_sheets.value(), *product);
+        const ErrorStatistics off = offset_of(bench, *product, room.projector);
+        EXPECT_LT(off.median, 0.5);
+        EXPECT_LT(off.p95, 1.0);
+        EXPECT_GT(off.pixels, 10000u);
+    }
+}
+
+TEST(RoomPose, LightsTheMockupAloneForTheColours) {
+    const BenchDescription description = half_size("default");
+    const auto product = find_product(description.product.string());
+    Bench bench(description, product);
+    const BenchCalibration found = calibrate_through_ports(bench, product, {});
+    ASSERT_TRUE(found.room);
+    EXPECT_EQ(found.calibration.warnings, std::vector<std::string>());
+    EXPECT_GT(found.calibration.valid_fraction, 0.95);
+    // What stands around is known to the map, and has no correction.
+    std::size_t corrected = 0, beside = 0, in_map = 0;
+    for (std::size_t i = 0; i < found.calibration.status.values.size(); ++i) {
+        const auto status = static_cast<PixelStatus>(found.calibration.status.values[i]);
+        corrected += is_valid(status);
+        beside += is_valid(status) && !bench.truth().lit.values[i] && !bench.truth().edge.values[i];
+        in_map += std::isfinite(found.room->map.camera_px.values[2 * i]);
+    }
+    EXPECT_GT(in_map, corrected + corrected / 2);
+    EXPECT_EQ(beside, 0u);
+}
+
+TEST(RoomPose, OfASphereTakesItsTurnFromTheFile) {
+    const BenchDescription description = half_size("sphere");
+    const auto product = find_product(description.product.string());
+    Bench bench(description, product);
+    const BenchCalibration found = calibrate_through_ports(bench, product, {});
+    ASSERT_TRUE(found.room);
+    EXPECT_EQ(found.room->registration.free.count, 3);
+    const ErrorStatistics off = offset_of(bench, *product, found.room->projector);
+    EXPECT_LT(off.median, 0.5);
+    EXPECT_LT(off.p95, 1.0);
+}
+
+TEST(RoomPose, IsReadFromAFileThatGivesNoDataSheets) {
+    BenchDescription description = half_size("default");
+    description.data_sheets.reset();
+    const auto product = find_product(description.product.string());
+    Bench bench(description, product);
+    EXPECT_FALSE(calibrate_through_ports(bench, product, {}).room);
+}
+
+// Somebody measured the wrong thing: a refusal or a pose that is right, never a wrong one.
+TEST(RoomPose, WithWrongDataSheetsIsRefusedOrRight) {
+    const BenchDescription description = half_size("default");
+    const auto product = find_product(description.product.string());
+    Bench bench(description, product);
+    struct Wrong {
+        const char* what;
+        DataSheets sheets;
+    };
+    std::vector<Wrong> all;
+    const auto add = [&](const char* what, double DataSheets::*field, double factor) {
+        all.push_back({what, *description.data_sheets});
+        all.back().sheets.*field *= factor;
+    };
+    add("half the throw ratio", &DataSheets::throw_ratio, 0.5);
+    add("a crop sensor's width", &DataSheets::sensor_width_mm, 1.0 / 1.6);
+    add("a tape in inches", &DataSheets::lens_distance_mm, 1.0 / 25.4);
+    add("the tape to the wall", &DataSheets::lens_distance_mm, 3.0);
+    add("no lens shift", &DataSheets::lens_shift, 0.0);
+    for (const Wrong& wrong : all) {
+        SCOPED_TRACE(wrong.what);
+        try {
+            const RoomPose room = find_room(bench.ports(), 640, 400, wrong.sheets, *product);
+            const ErrorStatistics off = offset_of(bench, *product, room.projector);
+            EXPECT_LT(off.p95, 2.0) << "accepted, and wrong";
+        } catch (const Refused& refused) {
+            std::printf("    %s: %s\n", wrong.what, refused.what());
+            EXPECT_FALSE(refused.fix().empty());
+        }
+    }
+}
+
+}  // namespace
+}  // namespace livery
