@@ -137,7 +137,7 @@ std::optional<glm::dvec2> project(const View& view, const glm::dvec3& x_in_world
     return pixel;
 }
 
-Ray ray_through(const View& view, const glm::dvec2& pixel) {
+std::optional<Ray> find_ray(const View& view, const glm::dvec2& pixel) {
     const glm::dvec2 wanted = (pixel - view.principal_px) / view.focal_px;
     glm::dvec2 point = wanted;
     if (is_distorted(view.distortion)) {
@@ -148,22 +148,28 @@ Ray ray_through(const View& view, const glm::dvec2& pixel) {
             const double start = undistorted_radius(view.distortion, radius);
             solved = undistort_from(view, wanted, wanted * (radius > 0.0 ? start / radius : 1.0));
         }
-        if (!solved) {
-            const auto& lens = view.distortion;
-            throw std::invalid_argument(fmt::format(
-                "ray_through: no ray meets pixel ({}, {}) through the lens {}, {}, {}, {}, {}",
-                pixel.x,
-                pixel.y,
-                lens[0],
-                lens[1],
-                lens[2],
-                lens[3],
-                lens[4]));
-        }
+        if (!solved) return std::nullopt;
         point = *solved;
     }
     const glm::dvec3 direction_in_view = glm::normalize(glm::dvec3(point, 1.0));
-    return {centre_in_world(view), direction_in_view * view.view_from_world.rotation};
+    return Ray{centre_in_world(view), direction_in_view * view.view_from_world.rotation};
+}
+
+Ray ray_through(const View& view, const glm::dvec2& pixel) {
+    const std::optional<Ray> ray = find_ray(view, pixel);
+    if (!ray) {
+        const auto& lens = view.distortion;
+        throw std::invalid_argument(fmt::format(
+            "ray_through: no ray meets pixel ({}, {}) through the lens {}, {}, {}, {}, {}",
+            pixel.x,
+            pixel.y,
+            lens[0],
+            lens[1],
+            lens[2],
+            lens[3],
+            lens[4]));
+    }
+    return *ray;
 }
 
 glm::dvec3 centre_in_world(const View& view) {

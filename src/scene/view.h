@@ -52,6 +52,8 @@ std::optional<glm::dvec2> project(const View& view, const glm::dvec3& x_in_world
 
 /// The ray through a pixel, lens distortion undone (Newton, to 1e-10 px or throws).
 Ray ray_through(const View& view, const glm::dvec2& pixel);
+/// The same; nothing where a lens that somebody guessed sends no ray to the pixel.
+std::optional<Ray> find_ray(const View& view, const glm::dvec2& pixel);
 
 /// Where the view stands, in the world.
 glm::dvec3 centre_in_world(const View& view);

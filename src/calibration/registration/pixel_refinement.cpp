@@ -73,11 +73,12 @@ std::optional<glm::dvec2> predicted(const View& projector,
                                     const View& camera,
                                     double scale,
                                     const Correspondence& at) {
-    const Ray ray = ray_through(camera, at.camera_px);
-    const double toward = glm::dot(at.normal, ray.direction);
+    const std::optional<Ray> ray = find_ray(camera, at.camera_px);
+    if (!ray) return std::nullopt;
+    const double toward = glm::dot(at.normal, ray->direction);
     if (std::abs(toward) < 1e-3) return std::nullopt;
-    const double t = glm::dot(at.normal, scale * at.place - ray.origin) / toward;
-    return project(projector, ray.origin + t * ray.direction);
+    const double t = glm::dot(at.normal, scale * at.place - ray->origin) / toward;
+    return project(projector, ray->origin + t * ray->direction);
 }
 
 struct PixelError {
@@ -153,10 +154,11 @@ std::vector<Correspondence> correspondences_of(const Mesh& mesh,
         std::vector<int> columns;
         for (int x = stride / 2; x < projector.width; x += stride) {
             if (!ignored.empty() && ignored.at(x, y)) continue;
-            const Ray ray = ray_through(projector, {x + 0.5, y + 0.5});
+            const std::optional<Ray> ray = find_ray(projector, {x + 0.5, y + 0.5});
+            if (!ray) continue;
             TraceRay trace;
-            trace.origin = glm::vec3(ray.origin / scale);
-            trace.direction = glm::vec3(ray.direction);
+            trace.origin = glm::vec3(ray->origin / scale);
+            trace.direction = glm::vec3(ray->direction);
             rays.push_back(trace);
             columns.push_back(x);
         }
@@ -252,6 +254,20 @@ void describe(const ceres::Problem& problem,
     }
     constexpr const char* scale[] = {"mesh scale"};
     if (prior.scale_free) tell(state.scale.data(), scale, &prior.scale, 1);
+}
+
+/// Throws Refused for a lens that leaves a corner of its picture without a ray.
+void check_lens(const View& view, const char* whose) {
+    for (const double x : {0.5, view.width - 0.5})
+        for (const double y : {0.5, view.height - 0.5})
+            if (!find_ray(view, {x, y}))
+                throw Refused(
+                    fmt::format("the {}'s lens that fits best is none: its distortion k1 would be "
+                                "{:.2f}",
+                                whose,
+                                view.distortion[0]),
+                    "check focal length, sensor width, throw ratio, lens shift and the distance "
+                    "between the lenses, and that the mesh is the mock-up's");
 }
 
 }  // namespace
@@ -357,6 +373,8 @@ PixelRefinement refine_on_pixels(const Mesh& mesh,
     result.projector = given.projector_of(state);
     for (std::size_t k = 0; k < sights.size(); ++k)
         result.cameras.push_back(given.camera_of(state, k, result.projector));
+    check_lens(result.projector, "projector");
+    for (const View& camera : result.cameras) check_lens(camera, "camera");
     result.mesh_scale = std::exp(state.scale[0]);
     result.correspondences = all.size();
     result.inliers = inliers.size();

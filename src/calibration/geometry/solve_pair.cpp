@@ -1,0 +1,381 @@
+#include "calibration/geometry/solve_pair.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <ceres/ceres.h>
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "calibration/registration/rotation.h"
+#include "core/error.h"
+
+namespace livery {
+
+namespace {
+
+constexpr double kHuber_px = 1.0;
+constexpr double kLargestFocalError = 0.05;
+constexpr double kLeastTilt_rad = 0.09;  ///< between two boards
+
+/// fx, fy, cx, cy, k1, k2, p1, p2, k3.
+using Lens = std::array<double, 9>;
+
+/// A pose near `start`: a turn of the start, then a translation.
+struct Pose {
+    glm::dmat3 start{1.0};
+    std::array<double, 6> six{};
+
+    Rigid3 rigid(const double* values) const {
+        return {rotation_of({values[0], values[1], values[2]}) * start,
+                {values[3], values[4], values[5]}};
+    }
+    Rigid3 rigid() const { return rigid(six.data()); }
+};
+
+Pose pose_from(const Rigid3& rigid) {
+    const glm::dvec3 t = rigid.translation;
+    return {rigid.rotation, {0.0, 0.0, 0.0, t.x, t.y, t.z}};
+}
+
+View view_of(const double* lens, const PictureSize& size) {
+    View view;
+    view.width = size.width;
+    view.height = size.height;
+    view.focal_px = {lens[0], lens[1]};
+    view.principal_px = {lens[2], lens[3]};
+    std::copy(lens + 4, lens + 9, view.distortion.begin());
+    return view;
+}
+
+struct PointError {
+    PictureSize size;
+    const Pose* board = nullptr;
+    const Pose* stereo = nullptr;  ///< null: seen by the camera
+    glm::dvec2 board_mm, pixel;
+
+    bool operator()(const double* lens, const double* board_six, double* residual) const {
+        return between(lens, board->rigid(board_six), residual);
+    }
+    bool operator()(const double* lens,
+                    const double* board_six,
+                    const double* stereo_six,
+                    double* residual) const {
+        return between(lens, stereo->rigid(stereo_six) * board->rigid(board_six), residual);
+    }
+    bool between(const double* lens, const Rigid3& view_from_board, double* residual) const {
+        View view = view_of(lens, size);
+        view.view_from_world = view_from_board;
+        const auto place = project(view, glm::dvec3(board_mm, 0.0));
+        if (!place) return false;
+        residual[0] = place->x - pixel.x;
+        residual[1] = place->y - pixel.y;
+        return true;
+    }
+};
+
+/// pixel ~ H (board_mm, 1), by the normalised direct linear transformation.
+Eigen::Matrix3d homography(const std::vector<glm::dvec2>& from, const std::vector<glm::dvec2>& to) {
+    const auto normaliser = [](const std::vector<glm::dvec2>& points) {
+        glm::dvec2 middle(0.0);
+        double spread = 0.0;
+        for (const auto& p : points) middle += p / static_cast<double>(points.size());
+        for (const auto& p : points) spread += glm::length(p - middle);
+        const double s = static_cast<double>(points.size()) / std::max(spread, 1e-9);
+        Eigen::Matrix3d m;
+        m << s, 0.0, -s * middle.x, 0.0, s, -s * middle.y, 0.0, 0.0, 1.0;
+        return m;
+    };
+    const Eigen::Matrix3d a = normaliser(from), b = normaliser(to);
+    Eigen::Matrix<double, 9, 9> normal = Eigen::Matrix<double, 9, 9>::Zero();
+    for (std::size_t k = 0; k < from.size(); ++k) {
+        const Eigen::Vector3d x = a * Eigen::Vector3d(from[k].x, from[k].y, 1.0);
+        const Eigen::Vector3d u = b * Eigen::Vector3d(to[k].x, to[k].y, 1.0);
+        for (int c = 0; c < 2; ++c) {
+            Eigen::Matrix<double, 9, 1> row = Eigen::Matrix<double, 9, 1>::Zero();
+            row.segment<3>(3 * c) = x;
+            row.segment<3>(6) = -u[c] * x;
+            normal += row * row.transpose();
+        }
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> solver(normal);
+    const Eigen::Matrix<double, 9, 1> h = solver.eigenvectors().col(0);
+    Eigen::Matrix3d result;
+    result << h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8];
+    return b.inverse() * result * a;
+}
+
+/// Zhang's two equations a board for 1/f^2, the principal point known; nothing where they give no
+/// focal length. (Z. Zhang: A flexible new technique for camera calibration, PAMI 2000.)
+std::optional<double> focal_of(const std::vector<Eigen::Matrix3d>& homographies, glm::dvec2 c) {
+    double up = 0.0, down = 0.0;
+    Eigen::Matrix3d shift = Eigen::Matrix3d::Identity();
+    shift(0, 2) = -c.x;
+    shift(1, 2) = -c.y;
+    for (const Eigen::Matrix3d& one : homographies) {
+        Eigen::Matrix3d h = shift * one;
+        h /= h.col(0).norm();
+        const double cross = h(0, 0) * h(0, 1) + h(1, 0) * h(1, 1);
+        const double apart = h.col(0).head<2>().squaredNorm() - h.col(1).head<2>().squaredNorm();
+        const double right = h(2, 0) * h(2, 1);
+        const double right_apart = h(2, 0) * h(2, 0) - h(2, 1) * h(2, 1);
+        up -= cross * right + apart * right_apart;
+        down += cross * cross + apart * apart;
+    }
+    if (!(up > 0.0) || !(down > 0.0)) return std::nullopt;
+    return std::sqrt(down / up);
+}
+
+Rigid3 pose_of(const Eigen::Matrix3d& homography, double focal, glm::dvec2 c) {
+    Eigen::Matrix3d k = Eigen::Matrix3d::Identity();
+    k(0, 0) = k(1, 1) = focal;
+    k(0, 2) = c.x;
+    k(1, 2) = c.y;
+    Eigen::Matrix3d m = k.inverse() * homography;
+    m *= 2.0 / (m.col(0).norm() + m.col(1).norm());
+    if (m(2, 2) < 0.0) m = -m;
+    Eigen::Matrix3d r;
+    r << m.col(0), m.col(1), m.col(0).cross(m.col(1));
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    r = svd.matrixU() * svd.matrixV().transpose();
+    Rigid3 pose;
+    for (int column = 0; column < 3; ++column)
+        for (int row = 0; row < 3; ++row) pose.rotation[column][row] = r(row, column);
+    pose.translation = {m(0, 2), m(1, 2), m(2, 2)};
+    return pose;
+}
+
+struct State {
+    Lens camera{}, projector{};
+    Pose stereo;
+    std::vector<Pose> boards;
+    double cost = 1e300;
+};
+
+void add_points(ceres::Problem& problem,
+                const BoardSight& sight,
+                PictureSize size,
+                Lens& lens,
+                Pose& board,
+                Pose* stereo) {
+    const auto& pixels = stereo != nullptr ? sight.projector_px : sight.camera_px;
+    for (std::size_t k = 0; k < pixels.size(); ++k) {
+        auto* error = new PointError{size, &board, stereo, sight.board_mm[k], pixels[k]};
+        auto* loss = new ceres::HuberLoss(kHuber_px);
+        if (stereo != nullptr) {
+            problem.AddResidualBlock(
+                new ceres::NumericDiffCostFunction<PointError, ceres::CENTRAL, 2, 9, 6, 6>(error),
+                loss,
+                lens.data(),
+                board.six.data(),
+                stereo->six.data());
+        } else {
+            problem.AddResidualBlock(
+                new ceres::NumericDiffCostFunction<PointError, ceres::CENTRAL, 2, 9, 6>(error),
+                loss,
+                lens.data(),
+                board.six.data());
+        }
+    }
+}
+
+void hold(ceres::Problem& problem, Lens& lens, LensModel model) {
+    if (model == LensModel::all_five) return;
+    const std::vector<int> held =
+        model == LensModel::k1 ? std::vector<int>{5, 6, 7, 8} : std::vector<int>{6, 7, 8};
+    problem.SetManifold(lens.data(), new ceres::SubsetManifold(9, held));
+}
+
+void build(ceres::Problem& problem,
+           State& state,
+           std::span<const BoardSight> sights,
+           PictureSize camera,
+           PictureSize projector,
+           LensModel model) {
+    for (std::size_t k = 0; k < sights.size(); ++k) {
+        add_points(problem, sights[k], camera, state.camera, state.boards[k], nullptr);
+        add_points(problem, sights[k], projector, state.projector, state.boards[k], &state.stereo);
+    }
+    hold(problem, state.camera, model);
+    hold(problem, state.projector, model);
+}
+
+/// False where no usable step was found.
+bool solve(ceres::Problem& problem, int iterations, double& cost) {
+    ceres::Solver::Options options;
+    options.linear_solver_type = ceres::DENSE_QR;
+    options.max_num_iterations = iterations;
+    options.function_tolerance = 1e-10;
+    options.logging_type = ceres::SILENT;
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &problem, &summary);
+    cost = summary.final_cost;
+    return summary.IsSolutionUsable();
+}
+
+std::vector<State> starts(std::span<const BoardSight> sights,
+                          PictureSize camera,
+                          PictureSize projector) {
+    std::vector<Eigen::Matrix3d> seen, lit;
+    for (const BoardSight& sight : sights) {
+        seen.push_back(homography(sight.board_mm, sight.camera_px));
+        lit.push_back(homography(sight.board_mm, sight.projector_px));
+    }
+    const glm::dvec2 middle(0.5 * camera.width, 0.5 * camera.height);
+    const double focal = focal_of(seen, middle).value_or(2.0 * camera.width);
+    std::vector<State> all;
+    for (const double share : {0.5, 1.0, 1.5, 0.0, -0.5}) {
+        const glm::dvec2 c(0.5 * projector.width, share * projector.height);
+        const double projector_focal = focal_of(lit, c).value_or(2.0 * projector.width);
+        State state;
+        state.camera = {focal, focal, middle.x, middle.y};
+        state.projector = {projector_focal, projector_focal, c.x, c.y};
+        for (const Eigen::Matrix3d& one : seen)
+            state.boards.push_back(pose_from(pose_of(one, focal, middle)));
+        state.stereo =
+            pose_from(pose_of(lit[0], projector_focal, c) * inverse(state.boards[0].rigid()));
+        all.push_back(state);
+    }
+    return all;
+}
+
+void check_sights(std::span<const BoardSight> sights) {
+    for (const BoardSight& sight : sights)
+        check_argument(sight.board_mm.size() >= 8 &&
+                           sight.camera_px.size() == sight.board_mm.size() &&
+                           sight.projector_px.size() == sight.board_mm.size(),
+                       "a sight needs 8 or more points, all in both pictures");
+    if (sights.size() < 3)
+        throw Refused(fmt::format("{} poses of the board", sights.size()),
+                      "photograph the board in five or more poses, tilted differently");
+}
+
+void check_tilts(const State& state) {
+    double largest = 0.0;
+    for (const Pose& a : state.boards)
+        for (const Pose& b : state.boards) {
+            const glm::dvec3 u = a.rigid().rotation[2], v = b.rigid().rotation[2];
+            largest = std::max(largest, std::asin(std::min(1.0, glm::length(glm::cross(u, v)))));
+        }
+    if (largest < kLeastTilt_rad)
+        throw Refused("all boards are parallel: the focal lengths cannot be told",
+                      "tilt the board by 20 to 40 degrees, to all four sides");
+}
+
+/// Square roots of the covariance's first four, at the residuals' own spread.
+std::array<double, 4> standard_errors(const ceres::Covariance& covariance,
+                                      const Lens& lens,
+                                      double sigma_px) {
+    std::array<double, 81> block{};
+    covariance.GetCovarianceBlock(lens.data(), lens.data(), block.data());
+    std::array<double, 4> errors{};
+    for (std::size_t k = 0; k < 4; ++k) errors[k] = sigma_px * std::sqrt(block[10 * k]);
+    return errors;
+}
+
+double rms_px(const View& view, const Rigid3& view_from_board, const BoardSight& sight, bool lit) {
+    View there = view;
+    there.view_from_world = view_from_board;
+    double squares = 0.0;
+    for (std::size_t k = 0; k < sight.board_mm.size(); ++k) {
+        const auto place = project(there, glm::dvec3(sight.board_mm[k], 0.0));
+        if (!place) return std::numeric_limits<double>::quiet_NaN();
+        const glm::dvec2 off = *place - (lit ? sight.projector_px[k] : sight.camera_px[k]);
+        squares += glm::dot(off, off);
+    }
+    return std::sqrt(squares / static_cast<double>(sight.board_mm.size()));
+}
+
+void check_focal(const char* who, double focal_px, double error_px) {
+    if (error_px <= kLargestFocalError * std::abs(focal_px)) return;
+    throw Refused(fmt::format("the {}'s focal length is {:.0f} px, with a standard error of {:.0f}",
+                              who,
+                              focal_px,
+                              error_px),
+                  "add poses: tilted by 20 to 40 degrees, to all four sides, near and far");
+}
+
+}  // namespace
+
+PairSolution solve_pair(std::span<const BoardSight> sights,
+                        PictureSize camera,
+                        PictureSize projector,
+                        LensModel model) {
+    check_sights(sights);
+    State best;
+    for (State& start : starts(sights, camera, projector)) {
+        ceres::Problem problem;
+        build(problem, start, sights, camera, projector, LensModel::k1);
+        double cost = 0.0;
+        if (solve(problem, 60, cost) && cost < best.cost) {
+            best = start;
+            best.cost = cost;
+        }
+    }
+    if (best.boards.empty())
+        throw Refused("no start leads to lenses that explain the boards",
+                      "check the size of the board and of its squares");
+    check_tilts(best);
+    ceres::Problem problem;
+    build(problem, best, sights, camera, projector, model);
+    if (!solve(problem, 200, best.cost))
+        throw Refused("the lenses could not be fitted", "photograph the board in more poses");
+
+    PairSolution result;
+    result.camera = view_of(best.camera.data(), camera);
+    result.projector = view_of(best.projector.data(), projector);
+    result.projector.view_from_world = best.stereo.rigid();
+    double camera_squares = 0.0, projector_squares = 0.0, points = 0.0;
+    for (std::size_t k = 0; k < sights.size(); ++k) {
+        const Rigid3 pose = best.boards[k].rigid();
+        const auto count = static_cast<double>(sights[k].board_mm.size());
+        const double seen = rms_px(result.camera, pose, sights[k], false);
+        const double lit = rms_px(result.projector, best.stereo.rigid() * pose, sights[k], true);
+        camera_squares += count * seen * seen;
+        projector_squares += count * lit * lit;
+        points += count;
+        result.camera_from_board.push_back(pose);
+    }
+    result.camera_rms_px = std::sqrt(camera_squares / points);
+    result.projector_rms_px = std::sqrt(projector_squares / points);
+
+    ceres::Covariance::Options how;
+    how.algorithm_type = ceres::DENSE_SVD;
+    // Pixels beside k3: the units alone make the matrix look singular. The standard errors judge.
+    how.min_reciprocal_condition_number = 1e-20;
+    ceres::Covariance covariance(how);
+    const std::vector<std::pair<const double*, const double*>> blocks = {
+        {best.camera.data(), best.camera.data()}, {best.projector.data(), best.projector.data()}};
+    if (!covariance.Compute(blocks, &problem))
+        throw Refused("the poses of the board do not determine the lenses",
+                      "tilt the board by 20 to 40 degrees, to all four sides");
+    const double unknowns = 24.0 + 6.0 * static_cast<double>(sights.size());
+    const double sigma =
+        std::sqrt((camera_squares + projector_squares) / std::max(1.0, 4.0 * points - unknowns));
+    result.camera_standard_error_px = standard_errors(covariance, best.camera, sigma);
+    result.projector_standard_error_px = standard_errors(covariance, best.projector, sigma);
+    for (std::size_t k = 0; k < 2; ++k) {
+        check_focal("camera", best.camera[k], result.camera_standard_error_px[k]);
+        check_focal("projector", best.projector[k], result.projector_standard_error_px[k]);
+    }
+    return result;
+}
+
+std::optional<double> held_out_px(const PairSolution& solution, const BoardSight& sight) {
+    const View& lens = solution.camera;
+    Lens values{lens.focal_px.x, lens.focal_px.y, lens.principal_px.x, lens.principal_px.y};
+    std::copy(lens.distortion.begin(), lens.distortion.end(), values.begin() + 4);
+    Pose board = pose_from(
+        pose_of(homography(sight.board_mm, sight.camera_px), lens.focal_px.x, lens.principal_px));
+    ceres::Problem problem;
+    add_points(problem, sight, {lens.width, lens.height}, values, board, nullptr);
+    problem.SetParameterBlockConstant(values.data());
+    double cost = 0.0;
+    if (!solve(problem, 100, cost)) return std::nullopt;
+    const Rigid3 projector_from_board = solution.projector.view_from_world * board.rigid();
+    const double rms = rms_px(solution.projector, projector_from_board, sight, true);
+    if (std::isnan(rms)) return std::nullopt;
+    return rms;
+}
+
+}  // namespace livery

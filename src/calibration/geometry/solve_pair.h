@@ -1,0 +1,52 @@
+// A board in several poses, seen by camera and projector -> both lenses and where they stand.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+#include "scene/view.h"
+
+namespace livery {
+
+/// One pose of the board: point for point on the board's plane, in the camera's picture and in the
+/// projector's (pixel centres at halves).
+struct BoardSight {
+    std::vector<glm::dvec2> board_mm;
+    std::vector<glm::dvec2> camera_px;
+    std::vector<glm::dvec2> projector_px;
+};
+
+/// How many of k1, k2, p1, p2, k3 are fitted; the others are 0.
+enum class LensModel { k1, k1_k2, all_five };
+
+struct PairSolution {
+    View camera;     ///< the world is its frame
+    View projector;  ///< view_from_world is projector_from_camera
+    std::vector<Rigid3> camera_from_board;
+    double camera_rms_px = 0.0, projector_rms_px = 0.0;
+    /// Of fx, fy, cx, cy, in pixels, at the spread of the residuals.
+    std::array<double, 4> camera_standard_error_px{}, projector_standard_error_px{};
+};
+
+struct PictureSize {
+    int width = 0, height = 0;
+};
+
+/// Bundle adjustment of both lenses, the pose between them and the board's poses together, with a
+/// Huber loss; from several starts, because the projector's principal point may lie outside its
+/// picture. Throws Refused for fewer than three poses, for boards that are all parallel and where
+/// a focal length's standard error exceeds 5% of it.
+PairSolution solve_pair(std::span<const BoardSight> sights,
+                        PictureSize camera,
+                        PictureSize projector,
+                        LensModel model);
+
+/// RMS distance in the projector of a sight that was not fitted: the camera finds the board's pose
+/// alone, its points are projected. Nothing where a point falls behind a lens.
+std::optional<double> held_out_px(const PairSolution& solution, const BoardSight& sight);
+
+}  // namespace livery
