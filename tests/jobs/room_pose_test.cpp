@@ -49,13 +49,14 @@ TEST(RoomPose, LightsTheMockupAloneForTheColours) {
     const BenchCalibration found = calibrate_through_ports(bench, product, {});
     ASSERT_TRUE(found.room);
     EXPECT_EQ(found.calibration.warnings, std::vector<std::string>());
-    // As much is measured as where the pose is told.
+    // As much is measured as where the pose is told, but for some of the outline (a twentieth of
+    // the mock-up at this size), whose code was photographed against a lit table.
     BenchDescription told = description;
     told.data_sheets.reset();
     Bench other(told, product);
     EXPECT_NEAR(found.calibration.valid_fraction,
                 calibrate_through_ports(other, product, {}).calibration.valid_fraction,
-                0.01);
+                0.02);
     // What stands around is known to the map, and has no correction.
     std::size_t corrected = 0, beside = 0, in_map = 0;
     for (std::size_t i = 0; i < found.calibration.status.values.size(); ++i) {
