@@ -13,7 +13,7 @@ namespace {
 
 using Homography = Eigen::Matrix<double, 8, 1>;  ///< row by row, the last is 1
 
-struct Sample {
+struct DecodedPlace {
     glm::dvec2 offset;  ///< from the corner, in radii
     glm::dvec2 lit;     ///< from the first guess, projector pixels
 };
@@ -24,7 +24,7 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
-double distance_px(const Homography& h, const Sample& one) {
+double distance_px(const Homography& h, const DecodedPlace& one) {
     const double w = h[6] * one.offset.x + h[7] * one.offset.y + 1.0;
     const double u = (h[0] * one.offset.x + h[1] * one.offset.y + h[2]) / w;
     const double v = (h[3] * one.offset.x + h[4] * one.offset.y + h[5]) / w;
@@ -32,10 +32,12 @@ double distance_px(const Homography& h, const Sample& one) {
 }
 
 template <typename Weight>
-Homography fitted(const std::vector<Sample>& samples, const Homography& before, Weight&& weight) {
+Homography fitted(const std::vector<DecodedPlace>& samples,
+                  const Homography& before,
+                  Weight&& weight) {
     Eigen::Matrix<double, 8, 8> normal = Eigen::Matrix<double, 8, 8>::Zero();
     Homography right = Homography::Zero();
-    for (const Sample& one : samples) {
+    for (const DecodedPlace& one : samples) {
         const double w = weight(distance_px(before, one));
         const glm::dvec2 x = one.offset;
         Homography row;
@@ -50,7 +52,7 @@ Homography fitted(const std::vector<Sample>& samples, const Homography& before, 
 }
 
 std::optional<glm::dvec2> carried(const ImageF& projector_px, glm::dvec2 corner, double radius) {
-    std::vector<Sample> samples;
+    std::vector<DecodedPlace> samples;
     std::vector<double> columns, rows;
     std::size_t around = 0;
     for (int y = static_cast<int>(corner.y - radius); y <= static_cast<int>(corner.y + radius); ++y)
@@ -68,7 +70,7 @@ std::optional<glm::dvec2> carried(const ImageF& projector_px, glm::dvec2 corner,
         }
     if (samples.size() < 50 || 4 * samples.size() < around) return std::nullopt;
     const glm::dvec2 guess(median(columns), median(rows));
-    for (Sample& one : samples) one.lit -= guess;
+    for (DecodedPlace& one : samples) one.lit -= guess;
     // Least absolute distance first: it bears gross errors from any start; then what lies within
     // a pixel and a half (steps of whole projector pixels lie within .71) counts, and nothing else.
     Homography h = Homography::Zero();
@@ -81,7 +83,7 @@ std::optional<glm::dvec2> carried(const ImageF& projector_px, glm::dvec2 corner,
             return left * left;
         });
     if (!h.allFinite()) return std::nullopt;
-    const auto agree = std::count_if(samples.begin(), samples.end(), [&](const Sample& one) {
+    const auto agree = std::count_if(samples.begin(), samples.end(), [&](const DecodedPlace& one) {
         return distance_px(h, one) < kReach_px;
     });
     if (4 * static_cast<std::size_t>(agree) < around) return std::nullopt;

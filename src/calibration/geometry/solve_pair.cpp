@@ -145,7 +145,7 @@ Rigid3 pose_of(const Eigen::Matrix3d& homography, double focal, glm::dvec2 c) {
     return pose;
 }
 
-struct State {
+struct BoardsState {
     Lens camera{}, projector{};
     Pose stereo;
     std::vector<Pose> boards;
@@ -187,7 +187,7 @@ void hold(ceres::Problem& problem, Lens& lens, LensModel model) {
 }
 
 void build(ceres::Problem& problem,
-           State& state,
+           BoardsState& state,
            std::span<const BoardSight> sights,
            PictureSize camera,
            PictureSize projector,
@@ -213,9 +213,9 @@ bool solve(ceres::Problem& problem, int iterations, double& cost) {
     return summary.IsSolutionUsable();
 }
 
-std::vector<State> starts(std::span<const BoardSight> sights,
-                          PictureSize camera,
-                          PictureSize projector) {
+std::vector<BoardsState> starts(std::span<const BoardSight> sights,
+                                PictureSize camera,
+                                PictureSize projector) {
     std::vector<Eigen::Matrix3d> seen, lit;
     for (const BoardSight& sight : sights) {
         seen.push_back(homography(sight.board_mm, sight.camera_px));
@@ -223,11 +223,11 @@ std::vector<State> starts(std::span<const BoardSight> sights,
     }
     const glm::dvec2 middle(0.5 * camera.width, 0.5 * camera.height);
     const double focal = focal_of(seen, middle).value_or(2.0 * camera.width);
-    std::vector<State> all;
+    std::vector<BoardsState> all;
     for (const double share : {0.5, 1.0, 1.5, 0.0, -0.5}) {
         const glm::dvec2 c(0.5 * projector.width, share * projector.height);
         const double projector_focal = focal_of(lit, c).value_or(2.0 * projector.width);
-        State state;
+        BoardsState state;
         state.camera = {focal, focal, middle.x, middle.y};
         state.projector = {projector_focal, projector_focal, c.x, c.y};
         for (const Eigen::Matrix3d& one : seen)
@@ -250,7 +250,7 @@ void check_sights(std::span<const BoardSight> sights) {
                       "photograph the board in five or more poses, tilted differently");
 }
 
-void check_tilts(const State& state) {
+void check_tilts(const BoardsState& state) {
     double largest = 0.0;
     for (const Pose& a : state.boards)
         for (const Pose& b : state.boards) {
@@ -302,8 +302,8 @@ PairSolution solve_pair(std::span<const BoardSight> sights,
                         PictureSize projector,
                         LensModel model) {
     check_sights(sights);
-    State best;
-    for (State& start : starts(sights, camera, projector)) {
+    BoardsState best;
+    for (BoardsState& start : starts(sights, camera, projector)) {
         ceres::Problem problem;
         build(problem, start, sights, camera, projector, LensModel::k1);
         double cost = 0.0;
