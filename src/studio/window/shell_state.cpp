@@ -207,6 +207,7 @@ MapState state_of_shell(const Shell& shell) {
     state["question"] = quoted(shell.question ? shell.question->what : "");
     state["capture"] =
         quoted(shell.capture_open ? name_of(studio.panels.capture->view.doing) : "closed");
+    state["capture_paused"] = studio.panels.capture->view.paused ? "true" : "false";
     state["capture_says"] = quoted(words_of(*studio.panels.capture));
     Json preflight = Json::object();
     for (const GradedFigure& figure : studio.panels.capture->view.figures)
