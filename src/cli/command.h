@@ -59,6 +59,7 @@ Command albedo_command();
 Command bench_command();
 Command brdf_command();
 Command calibrate_color_command();
+Command calibrate_geometry_command();
 Command calibrate_register_command();
 Command calibrate_scan_command();
 Command capture_command();

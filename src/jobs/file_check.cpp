@@ -21,6 +21,7 @@
 #include "core/paths.h"
 #include "jobs/camera_to_xyz_file.h"
 #include "jobs/files_elsewhere.h"
+#include "jobs/pair_geometry.h"
 #include "scene/colour_calibration.h"
 #include "scene/look.h"
 #include "scene/mockup_pose.h"
@@ -248,6 +249,9 @@ FileKind kind_of_json(const Path& file, const Progress& progress) {
     if (has("model") || has("parameters")) {
         return {"material", [](const Path& path, FileCheck&) { read_material_file(path); }};
     }
+    if (has("kind") && json["kind"] == "geometry") {
+        return {"geometry", [](const Path& path, FileCheck&) { check_geometry_file(path); }};
+    }
     if (has("kind") && json["kind"] == "pose") {
         return {"pose", [](const Path& path, FileCheck&) { read_pose_file(path); }};
     }
@@ -272,12 +276,12 @@ FileKind kind_of_json(const Path& file, const Progress& progress) {
         return {"camera-to-xyz", [](const Path& path, FileCheck&) { read_camera_to_xyz(path); }};
     }
     return {"unknown", [](const Path& path, FileCheck&) {
-                throw FileError(
-                    path,
-                    "",
-                    "a JSON object of no known kind",
-                    "a material, look, product, bench, camera, pose, camera-to-xyz or captures "
-                    "file");
+                throw FileError(path,
+                                "",
+                                "a JSON object of no known kind",
+                                "a material, look, product, bench, camera, geometry, pose, "
+                                "camera-to-xyz or captures "
+                                "file");
             }};
 }
 

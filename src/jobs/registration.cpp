@@ -9,6 +9,7 @@
 #include "capture/captures_folder.h"
 #include "core/error.h"
 #include "core/paths.h"
+#include "jobs/pair_geometry.h"
 #include "mesh/ply_write.h"
 
 namespace livery {
@@ -187,6 +188,7 @@ RegisteredMockup register_mockup(const RegistrationRequest& request, const Progr
     const CalibratedPair pair = read_calibrated_pair(request.calibrations.front());
     RegisteredMockup result;
     RegistrationOptions options;
+    options.prior = lens_prior_of(request.calibrations.front());
     options.prior.scale_free = request.scale_free;
     options.prior.lens_fixed = request.lens_fixed;
     if (!request.points.empty()) {

@@ -36,7 +36,16 @@ void expect_refusal(const std::vector<std::string>& arguments,
 TEST(Messages, NameTheOptionWhatWasFoundAndWhatWasExpected) {
     expect_refusal({"bssrdf"}, {"\"bssrdf\"", "livery help"});
     expect_refusal({"calibrate"}, {"\"calibrate\"", "livery help"});
-    expect_refusal({"calibrate", "geometry"}, {"\"calibrate geometry\"", "livery help"});
+    expect_refusal({"calibrate", "weather"}, {"\"calibrate weather\"", "livery help"});
+    const auto geometry = [](std::vector<std::string> more) {
+        std::vector<std::string> all = {
+            "calibrate", "geometry", "--captures", "x", "--projector", "1024x768", "--out", "y"};
+        all.insert(all.end(), more.begin(), more.end());
+        return all;
+    };
+    expect_refusal(geometry({"--board", "9by7"}), {"--board", "9by7", "COLUMNSxROWS"});
+    expect_refusal(geometry({"--board", "9x7"}), {"--square-mm", "found 0", "more than 0"});
+    expect_refusal(geometry({}), {"--throw-ratio", "found 0", "--board"});
     expect_refusal({"help", "nothing"}, {"\"nothing\"", "livery help"});
     expect_refusal({"plan", "--threads", "x"}, {"--threads", "\"x\"", "a whole number"});
     expect_refusal({"plan", "--budget-ms", "nan"}, {"--budget-ms", "\"nan\"", "finite"});

@@ -1,0 +1,178 @@
+// livery calibrate geometry
+
+#include <cstdio>
+#include <memory>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "cli/command.h"
+#include "core/error.h"
+#include "jobs/pair_geometry.h"
+
+namespace livery {
+
+namespace {
+
+/// "9x7": columns and rows of inner corners.
+glm::ivec2 parse_board(const std::string& text) {
+    glm::ivec2 size(0);
+    char end = 0;
+    const bool whole = std::sscanf(text.c_str(), "%dx%d%c", &size.x, &size.y, &end) == 2;
+    if (!whole || size.x < 3 || size.y < 3 || size.x > 100 || size.y > 100)
+        throw std::invalid_argument(fmt::format(
+            "--board: found \"{}\", expected COLUMNSxROWS of inner corners, 3 to 100 each", text));
+    return size;
+}
+
+std::string text_of(const PairGeometry& geometry, const std::string& out) {
+    const auto lens = [](const char* whose, const View& view, double error_px) {
+        std::string text = fmt::format("{}: focal length {:.1f}", whose, view.focal_px.x);
+        if (error_px > 0.0) text += fmt::format(" +- {:.1f}", error_px);
+        return text + fmt::format(" px, principal point {:.1f}, {:.1f}\n",
+                                  view.principal_px.x - 0.5,
+                                  view.principal_px.y - 0.5);
+    };
+    std::string text;
+    std::size_t used = 0;
+    for (const BoardPose& pose : geometry.poses) {
+        used += pose.used;
+        text += pose.used ? fmt::format("{}: {} corners, foretold to {:.2f} px\n",
+                                        pose.folder,
+                                        pose.corners,
+                                        pose.rms_px)
+                          : fmt::format("{}: not used: {}\n", pose.folder, pose.reason);
+    }
+    if (geometry.from_boards)
+        text += fmt::format(
+            "{} of {} poses; a pose left out is foretold to {:.2f} px, what was fitted lies within "
+            "{:.2f} px in the camera and {:.2f} px in the projector; distortion: {}\n",
+            used,
+            geometry.poses.size(),
+            geometry.held_out_rms_px,
+            geometry.camera_rms_px,
+            geometry.projector_rms_px,
+            geometry.lens_model);
+    else
+        text += fmt::format(
+            "lenses as the data sheets have them; the rays of camera and projector pass each other "
+            "by {:.2f} px in the median; registration corrects the lenses by the mock-up's mesh\n",
+            geometry.stereo_rms_px);
+    text += lens("camera", geometry.camera, geometry.camera_standard_error_px[0]);
+    text += lens("projector", geometry.projector, geometry.projector_standard_error_px[0]);
+    return text + fmt::format(
+                      "the lenses are {:.1f} mm apart: a tape tells whether that is so\nwrote {}\n",
+                      glm::length(inverse(geometry.projector.view_from_world).translation),
+                      out);
+}
+
+}  // namespace
+
+Command calibrate_geometry_command() {
+    struct Arguments {
+        std::vector<std::string> captures;
+        std::string projector, board, out;
+        double square_mm = 0.0, white_threshold = -1.0, black_threshold = -1.0;
+        DataSheets sheets{0.0, 0.5, 0.0, 0.0, 0.0};
+    };
+    const auto arguments = std::make_shared<Arguments>();
+    Command command;
+    command.name = "calibrate geometry";
+    command.summary =
+        "Gray code photographs of a board, or of anything and data sheets -> camera, projector and "
+        "how they stand";
+    command.example =
+        "livery calibrate geometry --captures pose-0 pose-1 pose-2 pose-3 --projector 1024x768 "
+        "--board 9x7 --square-mm 75 --out geometry";
+    command.options = {
+        {"--captures",
+         "DIR...",
+         "Gray code photographs, a folder a pose of the board; without a board one folder",
+         &arguments->captures,
+         true,
+         {}},
+        {"--projector", "WxH", "its resolution", &arguments->projector, true, {}},
+        {"--board", "WxH", "inner corners of the chessboard", &arguments->board, false, {}},
+        {"--square-mm", "MM", "side of a square", &arguments->square_mm, false, {}},
+        {"--throw-ratio",
+         "R",
+         "without a board: the projector's distance over its picture's width",
+         &arguments->sheets.throw_ratio,
+         false,
+         {}},
+        {"--lens-shift",
+         "S",
+         "the picture's middle over the lens's axis, in picture heights (default 0.5)",
+         &arguments->sheets.lens_shift,
+         false,
+         {}},
+        {"--focal-mm", "MM", "the camera's focal length", &arguments->sheets.focal_mm, false, {}},
+        {"--sensor-width-mm",
+         "MM",
+         "the camera's sensor",
+         &arguments->sheets.sensor_width_mm,
+         false,
+         {}},
+        {"--lens-distance-mm",
+         "MM",
+         "between the two lenses, by a tape",
+         &arguments->sheets.lens_distance_mm,
+         false,
+         {}},
+        {"--white-threshold",
+         "N",
+         "least difference of stripes and their inverse, file units (default: none)",
+         &arguments->white_threshold,
+         false,
+         {}},
+        {"--black-threshold",
+         "N",
+         "least difference of white and black, file units (default: from the noise)",
+         &arguments->black_threshold,
+         false,
+         {}},
+        {"--out", "DIR", "geometry.json, camera.json, projector.json", &arguments->out, true, {}},
+    };
+    command.run = [arguments](const CommonOptions&, const Progress& progress) {
+        PairGeometryRequest request;
+        request.captures = {arguments->captures.begin(), arguments->captures.end()};
+        request.projector_px = parse_size("--projector", arguments->projector);
+        request.black_threshold = arguments->black_threshold;
+        request.white_threshold = arguments->white_threshold;
+        if (!arguments->board.empty()) {
+            request.board_corners = parse_board(arguments->board);
+            request.square_mm = arguments->square_mm;
+        } else {
+            const DataSheets& sheets = arguments->sheets;
+            const auto need = [](const char* option, double value) {
+                check_argument(
+                    value > 0.0,
+                    fmt::format("{}: found {}, expected more than 0 (or --board and --square-mm: "
+                                "photographs alone leave focal lengths and sizes open)",
+                                option,
+                                value));
+            };
+            need("--throw-ratio", sheets.throw_ratio);
+            need("--focal-mm", sheets.focal_mm);
+            need("--sensor-width-mm", sheets.sensor_width_mm);
+            need("--lens-distance-mm", sheets.lens_distance_mm);
+            request.data_sheets = sheets;
+        }
+        Outcome outcome;
+        try {
+            const PairGeometry geometry = find_pair_geometry(request, progress);
+            write_pair_geometry(arguments->out, geometry);
+            outcome.figures = figures_of(geometry);
+            outcome.text = text_of(geometry, arguments->out);
+        } catch (const Refused& refused) {
+            outcome.exit_code = 1;
+            outcome.figures = {{"poses", Json::array()},
+                               {"refused", {{{"why", refused.why()}, {"fix", refused.fix()}}}}};
+            outcome.text = fmt::format("refused: {}\nfix: {}\n", refused.why(), refused.fix());
+        }
+        return outcome;
+    };
+    return command;
+}
+
+}  // namespace livery

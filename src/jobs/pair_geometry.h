@@ -1,0 +1,70 @@
+// Lenses of camera and projector and how they stand to each other, from files: what `livery
+// calibrate geometry` does.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+#include "calibration/registration/pixel_refinement.h"
+#include "core/json.h"
+#include "core/progress.h"
+#include "scene/data_sheet.h"
+#include "scene/view.h"
+
+namespace livery {
+
+struct PairGeometryRequest {
+    std::vector<std::filesystem::path> captures;  ///< Gray code, a folder a pose of the board
+    glm::ivec2 projector_px{0};
+    glm::ivec2 board_corners{0};  ///< inner corners, columns and rows; 0: no board
+    double square_mm = 0.0;
+    /// Without a board: one folder, of anything that is not a plane.
+    std::optional<DataSheets> data_sheets;
+    /// White - black and stripes - inverse that a pixel must show at least, of the range between
+    /// the two in the file's units; negative: from the noise, and none.
+    double black_threshold = -1.0, white_threshold = -1.0;
+};
+
+/// One folder, and what became of it.
+struct BoardPose {
+    std::string folder;
+    bool used = false;
+    std::string reason;       ///< why not
+    std::size_t corners = 0;  ///< carried to the projector
+    double rms_px = 0.0;      ///< foretold by the others, in the projector
+};
+
+struct PairGeometry {
+    View camera;     ///< the world is its frame
+    View projector;  ///< view_from_world is projector_from_camera
+    bool from_boards = false;
+    /// From boards; else 0.
+    double camera_rms_px = 0.0, projector_rms_px = 0.0, held_out_rms_px = 0.0;
+    double stereo_rms_px = 0.0;  ///< of both together; without boards the median distance of rays
+    std::string lens_model;      ///< "k1", "k1 k2", "all five", or "data sheets"
+    std::array<double, 4> camera_standard_error_px{}, projector_standard_error_px{};
+    std::vector<BoardPose> poses;
+};
+
+/// Throws Refused (too few poses, boards all parallel, no board found), FileError,
+/// std::invalid_argument.
+PairGeometry find_pair_geometry(const PairGeometryRequest& request, const Progress& progress = {});
+
+/// Every figure, with the names of docs/commands.md; pixel centres at integers, as OpenCV's.
+Json figures_of(const PairGeometry& geometry);
+
+/// Writes `geometry.json`, `camera.json` and `projector.json`.
+void write_pair_geometry(const std::filesystem::path& folder, const PairGeometry& geometry);
+
+/// How well the calibration in a folder is known: from `geometry.json`, else as boards leave it.
+/// Throws FileError.
+LensPrior lens_prior_of(const std::filesystem::path& folder);
+/// Checks a `geometry.json`. Throws FileError.
+void check_geometry_file(const std::filesystem::path& file);
+
+}  // namespace livery
