@@ -9,7 +9,7 @@
 
 #include "calibration/registration/register_scan.h"
 #include "calibration/registration/rotation.h"
-#include "calibration/support/traced_sights.h"
+#include "calibration/support/bench_world.h"
 #include "core/error.h"
 #include "core/statistics.h"
 #include "scene/product.h"
@@ -21,29 +21,10 @@ namespace livery {
 namespace {
 
 using testing::add_rectangle;
+using testing::bench_world;
 using testing::roughened;
 using testing::traced_sight;
-
-struct World {
-    Mesh product;
-    Mesh all;
-    View projector, camera;  ///< world: the product's frame
-};
-
-World world_of(const std::string& bench_name, std::optional<Mesh> product = std::nullopt) {
-    const BenchDescription bench = read_bench_file(bench_name);
-    World world{product ? *product : load_product(bench.product).mesh,
-                {},
-                bench.projector.view,
-                bench.camera.view};
-    world.all = world.product;
-    for (const auto& [name, one] : bench.surroundings)
-        add_rectangle(world.all,
-                      glm::vec3(one.corner_mm),
-                      glm::vec3(one.side_a_mm),
-                      glm::vec3(one.side_b_mm));
-    return world;
-}
+using World = testing::BenchWorld;
 
 /// A truck from the reference data, as long as the car and on the ground.
 Mesh truck(const std::filesystem::path& file) {
@@ -77,12 +58,8 @@ Given given_of(const World& world, double lens_off, std::uint64_t seed) {
     return given;
 }
 
-struct Errors {
-    double median_px = 0.0, p95_px = 0.0;
-};
-/// Over the lit mesh: how far from its true place each point is drawn in the projector's picture.
-/// Turns that the product leaves open are taken as they truly are.
-Errors errors_of(const World& world, const Registration& found) {
+/// Over the lit mesh; turns that the product leaves open are taken as they truly are.
+testing::DrawnErrors errors_of(const World& world, const Registration& found) {
     View projector = found.refined.projector;
     if (found.free.count == 3) {
         const glm::dvec3 centre = projector.view_from_world * found.free.through_mm;
@@ -90,20 +67,7 @@ Errors errors_of(const World& world, const Registration& found) {
         projector.view_from_world.translation =
             centre - projector.view_from_world.rotation * found.free.through_mm;
     }
-    const Tracer tracer(world.product);
-    std::vector<double> errors;
-    for (int y = 0; y < world.projector.height; y += 8)
-        for (int x = 0; x < world.projector.width; x += 8) {
-            const Ray ray = ray_through(world.projector, {x + 0.5, y + 0.5});
-            TraceRay trace;
-            trace.origin = glm::vec3(ray.origin);
-            trace.direction = glm::vec3(ray.direction);
-            const Hit hit = tracer.closest(trace);
-            if (!hit.valid()) continue;
-            const auto drawn = project(projector, surface_point(world.product, hit).position_mm);
-            errors.push_back(drawn ? glm::length(*drawn - glm::dvec2(x + 0.5, y + 0.5)) : 1e3);
-        }
-    return {quantile(errors, 0.5), quantile(errors, 0.95)};
+    return testing::drawn_errors(world, projector);
 }
 
 Registration registered(
@@ -113,7 +77,7 @@ Registration registered(
     const Registration found = register_scan(mesh, given.projector, given.sights);
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    const Errors errors = errors_of(world, found);
+    const testing::DrawnErrors errors = errors_of(world, found);
     std::printf(
         "    %s (seed %d): %.3f px median, %.3f px at 95%%; residual %.3f px, %.3f mm; "
         "%zu of %zu; agreement %.2f; %.1f s\n",
@@ -140,20 +104,22 @@ Registration registered(
 
 void expect_registered(const World& world, const char* name) {
     const Registration found = registered(world, roughened(world.product, 0.03), 0.01, 1, name);
-    const Errors errors = errors_of(world, found);
+    const testing::DrawnErrors errors = errors_of(world, found);
     EXPECT_LT(errors.median_px, 0.5) << name;
     EXPECT_LT(errors.p95_px, 1.0) << name;
 }
 
-TEST(Registration, FindsTheCar) { expect_registered(world_of("default"), "car"); }
-TEST(Registration, FindsThePlayer) { expect_registered(world_of("player"), "player"); }
-TEST(Registration, FindsTheSphereUpToItsTurns) { expect_registered(world_of("sphere"), "sphere"); }
+TEST(Registration, FindsTheCar) { expect_registered(bench_world("default"), "car"); }
+TEST(Registration, FindsThePlayer) { expect_registered(bench_world("player"), "player"); }
+TEST(Registration, FindsTheSphereUpToItsTurns) {
+    expect_registered(bench_world("sphere"), "sphere");
+}
 
 TEST(Registration, FindsTheTrucks) {
     LIVERY_NEEDS_REFERENCE_DATA(data);
     for (const char* name : {"vehicle-truck-green", "vehicle-truck-red"}) {
         const auto file = data / "meshes" / (std::string(name) + ".glb");
-        expect_registered(world_of("default", truck(file)), name);
+        expect_registered(bench_world("default", truck(file)), name);
     }
 }
 
@@ -176,20 +142,21 @@ TEST(Registration, FindsWhatIsTurnedAnyWayAndStandsOnNothing) {
     for (int k = 0; k < 3; ++k) {
         const glm::dvec3 axis(random.normal(), random.normal(), random.normal());
         const glm::dvec3 axis_angle = glm::normalize(axis) * (1.0 + 2.0 * random.uniform());
-        const World world = turned_world(
-            world_of("default"), axis_angle, {20.0 * random.normal(), 10.0 * random.normal(), 0.0});
+        const World world = turned_world(bench_world("default"),
+                                         axis_angle,
+                                         {20.0 * random.normal(), 10.0 * random.normal(), 0.0});
         expect_registered(world, "car, turned");
     }
 }
 
 TEST(Registration, BeginsSixtyDegreesAndTenCentimetresOffToo) {
-    const World world = world_of("default");
+    const World world = bench_world("default");
     const Given given = given_of(world, 0.01, 2);
     RegistrationOptions options;
     const Rigid3 truth = world.camera.view_from_world;
     options.start = Rigid3{rotation_of({0.6, 0.6, 0.6}) * truth.rotation,
                            truth.translation + glm::dvec3(60.0, -50.0, 62.0)};
-    const Errors errors = errors_of(
+    const testing::DrawnErrors errors = errors_of(
         world,
         register_scan(roughened(world.product, 0.03), given.projector, given.sights, options));
     EXPECT_LT(errors.median_px, 0.5);
@@ -214,26 +181,26 @@ std::string refusal(const World& world, const Mesh& mesh) {
 }
 
 TEST(Registration, RefusesTheMeshOfAnotherProduct) {
-    const World car = world_of("default"), player = world_of("player");
+    const World car = bench_world("default"), player = bench_world("player");
     EXPECT_NE(refusal(car, player.product).find("does not fit"), std::string::npos);
     EXPECT_NE(refusal(player, car.product).find("does not fit"), std::string::npos);
 }
 
 TEST(Registration, RefusesTheMirrorImage) {
     // A car is its own mirror image but for what stands at one side of it.
-    Mesh product = world_of("default").product;
+    Mesh product = bench_world("default").product;
     append(product, make_sphere({20.0, 30.0, 30.0}, 16.0, 24, "lump"), "");
     Mesh mirrored = product;
     for (glm::vec3& place : mirrored.positions_mm) place.z = -place.z;
     for (glm::vec3& normal : mirrored.normals) normal.z = -normal.z;
     for (glm::uvec3& triangle : mirrored.triangles) std::swap(triangle.y, triangle.z);
-    const World world = world_of("default", product);
+    const World world = bench_world("default", product);
     EXPECT_NE(refusal(world, mirrored).find("mirror image"), std::string::npos);
     EXPECT_EQ(refusal(world, product), "");
 }
 
 TEST(Registration, RefusesAProductOfTooFewPixels) {
-    World world = world_of("default");
+    World world = bench_world("default");
     world.projector.focal_px *= 0.06;
     world.projector.principal_px = {640.0, 405.0};
     EXPECT_NE(refusal(world, world.product).find("projector pixels"), std::string::npos);
@@ -254,7 +221,7 @@ Mesh box(glm::vec3 side) {
 }
 
 TEST(Registration, NamesASymmetricProduct) {
-    const World world = world_of("default", box({120.0f, 50.0f, 60.0f}));
+    const World world = bench_world("default", box({120.0f, 50.0f, 60.0f}));
     const Registration found = registered(world, world.product, 0.0, 1, "box");
     ASSERT_FALSE(found.equal_motions.empty());
     EXPECT_NE(found.warnings.at(0).find("symmetric"), std::string::npos);
@@ -296,7 +263,7 @@ Mesh bottle() {
 }
 
 TEST(Registration, NamesASurfaceOfRevolution) {
-    const World world = world_of("default", bottle());
+    const World world = bench_world("default", bottle());
     const Registration found = registered(world, roughened(world.product, 0.03), 0.01, 1, "bottle");
     ASSERT_EQ(found.free.count, 1);
     EXPECT_GT(std::abs(found.free.axis.y), 0.9999);
@@ -316,14 +283,14 @@ TEST(Registration, RefusesTwoPosesThatFitAlike) {
     // What tells the ends apart lies below, where neither projector nor camera sees it.
     Mesh product = box({120.0f, 50.0f, 60.0f});
     append(product, make_sphere({-35.0, 8.0, 0.0}, 20.0, 24, "foot"), "");
-    World world = world_of("default", product);
+    World world = bench_world("default", product);
     world.all = product;
     EXPECT_NE(refusal(world, product).find("fit alike"), std::string::npos);
 }
 
 // What rougher meshes and lenses that are farther off cost: docs/registration.md has the rows.
 TEST(Registration, LosesLittleByARoughMeshOrAWrongLens) {
-    const World world = world_of("default");
+    const World world = bench_world("default");
     struct Row {
         double mesh_rms_mm, lens_off;
         double median_px = 0.5, p95_px = 1.0;  // the goals, where they are reached
@@ -337,7 +304,7 @@ TEST(Registration, LosesLittleByARoughMeshOrAWrongLens) {
         const Given given = given_of(world, row.lens_off, 1);
         const Registration found =
             register_scan(roughened(world.product, row.mesh_rms_mm), given.projector, given.sights);
-        const Errors errors = errors_of(world, found);
+        const testing::DrawnErrors errors = errors_of(world, found);
         std::printf(
             "    mesh %.2f mm rms, lenses %.0f%% off: %.3f px median, %.3f px at 95%%; "
             "residual %.3f px\n",
@@ -353,7 +320,7 @@ TEST(Registration, LosesLittleByARoughMeshOrAWrongLens) {
 
 // From a second position of the camera the same pose, better held.
 TEST(Registration, MergesPositionsOfTheCamera) {
-    const World world = world_of("default");
+    const World world = bench_world("default");
     Given given = given_of(world, 0.01, 1);
     const Registration one = register_scan(world.product, given.projector, given.sights);
     View other = world.camera;
@@ -374,7 +341,7 @@ TEST(Registration, MergesPositionsOfTheCamera) {
 }
 
 TEST(Registration, FindsTheScaleWhereItIsFree) {
-    const World world = world_of("default");
+    const World world = bench_world("default");
     const Given given = given_of(world, 0.0, 1);
     Mesh larger = world.product;
     for (glm::vec3& place : larger.positions_mm) place *= 1.03f;
