@@ -87,6 +87,14 @@ Eigen::Matrix3d conditioning(const std::vector<Sighting>& all, Eigen::Vector3d S
     return result;
 }
 
+/// The matrix whose nine numbers, row by row, a sum of squares makes smallest.
+Eigen::Matrix3d null_matrix(const Eigen::Matrix<double, 9, 9>& sums) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> solver(sums);
+    Eigen::Matrix3d matrix;
+    for (int r = 0; r < 3; ++r) matrix.row(r) = solver.eigenvectors().col(0).segment<3>(3 * r);
+    return matrix;
+}
+
 /// From eight or more: the null vector, with two equal singular values and a zero.
 Eigen::Matrix3d essential_of(const std::vector<Sighting>& all,
                              const std::vector<std::size_t>& chosen,
@@ -99,10 +107,7 @@ Eigen::Matrix3d essential_of(const std::vector<Sighting>& all,
         row << p.x() * c, p.y() * c, p.z() * c;
         sums += row * row.transpose();
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> solver(sums);
-    Eigen::Matrix3d matrix;
-    for (int r = 0; r < 3; ++r) matrix.row(r) = solver.eigenvectors().col(0).segment<3>(3 * r);
-    matrix = to_p.transpose() * matrix * to_c;
+    const Eigen::Matrix3d matrix = to_p.transpose() * null_matrix(sums) * to_c;
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
     const Eigen::Vector3d two(1.0, 1.0, 0.0);
     return svd.matrixU() * two.asDiagonal() * svd.matrixV().transpose();
@@ -245,10 +250,7 @@ Eigen::Matrix3d homography_of(const std::vector<Sighting>& all,
         rows.block<1, 3>(1, 6) = -p.y() * c.transpose();
         sums += rows.transpose() * rows;
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> solver(sums);
-    Eigen::Matrix3d matrix;
-    for (int r = 0; r < 3; ++r) matrix.row(r) = solver.eigenvectors().col(0).segment<3>(3 * r);
-    return to_p.inverse() * matrix * to_c;
+    return to_p.inverse() * null_matrix(sums) * to_c;
 }
 
 /// Whether one homography explains nearly all sightings as well as the pose does: then nothing but
