@@ -284,7 +284,9 @@ LiveResult calibrate_live(const BenchPorts& bench,
     if (!fixed)
         for (const std::uint8_t drive : {std::uint8_t{255}, std::uint8_t{0}}) {
             const std::string role = drive ? "white" : "black";
-            live.add(role, session.take(Image8(options.width, options.height, 3, drive), role));
+            Photograph& end = drive ? result.white : result.black;
+            end = session.take(Image8(options.width, options.height, 3, drive), role);
+            live.add(role, end);
         }
     const auto judge_start = std::chrono::steady_clock::now();
     // Before anything is solved: the projector must not be blamed for a shadow.
@@ -343,6 +345,7 @@ LiveMap photograph_map(const BenchPorts& bench,
     bench.show(Image8(options.width, options.height, 3));
     LiveMap result;
     result.map = map_of_captures(live.captures, options.width, options.height, result.warnings);
+    result.kept = std::move(live.kept);
     result.camera_width = live.captures.width;
     result.camera_height = live.captures.geometry.front().photograph.image.height;
     result.capture_seconds = seconds_since(start);

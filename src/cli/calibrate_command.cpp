@@ -8,7 +8,7 @@
 #include "capture/captures_folder.h"
 #include "cli/command.h"
 #include "core/error.h"
-#include "jobs/calibration_folder.h"
+#include "jobs/calibrate/calibration_folder.h"
 #include "jobs/captured_calibration.h"
 
 namespace livery {

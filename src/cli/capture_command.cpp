@@ -10,12 +10,16 @@
 
 #include "calibration/preflight.h"
 #include "capture/patient_camera.h"
+#include "cli/capture_report.h"
 #include "cli/command.h"
 #include "cli/console.h"
+#include "cli/data_sheet_options.h"
 #include "core/error.h"
+#include "core/paths.h"
 #include "gl/window.h"
-#include "jobs/bench_calibration.h"
-#include "jobs/calibration_folder.h"
+#include "jobs/calibrate/bench_calibration.h"
+#include "jobs/calibrate/calibration_folder.h"
+#include "jobs/calibrate/staged_calibration.h"
 #include "jobs/camera_curve.h"
 #include "jobs/camera_to_xyz_file.h"
 #include "jobs/capture_bench.h"
@@ -31,8 +35,10 @@ struct CaptureArguments {
     std::string camera, monitor, product, pose, camera_to_xyz, out, calibration;
     std::vector<std::string> again;
     double every_s = 0.0;
+    std::string redo, effort = "normal";
+    DataSheets sheets{0.0, 0.5, 0.0, 0.0, 0.0};
     bool list = false, preflight_only = false, without_preflight = false, anew = false,
-         fit_response = false;
+         fit_response = false, check = false;
 };
 
 /// A line that is read while the work goes on.
@@ -112,29 +118,13 @@ class MonitorProjector {
     std::unique_ptr<ProjectorScreen> screen_;
 };
 
-Json json_of(const GradedFigure& figure) {
-    return {{"name", figure.name},
-            {"value", figure.value},
-            {"grade", to_string(figure.grade)},
-            {"scale", figure.scale},
-            {"meaning", figure.meaning},
-            {"fix", figure.fix}};
-}
-
-std::string line_of(const GradedFigure& figure) {
-    std::string line =
-        fmt::format("{:<6}  {:<26} {}", to_string(figure.grade), figure.name, figure.value);
-    if (!figure.scale.empty()) line += fmt::format(" ({})", figure.scale);
-    if (figure.grade != Grade::good)
-        line += fmt::format("\n        {} {}", figure.meaning, figure.fix);
-    return line;
-}
-
 /// What a run needs besides ports.
 struct CaptureCommandRun {
     CaptureArguments arguments;
-    BenchCalibrationRequest request;
+    StagedCalibration staged;
     Outcome outcome;
+
+    BenchCalibrationRequest& request() { return staged.request; }
 
     void refuse(const Refused& refused) {
         outcome.exit_code = 1;
@@ -144,44 +134,11 @@ struct CaptureCommandRun {
             outcome.text += "What was photographed is kept in " + arguments.out +
                             "; the same command goes on with it.\n";
     }
-    void report(const BenchCalibration& made);
 };
-
-void CaptureCommandRun::report(const BenchCalibration& made) {
-    const ColourCalibration& calibration = made.calibration;
-    outcome.figures["valid_fraction"] = calibration.valid_fraction;
-    outcome.figures["additivity_error"] = calibration.additivity_error;
-    outcome.figures["condition_p99"] = calibration.condition_p99;
-    outcome.figures["warnings"] = calibration.warnings;
-    outcome.figures["capture_seconds"] = made.live.capture_seconds;
-    outcome.figures["camera_seconds"] = made.live.camera_seconds;
-    outcome.figures["projector_seconds"] = made.live.projector_seconds;
-    outcome.figures["latency_photographs"] = made.live.latency_photographs;
-    outcome.text += fmt::format(
-        "captured in {:.1f} s, of which {:.1f} s the camera's and {:.1f} s the projector's: "
-        "{:.1f}% of the lit pixels valid, additivity error {:.2f}%, "
-        "condition {:.2f}\n",
-        made.live.capture_seconds,
-        made.live.camera_seconds,
-        made.live.projector_seconds,
-        100.0 * calibration.valid_fraction,
-        100.0 * calibration.additivity_error,
-        calibration.condition_p99);
-    for (const std::string& warning : calibration.warnings)
-        outcome.text += "warning: " + warning + "\n";
-    if (arguments.calibration.empty()) return;
-    if (request.projector) {
-        write_setup(arguments.calibration, calibration, *request.projector);
-    } else {
-        write_calibration(arguments.calibration, calibration);
-    }
-    outcome.figures["calibration"] = {{"id", calibration.id}, {"folder", arguments.calibration}};
-    outcome.text += fmt::format("calibration {} in {}\n", calibration.id, arguments.calibration);
-}
 
 /// The preflight's lines as they come; whether a capture makes sense.
 bool look_before(CaptureCommandRun& run, const BenchPorts& ports, const Progress& progress) {
-    const LiveOptions options = live_options_of(run.request);
+    const LiveOptions options = live_options_of(run.request());
     run.outcome.figures["preflight"] = Json::array();
     bool fit = true;
     preflight(ports,
@@ -195,21 +152,40 @@ bool look_before(CaptureCommandRun& run, const BenchPorts& ports, const Progress
     return fit;
 }
 
-/// Pictures are taken again by the roles that the recording has them under.
-void take_again(Recording& recording, const std::vector<std::string>& roles) {
+/// Pictures are taken again by the roles that a recording has them under. How many it has.
+int take_again(Recording& recording, const std::string& role) {
     const auto showings = recording.showings();
-    for (const std::string& role : roles) {
-        bool found = false;
-        for (std::size_t k = 0; k < showings.size(); ++k) {
-            const auto& photographs = showings[k].photographs;
-            if (photographs.empty() || photographs.back().of != role) continue;
-            recording.take_again(k);
-            found = true;
+    int found = 0;
+    for (std::size_t k = 0; k < showings.size(); ++k) {
+        const auto& photographs = showings[k].photographs;
+        if (photographs.empty() || photographs.back().of != role) continue;
+        recording.take_again(k);
+        ++found;
+    }
+    return found;
+}
+
+/// Opens what there is of the run, so that a role that nobody photographed is told before anything
+/// is shown.
+void check_again(const CaptureCommandRun& run) {
+    for (const std::string& role : run.arguments.again) {
+        int found = 0;
+        for (const auto stage : {CalibrationStage::geometry, CalibrationStage::colour}) {
+            const auto folder = folder_of(run.staged, stage);
+            if (!std::filesystem::exists(folder / "recording.json")) continue;
+            Recording recording(folder, run.staged.request.made_with);
+            found += take_again(recording, role);
         }
-        if (!found)
+        if (found == 0)
             throw std::invalid_argument(
                 fmt::format("--again: found \"{}\", expected a picture of the capture", role));
     }
+}
+
+/// Recordings of its stages that lie there.
+bool has_photographs(const StagedCalibration& run) {
+    return std::filesystem::exists(folder_of(run, CalibrationStage::geometry) / "recording.json") ||
+           std::filesystem::exists(folder_of(run, CalibrationStage::colour) / "recording.json");
 }
 
 Outcome fit_response(CaptureCommandRun run,
@@ -218,7 +194,7 @@ Outcome fit_response(CaptureCommandRun run,
                      const Progress& progress) {
     try {
         const CameraCurve curve =
-            fit_camera_curve(camera, ports, run.request.width, run.request.height, progress);
+            fit_camera_curve(camera, ports, run.request().width, run.request().height, progress);
         run.outcome.figures = {{"response", curve.file.string()}, {"residual", curve.residual}};
         run.outcome.text = fmt::format(
             "The curve of {} is in {}; with it, photographs of one light differ by {:.2f} %.\n",
@@ -234,55 +210,60 @@ Outcome fit_response(CaptureCommandRun run,
 Outcome capture_with_camera(CaptureCommandRun run,
                             const CameraChoice& choice,
                             const Progress& progress) {
-    CaptureBench bench = open_capture_bench(choice, run.request.product, progress);
+    CaptureBench bench = open_capture_bench(choice, run.request().product, progress);
     std::unique_ptr<MonitorProjector> projector;
     std::string shown_on = "its own projector";
     if (bench.show) {
         if (!run.arguments.monitor.empty())
             throw std::invalid_argument(
                 "--monitor: found with a simulated bench, which has a projector of its own");
-        run.request.projector = bench.projector;
-        if (!run.request.product)
-            run.request.product = find_product(bench.simulated->description().product.string());
-        run.request.width = bench.projector->width;
-        run.request.height = bench.projector->height;
+        BenchCalibrationRequest asked = request_of(bench.simulated->description(), bench.product);
+        asked.camera_to_xyz = run.request().camera_to_xyz;
+        asked.colour_shots = run.request().colour_shots;
+        if (run.request().projector) asked.projector = run.request().projector;
+        run.request() = std::move(asked);
     } else {
         if (run.arguments.monitor.empty())
             throw std::invalid_argument(
                 "--monitor: found none, expected the projector's (livery capture --list)");
         projector = std::make_unique<MonitorProjector>(run.arguments.monitor);
         const Monitor& monitor = projector->monitor();
-        run.request.width = monitor.width;
-        run.request.height = monitor.height;
+        run.request().width = monitor.width;
+        run.request().height = monitor.height;
         shown_on = fmt::format("{} at {}x{}", monitor.name, monitor.width, monitor.height);
-        if (run.request.projector)
+        if (run.request().projector)
             check_projector(
-                *run.request.projector, run.arguments.pose, monitor.width, monitor.height);
+                *run.request().projector, run.arguments.pose, monitor.width, monitor.height);
         for (const SignalWarning& warning : check_signal(monitor, {0, 0}))
             say(fmt::format("Usable  {}\n        {} {}", warning.what, warning.cause, warning.fix));
         bench.show = projector->port(progress);
     }
-    run.request.made_with = bench.name + ", " + shown_on;
+    run.request().made_with = bench.name + ", " + shown_on;
     for (const std::string& warning : bench.camera->state().warnings) say("warning: " + warning);
     BenchPorts ports;
     ports.show = bench.show;
     ports.photograph = patient(*bench.camera, progress, say_wait);
     ports.measure_xyz = bench.measure_xyz;
-    if (run.request.camera_to_xyz) ports.measure_xyz = {};
+    if (run.request().camera_to_xyz) ports.measure_xyz = {};
 
     if (run.arguments.fit_response)
         return fit_response(std::move(run), *bench.camera, ports, progress);
     if (bench.curve) say("8-bit numbers are read with " + bench.curve->string());
 
-    std::optional<Recording> recording;
+    run.staged.folder = run.arguments.out;
     if (!run.arguments.preflight_only) {
-        if (run.arguments.anew && std::filesystem::exists(run.arguments.out + "/recording.json"))
-            std::filesystem::remove(run.arguments.out + "/recording.json");
-        recording.emplace(run.arguments.out, run.request.made_with);
-        take_again(*recording, run.arguments.again);
-        run.request.recording = &*recording;
+        make_output_folder(run.arguments.out);
+        if (run.arguments.anew) {
+            forget(run.staged, CalibrationStage::geometry);
+            forget(run.staged, CalibrationStage::colour);
+        }
+        if (!run.arguments.redo.empty())
+            forget(run.staged,
+                   run.arguments.redo == "geometry" ? CalibrationStage::geometry
+                                                    : CalibrationStage::colour);
+        check_again(run);
     }
-    const bool goes_on = recording && !recording->showings().empty();
+    const bool goes_on = !run.arguments.preflight_only && has_photographs(run.staged);
     if (!run.arguments.without_preflight && !goes_on) {
         const bool fit = look_before(run, ports, progress);
         if (run.arguments.preflight_only || !fit) {
@@ -293,19 +274,38 @@ Outcome capture_with_camera(CaptureCommandRun run,
             return run.outcome;
         }
     }
+    int taken = 0, answered = 0;
+    const auto meet = [&](Recording& recording) {
+        for (const std::string& role : run.arguments.again) take_again(recording, role);
+        recording.tell([&](std::size_t, const Photograph&) {
+            taken = recording.taken();
+            answered = recording.answered();
+        });
+    };
+    int geometry_taken = 0, geometry_answered = 0;
     try {
-        run.report(calibrate_through_ports(ports, run.request, progress));
+        if (finds_room(run.request())) {
+            find_geometry(run.staged, ports, meet, progress.part(0.0, 0.4));
+            geometry_taken = std::exchange(taken, 0);
+            geometry_answered = std::exchange(answered, 0);
+        }
+        find_colours(run.staged, ports, meet, progress.part(0.4, 0.95));
+        report_calibration(run.staged, run.arguments.calibration, run.outcome);
+        if (run.arguments.check) {
+            check_colours(run.staged, ports, progress.part(0.95, 1.0));
+            report_check(*run.staged.check, run.outcome);
+        }
     } catch (const Refused& refused) {
         run.refuse(refused);
     }
+    taken += geometry_taken;
+    answered += geometry_answered;
     run.outcome.figures["folder"] = run.arguments.out;
-    run.outcome.figures["photographs_taken"] = recording->taken();
-    run.outcome.figures["photographs_kept_from_before"] = recording->answered();
+    run.outcome.figures["photographs_taken"] = taken;
+    run.outcome.figures["photographs_kept_from_before"] = answered;
     run.outcome.figures["simulated"] = bench.simulated != nullptr;
-    run.outcome.text += fmt::format("{} photographs taken, {} kept from before, in {}\n",
-                                    recording->taken(),
-                                    recording->answered(),
-                                    run.arguments.out);
+    run.outcome.text += fmt::format(
+        "{} photographs taken, {} kept from before, in {}\n", taken, answered, run.arguments.out);
     return run.outcome;
 }
 
@@ -333,10 +333,10 @@ Outcome capture_by_hand(CaptureCommandRun run,
         throw std::invalid_argument(
             "--monitor: found none, expected the projector's (livery capture --list)");
     MonitorProjector projector(run.arguments.monitor);
-    run.request.width = projector.monitor().width;
-    run.request.height = projector.monitor().height;
-    run.request.made_with = "photographs in " + choice.what;
-    LiveOptions options = live_options_of(run.request);
+    run.request().width = projector.monitor().width;
+    run.request().height = projector.monitor().height;
+    run.request().made_with = "photographs in " + choice.what;
+    LiveOptions options = live_options_of(run.request());
     std::vector<Pattern> patterns = geometry_patterns(options.width, options.height);
     for (Pattern& pattern : colour_patterns(options.width, options.height, 0, 255))
         patterns.push_back(std::move(pattern));
@@ -348,10 +348,11 @@ Outcome capture_by_hand(CaptureCommandRun run,
     if (watched.state().files == 0) show_all(projector, patterns, run.arguments.every_s, progress);
     say(fmt::format("copy the {} photographs to {}", roles.size(), choice.what));
     try {
-        run.report(calibrate_through_ports(
+        run.staged.made = calibrate_through_ports(
             watched.ports(progress, [](const WatchedState& state) { say(text_of(state)); }),
-            run.request,
-            progress));
+            run.request(),
+            progress);
+        report_calibration(run.staged, run.arguments.calibration, run.outcome);
     } catch (const Refused& refused) {
         run.refuse(refused);
     }
@@ -421,6 +422,24 @@ Command capture_command() {
          false,
          {}},
         {"--anew", "", "take all of the capture in --out again", &arguments->anew, false, {}},
+        {"--redo",
+         "STAGE",
+         "take this stage of the capture in --out again, and what follows from it",
+         &arguments->redo,
+         false,
+         {"geometry", "colour"}},
+        {"--effort",
+         "LEVEL",
+         "one, two or four photographs of each colour (default normal)",
+         &arguments->effort,
+         false,
+         {"quick", "normal", "best"}},
+        {"--check",
+         "",
+         "show corrected colours afterwards, and photograph them",
+         &arguments->check,
+         false,
+         {}},
         {"--every",
          "S",
          "with folder: seconds that each picture is shown (default 5)",
@@ -428,6 +447,7 @@ Command capture_command() {
          false,
          {}},
     };
+    add_data_sheet_options(command.options, arguments->sheets);
     command.run = [arguments](const CommonOptions&, const Progress& progress) {
         if (arguments->list) return listed();
         if (arguments->camera.empty())
@@ -438,16 +458,26 @@ Command capture_command() {
         if (arguments->out.empty() && !arguments->preflight_only && !by_hand &&
             !arguments->fit_response)
             throw std::invalid_argument("--out: found none, expected a folder for the photographs");
-        if (arguments->pose.empty() != arguments->product.empty() &&
-            choice.kind != CameraChoice::Kind::bench)
-            throw std::invalid_argument("--pose and --product: found one, expected both or none");
+        const bool has_sheets = is_any_given(arguments->sheets);
+        if (has_sheets) check_whole(arguments->sheets);
+        const bool finds = has_sheets || choice.kind == CameraChoice::Kind::bench;
+        if (!arguments->pose.empty() && arguments->product.empty() && !finds)
+            throw std::invalid_argument("--pose: found without --product, the mock-up");
+        if (!arguments->product.empty() && arguments->pose.empty() && !finds)
+            throw std::invalid_argument(
+                "--product: found without --pose, the projector's camera file, or the data sheets "
+                "(--throw-ratio, --focal-mm, --sensor-width-mm, --lens-distance-mm)");
         CaptureCommandRun run;
         run.arguments = *arguments;
         if (run.arguments.every_s <= 0.0) run.arguments.every_s = 5.0;
-        if (!arguments->product.empty()) run.request.product = find_product(arguments->product);
-        if (!arguments->pose.empty()) run.request.projector = read_camera_file(arguments->pose);
+        if (!arguments->product.empty()) run.request().product = find_product(arguments->product);
+        if (!arguments->pose.empty()) run.request().projector = read_camera_file(arguments->pose);
+        if (has_sheets) run.request().data_sheets = arguments->sheets;
+        run.request().colour_shots = arguments->effort == "quick"  ? 1
+                                     : arguments->effort == "best" ? 4
+                                                                   : 2;
         if (!arguments->camera_to_xyz.empty())
-            run.request.camera_to_xyz = read_camera_to_xyz(arguments->camera_to_xyz);
+            run.request().camera_to_xyz = read_camera_to_xyz(arguments->camera_to_xyz);
         return by_hand ? capture_by_hand(std::move(run), choice, progress)
                        : capture_with_camera(std::move(run), choice, progress);
     };

@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "core/json_ranges.h"
-#include "jobs/calibration_folder.h"
+#include "jobs/calibrate/calibration_folder.h"
 #include "ledger/predictions.h"
 #include "scene/library.h"
 #include "scene/mockup_mask.h"

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "cli/command.h"
+#include "cli/data_sheet_options.h"
 #include "core/error.h"
 #include "jobs/pair_geometry.h"
 
@@ -94,31 +95,6 @@ Command calibrate_geometry_command() {
         {"--projector", "WxH", "its resolution", &arguments->projector, true, {}},
         {"--board", "WxH", "inner corners of the chessboard", &arguments->board, false, {}},
         {"--square-mm", "MM", "side of a square", &arguments->square_mm, false, {}},
-        {"--throw-ratio",
-         "R",
-         "without a board: the projector's distance over its picture's width",
-         &arguments->sheets.throw_ratio,
-         false,
-         {}},
-        {"--lens-shift",
-         "S",
-         "the picture's middle over the lens's axis, in picture heights (default 0.5)",
-         &arguments->sheets.lens_shift,
-         false,
-         {}},
-        {"--focal-mm", "MM", "the camera's focal length", &arguments->sheets.focal_mm, false, {}},
-        {"--sensor-width-mm",
-         "MM",
-         "the camera's sensor",
-         &arguments->sheets.sensor_width_mm,
-         false,
-         {}},
-        {"--lens-distance-mm",
-         "MM",
-         "between the two lenses, by a tape",
-         &arguments->sheets.lens_distance_mm,
-         false,
-         {}},
         {"--white-threshold",
          "N",
          "least difference of stripes and their inverse, file units (default: none)",
@@ -133,6 +109,7 @@ Command calibrate_geometry_command() {
          {}},
         {"--out", "DIR", "geometry.json, camera.json, projector.json", &arguments->out, true, {}},
     };
+    add_data_sheet_options(command.options, arguments->sheets);
     command.run = [arguments](const CommonOptions&, const Progress& progress) {
         PairGeometryRequest request;
         request.captures = {arguments->captures.begin(), arguments->captures.end()};
@@ -143,20 +120,10 @@ Command calibrate_geometry_command() {
             request.board_corners = parse_board(arguments->board);
             request.square_mm = arguments->square_mm;
         } else {
-            const DataSheets& sheets = arguments->sheets;
-            const auto need = [](const char* option, double value) {
-                check_argument(
-                    value > 0.0,
-                    fmt::format("{}: found {}, expected more than 0 (or --board and --square-mm: "
-                                "photographs alone leave focal lengths and sizes open)",
-                                option,
-                                value));
-            };
-            need("--throw-ratio", sheets.throw_ratio);
-            need("--focal-mm", sheets.focal_mm);
-            need("--sensor-width-mm", sheets.sensor_width_mm);
-            need("--lens-distance-mm", sheets.lens_distance_mm);
-            request.data_sheets = sheets;
+            check_whole(arguments->sheets,
+                        " (or --board and --square-mm: photographs alone leave focal lengths and "
+                        "sizes open)");
+            request.data_sheets = arguments->sheets;
         }
         Outcome outcome;
         try {

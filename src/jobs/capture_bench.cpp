@@ -137,12 +137,12 @@ CaptureBench open_capture_bench(const CameraChoice& choice,
         case CameraChoice::Kind::bench: {
             const BenchDescription description = read_bench_file(choice.what);
             if (!product) product = find_product(description.product.string());
+            bench.product = product;
             bench.simulated = std::make_unique<Bench>(description, std::move(product), progress);
             bench.camera = std::make_unique<BenchCamera>(*bench.simulated);
             const BenchPorts ports = bench.simulated->ports();
             bench.show = ports.show;
             bench.measure_xyz = ports.measure_xyz;
-            bench.projector = description.projector.view;
             break;
         }
         case CameraChoice::Kind::tethered: {

@@ -45,9 +45,9 @@ struct CaptureBench {
     std::unique_ptr<Camera> camera;
     /// What its 8-bit numbers are read with, fitted before; none: sRGB, or it has no curve.
     std::optional<std::filesystem::path> curve;
-    ShowPicture show;               ///< of a simulated bench; empty: a projector is needed
-    MeasureXyz measure_xyz;         ///< of a simulated bench
-    std::optional<View> projector;  ///< of a simulated bench: where it stands
+    ShowPicture show;                        ///< of a simulated bench; empty: a projector is needed
+    MeasureXyz measure_xyz;                  ///< of a simulated bench
+    std::shared_ptr<const Product> product;  ///< a simulated bench's mock-up
 };
 /// Not for folders, which have no camera. `product`: the mock-up of a simulated bench; null: the
 /// one that its file names. Throws CameraFault, FileError.

@@ -25,25 +25,21 @@ auto timed(double& seconds, const Call& call) {
 
 }  // namespace
 
-LiveResult calibrate_recorded(Recording& recording,
-                              const BenchPorts& bench,
-                              const LiveOptions& options,
-                              const Progress& progress) {
+PortSeconds run_recorded(Recording& recording,
+                         const BenchPorts& bench,
+                         const std::function<void(const BenchPorts&)>& work) {
     // Until it is made anew it is not a whole captures folder.
     std::error_code ignored;
     std::filesystem::remove(recording.folder() / "manifest.json", ignored);
-    double camera_s = 0.0, projector_s = 0.0;
+    PortSeconds seconds;
     BenchPorts ports = bench;
-    ports.show = [&](const Image8& drive) { timed(projector_s, [&] { bench.show(drive); }); };
+    ports.show = [&](const Image8& drive) { timed(seconds.projector, [&] { bench.show(drive); }); };
     ports.photograph = [&](double exposure_s) {
-        return timed(camera_s, [&] { return bench.photograph(exposure_s); });
+        return timed(seconds.camera, [&] { return bench.photograph(exposure_s); });
     };
     try {
-        LiveResult result = calibrate_live(recording.ports(ports), options, progress);
-        result.camera_seconds = camera_s;
-        result.projector_seconds = projector_s;
-        recording.write_manifest(options.width, options.height, result.kept);
-        return result;
+        work(recording.ports(ports));
+        return seconds;
     } catch (const CameraFault&) {
         recording.flush();  // There is no photograph to blame.
         throw;
@@ -60,6 +56,20 @@ LiveResult calibrate_recorded(Recording& recording,
         recording.flush();
         throw;
     }
+}
+
+LiveResult calibrate_recorded(Recording& recording,
+                              const BenchPorts& bench,
+                              const LiveOptions& options,
+                              const Progress& progress) {
+    LiveResult result;
+    const PortSeconds seconds = run_recorded(recording, bench, [&](const BenchPorts& ports) {
+        result = calibrate_live(ports, options, progress);
+    });
+    result.camera_seconds = seconds.camera;
+    result.projector_seconds = seconds.projector;
+    recording.write_manifest(options.width, options.height, result.kept);
+    return result;
 }
 
 }  // namespace livery

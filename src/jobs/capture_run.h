@@ -1,6 +1,7 @@
-// A bench photographed and calibrated with everything kept: what `livery capture` and the window's
-// capture do.
+// A bench photographed with everything kept: what `livery capture` and the window's capture do.
 #pragma once
+
+#include <functional>
 
 #include "calibration/colour/colour.h"
 #include "capture/recording.h"
@@ -8,11 +9,21 @@
 
 namespace livery {
 
-/// calibrate_live() through the recording. The photograph over which a run fails (of another size,
-/// automatically exposed) is dropped, so that the next run takes it anew, as are those of pictures
-/// that are not known to have arrived (NothingShown); the others stay. Afterwards the recording is
-/// a captures folder with its manifest.json. Throws as calibrate_live() and Recording do, and
-/// CameraFault.
+/// Time within the camera's and the projector's ports.
+struct PortSeconds {
+    double camera = 0.0, projector = 0.0;
+};
+
+/// Runs `work` with the bench's ports through the recording. The photograph over which it fails (of
+/// another size, automatically exposed) is dropped, so that the next run takes it anew, as are
+/// those of pictures that are not known to have arrived (NothingShown); the others stay. The folder
+/// has no manifest.json until somebody writes it anew. Throws as `work` and Recording do.
+PortSeconds run_recorded(Recording& recording,
+                         const BenchPorts& bench,
+                         const std::function<void(const BenchPorts&)>& work);
+
+/// calibrate_live() that way. Afterwards the recording is a captures folder with its manifest.json.
+/// Throws as calibrate_live() and Recording do, and CameraFault.
 LiveResult calibrate_recorded(Recording& recording,
                               const BenchPorts& bench,
                               const LiveOptions& options,

@@ -11,8 +11,8 @@
 
 #include "core/progress.h"
 #include "gl/context.h"
+#include "jobs/calibrate/room_pose.h"
 #include "jobs/comparison.h"
-#include "jobs/room_pose.h"
 #include "scene/colour_calibration.h"
 #include "twin/description.h"
 

@@ -10,8 +10,8 @@
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/image_io.h"
-#include "jobs/bench_calibration.h"
-#include "jobs/calibration_folder.h"
+#include "jobs/calibrate/bench_calibration.h"
+#include "jobs/calibrate/calibration_folder.h"
 #include "jobs/eye_comparison.h"
 #include "scene/mockup_mask.h"
 #include "twin/chart.h"
@@ -73,7 +73,7 @@ CalibratedBench calibrate_bench(const DemoOptions& options,
 
     BenchCalibration calibrated = calibrate_through_ports(*result.bench, product, progress);
     result.room = std::move(calibrated.room);
-    result.projector = result.room ? result.room->projector : description.projector.view;
+    result.projector = *calibrated.projector;
     if (result.room) {
         times.add("photograph the Gray code", result.room->capture_seconds);
         times.add("find where everything stands", result.room->solve_seconds);

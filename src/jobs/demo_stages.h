@@ -9,9 +9,9 @@
 
 #include "calibration/colour/colour.h"
 #include "compensation/compensation.h"
+#include "jobs/calibrate/room_pose.h"
 #include "jobs/demo.h"
 #include "jobs/picture.h"
-#include "jobs/room_pose.h"
 #include "twin/bench.h"
 
 namespace livery {

@@ -14,9 +14,9 @@ std::string pose_note(const DemoResult& result) {
     return fmt::format(
         "found from photographs, data sheets and a tape; {} of {} pixels looked at agree with the "
         "mesh to {:.2f} projector pixels (root mean square)",
-        result.room->registration.refined.inliers,
-        result.room->registration.refined.correspondences,
-        result.room->registration.refined.rms_px);
+        result.room->geometry.inliers,
+        result.room->geometry.correspondences,
+        result.room->geometry.rms_px);
 }
 
 std::string off_note(const DemoResult& result) {

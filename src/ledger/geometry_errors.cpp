@@ -15,7 +15,7 @@
 #include "core/colour.h"
 #include "core/parallel.h"
 #include "core/random.h"
-#include "jobs/bench_calibration.h"
+#include "jobs/calibrate/bench_calibration.h"
 #include "jobs/eye_comparison.h"
 #include "radiance/renderer.h"
 #include "scene/library.h"

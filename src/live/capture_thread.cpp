@@ -1,93 +1,25 @@
 #include "live/capture_thread.h"
 
-#include <atomic>
-#include <chrono>
 #include <exception>
 #include <thread>
 #include <utility>
 
-#include <fmt/format.h>
-
-#include "calibration/preflight.h"
 #include "capture/patient_camera.h"
 #include "core/error.h"
 #include "core/freed_memory.h"
 #include "core/paths.h"
-#include "core/worker.h"
-#include "jobs/bench_calibration.h"
-#include "jobs/camera_curve.h"
-#include "jobs/watched_captures.h"
 #include "live/capture_pictures.h"
+#include "live/capture_work.h"
 #include "live/low_priority.h"
-#include "live/projector_setup.h"
 
 namespace livery {
-
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-constexpr int kLiveWidth_px = 960, kTileWidth_px = 200;
-constexpr auto kBetweenLiveViews = std::chrono::milliseconds(60);
-constexpr auto kBetweenLooks = std::chrono::milliseconds(20);
-
-struct CaptureJobs {
-    CaptureSetup setup;
-    bool open = false, shut = false, preflight = false, fit = false, capture = false, anew = false;
-    std::vector<std::pair<std::string, std::string>> settings;  ///< of the camera, to be made
-    bool watching = false;           ///< the camera is open, and nothing else is to be done
-    std::vector<std::size_t> again;  ///< showings
-    CaptureView view;
-};
-
-}  // namespace
-
-struct CaptureThread::Implementation {
-    GlContext& context;
-    std::function<void()> on_change;
-    std::atomic<bool> abandon{false}, paused{false}, next_picture{false};
-
-    // Of the thread only
-    CaptureSetup setup;
-    CaptureBench bench;
-    Clock::time_point started;
-
-    Worker<CaptureJobs> worker;
-
-    Worker<CaptureJobs>::Turn next(CaptureJobs& asked);
-    void open(const CaptureSetup& with);
-    void show_state();
-    void set(const std::vector<std::pair<std::string, std::string>>& settings);
-    void watch();
-    void preflight_now();
-    void fit_curve();
-    void capture(bool anew, const std::vector<std::size_t>& again);
-    void capture_with_camera(bool anew, const std::vector<std::size_t>& again);
-    void capture_by_hand();
-    void show_by_hand(const std::vector<Pattern>& patterns);
-    BenchPorts ports();
-    BenchCalibrationRequest request() const;
-    void finish(const BenchCalibration& made);
-    void wait_while_paused() const;
-    void look_at(Recording& recording);
-    Progress progress();
-
-    template <typename Change>
-    void publish(const Change& change) {
-        worker.use([&](CaptureJobs& asked) { change(asked.view); });
-        on_change();
-    }
-    /// Runs what was asked for, and says what became of it.
-    template <typename Work>
-    void attempt(CaptureView::Doing doing, const Work& work);
-    bool is_by_hand() const { return setup.camera.kind == CameraChoice::Kind::folder; }
-};
 
 Progress CaptureThread::Implementation::progress() {
     Progress progress;
     progress.stop = &abandon;
     progress.report = [this](double fraction, std::string_view stage) {
-        const double elapsed_s = std::chrono::duration<double>(Clock::now() - started).count();
+        const double elapsed_s =
+            std::chrono::duration<double>(CaptureClock::now() - started).count();
         publish([&](CaptureView& view) {
             view.fraction = fraction;
             view.stage = stage;
@@ -101,7 +33,7 @@ Progress CaptureThread::Implementation::progress() {
 
 template <typename Work>
 void CaptureThread::Implementation::attempt(CaptureView::Doing doing, const Work& work) {
-    started = Clock::now();
+    started = CaptureClock::now();
     publish([&](CaptureView& view) {
         view.doing = doing;
         view.fraction = 0.0;
@@ -123,7 +55,11 @@ void CaptureThread::Implementation::attempt(CaptureView::Doing doing, const Work
         fix = "Put that right and try again.";
     }
     // Light to aim and to focus by; a real projector goes back to its frames.
-    if (bench.show) bench.show(Image8(bench.projector->width, bench.projector->height, 3, 255));
+    if (bench.show) {
+        const View& projector = bench.simulated->description().projector.view;
+        bench.show(Image8(projector.width, projector.height, 3, 255));
+    }
+    show_steps();
     publish([&](CaptureView& view) {
         view.doing = bench.camera ? CaptureView::Doing::watching : CaptureView::Doing::nothing;
         view.why = why;
@@ -131,21 +67,23 @@ void CaptureThread::Implementation::attempt(CaptureView::Doing doing, const Work
         view.wait = {};
         view.waits_for_next = false;
         view.shown.reset();
-        std::error_code error;
-        view.can_go_on = std::filesystem::exists(folder() / "recording.json", error) &&
-                         !std::filesystem::exists(folder() / "manifest.json", error);
     });
 }
 
 void CaptureThread::Implementation::open(const CaptureSetup& with) {
-    bench = {};
+    const bool stays = bench.camera && with.camera == setup.camera &&
+                       (!bench.simulated || with.product == setup.product);
     setup = with;
-    publish([&](CaptureView& view) {
-        view = {};
-        view.paused = paused;
-    });
+    if (!stays) {
+        bench = {};
+        run = {};
+        publish([&](CaptureView& view) {
+            view = {};
+            view.paused = paused;
+        });
+    }
     attempt(CaptureView::Doing::opening, [&] {
-        if (is_by_hand()) return;
+        if (is_by_hand() || stays) return;
         bench = open_capture_bench(setup.camera, setup.product, progress());
         show_state();
         publish([&](CaptureView& view) {
@@ -217,145 +155,17 @@ BenchPorts CaptureThread::Implementation::ports() {
     BenchPorts ports;
     ports.show = [this, show](const Image8& drive) {
         wait_while_paused();
-        show(drive);
+        times.run([&] { show(drive); });
         const auto small = std::make_shared<Image8>(small_picture(drive, kTileWidth_px));
         publish([&](CaptureView& view) { view.shown = small; });
     };
-    if (bench.camera) ports.photograph = patient(*bench.camera, stoppable, tell);
+    if (bench.camera)
+        ports.photograph = [this, take = patient(*bench.camera, stoppable, tell)](double asked_s) {
+            ++times.photographs;
+            return times.run([&] { return take(asked_s); });
+        };
     ports.measure_xyz = bench.measure_xyz;
     return ports;
-}
-
-BenchCalibrationRequest CaptureThread::Implementation::request() const {
-    BenchCalibrationRequest request;
-    request.product = setup.product;
-    request.projector = bench.projector ? bench.projector : setup.projector_view;
-    request.width = bench.projector ? bench.projector->width : setup.width;
-    request.height = bench.projector ? bench.projector->height : setup.height;
-    request.made_with = (is_by_hand() ? "photographs in " + setup.camera.what : bench.name) + ", " +
-                        (bench.show ? "its own projector" : setup.projector);
-    return request;
-}
-
-void CaptureThread::Implementation::preflight_now() {
-    publish([](CaptureView& view) { view.figures.clear(); });
-    const BenchCalibrationRequest what = request();
-    const LiveOptions options = live_options_of(what);
-    preflight(ports(),
-              {options.width, options.height, options.mockup},
-              progress(),
-              [this](const GradedFigure& figure) {
-                  publish([&](CaptureView& view) { view.figures.push_back(figure); });
-              });
-}
-
-void CaptureThread::Implementation::fit_curve() {
-    const BenchCalibrationRequest what = request();
-    const CameraCurve curve =
-        fit_camera_curve(*bench.camera, ports(), what.width, what.height, progress());
-    publish([&](CaptureView& view) {
-        view.curve = fmt::format(
-            "the curve just fitted: with it, photographs of one light differ by {:.2f} %. It is "
-            "kept "
-            "in {}",
-            100.0 * curve.residual,
-            curve.file.string());
-    });
-}
-
-/// Every photograph as it comes, from the camera or from the folder, becomes a tile.
-void CaptureThread::Implementation::look_at(Recording& recording) {
-    recording.tell([this, &recording](std::size_t showing, const Photograph& photograph) {
-        const auto seen = std::make_shared<Image8>(small_photograph(photograph, kTileWidth_px));
-        const CaptureHistogram histogram = histogram_of(photograph);
-        const std::string of = recording.announced();
-        publish([&](CaptureView& view) {
-            if (view.tiles.size() <= showing) view.tiles.resize(showing + 1);
-            CaptureTile& tile = view.tiles[showing];
-            tile.photographs = tile.of == of ? tile.photographs + 1 : 1;
-            tile.of = of;
-            tile.seen = seen;
-            view.histogram = histogram;
-            view.taken = recording.taken();
-            view.kept_from_before = recording.answered();
-        });
-    });
-}
-
-void CaptureThread::Implementation::finish(const BenchCalibration& made) {
-    const auto kept = keep_calibration(made.calibration, request().projector);
-    publish([&](CaptureView& view) {
-        view.finished = kept;
-        view.capture_s = made.live.capture_seconds;
-        view.camera_s = made.live.camera_seconds;
-        view.projector_s = made.live.projector_seconds;
-    });
-}
-
-void CaptureThread::Implementation::capture_with_camera(bool anew,
-                                                        const std::vector<std::size_t>& again) {
-    check_calibrations_folder();
-    if (anew) {
-        std::error_code error;
-        std::filesystem::remove_all(folder(), error);
-    }
-    BenchCalibrationRequest what = request();
-    Recording recording(folder(), what.made_with);
-    for (const std::size_t showing : again) recording.take_again(showing);
-    look_at(recording);
-    what.recording = &recording;
-    publish([](CaptureView& view) { view.tiles.clear(); });
-    finish(calibrate_through_ports(ports(), what, progress()));
-}
-
-/// One picture after the other, each until somebody says that it was taken.
-void CaptureThread::Implementation::show_by_hand(const std::vector<Pattern>& patterns) {
-    const ShowPicture show = ports().show;
-    publish([](CaptureView& view) { view.waits_for_next = true; });
-    const Progress told = progress();
-    for (std::size_t k = 0; k < patterns.size(); ++k) {
-        show(patterns[k].drive);
-        told.update(static_cast<double>(k) / static_cast<double>(patterns.size()),
-                    fmt::format("shoot {} of {}: {}", k + 1, patterns.size(), patterns[k].role));
-        next_picture = false;
-        while (!next_picture) {
-            told.check_stop();
-            std::this_thread::sleep_for(kBetweenLooks);
-        }
-    }
-    show(Image8(setup.width, setup.height, 3));
-    publish([](CaptureView& view) { view.waits_for_next = false; });
-}
-
-void CaptureThread::Implementation::capture_by_hand() {
-    check_calibrations_folder();
-    BenchCalibrationRequest what = request();
-    const LiveOptions options = live_options_of(what);
-    std::vector<Pattern> patterns = geometry_patterns(options.width, options.height);
-    for (Pattern& pattern : colour_patterns(options.width, options.height, 0, 255))
-        patterns.push_back(std::move(pattern));
-    std::vector<std::string> roles;
-    for (const Pattern& pattern : patterns) roles.push_back(pattern.role);
-    WatchedCaptures watched(setup.camera.what, roles);
-    watched.look();
-    watched.look();
-    if (watched.state().files == 0) show_by_hand(patterns);
-    const Progress told = progress();
-    told.update(0.0, fmt::format("copy the {} photographs to {}", roles.size(), setup.camera.what));
-    const BenchPorts files = watched.ports(told, [&](const WatchedState& state) {
-        told.update(static_cast<double>(state.found) / static_cast<double>(state.wanted),
-                    text_of(state));
-    });
-    finish(calibrate_through_ports(files, what, told));
-}
-
-void CaptureThread::Implementation::capture(bool anew, const std::vector<std::size_t>& again) {
-    publish([](CaptureView& view) { view.finished.reset(); });
-    if (is_by_hand()) {
-        capture_by_hand();
-    } else {
-        capture_with_camera(anew, again);
-    }
 }
 
 Worker<CaptureJobs>::Turn CaptureThread::Implementation::next(CaptureJobs& asked) {
@@ -368,18 +178,21 @@ Worker<CaptureJobs>::Turn CaptureThread::Implementation::next(CaptureJobs& asked
     if (std::exchange(asked.shut, false))
         return {[this] {
             bench = {};
+            run = {};
             publish([](CaptureView& view) { view = {}; });
         }};
     if (!asked.settings.empty() && bench.camera)
         return {[this, settings = std::exchange(asked.settings, {})] { set(settings); }};
-    if (std::exchange(asked.preflight, false))
-        return {[this] { attempt(CaptureView::Doing::preflight, [this] { preflight_now(); }); }};
     if (std::exchange(asked.fit, false))
         return {[this] { attempt(CaptureView::Doing::fitting, [this] { fit_curve(); }); }};
-    if (std::exchange(asked.capture, false)) {
+    if (std::exchange(asked.drift, false))
+        return {
+            [this] { attempt(CaptureView::Doing::checking, [this] { look_for_drift_now(); }); }};
+    if (asked.step) {
+        const CaptureStep step = *std::exchange(asked.step, std::nullopt);
         const bool anew = std::exchange(asked.anew, false);
-        return {[this, anew, again = std::exchange(asked.again, {})] {
-            attempt(CaptureView::Doing::capturing, [&] { capture(anew, again); });
+        return {[this, step, anew, again = std::exchange(asked.again, {})] {
+            attempt(doing_of(step), [&] { take_step(step, anew, again); });
             return_freed_memory();
         }};
     }
@@ -408,7 +221,8 @@ void CaptureThread::use(CaptureSetup setup) {
     implementation_->worker.change([&](CaptureJobs& asked) {
         implementation_->abandon = true;
         asked.setup = std::move(setup);
-        asked.preflight = asked.fit = asked.capture = asked.watching = asked.shut = false;
+        asked.fit = asked.drift = asked.watching = asked.shut = false;
+        asked.step.reset();
         asked.settings.clear();
         asked.open = true;
     });
@@ -417,7 +231,8 @@ void CaptureThread::use(CaptureSetup setup) {
 void CaptureThread::close() {
     implementation_->worker.change([&](CaptureJobs& asked) {
         implementation_->abandon = true;
-        asked.open = asked.preflight = asked.fit = asked.capture = asked.watching = false;
+        asked.open = asked.fit = asked.drift = asked.watching = false;
+        asked.step.reset();
         asked.settings.clear();
         asked.shut = true;
     });
@@ -428,25 +243,25 @@ void CaptureThread::set(const std::string& setting, const std::string& value) {
         [&](CaptureJobs& asked) { asked.settings.emplace_back(setting, value); });
 }
 
-void CaptureThread::start_preflight() {
-    implementation_->worker.change([](CaptureJobs& asked) { asked.preflight = true; });
-}
-
 void CaptureThread::start_curve_fit() {
     implementation_->worker.change([](CaptureJobs& asked) { asked.fit = true; });
 }
 
-void CaptureThread::start_capture(bool anew) {
+void CaptureThread::start(CaptureStep step, bool anew) {
     implementation_->worker.change([&](CaptureJobs& asked) {
-        asked.capture = true;
+        asked.step = step;
         asked.anew = anew;
     });
+}
+
+void CaptureThread::look_for_drift() {
+    implementation_->worker.change([](CaptureJobs& asked) { asked.drift = true; });
 }
 
 void CaptureThread::take_again(std::size_t showing) {
     implementation_->worker.change([&](CaptureJobs& asked) {
         asked.again.push_back(showing);
-        asked.capture = true;
+        if (!asked.step) asked.step = photographed_last(asked.view);
         implementation_->abandon = true;  // It begins again, and is answered from the folder.
     });
 }
@@ -460,7 +275,8 @@ void CaptureThread::next() { implementation_->next_picture = true; }
 
 void CaptureThread::cancel() {
     implementation_->worker.use([&](CaptureJobs& asked) {
-        asked.preflight = asked.fit = asked.capture = false;
+        asked.fit = asked.drift = false;
+        asked.step.reset();
         implementation_->abandon = true;
     });
 }

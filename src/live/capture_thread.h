@@ -17,6 +17,7 @@
 #include "core/progress.h"
 #include "gl/context.h"
 #include "jobs/capture_bench.h"
+#include "scene/data_sheet.h"
 #include "scene/product.h"
 #include "scene/view.h"
 
@@ -29,6 +30,10 @@ struct CaptureSetup {
     std::string projector;               ///< its name, in words; empty: none is chosen
     int width = 0, height = 0;           ///< its pixels
     std::optional<View> projector_view;  ///< where it stands, if that is known
+    /// Where it is not: what tells it with the photographs. A simulated bench has its own.
+    std::optional<DataSheets> data_sheets;
+    int colour_shots = 2;          ///< photographs of each colour picture
+    std::filesystem::path in_use;  ///< a calibration to compare with; empty: none
     /// Shows on it, on the capture's thread with its context current.
     std::function<ShowPicture(const Progress&, TellWait)> projector_port;
 };
@@ -46,9 +51,24 @@ struct CaptureHistogram {
     double clipped = 0.0;           ///< of all pixels, in any channel
 };
 
+/// The steps to a calibration, in their order.
+enum class CaptureStep { look, geometry, colour, check };
+inline constexpr int kCaptureSteps = 4;
+
+struct CaptureStepView {
+    bool called_for = true;  ///< as things are; the geometry is not where the pose is known
+    bool done = false;
+    bool can_go_on = false;  ///< one that was stopped lies there
+    std::vector<GradedFigure> figures;
+    double seconds = 0.0;     ///< that it took
+    double expected_s = 0.0;  ///< that it will take by the photographs so far; 0: nobody knows
+    std::shared_ptr<const Image8> finding;  ///< sRGB: what it found, marked; null: nothing to see
+    std::string finding_of;                 ///< what that shows
+};
+
 /// What it does now and what came of it.
 struct CaptureView {
-    enum class Doing { nothing, opening, watching, preflight, fitting, capturing };
+    enum class Doing { nothing, opening, watching, preflight, fitting, capturing, checking };
     Doing doing = Doing::nothing;
     std::string camera;  ///< its name; empty: none is open
     std::vector<CameraSetting> settings;
@@ -61,10 +81,14 @@ struct CaptureView {
     double elapsed_s = 0.0;
     std::optional<double> remaining_s;
     bool paused = false;
-    bool waits_for_next = false;                ///< somebody shoots by hand, and says when
-    CaptureWait wait;                           ///< what it waits for; empty: nothing
-    std::string why, fix;                       ///< why the last thing that was asked for failed
-    std::vector<GradedFigure> figures;          ///< of the newest preflight
+    bool waits_for_next = false;  ///< somebody shoots by hand, and says when
+    CaptureWait wait;             ///< what it waits for; empty: nothing
+    std::string why, fix;         ///< why the last thing that was asked for failed
+    std::array<CaptureStepView, kCaptureSteps> steps;
+    CaptureStep doing_step = CaptureStep::look;  ///< while it is busy
+    /// Of the calibration that came of it against the one in use, and of the bench against how that
+    /// one left it.
+    std::vector<GradedFigure> compared, drift;
     std::shared_ptr<const Image8> live, shown;  ///< sRGB; device values, small
     std::vector<CaptureTile> tiles;             ///< by showing
     CaptureHistogram histogram;                 ///< of the newest photograph or live view
@@ -72,8 +96,12 @@ struct CaptureView {
     /// Of the finished capture from its start to the last photograph, and what of it was waiting
     /// for the camera and for the projector.
     double capture_s = 0.0, camera_s = 0.0, projector_s = 0.0;
-    bool can_go_on = false;                         ///< a capture that was stopped lies there
     std::optional<std::filesystem::path> finished;  ///< the calibration that came of it
+
+    CaptureStepView& step(CaptureStep which) { return steps[static_cast<std::size_t>(which)]; }
+    const CaptureStepView& step(CaptureStep which) const {
+        return steps[static_cast<std::size_t>(which)];
+    }
 };
 
 class CaptureThread {
@@ -85,16 +113,18 @@ class CaptureThread {
     CaptureThread(const CaptureThread&) = delete;
     CaptureThread& operator=(const CaptureThread&) = delete;
 
-    /// Opens that camera (for a live view) in place of the one before; stops what runs.
+    /// Opens that camera (for a live view) in place of the one before; stops what runs. The same
+    /// camera stays open, and what does not follow from what has changed is kept.
     void use(CaptureSetup setup);
     void close();  ///< lets the camera go
-    void start_preflight();
     /// Sets the camera: CameraState::settings.
     void set(const std::string& setting, const std::string& value);
     /// Fits the curve of a camera that gives no RAW, and keeps it for its model.
     void start_curve_fit();
-    /// Goes on with what was stopped, unless `anew`.
-    void start_capture(bool anew);
+    /// Goes on with what was stopped, unless `anew`, which forgets the step and what follows.
+    void start(CaptureStep step, bool anew);
+    /// Compares the bench with how the calibration in use left it.
+    void look_for_drift();
     void take_again(std::size_t showing);  ///< at once while it captures, else goes on with that
     void set_paused(bool paused);          ///< before the next picture
     void next();                           ///< the picture by hand was taken

@@ -9,8 +9,8 @@
 #include "core/error.h"
 #include "core/paths.h"
 #include "core/replace_folder.h"
-#include "jobs/bench_calibration.h"
-#include "jobs/calibration_folder.h"
+#include "jobs/calibrate/calibration_folder.h"
+#include "jobs/calibrate/calibration_origin.h"
 #include "live/setup_cache.h"
 #include "scene/mockup_mask.h"
 #include "twin/description.h"
@@ -93,26 +93,28 @@ std::filesystem::path calibrate_on_bench(Bench& bench,
                                          std::shared_ptr<const Product> product,
                                          const Progress& progress) {
     check_calibrations_folder();  // Before the work.
-    const BenchCalibration found = calibrate_through_ports(bench, std::move(product), progress);
+    const BenchCalibrationRequest request = request_of(bench.description(), std::move(product));
+    const BenchCalibration found = calibrate_through_ports(bench.ports(), request, progress);
     progress.update(1.0, "keeping the calibration");
-    return keep_calibration(
-        found.calibration, found.room ? found.room->projector : bench.description().projector.view);
+    return keep_calibration(found, request);
 }
 
 void check_calibrations_folder() { make_output_folder(calibrations_folder()); }
 
-std::filesystem::path keep_calibration(const ColourCalibration& calibration,
-                                       const std::optional<View>& projector) {
+std::filesystem::path keep_calibration(const BenchCalibration& made,
+                                       const BenchCalibrationRequest& request) {
+    const ColourCalibration& calibration = made.calibration;
     const auto all = calibrations_folder();
     make_output_folder(all);
     const std::string name = fmt::format(
         "{:%Y-%m-%dT%H-%M-%SZ}-{}", fmt::gmtime(std::time(nullptr)), calibration.id.substr(0, 8));
     const UnfinishedFolder unfinished(all / ("." + name));
-    if (projector) {
-        write_setup(unfinished.path(), calibration, *projector);
+    if (made.projector) {
+        write_setup(unfinished.path(), calibration, *made.projector);
     } else {
         write_calibration(unfinished.path(), calibration);
     }
+    write_origin(unfinished.path(), origin_of(made, request));
     std::error_code error;
     std::filesystem::rename(unfinished.path(), all / name, error);
     if (error) throw FileError(all / name, "", error.message(), "a folder that can be made");

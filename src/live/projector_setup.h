@@ -9,6 +9,7 @@
 
 #include "compensation/compensation.h"
 #include "core/progress.h"
+#include "jobs/calibrate/bench_calibration.h"
 #include "scene/colour_calibration.h"
 #include "scene/product.h"
 #include "scene/view.h"
@@ -49,10 +50,10 @@ std::filesystem::path calibrate_on_bench(Bench& bench,
 
 /// Where the next calibration will be kept can be written. Throws FileError.
 void check_calibrations_folder();
-/// Keeps a calibration as the newest; without `projector` where it stands must still be said
-/// (`add_projector`). Throws FileError.
-std::filesystem::path keep_calibration(const ColourCalibration& calibration,
-                                       const std::optional<View>& projector);
+/// Keeps a calibration as the newest; where its projector stands must still be said
+/// (`add_projector`) if that is not known. Throws FileError.
+std::filesystem::path keep_calibration(const BenchCalibration& made,
+                                       const BenchCalibrationRequest& request);
 
 /// Folders of the calibrations kept in the user's folder, newest first.
 std::vector<std::filesystem::path> kept_calibrations();

@@ -12,6 +12,7 @@ struct DataSheets {
     double focal_mm = 50.0;         ///< the camera's
     double sensor_width_mm = 36.0;  ///< of what the picture's width shows
     double lens_distance_mm = 0.0;  ///< from the projector's lens to the camera's
+    bool operator==(const DataSheets&) const = default;
 };
 
 /// Lenses without distortion, at the world's origin, for pictures of so many pixels.

@@ -17,4 +17,8 @@ Json json_of(const Rigid3& pose);
 /// there, `distortion`.
 void read_lens(const JsonReader& object, View& view);
 
+/// A camera file's fields (docs/files.md) within an object.
+View read_camera_fields(const JsonReader& object);
+Json json_of(const View& view);
+
 }  // namespace livery

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <set>
+#include <span>
 
 #include <glm/common.hpp>
 #include <glm/matrix.hpp>
 
 #include "core/error.h"
+#include "core/hash.h"
 #include "core/json.h"
 #include "core/paths.h"
 #include "scene/pose_io.h"
@@ -62,6 +64,15 @@ void rename_parts(const ProductFile& said, const std::filesystem::path& file, Me
 }
 
 }  // namespace
+
+std::string shape_hash(const Mesh& mesh) {
+    Hasher hasher;
+    const std::size_t counts[] = {mesh.positions_mm.size(), mesh.triangles.size()};
+    hasher.add(std::span<const std::size_t>(counts));
+    hasher.add(std::span<const glm::vec3>(mesh.positions_mm));
+    hasher.add(std::span<const glm::uvec3>(mesh.triangles));
+    return hasher.hex();
+}
 
 Product load_product(const std::filesystem::path& file, std::optional<LengthUnit> unit) {
     Product product;

@@ -20,6 +20,9 @@ struct Product {
     std::vector<std::string> notes;  ///< what was dropped, repaired or assumed while loading
 };
 
+/// Of a mock-up's shape: positions and triangles as they are.
+std::string shape_hash(const Mesh& mesh);
+
 /// A mesh file, or a product JSON that names one (docs/files.md). The unit comes before the one in
 /// the JSON. Throws FileError.
 Product load_product(const std::filesystem::path& file,

@@ -12,6 +12,28 @@ constexpr int kLargestSide = 65536;
 
 }  // namespace
 
+View read_camera_fields(const JsonReader& object) {
+    View view;
+    view.width = object["width"].integer(1, kLargestSide);
+    view.height = object["height"].integer(1, kLargestSide);
+    read_lens(object, view);
+    view.view_from_world = read_pose(object);
+    return view;
+}
+
+Json json_of(const View& view) {
+    const glm::dvec2 principal = view.principal_px - 0.5;
+    Json json;
+    json["width"] = view.width;
+    json["height"] = view.height;
+    json["matrix"] = {
+        view.focal_px.x, 0.0, principal.x, 0.0, view.focal_px.y, principal.y, 0.0, 0.0, 1.0};
+    json["distortion"] = view.distortion;
+    json["rotation"] = json_from(view.view_from_world.rotation);
+    json["translation_mm"] = json_from(view.view_from_world.translation);
+    return json;
+}
+
 View read_camera_file(const std::filesystem::path& file) {
     return parse_camera(read_text_file(file), file);
 }
@@ -29,26 +51,12 @@ View parse_camera(const std::string& text, const std::filesystem::path& file) {
                      "distortion",
                      "rotation",
                      "translation_mm"});
-    View view;
-    view.width = root["width"].integer(1, kLargestSide);
-    view.height = root["height"].integer(1, kLargestSide);
-
-    read_lens(root, view);
-    view.view_from_world = read_pose(root);
-    return view;
+    return read_camera_fields(root);
 }
 
 void write_camera_file(const std::filesystem::path& file, const View& view) {
-    const glm::dvec2 principal = view.principal_px - 0.5;
-    Json json;
-    json["format_version"] = kFormatVersion;
-    json["width"] = view.width;
-    json["height"] = view.height;
-    json["matrix"] = {
-        view.focal_px.x, 0.0, principal.x, 0.0, view.focal_px.y, principal.y, 0.0, 0.0, 1.0};
-    json["distortion"] = view.distortion;
-    json["rotation"] = json_from(view.view_from_world.rotation);
-    json["translation_mm"] = json_from(view.view_from_world.translation);
+    Json json = {{"format_version", kFormatVersion}};
+    json.update(json_of(view));
     write_json_file(file, json);
 }
 

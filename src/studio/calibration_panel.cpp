@@ -14,8 +14,8 @@
 
 #include "core/error.h"
 #include "core/paths.h"
-#include "jobs/calibration_folder.h"
-#include "studio/calibration_grade.h"
+#include "jobs/calibrate/calibration_folder.h"
+#include "jobs/calibrate/calibration_grade.h"
 #include "studio/kit/background.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/widgets.h"
@@ -27,18 +27,6 @@ namespace livery {
 namespace {
 
 constexpr double kBetweenListings_s = 2.0;
-
-const ImVec4& colour_of(Grade grade) {
-    switch (grade) {
-        case Grade::good:
-            return colours::good;
-        case Grade::usable:
-            return colours::warning;
-        case Grade::bad:
-            return colours::error;
-    }
-    return colours::text;
-}
 
 void list_what_there_is(Studio& studio) {
     CalibrationPanelState& state = *studio.panels.calibration;
@@ -83,6 +71,18 @@ void fact(const char* label, const std::string& value, const std::string& whole 
 }
 
 }  // namespace
+
+const ImVec4& colour_of(Grade grade) {
+    switch (grade) {
+        case Grade::good:
+            return colours::good;
+        case Grade::usable:
+            return colours::warning;
+        case Grade::bad:
+            return colours::error;
+    }
+    return colours::text;
+}
 
 void draw_figures(const std::vector<GradedFigure>& figures) {
     for (const GradedFigure& figure : figures) {

@@ -8,6 +8,8 @@
 #include "core/grade.h"
 #include "studio/kit/held.h"
 
+struct ImVec4;
+
 namespace livery {
 
 struct Studio;
@@ -23,6 +25,7 @@ struct CalibrationPanelState {
     bool dismissed = false;       ///< the refusal was read
 };
 
+const ImVec4& colour_of(Grade grade);
 /// A row a figure, its grade at the right; what it means and what helps while the pointer is on it.
 void draw_figures(const std::vector<GradedFigure>& figures);
 /// Puts a calibration's folder to use; asks for its projector where it does not say.

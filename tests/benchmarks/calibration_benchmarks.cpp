@@ -5,7 +5,7 @@
 #include "calibration/colour/mixing.h"
 #include "calibration/correspondence/gray_code.h"
 #include "calibration/correspondence/patterns.h"
-#include "jobs/bench_calibration.h"
+#include "jobs/calibrate/bench_calibration.h"
 #include "jobs/comparison.h"
 #include "twin/bench.h"
 

@@ -10,7 +10,7 @@
 
 #include "core/json.h"
 #include "desktop/two_monitors.h"
-#include "jobs/bench_calibration.h"
+#include "jobs/calibrate/bench_calibration.h"
 #include "live/projector_setup.h"
 #include "scene/mockup_mask.h"
 #include "session/commands.h"
@@ -78,8 +78,10 @@ class CameraBeforeMonitor : public TwoMonitors {
         ::setenv("HOME", home_.c_str(), 1);  // libgphoto2 writes there
         Session session = Session::open(running->session_file());
         session.execute(SetQuality{Quality::draft});
-        session.execute(
-            SetCalibration{keep_calibration(directly().first, request().projector).string()});
+        BenchCalibration kept;
+        kept.calibration = directly().first;
+        kept.projector = request().projector;
+        session.execute(SetCalibration{keep_calibration(kept, request()).string()});
         running->document = session.document();
         DesktopOptions options;
         options.projector_px = {request().width, request().height};
@@ -177,6 +179,8 @@ class CameraBeforeMonitor : public TwoMonitors {
         const std::string before = document.calibration;
         ASSERT_TRUE(wait_until([&] { return program->has_item("capture-finished"); }, patience))
             << says();
+        EXPECT_EQ(program->state("calibration"), before) << "nobody has accepted the new one";
+        program->click("accept");
         ASSERT_TRUE(wait_until([&] { return program->state("calibration") != before; }, patience));
         document.calibration = program->state("calibration").get<std::string>();
         EXPECT_EQ(says(), "");

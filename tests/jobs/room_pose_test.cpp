@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "jobs/bench_calibration.h"
+#include "jobs/calibrate/bench_calibration.h"
 #include "jobs/eye_comparison.h"
 #include "scene/library.h"
 #include "twin/bench.h"
@@ -35,7 +35,7 @@ TEST(RoomPose, IsFoundFromPhotographsDataSheetsAndATape) {
         Bench bench(description, product);
         const RoomPose room =
             find_room(bench.ports(), 640, 400, description.data_sheets.value(), *product);
-        const ErrorStatistics off = offset_of(bench, *product, room.projector);
+        const ErrorStatistics off = offset_of(bench, *product, room.geometry.projector);
         EXPECT_LT(off.median, 0.5);
         EXPECT_LT(off.p95, 1.0);
         EXPECT_GT(off.pixels, 10000u);
@@ -75,8 +75,8 @@ TEST(RoomPose, OfASphereTakesItsTurnFromTheFile) {
     Bench bench(description, product);
     const BenchCalibration found = calibrate_through_ports(bench, product, {});
     ASSERT_TRUE(found.room);
-    EXPECT_EQ(found.room->registration.free.count, 3);
-    const ErrorStatistics off = offset_of(bench, *product, found.room->projector);
+    EXPECT_EQ(found.room->geometry.free_turns, 3);
+    const ErrorStatistics off = offset_of(bench, *product, found.room->geometry.projector);
     EXPECT_LT(off.median, 0.5);
     EXPECT_LT(off.p95, 1.0);
 }
@@ -112,7 +112,7 @@ TEST(RoomPose, WithWrongDataSheetsIsRefusedOrRight) {
         SCOPED_TRACE(wrong.what);
         try {
             const RoomPose room = find_room(bench.ports(), 640, 400, wrong.sheets, *product);
-            const ErrorStatistics off = offset_of(bench, *product, room.projector);
+            const ErrorStatistics off = offset_of(bench, *product, room.geometry.projector);
             EXPECT_LT(off.p95, 2.0) << "accepted, and wrong";
         } catch (const Refused& refused) {
             std::printf("    %s: %s\n", wrong.what, refused.what());

@@ -7,7 +7,7 @@
 
 #include "calibration/predict.h"
 #include "compensation/compensation.h"
-#include "jobs/bench_calibration.h"
+#include "jobs/calibrate/bench_calibration.h"
 #include "jobs/projector_irradiance.h"
 #include "scene/mockup_mask.h"
 #include "session/small_session.h"

@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "core/paths.h"
-#include "jobs/bench_calibration.h"
-#include "jobs/calibration_folder.h"
+#include "jobs/calibrate/bench_calibration.h"
+#include "jobs/calibrate/calibration_folder.h"
 #include "jobs/synthetic_calibration.h"
 #include "scene/mockup_mask.h"
 #include "session/small_session.h"

@@ -76,6 +76,9 @@ struct LiveResult {
     std::vector<Pattern> patterns;
     /// Photographs that it was made of, of those that were recorded: role and file of each.
     std::vector<std::pair<std::string, std::string>> kept;
+    /// The last photographs of white and of black, to tell later whether something has changed;
+    /// empty: the photographs were taken before.
+    Photograph white, black;
     double capture_seconds = 0.0, solve_seconds = 0.0;
     /// Of capture_seconds, within the camera's and the projector's ports; 0: nobody looked.
     double camera_seconds = 0.0, projector_seconds = 0.0;
@@ -94,6 +97,8 @@ struct LiveMap {
     ProjectorToCamera map;
     int camera_width = 0, camera_height = 0;
     std::vector<std::string> warnings;
+    /// Photographs that it was made of, of those that were recorded: role and file of each.
+    std::vector<std::pair<std::string, std::string>> kept;
     double capture_seconds = 0.0;
 };
 /// The Gray code alone, for whoever must know where things stand before colours are photographed:

@@ -11,7 +11,7 @@
 
 #include "core/error.h"
 #include "projection/picture_port.h"
-#include "studio/calibration_panel.h"
+#include "studio/capture/data_sheet_settings.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/widgets.h"
 #include "studio/kit/words.h"
@@ -20,16 +20,17 @@
 
 namespace livery {
 
+bool is_busy(const CaptureView& view) {
+    using Doing = CaptureView::Doing;
+    return view.doing == Doing::preflight || view.doing == Doing::fitting ||
+           view.doing == Doing::capturing || view.doing == Doing::checking;
+}
+
 namespace {
 
 using Doing = CaptureView::Doing;
 
 constexpr double kBetweenListings_s = 3.0;
-
-bool is_busy(const CaptureView& view) {
-    return view.doing == Doing::preflight || view.doing == Doing::fitting ||
-           view.doing == Doing::capturing;
-}
 
 void list_what_there_is(Shell& shell) {
     CapturePanelState& state = *shell.studio.panels.capture;
@@ -64,7 +65,26 @@ std::optional<View> known_pose(const Shell& shell) {
     return same ? std::optional(setup->view) : std::nullopt;
 }
 
-CaptureSetup setup_of(const Shell& shell, const CameraChoice& choice) {
+bool are_whole(const DataSheets& sheets) {
+    return sheets.throw_ratio > 0.0 && sheets.focal_mm > 0.0 && sheets.sensor_width_mm > 0.0 &&
+           sheets.lens_distance_mm > 0.0;
+}
+
+using Place = CapturePanelState::Place;
+
+/// As chosen, while it can be; else what needs the least of people.
+Place place_of(const Shell& shell) {
+    const CapturePanelState& state = *shell.studio.panels.capture;
+    const bool known = known_pose(shell).has_value(), own = has_own_projector(*state.chosen);
+    if (state.place == Place::kept && known) return Place::kept;
+    if (state.place && *state.place != Place::kept) return *state.place;
+    if (own) return Place::found;
+    return known ? Place::kept : are_whole(state.sheets) ? Place::found : Place::told;
+}
+
+}  // namespace
+
+CaptureSetup capture_setup(const Shell& shell, const CameraChoice& choice) {
     const CapturePanelState& state = *shell.studio.panels.capture;
     CaptureSetup setup;
     setup.camera = choice;
@@ -75,7 +95,11 @@ CaptureSetup setup_of(const Shell& shell, const CameraChoice& choice) {
         setup.width = monitor->width;
         setup.height = monitor->height;
     }
-    if (state.keeps_pose) setup.projector_view = known_pose(shell);
+    const Place place = place_of(shell);
+    if (place == Place::kept) setup.projector_view = known_pose(shell);
+    if (place == Place::found && are_whole(state.sheets)) setup.data_sheets = state.sheets;
+    setup.colour_shots = state.colour_shots;
+    setup.in_use = shell.studio.session.document().calibration;
     Results* results = shell.results.get();
     ProjectorScreen* screen = shell.studio.projector.get();
     setup.projector_port = [results, screen](const Progress& progress, TellWait tell) {
@@ -87,11 +111,13 @@ CaptureSetup setup_of(const Shell& shell, const CameraChoice& choice) {
     return setup;
 }
 
+namespace {
+
 void choose(Shell& shell, const CameraChoice& choice) {
     CapturePanelState& state = *shell.studio.panels.capture;
     state.chosen = choice;
     state.selected.reset();
-    shell.studio.capture->use(setup_of(shell, choice));
+    shell.studio.capture->use(capture_setup(shell, choice));
 }
 
 void connect(Shell& shell) {
@@ -180,12 +206,96 @@ void draw_cameras(Shell& shell) {
     for (const std::string& warning : view.warnings) warning_text(sentence(warning));
 }
 
+/// The five figures that photographs do not tell.
+void draw_data_sheets(Shell& shell) {
+    CapturePanelState& state = *shell.studio.panels.capture;
+    DataSheets& sheets = state.sheets;
+    bool changed = false;
+    const auto row = [&](const char* label,
+                         const char* item,
+                         double& value,
+                         const char* format,
+                         const char* meaning) {
+        row_label(label);
+        ImGui::SetNextItemWidth(em(7.0f));
+        ImGui::InputDouble(fmt::format("##{}", item).c_str(), &value, 0.0, 0.0, format);
+        changed |= ImGui::IsItemDeactivatedAfterEdit();
+        name_last_item(item);
+        tooltip(meaning);
+    };
+    row("Throw ratio",
+        "sheet-throw",
+        sheets.throw_ratio,
+        "%.3f",
+        "The projector's distance over the width of its picture, at the zoom that is set.");
+    row("Lens shift",
+        "sheet-shift",
+        sheets.lens_shift,
+        "%.3f",
+        "How far the picture's middle lies over the lens's axis, in picture heights: 0.5 where "
+        "the lower edge is as high as the lens.");
+    row("Focal length",
+        "sheet-focal",
+        sheets.focal_mm,
+        "%.1f mm",
+        "The camera's, as its lens or its files say; not the one for small film.");
+    row("Sensor width",
+        "sheet-sensor",
+        sheets.sensor_width_mm,
+        "%.2f mm",
+        "Of the camera's sensor: 36 mm for small film, about 22 to 24 mm for APS-C.");
+    row("Lens to lens",
+        "sheet-distance",
+        sheets.lens_distance_mm,
+        "%.0f mm",
+        "From the projector's lens to the camera's, by a tape.");
+    if (!changed) return;
+    keep_data_sheets(shell.studio.settings, sheets);
+    choose(shell, *state.chosen);
+}
+
+/// How the projector's place comes to be known.
+void draw_place(Shell& shell) {
+    CapturePanelState& state = *shell.studio.panels.capture;
+    const Place place = place_of(shell);
+    begin_disabled(is_busy(state.view));
+    const auto offer = [&](Place which, const char* label, const char* item, const char* meaning) {
+        if (ImGui::RadioButton(label, place == which) && place != which) {
+            state.place = which;
+            choose(shell, *state.chosen);
+        }
+        name_last_item(item);
+        tooltip(meaning);
+    };
+    offer(Place::found,
+          "find where it stands, from photographs",
+          "place-found",
+          "Gray code on the mock-up, its mesh, and the data sheets of projector and camera.");
+    if (known_pose(shell))
+        offer(Place::kept,
+              "it stands as in the calibration in use",
+              "place-kept",
+              "The mock-up alone is lit, and what the camera does not see is predicted.");
+    if (!has_own_projector(*state.chosen)) {
+        offer(Place::told,
+              "I have the projector's camera file",
+              "place-told",
+              "The whole picture is lit, and you are asked for the file when the capture is "
+              "accepted.");
+        if (place == Place::found) draw_data_sheets(shell);
+        if (place == Place::found && !are_whole(state.sheets))
+            warning_text("All five figures are needed: photographs alone leave sizes open.");
+    }
+    end_disabled();
+}
+
 /// True where there is something to show pictures on.
 bool draw_projector(Shell& shell) {
     CapturePanelState& state = *shell.studio.panels.capture;
     heading("Projector");
     if (has_own_projector(*state.chosen)) {
-        dim_text("The simulated bench has its own, whose place is known.");
+        dim_text("The simulated bench's own.");
+        draw_place(shell);
         return true;
     }
     const auto monitor = projector_monitor(shell);
@@ -198,114 +308,8 @@ bool draw_projector(Shell& shell) {
         warning_text(warning.what);
         tooltip(warning.cause + "\n" + warning.fix);
     }
-    if (!known_pose(shell)) {
-        dim_text(
-            "Where it stands is not known: the whole picture is lit, and you are asked for the "
-            "projector's camera file afterwards.");
-        return true;
-    }
-    begin_disabled(is_busy(state.view));
-    if (ImGui::Checkbox("it stands as in the calibration in use", &state.keeps_pose))
-        choose(shell, *state.chosen);
-    name_last_item("keeps-pose");
-    tooltip("The mock-up alone is then lit, and what the camera does not see is predicted.");
-    end_disabled();
+    draw_place(shell);
     return true;
-}
-
-std::string time_text(double seconds) {
-    return seconds < 60.0
-               ? fmt::format("{:.0f} s", seconds)
-               : fmt::format(
-                     "{:.0f} min {:02.0f} s", std::floor(seconds / 60.0), std::fmod(seconds, 60.0));
-}
-
-void draw_running(Shell& shell) {
-    CaptureThread& capture = *shell.studio.capture;
-    const CaptureView& view = shell.studio.panels.capture->view;
-    progress_bar(view.fraction, fmt::format("{:.0f} %", 100.0 * view.fraction));
-    name_last_item("capture-progress");
-    if (view.waits_for_next) {
-        if (ImGui::Button("It is taken: the next picture", {-FLT_MIN, em(3.0f)})) capture.next();
-        name_last_item("capture-next");
-    }
-    const float half = 0.5f * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
-    if (toggle_button(view.paused ? "Go on" : "Pause", view.paused, half))
-        capture.set_paused(!view.paused);
-    name_last_item("capture-pause");
-    ImGui::SameLine();
-    if (ImGui::Button("Stop", {half, 0.0f})) {
-        capture.set_paused(false);
-        capture.cancel();
-    }
-    name_last_item("capture-stop");
-    tooltip(
-        "What was photographed is kept: the capture goes on from there when it is started "
-        "again, also after the program was closed.");
-    // Below the buttons, which else would move with every line that is wrapped.
-    std::string text = sentence(view.stage);
-    text += fmt::format(" {} so far", time_text(view.elapsed_s));
-    if (view.remaining_s && !view.waits_for_next)
-        text += fmt::format(", about {} more", time_text(*view.remaining_s));
-    dim_text(text + ".");
-    if (!view.wait.why.empty()) {
-        warning_text(sentence("it waits: " + view.wait.why));
-        name_last_item("capture-waits");
-        dim_text(sentence(view.wait.fix));
-    }
-}
-
-void draw_start(Shell& shell, bool can_show) {
-    CaptureThread& capture = *shell.studio.capture;
-    CapturePanelState& state = *shell.studio.panels.capture;
-    const CaptureView& view = state.view;
-    const bool by_hand = state.chosen->kind == CameraChoice::Kind::folder;
-    begin_disabled(!can_show || view.doing == Doing::opening || (view.camera.empty() && !by_hand));
-    if (!by_hand) {
-        if (ImGui::Button("Look first", {-FLT_MIN, 0.0f})) capture.start_preflight();
-        name_last_item("preflight");
-        tooltip(
-            "Finds in half a minute what would spoil a capture: a scaled picture, dynamic modes, "
-            "focus, room light, flicker.");
-        if (view.may_have_curve) {
-            if (ImGui::Button("Fit the camera's curve", {-FLT_MIN, 0.0f}))
-                capture.start_curve_fit();
-            name_last_item("fit-curve");
-            tooltip(
-                "For a camera that gives no RAW: photographs white at other exposures and finds "
-                "what its numbers mean. Kept for the next time.");
-        }
-    }
-    const char* start = view.can_go_on && !by_hand ? "Go on with the capture" : "Start the capture";
-    if (ImGui::Button(start, {-FLT_MIN, em(2.4f)})) capture.start_capture(!view.can_go_on);
-    name_last_item("capture-start");
-    if (view.can_go_on && !by_hand) {
-        if (ImGui::Button("Take all anew", {-FLT_MIN, 0.0f})) capture.start_capture(true);
-        name_last_item("capture-anew");
-        tooltip("Forgets the photographs of the last capture.");
-    }
-    end_disabled();
-    if (!view.why.empty()) {
-        warning_text(sentence("refused: " + view.why));
-        name_last_item("capture-refused");
-        dim_text(sentence("what helps: " + view.fix));
-        if (view.can_go_on && !by_hand)
-            dim_text("The other photographs are kept. Choose one in the middle to take it again.");
-    }
-    if (view.finished) {
-        std::string text = fmt::format("Calibrated: {} photographs taken, {} kept from before",
-                                       view.taken,
-                                       view.kept_from_before);
-        if (!by_hand)
-            text += fmt::format(
-                ", in {:.1f} s, of which {:.1f} s in the camera and {:.1f} s in "
-                "the projector",
-                view.capture_s,
-                view.camera_s,
-                view.projector_s);
-        dim_text(text + ".");
-        name_last_item("capture-finished");
-    }
 }
 
 }  // namespace
@@ -319,12 +323,6 @@ void take_capture(Shell& shell) {
     if (!shell.capture_open) state.textures.clear();
     const bool busy = is_busy(state.view);
     if (std::exchange(state.was_busy, busy) && !busy) shell.results->show_instead(nullptr);
-    if (!state.view.finished || *state.view.finished == state.taken) return;
-    state.taken = *state.view.finished;
-    stop_trying(studio);
-    load_calibration(studio, state.taken);
-    notify(studio,
-           {Notice::Level::info, "The capture is done, and its calibration is in use.", "", ""});
 }
 
 void show_capture(Shell& shell, bool shown) {
@@ -332,6 +330,8 @@ void show_capture(Shell& shell, bool shown) {
     CapturePanelState& state = *shell.studio.panels.capture;
     if (shown) {
         state.listed_at_s = -1.0;
+        if (!std::exchange(state.sheets_read, true))
+            state.sheets = kept_data_sheets(shell.studio.settings);
         if (state.chosen) choose(shell, *state.chosen);
     } else {
         shell.studio.capture->close();
@@ -342,7 +342,7 @@ void draw_capture_panel(Shell& shell) {
     list_what_there_is(shell);
     CapturePanelState& state = *shell.studio.panels.capture;
     ImGui::PushFont(large_font());
-    ImGui::TextUnformatted("Capture");
+    ImGui::TextUnformatted("Calibrate");
     ImGui::PopFont();
     ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - button_width("Close"));
     begin_disabled(is_busy(state.view));
@@ -353,22 +353,12 @@ void draw_capture_panel(Shell& shell) {
     }
     name_last_item("capture-close");
     end_disabled();
-    dim_text("Shows the patterns on the projector, photographs them, and makes the calibration.");
+    dim_text("From cable to corrected picture, step by step.");
     draw_cameras(shell);
     if (!state.chosen) return;
     const bool can_show = draw_projector(shell);
     ImGui::Spacing();
-    if (is_busy(state.view)) {
-        draw_running(shell);
-    } else {
-        draw_start(shell, can_show);
-    }
-    if (!state.view.figures.empty()) {
-        heading("Is the bench fit?");
-        draw_figures(state.view.figures);
-        for (const GradedFigure& figure : state.view.figures)
-            if (figure.grade == Grade::bad) warning_text(figure.name + ": " + figure.fix);
-    }
+    draw_capture_steps(shell, can_show);
 }
 
 }  // namespace livery

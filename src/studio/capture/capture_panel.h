@@ -10,6 +10,7 @@
 
 #include "gl/handles.h"
 #include "live/capture_thread.h"
+#include "scene/data_sheet.h"
 
 namespace livery {
 
@@ -20,22 +21,34 @@ struct CapturePanelState {
     std::string problem;  ///< why they could not be listed
     double listed_at_s = -1.0;
     std::optional<CameraChoice> chosen;
-    std::string address;                  ///< of a camera on the network, being typed
-    std::string address_problem;          ///< why it is none
-    bool keeps_pose = true;               ///< the projector stands where the calibration has it
+    std::string address;          ///< of a camera on the network, being typed
+    std::string address_problem;  ///< why it is none
+    /// How the projector's place comes to be known.
+    enum class Place { found, kept, told };
+    std::optional<Place> place;           ///< chosen by hand; none: by what is known
+    DataSheets sheets;                    ///< of projector and camera, as typed
+    bool sheets_read = false;             ///< from the user's settings
+    int colour_shots = 2;                 ///< photographs of each colour picture
     std::optional<std::size_t> selected;  ///< a tile
     bool was_busy = false;
-    std::filesystem::path taken;  ///< the finished calibration that was put to use
+    std::filesystem::path accepted;  ///< the finished calibration that was put to use
+    std::filesystem::path before;    ///< what was in use before it
     std::map<std::shared_ptr<const Image8>, Texture2D> textures;  ///< of what is on the window
     CaptureView view;  ///< as of this frame of the window
 };
 
-/// Takes over what the capture's thread has: its pictures off the projector when it is done, its
-/// calibration into use. Once a frame of the window.
+/// Takes over what the capture's thread has: its pictures off the projector when it is done. Once a
+/// frame of the window.
 void take_capture(Shell& shell);
 /// Instead of the tabs, and instead of the stage, while `shell.capture_open`.
 void draw_capture_panel(Shell& shell);
 void draw_capture_stage(Shell& shell);
+/// The steps: what each found, and the button to the next.
+void draw_capture_steps(Shell& shell, bool can_show);
+/// What the camera is opened for, by what the column says.
+CaptureSetup capture_setup(const Shell& shell, const CameraChoice& choice);
+/// Whether the capture's thread works for the calibration.
+bool is_busy(const CaptureView& view);
 /// Opens or closes both; the camera is let go with them.
 void show_capture(Shell& shell, bool shown);
 

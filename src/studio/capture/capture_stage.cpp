@@ -37,6 +37,9 @@ void forget_textures(CapturePanelState& state) {
     std::erase_if(state.textures, [&](const auto& entry) {
         const Picture& picture = entry.first;
         return picture != view.live && picture != view.shown &&
+               std::none_of(view.steps.begin(),
+                            view.steps.end(),
+                            [&](const CaptureStepView& step) { return step.finding == picture; }) &&
                std::none_of(view.tiles.begin(), view.tiles.end(), [&](const CaptureTile& tile) {
                    return tile.seen == picture;
                });
@@ -161,6 +164,14 @@ void draw_tile_actions(Shell& shell) {
     name_last_item("take-again");
 }
 
+/// What the newest step that is done has found; null: nothing to see.
+const CaptureStepView* newest_finding(const CaptureView& view) {
+    if (view.doing == Doing::capturing) return nullptr;
+    for (auto step = view.steps.rbegin(); step != view.steps.rend(); ++step)
+        if (step->done && step->finding) return &*step;
+    return nullptr;
+}
+
 }  // namespace
 
 void draw_capture_stage(Shell& shell) {
@@ -199,6 +210,10 @@ void draw_capture_stage(Shell& shell) {
     if (last != view.tiles.rend()) {
         newest = last->seen;
         of = "Seen: " + last->of;
+    }
+    if (const CaptureStepView* found = newest_finding(view)) {
+        newest = found->finding;
+        of = "Found: " + found->finding_of;
     }
     const ImVec2 right{corner.x + half + gap, corner.y};
     draw_fitted(state, newest, right, {half, upper - lower - gap}, of.c_str());

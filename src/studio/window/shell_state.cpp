@@ -82,6 +82,8 @@ const char* name_of(CaptureView::Doing doing) {
             return "fitting";
         case CaptureView::Doing::capturing:
             return "capturing";
+        case CaptureView::Doing::checking:
+            return "checking";
     }
     return "nothing";
 }
@@ -210,7 +212,7 @@ MapState state_of_shell(const Shell& shell) {
     state["capture_paused"] = studio.panels.capture->view.paused ? "true" : "false";
     state["capture_says"] = quoted(words_of(*studio.panels.capture));
     Json preflight = Json::object();
-    for (const GradedFigure& figure : studio.panels.capture->view.figures)
+    for (const GradedFigure& figure : studio.panels.capture->view.step(CaptureStep::look).figures)
         preflight[figure.name] = to_string(figure.grade);
     state["preflight"] = preflight.dump();
     const CaptureView& capture = studio.panels.capture->view;

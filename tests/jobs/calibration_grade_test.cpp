@@ -1,5 +1,5 @@
 // A calibration's figures against the scale that docs/calibration.md states.
-#include "studio/calibration_grade.h"
+#include "jobs/calibrate/calibration_grade.h"
 
 #include <cmath>
 #include <string>

@@ -1,4 +1,4 @@
-#include "jobs/calibration_folder.h"
+#include "jobs/calibrate/calibration_folder.h"
 
 #include <system_error>
 

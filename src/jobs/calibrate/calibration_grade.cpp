@@ -1,4 +1,4 @@
-#include "studio/calibration_grade.h"
+#include "jobs/calibrate/calibration_grade.h"
 
 #include <algorithm>
 #include <cmath>

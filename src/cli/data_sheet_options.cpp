@@ -1,0 +1,51 @@
+#include "cli/data_sheet_options.h"
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace livery {
+
+void add_data_sheet_options(std::vector<Option>& options, DataSheets& sheets) {
+    for (Option& option : std::vector<Option>{
+             {"--throw-ratio",
+              "R",
+              "the projector's distance over its picture's width",
+              &sheets.throw_ratio,
+              false,
+              {}},
+             {"--lens-shift",
+              "S",
+              "the picture's middle over the lens's axis, in picture heights (default 0.5)",
+              &sheets.lens_shift,
+              false,
+              {}},
+             {"--focal-mm", "MM", "the camera's focal length", &sheets.focal_mm, false, {}},
+             {"--sensor-width-mm", "MM", "the camera's sensor", &sheets.sensor_width_mm, false, {}},
+             {"--lens-distance-mm",
+              "MM",
+              "between the two lenses, by a tape",
+              &sheets.lens_distance_mm,
+              false,
+              {}},
+         })
+        options.push_back(std::move(option));
+}
+
+bool is_any_given(const DataSheets& sheets) {
+    return sheets.throw_ratio != 0.0 || sheets.focal_mm != 0.0 || sheets.sensor_width_mm != 0.0 ||
+           sheets.lens_distance_mm != 0.0;
+}
+
+void check_whole(const DataSheets& sheets, const std::string& instead) {
+    const auto need = [&](const char* option, double value) {
+        check_argument(value > 0.0,
+                       fmt::format("{}: found {}, expected more than 0{}", option, value, instead));
+    };
+    need("--throw-ratio", sheets.throw_ratio);
+    need("--focal-mm", sheets.focal_mm);
+    need("--sensor-width-mm", sheets.sensor_width_mm);
+    need("--lens-distance-mm", sheets.lens_distance_mm);
+}
+
+}  // namespace livery

@@ -1,0 +1,129 @@
+#include "jobs/calibrate/calibration_origin.h"
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/image_io.h"
+#include "core/json_ranges.h"
+#include "core/paths.h"
+
+namespace livery {
+
+namespace {
+
+constexpr int kFormatVersion = 1;
+constexpr const char* kFile = "origin.json";
+constexpr const char* kRoom = "room.json";
+
+ImageF read_plane(const std::filesystem::path& file) {
+    ImageF plane = read_image(file).image;
+    if (plane.channels != 1)
+        throw FileError(file, "channels", std::to_string(plane.channels), "one");
+    return plane;
+}
+
+}  // namespace
+
+CalibrationOrigin origin_of(const BenchCalibration& made, const BenchCalibrationRequest& request) {
+    CalibrationOrigin origin;
+    if (request.product) {
+        origin.product = request.product->name;
+        origin.shape = shape_hash(request.product->mesh);
+    }
+    origin.made_with = request.made_with;
+    if (made.room) origin.room = made.room->geometry;
+    if (!made.live.white.image.empty())
+        origin.ends =
+            drift_reference(made.live.white, made.live.black, made.live.latency_photographs);
+    origin.capture_seconds =
+        made.live.capture_seconds + (made.room ? made.room->capture_seconds : 0.0);
+    origin.solve_seconds = made.live.solve_seconds + made.predict_seconds +
+                           (made.room ? made.room->solve_seconds : 0.0);
+    return origin;
+}
+
+void write_origin(const std::filesystem::path& folder, const CalibrationOrigin& origin) {
+    Json json = {{"format_version", kFormatVersion},
+                 {"kind", "origin"},
+                 {"product", origin.product},
+                 {"shape", origin.shape},
+                 {"made_with", origin.made_with},
+                 {"capture_seconds", origin.capture_seconds},
+                 {"solve_seconds", origin.solve_seconds}};
+    if (origin.ends) {
+        json["ends"] = {{"exposure_s", origin.ends->exposure_s},
+                        {"late", origin.ends->late},
+                        {"light", json_from(origin.ends->light)}};
+        write_exr(folder / "white.exr", origin.ends->white);
+        write_exr(folder / "black.exr", origin.ends->black);
+    }
+    if (origin.room) write_room_file(folder / kRoom, *origin.room);
+    write_json_file(folder / kFile, json);
+}
+
+CalibrationOrigin parse_origin(const std::string& text, const std::filesystem::path& file) {
+    const Json json = parse_json(text, file);
+    const JsonReader root(file, json);
+    root.require_format_version(kFormatVersion);
+    root.allow_only({"format_version",
+                     "kind",
+                     "product",
+                     "shape",
+                     "made_with",
+                     "capture_seconds",
+                     "solve_seconds",
+                     "ends"});
+    root["kind"].one_of({"origin"});
+    CalibrationOrigin origin;
+    origin.product = root["product"].text();
+    origin.shape = root["shape"].text();
+    origin.made_with = root["made_with"].text();
+    origin.capture_seconds = root["capture_seconds"].number_between(0.0, 1e6);
+    origin.solve_seconds = root["solve_seconds"].number_between(0.0, 1e6);
+    if (root.has("ends")) {
+        const JsonReader ends = root["ends"];
+        ends.allow_only({"exposure_s", "late", "light"});
+        origin.ends.emplace();
+        origin.ends->exposure_s = ends["exposure_s"].number_between(1e-9, 1e6);
+        origin.ends->late = ends["late"].integer(0, 1000);
+        origin.ends->light = vec3_within(ends["light"], 1e12);
+    }
+    return origin;
+}
+
+std::optional<CalibrationOrigin> read_origin(const std::filesystem::path& folder) {
+    std::error_code error;
+    const auto file = folder / kFile;
+    if (!std::filesystem::exists(file, error)) return std::nullopt;
+    CalibrationOrigin origin = parse_origin(read_text_file(file), file);
+    if (origin.ends) {
+        origin.ends->white = read_plane(folder / "white.exr");
+        origin.ends->black = read_plane(folder / "black.exr");
+    }
+    if (std::filesystem::exists(folder / kRoom, error))
+        origin.room = read_room_file(folder / kRoom);
+    return origin;
+}
+
+std::vector<std::string> what_changed(const CalibrationOrigin& origin,
+                                      const Product& product,
+                                      const std::string& projector) {
+    std::vector<std::string> changes;
+    if (!origin.shape.empty() && origin.shape != shape_hash(product.mesh))
+        changes.push_back(
+            origin.product == product.name
+                ? fmt::format("the mesh of {} has changed since: calibrate again", product.name)
+                : fmt::format("it was made for {}, and this session shows {}: calibrate again",
+                              origin.product,
+                              product.name));
+    if (!projector.empty() && !origin.made_with.empty() &&
+        origin.made_with.find(projector) == std::string::npos)
+        changes.push_back(fmt::format(
+            "it was made with {}, and the projector is {}: choose that projector, or calibrate "
+            "again",
+            origin.made_with,
+            projector));
+    return changes;
+}
+
+}  // namespace livery

@@ -1,0 +1,44 @@
+// What a calibration was made for and with, kept beside it, so that one that no longer fits is
+// noticed.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibration/drift.h"
+#include "core/grade.h"
+#include "jobs/calibrate/bench_calibration.h"
+#include "scene/product.h"
+#include "scene/room.h"
+
+namespace livery {
+
+struct CalibrationOrigin {
+    std::string product;                 ///< its name
+    std::string shape;                   ///< shape_hash() of the mock-up's mesh
+    std::string made_with;               ///< camera and projector, in words
+    std::optional<RoomGeometry> room;    ///< as found; nothing: the pose was given
+    std::optional<DriftReference> ends;  ///< nothing: the photographs were taken before
+    double capture_seconds = 0.0, solve_seconds = 0.0;
+};
+
+/// Of a calibration that was just made.
+CalibrationOrigin origin_of(const BenchCalibration& made, const BenchCalibrationRequest& request);
+
+/// `origin.json`, with `white.exr` and `black.exr` (mean of the channels, linear per second) where
+/// there are photographs of the end. Throws FileError.
+void write_origin(const std::filesystem::path& folder, const CalibrationOrigin& origin);
+/// Nothing: the folder has none. Throws FileError.
+std::optional<CalibrationOrigin> read_origin(const std::filesystem::path& folder);
+/// The same without the photographs, of its text.
+CalibrationOrigin parse_origin(const std::string& text, const std::filesystem::path& file);
+
+/// What is no longer as it was, each with the way out, a sentence; empty: nothing that can be told
+/// without a photograph. `projector`: its name and pixels in words, empty: not known.
+std::vector<std::string> what_changed(const CalibrationOrigin& origin,
+                                      const Product& product,
+                                      const std::string& projector);
+
+}  // namespace livery

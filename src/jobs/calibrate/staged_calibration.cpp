@@ -1,0 +1,143 @@
+#include "jobs/calibrate/staged_calibration.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "calibration/correspondence/patterns.h"
+#include "core/error.h"
+#include "scene/mockup_mask.h"
+
+namespace livery {
+
+namespace {
+
+/// Before a stage begins: latency and exposure, and white and black at its end.
+constexpr int kToMeet = 20;
+
+/// The stage's recording, opened for as long as it runs.
+Recording recording_of(const StagedCalibration& run, CalibrationStage stage) {
+    return Recording(folder_of(run, stage), run.request.made_with);
+}
+
+void remove_folder(const std::filesystem::path& folder) {
+    std::error_code error;
+    std::filesystem::remove_all(folder, error);
+    if (error) throw FileError(folder, "", error.message(), "a folder that can be emptied");
+}
+
+}  // namespace
+
+std::filesystem::path folder_of(const StagedCalibration& run, CalibrationStage stage) {
+    if (!finds_room(run.request)) return run.folder;
+    return run.folder / (stage == CalibrationStage::geometry ? "geometry" : "colour");
+}
+
+bool can_go_on(const StagedCalibration& run, CalibrationStage stage) {
+    if (stage == CalibrationStage::check) return false;
+    if (stage == CalibrationStage::geometry && !finds_room(run.request)) return false;
+    std::error_code error;
+    const auto folder = folder_of(run, stage);
+    return std::filesystem::exists(folder / "recording.json", error) &&
+           !std::filesystem::exists(folder / "manifest.json", error);
+}
+
+void forget(StagedCalibration& run, CalibrationStage stage) {
+    run.check.reset();
+    if (stage == CalibrationStage::check) return;
+    run.made.reset();
+    remove_folder(folder_of(run, CalibrationStage::colour));
+    if (stage == CalibrationStage::colour) return;
+    run.room.reset();
+    remove_folder(folder_of(run, CalibrationStage::geometry));
+}
+
+void find_geometry(StagedCalibration& run,
+                   const BenchPorts& ports,
+                   const MeetRecording& meet,
+                   const Progress& progress) {
+    Recording recording = recording_of(run, CalibrationStage::geometry);
+    if (meet) meet(recording);
+    BenchCalibrationRequest request = run.request;
+    request.room_recording = &recording;
+    run.made.reset();
+    run.check.reset();
+    run.room = find_room_for(ports, request, progress);
+}
+
+void find_colours(StagedCalibration& run,
+                  const BenchPorts& ports,
+                  const MeetRecording& meet,
+                  const Progress& progress) {
+    const bool finds = finds_room(run.request);
+    const bool first = finds && !run.room;
+    if (first) find_geometry(run, ports, meet, progress.part(0.0, 0.4));
+    Recording recording = recording_of(run, CalibrationStage::colour);
+    if (meet) meet(recording);
+    BenchCalibrationRequest request = finds ? with_room(run.request, *run.room) : run.request;
+    request.recording = &recording;
+    run.check.reset();
+    run.made = calibrate_through_ports(ports, request, first ? progress.part(0.4, 1.0) : progress);
+    if (finds) run.made->room = run.room;
+}
+
+bool can_check(const StagedCalibration& run) {
+    return run.made && run.made->projector && run.request.product &&
+           !run.made->live.white.image.empty();
+}
+
+void check_colours(StagedCalibration& run, const BenchPorts& ports, const Progress& progress) {
+    check_argument(can_check(run), "a check needs colours, a camera and the mock-up's pose");
+    const BenchCalibration& made = *run.made;
+    run.check = check_calibration(ports,
+                                  made.calibration,
+                                  made.live.map,
+                                  mockup_mask(run.request.product->mesh, *made.projector),
+                                  made.live.white,
+                                  made.live.latency_photographs,
+                                  progress);
+}
+
+int expected_photographs(const BenchCalibrationRequest& request, CalibrationStage stage) {
+    const int geometry = static_cast<int>(geometry_roles(request.width, request.height).size());
+    const int colours = 6 * request.colour_shots;
+    switch (stage) {
+        case CalibrationStage::geometry:
+            return finds_room(request) ? kToMeet + geometry : 0;
+        case CalibrationStage::colour:
+            return kToMeet + colours + (finds_room(request) ? 2 : geometry);
+        case CalibrationStage::check:
+            return 4;
+    }
+    throw std::invalid_argument("unknown stage");
+}
+
+std::vector<GradedFigure> grade_figures(const RoomGeometry& room) {
+    std::vector<GradedFigure> figures;
+    figures.push_back(
+        {"Mock-up in its place",
+         fmt::format("{:.2f} px", room.median_px),
+         "projector pixels, median; good under 0.5, usable under 1",
+         "How far the mock-up's pixels are seen from where mesh and pose have them.",
+         "Check that the mesh is that of the mock-up, and that nothing moved while it was "
+         "photographed.",
+         grade_of(room.median_px, 0.5, 1.0)});
+    figures.push_back(graded_share("Mesh that is seen",
+                                   room.agreement,
+                                   0.85,
+                                   0.6,
+                                   "Of the mesh that projector and camera both face, what is "
+                                   "there in the photographs.",
+                                   "Light all of the mock-up, and take away what stands before "
+                                   "it."));
+    figures.push_back(
+        {"Lenses' rays meet within",
+         fmt::format("{:.2f} px", room.pair_median_px),
+         "camera pixels, median; good under 0.5, usable under 1.5",
+         "How well projector and camera agree by themselves, without the mesh.",
+         "Check the data sheets' figures: throw ratio, lens shift, focal length, sensor width.",
+         grade_of(room.pair_median_px, 0.5, 1.5)});
+    return figures;
+}
+
+}  // namespace livery

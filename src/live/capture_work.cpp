@@ -1,0 +1,264 @@
+#include "live/capture_work.h"
+
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "calibration/preflight.h"
+#include "jobs/calibrate/calibration_grade.h"
+#include "jobs/camera_curve.h"
+#include "jobs/watched_captures.h"
+#include "live/capture_findings.h"
+#include "live/capture_pictures.h"
+#include "live/projector_setup.h"
+#include "scene/mockup_mask.h"
+
+namespace livery {
+
+BenchCalibrationRequest CaptureThread::Implementation::request() const {
+    BenchCalibrationRequest request;
+    if (bench.simulated) {
+        request = request_of(bench.simulated->description(), bench.product);
+        request.made_with = bench.name + ", its own projector";
+    } else {
+        request.product = setup.product;
+        request.width = setup.width;
+        request.height = setup.height;
+        request.data_sheets = setup.data_sheets;
+        request.made_with = (is_by_hand() ? "photographs in " + setup.camera.what : bench.name) +
+                            ", " + setup.projector;
+    }
+    if (setup.projector_view) request.projector = setup.projector_view;
+    request.colour_shots = setup.colour_shots;
+    return request;
+}
+
+void CaptureThread::Implementation::preflight_now() {
+    publish([](CaptureView& view) { view.step(CaptureStep::look).figures.clear(); });
+    const BenchCalibrationRequest what = request();
+    const LiveOptions options = live_options_of(what);
+    preflight(ports(),
+              {options.width, options.height, options.mockup},
+              progress(),
+              [this](const GradedFigure& figure) {
+                  publish([&](CaptureView& view) {
+                      view.step(CaptureStep::look).figures.push_back(figure);
+                  });
+              });
+}
+
+void CaptureThread::Implementation::fit_curve() {
+    const BenchCalibrationRequest what = request();
+    const CameraCurve curve =
+        fit_camera_curve(*bench.camera, ports(), what.width, what.height, progress());
+    publish([&](CaptureView& view) {
+        view.curve = fmt::format(
+            "the curve just fitted: with it, photographs of one light differ by {:.2f} %. It is "
+            "kept "
+            "in {}",
+            100.0 * curve.residual,
+            curve.file.string());
+    });
+}
+
+/// Every photograph as it comes, from the camera or from the folder, becomes a tile.
+void CaptureThread::Implementation::look_at(Recording& recording) {
+    recording.tell([this, &recording](std::size_t showing, const Photograph& photograph) {
+        const auto seen = std::make_shared<Image8>(small_photograph(photograph, kTileWidth_px));
+        const CaptureHistogram histogram = histogram_of(photograph);
+        const std::string of = recording.announced();
+        if (of == "white") white = photograph;
+        publish([&](CaptureView& view) {
+            if (view.tiles.size() <= showing) view.tiles.resize(showing + 1);
+            CaptureTile& tile = view.tiles[showing];
+            tile.photographs = tile.of == of ? tile.photographs + 1 : 1;
+            tile.of = of;
+            tile.seen = seen;
+            view.histogram = histogram;
+            view.taken = taken_before + recording.taken();
+            view.kept_from_before = answered_before + recording.answered();
+        });
+    });
+}
+
+MeetRecording CaptureThread::Implementation::meet(const std::vector<std::size_t>& again) {
+    return [this, again](Recording& recording) {
+        for (const std::size_t showing : again) recording.take_again(showing);
+        look_at(recording);
+        publish([this](CaptureView& view) {
+            view.tiles.clear();
+            taken_before = view.taken;
+            answered_before = view.kept_from_before;
+        });
+    };
+}
+
+void CaptureThread::Implementation::find_geometry_now(const std::vector<std::size_t>& again) {
+    find_geometry(run, ports(), meet(again), progress());
+    const RoomGeometry& room = run.room->geometry;
+    const auto finding = std::make_shared<Image8>(
+        outline_on_photograph(white, room.camera, run.request.product->mesh, kLiveWidth_px));
+    publish([&](CaptureView& view) {
+        CaptureStepView& step = view.step(CaptureStep::geometry);
+        step.figures = grade_figures(room);
+        step.finding = finding;
+        step.finding_of = "the mesh's outline where it was found, on the camera's picture";
+    });
+}
+
+void CaptureThread::Implementation::find_colours_now(const std::vector<std::size_t>& again) {
+    check_calibrations_folder();
+    if (finds_room(run.request) && !run.room) {
+        find_geometry_now(again);
+        publish([](CaptureView& view) { view.step(CaptureStep::geometry).done = true; });
+    }
+    find_colours(run, ports(), meet(again), progress());
+    finish();
+}
+
+void CaptureThread::Implementation::finish() {
+    const BenchCalibration& made = *run.made;
+    const auto kept = keep_calibration(made, run.request);
+    const Image8 mockup = made.projector && run.request.product
+                              ? mockup_mask(run.request.product->mesh, *made.projector)
+                              : Image8();
+    const auto finding =
+        std::make_shared<Image8>(status_picture(made.calibration, mockup, kLiveWidth_px));
+    const auto figures = grade_figures(made.calibration);
+    publish([&](CaptureView& view) {
+        CaptureStepView& step = view.step(CaptureStep::colour);
+        step.figures = figures;
+        step.finding = finding;
+        step.finding_of = "the projector's pixels: measured green, predicted blue, none red";
+        view.finished = kept;
+        view.compared.clear();
+        view.capture_s = made.live.capture_seconds;
+        view.camera_s = made.live.camera_seconds;
+        view.projector_s = made.live.projector_seconds;
+    });
+}
+
+void CaptureThread::Implementation::check_now() {
+    check_colours(run, ports(), progress());
+    const auto finding = std::make_shared<Image8>(
+        small_photograph(run.check->colours.front().photograph, kLiveWidth_px));
+    const std::vector<GradedFigure> compared = compared_with(setup.in_use, run);
+    publish([&](CaptureView& view) {
+        CaptureStepView& step = view.step(CaptureStep::check);
+        step.figures = grade_figures(*run.check);
+        step.finding = finding;
+        step.finding_of = "a grey that was corrected, as the camera sees it";
+        view.compared = compared;
+    });
+}
+
+void CaptureThread::Implementation::look_for_drift_now() {
+    publish([](CaptureView& view) { view.drift.clear(); });
+    const DriftSource source = drift_source(setup.in_use, *request().product);
+    const Drift drift = livery::look_for_drift(ports(), source.then, source.mockup, progress());
+    publish([&](CaptureView& view) { view.drift = grade_figures(drift); });
+}
+
+/// What is asked of a step follows from the set-up as it is now.
+void CaptureThread::Implementation::show_steps() {
+    if (setup.width == 0 && !bench.simulated) return;
+    BenchCalibrationRequest now = request();
+    if (!asks_for_the_same(now, run.request)) run = {};
+    run.folder = folder();
+    run.request = std::move(now);
+    const double each_s = times.photographs > 0 ? times.seconds / times.photographs : 0.0;
+    publish([&](CaptureView& view) {
+        view.step(CaptureStep::look).done = !view.step(CaptureStep::look).figures.empty();
+        view.step(CaptureStep::geometry).called_for = finds_room(run.request);
+        view.step(CaptureStep::geometry).done = run.room.has_value();
+        view.step(CaptureStep::colour).done = run.made.has_value();
+        view.step(CaptureStep::check).called_for =
+            !is_by_hand() &&
+            (run.made ? can_check(run) : run.request.projector || finds_room(run.request));
+        view.step(CaptureStep::check).done = run.check.has_value();
+        for (const auto& [step, stage] : kPhotographed) {
+            CaptureStepView& shown = view.step(step);
+            shown.can_go_on = can_go_on(run, stage);
+            shown.expected_s = each_s * expected_photographs(run.request, stage);
+            if (shown.done) continue;
+            shown.figures.clear();
+            shown.finding.reset();
+        }
+        if (!run.check) view.compared.clear();
+    });
+}
+
+void CaptureThread::Implementation::take_step(CaptureStep step,
+                                              bool anew,
+                                              const std::vector<std::size_t>& again) {
+    publish([&](CaptureView& view) { view.doing_step = step; });
+    show_steps();
+    for (const auto& [photographed, stage] : kPhotographed)
+        if (photographed == step && anew) forget(run, stage);
+    if (step == CaptureStep::geometry || step == CaptureStep::colour)
+        publish([](CaptureView& view) {
+            view.finished.reset();
+            view.taken = view.kept_from_before = 0;
+        });
+    const auto start = CaptureClock::now();
+    switch (step) {
+        case CaptureStep::look:
+            preflight_now();
+            break;
+        case CaptureStep::geometry:
+            find_geometry_now(again);
+            break;
+        case CaptureStep::colour:
+            is_by_hand() ? capture_by_hand() : find_colours_now(again);
+            break;
+        case CaptureStep::check:
+            check_now();
+            break;
+    }
+    const double seconds = std::chrono::duration<double>(CaptureClock::now() - start).count();
+    publish([&](CaptureView& view) { view.step(step).seconds = seconds; });
+}
+
+/// One picture after the other, each until somebody says that it was taken.
+void CaptureThread::Implementation::show_by_hand(const std::vector<Pattern>& patterns) {
+    const ShowPicture show = ports().show;
+    publish([](CaptureView& view) { view.waits_for_next = true; });
+    const Progress told = progress();
+    for (std::size_t k = 0; k < patterns.size(); ++k) {
+        show(patterns[k].drive);
+        told.update(static_cast<double>(k) / static_cast<double>(patterns.size()),
+                    fmt::format("shoot {} of {}: {}", k + 1, patterns.size(), patterns[k].role));
+        next_picture = false;
+        while (!next_picture) {
+            told.check_stop();
+            std::this_thread::sleep_for(kBetweenLooks);
+        }
+    }
+    show(Image8(setup.width, setup.height, 3));
+    publish([](CaptureView& view) { view.waits_for_next = false; });
+}
+
+void CaptureThread::Implementation::capture_by_hand() {
+    check_calibrations_folder();
+    const LiveOptions options = live_options_of(run.request);
+    std::vector<Pattern> patterns = geometry_patterns(options.width, options.height);
+    for (Pattern& pattern : colour_patterns(options.width, options.height, 0, 255))
+        patterns.push_back(std::move(pattern));
+    std::vector<std::string> roles;
+    for (const Pattern& pattern : patterns) roles.push_back(pattern.role);
+    WatchedCaptures watched(setup.camera.what, roles);
+    watched.look();
+    watched.look();
+    if (watched.state().files == 0) show_by_hand(patterns);
+    const Progress told = progress();
+    told.update(0.0, fmt::format("copy the {} photographs to {}", roles.size(), setup.camera.what));
+    const BenchPorts files = watched.ports(told, [&](const WatchedState& state) {
+        told.update(static_cast<double>(state.found) / static_cast<double>(state.wanted),
+                    text_of(state));
+    });
+    run.made = calibrate_through_ports(files, run.request, told);
+    run.room = run.made->room;
+    finish();
+}
+
+}  // namespace livery

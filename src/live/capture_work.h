@@ -1,0 +1,86 @@
+// Inside the capture's thread: what capture_thread.cpp asks of capture_work.cpp.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calibration/correspondence/patterns.h"
+#include "core/worker.h"
+#include "jobs/calibrate/staged_calibration.h"
+#include "live/capture_steps.h"
+#include "live/capture_thread.h"
+
+namespace livery {
+
+using CaptureClock = std::chrono::steady_clock;
+
+inline constexpr int kLiveWidth_px = 960, kTileWidth_px = 200;
+inline constexpr auto kBetweenLiveViews = std::chrono::milliseconds(60);
+inline constexpr auto kBetweenLooks = std::chrono::milliseconds(20);
+
+struct CaptureJobs {
+    CaptureSetup setup;
+    bool open = false, shut = false, fit = false, drift = false, anew = false;
+    std::optional<CaptureStep> step;
+    std::vector<std::pair<std::string, std::string>> settings;  ///< of the camera, to be made
+    bool watching = false;           ///< the camera is open, and nothing else is to be done
+    std::vector<std::size_t> again;  ///< showings
+    CaptureView view;
+};
+
+struct CaptureThread::Implementation {
+    GlContext& context;
+    std::function<void()> on_change;
+    std::atomic<bool> abandon{false}, paused{false}, next_picture{false};
+
+    // Of the thread only
+    CaptureSetup setup;
+    CaptureBench bench;
+    StagedCalibration run;
+    CaptureTimes times;
+    Photograph white;                           ///< the newest of the geometry
+    int taken_before = 0, answered_before = 0;  ///< of the step's recordings before this one
+    CaptureClock::time_point started;
+
+    Worker<CaptureJobs> worker;
+
+    Worker<CaptureJobs>::Turn next(CaptureJobs& asked);
+    void open(const CaptureSetup& with);
+    void show_state();
+    void set(const std::vector<std::pair<std::string, std::string>>& settings);
+    void watch();
+    void take_step(CaptureStep step, bool anew, const std::vector<std::size_t>& again);
+    void preflight_now();
+    void find_geometry_now(const std::vector<std::size_t>& again);
+    void find_colours_now(const std::vector<std::size_t>& again);
+    void capture_by_hand();
+    void check_now();
+    void look_for_drift_now();
+    void fit_curve();
+    void show_steps();
+    MeetRecording meet(const std::vector<std::size_t>& again);
+    void show_by_hand(const std::vector<Pattern>& patterns);
+    BenchPorts ports();
+    BenchCalibrationRequest request() const;
+    void finish();
+    void wait_while_paused() const;
+    void look_at(Recording& recording);
+    Progress progress();
+
+    template <typename Change>
+    void publish(const Change& change) {
+        worker.use([&](CaptureJobs& asked) { change(asked.view); });
+        on_change();
+    }
+    /// Runs what was asked for, and says what became of it.
+    template <typename Work>
+    void attempt(CaptureView::Doing doing, const Work& work);
+    bool is_by_hand() const { return setup.camera.kind == CameraChoice::Kind::folder; }
+};
+
+}  // namespace livery

@@ -1,0 +1,301 @@
+// The steps from cable to corrected picture: what each found, and the button to the next.
+#include <algorithm>
+#include <array>
+#include <cfloat>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "studio/calibration_panel.h"
+#include "studio/capture/capture_panel.h"
+#include "studio/kit/theme.h"
+#include "studio/kit/widgets.h"
+#include "studio/kit/words.h"
+#include "studio/window/shell.h"
+
+namespace livery {
+
+namespace {
+
+struct StepWords {
+    CaptureStep step;
+    const char* name;
+    const char* item;    ///< of its button
+    const char* action;  ///< on the button
+    const char* meaning;
+};
+constexpr std::array<StepWords, kCaptureSteps> kSteps{
+    {{CaptureStep::look,
+      "Look",
+      "preflight",
+      "Look first",
+      "Finds in half a minute what would spoil a capture: a scaled picture, dynamic modes, focus, "
+      "room light, flicker."},
+     {CaptureStep::geometry,
+      "Geometry",
+      "capture-geometry",
+      "Photograph the geometry",
+      "Stripes on the mock-up tell where projector, camera and mock-up stand."},
+     {CaptureStep::colour,
+      "Colours",
+      "capture-start",
+      "Photograph the colours",
+      "Six colours on the mock-up tell what each projector pixel must show."},
+     {CaptureStep::check,
+      "Check",
+      "capture-check",
+      "Check",
+      "Shows corrected colours that nothing was fitted to, and photographs them."}}};
+
+std::string time_text(double seconds) {
+    return seconds < 60.0
+               ? fmt::format("{:.0f} s", seconds)
+               : fmt::format(
+                     "{:.0f} min {:02.0f} s", std::floor(seconds / 60.0), std::fmod(seconds, 60.0));
+}
+
+void draw_running(Shell& shell) {
+    CaptureThread& capture = *shell.studio.capture;
+    const CaptureView& view = shell.studio.panels.capture->view;
+    progress_bar(view.fraction, fmt::format("{:.0f} %", 100.0 * view.fraction));
+    name_last_item("capture-progress");
+    if (view.waits_for_next) {
+        if (ImGui::Button("It is taken: the next picture", {-FLT_MIN, em(3.0f)})) capture.next();
+        name_last_item("capture-next");
+    }
+    const float half = 0.5f * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
+    if (toggle_button(view.paused ? "Go on" : "Pause", view.paused, half))
+        capture.set_paused(!view.paused);
+    name_last_item("capture-pause");
+    ImGui::SameLine();
+    if (ImGui::Button("Stop", {half, 0.0f})) {
+        capture.set_paused(false);
+        capture.cancel();
+    }
+    name_last_item("capture-stop");
+    tooltip(
+        "What was photographed is kept: the capture goes on from there when it is started "
+        "again, also after the program was closed.");
+    // Below the buttons, which else would move with every line that is wrapped.
+    std::string text = sentence(view.stage);
+    text += fmt::format(" {} so far", time_text(view.elapsed_s));
+    if (view.remaining_s && !view.waits_for_next)
+        text += fmt::format(", about {} more", time_text(*view.remaining_s));
+    dim_text(text + ".");
+    if (!view.wait.why.empty()) {
+        warning_text(sentence("it waits: " + view.wait.why));
+        name_last_item("capture-waits");
+        dim_text(sentence(view.wait.fix));
+    }
+}
+
+/// The first step that is called for and not done. A look may be left out.
+std::optional<CaptureStep> next_step(const CaptureView& view) {
+    for (const StepWords& words : kSteps)
+        if (view.step(words.step).called_for && !view.step(words.step).done) return words.step;
+    return std::nullopt;
+}
+
+bool is_accepted(const CapturePanelState& state) {
+    return state.view.finished && *state.view.finished == state.accepted;
+}
+
+/// Into use, if it can be told where its projector stands.
+void accept(Shell& shell) {
+    Studio& studio = shell.studio;
+    CapturePanelState& state = *studio.panels.capture;
+    state.before = studio.session.document().calibration;
+    state.accepted = *state.view.finished;
+    stop_trying(studio);
+    load_calibration(studio, state.accepted);
+}
+
+void draw_trouble(const CaptureView& view) {
+    if (view.why.empty()) return;
+    warning_text(sentence("refused: " + view.why));
+    name_last_item("capture-refused");
+    dim_text(sentence("what helps: " + view.fix));
+    const bool kept = std::any_of(
+        view.steps.begin(), view.steps.end(), [](const auto& step) { return step.can_go_on; });
+    if (kept)
+        dim_text("The other photographs are kept. Choose one in the middle to take it again.");
+}
+
+void draw_effort(Shell& shell) {
+    CapturePanelState& state = *shell.studio.panels.capture;
+    struct Effort {
+        const char* name;
+        const char* item;
+        int shots;
+        const char* meaning;
+    };
+    static constexpr std::array<Effort, 3> kEfforts{
+        {{"Quick", "effort-quick", 1, "One photograph of each colour."},
+         {"Normal", "effort-normal", 2, "Two of each: a third less noise."},
+         {"Best", "effort-best", 4, "Four of each: half the noise."}}};
+    row_label("Effort");
+    for (const Effort& effort : kEfforts) {
+        if (effort.shots != kEfforts[0].shots) ImGui::SameLine();
+        if (ImGui::RadioButton(effort.name, state.colour_shots == effort.shots) &&
+            state.colour_shots != effort.shots) {
+            state.colour_shots = effort.shots;
+            CaptureSetup setup = capture_setup(shell, *state.chosen);
+            shell.studio.capture->use(std::move(setup));
+        }
+        name_last_item(effort.item);
+        tooltip(effort.meaning);
+    }
+}
+
+/// The large button: the next step, or the end.
+void draw_next(Shell& shell, bool can_show) {
+    CaptureThread& capture = *shell.studio.capture;
+    const CapturePanelState& state = *shell.studio.panels.capture;
+    const CaptureView& view = state.view;
+    const bool by_hand = state.chosen->kind == CameraChoice::Kind::folder;
+    const bool ready =
+        can_show && view.doing != CaptureView::Doing::opening && (!view.camera.empty() || by_hand);
+    const auto next = next_step(view);
+    const bool finished = view.finished && view.step(CaptureStep::colour).done;
+    begin_disabled(!ready);
+    const ImVec2 large{-FLT_MIN, em(2.4f)};
+    if (next) {
+        const StepWords& words = kSteps[static_cast<std::size_t>(*next)];
+        const CaptureStepView& step = view.step(*next);
+        std::string label =
+            step.can_go_on ? "Go on with: " + std::string(words.name) : words.action;
+        if (step.expected_s >= 1.0) label += fmt::format(" (about {})", time_text(step.expected_s));
+        if (ImGui::Button(label.c_str(), large)) capture.start(*next, false);
+        name_last_item("capture-next-step");
+        tooltip(words.meaning);
+    }
+    if (finished && !is_accepted(state)) {
+        if (ImGui::Button("Accept: put it to use", next ? ImVec2{-FLT_MIN, 0.0f} : large))
+            accept(shell);
+        name_last_item("accept");
+        tooltip("The calibration before is kept, and can be gone back to.");
+    }
+    end_disabled();
+    if (finished && is_accepted(state)) {
+        dim_text("This calibration is in use.");
+        name_last_item("accepted");
+        if (ImGui::Button("Back to the one before", {-FLT_MIN, 0.0f})) {
+            commit(shell.studio, SetCalibration{state.before.string()});
+            shell.studio.panels.capture->accepted.clear();
+        }
+        name_last_item("revert");
+    }
+}
+
+void draw_step(Shell& shell, const StepWords& words, bool ready) {
+    CapturePanelState& state = *shell.studio.panels.capture;
+    const CaptureStepView& step = state.view.step(words.step);
+    const bool now = is_busy(state.view) && state.view.doing_step == words.step;
+    const OverallGrade grade = grade_of(step.figures);
+    std::string shown = words.name;
+    ImVec4 colour = colours::dim_text;
+    const char* mark = "○";
+    if (!step.called_for) {
+        shown += words.step == CaptureStep::geometry ? ": where it stands is given" : ": not here";
+    } else if (now) {
+        mark = "▸";
+        colour = colours::accent;
+    } else if (step.done) {
+        mark = "●";
+        colour = colour_of(grade.grade);
+        shown += ": " + to_string(grade.grade);
+        if (step.seconds > 0.0) shown += fmt::format(", {}", time_text(step.seconds));
+    } else if (step.can_go_on) {
+        shown += ": stopped half-way, its photographs are kept";
+    }
+    ImGui::PushID(words.item);
+    ImGui::TextColored(colour, "%s", mark);
+    ImGui::SameLine();
+    ImGui::TextUnformatted(shown.c_str());
+    name_last_item(std::string("step:") + words.item);
+    tooltip(words.meaning);
+    const bool again = step.done || step.can_go_on;
+    if (step.called_for && ready && !is_busy(state.view)) {
+        const char* label = again ? "Again" : "Do";
+        ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - button_width(label));
+        if (ImGui::SmallButton(label)) shell.studio.capture->start(words.step, again);
+        name_last_item(words.item);
+        tooltip(again ? "Forgets what this step photographed, and what follows from it."
+                      : "This step alone.");
+    }
+    if (step.done && grade.grade != Grade::good) {
+        warning_text(sentence(grade.reason));
+        dim_text(sentence(grade.fix));
+    }
+    if (!step.figures.empty()) draw_figures(step.figures);
+    ImGui::PopID();
+}
+
+/// What the bench is like against how the calibration in use left it.
+void draw_drift(Shell& shell, bool ready) {
+    const CaptureView& view = shell.studio.panels.capture->view;
+    if (shell.studio.session.document().calibration.empty() || !ready) return;
+    if (ImGui::Button("Has anything moved since?", {-FLT_MIN, 0.0f}))
+        shell.studio.capture->look_for_drift();
+    name_last_item("look-for-drift");
+    tooltip("Two photographs, against those that ended the calibration in use.");
+    if (view.drift.empty()) return;
+    draw_figures(view.drift);
+    const OverallGrade grade = grade_of(view.drift);
+    if (grade.grade == Grade::good) {
+        dim_text("The bench is as it was calibrated.");
+    } else {
+        warning_text(sentence(grade.reason));
+        dim_text(sentence(grade.fix));
+    }
+    name_last_item("drift");
+}
+
+}  // namespace
+
+void draw_capture_steps(Shell& shell, bool can_show) {
+    CapturePanelState& state = *shell.studio.panels.capture;
+    const CaptureView& view = state.view;
+    const bool by_hand = state.chosen->kind == CameraChoice::Kind::folder;
+    const bool ready =
+        can_show && view.doing != CaptureView::Doing::opening && (!view.camera.empty() || by_hand);
+    if (is_busy(view)) {
+        draw_running(shell);
+    } else {
+        if (!by_hand) draw_effort(shell);
+        draw_next(shell, can_show);
+        draw_trouble(view);
+    }
+    heading("Steps");
+    for (const StepWords& words : kSteps) draw_step(shell, words, ready);
+    if (!view.compared.empty()) {
+        heading("Against the one in use");
+        draw_figures(view.compared);
+        name_last_item("compared");
+    }
+    if (view.finished && !by_hand) {
+        dim_text(fmt::format(
+            "Calibrated: {} photographs taken, {} kept from before, in {:.1f} s, of which {:.1f} s "
+            "in the camera and {:.1f} s in the projector.",
+            view.taken,
+            view.kept_from_before,
+            view.capture_s,
+            view.camera_s,
+            view.projector_s));
+        name_last_item("capture-finished");
+    }
+    if (is_busy(view)) return;
+    heading("Else");
+    draw_drift(shell, ready && !by_hand);
+    if (view.may_have_curve && ready) {
+        if (ImGui::Button("Fit the camera's curve", {-FLT_MIN, 0.0f}))
+            shell.studio.capture->start_curve_fit();
+        name_last_item("fit-curve");
+        tooltip(
+            "For a camera that gives no RAW: photographs white at other exposures and finds what "
+            "its numbers mean. Kept for the next time.");
+    }
+}
+
+}  // namespace livery
