@@ -57,6 +57,7 @@ struct Command {
 // One file each. A command's options are bound to state that lives as long as the command.
 Command albedo_command();
 Command bench_command();
+Command board_command();
 Command brdf_command();
 Command calibrate_color_command();
 Command calibrate_geometry_command();

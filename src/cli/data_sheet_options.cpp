@@ -24,7 +24,7 @@ void add_data_sheet_options(std::vector<Option>& options, DataSheets& sheets) {
              {"--sensor-width-mm", "MM", "the camera's sensor", &sheets.sensor_width_mm, false, {}},
              {"--lens-distance-mm",
               "MM",
-              "between the two lenses, by a tape",
+              "between the two lenses, by a tape; with a board it checks --square-mm",
               &sheets.lens_distance_mm,
               false,
               {}},

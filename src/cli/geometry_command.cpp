@@ -1,11 +1,11 @@
 // livery calibrate geometry
 
-#include <cstdio>
 #include <memory>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "cli/board_options.h"
 #include "cli/command.h"
 #include "cli/data_sheet_options.h"
 #include "core/error.h"
@@ -14,17 +14,6 @@
 namespace livery {
 
 namespace {
-
-/// "9x7": columns and rows of inner corners.
-glm::ivec2 parse_board(const std::string& text) {
-    glm::ivec2 size(0);
-    char end = 0;
-    const bool whole = std::sscanf(text.c_str(), "%dx%d%c", &size.x, &size.y, &end) == 2;
-    if (!whole || size.x < 3 || size.y < 3 || size.x > 100 || size.y > 100)
-        throw std::invalid_argument(fmt::format(
-            "--board: found \"{}\", expected COLUMNSxROWS of inner corners, 3 to 100 each", text));
-    return size;
-}
 
 std::string text_of(const PairGeometry& geometry, const std::string& out) {
     const auto lens = [](const char* whose, const View& view, double error_px) {
@@ -72,8 +61,9 @@ std::string text_of(const PairGeometry& geometry, const std::string& out) {
 Command calibrate_geometry_command() {
     struct Arguments {
         std::vector<std::string> captures;
-        std::string projector, board, out;
-        double square_mm = 0.0, white_threshold = -1.0, black_threshold = -1.0;
+        std::string projector, out;
+        BoardArguments board;
+        double white_threshold = -1.0, black_threshold = -1.0;
         DataSheets sheets{0.0, 0.5, 0.0, 0.0, 0.0};
     };
     const auto arguments = std::make_shared<Arguments>();
@@ -93,8 +83,6 @@ Command calibrate_geometry_command() {
          true,
          {}},
         {"--projector", "WxH", "its resolution", &arguments->projector, true, {}},
-        {"--board", "WxH", "inner corners of the chessboard", &arguments->board, false, {}},
-        {"--square-mm", "MM", "side of a square", &arguments->square_mm, false, {}},
         {"--white-threshold",
          "N",
          "least difference of stripes and their inverse, file units (default: none)",
@@ -110,15 +98,17 @@ Command calibrate_geometry_command() {
         {"--out", "DIR", "geometry.json, camera.json, projector.json", &arguments->out, true, {}},
     };
     add_data_sheet_options(command.options, arguments->sheets);
+    const std::vector<Option> board = board_options(arguments->board, false);
+    command.options.insert(command.options.begin() + 2, board.begin(), board.end());
     command.run = [arguments](const CommonOptions&, const Progress& progress) {
         PairGeometryRequest request;
         request.captures = {arguments->captures.begin(), arguments->captures.end()};
         request.projector_px = parse_size("--projector", arguments->projector);
         request.black_threshold = arguments->black_threshold;
         request.white_threshold = arguments->white_threshold;
-        if (!arguments->board.empty()) {
-            request.board_corners = parse_board(arguments->board);
-            request.square_mm = arguments->square_mm;
+        if (!arguments->board.board.empty()) {
+            request.board = parse_board(arguments->board);
+            request.lens_distance_mm = arguments->sheets.lens_distance_mm;
         } else {
             check_whole(arguments->sheets,
                         " (or --board and --square-mm: photographs alone leave focal lengths and "

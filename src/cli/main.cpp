@@ -61,6 +61,7 @@ int run(const std::vector<std::string>& arguments) {
                                      albedo_command(),
                                      paints_command(),
                                      patterns_command(),
+                                     board_command(),
                                      photograph_command(),
                                      capture_command(),
                                      calibrate_color_command(),

@@ -10,6 +10,7 @@
 
 #include <glm/vec2.hpp>
 
+#include "calibration/geometry/board_sight.h"
 #include "calibration/registration/pixel_refinement.h"
 #include "core/json.h"
 #include "core/progress.h"
@@ -21,10 +22,11 @@ namespace livery {
 struct PairGeometryRequest {
     std::vector<std::filesystem::path> captures;  ///< Gray code, a folder a pose of the board
     glm::ivec2 projector_px{0};
-    glm::ivec2 board_corners{0};  ///< inner corners, columns and rows; 0: no board
-    double square_mm = 0.0;
+    Board board;  ///< unless there are data sheets
     /// Without a board: one folder, of anything that is not a plane.
     std::optional<DataSheets> data_sheets;
+    /// With a board: what a tape says of the distance between the lenses; 0: not measured.
+    double lens_distance_mm = 0.0;
     /// White - black and stripes - inverse that a pixel must show at least, of the range between
     /// the two in the file's units; negative: from the noise, and none.
     double black_threshold = -1.0, white_threshold = -1.0;
@@ -36,6 +38,8 @@ struct BoardPose {
     bool used = false;
     std::string reason;       ///< why not
     std::size_t corners = 0;  ///< carried to the projector
+    double edge_px = 0.0;     ///< width of its squares' edges in the camera (SightSearch)
+    double moved_px = 0.0;    ///< between the photographs, in the camera (SightSearch)
     double rms_px = 0.0;      ///< foretold by the others, in the projector
 };
 
@@ -48,6 +52,7 @@ struct PairGeometry {
     double stereo_rms_px = 0.0;  ///< of both together; without boards the median distance of rays
     std::string lens_model;      ///< "k1", "k1 k2", "all five", or "data sheets"
     std::array<double, 4> camera_standard_error_px{}, projector_standard_error_px{};
+    std::array<double, 3> turn_standard_error_rad{}, shift_standard_error_mm{};  ///< PairSolution
     std::vector<BoardPose> poses;
 };
 
@@ -64,6 +69,9 @@ void write_pair_geometry(const std::filesystem::path& folder, const PairGeometry
 /// How well the calibration in a folder is known: from `geometry.json`, else as boards leave it.
 /// Throws FileError.
 LensPrior lens_prior_of(const std::filesystem::path& folder);
+/// Checks the text of a `geometry.json`; whether boards made it (else data sheets). Throws
+/// FileError.
+bool parse_made_from_boards(const std::string& text, const std::filesystem::path& file);
 /// Checks a `geometry.json`. Throws FileError.
 void check_geometry_file(const std::filesystem::path& file);
 

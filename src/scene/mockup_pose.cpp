@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/json.h"
+#include "core/paths.h"
 #include "scene/pose_io.h"
 
 namespace livery {
@@ -15,7 +16,11 @@ constexpr int kFormatVersion = 1;
 }  // namespace
 
 MockupPose read_pose_file(const std::filesystem::path& file) {
-    const Json json = read_json_file(file);
+    return parse_mockup_pose(read_text_file(file), file);
+}
+
+MockupPose parse_mockup_pose(const std::string& text, const std::filesystem::path& file) {
+    const Json json = parse_json(text, file);
     const JsonReader root(file, json);
     root.require_format_version(kFormatVersion);
     root.allow_only({"format_version",

@@ -24,6 +24,8 @@ struct MockupPose {
 
 /// `pose.json`. Throws FileError.
 MockupPose read_pose_file(const std::filesystem::path& file);
+/// The same of its text.
+MockupPose parse_mockup_pose(const std::string& text, const std::filesystem::path& file);
 void write_pose_file(const std::filesystem::path& file, const MockupPose& pose);
 
 }  // namespace livery

@@ -11,6 +11,7 @@
 #include "calibration/geometry/carry_corners.h"
 #include "calibration/geometry/choose_model.h"
 #include "calibration/registration/rotation.h"
+#include "calibration/support/board_sights.h"
 #include "core/error.h"
 #include "core/image_io.h"
 #include "support/reference_data.h"
@@ -18,81 +19,27 @@
 namespace livery {
 namespace {
 
-constexpr PictureSize kCamera{1280, 1024}, kProjector{1024, 768};
-
-std::vector<glm::dvec2> board() {
-    std::vector<glm::dvec2> points;
-    for (int y = 0; y < 7; ++y)
-        for (int x = 0; x < 9; ++x) points.emplace_back(75.0 * x, 75.0 * y);
-    return points;
-}
-
-struct Truth {
-    View camera, projector;
-};
-
-/// The projector's principal point lies below its picture.
-Truth truth() {
-    Truth t;
-    t.camera = {1280, 1024, {2400, 2410}, {652, 505}, {-0.12, 0.1, 0.0005, -0.0004, 0}, {}};
-    t.projector = {1024,
-                   768,
-                   {1900, 1905},
-                   {515, 980},
-                   {-0.05, 0.02, 0, 0, 0},
-                   {rotation_of({0.05, -0.2, 0.02}), {400, 60, 40}}};
-    return t;
-}
-
-std::vector<BoardSight> sights_of(const Truth& t,
-                                  const std::vector<glm::dvec3>& turns,
-                                  double noise_px,
-                                  std::uint32_t seed) {
-    std::mt19937 random(seed);
-    std::normal_distribution<double> unit(0.0, 1.0);
-    const auto noise = [&](std::mt19937& from) { return noise_px * unit(from); };
-    std::vector<BoardSight> sights;
-    for (std::size_t k = 0; k < turns.size(); ++k) {
-        const glm::dmat3 r = rotation_of(turns[k]);
-        const Rigid3 pose{r,
-                          glm::dvec3(20.0 * double(k), 10, 2000 + 80.0 * double(k)) -
-                              r * glm::dvec3(300, 225, 0)};
-        View camera = t.camera, projector = t.projector;
-        camera.view_from_world = pose;
-        projector.view_from_world = t.projector.view_from_world * pose;
-        BoardSight sight;
-        for (const glm::dvec2& p : board()) {
-            const auto seen = project(camera, {p, 0}), lit = project(projector, {p, 0});
-            if (!seen || !lit) throw std::logic_error("a board behind a lens");
-            sight.board_mm.push_back(p);
-            sight.camera_px.push_back(*seen + glm::dvec2(noise(random), noise(random)));
-            sight.projector_px.push_back(*lit + glm::dvec2(noise(random), noise(random)));
-        }
-        sights.push_back(sight);
-    }
-    return sights;
-}
-
-const std::vector<glm::dvec3> kTurns = {{0.5, 0, 0},
-                                        {-0.5, 0.1, 0},
-                                        {0.1, 0.55, 0.1},
-                                        {0, -0.55, 0},
-                                        {0.35, 0.35, 0.2},
-                                        {-0.3, -0.4, -0.1}};
+using testing::board_points_mm;
+using testing::board_sights;
+using testing::kCamera;
+using testing::kProjector;
+using testing::kTurns;
+using testing::pair_truth;
+using testing::PairTruth;
 
 TEST(Geometry, LensesAndTheirPlacesAreFoundWithALensShift) {
     constexpr std::uint32_t kSeed = 5;
     std::printf("seed %u\n", kSeed);
-    const Truth t = truth();
+    const PairTruth t = pair_truth();
     const auto exact =
-        solve_pair(sights_of(t, kTurns, 0.0, kSeed), kCamera, kProjector, LensModel::all_five);
+        solve_pair(board_sights(t, kTurns, 0.0, kSeed), kCamera, kProjector, LensModel::all_five);
     EXPECT_NEAR(exact.camera.focal_px.x, 2400, 0.5);
     EXPECT_NEAR(exact.projector.focal_px.y, 1905, 0.5);
     EXPECT_NEAR(exact.projector.principal_px.y, 980, 0.5);
     EXPECT_NEAR(exact.camera.distortion[0], -0.12, 2e-3);
 
     const auto noisy =
-        solve_pair(sights_of(t, kTurns, 0.1, kSeed), kCamera, kProjector, LensModel::k1_k2);
+        solve_pair(board_sights(t, kTurns, 0.1, kSeed), kCamera, kProjector, LensModel::k1_k2);
     EXPECT_NEAR(noisy.camera.focal_px.x, 2400, 24);
     EXPECT_NEAR(noisy.projector.focal_px.x, 1900, 19);
     EXPECT_LT(noisy.projector_rms_px, 0.2);
@@ -103,13 +50,13 @@ TEST(Geometry, LensesAndTheirPlacesAreFoundWithALensShift) {
 }
 
 TEST(Geometry, WhatDoesNotDetermineTheLensesIsRefused) {
-    const Truth t = truth();
+    const PairTruth t = pair_truth();
     const std::vector<glm::dvec3> parallel(5, {0.3, 0.1, 0});
-    EXPECT_THROW(solve_pair(sights_of(t, parallel, 0.1, 1), kCamera, kProjector, LensModel::k1),
+    EXPECT_THROW(solve_pair(board_sights(t, parallel, 0.1, 1), kCamera, kProjector, LensModel::k1),
                  Refused);
     EXPECT_THROW(
         solve_pair(
-            sights_of(t, {kTurns[0], kTurns[2]}, 0.1, 1), kCamera, kProjector, LensModel::k1),
+            board_sights(t, {kTurns[0], kTurns[2]}, 0.1, 1), kCamera, kProjector, LensModel::k1),
         Refused);
 }
 
@@ -165,7 +112,7 @@ std::vector<BoardSight> real_sights(const std::filesystem::path& data) {
             throw std::runtime_error("no board found");
         cv::cornerSubPix(white, corners, {7, 7}, {-1, -1}, {3, 50, 1e-4});
         BoardSight sight;
-        sight.board_mm = board();
+        sight.board_mm = board_points_mm();
         for (const auto& c : corners) sight.camera_px.emplace_back(c.x + 0.5, c.y + 0.5);
         const auto decoded = decode_gray_code(std::span<const Image8>(pictures), 1024, 768);
         for (const auto& place : carry_corners(decoded.projector_px, sight.camera_px, 30.0)) {
@@ -177,8 +124,12 @@ std::vector<BoardSight> real_sights(const std::filesystem::path& data) {
     return sights;
 }
 
-/// RMS of the pose left out; OpenCV alone, both lenses and the pose between refined together.
-double opencv_held_out(const std::vector<BoardSight>& sights, std::size_t out, int flags) {
+/// RMS of the pose left out; OpenCV alone. Both lenses and the pose between refined together, or,
+/// `fixed`, the pose alone, between lenses that were fitted each by itself.
+double opencv_held_out(const std::vector<BoardSight>& sights,
+                       std::size_t out,
+                       int flags,
+                       bool fixed) {
     std::vector<std::vector<cv::Point3f>> boards;
     std::vector<std::vector<cv::Point2f>> seen, lit;
     for (const BoardSight& sight : sights) {
@@ -216,7 +167,7 @@ double opencv_held_out(const std::vector<BoardSight>& sights, std::size_t out, i
                         t,
                         e,
                         f,
-                        flags | cv::CALIB_USE_INTRINSIC_GUESS,
+                        flags | (fixed ? cv::CALIB_FIX_INTRINSIC : cv::CALIB_USE_INTRINSIC_GUESS),
                         {3, 300, 1e-9});
     cv::Mat turn, shift, both_turn, both_shift;
     cv::solvePnP(left_board, left_seen, kc, dc, turn, shift);
@@ -238,15 +189,24 @@ TEST(Geometry, RealPhotographsForetellAPoseLeftOutAsWellAsOpenCV) {
     const auto sights = real_sights(data);
     const int no_k3 = cv::CALIB_ZERO_TANGENT_DIST | cv::CALIB_FIX_K3;
     double best = 1e9;
-    for (const int flags : {0, no_k3, no_k3 | cv::CALIB_FIX_K2}) {
-        double squares = 0.0;
-        for (std::size_t out = 0; out < sights.size(); ++out) {
-            const double rms = opencv_held_out(sights, out, flags);
-            squares += rms * rms / double(sights.size());
-            std::printf("OpenCV, flags %d, without %zu: %.3f px\n", flags, out, rms);
+    const std::vector<std::pair<const char*, int>> lenses = {
+        {"all five", 0}, {"k1 k2", no_k3}, {"k1", no_k3 | cv::CALIB_FIX_K2}};
+    for (const bool fixed : {true, false})
+        for (const auto& [lens, flags] : lenses) {
+            double squares = 0.0;
+            std::string each;
+            for (std::size_t out = 0; out < sights.size(); ++out) {
+                const double rms = opencv_held_out(sights, out, flags, fixed);
+                squares += rms * rms / double(sights.size());
+                each += (each.empty() ? "" : ", ") + std::to_string(rms).substr(0, 5);
+            }
+            std::printf("    OpenCV, %s, %s: %.3f px (%s)\n",
+                        lens,
+                        fixed ? "fixed intrinsics" : "joint",
+                        std::sqrt(squares),
+                        each.c_str());
+            best = std::min(best, std::sqrt(squares));
         }
-        best = std::min(best, std::sqrt(squares));
-    }
     const ChosenModel own = choose_model(sights, kCamera, kProjector);
     std::printf(
         "held out: %.3f px, OpenCV's best %.3f px; model %d, focal %.0f +- %.0f, "

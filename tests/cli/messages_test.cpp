@@ -45,6 +45,18 @@ TEST(Messages, NameTheOptionWhatWasFoundAndWhatWasExpected) {
     };
     expect_refusal(geometry({"--board", "9by7"}), {"--board", "9by7", "COLUMNSxROWS"});
     expect_refusal(geometry({"--board", "9x7"}), {"--square-mm", "found 0", "more than 0"});
+    expect_refusal(geometry({"--board", "charuco:9x7", "--square-mm", "20", "--marker-mm", "20"}),
+                   {"--marker-mm", "20 mm", "6.0 to 18.0"});
+    expect_refusal(geometry({"--board", "9x7", "--square-mm", "20", "--marker-mm", "14"}),
+                   {"--marker-mm", "found 14", "charuco:COLUMNSxROWS"});
+    const auto board = [](std::vector<std::string> more) {
+        std::vector<std::string> all = {"board", "--board", "9x7", "--square-mm"};
+        all.insert(all.end(), more.begin(), more.end());
+        return all;
+    };
+    expect_refusal(board({"25", "--out", "b.pdf"}), {"--square-mm", "found 25", "at most 21 for"});
+    expect_refusal(board({"20", "--out", "b.png"}), {"--out", "b.png", ".pdf or .svg"});
+    expect_refusal(board({"20", "--paper", "A9", "--out", "b.pdf"}), {"--paper", "A9", "letter"});
     expect_refusal(geometry({}), {"--throw-ratio", "found 0", "--board"});
     expect_refusal({"help", "nothing"}, {"\"nothing\"", "livery help"});
     expect_refusal({"plan", "--threads", "x"}, {"--threads", "\"x\"", "a whole number"});

@@ -182,6 +182,23 @@ CAMERA = {"format_version": 1, "width": 1280, "height": 800,
 put("camera", "projector.json", CAMERA)
 put("camera", "bare.json", {k: CAMERA[k] for k in
                             ("width", "height", "matrix", "rotation", "translation_mm")})
+POSE = {"rotation": [1, 0, 0, 0, -1, 0, 0, 0, -1], "translation_mm": [10, -20, 1500]}
+put("mockup_pose", "scan.json",
+    {**POSE, "format_version": 1, "kind": "pose", "product": "assets/car.json", "method": "scan",
+     "mesh_scale": 0.04, "rms_px": 0.2, "rms_mm": 0.1, "inliers": 40000,
+     "covariance": [1e-8 if k % 7 == 0 else 0 for k in range(36)], "warnings": ["a"]})
+put("picked_points", "six.csv", "x_mm,y_mm,z_mm,u_px,v_px\n" + "".join(
+    "%d,%d,%d,%d.5,%d\n" % (k, 7 * k % 5, k * k, 100 + 90 * k, 400 - 3 * k) for k in range(6)))
+put("picked_points", "others.csv", "# roof\r\nname,v_px,\"u_px\",z_mm,y_mm,x_mm\r\nleft,1e2,-3,0,0,9e9\r\n")
+for origin, poses in {"boards": [{"folder": "pose-0", "used": True, "reason": "", "corners": 63, "rms_px": 0.4}],
+                      "data sheets": []}.items():
+    put("pair_geometry", origin.replace(" ", "-") + ".json",
+        {**POSE, "format_version": 1, "kind": "geometry", "made_from": origin, "lens_model": "k1",
+         "camera_rms_px": 0.1, "projector_rms_px": None, "stereo_rms_px": 0.3, "held_out_rms_px": 0.4,
+         "camera_matrix": CAMERA["matrix"], "camera_distortion": CAMERA["distortion"],
+         "camera_standard_error_px": [1, 1, 2, 2], "projector_matrix": CAMERA["matrix"],
+         "projector_distortion": [0, 0, 0, 0, 0], "projector_standard_error_px": [2, 2, 9, 9],
+         "poses": poses})
 put("camera_to_xyz", "matrix.json", {"matrix": [0.4, 0.3, 0.2, 0.2, 0.7, 0.1, 0, 0.1, 0.9]})
 put("camera_to_xyz", "primaries.json",
     {"format_version": 1, "measured_at_px": [10, 20], "primaries_xyz":

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "calibration/geometry/homography.h"
 #include "calibration/registration/rotation.h"
 #include "core/error.h"
 
@@ -74,35 +75,12 @@ struct PointError {
     }
 };
 
-/// pixel ~ H (board_mm, 1), by the normalised direct linear transformation.
 Eigen::Matrix3d homography(const std::vector<glm::dvec2>& from, const std::vector<glm::dvec2>& to) {
-    const auto normaliser = [](const std::vector<glm::dvec2>& points) {
-        glm::dvec2 middle(0.0);
-        double spread = 0.0;
-        for (const auto& p : points) middle += p / static_cast<double>(points.size());
-        for (const auto& p : points) spread += glm::length(p - middle);
-        const double s = static_cast<double>(points.size()) / std::max(spread, 1e-9);
-        Eigen::Matrix3d m;
-        m << s, 0.0, -s * middle.x, 0.0, s, -s * middle.y, 0.0, 0.0, 1.0;
-        return m;
-    };
-    const Eigen::Matrix3d a = normaliser(from), b = normaliser(to);
-    Eigen::Matrix<double, 9, 9> normal = Eigen::Matrix<double, 9, 9>::Zero();
-    for (std::size_t k = 0; k < from.size(); ++k) {
-        const Eigen::Vector3d x = a * Eigen::Vector3d(from[k].x, from[k].y, 1.0);
-        const Eigen::Vector3d u = b * Eigen::Vector3d(to[k].x, to[k].y, 1.0);
-        for (int c = 0; c < 2; ++c) {
-            Eigen::Matrix<double, 9, 1> row = Eigen::Matrix<double, 9, 1>::Zero();
-            row.segment<3>(3 * c) = x;
-            row.segment<3>(6) = -u[c] * x;
-            normal += row * row.transpose();
-        }
-    }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> solver(normal);
-    const Eigen::Matrix<double, 9, 1> h = solver.eigenvectors().col(0);
+    const glm::dmat3 h = homography_of(from, to);
     Eigen::Matrix3d result;
-    result << h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8];
-    return b.inverse() * result * a;
+    for (int column = 0; column < 3; ++column)
+        for (int row = 0; row < 3; ++row) result(row, column) = h[column][row];
+    return result;
 }
 
 /// Zhang's two equations a board for 1/f^2, the principal point known; nothing where they give no
@@ -345,7 +323,9 @@ PairSolution solve_pair(std::span<const BoardSight> sights,
     how.min_reciprocal_condition_number = 1e-20;
     ceres::Covariance covariance(how);
     const std::vector<std::pair<const double*, const double*>> blocks = {
-        {best.camera.data(), best.camera.data()}, {best.projector.data(), best.projector.data()}};
+        {best.camera.data(), best.camera.data()},
+        {best.projector.data(), best.projector.data()},
+        {best.stereo.six.data(), best.stereo.six.data()}};
     if (!covariance.Compute(blocks, &problem))
         throw Refused("the poses of the board do not determine the lenses",
                       "tilt the board by 20 to 40 degrees, to all four sides");
@@ -354,6 +334,12 @@ PairSolution solve_pair(std::span<const BoardSight> sights,
         std::sqrt((camera_squares + projector_squares) / std::max(1.0, 4.0 * points - unknowns));
     result.camera_standard_error_px = standard_errors(covariance, best.camera, sigma);
     result.projector_standard_error_px = standard_errors(covariance, best.projector, sigma);
+    std::array<double, 36> pair{};
+    covariance.GetCovarianceBlock(best.stereo.six.data(), best.stereo.six.data(), pair.data());
+    for (std::size_t k = 0; k < 3; ++k) {
+        result.turn_standard_error_rad[k] = sigma * std::sqrt(pair[7 * k]);
+        result.shift_standard_error_mm[k] = sigma * std::sqrt(pair[7 * (k + 3)]);
+    }
     for (std::size_t k = 0; k < 2; ++k) {
         check_focal("camera", best.camera[k], result.camera_standard_error_px[k]);
         check_focal("projector", best.projector[k], result.projector_standard_error_px[k]);

@@ -30,6 +30,9 @@ struct PairSolution {
     double camera_rms_px = 0.0, projector_rms_px = 0.0;
     /// Of fx, fy, cx, cy, in pixels, at the spread of the residuals.
     std::array<double, 4> camera_standard_error_px{}, projector_standard_error_px{};
+    /// Of the projector's pose from the camera: a small turn on the projector's side, and the
+    /// shift.
+    std::array<double, 3> turn_standard_error_rad{}, shift_standard_error_mm{};
 };
 
 struct PictureSize {

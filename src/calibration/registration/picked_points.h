@@ -21,6 +21,9 @@ struct MeshPick {
 
 /// CSV x_mm,y_mm,z_mm,u_px,v_px; pixel centres at integers, as OpenCV counts. Throws FileError.
 std::vector<MeshPick> read_picked_points(const std::filesystem::path& file);
+/// The same of its text.
+std::vector<MeshPick> parse_picked_points(const std::string& text,
+                                          const std::filesystem::path& file);
 
 struct PickedPose {
     Rigid3 view_from_mesh;
