@@ -22,7 +22,7 @@ struct Captures {
     int width = 0;                          ///< of the photographs
 };
 
-/// Gray code, white and black, of which decoding needs one channel.
+/// Gray code, fringes, white and black, of which decoding needs one channel.
 bool is_geometry_role(const std::string& role);
 
 void add_capture(Captures& captures, RoledPhotograph photograph);
@@ -35,8 +35,8 @@ CaptureVerdict judge_captures(const Captures& captures,
                               const ShownDrives& drives,
                               bool with_stripes);
 
-/// Where the camera sees each projector pixel. Adds to `warnings` what is odd about it. Throws
-/// Refused, FileError.
+/// Where the camera sees each projector pixel, by decode_places(). Adds to `warnings` what is odd
+/// about it. Throws Refused, FileError.
 ProjectorToCamera map_of_captures(const Captures& captures,
                                   int projector_width,
                                   int projector_height,
