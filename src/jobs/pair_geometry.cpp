@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "calibration/captures/captures.h"
+#include "calibration/correspondence/fringe_decode.h"
 #include "calibration/geometry/carry_corners.h"
 #include "calibration/geometry/choose_model.h"
 #include "calibration/geometry/find_board.h"
@@ -29,7 +30,7 @@ constexpr double kOutlier_px = 2.0;
 constexpr double kOutlierRatio = 4.0;
 
 struct DecodedFolder {
-    GrayCodeResult code;
+    CameraToProjector code;
     ImageF white;  ///< one channel
 };
 
@@ -64,6 +65,7 @@ DecodedFolder decoded_folder(const std::filesystem::path& path,
     std::vector<std::string> roles;
     for (const Capture& capture : folder.captures) roles.push_back(capture.role);
     check_gray_code(path, roles, width, height);
+    check_fringes(path, roles);
     Captures captures;
     for (const Capture& capture : folder.captures) {
         progress.check_stop();
@@ -71,7 +73,7 @@ DecodedFolder decoded_folder(const std::filesystem::path& path,
         add_capture(captures, {capture.role, load_photograph(capture)});
     }
     DecodedFolder result;
-    result.code = decode_gray_code(captures.geometry, width, height, request.black_threshold);
+    result.code = decode_places(captures.geometry, width, height, request.black_threshold).places;
     if (request.white_threshold >= 0.0)
         drop_weak_stripes(captures, request.white_threshold, result.code.projector_px);
     for (const RoledPhotograph& one : captures.geometry)

@@ -37,7 +37,9 @@ struct PlaceErrors {
     double rms_of_sigma = 0.0;  ///< of error / standard error
     int fine = 0, decoded = 0, all = 0;
 };
-PlaceErrors errors_of(const FringeScene& scene, const GrayCodeResult& places, double margin = 6.0) {
+PlaceErrors errors_of(const FringeScene& scene,
+                      const CameraToProjector& places,
+                      double margin = 6.0) {
     PlaceErrors errors;
     for (int y = 0; y < scene.camera_height; ++y)
         for (int x = 0; x < scene.camera_width; ++x) {
@@ -218,7 +220,7 @@ TEST(FringeDecoding, SaturatedAndDarkPixelsKeepTheirWholePixel) {
     scene.read_noise = 24.0;
     scene.direct = [](glm::dvec2 c) { return c.x < 100 ? 2.6 : c.x < 200 ? 1.0 : 0.018; };
     const auto photographs = scene.photographs(kBoth);
-    const GrayCodeResult gray =
+    const CameraToProjector gray =
         decode_gray_code(photographs, scene.projector_width, scene.projector_height);
     const FineCode code = decode(scene, photographs);
     int saturated = 0, dark = 0, fine = 0, kept = 0;
@@ -364,10 +366,10 @@ TEST(FringeDecoding, BadPhotographsAreNamed) {
     All gray = good;
     gray.resize(first);
     EXPECT_TRUE(
-        decode_places(gray, scene.projector_width, scene.projector_height).sigma_px.empty());
+        decode_places(gray, scene.projector_width, scene.projector_height).places.sigma_px.empty());
     All broken = good;
     broken[first + 6].photograph.image.at(150, 110) = std::numeric_limits<float>::quiet_NaN();
-    const auto places = decode_places(broken, scene.projector_width, scene.projector_height);
+    const auto places = decode_places(broken, scene.projector_width, scene.projector_height).places;
     EXPECT_EQ(places.decoded.at(150, 110), 255);
     EXPECT_EQ(places.sigma_px.at(150, 110, 0), kWholePixelError);
     EXPECT_LT(places.sigma_px.at(151, 110, 0), 0.05f);

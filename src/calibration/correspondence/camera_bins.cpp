@@ -11,7 +11,7 @@
 
 namespace livery {
 
-Image8 without_strays(const GrayCodeResult& decoded, double reach) {
+Image8 without_strays(const CameraToProjector& decoded, double reach) {
     constexpr int kLeastAgreeing = 2;  // of eight; a corner pixel of a panel keeps three
     const int width = decoded.decoded.width, height = decoded.decoded.height;
     Image8 kept = decoded.decoded;
@@ -34,7 +34,7 @@ Image8 without_strays(const GrayCodeResult& decoded, double reach) {
     return kept;
 }
 
-Bins gather(const GrayCodeResult& decoded, const Image8& kept, int width, int height) {
+Bins gather(const CameraToProjector& decoded, const Image8& kept, int width, int height) {
     const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     const auto place_of = [&](std::size_t i) {
         const auto x = static_cast<std::size_t>(decoded.projector_px.values[2 * i]);

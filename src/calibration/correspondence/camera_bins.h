@@ -30,10 +30,10 @@ struct Bins {
 /// The decoded pixels (non-zero) without those that agree with fewer than two of the eight around
 /// them to within `reach` projector pixels: in a shadow that other parts light, codes come out at
 /// random and name places elsewhere.
-Image8 without_strays(const GrayCodeResult& decoded, double reach);
+Image8 without_strays(const CameraToProjector& decoded, double reach);
 
 /// `kept` says which camera pixels count. Where some of a projector pixel's are known finely, the
 /// others are left out of its mean.
-Bins gather(const GrayCodeResult& decoded, const Image8& kept, int width, int height);
+Bins gather(const CameraToProjector& decoded, const Image8& kept, int width, int height);
 
 }  // namespace livery

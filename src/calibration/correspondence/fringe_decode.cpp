@@ -29,7 +29,7 @@ struct Limits {
     float last_column, last_row;
 };
 
-struct Counts {
+struct RefinedPixels {
     std::size_t fine = 0, contradicted = 0, global = 0;
 };
 
@@ -63,12 +63,12 @@ void solve_axis(const FringeAxis& axis,
 }
 
 /// The block's places, errors and light from both axes.
-Counts refine_block(const FringeAxes& axes,
-                    const Limits& limits,
-                    float lit_threshold,
-                    std::size_t offset,
-                    std::size_t count,
-                    FineCode& code) {
+RefinedPixels refine_block(const FringeAxes& axes,
+                           const Limits& limits,
+                           float lit_threshold,
+                           std::size_t offset,
+                           std::size_t count,
+                           FineCode& code) {
     float* const places = code.places.projector_px.values.data() + 2 * offset;
     float* const sigmas = code.places.sigma_px.values.data() + 2 * offset;
     std::uint8_t* const decoded = code.places.decoded.values.data() + offset;
@@ -76,7 +76,7 @@ Counts refine_block(const FringeAxes& axes,
     solve_axis(axes.columns, offset, count, places, limits, columns);
     solve_axis(axes.rows, offset, count, places + 1, limits, rows);
     constexpr float kWorst = kWholePixelError * kWholePixelError;
-    Counts counts;
+    RefinedPixels counts;
     for (std::size_t i = 0; i < count; ++i) {
         const float light = axes.white[offset + i] - axes.black[offset + i];
         const bool lit = light > lit_threshold;
@@ -134,7 +134,7 @@ Limits limits_of(const FringeEvidence& evidence, int projector_width, int projec
 }  // namespace
 
 FineCode refine_by_fringes(const std::vector<RoledPhotograph>& photographs,
-                           GrayCodeResult gray_code,
+                           CameraToProjector gray_code,
                            int projector_width,
                            int projector_height) {
     std::vector<std::string> roles;
@@ -173,7 +173,7 @@ FineCode refine_by_fringes(const std::vector<RoledPhotograph>& photographs,
     parallel_for((pixels + kBlock - 1) / kBlock, 16, [&](std::size_t begin, std::size_t end) {
         for (std::size_t block = begin; block < end; ++block) {
             const std::size_t offset = block * kBlock;
-            const Counts counts = refine_block(
+            const RefinedPixels counts = refine_block(
                 axes, limits, lit_threshold, offset, std::min(kBlock, pixels - offset), code);
             fine += counts.fine;
             contradicted += counts.contradicted;
@@ -193,18 +193,17 @@ FineCode refine_by_fringes(const std::vector<RoledPhotograph>& photographs,
     return code;
 }
 
-GrayCodeResult decode_places(const std::vector<RoledPhotograph>& photographs,
-                             int projector_width,
-                             int projector_height,
-                             double lit_threshold) {
+FineCode decode_places(const std::vector<RoledPhotograph>& photographs,
+                       int projector_width,
+                       int projector_height,
+                       double lit_threshold) {
     std::vector<std::string> roles;
     for (const RoledPhotograph& one : photographs) roles.push_back(one.role);
     const bool fringes = check_fringes("captures", roles);
-    GrayCodeResult gray =
+    CameraToProjector gray =
         decode_gray_code(photographs, projector_width, projector_height, lit_threshold);
-    if (!fringes) return gray;
-    return refine_by_fringes(photographs, std::move(gray), projector_width, projector_height)
-        .places;
+    if (!fringes) return {std::move(gray), {}, {}};
+    return refine_by_fringes(photographs, std::move(gray), projector_width, projector_height);
 }
 
 }  // namespace livery

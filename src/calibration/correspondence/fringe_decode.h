@@ -25,8 +25,8 @@ struct FringeReport {
 };
 
 struct FineCode {
-    GrayCodeResult places;
-    SeparatedLight light;
+    CameraToProjector places;
+    SeparatedLight light;  ///< empty pictures where no fringes were photographed
     FringeReport report;
 };
 
@@ -47,15 +47,15 @@ struct FineCode {
 /// Throws FileError as check_fringes() and for unequal sizes, Refused where the fringes do not
 /// belong to the Gray code: photographs exchanged, or something moved.
 FineCode refine_by_fringes(const std::vector<RoledPhotograph>& photographs,
-                           GrayCodeResult gray_code,
+                           CameraToProjector gray_code,
                            int projector_width,
                            int projector_height);
 
 /// The best that the photographs tell: decode_gray_code(), and refine_by_fringes() where there are
 /// fringes. Throws as the two.
-GrayCodeResult decode_places(const std::vector<RoledPhotograph>& photographs,
-                             int projector_width,
-                             int projector_height,
-                             double lit_threshold = -1.0);
+FineCode decode_places(const std::vector<RoledPhotograph>& photographs,
+                       int projector_width,
+                       int projector_height,
+                       double lit_threshold = -1.0);
 
 }  // namespace livery

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kSamples = 60000;
 
-struct Sample {
+struct FringeSample {
     FringeValue column, row;
     float light;                ///< white - black
     float black;                ///< file units
@@ -25,7 +25,7 @@ float off_of(const FringeValue& fringe, float whole_px) {
 
 /// Noise by how the columns' and the rows' mean differ: the scene is the same in both. A steady
 /// difference (the lamp) is none.
-FringeNoise noise_of(const std::vector<Sample>& samples) {
+FringeNoise noise_of(const std::vector<FringeSample>& samples) {
     const std::size_t most_bins = std::min<std::size_t>(12, samples.size() / 16);
     std::vector<std::size_t> order(samples.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -43,7 +43,7 @@ FringeNoise noise_of(const std::vector<Sample>& samples) {
         std::vector<float> differences;
         double value = 0.0;
         for (std::size_t i = from; i < to; ++i) {
-            const Sample& sample = samples[order[i]];
+            const FringeSample& sample = samples[order[i]];
             differences.push_back(sample.column.mean - sample.row.mean);
             value += static_cast<double>(sample.column.mean) / static_cast<double>(to - from);
         }
@@ -87,10 +87,10 @@ double power_of_mean(double mean_light) {
 
 /// Largest over smallest median of amplitude / light along a period, less 1: one of a set of
 /// shifts that stands in another's place makes it rise and fall.
-double ripple_of(const std::vector<Sample>& samples, FringeValue Sample::*axis) {
+double ripple_of(const std::vector<FringeSample>& samples, FringeValue FringeSample::*axis) {
     constexpr std::size_t kBins = 8;
     std::array<std::vector<float>, kBins> bins;
-    for (const Sample& sample : samples) {
+    for (const FringeSample& sample : samples) {
         const FringeValue& fringe = sample.*axis;
         const auto bin = static_cast<std::size_t>(fringe.place_px * kBins / kFringePeriod_px);
         bins[std::min(bin, kBins - 1)].push_back(fringe.amplitude / sample.light);
@@ -120,20 +120,20 @@ FringeOfPower fringe_of_power(double power) {
     return fringe;
 }
 
-FringeEvidence evidence_of(const FringeAxes& axes, const GrayCodeResult& gray_code) {
+FringeEvidence evidence_of(const FringeAxes& axes, const CameraToProjector& gray_code) {
     FringeEvidence evidence;
     for (const std::uint8_t one : gray_code.decoded.values) evidence.decoded += one != 0;
     const std::size_t step = std::max<std::size_t>(1, evidence.decoded / kSamples) | 1u;
-    std::vector<Sample> samples;
+    std::vector<FringeSample> samples;
     std::size_t seen = 0;
     for (std::size_t i = 0; i < gray_code.decoded.values.size(); ++i) {
         if (!gray_code.decoded.values[i] || seen++ % step != 0) continue;
-        Sample sample{fringe_at(axes.columns, i),
-                      fringe_at(axes.rows, i),
-                      axes.white[i] - axes.black[i],
-                      axes.black[i],
-                      0.0f,
-                      0.0f};
+        FringeSample sample{fringe_at(axes.columns, i),
+                            fringe_at(axes.rows, i),
+                            axes.white[i] - axes.black[i],
+                            axes.black[i],
+                            0.0f,
+                            0.0f};
         // Not where a photograph is saturated.
         if (!std::isfinite(sample.column.mean) || !std::isfinite(sample.row.mean) ||
             !(sample.light > 0.0f))
@@ -154,7 +154,7 @@ FringeEvidence evidence_of(const FringeAxes& axes, const GrayCodeResult& gray_co
     std::array<std::vector<float>, 2> signed_off;
     const double error_per_noise =
         kFringePeriod_px / (2.0 * std::numbers::pi) * std::sqrt(2.0 / kFringeShifts);
-    for (const Sample& sample : samples) {
+    for (const FringeSample& sample : samples) {
         means.push_back((0.5f * (sample.column.mean + sample.row.mean) - sample.black) /
                         sample.light);
         amplitudes.push_back(0.5f * (sample.column.amplitude + sample.row.amplitude) /
@@ -179,8 +179,8 @@ FringeEvidence evidence_of(const FringeAxes& axes, const GrayCodeResult& gray_co
     const std::array<double, 2> shift{
         std::abs(static_cast<double>(median(std::move(signed_off[0])))),
         std::abs(static_cast<double>(median(std::move(signed_off[1]))))};
-    const std::array<double, 2> ripple{ripple_of(samples, &Sample::column),
-                                       ripple_of(samples, &Sample::row)};
+    const std::array<double, 2> ripple{ripple_of(samples, &FringeSample::column),
+                                       ripple_of(samples, &FringeSample::row)};
     evidence.shift_px = std::max(shift[0], shift[1]);
     evidence.amplitude_ripple = std::max(ripple[0], ripple[1]);
     evidence.worse_is_rows = shift[1] + ripple[1] > shift[0] + ripple[0];

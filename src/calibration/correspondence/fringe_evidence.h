@@ -89,7 +89,7 @@ struct FringeEvidence {
 };
 
 /// From some 60,000 of the decoded pixels. Throws Refused where hardly any of them shows fringes.
-FringeEvidence evidence_of(const FringeAxes& axes, const GrayCodeResult& gray_code);
+FringeEvidence evidence_of(const FringeAxes& axes, const CameraToProjector& gray_code);
 
 /// Throws Refused where the fringes cannot be of the Gray code's picture.
 void refuse_foreign_fringes(const FringeEvidence& evidence, double contradicted_fraction);

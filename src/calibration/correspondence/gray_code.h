@@ -21,7 +21,8 @@ struct RoledPhotograph {
 /// Standard deviation of a place of which only the whole pixel is known: 1 / sqrt(12).
 inline constexpr float kWholePixelError = 0.28867513f;
 
-struct GrayCodeResult {
+/// Where the light comes from that each camera pixel sees.
+struct CameraToProjector {
     ImageF projector_px;  ///< camera pixels -> projector pixel (2 channels, centres at halves), NaN
     Image8 decoded;       ///< 255 where decoded
     /// Standard error of projector_px by the photographs' noise (2 channels, NaN where not
@@ -48,25 +49,25 @@ void check_gray_code(const std::filesystem::path& source,
 /// with less than a fifth (lit by other parts only), are left out. Several photographs of one role
 /// are averaged.
 /// Throws Refused when too little decodes, FileError for unequal sizes and as check_gray_code().
-GrayCodeResult decode_gray_code(const std::vector<RoledPhotograph>& photographs,
-                                int projector_width,
-                                int projector_height,
-                                double lit_threshold = -1.0);
+CameraToProjector decode_gray_code(const std::vector<RoledPhotograph>& photographs,
+                                   int projector_width,
+                                   int projector_height,
+                                   double lit_threshold = -1.0);
 
 /// The same from pictures of one channel in the order of geometry_patterns(); nothing is converted
 /// or copied.
-GrayCodeResult decode_gray_code(std::span<const Image8> in_pattern_order,
-                                int projector_width,
-                                int projector_height,
-                                double lit_threshold = -1.0);
-GrayCodeResult decode_gray_code(std::span<const Image16> in_pattern_order,
-                                int projector_width,
-                                int projector_height,
-                                double lit_threshold = -1.0);
-GrayCodeResult decode_gray_code(std::span<const ImageF> in_pattern_order,
-                                int projector_width,
-                                int projector_height,
-                                double lit_threshold = -1.0);
+CameraToProjector decode_gray_code(std::span<const Image8> in_pattern_order,
+                                   int projector_width,
+                                   int projector_height,
+                                   double lit_threshold = -1.0);
+CameraToProjector decode_gray_code(std::span<const Image16> in_pattern_order,
+                                   int projector_width,
+                                   int projector_height,
+                                   double lit_threshold = -1.0);
+CameraToProjector decode_gray_code(std::span<const ImageF> in_pattern_order,
+                                   int projector_width,
+                                   int projector_height,
+                                   double lit_threshold = -1.0);
 
 /// Standard deviation of a place in a map made from whole pixels, camera pixels.
 inline constexpr double kMapError = 0.15;
@@ -89,7 +90,7 @@ struct ProjectorToCamera {
 /// parts of a pixel where `decoded` has them (sigma_px). `sigma_px` of the result is then the
 /// median of what the fits' residuals say. A camera pixel that agrees with hardly any of its
 /// neighbours counts as not decoded.
-ProjectorToCamera invert_map(const GrayCodeResult& decoded,
+ProjectorToCamera invert_map(const CameraToProjector& decoded,
                              int projector_width,
                              int projector_height);
 

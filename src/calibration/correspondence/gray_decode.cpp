@@ -184,8 +184,8 @@ double automatic_threshold(const Planes<T>& planes) {
 }
 
 template <typename T>
-GrayCodeResult decode_planes(const Planes<T>& planes, double lit_threshold) {
-    GrayCodeResult result;
+CameraToProjector decode_planes(const Planes<T>& planes, double lit_threshold) {
+    CameraToProjector result;
     result.projector_px = ImageF(planes.width, planes.height, 2);
     result.decoded = Image8(planes.width, planes.height, 1);
     result.lit_threshold = lit_threshold >= 0.0 ? lit_threshold : automatic_threshold(planes);
@@ -240,10 +240,10 @@ GrayCodeResult decode_planes(const Planes<T>& planes, double lit_threshold) {
 
 /// Checks count and sizes, and lines the pictures up.
 template <typename T>
-GrayCodeResult decode_in_order(std::span<const Image<T>> pictures,
-                               int projector_width,
-                               int projector_height,
-                               double lit_threshold) {
+CameraToProjector decode_in_order(std::span<const Image<T>> pictures,
+                                  int projector_width,
+                                  int projector_height,
+                                  double lit_threshold) {
     check_pattern_size(projector_width, projector_height);
     Planes<T> planes;
     planes.projector_width = projector_width;
@@ -272,24 +272,24 @@ GrayCodeResult decode_in_order(std::span<const Image<T>> pictures,
 
 }  // namespace
 
-GrayCodeResult decode_gray_code(std::span<const Image8> in_pattern_order,
-                                int projector_width,
-                                int projector_height,
-                                double lit_threshold) {
+CameraToProjector decode_gray_code(std::span<const Image8> in_pattern_order,
+                                   int projector_width,
+                                   int projector_height,
+                                   double lit_threshold) {
     return decode_in_order(in_pattern_order, projector_width, projector_height, lit_threshold);
 }
 
-GrayCodeResult decode_gray_code(std::span<const Image16> in_pattern_order,
-                                int projector_width,
-                                int projector_height,
-                                double lit_threshold) {
+CameraToProjector decode_gray_code(std::span<const Image16> in_pattern_order,
+                                   int projector_width,
+                                   int projector_height,
+                                   double lit_threshold) {
     return decode_in_order(in_pattern_order, projector_width, projector_height, lit_threshold);
 }
 
-GrayCodeResult decode_gray_code(std::span<const ImageF> in_pattern_order,
-                                int projector_width,
-                                int projector_height,
-                                double lit_threshold) {
+CameraToProjector decode_gray_code(std::span<const ImageF> in_pattern_order,
+                                   int projector_width,
+                                   int projector_height,
+                                   double lit_threshold) {
     return decode_in_order(in_pattern_order, projector_width, projector_height, lit_threshold);
 }
 
@@ -319,10 +319,10 @@ void check_gray_code(const std::filesystem::path& source,
                 std::to_string(wanted.size()) + " Gray code photographs for a " + projector);
 }
 
-GrayCodeResult decode_gray_code(const std::vector<RoledPhotograph>& photographs,
-                                int projector_width,
-                                int projector_height,
-                                double lit_threshold) {
+CameraToProjector decode_gray_code(const std::vector<RoledPhotograph>& photographs,
+                                   int projector_width,
+                                   int projector_height,
+                                   double lit_threshold) {
     std::vector<std::string> roles;
     for (const RoledPhotograph& photograph : photographs) roles.push_back(photograph.role);
     check_gray_code("captures", roles, projector_width, projector_height);

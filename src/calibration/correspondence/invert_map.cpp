@@ -223,7 +223,7 @@ enum class Sees { this_place, with_gap, another };
 
 /// Whether they see this place alone. One not decoded while those around it see this place is a
 /// gap.
-Sees seen_there(const GrayCodeResult& decoded,
+Sees seen_there(const CameraToProjector& decoded,
                 const Image8& kept,
                 glm::dvec2 camera,
                 int x,
@@ -256,7 +256,7 @@ Sees seen_there(const GrayCodeResult& decoded,
 }
 
 /// Places of small holes, where the neighbours agree and no camera pixel there sees another place.
-void fill_holes(const GrayCodeResult& decoded,
+void fill_holes(const CameraToProjector& decoded,
                 const Image8& kept,
                 double scale,
                 double reach,
@@ -323,7 +323,7 @@ void fill_holes(const GrayCodeResult& decoded,
 
 }  // namespace
 
-ProjectorToCamera invert_map(const GrayCodeResult& decoded,
+ProjectorToCamera invert_map(const CameraToProjector& decoded,
                              int projector_width,
                              int projector_height) {
     check_argument(projector_width >= 2 && projector_height >= 2, "projector size is under 2x2");
