@@ -12,6 +12,7 @@
 #include "capture/patient_camera.h"
 #include "cli/command.h"
 #include "cli/console.h"
+#include "cli/places_option.h"
 #include "core/error.h"
 #include "gl/window.h"
 #include "jobs/bench_calibration.h"
@@ -28,7 +29,7 @@ namespace livery {
 namespace {
 
 struct CaptureArguments {
-    std::string camera, monitor, product, pose, camera_to_xyz, out, calibration;
+    std::string camera, monitor, product, pose, camera_to_xyz, out, calibration, places = "gray";
     std::vector<std::string> again;
     double every_s = 0.0;
     bool list = false, preflight_only = false, without_preflight = false, anew = false,
@@ -337,7 +338,7 @@ Outcome capture_by_hand(CaptureCommandRun run,
     run.request.height = projector.monitor().height;
     run.request.made_with = "photographs in " + choice.what;
     LiveOptions options = live_options_of(run.request);
-    std::vector<Pattern> patterns = geometry_patterns(options.width, options.height);
+    std::vector<Pattern> patterns = place_patterns(options.places, options.width, options.height);
     for (Pattern& pattern : colour_patterns(options.width, options.height, 0, 255))
         patterns.push_back(std::move(pattern));
     std::vector<std::string> roles;
@@ -421,6 +422,7 @@ Command capture_command() {
          false,
          {}},
         {"--anew", "", "take all of the capture in --out again", &arguments->anew, false, {}},
+        places_option(arguments->places),
         {"--every",
          "S",
          "with folder: seconds that each picture is shown (default 5)",
@@ -443,6 +445,7 @@ Command capture_command() {
             throw std::invalid_argument("--pose and --product: found one, expected both or none");
         CaptureCommandRun run;
         run.arguments = *arguments;
+        run.request.places = parse_places(arguments->places);
         if (run.arguments.every_s <= 0.0) run.arguments.every_s = 5.0;
         if (!arguments->product.empty()) run.request.product = find_product(arguments->product);
         if (!arguments->pose.empty()) run.request.projector = read_camera_file(arguments->pose);

@@ -33,6 +33,7 @@ struct BenchCalibrationRequest {
     /// not see is predicted. Both or none.
     std::optional<View> projector;
     std::shared_ptr<const Product> product;
+    PlaceCode places = PlaceCode::gray;  ///< what is shown to find where the camera sees them
     /// Where the camera sees the projector's pixels, where that was photographed before.
     std::optional<ProjectorToCamera> map;
     std::optional<CameraToXyz> camera_to_xyz;

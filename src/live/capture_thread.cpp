@@ -331,7 +331,7 @@ void CaptureThread::Implementation::capture_by_hand() {
     check_calibrations_folder();
     BenchCalibrationRequest what = request();
     const LiveOptions options = live_options_of(what);
-    std::vector<Pattern> patterns = geometry_patterns(options.width, options.height);
+    std::vector<Pattern> patterns = place_patterns(options.places, options.width, options.height);
     for (Pattern& pattern : colour_patterns(options.width, options.height, 0, 255))
         patterns.push_back(std::move(pattern));
     std::vector<std::string> roles;
