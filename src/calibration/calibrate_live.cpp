@@ -23,6 +23,11 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+/// Pictures that are shown to find places.
+std::size_t shown_for_places(const LiveOptions& options) {
+    return place_roles(options.places, options.width, options.height).size();
+}
+
 /// Share of the lit pixels on which a stripe picture and its inverse do not add up to white.
 double broken_share(const ImageF& stripes,
                     const ImageF& inverse,
@@ -106,15 +111,17 @@ void LiveCalibration::photograph_stripes(const Pattern& stripes, const Pattern& 
 /// photographed before is judged once all of it is there.
 void LiveCalibration::photograph_geometry() {
     const auto pattern = [&](std::size_t number) {
-        return geometry_pattern(options_.width, options_.height, number);
+        return place_pattern(options_.places, options_.width, options_.height, number);
     };
     const std::size_t count = geometry_roles(options_.width, options_.height).size();
+    const std::size_t with_fringes = shown_for_places(options_);
     if (bench_.fixed()) {
-        for (std::size_t k = 0; k < count; ++k) photograph(pattern(k));
+        for (std::size_t k = 0; k < with_fringes; ++k) photograph(pattern(k));
         return;
     }
     photograph_ends(true);
     for (std::size_t k = 0; k + 2 < count; k += 2) photograph_stripes(pattern(k), pattern(k + 1));
+    for (std::size_t k = count; k < with_fringes; ++k) photograph(pattern(k));
     judge(true);
     if (!broken_.empty())
         throw Refused(broken_ + " and its inverse do not add up to white",
@@ -218,10 +225,9 @@ LiveResult calibrate_live(const BenchPorts& bench,
                   options.width, options.height, colour.dark_drive, colour.bright_drive);
 
     const auto start = std::chrono::steady_clock::now();
-    const auto geometry = geometry_roles(options.width, options.height).size();
-    const auto expected = (options.map ? (bench.turn_to ? 0 : 2) : static_cast<int>(geometry)) +
-                          (bench.turn_to ? 0 : kToMeet) +
-                          static_cast<int>(result.patterns.size()) * options.shots;
+    const auto expected =
+        (options.map ? (bench.turn_to ? 0 : 2) : static_cast<int>(shown_for_places(options))) +
+        (bench.turn_to ? 0 : kToMeet) + static_cast<int>(result.patterns.size()) * options.shots;
     Progress capturing = progress;
     if (progress.report)
         capturing.report = [&](double fraction, std::string_view stage) {
@@ -335,8 +341,7 @@ LiveMap photograph_map(const BenchPorts& bench,
                        const LiveOptions& options,
                        const Progress& progress) {
     const auto start = std::chrono::steady_clock::now();
-    const int expected =
-        kToMeet + static_cast<int>(geometry_roles(options.width, options.height).size());
+    const int expected = kToMeet + static_cast<int>(shown_for_places(options));
     BenchSession session(bench, progress, expected);
     if (!session.fixed()) session.meet(options.width, options.height);
     LiveCalibration live(session, options);

@@ -14,6 +14,7 @@
 #include "cli/command.h"
 #include "cli/console.h"
 #include "cli/data_sheet_options.h"
+#include "cli/places_option.h"
 #include "core/error.h"
 #include "core/paths.h"
 #include "gl/window.h"
@@ -32,7 +33,7 @@ namespace livery {
 namespace {
 
 struct CaptureArguments {
-    std::string camera, monitor, product, pose, camera_to_xyz, out, calibration;
+    std::string camera, monitor, product, pose, camera_to_xyz, out, calibration, places = "gray";
     std::vector<std::string> again;
     double every_s = 0.0;
     std::string redo, effort = "normal";
@@ -220,6 +221,7 @@ Outcome capture_with_camera(CaptureCommandRun run,
         BenchCalibrationRequest asked = request_of(bench.simulated->description(), bench.product);
         asked.camera_to_xyz = run.request().camera_to_xyz;
         asked.colour_shots = run.request().colour_shots;
+        asked.places = run.request().places;
         if (run.request().projector) asked.projector = run.request().projector;
         run.request() = std::move(asked);
     } else {
@@ -337,7 +339,7 @@ Outcome capture_by_hand(CaptureCommandRun run,
     run.request().height = projector.monitor().height;
     run.request().made_with = "photographs in " + choice.what;
     LiveOptions options = live_options_of(run.request());
-    std::vector<Pattern> patterns = geometry_patterns(options.width, options.height);
+    std::vector<Pattern> patterns = place_patterns(options.places, options.width, options.height);
     for (Pattern& pattern : colour_patterns(options.width, options.height, 0, 255))
         patterns.push_back(std::move(pattern));
     std::vector<std::string> roles;
@@ -440,6 +442,7 @@ Command capture_command() {
          &arguments->check,
          false,
          {}},
+        places_option(arguments->places),
         {"--every",
          "S",
          "with folder: seconds that each picture is shown (default 5)",
@@ -469,6 +472,7 @@ Command capture_command() {
                 "(--throw-ratio, --focal-mm, --sensor-width-mm, --lens-distance-mm)");
         CaptureCommandRun run;
         run.arguments = *arguments;
+        run.request().places = parse_places(arguments->places);
         if (run.arguments.every_s <= 0.0) run.arguments.every_s = 5.0;
         if (!arguments->product.empty()) run.request().product = find_product(arguments->product);
         if (!arguments->pose.empty()) run.request().projector = read_camera_file(arguments->pose);

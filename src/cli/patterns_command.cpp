@@ -4,9 +4,10 @@
 
 #include <fmt/format.h>
 
-#include "calibration/correspondence/patterns.h"
+#include "calibration/correspondence/fringes.h"
 #include "capture/patterns_folder.h"
 #include "cli/command.h"
+#include "cli/places_option.h"
 
 namespace livery {
 
@@ -20,7 +21,7 @@ void append(std::vector<Pattern>& all, std::vector<Pattern> more) {
 
 Command patterns_command() {
     struct Arguments {
-        std::string projector, out, kind = "all";
+        std::string projector, out, kind = "all", places = "gray";
         int dark = 0, bright = 255;
     };
     const auto arguments = std::make_shared<Arguments>();
@@ -37,6 +38,7 @@ Command patterns_command() {
          &arguments->kind,
          false,
          {"geometry", "color", "all"}},
+        places_option(arguments->places),
         {"--dark", "S", "drive of the dark grey picture (default 0)", &arguments->dark, false, {}},
         {"--bright",
          "T",
@@ -55,7 +57,9 @@ Command patterns_command() {
                             arguments->bright));
         }
         std::vector<Pattern> patterns;
-        if (arguments->kind != "color") append(patterns, geometry_patterns(size.x, size.y));
+        if (arguments->kind != "color") {
+            append(patterns, place_patterns(parse_places(arguments->places), size.x, size.y));
+        }
         if (arguments->kind != "geometry") {
             append(patterns, colour_patterns(size.x, size.y, arguments->dark, arguments->bright));
             append(patterns, mosaic_patterns(size.x, size.y, kMosaics));

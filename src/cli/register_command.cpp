@@ -238,7 +238,12 @@ Command calibrate_scan_command() {
          &arguments->without_planes,
          false,
          {}},
-        {"--out", "DIR", "scan.ply, camera.json, projector.json", &arguments->out, true, {}},
+        {"--out",
+         "DIR",
+         "scan.ply, camera.json, projector.json; from fringes also direct.exr, global.exr",
+         &arguments->out,
+         true,
+         {}},
     };
     command.run = [arguments](const CommonOptions&, const Progress& progress) {
         if (!(arguments->spacing_mm > 0.0 && arguments->spacing_mm < 1000.0))
@@ -255,6 +260,7 @@ Command calibrate_scan_command() {
             const ScanFiles scan =
                 scan_product(light, arguments->spacing_mm, arguments->without_planes, progress);
             write_scan(arguments->out, scan);
+            const bool separated = write_separated_light(arguments->out, light);
             const Bounds box = bounds_of(scan.surface);
             outcome.figures = {{"points", scan.surface.positions_mm.size()},
                                {"triangles", scan.surface.triangles.size()},
@@ -262,6 +268,7 @@ Command calibrate_scan_command() {
                                {"size_mm", json_from(box.high - box.low)},
                                {"known_fraction", scan.scan.known_fraction},
                                {"gap_px", scan.scan.gap_px},
+                               {"separated_light", separated},
                                {"refused", Json::array()},
                                {"warnings", light.warnings}};
             outcome.text = fmt::format(

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "calibration/captures/captures.h"
+#include "calibration/correspondence/fringes.h"
 #include "capture/patterns_folder.h"
 #include "core/error.h"
 #include "core/image_io.h"
@@ -92,11 +93,12 @@ ColourCalibration calibrate_from_folder(const CapturedCalibrationRequest& reques
         if (is_geometry_role(capture.role)) geometry.push_back(capture.role);
     }
     if (geometry.size() == folder.captures.size()) {
-        throw FileError(request.captures,
-                        "captures",
-                        std::to_string(geometry.size()) + " Gray code photographs alone",
-                        "photographs of the colour patterns too (livery patterns --kind all or "
-                        "color), with their roles in manifest.json");
+        throw FileError(
+            request.captures,
+            "captures",
+            std::to_string(geometry.size()) + " photographs of Gray code and fringes alone",
+            "photographs of the colour patterns too (livery patterns --kind all or "
+            "color), with their roles in manifest.json");
     }
     if (!request.map && geometry.empty()) {
         throw FileError(request.captures,
@@ -119,6 +121,7 @@ ColourCalibration calibrate_from_folder(const CapturedCalibrationRequest& reques
         options.map = read_map(*request.map, width, height);
     } else {
         check_gray_code(folder.folder, geometry, width, height);
+        if (check_fringes(folder.folder, geometry)) options.places = PlaceCode::gray_and_phase;
     }
     std::vector<std::string> warnings;
     options.patterns = patterns_shown(folder, colour, warnings);

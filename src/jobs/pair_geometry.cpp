@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "calibration/captures/captures.h"
+#include "calibration/correspondence/fringe_decode.h"
 #include "calibration/geometry/board_sight.h"
 #include "calibration/geometry/choose_model.h"
 #include "calibration/registration/pair_pose.h"
@@ -27,7 +28,7 @@ constexpr double kOutlierRatio = 4.0;
 
 struct DecodedFolder {
     Captures captures;
-    GrayCodeResult code;
+    CameraToProjector code;
 };
 
 /// Pixels whose stripes and inverse differ by less than `least` somewhere are not decoded.
@@ -61,6 +62,7 @@ DecodedFolder decoded_folder(const std::filesystem::path& path,
     std::vector<std::string> roles;
     for (const Capture& capture : folder.captures) roles.push_back(capture.role);
     check_gray_code(path, roles, width, height);
+    check_fringes(path, roles);
     DecodedFolder result;
     Captures& captures = result.captures;
     for (const Capture& capture : folder.captures) {
@@ -68,7 +70,7 @@ DecodedFolder decoded_folder(const std::filesystem::path& path,
         if (!is_geometry_role(capture.role)) continue;
         add_capture(captures, {capture.role, load_photograph(capture)});
     }
-    result.code = decode_gray_code(captures.geometry, width, height, request.black_threshold);
+    result.code = decode_places(captures.geometry, width, height, request.black_threshold).places;
     if (request.white_threshold >= 0.0)
         drop_weak_stripes(captures, request.white_threshold, result.code.projector_px);
     return result;

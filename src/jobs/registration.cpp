@@ -6,8 +6,10 @@
 #include <glm/geometric.hpp>
 
 #include "calibration/captures/captures.h"
+#include "calibration/correspondence/fringes.h"
 #include "capture/captures_folder.h"
 #include "core/error.h"
+#include "core/image_io.h"
 #include "core/paths.h"
 #include "jobs/pair_geometry.h"
 #include "mesh/ply_write.h"
@@ -21,6 +23,7 @@ ProjectorToCamera decoded(const std::filesystem::path& captures,
                           const CalibratedPair& pair,
                           const std::filesystem::path& calibration,
                           std::vector<std::string>& warnings,
+                          SeparatedLight& light,
                           const Progress& progress) {
     const CapturesFolder folder = read_captures_folder(captures);
     const int width = pair.projector.width, height = pair.projector.height;
@@ -35,6 +38,7 @@ ProjectorToCamera decoded(const std::filesystem::path& captures,
     std::vector<std::string> roles;
     for (const Capture& capture : folder.captures) roles.push_back(capture.role);
     check_gray_code(captures, roles, width, height);
+    check_fringes(captures, roles);
     Captures photographs;
     double done = 0.0;
     for (const Capture& capture : folder.captures) {
@@ -52,7 +56,7 @@ ProjectorToCamera decoded(const std::filesystem::path& captures,
             fmt::format("photographs of {} px", photographs.width),
             fmt::format(
                 "the {} px of {}", pair.camera.width, (calibration / "camera.json").string()));
-    return map_of_captures(photographs, width, height, warnings);
+    return map_of_captures(photographs, width, height, warnings, &light);
 }
 
 /// The scan's frame as a product's: turned over, so that the picture's up is up.
@@ -136,7 +140,9 @@ ScannedLight decode_light(const std::vector<std::filesystem::path>& captures,
         const auto& calibration = calibrations[calibrations.size() == 1 ? 0 : k];
         const CalibratedPair pair = read_calibrated_pair(calibration);
         if (k == 0) light.projector = pair.projector;
-        Sight sight{pair.camera, decoded(captures[k], pair, calibration, light.warnings, progress)};
+        SeparatedLight& separated = light.separated.emplace_back();
+        Sight sight{pair.camera,
+                    decoded(captures[k], pair, calibration, light.warnings, separated, progress)};
         sight.camera.view_from_world = pair.camera.view_from_world *
                                        inverse(pair.projector.view_from_world) *
                                        light.projector.view_from_world;
@@ -181,6 +187,20 @@ void write_scan(const std::filesystem::path& folder, const ScanFiles& scan) {
     write_camera_file(folder / "camera.json", scan.camera);
     write_camera_file(folder / "projector.json", scan.projector);
     write_text_file(folder / "scan.ply", ply_bytes(scan.surface));
+}
+
+bool write_separated_light(const std::filesystem::path& folder, const ScannedLight& light) {
+    bool written = false;
+    for (std::size_t k = 0; k < light.separated.size(); ++k) {
+        const SeparatedLight& one = light.separated[k];
+        if (one.direct.empty()) continue;
+        const std::string number = k == 0 ? "" : fmt::format("-{}", k + 1);
+        std::filesystem::create_directories(folder);
+        write_exr(folder / ("direct" + number + ".exr"), one.direct);
+        write_exr(folder / ("global" + number + ".exr"), one.global);
+        written = true;
+    }
+    return written;
 }
 
 RegisteredMockup register_mockup(const RegistrationRequest& request, const Progress& progress) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "calibration/correspondence/fringe_decode.h"
 #include "calibration/registration/picked_points.h"
 #include "calibration/registration/register_scan.h"
 #include "core/progress.h"
@@ -27,6 +28,8 @@ CalibratedPair read_calibrated_pair(const std::filesystem::path& folder);
 struct ScannedLight {
     View projector;  ///< world: the first camera's calibration's
     std::vector<Sight> sights;
+    /// One a sight: direct light and what comes over other parts; empty pictures without fringes.
+    std::vector<SeparatedLight> separated;
     std::vector<std::string> warnings;
 };
 
@@ -55,6 +58,11 @@ ScanFiles scan_product(const ScannedLight& light,
 
 /// Writes `scan.ply`, `projector.json` and `camera.json`. Throws FileError.
 void write_scan(const std::filesystem::path& folder, const ScanFiles& scan);
+
+/// Writes `direct.exr` and `global.exr`, one channel in the units of the photograph of white, NaN
+/// where nothing is known; of further positions `direct-2.exr` and so on. Says whether there was
+/// anything to write: without fringes there is not. Throws FileError.
+bool write_separated_light(const std::filesystem::path& folder, const ScannedLight& light);
 
 /// In which picture points were picked.
 enum class PickView { either, camera, projector };

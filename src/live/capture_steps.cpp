@@ -31,7 +31,7 @@ CaptureStep photographed_last(const CaptureView& view) {
 bool asks_for_the_same(const BenchCalibrationRequest& a, const BenchCalibrationRequest& b) {
     return a.made_with == b.made_with && a.width == b.width && a.height == b.height &&
            a.projector == b.projector && a.product == b.product && a.data_sheets == b.data_sheets &&
-           a.turned_as == b.turned_as;
+           a.turned_as == b.turned_as && a.places == b.places;
 }
 
 std::vector<GradedFigure> compared_with(const std::filesystem::path& kept,

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "calibration/correspondence/fringes.h"
 #include "core/bench_ports.h"
 #include "core/grade.h"
 #include "core/image.h"
@@ -32,8 +33,9 @@ struct CaptureSetup {
     std::optional<View> projector_view;  ///< where it stands, if that is known
     /// Where it is not: what tells it with the photographs. A simulated bench has its own.
     std::optional<DataSheets> data_sheets;
-    int colour_shots = 2;          ///< photographs of each colour picture
-    std::filesystem::path in_use;  ///< a calibration to compare with; empty: none
+    int colour_shots = 2;                ///< photographs of each colour picture
+    PlaceCode places = PlaceCode::gray;  ///< what is shown to find where the camera sees pixels
+    std::filesystem::path in_use;        ///< a calibration to compare with; empty: none
     /// Shows on it, on the capture's thread with its context current.
     std::function<ShowPicture(const Progress&, TellWait)> projector_port;
 };

@@ -30,6 +30,7 @@ BenchCalibrationRequest CaptureThread::Implementation::request() const {
     }
     if (setup.projector_view) request.projector = setup.projector_view;
     request.colour_shots = setup.colour_shots;
+    request.places = setup.places;
     return request;
 }
 
@@ -241,7 +242,7 @@ void CaptureThread::Implementation::show_by_hand(const std::vector<Pattern>& pat
 void CaptureThread::Implementation::capture_by_hand() {
     check_calibrations_folder();
     const LiveOptions options = live_options_of(run.request);
-    std::vector<Pattern> patterns = geometry_patterns(options.width, options.height);
+    std::vector<Pattern> patterns = place_patterns(options.places, options.width, options.height);
     for (Pattern& pattern : colour_patterns(options.width, options.height, 0, 255))
         patterns.push_back(std::move(pattern));
     std::vector<std::string> roles;

@@ -3,6 +3,7 @@
 #include "calibration/colour/colour.h"
 #include "calibration/colour/colour_samples.h"
 #include "calibration/colour/mixing.h"
+#include "calibration/correspondence/fringe_decode.h"
 #include "calibration/correspondence/gray_code.h"
 #include "calibration/correspondence/patterns.h"
 #include "jobs/calibrate/bench_calibration.h"
@@ -31,6 +32,30 @@ void GrayCodeDecoding(benchmark::State& state) {
 BENCHMARK(GrayCodeDecoding)
     ->ArgName("width")
     ->Arg(640)
+    ->Arg(1280)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+/// Ten fringes over the Gray code, of a camera that sees the projector's own pixels.
+void FringeDecoding(benchmark::State& state) {
+    const int width = static_cast<int>(state.range(0)), height = width * 5 / 8;
+    std::vector<RoledPhotograph> photographs;
+    for (const Pattern& pattern : place_patterns(PlaceCode::gray_and_phase, width, height)) {
+        Photograph& seen = photographs.emplace_back(RoledPhotograph{pattern.role, {}}).photograph;
+        seen.image = ImageF(width, height, 1);
+        for (std::size_t i = 0; i < seen.image.values.size(); ++i) {
+            const float drive = static_cast<float>(pattern.drive.values[3 * i]) / 255.0f;
+            seen.image.values[i] = 8.0f + 192.0f * drive * drive;
+        }
+    }
+    const CameraToProjector gray = decode_gray_code(photographs, width, height);
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(refine_by_fringes(photographs, gray, width, height));
+    }
+    count_items(state, photographs.front().photograph.image.values.size());
+}
+BENCHMARK(FringeDecoding)
+    ->ArgName("width")
     ->Arg(1280)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();

@@ -116,6 +116,48 @@ TEST(CalibrateLive, FindsExposureMapMixingAndXyz) {
     EXPECT_LE(fractions.back(), 1.0);
 }
 
+TEST(CalibrateLive, ShowsFringesWhereTheyAreAskedForAndUsesThem) {
+    // At as many camera pixels as projector pixels both grids run in step, and the rounding to
+    // whole pixels stays in the map: 1 / sqrt(6) px. Three samples a side of a camera pixel see
+    // thirds of a projector pixel, so that of fringes a third of that stays.
+    const auto error_of = [](PlaceCode places, int& photographs) {
+        LiveBench live;
+        live.bench.sub_samples = 3;
+        live.bench.projector_from_camera = [](glm::dvec2 c) -> std::optional<glm::dvec2> {
+            return glm::dvec2(c.x + 0.01 * c.y - 20.3, c.y - 0.01 * c.x - 18.2);
+        };
+        LiveOptions options;
+        options.width = 160;
+        options.height = 104;
+        options.places = places;
+        const LiveMap found = photograph_map(live.ports(), options);
+        EXPECT_TRUE(found.warnings.empty());
+        photographs = live.photographs;
+        const ProjectorToCamera exact = live.bench.exact_map();
+        double squares = 0.0;
+        int count = 0;
+        for (int y = 12; y < 92; ++y)
+            for (int x = 12; x < 148; ++x) {
+                const double dx = found.map.camera_px.at(x, y, 0) - exact.camera_px.at(x, y, 0);
+                const double dy = found.map.camera_px.at(x, y, 1) - exact.camera_px.at(x, y, 1);
+                if (found.map.edge.at(x, y) || !std::isfinite(dx + dy)) continue;
+                squares += dx * dx + dy * dy;
+                ++count;
+            }
+        EXPECT_GT(count, 136 * 80 * 0.95);
+        const double rms = std::sqrt(squares / count);
+        std::printf(
+            "map off by %.4f camera px, said to be %.4f an axis\n", rms, found.map.sigma_px);
+        return rms;
+    };
+    int of_gray = 0, of_both = 0;
+    const double gray = error_of(PlaceCode::gray, of_gray);
+    const double both = error_of(PlaceCode::gray_and_phase, of_both);
+    EXPECT_EQ(of_both, of_gray + 10);
+    EXPECT_LT(both, 0.15);
+    EXPECT_LT(both, 0.4 * gray);
+}
+
 TEST(CalibrateLive, FindsExposureFromFarTooDarkAndFarTooBright) {
     for (const double start : {2e-5, 8.0}) {
         LiveBench live;

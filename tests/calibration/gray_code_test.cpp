@@ -24,7 +24,7 @@ SyntheticBench small_bench() {
     return bench;
 }
 
-GrayCodeResult decode(SyntheticBench& bench) {
+CameraToProjector decode(SyntheticBench& bench) {
     return decode_gray_code(
         bench.photograph_all(geometry_patterns(bench.projector_width, bench.projector_height)),
         bench.projector_width,
@@ -33,7 +33,7 @@ GrayCodeResult decode(SyntheticBench& bench) {
 
 TEST(DecodeGrayCode, GivesTheProjectorPixelOfEveryLitCameraPixelExactly) {
     SyntheticBench bench = small_bench();
-    const GrayCodeResult result = decode(bench);
+    const CameraToProjector result = decode(bench);
     int lit = 0;
     for (int y = 0; y < bench.camera_height; ++y)
         for (int x = 0; x < bench.camera_width; ++x) {
@@ -95,7 +95,7 @@ TEST(DecodeGrayCode, LeavesOutWhatNoiseHides) {
     SyntheticBench bench = small_bench();
     bench.read_noise = 6.0;
     bench.scale = [](glm::dvec2 p) { return p.x < 80 ? 1.0 : 1.0 / 3000.0; };
-    const GrayCodeResult result = decode(bench);
+    const CameraToProjector result = decode(bench);
     int wrong = 0, dark_decoded = 0, bright = 0;
     for (int y = 2; y < 120; ++y)
         for (int x = 8; x < 200; ++x) {
@@ -126,7 +126,7 @@ TEST(DecodeGrayCode, LeavesOutPixelsLitOnlyByOtherParts) {
                     capture.photograph.image.at(x, y, c) =
                         static_cast<float>(256.0 + 2000.0 * share + 3.0 * bench.random.normal());
     }
-    const GrayCodeResult result = decode_gray_code(captures, 160, 100);
+    const CameraToProjector result = decode_gray_code(captures, 160, 100);
     int decoded = 0;
     for (int y = 60; y < 80; ++y)
         for (int x = 100; x < 130; ++x) decoded += result.decoded.at(x, y) == 255;
@@ -150,7 +150,7 @@ TEST(DecodeGrayCode, NaNIsNotDecoded) {
     captures[4].photograph.image.at(100, 70, 1) = nan;                    // a stripe
     captures[captures.size() - 2].photograph.image.at(101, 70, 0) = nan;  // white
     captures[captures.size() - 1].photograph.image.at(102, 70, 2) = nan;  // black
-    const GrayCodeResult result = decode_gray_code(captures, 160, 100);
+    const CameraToProjector result = decode_gray_code(captures, 160, 100);
     for (int x = 100; x < 103; ++x) {
         EXPECT_EQ(result.decoded.at(x, 70), 0) << x;
         EXPECT_TRUE(std::isnan(result.projector_px.at(x, 70, 0)));
@@ -318,7 +318,7 @@ TEST(InvertMap, DoesNotReachAcrossADepthEdge) {
 
 TEST(InvertMap, GrossDecodingErrorsDoNotPull) {
     SyntheticBench bench = small_bench();
-    GrayCodeResult decoded = decode(bench);
+    CameraToProjector decoded = decode(bench);
     Random random(7);
     for (std::size_t i = 0; i < decoded.decoded.values.size(); ++i)
         if (decoded.decoded.values[i] && random.uniform() < 0.03) {
@@ -333,7 +333,7 @@ TEST(InvertMap, GrossDecodingErrorsDoNotPull) {
 
 TEST(InvertMap, RefusesAMapOfAnotherProjector) {
     SyntheticBench bench = small_bench();
-    const GrayCodeResult decoded = decode(bench);
+    const CameraToProjector decoded = decode(bench);
     EXPECT_HAS(message_of<std::invalid_argument>([&] { invert_map(decoded, 80, 100); }),
                "outside 80x100");
 }

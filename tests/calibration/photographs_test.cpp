@@ -50,7 +50,7 @@ TEST(RealPhotographs, LitPixelsOfTheBoardLieOnItsPlaneAndDecodingIsFast) {
 
     // Both decoders from the same pictures in memory; the best of several runs
     double own = 1e9;
-    GrayCodeResult result;
+    CameraToProjector result;
     for (int run = 0; run < 7; ++run) {
         const auto start = std::chrono::steady_clock::now();
         result = decode_gray_code(std::span<const Image8>(pictures), 1024, 768);

@@ -147,6 +147,32 @@ TEST(Messages, PlanNeedsNoHomeFolder) {
     EXPECT_TRUE(Json::parse(run.out)["predicted_ms_total"].is_null());
 }
 
+TEST(Messages, PatternsHoldFringesWhereTheyAreAskedFor) {
+    const TemporaryFolder folder;
+    const auto roles_of = [&](const std::string& places) {
+        const ProgramRun run = livery_run({"patterns",
+                                           "--projector",
+                                           "64x48",
+                                           "--kind",
+                                           "geometry",
+                                           "--places",
+                                           places,
+                                           "--out",
+                                           (folder / places).string(),
+                                           "--json"});
+        EXPECT_EQ(run.exit_code, 0) << run.err;
+        std::vector<std::string> roles;
+        const Json answer = Json::parse(run.out);
+        for (const Json& one : answer["patterns"]) roles.push_back(one["role"].get<std::string>());
+        return roles;
+    };
+    const auto gray = roles_of("gray"), both = roles_of("gray-and-phase");
+    ASSERT_EQ(both.size(), gray.size() + 10);
+    EXPECT_TRUE(std::equal(gray.begin(), gray.end(), both.begin()));
+    EXPECT_EQ(both[gray.size()], "phase-column-0");
+    EXPECT_EQ(both.back(), "phase-row-4");
+}
+
 TEST(Messages, WritingPatternsStopsAtOnce) {
     const TemporaryFolder folder;
     const pid_t child = ::fork();

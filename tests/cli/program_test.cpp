@@ -101,6 +101,7 @@ TEST(Program, WrongArgumentsGiveOneLineAndStatusTwo) {
         {"render", "--quality", "draft", "--budget-ms", "5", "--out", "a.png"},
         {"render", "--spp", "4", "--out", "a.png"},
         {"patterns", "--projector", "1280", "--out", "a"},
+        {"patterns", "--projector", "64x48", "--out", "a", "--places", "phase"},
         {"patterns", "--projector", "64x48", "--dark", "9", "--bright", "9", "--out", "a"},
         {"calibrate", "color", "--captures", "/nowhere", "--out", "a"},
         {"photograph", "--out", "a"},

@@ -7,9 +7,11 @@
 
 #include <gtest/gtest.h>
 
+#include "calibration/correspondence/fringes.h"
 #include "capture/patterns_folder.h"
 #include "core/image_io.h"
 #include "core/json.h"
+#include "core/statistics.h"
 #include "jobs/camera_to_xyz_file.h"
 #include "jobs/simulated_captures.h"
 #include "session/small_session.h"
@@ -175,6 +177,49 @@ TEST_F(CapturedCalibration, NamesThePictureThatNobodyPhotographed) {
         EXPECT_NE(said.find("no photograph of " + std::string(role)), std::string::npos) << said;
         EXPECT_NE(said.find(folder_.path().string()), std::string::npos) << said;
     }
+}
+
+// Fringes in the folder are used by themselves: all of them, or the one that is missing is named.
+TEST_F(CapturedCalibration, UsesFringesThatWerePhotographed) {
+    std::vector<PatternFile> files;
+    for (const Pattern& one : place_patterns(PlaceCode::gray_and_phase, kWidth, kHeight))
+        files.push_back({one.role, one.drive, one.drive_values});
+    for (const Pattern& one : colour_patterns(kWidth, kHeight, 0, 255))
+        files.push_back({one.role, one.drive, one.drive_values});
+    write_patterns_folder(folder_ / "patterns", kWidth, kHeight, files);
+    photograph_patterns(
+        {testing::small_bench_description(), folder_ / "patterns", folder_ / "captures"});
+    const std::filesystem::path manifest_file = folder_ / "captures/manifest.json";
+    const Json manifest = read_json_file(manifest_file);
+    const auto calibrated_without = [&](const std::function<bool(const std::string&)>& left_out) {
+        Json changed = manifest;
+        changed["captures"] = Json::array();
+        for (const Json& one : manifest["captures"])
+            if (!left_out(one["role"].get<std::string>())) changed["captures"].push_back(one);
+        write_json_file(manifest_file, changed);
+        CapturedCalibrationRequest request;
+        request.captures = folder_ / "captures";
+        return calibrate_from_folder(request);
+    };
+    const ColourCalibration fine = calibrated_without([](const std::string&) { return false; });
+    const ColourCalibration whole = calibrated_without(is_fringe_role);
+    EXPECT_EQ(testing::all_warnings(fine).find("not asked for"), std::string::npos);
+    EXPECT_GT(fine.valid_fraction, 0.97 * whole.valid_fraction);
+    // Both maps are of one scene: apart by the rounding to whole pixels, and not equal.
+    std::vector<float> apart;
+    for (std::size_t i = 0; i < fine.camera_px.values.size(); ++i) {
+        const float off = std::abs(fine.camera_px.values[i] - whole.camera_px.values[i]);
+        if (std::isfinite(off)) apart.push_back(off);
+    }
+    std::printf("    maps apart by %.4f camera px in the median\n",
+                static_cast<double>(median(apart)));
+    EXPECT_GT(median(apart), 0.0f);
+    EXPECT_LT(median(apart), 0.5f);
+
+    const std::string said = message_of(
+        [&] { calibrated_without([](const std::string& role) { return role == "phase-row-3"; }); });
+    EXPECT_NE(said.find("no photograph of phase-row-3"), std::string::npos) << said;
+    EXPECT_NE(said.find((folder_ / "captures").string()), std::string::npos) << said;
 }
 
 TEST_F(CapturedCalibration, NamesPhotographsThatWereNotAskedFor) {

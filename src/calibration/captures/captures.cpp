@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "calibration/colour/colour_report.h"
+#include "calibration/correspondence/exposed_alike.h"
 #include "calibration/correspondence/gray_order.h"
 #include "core/error.h"
 
@@ -37,8 +39,8 @@ void take_out(const CaptureVerdict& verdict, std::vector<RoledPhotograph>& colou
 }  // namespace
 
 bool is_geometry_role(const std::string& role) {
-    return role.starts_with("gray-column-") || role.starts_with("gray-row-") || role == "white" ||
-           role == "black";
+    return role.starts_with("gray-column-") || role.starts_with("gray-row-") ||
+           is_fringe_role(role) || role == "white" || role == "black";
 }
 
 void add_capture(Captures& captures, RoledPhotograph photograph) {
@@ -52,7 +54,9 @@ void add_capture(Captures& captures, RoledPhotograph photograph) {
     summaries.insert(later, std::move(summary));
     captures.width = image.width;
     const bool geometry = is_geometry_role(photograph.role);
-    if (geometry) image = mean_of_channels(image);
+    if (geometry)
+        image = is_fringe_role(photograph.role) ? unsaturated_mean(photograph.photograph)
+                                                : mean_of_channels(image);
     (geometry ? captures.geometry : captures.colours).push_back(std::move(photograph));
 }
 
@@ -73,11 +77,18 @@ CaptureVerdict judge_captures(const Captures& captures,
 ProjectorToCamera map_of_captures(const Captures& captures,
                                   int projector_width,
                                   int projector_height,
-                                  std::vector<std::string>& warnings) {
-    ProjectorToCamera map =
-        invert_map(decode_gray_code(captures.geometry, projector_width, projector_height),
-                   projector_width,
-                   projector_height);
+                                  std::vector<std::string>& warnings,
+                                  SeparatedLight* light) {
+    constexpr double kMuchGlobal = 0.05;
+    FineCode code = decode_places(captures.geometry, projector_width, projector_height);
+    ProjectorToCamera map = invert_map(code.places, projector_width, projector_height);
+    if (code.report.global_fraction > kMuchGlobal)
+        warnings.push_back(
+            percent(code.report.global_fraction) +
+            " of the camera pixels where the Gray code was decoded get most of their light from "
+            "other parts, through the material, or blurred, and were left out: cover what shines "
+            "on the mock-up with dark cloth, and check the focus over its whole depth");
+    if (light) *light = std::move(code.light);
     if (is_mirrored(map))
         warnings.push_back(
             "the photographs are mirrored against the projector's picture: right with a mirror in "

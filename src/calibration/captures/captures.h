@@ -7,6 +7,7 @@
 #include "calibration/captures/capture_check.h"
 #include "calibration/captures/capture_summary.h"
 #include "calibration/colour/colour.h"
+#include "calibration/correspondence/fringe_decode.h"
 #include "calibration/correspondence/gray_code.h"
 #include "calibration/correspondence/patterns.h"
 #include "core/progress.h"
@@ -22,7 +23,7 @@ struct Captures {
     int width = 0;                          ///< of the photographs
 };
 
-/// Gray code, white and black, of which decoding needs one channel.
+/// Gray code, fringes, white and black, of which decoding needs one channel.
 bool is_geometry_role(const std::string& role);
 
 void add_capture(Captures& captures, RoledPhotograph photograph);
@@ -35,12 +36,14 @@ CaptureVerdict judge_captures(const Captures& captures,
                               const ShownDrives& drives,
                               bool with_stripes);
 
-/// Where the camera sees each projector pixel. Adds to `warnings` what is odd about it. Throws
-/// Refused, FileError.
+/// Where the camera sees each projector pixel, by decode_places(). Adds to `warnings` what is odd
+/// about it. `light`, where it is asked for, gets what fringes tell apart. Throws Refused,
+/// FileError.
 ProjectorToCamera map_of_captures(const Captures& captures,
                                   int projector_width,
                                   int projector_height,
-                                  std::vector<std::string>& warnings);
+                                  std::vector<std::string>& warnings,
+                                  SeparatedLight* light = nullptr);
 
 /// Takes a steady change of the lamp out of `captures`' colours and solves; what was warned of
 /// comes first.

@@ -10,6 +10,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "calibration/correspondence/fringes.h"
 #include "calibration/correspondence/gray_code.h"
 #include "calibration/correspondence/patterns.h"
 #include "core/progress.h"
@@ -61,6 +62,8 @@ struct LiveOptions {
     /// Pictures for the colours: the six roles and those mosaics that are wanted. Empty: the six
     /// for this size, and mosaics where white turns out not to be the sum of its channels.
     std::vector<Pattern> patterns;
+    /// What is shown to find places.
+    PlaceCode places = PlaceCode::gray;
     /// Where it is known already no Gray code is asked for.
     std::optional<ProjectorToCamera> map;
     /// Projector pixels that the mock-up itself takes, where its pose is known (non-zero: mock-up;
@@ -101,8 +104,9 @@ struct LiveMap {
     std::vector<std::pair<std::string, std::string>> kept;
     double capture_seconds = 0.0;
 };
-/// The Gray code alone, for whoever must know where things stand before colours are photographed:
-/// `options.map`, `patterns` and `shots` are not looked at. Throws as calibrate_live().
+/// Gray code, and fringes with `options.places`, alone: for whoever must know where things stand
+/// before colours are photographed: `options.map`, `patterns` and `shots` are not looked at. Throws
+/// as calibrate_live().
 LiveMap photograph_map(const BenchPorts& bench,
                        const LiveOptions& options,
                        const Progress& progress = {});

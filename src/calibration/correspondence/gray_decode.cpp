@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "calibration/correspondence/exposed_alike.h"
 #include "calibration/correspondence/gray_code.h"
 #include "calibration/correspondence/patterns.h"
 #include "core/error.h"
@@ -183,8 +184,8 @@ double automatic_threshold(const Planes<T>& planes) {
 }
 
 template <typename T>
-GrayCodeResult decode_planes(const Planes<T>& planes, double lit_threshold) {
-    GrayCodeResult result;
+CameraToProjector decode_planes(const Planes<T>& planes, double lit_threshold) {
+    CameraToProjector result;
     result.projector_px = ImageF(planes.width, planes.height, 2);
     result.decoded = Image8(planes.width, planes.height, 1);
     result.lit_threshold = lit_threshold >= 0.0 ? lit_threshold : automatic_threshold(planes);
@@ -237,19 +238,13 @@ GrayCodeResult decode_planes(const Planes<T>& planes, double lit_threshold) {
     return result;
 }
 
-void check_projector_size(int width, int height) {
-    check_argument(width >= 2 && width <= 16384 && height >= 2 && height <= 16384,
-                   "projector size " + std::to_string(width) + "x" + std::to_string(height) +
-                       " is outside 2..16384");
-}
-
 /// Checks count and sizes, and lines the pictures up.
 template <typename T>
-GrayCodeResult decode_in_order(std::span<const Image<T>> pictures,
-                               int projector_width,
-                               int projector_height,
-                               double lit_threshold) {
-    check_projector_size(projector_width, projector_height);
+CameraToProjector decode_in_order(std::span<const Image<T>> pictures,
+                                  int projector_width,
+                                  int projector_height,
+                                  double lit_threshold) {
+    check_pattern_size(projector_width, projector_height);
     Planes<T> planes;
     planes.projector_width = projector_width;
     planes.projector_height = projector_height;
@@ -275,61 +270,34 @@ GrayCodeResult decode_in_order(std::span<const Image<T>> pictures,
     return decode_planes(planes, lit_threshold);
 }
 
-std::string size_of(const ImageF& image) {
-    return std::to_string(image.width) + "x" + std::to_string(image.height);
-}
-
-/// Mean of the channels, in file units as if exposed like `like`.
-ImageF mean_exposed_as(const Photograph& photograph, const Photograph& like) {
-    ImageF mean = mean_of_channels(photograph.image);
-    const auto gain = static_cast<float>(like.exposure_s / photograph.exposure_s);
-    const auto black = static_cast<float>(photograph.black_level);
-    const auto offset = static_cast<float>(like.black_level);
-    for (float& value : mean.values) value = (value - black) * gain + offset;
-    return mean;
-}
-
 }  // namespace
 
-GrayCodeResult decode_gray_code(std::span<const Image8> in_pattern_order,
-                                int projector_width,
-                                int projector_height,
-                                double lit_threshold) {
+CameraToProjector decode_gray_code(std::span<const Image8> in_pattern_order,
+                                   int projector_width,
+                                   int projector_height,
+                                   double lit_threshold) {
     return decode_in_order(in_pattern_order, projector_width, projector_height, lit_threshold);
 }
 
-GrayCodeResult decode_gray_code(std::span<const Image16> in_pattern_order,
-                                int projector_width,
-                                int projector_height,
-                                double lit_threshold) {
+CameraToProjector decode_gray_code(std::span<const Image16> in_pattern_order,
+                                   int projector_width,
+                                   int projector_height,
+                                   double lit_threshold) {
     return decode_in_order(in_pattern_order, projector_width, projector_height, lit_threshold);
 }
 
-GrayCodeResult decode_gray_code(std::span<const ImageF> in_pattern_order,
-                                int projector_width,
-                                int projector_height,
-                                double lit_threshold) {
+CameraToProjector decode_gray_code(std::span<const ImageF> in_pattern_order,
+                                   int projector_width,
+                                   int projector_height,
+                                   double lit_threshold) {
     return decode_in_order(in_pattern_order, projector_width, projector_height, lit_threshold);
-}
-
-ImageF mean_of_channels(const ImageF& image) {
-    if (image.channels == 1) return image;
-    ImageF mean(image.width, image.height, 1);
-    const auto channels = static_cast<std::size_t>(image.channels);
-    const std::size_t used = std::min<std::size_t>(channels, 3);  // a fourth one is no light
-    for (std::size_t i = 0; i < mean.values.size(); ++i) {
-        float sum = 0.0f;
-        for (std::size_t c = 0; c < used; ++c) sum += image.values[i * channels + c];
-        mean.values[i] = sum / static_cast<float>(used);
-    }
-    return mean;
 }
 
 void check_gray_code(const std::filesystem::path& source,
                      const std::vector<std::string>& roles,
                      int projector_width,
                      int projector_height) {
-    check_projector_size(projector_width, projector_height);
+    check_pattern_size(projector_width, projector_height);
     const std::string projector =
         std::to_string(projector_width) + "x" + std::to_string(projector_height) + " projector";
     const auto holds = [&](const std::string& role) {
@@ -351,38 +319,21 @@ void check_gray_code(const std::filesystem::path& source,
                 std::to_string(wanted.size()) + " Gray code photographs for a " + projector);
 }
 
-GrayCodeResult decode_gray_code(const std::vector<RoledPhotograph>& photographs,
-                                int projector_width,
-                                int projector_height,
-                                double lit_threshold) {
+CameraToProjector decode_gray_code(const std::vector<RoledPhotograph>& photographs,
+                                   int projector_width,
+                                   int projector_height,
+                                   double lit_threshold) {
     std::vector<std::string> roles;
     for (const RoledPhotograph& photograph : photographs) roles.push_back(photograph.role);
     check_gray_code("captures", roles, projector_width, projector_height);
     std::vector<ImageF> pictures;
-    const RoledPhotograph* first = nullptr;
-    for (const std::string& role : geometry_roles(projector_width, projector_height)) {
-        std::vector<const RoledPhotograph*> found;
-        for (const RoledPhotograph& candidate : photographs)
-            if (candidate.role == role) found.push_back(&candidate);
-        if (!first) first = found.front();
-        for (const RoledPhotograph* one : found) {
-            const ImageF& image = one->photograph.image;
-            if (image.empty() || image.width != first->photograph.image.width ||
-                image.height != first->photograph.image.height)
-                throw FileError(one->photograph.name.empty() ? role : one->photograph.name,
-                                "size",
-                                size_of(image),
-                                size_of(first->photograph.image) + " as " + first->role);
-        }
-        ImageF mean = mean_exposed_as(found.front()->photograph, first->photograph);
-        for (std::size_t k = 1; k < found.size(); ++k) {
-            const ImageF next = mean_exposed_as(found[k]->photograph, first->photograph);
-            const auto share = static_cast<float>(1.0 / static_cast<double>(k + 1));
-            for (std::size_t i = 0; i < mean.values.size(); ++i)
-                mean.values[i] += share * (next.values[i] - mean.values[i]);
-        }
-        pictures.push_back(std::move(mean));
-    }
+    const std::vector<std::string> wanted = geometry_roles(projector_width, projector_height);
+    const auto first =
+        std::find_if(photographs.begin(), photographs.end(), [&](const RoledPhotograph& one) {
+            return one.role == wanted.front();
+        });
+    for (const std::string& role : wanted)
+        pictures.push_back(exposed_alike(photographs, role, *first));
     return decode_in_order(
         std::span<const ImageF>(pictures), projector_width, projector_height, lit_threshold);
 }

@@ -1,6 +1,8 @@
 // Camera pixel -> projector pixel, turned round by local fits. A camera pixel's place is exact and
 // its projector pixel is a whole number, so camera position is regressed on projector position:
-// the rounding error does not depend on the rounded value, and least squares has no bias.
+// the rounding error does not depend on the rounded value, and least squares has no bias. Places
+// known to parts of a pixel enter as what they are; their error is so small beside the window that
+// it biases the slope by less than a thousandth.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +15,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
+#include "calibration/correspondence/camera_bins.h"
 #include "calibration/correspondence/gray_code.h"
 #include "core/error.h"
 #include "core/parallel.h"
@@ -20,130 +23,6 @@
 
 namespace livery {
 namespace {
-
-/// The camera pixels that decoded to one projector pixel, without those far from their median.
-struct Bin {
-    float count = 0.0f;
-    float x = 0.0f, y = 0.0f;  ///< mean camera position
-};
-
-struct Bins {
-    int width = 0, height = 0;
-    std::vector<Bin> bins;
-    double camera_px_per_pixel = 1.0;  ///< along one axis
-
-    const Bin* find(int x, int y) const {
-        if (x < 0 || y < 0 || x >= width || y >= height) return nullptr;
-        const Bin& bin = bins[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                              static_cast<std::size_t>(x)];
-        return bin.count > 0.0f ? &bin : nullptr;
-    }
-};
-
-/// Decoded camera pixels without those that agree with hardly any pixel around them: in a shadow
-/// that other parts light, codes come out at random and name places elsewhere.
-Image8 without_strays(const GrayCodeResult& decoded, double reach) {
-    constexpr int kLeastAgreeing = 2;  // of eight; a corner pixel of a panel keeps three
-    const int width = decoded.decoded.width, height = decoded.decoded.height;
-    Image8 kept = decoded.decoded;
-    parallel_for(static_cast<std::size_t>(height), 16, [&](std::size_t begin, std::size_t end) {
-        for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
-            for (int x = 0; x < width; ++x) {
-                if (!decoded.decoded.at(x, y)) continue;
-                const float* const own = decoded.projector_px.pixel(x, y);
-                int agreeing = 0;
-                for (int v = std::max(0, y - 1); v <= std::min(height - 1, y + 1); ++v)
-                    for (int u = std::max(0, x - 1); u <= std::min(width - 1, x + 1); ++u) {
-                        if ((u == x && v == y) || !decoded.decoded.at(u, v)) continue;
-                        const float* const other = decoded.projector_px.pixel(u, v);
-                        agreeing += std::abs(static_cast<double>(own[0] - other[0])) <= reach &&
-                                    std::abs(static_cast<double>(own[1] - other[1])) <= reach;
-                    }
-                if (agreeing < kLeastAgreeing) kept.at(x, y) = 0;
-            }
-    });
-    return kept;
-}
-
-Bins gather(const GrayCodeResult& decoded, const Image8& kept, int width, int height) {
-    const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-    const auto place_of = [&](std::size_t i) {
-        const auto x = static_cast<std::size_t>(decoded.projector_px.values[2 * i]);
-        const auto y = static_cast<std::size_t>(decoded.projector_px.values[2 * i + 1]);
-        return y * static_cast<std::size_t>(width) + x;
-    };
-
-    // Counting sort of the camera pixels by projector pixel
-    std::vector<std::uint32_t> first(pixels + 1, 0);
-    std::size_t total = 0;
-    for (std::size_t i = 0; i < kept.values.size(); ++i)
-        if (kept.values[i]) {
-            ++first[place_of(i) + 1];
-            ++total;
-        }
-    std::size_t hit = 0;
-    for (std::size_t p = 0; p < pixels; ++p) {
-        hit += first[p + 1] > 0;
-        first[p + 1] += first[p];
-    }
-    std::vector<std::uint32_t> order(total), next(first.begin(), first.end() - 1);
-    for (std::size_t i = 0; i < kept.values.size(); ++i)
-        if (kept.values[i]) order[next[place_of(i)]++] = static_cast<std::uint32_t>(i);
-
-    Bins result;
-    result.width = width;
-    result.height = height;
-    result.bins.resize(pixels);
-
-    // Scale: how densely the camera samples, from bins with neighbours on all sides. Where few
-    // pixels are hit at all, the camera is coarser than the projector, and the share tells.
-    std::size_t inner = 0, inner_samples = 0;
-    for (int y = 2; y + 2 < height; ++y)
-        for (int x = 2; x + 2 < width; ++x) {
-            const std::size_t p = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                                  static_cast<std::size_t>(x);
-            const auto row = static_cast<std::size_t>(width);
-            const std::size_t around = first[p - row + 2] - first[p - row - 1];
-            const std::size_t middle = first[p + 2] - first[p - 1];
-            const std::size_t below = first[p + row + 2] - first[p + row - 1];
-            if (around == 0 || middle == 0 || below == 0) continue;
-            inner += 9;
-            inner_samples += around + middle + below;
-        }
-    const double density =
-        inner > 0 ? static_cast<double>(inner_samples) / static_cast<double>(inner)
-                  : static_cast<double>(total) / static_cast<double>(std::max<std::size_t>(hit, 1));
-    result.camera_px_per_pixel = std::sqrt(std::max(density, 0.01));
-
-    // Mean of each bin without strays
-    const auto camera_width = static_cast<std::uint32_t>(decoded.decoded.width);
-    const auto reach = static_cast<float>(1.5 * result.camera_px_per_pixel + 1.0);
-    parallel_for(pixels, 4096, [&](std::size_t begin, std::size_t end) {
-        std::vector<float> xs, ys;
-        for (std::size_t p = begin; p < end; ++p) {
-            if (first[p] == first[p + 1]) continue;
-            xs.clear();
-            ys.clear();
-            for (std::uint32_t k = first[p]; k < first[p + 1]; ++k) {
-                xs.push_back(static_cast<float>(order[k] % camera_width) + 0.5f);
-                ys.push_back(static_cast<float>(order[k] / camera_width) + 0.5f);
-            }
-            const bool few = xs.size() < 3;
-            const float centre_x = few ? xs[0] : median(xs);
-            const float centre_y = few ? ys[0] : median(ys);
-            Bin& bin = result.bins[p];
-            for (std::size_t k = 0; k < xs.size(); ++k)
-                if (std::abs(xs[k] - centre_x) <= reach && std::abs(ys[k] - centre_y) <= reach) {
-                    bin.count += 1.0f;
-                    bin.x += xs[k];
-                    bin.y += ys[k];
-                }
-            bin.x /= bin.count;
-            bin.y /= bin.count;
-        }
-    });
-    return result;
-}
 
 struct WindowSample {
     float dx, dy;  ///< projector offset
@@ -247,8 +126,8 @@ int connected_samples(SearchWindow& around,
         const int k = queue[static_cast<std::size_t>(head)];
         const Bin& bin = *window[static_cast<std::size_t>(k)];
         const int bx = k % side, by = k / side;
-        samples[static_cast<std::size_t>(count++)] = {static_cast<float>(bx - radius),
-                                                      static_cast<float>(by - radius),
+        samples[static_cast<std::size_t>(count++)] = {static_cast<float>(bx - radius) + bin.u,
+                                                      static_cast<float>(by - radius) + bin.v,
                                                       bin.x - origin.x,
                                                       bin.y - origin.y,
                                                       bin.count};
@@ -274,18 +153,15 @@ int connected_samples(SearchWindow& around,
 
 struct Located {
     glm::dvec2 camera{0.0};
-    bool filled = false;  ///< from neighbours: the pixel's own bin lies elsewhere or nowhere
+    bool filled = false;    ///< from neighbours: the pixel's own bin lies elsewhere or nowhere
+    float sigma_px = 0.0f;  ///< of `camera` along an axis, by the fit's residuals
 };
 
 std::optional<Located> fit_piece(const Bins& bins,
+                                 const Bin& seed,
                                  std::array<WindowSample, kMaxSide * kMaxSide>& samples,
-                                 int count,
-                                 int x,
-                                 int y) {
+                                 int count) {
     if (count < 4) return std::nullopt;
-    // The first sample is the seed.
-    const Bin* const seed =
-        bins.find(x + static_cast<int>(samples[0].dx), y + static_cast<int>(samples[0].dy));
     const double tolerance = 1.0 + 0.75 * bins.camera_px_per_pixel;
     std::optional<Affine> fit;
     for (int round = 0; round < 3; ++round) {
@@ -301,7 +177,7 @@ std::optional<Located> fit_piece(const Bins& bins,
         count = left;
         if (count < 4) return std::nullopt;
     }
-    // No extrapolation: samples must lie on both sides along both axes.
+    // No extrapolation: projector pixels must lie on both sides along both axes.
     float low_x = 1e9f, high_x = -1e9f, low_y = 1e9f, high_y = -1e9f;
     for (int i = 0; i < count; ++i) {
         const WindowSample& s = samples[static_cast<std::size_t>(i)];
@@ -310,8 +186,17 @@ std::optional<Located> fit_piece(const Bins& bins,
         low_y = std::min(low_y, s.dy);
         high_y = std::max(high_y, s.dy);
     }
-    if (low_x > 0 || high_x < 0 || low_y > 0 || high_y < 0) return std::nullopt;
-    return Located{fit->value + glm::dvec2(seed->x, seed->y), false};
+    // Half a pixel: places within their own projector pixel lie on its both sides.
+    if (low_x > 0.5f || high_x < -0.5f || low_y > 0.5f || high_y < -0.5f) return std::nullopt;
+    double squares = 0.0;
+    for (int i = 0; i < count; ++i) {
+        const WindowSample& s = samples[static_cast<std::size_t>(i)];
+        const glm::dvec2 error = glm::dvec2(s.x, s.y) - fit->at(s.dx, s.dy);
+        squares += 0.5 * glm::dot(error, error);
+    }
+    const double variance = squares / (std::max(count - 3, 1) * static_cast<double>(count));
+    return Located{
+        fit->value + glm::dvec2(seed.x, seed.y), false, static_cast<float>(std::sqrt(variance))};
 }
 
 /// From the piece of surface that the pixel's own bin belongs to, else (a stray) most of the
@@ -324,7 +209,8 @@ std::optional<Located> locate(const Bins& bins, int x, int y, int radius, int li
     for (int attempt = 0, seed; (seed = seed_of(window, link_reach)) >= 0; ++attempt) {
         const int count = connected_samples(window, scale, seed, link_reach, samples);
         if (attempt > 0 && 5 * count < 3 * window.filled) continue;
-        auto located = fit_piece(bins, samples, count, x, y);
+        auto located =
+            fit_piece(bins, *window.bins[static_cast<std::size_t>(seed)], samples, count);
         if (!located) continue;
         located->filled = has_own && attempt > 0;
         return located;
@@ -337,7 +223,7 @@ enum class Sees { this_place, with_gap, another };
 
 /// Whether they see this place alone. One not decoded while those around it see this place is a
 /// gap.
-Sees seen_there(const GrayCodeResult& decoded,
+Sees seen_there(const CameraToProjector& decoded,
                 const Image8& kept,
                 glm::dvec2 camera,
                 int x,
@@ -370,7 +256,7 @@ Sees seen_there(const GrayCodeResult& decoded,
 }
 
 /// Places of small holes, where the neighbours agree and no camera pixel there sees another place.
-void fill_holes(const GrayCodeResult& decoded,
+void fill_holes(const CameraToProjector& decoded,
                 const Image8& kept,
                 double scale,
                 double reach,
@@ -437,7 +323,7 @@ void fill_holes(const GrayCodeResult& decoded,
 
 }  // namespace
 
-ProjectorToCamera invert_map(const GrayCodeResult& decoded,
+ProjectorToCamera invert_map(const CameraToProjector& decoded,
                              int projector_width,
                              int projector_height) {
     check_argument(projector_width >= 2 && projector_height >= 2, "projector size is under 2x2");
@@ -470,6 +356,7 @@ ProjectorToCamera invert_map(const GrayCodeResult& decoded,
         ImageF(projector_width, projector_height, 2, std::numeric_limits<float>::quiet_NaN());
     map.edge = Image8(projector_width, projector_height, 1);
     map.filled = Image8(projector_width, projector_height, 1);
+    std::vector<float> sigma_px(map.edge.values.size(), 0.0f);
     parallel_for(
         static_cast<std::size_t>(projector_height), 4, [&](std::size_t begin, std::size_t end) {
             for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
@@ -481,6 +368,7 @@ ProjectorToCamera invert_map(const GrayCodeResult& decoded,
                     }
                     map.camera_px.at(x, y, 0) = static_cast<float>(located->camera.x);
                     map.camera_px.at(x, y, 1) = static_cast<float>(located->camera.y);
+                    sigma_px[map.edge.index(x, y)] = located->sigma_px;
                     const Sees sees = seen_there(decoded, kept, located->camera, x, y, reach);
                     if (sees == Sees::another)
                         map.edge.at(x, y) = 255;
@@ -489,6 +377,13 @@ ProjectorToCamera invert_map(const GrayCodeResult& decoded,
                 }
         });
     fill_holes(decoded, kept, scale, reach, map);
+    // Whole pixels' rounding is no noise: where both grids run in step, residuals hide it.
+    if (!decoded.sigma_px.empty()) {
+        std::erase(sigma_px, 0.0f);
+        if (!sigma_px.empty())
+            map.sigma_px = std::clamp(
+                static_cast<double>(median(std::move(sigma_px))), kFineMapError, kMapError);
+    }
     return map;
 }
 

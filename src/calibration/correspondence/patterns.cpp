@@ -15,12 +15,6 @@ namespace {
 
 using Drive = std::array<std::uint8_t, 3>;
 
-void check_size(int width, int height) {
-    check_argument(width >= 2 && width <= 16384 && height >= 2 && height <= 16384,
-                   "projector size " + std::to_string(width) + "x" + std::to_string(height) +
-                       " is outside 2..16384");
-}
-
 template <typename DriveOf>
 Image8 draw(int width, int height, const DriveOf& drive_of) {
     Image8 picture(width, height, 3);
@@ -129,6 +123,12 @@ Drive mosaic_drive(int kind, int index) {
 
 }  // namespace
 
+void check_pattern_size(int width, int height) {
+    check_argument(width >= 2 && width <= 16384 && height >= 2 && height <= 16384,
+                   "projector size " + std::to_string(width) + "x" + std::to_string(height) +
+                       " is outside 2..16384");
+}
+
 int gray_code_bits(int count) {
     return std::max(1, static_cast<int>(std::bit_width(static_cast<unsigned>(count - 1))));
 }
@@ -148,7 +148,7 @@ std::vector<std::string> geometry_roles(int width, int height) {
 }
 
 Pattern geometry_pattern(int width, int height, std::size_t number) {
-    check_size(width, height);
+    check_pattern_size(width, height);
     const std::vector<std::string> roles = geometry_roles(width, height);
     check_argument(
         number < roles.size(),
@@ -170,7 +170,7 @@ Pattern geometry_pattern(int width, int height, std::size_t number) {
 }
 
 std::vector<Pattern> geometry_patterns(int width, int height) {
-    check_size(width, height);
+    check_pattern_size(width, height);
     std::vector<Pattern> patterns;
     for (std::size_t k = 0; k < geometry_roles(width, height).size(); ++k)
         patterns.push_back(geometry_pattern(width, height, k));
@@ -178,7 +178,7 @@ std::vector<Pattern> geometry_patterns(int width, int height) {
 }
 
 std::vector<Pattern> colour_patterns(int width, int height, int dark_drive, int bright_drive) {
-    check_size(width, height);
+    check_pattern_size(width, height);
     check_argument(dark_drive >= 0 && dark_drive < bright_drive && bright_drive <= 255,
                    "drives s = " + std::to_string(dark_drive) +
                        ", t = " + std::to_string(bright_drive) + " are not 0 <= s < t <= 255");
@@ -208,7 +208,7 @@ std::vector<Pattern> colour_patterns(int width, int height, int dark_drive, int 
 }
 
 std::vector<Pattern> mosaic_patterns(int width, int height, int count) {
-    check_size(width, height);
+    check_pattern_size(width, height);
     check_argument(count >= 1 && count <= 64,
                    "mosaic count " + std::to_string(count) + " is outside 1..64");
     const int block = block_size(width);

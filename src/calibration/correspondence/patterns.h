@@ -14,6 +14,9 @@ struct Pattern {
     std::vector<int> drive_values;  ///< of a uniform picture: R, G, B; else empty
 };
 
+/// Throws std::invalid_argument for a projector smaller than 2 or larger than 16384 pixels a side.
+void check_pattern_size(int width, int height);
+
 /// Bits of the Gray code that numbers `count` columns or rows.
 int gray_code_bits(int count);
 

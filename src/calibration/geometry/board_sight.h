@@ -24,8 +24,8 @@ struct SightSearch {
 };
 
 /// `photographs`: of one channel and one size, among them `white` and pairs of stripes;
-/// `projector_px`: what was decoded of them (GrayCodeResult). The corners are looked for in white
-/// and once more in the sum of each pair of stripes, which shows what white shows. Throws as
+/// `projector_px`: what was decoded of them (CameraToProjector). The corners are looked for in
+/// white and once more in the sum of each pair of stripes, which shows what white shows. Throws as
 /// find_board(), and FileError where there is no white picture.
 SightSearch search_sight(const std::vector<RoledPhotograph>& photographs,
                          const ImageF& projector_px,

@@ -12,7 +12,7 @@
 namespace livery {
 
 /// For each corner (camera pixels, centres at halves) the projector pixel (centres at halves) that
-/// a homography around it gives: fitted robustly to what `projector_px` (GrayCodeResult: 2
+/// a homography around it gives: fitted robustly to what `projector_px` (CameraToProjector: 2
 /// channels, NaN where not decoded) holds within `radius_px`. Nothing where fewer than a quarter of
 /// the pixels around are decoded and agree with it (half of them lie on dark squares). (D. Moreno,
 /// G. Taubin: Simple, accurate, and robust projector-camera calibration, 3DIMPVT 2012.)

@@ -17,7 +17,6 @@ struct Sight {
 };
 
 struct ScanOptions {
-    double pixel_sigma = 0.15;  ///< of a camera position in `map`, pixels
     /// A ray of the camera that passes the projector's farther away than this, and farther than
     /// four times what the others do, belongs to another spot.
     double largest_gap_px = 3.0;
@@ -42,11 +41,11 @@ struct Scan {
 };
 
 /// Triangulates every projector pixel: the point of its ray that is nearest to the camera's. A
-/// point's deviation along the ray is pixel_sigma * (camera distance / focal) / sin(angle of the
-/// rays). Several sights are averaged with their deviations as weights; where they differ by more
-/// than 1% of the distance, nothing is known. Edges, rays that pass each other, spikes and small
-/// patches are left out. Throws std::invalid_argument (no sight, a map of another size), Refused:
-/// mirrored photographs, rays that do not meet, hardly any point.
+/// point's deviation along the ray is sigma_px of its map * (camera distance / focal) / sin(angle
+/// of the rays). Several sights are averaged with their deviations as weights; where they differ by
+/// more than 1% of the distance, nothing is known. Edges, rays that pass each other, spikes and
+/// small patches are left out. Throws std::invalid_argument (no sight, a map of another size),
+/// Refused: mirrored photographs, rays that do not meet, hardly any point.
 Scan scan_of(const View& projector, std::span<const Sight> sights, const ScanOptions& options = {});
 
 /// Whether light that falls on two neighbouring pixels, at such distances along their rays, falls

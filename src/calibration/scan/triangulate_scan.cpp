@@ -62,7 +62,7 @@ Ranges triangulate(const std::vector<Ray>& rays, const Sight& sight, const ScanO
             const double gap = std::abs(glm::dot(between, normal)) / std::sqrt(sine2);
             ranges.gap_px[i] = static_cast<float>(gap * focal / camera_range);
             ranges.mm[i] = range;
-            ranges.sigma_mm[i] = options.pixel_sigma * camera_range / focal / std::sqrt(sine2);
+            ranges.sigma_mm[i] = sight.map.sigma_px * camera_range / focal / std::sqrt(sine2);
         }
     });
     return ranges;

@@ -17,6 +17,7 @@ LiveOptions live_options_of(const BenchCalibrationRequest& request) {
     options.width = request.width;
     options.height = request.height;
     options.colour.made_with = request.made_with;
+    options.places = request.places;
     options.map = request.map;
     if (request.camera_to_xyz) options.colour.camera_to_xyz = *request.camera_to_xyz;
     if (request.projector && request.product)
@@ -39,7 +40,8 @@ RoomPose find_room_for(const BenchPorts& ports,
                          *request.data_sheets,
                          *request.product,
                          progress,
-                         checkpoint);
+                         checkpoint,
+                         request.places);
     };
     if (Recording* recording = request.room_recording) {
         const std::filesystem::path& folder = recording->folder();

@@ -33,6 +33,7 @@ struct BenchCalibrationRequest {
     /// not see is predicted. Both or none.
     std::optional<View> projector;
     std::shared_ptr<const Product> product;
+    PlaceCode places = PlaceCode::gray;  ///< what is shown to find where the camera sees them
     /// Where the projector is not known to stand, but its lens and the camera's are: the Gray code
     /// is photographed first and tells, with the mock-up's mesh (find_room).
     std::optional<DataSheets> data_sheets;

@@ -82,8 +82,10 @@ RoomPose find_room(const BenchPorts& ports,
                    const DataSheets& sheets,
                    const Product& product,
                    const Progress& progress,
-                   const std::filesystem::path& checkpoint) {
+                   const std::filesystem::path& checkpoint,
+                   PlaceCode places) {
     LiveOptions options;
+    options.places = places;
     options.width = projector_width;
     options.height = projector_height;
     LiveMap seen = photograph_map(ports, options, progress.part(0.0, 0.6));

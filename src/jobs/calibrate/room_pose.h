@@ -24,17 +24,18 @@ struct RoomPose {
     double camera_seconds = 0.0, projector_seconds = 0.0;
 };
 
-/// Shows the Gray code, photographs it, and finds the pair's pose, the mock-up's in it, and what
-/// the data sheets' lenses are off by. `checkpoint` (a file; empty: none) keeps what was found: it
-/// is not sought again while photographs, data sheets and mesh are the same. Throws as
-/// calibrate_live(), pose_of_pair() and register_scan().
+/// Shows the Gray code (and fringes, by `places`), photographs it, and finds the pair's pose, the
+/// mock-up's in it, and what the data sheets' lenses are off by. `checkpoint` (a file; empty: none)
+/// keeps what was found: it is not sought again while photographs, data sheets and mesh are the
+/// same. Throws as calibrate_live(), pose_of_pair() and register_scan().
 RoomPose find_room(const BenchPorts& ports,
                    int projector_width,
                    int projector_height,
                    const DataSheets& sheets,
                    const Product& product,
                    const Progress& progress = {},
-                   const std::filesystem::path& checkpoint = {});
+                   const std::filesystem::path& checkpoint = {},
+                   PlaceCode places = PlaceCode::gray);
 
 /// Turns the room about a sphere's centre until the projector's axes are those of `said`: its
 /// photographs do not tell them. Any other product stays as it is.

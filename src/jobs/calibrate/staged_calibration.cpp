@@ -99,7 +99,8 @@ void check_colours(StagedCalibration& run, const BenchPorts& ports, const Progre
 }
 
 int expected_photographs(const BenchCalibrationRequest& request, CalibrationStage stage) {
-    const int geometry = static_cast<int>(geometry_roles(request.width, request.height).size());
+    const int geometry =
+        static_cast<int>(place_roles(request.places, request.width, request.height).size());
     const int colours = 6 * request.colour_shots;
     switch (stage) {
         case CalibrationStage::geometry:

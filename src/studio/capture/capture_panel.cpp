@@ -99,6 +99,7 @@ CaptureSetup capture_setup(const Shell& shell, const CameraChoice& choice) {
     if (place == Place::kept) setup.projector_view = known_pose(shell);
     if (place == Place::found && are_whole(state.sheets)) setup.data_sheets = state.sheets;
     setup.colour_shots = state.colour_shots;
+    setup.places = state.colour_shots >= 4 ? PlaceCode::gray_and_phase : PlaceCode::gray;
     setup.in_use = shell.studio.session.document().calibration;
     Results* results = shell.results.get();
     ProjectorScreen* screen = shell.studio.projector.get();

@@ -28,7 +28,7 @@ struct CapturePanelState {
     std::optional<Place> place;           ///< chosen by hand; none: by what is known
     DataSheets sheets;                    ///< of projector and camera, as typed
     bool sheets_read = false;             ///< from the user's settings
-    int colour_shots = 2;                 ///< photographs of each colour picture
+    int colour_shots = 2;                 ///< photographs of each colour picture; of 4: fringes too
     std::optional<std::size_t> selected;  ///< a tile
     bool was_busy = false;
     std::filesystem::path accepted;  ///< the finished calibration that was put to use

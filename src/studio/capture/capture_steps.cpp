@@ -133,7 +133,10 @@ void draw_effort(Shell& shell) {
     static constexpr std::array<Effort, 3> kEfforts{
         {{"Quick", "effort-quick", 1, "One photograph of each colour."},
          {"Normal", "effort-normal", 2, "Two of each: a third less noise."},
-         {"Best", "effort-best", 4, "Four of each: half the noise."}}};
+         {"Best",
+          "effort-best",
+          4,
+          "Four of each, half the noise, and fringes that tell places finer."}}};
     row_label("Effort");
     for (const Effort& effort : kEfforts) {
         if (effort.shots != kEfforts[0].shots) ImGui::SameLine();
