@@ -227,8 +227,8 @@ Drift look_for_drift(const BenchPorts& ports,
                      const DriftReference& then,
                      const Image8& mockup,
                      const Progress& progress) {
-    const auto take = [&](bool lit, const char* role) {
-        progress.update(lit ? 0.1 : 0.5, lit ? "photographing white" : "photographing black");
+    constexpr int kPatience = 8;  // photographs of a projector that has just been found
+    const auto show = [&](bool lit, const char* role) {
         Image8 drive(mockup.width, mockup.height, 3);
         for (std::size_t i = 0; lit && i < drive.values.size(); ++i)
             drive.values[i] = mockup.values[i / 3] ? 255 : 0;
@@ -239,8 +239,18 @@ Drift look_for_drift(const BenchPorts& ports,
             photograph = ports.photograph(then.exposure_s);
         return photograph;
     };
-    const Photograph white = take(true, "white");
-    const Photograph black = take(false, "black");
+    const auto light = [&](const Photograph& white, const Photograph& black) {
+        return drift_reference(white, black, then.late).light.y / then.light.y;
+    };
+    progress.update(0.1, "photographing black");
+    const Photograph black = show(false, "black");
+    progress.update(0.3, "photographing white");
+    Photograph white = show(true, "white");
+    for (int waited = 0; waited < kPatience && !(light(white, black) > 0.5); ++waited) {
+        progress.update(0.4, "waiting for white");
+        white = ports.photograph(then.exposure_s);
+        if (light(white, black) > 0.5) white = ports.photograph(then.exposure_s);  // all of it
+    }
     progress.update(0.9, "comparing");
     return drift_between(then, drift_reference(white, black, then.late));
 }

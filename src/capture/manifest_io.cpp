@@ -28,6 +28,7 @@ void check_manifest(const JsonReader& root) {
                      "transfer",
                      "black_level",
                      "saturates_at",
+                     "raw_half",
                      "camera",
                      "sphere",
                      "white_reference"});
@@ -83,6 +84,7 @@ void allow_capture_fields(const JsonReader& entry) {
                       "transfer",
                       "black_level",
                       "saturates_at",
+                      "raw_half",
                       "light_position_mm"});
 }
 
@@ -126,6 +128,7 @@ void read_settings(std::initializer_list<JsonReader> places,
             saturates_at->fail(saturates_at->found(), "more than black_level");
         }
     }
+    if (const auto half = setting("raw_half")) capture.raw_half = half->boolean();
 }
 
 CapturesFolder read_captures_manifest(const std::filesystem::path& manifest) {
@@ -214,6 +217,7 @@ void write_captures_manifest(const CapturesFolder& folder) {
                       {"transfer", capture.transfer},
                       {"black_level", capture.black_level}};
         if (capture.saturates_at > 0.0) entry["saturates_at"] = capture.saturates_at;
+        if (capture.raw_half) entry["raw_half"] = true;
         json["captures"].push_back(std::move(entry));
     }
     write_json_file(folder.folder / "manifest.json", json);

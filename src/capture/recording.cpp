@@ -257,6 +257,8 @@ void Recording::write_manifest(int projector_width,
                 capture.black_level = photograph.black_level;
                 if (std::isfinite(photograph.saturates_at))
                     capture.saturates_at = photograph.saturates_at;
+                // As the run read it: a map of its pixels is of these.
+                capture.raw_half = is_raw_suffix(file);
                 captures.captures.push_back(std::move(capture));
             }
         }

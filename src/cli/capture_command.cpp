@@ -14,6 +14,7 @@
 #include "cli/command.h"
 #include "cli/console.h"
 #include "cli/data_sheet_options.h"
+#include "cli/monitor_projector.h"
 #include "cli/places_option.h"
 #include "core/error.h"
 #include "core/paths.h"
@@ -41,16 +42,6 @@ struct CaptureArguments {
     bool list = false, preflight_only = false, without_preflight = false, anew = false,
          fit_response = false, check = false;
 };
-
-/// A line that is read while the work goes on.
-void say(const std::string& line) {
-    finish_progress_line();
-    std::fputs((line + "\n").c_str(), stderr);
-}
-
-void say_wait(const CaptureWait& wait) {
-    say(wait.why.empty() ? "it goes on" : fmt::format("waiting: {}; {}", wait.why, wait.fix));
-}
 
 Outcome listed() {
     Outcome outcome;
@@ -83,41 +74,6 @@ Outcome listed() {
     }
     return outcome;
 }
-
-/// A projector on a monitor, for as long as the object lives.
-class MonitorProjector {
-  public:
-    explicit MonitorProjector(const std::string& wanted) {
-        for (const Monitor& each : list_monitors()) {
-            if (std::to_string(each.number) == wanted || each.id == wanted || each.name == wanted)
-                monitor_ = each;
-        }
-        if (!monitor_)
-            throw std::invalid_argument(fmt::format(
-                "--monitor: found \"{}\", expected one that livery capture --list names", wanted));
-        WindowOptions hidden;
-        hidden.title = "Livery (capture)";
-        hidden.size_px = {16, 16};
-        hidden.visible = false;
-        context_ = std::make_unique<Window>(hidden);
-        screen_ = std::make_unique<ProjectorScreen>(*context_);
-        context_->make_current();
-        screen_->use_monitor(monitor_->id);
-    }
-    const Monitor& monitor() const { return *monitor_; }
-    ShowPicture port(const Progress& progress) {
-        return show_on({[this](auto picture) { screen_->present(std::move(picture)); },
-                        [this] { return screen_->shown(); }},
-                       progress,
-                       say_wait);
-    }
-
-  private:
-    WindowSystem window_system_;
-    std::optional<Monitor> monitor_;
-    std::unique_ptr<Window> context_;
-    std::unique_ptr<ProjectorScreen> screen_;
-};
 
 /// What a run needs besides ports.
 struct CaptureCommandRun {
@@ -232,7 +188,7 @@ Outcome capture_with_camera(CaptureCommandRun run,
         const Monitor& monitor = projector->monitor();
         run.request().width = monitor.width;
         run.request().height = monitor.height;
-        shown_on = fmt::format("{} at {}x{}", monitor.name, monitor.width, monitor.height);
+        shown_on = projector->words();
         if (run.request().projector)
             check_projector(
                 *run.request().projector, run.arguments.pose, monitor.width, monitor.height);

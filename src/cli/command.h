@@ -60,6 +60,8 @@ Command bench_command();
 Command board_command();
 Command brdf_command();
 Command calibrate_color_command();
+Command calibrate_compare_command();
+Command calibrate_drift_command();
 Command calibrate_geometry_command();
 Command calibrate_register_command();
 Command calibrate_scan_command();

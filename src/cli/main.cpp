@@ -65,6 +65,8 @@ int run(const std::vector<std::string>& arguments) {
                                      photograph_command(),
                                      capture_command(),
                                      calibrate_color_command(),
+                                     calibrate_compare_command(),
+                                     calibrate_drift_command(),
                                      calibrate_geometry_command(),
                                      calibrate_register_command(),
                                      calibrate_scan_command(),

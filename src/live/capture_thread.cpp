@@ -185,9 +185,10 @@ Worker<CaptureJobs>::Turn CaptureThread::Implementation::next(CaptureJobs& asked
         return {[this, settings = std::exchange(asked.settings, {})] { set(settings); }};
     if (std::exchange(asked.fit, false))
         return {[this] { attempt(CaptureView::Doing::fitting, [this] { fit_curve(); }); }};
-    if (std::exchange(asked.drift, false))
-        return {
-            [this] { attempt(CaptureView::Doing::checking, [this] { look_for_drift_now(); }); }};
+    if (asked.drift)
+        return {[this, calibration = *std::exchange(asked.drift, std::nullopt)] {
+            attempt(CaptureView::Doing::checking, [&] { look_for_drift_now(calibration); });
+        }};
     if (asked.step) {
         const CaptureStep step = *std::exchange(asked.step, std::nullopt);
         const bool anew = std::exchange(asked.anew, false);
@@ -221,8 +222,9 @@ void CaptureThread::use(CaptureSetup setup) {
     implementation_->worker.change([&](CaptureJobs& asked) {
         implementation_->abandon = true;
         asked.setup = std::move(setup);
-        asked.fit = asked.drift = asked.watching = asked.shut = false;
+        asked.fit = asked.watching = asked.shut = false;
         asked.step.reset();
+        asked.drift.reset();
         asked.settings.clear();
         asked.open = true;
     });
@@ -231,8 +233,9 @@ void CaptureThread::use(CaptureSetup setup) {
 void CaptureThread::close() {
     implementation_->worker.change([&](CaptureJobs& asked) {
         implementation_->abandon = true;
-        asked.open = asked.fit = asked.drift = asked.watching = false;
+        asked.open = asked.fit = asked.watching = false;
         asked.step.reset();
+        asked.drift.reset();
         asked.settings.clear();
         asked.shut = true;
     });
@@ -254,8 +257,9 @@ void CaptureThread::start(CaptureStep step, bool anew) {
     });
 }
 
-void CaptureThread::look_for_drift() {
-    implementation_->worker.change([](CaptureJobs& asked) { asked.drift = true; });
+void CaptureThread::look_for_drift(std::filesystem::path calibration) {
+    implementation_->worker.change(
+        [&](CaptureJobs& asked) { asked.drift = std::move(calibration); });
 }
 
 void CaptureThread::take_again(std::size_t showing) {
@@ -275,8 +279,9 @@ void CaptureThread::next() { implementation_->next_picture = true; }
 
 void CaptureThread::cancel() {
     implementation_->worker.use([&](CaptureJobs& asked) {
-        asked.fit = asked.drift = false;
+        asked.fit = false;
         asked.step.reset();
+        asked.drift.reset();
         implementation_->abandon = true;
     });
 }

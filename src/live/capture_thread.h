@@ -125,8 +125,8 @@ class CaptureThread {
     void start_curve_fit();
     /// Goes on with what was stopped, unless `anew`, which forgets the step and what follows.
     void start(CaptureStep step, bool anew);
-    /// Compares the bench with how the calibration in use left it.
-    void look_for_drift();
+    /// Compares the bench with how that calibration left it.
+    void look_for_drift(std::filesystem::path calibration);
     void take_again(std::size_t showing);  ///< at once while it captures, else goes on with that
     void set_paused(bool paused);          ///< before the next picture
     void next();                           ///< the picture by hand was taken

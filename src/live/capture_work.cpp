@@ -1,10 +1,12 @@
 #include "live/capture_work.h"
 
+#include <algorithm>
 #include <thread>
 
 #include <fmt/format.h>
 
 #include "calibration/preflight.h"
+#include "core/statistics.h"
 #include "jobs/calibrate/calibration_grade.h"
 #include "jobs/camera_curve.h"
 #include "jobs/watched_captures.h"
@@ -103,7 +105,7 @@ void CaptureThread::Implementation::find_geometry_now(const std::vector<std::siz
         CaptureStepView& step = view.step(CaptureStep::geometry);
         step.figures = grade_figures(room);
         step.finding = finding;
-        step.finding_of = "the mesh's outline where it was found, on the camera's picture";
+        step.finding_of = "Found: the mesh's outline";
     });
 }
 
@@ -130,7 +132,7 @@ void CaptureThread::Implementation::finish() {
         CaptureStepView& step = view.step(CaptureStep::colour);
         step.figures = figures;
         step.finding = finding;
-        step.finding_of = "the projector's pixels: measured green, predicted blue, none red";
+        step.finding_of = "Measured green, predicted blue, none red";
         view.finished = kept;
         view.compared.clear();
         view.capture_s = made.live.capture_seconds;
@@ -141,21 +143,23 @@ void CaptureThread::Implementation::finish() {
 
 void CaptureThread::Implementation::check_now() {
     check_colours(run, ports(), progress());
-    const auto finding = std::make_shared<Image8>(
-        small_photograph(run.check->colours.front().photograph, kLiveWidth_px));
+    Photograph grey = run.check->colours.front().photograph;
+    const float brightest = quantile(grey.image.values, 0.995);
+    grey.saturates_at = std::max(grey.black_level + 1e-6, 1.5 * static_cast<double>(brightest));
+    const auto finding = std::make_shared<Image8>(small_photograph(grey, kLiveWidth_px));
     const std::vector<GradedFigure> compared = compared_with(setup.in_use, run);
     publish([&](CaptureView& view) {
         CaptureStepView& step = view.step(CaptureStep::check);
         step.figures = grade_figures(*run.check);
         step.finding = finding;
-        step.finding_of = "a grey that was corrected, as the camera sees it";
+        step.finding_of = "A corrected grey, brightened";
         view.compared = compared;
     });
 }
 
-void CaptureThread::Implementation::look_for_drift_now() {
+void CaptureThread::Implementation::look_for_drift_now(const std::filesystem::path& calibration) {
     publish([](CaptureView& view) { view.drift.clear(); });
-    const DriftSource source = drift_source(setup.in_use, *request().product);
+    const DriftSource source = drift_source(calibration, *request().product);
     const Drift drift = livery::look_for_drift(ports(), source.then, source.mockup, progress());
     publish([&](CaptureView& view) { view.drift = grade_figures(drift); });
 }

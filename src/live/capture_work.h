@@ -25,7 +25,8 @@ inline constexpr auto kBetweenLooks = std::chrono::milliseconds(20);
 
 struct CaptureJobs {
     CaptureSetup setup;
-    bool open = false, shut = false, fit = false, drift = false, anew = false;
+    bool open = false, shut = false, fit = false, anew = false;
+    std::optional<std::filesystem::path> drift;  ///< the calibration to compare with
     std::optional<CaptureStep> step;
     std::vector<std::pair<std::string, std::string>> settings;  ///< of the camera, to be made
     bool watching = false;           ///< the camera is open, and nothing else is to be done
@@ -60,7 +61,7 @@ struct CaptureThread::Implementation {
     void find_colours_now(const std::vector<std::size_t>& again);
     void capture_by_hand();
     void check_now();
-    void look_for_drift_now();
+    void look_for_drift_now(const std::filesystem::path& calibration);
     void fit_curve();
     void show_steps();
     MeetRecording meet(const std::vector<std::size_t>& again);

@@ -5,13 +5,20 @@
 #include <csignal>
 #include <cstdlib>
 #include <memory>
+#include <sstream>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "core/image_io.h"
 #include "core/json.h"
+#include "core/paths.h"
 #include "desktop/two_monitors.h"
 #include "jobs/calibrate/bench_calibration.h"
+#include "jobs/calibrate/calibration_folder.h"
+#include "jobs/eye_comparison.h"
 #include "live/projector_setup.h"
+#include "mesh/ply_write.h"
 #include "scene/mockup_mask.h"
 #include "session/commands.h"
 #include "session/session.h"
@@ -258,6 +265,111 @@ TEST_F(CameraBeforeMonitor, CalibratesFromTheTerminalAsTheBenchDoes) {
     ASSERT_EQ(run.exit_code, 0) << run.out << run.err;
     expect_close(read_calibration(calibration));
     EXPECT_EQ(room->camera().on_card(), 0u);
+}
+
+/// How far a calibration draws the mock-up from where it stands, in projector pixels.
+ErrorStatistics off_its_place(const std::filesystem::path& calibration, const Bench& bench) {
+    const Mesh& mesh = small_bench_product()->mesh;
+    return picture_offset(*request().projector,
+                          mesh,
+                          projector_view_of(calibration).value(),
+                          mesh,
+                          bench.truth().lit);
+}
+
+// docs/first-session.md, "In the window": where everything stands is found from photographs.
+TEST_F(CameraBeforeMonitor, FirstSessionInTheWindowTakesFivePresses) {
+    start_program();
+    pick_projector();
+    connect();
+    program->click("place-found");
+    const DataSheets sheets = description().data_sheets.value();
+    const auto type = [&](const char* item, double value) {
+        program->click(item);
+        program->press_key("ctrl+a");
+        desktop->type(fmt::format("{}", value));
+        program->press_key("Return");
+    };
+    type("sheet-throw", sheets.throw_ratio);
+    type("sheet-shift", sheets.lens_shift);
+    type("sheet-focal", sheets.focal_mm);
+    type("sheet-sensor", sheets.sensor_width_mm);
+    type("sheet-distance", sheets.lens_distance_mm);
+    const std::string before = document.calibration;
+    // Five presses of one button: it names what comes next.
+    for (const char* step : {"look", "geometry", "colour", "check"}) {
+        SCOPED_TRACE(step);
+        program->wait_for_state("capture_next", step);
+        program->click("capture-next-step");
+        ASSERT_TRUE(wait_until([&] { return program->state("capture_next") != step; }, 120s))
+            << says();
+        program->wait_for_state("capture", "watching");
+        ASSERT_EQ(says(), "");
+    }
+    EXPECT_EQ(program->state("calibration"), before) << "nobody has accepted the new one";
+    program->click("accept");
+    ASSERT_TRUE(wait_until([&] { return program->state("calibration") != before; }, patience));
+    const auto accepted = program->state("calibration").get<std::string>();
+    const ErrorStatistics off = off_its_place(accepted, room->bench());
+    std::printf("    picture off its place %.3f / %.3f px\n", off.median, off.p95);
+    EXPECT_LT(off.median, 0.5);
+    EXPECT_LT(off.p95, 1.0);
+    const nlohmann::json steps = program->state("capture_steps");
+    for (const auto& [step, grade] : steps.items()) EXPECT_NE(grade, "Bad") << step;
+
+    // The next day, and back.
+    program->click("look-for-drift");
+    ASSERT_TRUE(wait_until([&] { return program->has_item("drift"); }, patience)) << says();
+    EXPECT_NE(program->state("capture_drift"), "Bad");
+    program->click("revert");
+    ASSERT_TRUE(wait_until([&] { return program->state("calibration") == before; }, patience));
+    EXPECT_EQ(program->quit(), 0) << program->words();
+}
+
+/// The commands of a page, by words.
+std::vector<std::vector<std::string>> commands_of(const std::string& page) {
+    std::vector<std::vector<std::string>> commands;
+    std::istringstream lines(page);
+    for (std::string line; std::getline(lines, line);) {
+        if (!line.starts_with("    livery ")) continue;
+        std::istringstream words(line.substr(11));
+        commands.emplace_back();
+        for (std::string word; words >> word;) commands.back().push_back(word);
+    }
+    return commands;
+}
+
+// docs/first-session.md, "In the terminal": every command as it stands there, but for the camera's
+// address and where files lie.
+TEST_F(CameraBeforeMonitor, FirstSessionInTheTerminalIsAsItsPageSays) {
+    const auto& folder = studio->folder;
+    folder.write("mockup.ply", ply_bytes(small_bench_product()->mesh));
+    folder.write("first.json",
+                 R"({"format_version": 1, "name": "first", "parts": {}, "lights": [],
+                     "environment": {"file": "assets/environments/overcast.hdr"}})");
+    const auto commands = commands_of(read_text_file(LIVERY_SOURCE "/docs/first-session.md"));
+    ASSERT_GE(commands.size(), 7u);
+    for (std::vector<std::string> words : commands) {
+        std::string whole;
+        for (std::string& word : words) {
+            if (word == "tethered") word += ":" + room->camera().port();
+            for (const char* name :
+                 {"mockup.ply", "first.json", "first.png", "captures", "again", "calibration"})
+                if (word == name || word.starts_with(std::string(name) + "/"))
+                    word = (folder / word).string();
+            whole += " " + word;
+        }
+        const ProgramRun run = run_program(LIVERY_PROGRAM, words);
+        ASSERT_EQ(run.exit_code, 0) << whole << "\n" << run.out << run.err;
+    }
+    const ErrorStatistics off = off_its_place(folder / "calibration", room->bench());
+    std::printf("    picture off its place %.3f / %.3f px\n", off.median, off.p95);
+    EXPECT_LT(off.median, 0.5);
+    EXPECT_LT(off.p95, 1.0);
+    const ImageF first = read_image(folder / "first.png").image;
+    std::size_t lit = 0;
+    for (std::size_t i = 0; i < first.values.size(); i += 3) lit += first.values[i] > 20.0f;
+    EXPECT_GT(lit, first.pixel_count() / 50) << "the mock-up is lit";
 }
 
 TEST_F(CameraBeforeMonitor, WhateverHappensOnTheWayLosesOnePhotographAtMost) {

@@ -204,7 +204,7 @@ TEST(StagedCalibration, LeavesFoldersThatAnybodyCanCalibrateFrom) {
     room.find();
     CapturedCalibrationRequest request;
     request.captures = room.run.folder / "colour";
-    request.map = room.run.folder / "geometry" / "map.exr";
+    request.map = room.run.folder / "colour" / "map.exr";
     const ColourCalibration again = calibrate_from_folder(request);
     const auto measured = [](const ColourCalibration& calibration) {
         std::size_t count = 0;

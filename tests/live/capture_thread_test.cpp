@@ -127,7 +127,7 @@ TEST(CaptureThread, ChecksWhatItMadeAndSeesThatNothingMoved) {
     for (const GradedFigure& figure : checked.compared)
         EXPECT_EQ(figure.grade, Grade::good) << figure.name << " " << figure.value;
 
-    room.capture->look_for_drift();
+    room.capture->look_for_drift(*made.finished);
     const CaptureView drift = wait_until(*room.capture, [](const CaptureView& view) {
         return (!view.drift.empty() && rests(view)) || !view.why.empty();
     });

@@ -6,6 +6,7 @@
 
 #include "calibration/correspondence/patterns.h"
 #include "core/error.h"
+#include "jobs/captured_calibration.h"
 #include "scene/mockup_mask.h"
 
 namespace livery {
@@ -78,7 +79,11 @@ void find_colours(StagedCalibration& run,
     request.recording = &recording;
     run.check.reset();
     run.made = calibrate_through_ports(ports, request, first ? progress.part(0.4, 1.0) : progress);
-    if (finds) run.made->room = run.room;
+    if (finds) {
+        run.made->room = run.room;
+        // Of the mock-up alone, as it was lit.
+        write_map(recording.folder() / "map.exr", run.made->live.map);
+    }
 }
 
 bool can_check(const StagedCalibration& run) {

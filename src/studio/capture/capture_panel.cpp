@@ -199,12 +199,19 @@ void draw_cameras(Shell& shell) {
     const CaptureView& view = state.view;
     if (view.doing == Doing::opening) dim_text("Being opened…");
     if (view.camera.empty()) return;
+    for (const std::string& warning : view.warnings) warning_text(sentence(warning));
+}
+
+/// What is seldom needed once the camera is there.
+void draw_camera_settings(Shell& shell) {
+    const CaptureView& view = shell.studio.panels.capture->view;
+    if (view.camera.empty()) return;
+    heading("Camera's settings");
     dim_text(sentence(view.camera));
-    begin_disabled(is_busy(state.view));
+    begin_disabled(is_busy(view));
     for (const CameraSetting& setting : view.settings) draw_setting(*shell.studio.capture, setting);
     end_disabled();
     if (!view.curve.empty()) dim_text("Its 8-bit files are read with " + view.curve + ".");
-    for (const std::string& warning : view.warnings) warning_text(sentence(warning));
 }
 
 /// The five figures that photographs do not tell.
@@ -283,7 +290,13 @@ void draw_place(Shell& shell) {
               "place-told",
               "The whole picture is lit, and you are asked for the file when the capture is "
               "accepted.");
-        if (place == Place::found) draw_data_sheets(shell);
+        const bool whole = are_whole(state.sheets);
+        if (place == Place::found) {
+            ImGui::SetNextItemOpen(!whole, ImGuiCond_Appearing);
+            const bool open = ImGui::CollapsingHeader("Data sheets");
+            name_last_item("data-sheets");
+            if (open) draw_data_sheets(shell);
+        }
         if (place == Place::found && !are_whole(state.sheets))
             warning_text("All five figures are needed: photographs alone leave sizes open.");
     }
@@ -360,6 +373,7 @@ void draw_capture_panel(Shell& shell) {
     const bool can_show = draw_projector(shell);
     ImGui::Spacing();
     draw_capture_steps(shell, can_show);
+    draw_camera_settings(shell);
 }
 
 }  // namespace livery

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gl/handles.h"
@@ -47,6 +48,11 @@ void draw_capture_stage(Shell& shell);
 void draw_capture_steps(Shell& shell, bool can_show);
 /// What the camera is opened for, by what the column says.
 CaptureSetup capture_setup(const Shell& shell, const CameraChoice& choice);
+/// "look", "geometry", "colour", "check": what is called for and not done; empty: nothing is.
+std::string next_capture_step(const CaptureView& view);
+/// All of them, by those names.
+std::vector<std::pair<std::string, const CaptureStepView*>> named_capture_steps(
+    const CaptureView& view);
 /// Whether the capture's thread works for the calibration.
 bool is_busy(const CaptureView& view);
 /// Opens or closes both; the camera is let go with them.

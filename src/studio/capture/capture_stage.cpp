@@ -198,11 +198,18 @@ void draw_capture_stage(Shell& shell) {
     const float half = std::floor(0.5f * (space.x - gap));
     const bool capturing = view.doing == Doing::capturing;
     const float lower = em(5.0f);
+    // What was found stands where a camera without a live view would show nothing.
+    const CaptureStepView* found = newest_finding(view);
+    const bool found_large = found && !view.has_live_view;
     draw_fitted(state,
-                capturing ? view.shown : view.live,
+                capturing     ? view.shown
+                : found_large ? found->finding
+                              : view.live,
                 corner,
                 {half, upper},
-                capturing ? "Shown" : live);
+                capturing     ? "Shown"
+                : found_large ? found->finding_of.c_str()
+                              : live);
     Picture newest;
     std::string of = "Seen";
     const auto last =
@@ -211,9 +218,9 @@ void draw_capture_stage(Shell& shell) {
         newest = last->seen;
         of = "Seen: " + last->of;
     }
-    if (const CaptureStepView* found = newest_finding(view)) {
+    if (found && !found_large) {
         newest = found->finding;
-        of = "Found: " + found->finding_of;
+        of = found->finding_of;
     }
     const ImVec2 right{corner.x + half + gap, corner.y};
     draw_fitted(state, newest, right, {half, upper - lower - gap}, of.c_str());

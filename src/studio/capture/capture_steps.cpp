@@ -21,6 +21,7 @@ namespace {
 struct StepWords {
     CaptureStep step;
     const char* name;
+    const char* id;      ///< for other programs
     const char* item;    ///< of its button
     const char* action;  ///< on the button
     const char* meaning;
@@ -28,22 +29,26 @@ struct StepWords {
 constexpr std::array<StepWords, kCaptureSteps> kSteps{
     {{CaptureStep::look,
       "Look",
+      "look",
       "preflight",
       "Look first",
       "Finds in half a minute what would spoil a capture: a scaled picture, dynamic modes, focus, "
       "room light, flicker."},
      {CaptureStep::geometry,
       "Geometry",
+      "geometry",
       "capture-geometry",
       "Photograph the geometry",
       "Stripes on the mock-up tell where projector, camera and mock-up stand."},
      {CaptureStep::colour,
       "Colours",
+      "colour",
       "capture-start",
       "Photograph the colours",
       "Six colours on the mock-up tell what each projector pixel must show."},
      {CaptureStep::check,
       "Check",
+      "check",
       "capture-check",
       "Check",
       "Shows corrected colours that nothing was fitted to, and photographs them."}}};
@@ -191,6 +196,26 @@ void draw_next(Shell& shell, bool can_show) {
     }
 }
 
+/// What the bench is like against how the calibration in use left it.
+void draw_drift(Shell& shell, bool ready) {
+    const CaptureView& view = shell.studio.panels.capture->view;
+    if (shell.studio.session.document().calibration.empty() || !ready) return;
+    if (ImGui::Button("Has anything moved since?", {-FLT_MIN, 0.0f}))
+        shell.studio.capture->look_for_drift(shell.studio.session.document().calibration);
+    name_last_item("look-for-drift");
+    tooltip("Two photographs, against those that ended the calibration in use.");
+    if (view.drift.empty()) return;
+    draw_figures(view.drift);
+    const OverallGrade grade = grade_of(view.drift);
+    if (grade.grade == Grade::good) {
+        dim_text("The bench is as it was calibrated.");
+    } else {
+        warning_text(sentence(grade.reason));
+        dim_text(sentence(grade.fix));
+    }
+    name_last_item("drift");
+}
+
 void draw_step(Shell& shell, const StepWords& words, bool ready) {
     CapturePanelState& state = *shell.studio.panels.capture;
     const CaptureStepView& step = state.view.step(words.step);
@@ -235,27 +260,19 @@ void draw_step(Shell& shell, const StepWords& words, bool ready) {
     ImGui::PopID();
 }
 
-/// What the bench is like against how the calibration in use left it.
-void draw_drift(Shell& shell, bool ready) {
-    const CaptureView& view = shell.studio.panels.capture->view;
-    if (shell.studio.session.document().calibration.empty() || !ready) return;
-    if (ImGui::Button("Has anything moved since?", {-FLT_MIN, 0.0f}))
-        shell.studio.capture->look_for_drift();
-    name_last_item("look-for-drift");
-    tooltip("Two photographs, against those that ended the calibration in use.");
-    if (view.drift.empty()) return;
-    draw_figures(view.drift);
-    const OverallGrade grade = grade_of(view.drift);
-    if (grade.grade == Grade::good) {
-        dim_text("The bench is as it was calibrated.");
-    } else {
-        warning_text(sentence(grade.reason));
-        dim_text(sentence(grade.fix));
-    }
-    name_last_item("drift");
+}  // namespace
+
+std::string next_capture_step(const CaptureView& view) {
+    const auto next = next_step(view);
+    return next ? kSteps[static_cast<std::size_t>(*next)].id : "";
 }
 
-}  // namespace
+std::vector<std::pair<std::string, const CaptureStepView*>> named_capture_steps(
+    const CaptureView& view) {
+    std::vector<std::pair<std::string, const CaptureStepView*>> steps;
+    for (const StepWords& words : kSteps) steps.emplace_back(words.id, &view.step(words.step));
+    return steps;
+}
 
 void draw_capture_steps(Shell& shell, bool can_show) {
     CapturePanelState& state = *shell.studio.panels.capture;
@@ -269,6 +286,7 @@ void draw_capture_steps(Shell& shell, bool can_show) {
         if (!by_hand) draw_effort(shell);
         draw_next(shell, can_show);
         draw_trouble(view);
+        if (!view.finished || is_accepted(state)) draw_drift(shell, ready && !by_hand);
     }
     heading("Steps");
     for (const StepWords& words : kSteps) draw_step(shell, words, ready);
@@ -288,10 +306,7 @@ void draw_capture_steps(Shell& shell, bool can_show) {
             view.projector_s));
         name_last_item("capture-finished");
     }
-    if (is_busy(view)) return;
-    heading("Else");
-    draw_drift(shell, ready && !by_hand);
-    if (view.may_have_curve && ready) {
+    if (!is_busy(view) && view.may_have_curve && ready) {
         if (ImGui::Button("Fit the camera's curve", {-FLT_MIN, 0.0f}))
             shell.studio.capture->start_curve_fit();
         name_last_item("fit-curve");

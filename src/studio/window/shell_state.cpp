@@ -216,6 +216,13 @@ MapState state_of_shell(const Shell& shell) {
         preflight[figure.name] = to_string(figure.grade);
     state["preflight"] = preflight.dump();
     const CaptureView& capture = studio.panels.capture->view;
+    state["capture_next"] = quoted(next_capture_step(capture));
+    Json steps = Json::object();
+    for (const auto& [name, step] : named_capture_steps(capture))
+        if (step->done) steps[name] = to_string(grade_of(step->figures).grade);
+    state["capture_steps"] = steps.dump();
+    state["capture_drift"] =
+        quoted(capture.drift.empty() ? "" : to_string(grade_of(capture.drift).grade));
     state["capture_times"] = fmt::format(
         "[{:.3f}, {:.3f}, {:.3f}]", capture.capture_s, capture.camera_s, capture.projector_s);
     state["scale"] = fmt::format("{:.3f}", studio.ui_scale);
