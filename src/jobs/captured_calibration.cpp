@@ -82,10 +82,24 @@ std::vector<Pattern> patterns_shown(const CapturesFolder& folder,
     return patterns;
 }
 
+/// Of a capture that was made in stages, the folder with the colours and their map.
+CapturedCalibrationRequest of_its_colours(CapturedCalibrationRequest request) {
+    std::error_code error;
+    const auto colours = request.captures / "colour";
+    if (std::filesystem::exists(request.captures / "manifest.json", error) ||
+        !std::filesystem::exists(colours / "manifest.json", error))
+        return request;
+    request.captures = colours;
+    if (!request.map && std::filesystem::exists(colours / "map.exr", error))
+        request.map = colours / "map.exr";
+    return request;
+}
+
 }  // namespace
 
-ColourCalibration calibrate_from_folder(const CapturedCalibrationRequest& request,
+ColourCalibration calibrate_from_folder(const CapturedCalibrationRequest& asked,
                                         const Progress& progress) {
+    const CapturedCalibrationRequest request = of_its_colours(asked);
     const CapturesFolder folder = read_captures_folder(request.captures, request.patterns_manifest);
     const int width = folder.projector_width, height = folder.projector_height;
     std::vector<std::string> geometry;
@@ -93,12 +107,14 @@ ColourCalibration calibrate_from_folder(const CapturedCalibrationRequest& reques
         if (is_geometry_role(capture.role)) geometry.push_back(capture.role);
     }
     if (geometry.size() == folder.captures.size()) {
-        throw FileError(
-            request.captures,
-            "captures",
-            std::to_string(geometry.size()) + " photographs of Gray code and fringes alone",
-            "photographs of the colour patterns too (livery patterns --kind all or "
-            "color), with their roles in manifest.json");
+        throw FileError(request.captures,
+                        "captures",
+                        std::to_string(geometry.size()) +
+                            (std::any_of(geometry.begin(), geometry.end(), is_fringe_role)
+                                 ? " photographs of Gray code and fringes alone"
+                                 : " Gray code photographs alone"),
+                        "photographs of the colour patterns too (livery patterns --kind all or "
+                        "color), with their roles in manifest.json");
     }
     if (!request.map && geometry.empty()) {
         throw FileError(request.captures,

@@ -48,7 +48,7 @@ TEST(Capture, OnTheSimulatedBench) {
     const ProgramRun other =
         livery_run({"capture", "--camera", "bench:default", "--no-preflight", "--out", out});
     EXPECT_EQ(other.exit_code, 1);
-    EXPECT_NE(other.err.find("were taken with"), std::string::npos) << other.err;
+    EXPECT_NE((other.out + other.err).find("were taken with"), std::string::npos) << other.err;
 }
 
 TEST(Capture, LooksOnly) {
