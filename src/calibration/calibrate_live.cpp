@@ -78,6 +78,8 @@ class LiveCalibration {
     void photograph_ends(bool white_first);
     /// White - black in camera pixels, mean of the channels.
     ImageF light() const;
+    const Photograph& white() const { return white_; }
+    const Photograph& black() const { return black_; }
 
   private:
     void photograph_stripes(const Pattern& stripes, const Pattern& inverse);
@@ -350,6 +352,8 @@ LiveMap photograph_map(const BenchPorts& bench,
     bench.show(Image8(options.width, options.height, 3));
     LiveMap result;
     result.map = map_of_captures(live.captures, options.width, options.height, result.warnings);
+    result.white = live.white();
+    result.black = live.black();
     result.kept = std::move(live.kept);
     result.camera_width = live.captures.width;
     result.camera_height = live.captures.geometry.front().photograph.image.height;

@@ -181,8 +181,13 @@ Drift drift_between(const DriftReference& then, const DriftReference& now) {
             room.push_back((now.black.values[i] - then.black.values[i]) / lit.values[i]);
     drift.room_light = static_cast<double>(median(std::move(room)));
     drift.light_ratio = now.light / then.light;
-    const double brightness =
-        (now.light.x + now.light.y + now.light.z) / (then.light.x + then.light.y + then.light.z);
+    double light_then = 0.0, light_now = 0.0;
+    for (std::size_t i = 0; i < lit.values.size(); ++i) {
+        if (!(lit.values[i] > 0.1f * brightest)) continue;
+        light_then += static_cast<double>(lit.values[i]);
+        light_now += static_cast<double>(now.white.values[i] - now.black.values[i]);
+    }
+    const double brightness = light_now / light_then;
     if (!(brightness > 0.02))
         throw Refused("no light of the projector is seen on the mock-up any more",
                       "take the cap off the lens, and see whether the projector shows pictures");
@@ -221,6 +226,27 @@ Drift drift_between(const DriftReference& then, const DriftReference& now) {
     drift.shift_median_px = median(shifts);
     drift.shift_p95_px = quantile(shifts, 0.95);
     return drift;
+}
+
+Drift drift_where_both_lit(DriftReference then, const DriftReference& now) {
+    const ImageF light = difference(now.white, now.black, 1.0);
+    const float least = 0.1f * quantile(light.values, 0.999);
+    // What lies at the border keeps its outline: a little around what is lit counts too.
+    constexpr int kAround_px = 3;
+    const auto near_light = [&](int x, int y) {
+        for (int v = std::max(0, y - kAround_px); v <= std::min(light.height - 1, y + kAround_px);
+             ++v)
+            for (int u = std::max(0, x - kAround_px);
+                 u <= std::min(light.width - 1, x + kAround_px);
+                 ++u)
+                if (light.at(u, v) > least) return true;
+        return false;
+    };
+    if (then.white.width == light.width && then.white.height == light.height)
+        for (int y = 0; y < light.height; ++y)
+            for (int x = 0; x < light.width; ++x)
+                if (!near_light(x, y)) then.white.at(x, y) = then.black.at(x, y);
+    return drift_between(then, now);
 }
 
 Drift look_for_drift(const BenchPorts& ports,

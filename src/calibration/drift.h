@@ -37,6 +37,9 @@ struct Drift {
 /// it can be followed.
 Drift drift_between(const DriftReference& then, const DriftReference& now);
 
+/// The same where both were lit: one of them may have lit what stands around too.
+Drift drift_where_both_lit(DriftReference then, const DriftReference& now);
+
 /// Shows white and black on the mock-up (`mockup`: one channel of the projector's size, non-zero:
 /// lit), photographs each at the exposure of then, and compares. Throws as drift_between() and the
 /// ports.

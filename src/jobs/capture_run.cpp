@@ -1,30 +1,9 @@
 #include "jobs/capture_run.h"
 
-#include <chrono>
-
 #include "calibration/nothing_shown.h"
 #include "capture/camera.h"
 
 namespace livery {
-namespace {
-
-/// Adds the seconds that a call takes.
-template <typename Call>
-auto timed(double& seconds, const Call& call) {
-    const auto start = std::chrono::steady_clock::now();
-    struct Add {
-        double& seconds;
-        std::chrono::steady_clock::time_point start;
-        ~Add() {
-            seconds +=
-                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        }
-    } add{seconds, start};
-    return call();
-}
-
-}  // namespace
-
 PortSeconds run_recorded(Recording& recording,
                          const BenchPorts& bench,
                          const std::function<void(const BenchPorts&)>& work) {

@@ -1,6 +1,7 @@
 // A bench photographed with everything kept: what `livery capture` and the window's capture do.
 #pragma once
 
+#include <chrono>
 #include <functional>
 
 #include "calibration/colour/colour.h"
@@ -8,6 +9,21 @@
 #include "core/progress.h"
 
 namespace livery {
+
+/// Adds the seconds that a call takes, also where it throws.
+template <typename Call>
+auto timed(double& seconds, const Call& call) {
+    const auto start = std::chrono::steady_clock::now();
+    struct Add {
+        double& seconds;
+        std::chrono::steady_clock::time_point start;
+        ~Add() {
+            seconds +=
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        }
+    } add{seconds, start};
+    return call();
+}
 
 /// Time within the camera's and the projector's ports.
 struct PortSeconds {

@@ -12,7 +12,7 @@
 namespace livery {
 
 struct CapturedCalibrationRequest {
-    std::filesystem::path captures;  ///< or the folder of a capture in stages
+    std::filesystem::path captures;            ///< or the folder of a capture in stages
     std::filesystem::path patterns_manifest;   ///< for folders without a manifest of their own
     std::optional<std::filesystem::path> map;  ///< else decoded from the same folder
     std::optional<std::filesystem::path> camera_to_xyz;

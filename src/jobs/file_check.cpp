@@ -19,6 +19,7 @@
 #include "core/image_io.h"
 #include "core/json.h"
 #include "core/paths.h"
+#include "jobs/calibrate/calibration_origin.h"
 #include "jobs/camera_to_xyz_file.h"
 #include "jobs/files_elsewhere.h"
 #include "jobs/pair_geometry.h"
@@ -26,6 +27,7 @@
 #include "scene/look.h"
 #include "scene/mockup_pose.h"
 #include "scene/product.h"
+#include "scene/room.h"
 #include "scene/view.h"
 #include "session/session_file.h"
 #include "twin/description.h"
@@ -252,6 +254,13 @@ FileKind kind_of_json(const Path& file, const Progress& progress) {
     if (has("kind") && json["kind"] == "geometry") {
         return {"geometry", [](const Path& path, FileCheck&) { check_geometry_file(path); }};
     }
+    if (has("kind") && json["kind"] == "room") {
+        return {"room", [](const Path& path, FileCheck&) { read_room_file(path); }};
+    }
+    if (has("kind") && json["kind"] == "origin") {
+        return {"origin of a calibration",
+                [](const Path& path, FileCheck&) { read_origin(path.parent_path()); }};
+    }
     if (has("kind") && json["kind"] == "pose") {
         return {"pose", [](const Path& path, FileCheck&) { read_pose_file(path); }};
     }
@@ -279,7 +288,7 @@ FileKind kind_of_json(const Path& file, const Progress& progress) {
                 throw FileError(path,
                                 "",
                                 "a JSON object of no known kind",
-                                "a material, look, product, bench, camera, geometry, pose, "
+                                "a material, look, product, bench, camera, geometry, pose, room, "
                                 "camera-to-xyz or captures "
                                 "file");
             }};

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <chrono>
 #include <filesystem>
 #include <utility>
 #include <vector>
@@ -17,20 +16,6 @@ namespace livery {
 struct CaptureTimes {
     double seconds = 0.0;
     int photographs = 0;
-
-    template <typename Call>
-    auto run(const Call& call) {
-        const auto start = std::chrono::steady_clock::now();
-        struct Add {
-            double& seconds;
-            std::chrono::steady_clock::time_point start;
-            ~Add() {
-                seconds +=
-                    std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-            }
-        } add{seconds, start};
-        return call();
-    }
 };
 
 /// The steps that photograph a calibration.

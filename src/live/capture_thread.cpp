@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/freed_memory.h"
 #include "core/paths.h"
+#include "jobs/capture_run.h"
 #include "live/capture_pictures.h"
 #include "live/capture_work.h"
 #include "live/low_priority.h"
@@ -155,14 +156,14 @@ BenchPorts CaptureThread::Implementation::ports() {
     BenchPorts ports;
     ports.show = [this, show](const Image8& drive) {
         wait_while_paused();
-        times.run([&] { show(drive); });
+        timed(times.seconds, [&] { show(drive); });
         const auto small = std::make_shared<Image8>(small_picture(drive, kTileWidth_px));
         publish([&](CaptureView& view) { view.shown = small; });
     };
     if (bench.camera)
         ports.photograph = [this, take = patient(*bench.camera, stoppable, tell)](double asked_s) {
             ++times.photographs;
-            return times.run([&] { return take(asked_s); });
+            return timed(times.seconds, [&] { return take(asked_s); });
         };
     ports.measure_xyz = bench.measure_xyz;
     return ports;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/log.h"
 #include "core/paths.h"
 #include "core/replace_folder.h"
 #include "jobs/calibrate/calibration_folder.h"
@@ -37,6 +38,17 @@ class UnfinishedFolder {
     std::filesystem::path path_;
 };
 
+/// It says what a calibration was made for and is no part of it: one that cannot be read says
+/// nothing.
+std::optional<CalibrationOrigin> origin_if_readable(const std::filesystem::path& folder) {
+    try {
+        return read_origin(folder, false);
+    } catch (const FileError& error) {
+        log_line(LogLevel::warning, error.what());
+        return std::nullopt;
+    }
+}
+
 }  // namespace
 
 std::shared_ptr<const ProjectorSetup> load_setup(const std::filesystem::path& folder,
@@ -56,6 +68,7 @@ std::shared_ptr<const ProjectorSetup> load_setup(const std::filesystem::path& fo
         kept = setup_cache_name(folder, design_white_percentile, gamut, mockup);
         if (auto setup = read_kept_setup(kept)) {
             setup->view = view;
+            setup->origin = origin_if_readable(folder);
             return setup;
         }
     }
@@ -63,6 +76,7 @@ std::shared_ptr<const ProjectorSetup> load_setup(const std::filesystem::path& fo
     ColourCalibration calibration = read_calibration(folder);
     setup->view = read_camera_file(camera_file);
     check_projector(setup->view, camera_file, calibration.width, calibration.height);
+    setup->origin = origin_if_readable(folder);
     setup->design_white_y = design_white_luminance(calibration, design_white_percentile, mockup);
     setup->table = bake(calibration, setup->design_white_y, gamut);
     for (ImageF* plane :

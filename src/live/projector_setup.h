@@ -10,6 +10,7 @@
 #include "compensation/compensation.h"
 #include "core/progress.h"
 #include "jobs/calibrate/bench_calibration.h"
+#include "jobs/calibrate/calibration_origin.h"
 #include "scene/colour_calibration.h"
 #include "scene/product.h"
 #include "scene/view.h"
@@ -24,7 +25,8 @@ struct ProjectorSetup {
     std::optional<ColourCalibration> calibration;
     std::optional<CompensationTable> table;
     double design_white_y = 0.0;
-    std::string why_uncorrected;  ///< empty when there is a table
+    std::string why_uncorrected;              ///< empty when there is a table
+    std::optional<CalibrationOrigin> origin;  ///< what it was made for, without its photographs
 };
 
 /// From a calibration folder (calibration.json and projector.json), for the mock-up with this mesh.

@@ -127,13 +127,41 @@ void draw_calibration_in_use(const ColourCalibration& calibration) {
     for (const std::string& warning : calibration.warnings) warning_text(sentence(warning));
 }
 
-void draw_in_use(const Studio& studio) {
+/// "HDMI-1 at 1920x1080", as a capture has it; empty: pictures reach no monitor.
+std::string projector_in_words(const Studio& studio) {
+    if (!studio.projector || studio.projector->state() != ProjectorScreen::State::showing)
+        return "";
+    const auto monitor = find_monitor(studio.monitors, setting(studio.settings, kProjectorSetting));
+    return monitor ? fmt::format("{} at {}x{}", monitor->name, monitor->width, monitor->height)
+                   : "";
+}
+
+/// Made for another mesh or another projector than there are now.
+void draw_what_changed(Studio& studio) {
+    CalibrationPanelState& state = *studio.panels.calibration;
+    if (!studio.setup || !studio.setup->origin || !studio.product) return;
+    const std::string projector = projector_in_words(studio);
+    if (state.stale_setup != studio.setup || state.stale_product != studio.product ||
+        state.stale_projector != projector) {
+        state.stale_setup = studio.setup;
+        state.stale_product = studio.product;
+        state.stale_projector = projector;
+        state.stale = what_changed(*studio.setup->origin, *studio.product, projector);
+    }
+    for (const std::string& change : state.stale) {
+        warning_text(sentence(change));
+        name_last_item("calibration-stale");
+    }
+}
+
+void draw_in_use(Studio& studio) {
     heading("In use");
     if (!studio.setup) {
         dim_text("Being loaded…");
         return;
     }
     if (studio.setup->table && studio.setup->calibration) {
+        draw_what_changed(studio);
         draw_calibration_in_use(*studio.setup->calibration);
         return;
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,11 @@ struct CalibrationPanelState {
     std::filesystem::path taken;  ///< the finished calibration that was put to use
     bool capture_wanted = false;  ///< its button was pressed
     bool dismissed = false;       ///< the refusal was read
+    /// What no longer fits the calibration in use, and for which set-up, product and projector that
+    /// was found out.
+    std::vector<std::string> stale;
+    std::shared_ptr<const void> stale_setup, stale_product;
+    std::string stale_projector;
 };
 
 const ImVec4& colour_of(Grade grade);

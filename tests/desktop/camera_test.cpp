@@ -184,8 +184,7 @@ class CameraBeforeMonitor : public TwoMonitors {
     /// well as that of the bench itself.
     void expect_as_direct() {
         const std::string before = document.calibration;
-        ASSERT_TRUE(wait_until([&] { return program->has_item("capture-finished"); }, patience))
-            << says();
+        ASSERT_TRUE(wait_until([&] { return program->has_item("accept"); }, patience)) << says();
         EXPECT_EQ(program->state("calibration"), before) << "nobody has accepted the new one";
         program->click("accept");
         ASSERT_TRUE(wait_until([&] { return program->state("calibration") != before; }, patience));
@@ -224,7 +223,7 @@ TEST_F(CameraBeforeMonitor, CalibratesAsTheBenchDoes) {
 
     const int before = room->camera().photographs();
     const double shutter_s = room->shutter_s();
-    program->click("capture-start");
+    program->click("capture-next-step");
     expect_as_direct();
     EXPECT_EQ(room->camera().on_card(), 0u);
     const auto times = program->state("capture_times").get<std::vector<double>>();

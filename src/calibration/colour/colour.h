@@ -98,6 +98,7 @@ LiveResult calibrate_live(const BenchPorts& bench,
 /// Where the camera sees each projector pixel, photographed and judged as calibrate_live() does it.
 struct LiveMap {
     ProjectorToCamera map;
+    Photograph white, black;  ///< empty: the photographs were taken before
     int camera_width = 0, camera_height = 0;
     std::vector<std::string> warnings;
     /// Photographs that it was made of, of those that were recorded: role and file of each.

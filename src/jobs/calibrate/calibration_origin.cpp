@@ -91,12 +91,13 @@ CalibrationOrigin parse_origin(const std::string& text, const std::filesystem::p
     return origin;
 }
 
-std::optional<CalibrationOrigin> read_origin(const std::filesystem::path& folder) {
+std::optional<CalibrationOrigin> read_origin(const std::filesystem::path& folder,
+                                             bool with_photographs) {
     std::error_code error;
     const auto file = folder / kFile;
     if (!std::filesystem::exists(file, error)) return std::nullopt;
     CalibrationOrigin origin = parse_origin(read_text_file(file), file);
-    if (origin.ends) {
+    if (origin.ends && with_photographs) {
         origin.ends->white = read_plane(folder / "white.exr");
         origin.ends->black = read_plane(folder / "black.exr");
     }
@@ -116,7 +117,9 @@ std::vector<std::string> what_changed(const CalibrationOrigin& origin,
                 : fmt::format("it was made for {}, and this session shows {}: calibrate again",
                               origin.product,
                               product.name));
-    if (!projector.empty() && !origin.made_with.empty() &&
+    // A simulated bench's projector has no name that a monitor could have.
+    const bool names_monitor = origin.made_with.find(" at ") != std::string::npos;
+    if (!projector.empty() && names_monitor &&
         origin.made_with.find(projector) == std::string::npos)
         changes.push_back(fmt::format(
             "it was made with {}, and the projector is {}: choose that projector, or calibrate "

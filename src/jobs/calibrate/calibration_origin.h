@@ -30,8 +30,10 @@ CalibrationOrigin origin_of(const BenchCalibration& made, const BenchCalibration
 /// `origin.json`, with `white.exr` and `black.exr` (mean of the channels, linear per second) where
 /// there are photographs of the end. Throws FileError.
 void write_origin(const std::filesystem::path& folder, const CalibrationOrigin& origin);
-/// Nothing: the folder has none. Throws FileError.
-std::optional<CalibrationOrigin> read_origin(const std::filesystem::path& folder);
+/// Nothing: the folder has none. `with_photographs`: those of the end, which take longer to read.
+/// Throws FileError.
+std::optional<CalibrationOrigin> read_origin(const std::filesystem::path& folder,
+                                             bool with_photographs = true);
 /// The same without the photographs, of its text.
 CalibrationOrigin parse_origin(const std::string& text, const std::filesystem::path& file);
 

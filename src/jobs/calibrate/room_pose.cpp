@@ -106,6 +106,8 @@ RoomPose find_room(const BenchPorts& ports,
         if (!checkpoint.empty()) write_room_file(checkpoint, found.geometry);
     }
     found.map = std::move(seen.map);
+    found.white = std::move(seen.white);
+    found.black = std::move(seen.black);
     found.kept = std::move(seen.kept);
     found.solve_seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

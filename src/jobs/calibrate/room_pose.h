@@ -17,6 +17,7 @@ namespace livery {
 struct RoomPose {
     RoomGeometry geometry;
     ProjectorToCamera map;
+    Photograph white, black;  ///< everything lit, and nothing; empty: they were taken before
     /// Photographs that the map was made of, of those that were recorded: role and file of each.
     std::vector<std::pair<std::string, std::string>> kept;
     double capture_seconds = 0.0, solve_seconds = 0.0;

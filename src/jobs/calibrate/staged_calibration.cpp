@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "calibration/correspondence/patterns.h"
+#include "calibration/drift.h"
 #include "core/error.h"
 #include "jobs/captured_calibration.h"
 #include "scene/mockup_mask.h"
@@ -25,6 +26,28 @@ void remove_folder(const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::remove_all(folder, error);
     if (error) throw FileError(folder, "", error.message(), "a folder that can be emptied");
+}
+
+/// A place that was found for a mock-up that stands elsewhere now would spoil the colours.
+void check_that_nothing_moved(const RoomPose& room, const BenchCalibration& made) {
+    if (room.white.image.empty() || made.live.white.image.empty()) return;
+    constexpr double kMoved_px = 1.0;  // what a look for drift calls Bad
+    try {
+        const Drift drift =
+            drift_where_both_lit(drift_reference(room.white, room.black, 0),
+                                 drift_reference(made.live.white, made.live.black, 0));
+        if (drift.lost <= drift.blocks && drift.shift_median_px < kMoved_px) return;
+        throw Refused(
+            drift.lost > drift.blocks
+                ? std::string("the mock-up is not where the geometry found it")
+                : fmt::format("the mock-up, the camera or the projector moved by about {:.1f} "
+                              "camera pixels after the geometry was photographed",
+                              drift.shift_median_px),
+            "let everything stand still, and photograph the geometry again");
+    } catch (const FileError&) {
+        throw Refused("the camera's pictures have another size than those of the geometry",
+                      "set the camera as it was, or photograph the geometry again");
+    }
 }
 
 }  // namespace
@@ -78,12 +101,24 @@ void find_colours(StagedCalibration& run,
     BenchCalibrationRequest request = finds ? with_room(run.request, *run.room) : run.request;
     request.recording = &recording;
     run.check.reset();
-    run.made = calibrate_through_ports(ports, request, first ? progress.part(0.4, 1.0) : progress);
-    if (finds) {
-        run.made->room = run.room;
-        // Of the mock-up alone, as it was lit.
-        write_map(recording.folder() / "map.exr", run.made->live.map);
+    run.made.reset();
+    BenchCalibration made;
+    try {
+        made = calibrate_through_ports(ports, request, first ? progress.part(0.4, 1.0) : progress);
+    } catch (const Refused& refused) {
+        if (!finds) throw;
+        // With a map of where things were, whatever is photographed shows something else.
+        throw Refused(
+            refused.why(),
+            refused.fix() + "; if anything has moved since, photograph the geometry again");
     }
+    if (finds) {
+        check_that_nothing_moved(*run.room, made);
+        made.room = run.room;
+        // Of the mock-up alone, as it was lit.
+        write_map(recording.folder() / "map.exr", made.live.map);
+    }
+    run.made = std::move(made);
 }
 
 bool can_check(const StagedCalibration& run) {

@@ -243,20 +243,35 @@ void draw_step(Shell& shell, const StepWords& words, bool ready) {
     ImGui::TextUnformatted(shown.c_str());
     name_last_item(std::string("step:") + words.item);
     tooltip(words.meaning);
-    const bool again = step.done || step.can_go_on;
     if (step.called_for && ready && !is_busy(state.view)) {
-        const char* label = again ? "Again" : "Do";
-        ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - button_width(label));
-        if (ImGui::SmallButton(label)) shell.studio.capture->start(words.step, again);
+        const char* label = step.done ? "Again" : step.can_go_on ? "Go on" : "Do";
+        const float anew =
+            step.can_go_on ? button_width("Anew") + ImGui::GetStyle().ItemSpacing.x : 0.0f;
+        ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - button_width(label) - anew);
+        if (ImGui::SmallButton(label)) shell.studio.capture->start(words.step, step.done);
         name_last_item(words.item);
-        tooltip(again ? "Forgets what this step photographed, and what follows from it."
-                      : "This step alone.");
+        tooltip(step.done ? "Forgets what this step photographed, and what follows from it."
+                          : "This step, and nothing after it.");
+        if (step.can_go_on) {
+            ImGui::SameLine();
+            if (ImGui::SmallButton("Anew")) shell.studio.capture->start(words.step, true);
+            name_last_item(std::string(words.item) + "-anew");
+            tooltip("Forgets what was photographed.");
+        }
     }
     if (step.done && grade.grade != Grade::good) {
         warning_text(sentence(grade.reason));
         dim_text(sentence(grade.fix));
     }
-    if (!step.figures.empty()) draw_figures(step.figures);
+    // The figures of what is good are there for those who ask.
+    if (!step.figures.empty()) {
+        const bool open = now || grade.grade != Grade::good;
+        ImGui::SetNextItemOpen(open, ImGuiCond_Appearing);
+        if (ImGui::TreeNode("Figures")) {
+            draw_figures(step.figures);
+            ImGui::TreePop();
+        }
+    }
     ImGui::PopID();
 }
 
