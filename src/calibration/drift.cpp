@@ -183,7 +183,6 @@ Drift drift_between(const DriftReference& then, const DriftReference& now) {
     drift.light_ratio = now.light / then.light;
     double light_then = 0.0, light_now = 0.0;
     for (std::size_t i = 0; i < lit.values.size(); ++i) {
-        if (!(lit.values[i] > 0.1f * brightest)) continue;
         light_then += static_cast<double>(lit.values[i]);
         light_now += static_cast<double>(now.white.values[i] - now.black.values[i]);
     }
