@@ -243,7 +243,9 @@ void draw_step(Shell& shell, const StepWords& words, bool ready) {
     ImGui::TextUnformatted(shown.c_str());
     name_last_item(std::string("step:") + words.item);
     tooltip(words.meaning);
-    if (step.called_for && ready && !is_busy(state.view)) {
+    const bool can_begin = words.step != CaptureStep::check ||
+                           state.view.step(CaptureStep::colour).done;  // there is nothing to check
+    if (step.called_for && can_begin && ready && !is_busy(state.view)) {
         const char* label = step.done ? "Again" : step.can_go_on ? "Go on" : "Do";
         const float anew =
             step.can_go_on ? button_width("Anew") + ImGui::GetStyle().ItemSpacing.x : 0.0f;
