@@ -1,6 +1,7 @@
 #include "capture/video_camera.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
@@ -111,7 +112,7 @@ class VideoCamera : public Camera {
     void expect_open() {
         if (!video_) open();
     }
-    /// The next frame that began after `after`, in `newest_`, which is locked meanwhile.
+    /// Waits for that frame or a later one, in `newest_`, which is locked meanwhile.
     void next_frame(std::unique_lock<std::mutex>& lock, std::uint64_t number);
     [[noreturn]] void fail_gone(const std::string& why);
 
@@ -127,9 +128,10 @@ class VideoCamera : public Camera {
     std::mutex mutex_;
     std::condition_variable changed_;
     bool stop_ = false;
-    std::string ended_;         ///< why no frame comes any more
-    std::uint64_t number_ = 0;  ///< of the newest frame
-    Image8 newest_;             ///< RGB
+    std::string ended_;               ///< why no frame comes any more
+    std::uint64_t number_ = 0;        ///< of the newest frame
+    Image8 newest_;                   ///< RGB
+    Clock::time_point drained_at_{};  ///< when the last read began that had to wait for its frame
 };
 
 void VideoCamera::open() {
@@ -158,9 +160,18 @@ void VideoCamera::close() {
 }
 
 void VideoCamera::grab() {
-    for (;;) {
+    // Of the last reads, how long they took: a frame that lay in a buffer already comes at once. A
+    // reader that fell behind, on a busy machine or while the stream was opened, finds several.
+    std::array<double, 16> took_s{};
+    const double frames_per_second = video_->get(VideoSetting::frames_per_second);
+    took_s[0] = 1.0 / (frames_per_second > 1.0 ? std::min(frames_per_second, 240.0) : 30.0);
+    for (std::size_t read = 1;; ++read) {
+        const auto began = Clock::now();
         const std::optional<VideoFrame> frame = video_->read();
+        const double read_s = std::chrono::duration<double>(Clock::now() - began).count();
+        took_s[read % took_s.size()] = read_s;
         const std::lock_guard lock(mutex_);
+        if (read_s > 0.25 * *std::max_element(took_s.begin(), took_s.end())) drained_at_ = began;
         if (!frame) ended_ = video_->problem();
         if (stop_ || !frame) {
             changed_.notify_all();
@@ -239,12 +250,12 @@ Photograph VideoCamera::photograph(double exposure_s) {
     };
     if (grabber_.joinable()) {
         std::unique_lock lock(mutex_);
-        // The one on its way began before; the one after it did not.
-        std::uint64_t wanted = number_ + 2;
+        // The one on its way began before, and so did those that lie in a buffer: the first that
+        // had to be waited for from now on did not.
+        const auto asked_at = Clock::now();
         while (added < options_.frames) {
-            next_frame(lock, wanted);
-            add(newest_);
-            wanted = number_ + 1;
+            next_frame(lock, number_ + 1);
+            if (drained_at_ >= asked_at) add(newest_);
         }
     } else {
         for (int k = 0; k < options_.frames; ++k) {

@@ -1,7 +1,9 @@
 #include "capture/video_camera.h"
 
 #include <atomic>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include <gtest/gtest.h>
 #include <opencv2/videoio.hpp>
@@ -64,6 +66,29 @@ TEST(VideoCamera, PhotographsWhatTheStreamShowsNow) {
     const CameraState state = camera->state();
     ASSERT_EQ(state.warnings.size(), 1u);
     EXPECT_NE(state.warnings[0].find("exposure cannot be set from here"), std::string::npos);
+}
+
+// A network that stands still for a moment sends what it kept all at once, and it is of before.
+TEST(VideoCamera, PassesOverFramesThatLayInABuffer) {
+    constexpr int kKept = 8;
+    std::atomic<int> level{40}, kept{0};
+    std::atomic<bool> hold{false};
+    const MjpegServer server([&] {
+        if (hold.exchange(false)) {
+            kept = kKept;
+            std::this_thread::sleep_for(std::chrono::milliseconds(300));
+        }
+        const int shown = kept > 0 ? 40 : level.load();
+        if (kept > 0) --kept;
+        return uniform_jpeg(shown, shown, shown);
+    });
+    const auto camera = open_video_camera(stream_of(server));
+    camera->photograph(0.0);
+    hold = true;
+    while (kept == 0) std::this_thread::yield();
+    level = 200;
+    EXPECT_NEAR(camera->photograph(0.0).image.at(20, 20, 0), 255.0 * srgb_decode(200 / 255.0), 2.5);
+    EXPECT_EQ(kept, 0);
 }
 
 TEST(VideoCamera, AveragesFrames) {
