@@ -5,6 +5,7 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "core/error.h"
 #include "core/log.h"
@@ -12,6 +13,7 @@
 #include "core/replace_folder.h"
 #include "jobs/calibrate/calibration_folder.h"
 #include "jobs/calibrate/calibration_origin.h"
+#include "jobs/calibrate/nudged_calibration.h"
 #include "live/setup_cache.h"
 #include "scene/mockup_mask.h"
 #include "twin/description.h"
@@ -47,6 +49,23 @@ std::optional<CalibrationOrigin> origin_if_readable(const std::filesystem::path&
         log_line(LogLevel::warning, error.what());
         return std::nullopt;
     }
+}
+
+/// What `write` writes into a folder, under a name of the date and the id that it returns.
+template <typename Write>
+std::filesystem::path keep(const Write& write) {
+    const auto all = calibrations_folder();
+    make_output_folder(all);
+    const UnfinishedFolder unfinished(all / ("." + fmt::format("{}", ::getpid()) + "-unfinished"));
+    const std::string id = write(unfinished.path());
+    const auto folder =
+        all /
+        fmt::format("{:%Y-%m-%dT%H-%M-%SZ}-{}", fmt::gmtime(std::time(nullptr)), id.substr(0, 8));
+    std::error_code error;
+    std::filesystem::rename(unfinished.path(), folder, error);
+    if (error) throw FileError(folder, "", error.message(), "a folder that can be made");
+    sync_folder(all);
+    return folder;
 }
 
 }  // namespace
@@ -117,23 +136,23 @@ void check_calibrations_folder() { make_output_folder(calibrations_folder()); }
 
 std::filesystem::path keep_calibration(const BenchCalibration& made,
                                        const BenchCalibrationRequest& request) {
-    const ColourCalibration& calibration = made.calibration;
-    const auto all = calibrations_folder();
-    make_output_folder(all);
-    const std::string name = fmt::format(
-        "{:%Y-%m-%dT%H-%M-%SZ}-{}", fmt::gmtime(std::time(nullptr)), calibration.id.substr(0, 8));
-    const UnfinishedFolder unfinished(all / ("." + name));
-    if (made.projector) {
-        write_setup(unfinished.path(), calibration, *made.projector);
-    } else {
-        write_calibration(unfinished.path(), calibration);
-    }
-    write_origin(unfinished.path(), origin_of(made, request));
-    std::error_code error;
-    std::filesystem::rename(unfinished.path(), all / name, error);
-    if (error) throw FileError(all / name, "", error.message(), "a folder that can be made");
-    sync_folder(all);
-    return all / name;
+    return keep([&](const std::filesystem::path& folder) {
+        if (made.projector) {
+            write_setup(folder, made.calibration, *made.projector);
+        } else {
+            write_calibration(folder, made.calibration);
+        }
+        write_origin(folder, origin_of(made, request));
+        return made.calibration.id;
+    });
+}
+
+std::filesystem::path keep_nudged(const std::filesystem::path& calibration,
+                                  const View& projector,
+                                  const Mesh& mesh) {
+    return keep([&](const std::filesystem::path& folder) {
+        return write_nudged(calibration, folder, projector, bounds_of(mesh));
+    });
 }
 
 std::vector<std::filesystem::path> kept_calibrations() {

@@ -57,6 +57,11 @@ void check_calibrations_folder();
 std::filesystem::path keep_calibration(const BenchCalibration& made,
                                        const BenchCalibrationRequest& request);
 
+/// The same of one whose mock-up was moved by hand (write_nudged()).
+std::filesystem::path keep_nudged(const std::filesystem::path& calibration,
+                                  const View& projector,
+                                  const Mesh& mesh);
+
 /// Folders of the calibrations kept in the user's folder, newest first.
 std::vector<std::filesystem::path> kept_calibrations();
 

@@ -269,6 +269,11 @@ void draw_calibrating(Studio& studio) {
     if (ImGui::Button("Capture with a camera…", {-FLT_MIN, 0.0f})) state.capture_wanted = true;
     name_last_item("open-capture");
     tooltip("A camera of your own, or the simulated bench step by step.");
+    begin_disabled(!studio.setup || !studio.setup->calibration);
+    if (ImGui::Button("Move the mock-up by hand…", {-FLT_MIN, 0.0f})) state.nudge_wanted = true;
+    name_last_item("open-nudge");
+    tooltip("Where its lines lie beside it: by arrow keys, on the mock-up itself.");
+    end_disabled();
     if (!calibrating.refused_why.empty() && !state.dismissed) {
         warning_text(sentence("refused: " + calibrating.refused_why));
         name_last_item("calibration-refused");

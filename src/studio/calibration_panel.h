@@ -22,8 +22,8 @@ struct CalibrationPanelState {
     Held<double> held_percentile;
     std::string list_problem;
     std::filesystem::path taken;  ///< the finished calibration that was put to use
-    bool capture_wanted = false;  ///< its button was pressed
-    bool dismissed = false;       ///< the refusal was read
+    bool capture_wanted = false, nudge_wanted = false;  ///< their buttons were pressed
+    bool dismissed = false;                             ///< the refusal was read
     /// What no longer fits the calibration in use, and for which set-up, product and projector that
     /// was found out.
     std::vector<std::string> stale;

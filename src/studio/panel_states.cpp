@@ -6,6 +6,7 @@
 #include "studio/capture/capture_panel.h"
 #include "studio/light/lighting_panel.h"
 #include "studio/look_thumbnails.h"
+#include "studio/nudge/nudge_panel.h"
 #include "studio/paint/library_panel.h"
 #include "studio/paint/paint_panel.h"
 #include "studio/plan_panel.h"
@@ -21,7 +22,8 @@ PanelStates::PanelStates()
       calibration(std::make_unique<CalibrationPanelState>()),
       ballot(std::make_unique<BallotPanelState>()),
       capture(std::make_unique<CapturePanelState>()),
-      thumbnails(std::make_unique<LookThumbnailState>()) {}
+      thumbnails(std::make_unique<LookThumbnailState>()),
+      nudge(std::make_unique<NudgePanelState>()) {}
 
 PanelStates::~PanelStates() = default;
 PanelStates::PanelStates(PanelStates&&) noexcept = default;

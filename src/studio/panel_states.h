@@ -15,6 +15,7 @@ struct CalibrationPanelState;
 struct BallotPanelState;
 struct CapturePanelState;
 struct LookThumbnailState;
+struct NudgePanelState;
 
 /// Always there. Owns textures: destroy it with the window's context current.
 struct PanelStates {
@@ -32,6 +33,7 @@ struct PanelStates {
     std::unique_ptr<BallotPanelState> ballot;
     std::unique_ptr<CapturePanelState> capture;
     std::unique_ptr<LookThumbnailState> thumbnails;
+    std::unique_ptr<NudgePanelState> nudge;
 };
 
 }  // namespace livery

@@ -4,6 +4,7 @@
 
 #include "core/log.h"
 #include "projection/picture_port.h"
+#include "studio/nudge/nudge_panel.h"
 #include "studio/results.h"
 #include "studio/window/shell.h"
 #include "studio/window/shell_state.h"
@@ -108,6 +109,7 @@ void show_monitor_numbers(Shell& shell) {
 }
 
 void show_signal_test(Shell& shell, bool shown) {
+    if (shown) show_nudge(shell, false);
     shell.signal_test_open = shown;
     if (!shell.results) return;
     if (!shown) {
@@ -131,6 +133,7 @@ ProjectorFacts projector_facts(const Shell& shell) {
     facts.frozen = shell.frozen;
     facts.monitor_numbers = shell.monitor_numbers != nullptr;
     facts.signal_test = shell.signal_test_open;
+    facts.nudge = shell.nudge_open;
     facts.wanted = shell.frame_number;
     facts.shown = screen.shown().number;
     facts.waited_s = shell.studio.now_s - shell.frame_asked_s;

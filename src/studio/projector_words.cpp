@@ -22,6 +22,7 @@ ProjectorWords projector_words(const ProjectorFacts& facts) {
     if (facts.signal_test) {
         return {"showing the test picture", warning, "Projector > Test picture ends it."};
     }
+    if (facts.nudge) return {"showing the mock-up's lines", warning, "Esc ends it."};
     const bool behind = facts.shown != facts.wanted;
     if (facts.frozen) {
         return {behind ? "frozen: not what you work on" : "frozen",

@@ -12,6 +12,7 @@
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
 #include "studio/kit/widgets.h"
+#include "studio/nudge/nudge_panel.h"
 #include "studio/stage_words.h"
 #include "studio/window/shell.h"
 
@@ -120,8 +121,8 @@ void draw_message(const StageFrame& stage, const std::string& text) {
 /// Words over the picture's lower left corner; what is not as it will be comes last.
 void draw_caption(const Shell& shell, const StageFrame& stage, std::string text) {
     const auto& frame = shell.studio.frame;
-    const std::string unfinished =
-        frame && !frame->unfinished.empty() ? "Not all there yet: " + frame->unfinished : "";
+    const bool waits = frame && !frame->unfinished.empty() && !shell.nudge_open;
+    const std::string unfinished = waits ? "Not all there yet: " + frame->unfinished : "";
     if (text.empty() && unfinished.empty()) return;
     ImDrawList& list = *ImGui::GetWindowDrawList();
     ImFont* font = small_font();
@@ -344,6 +345,11 @@ void draw_projector_view(Shell& shell, const StageFrame& stage) {
     const FinishedFrame& frame = *studio.frame;
     frame.ready->wait_on_device();
     const StageFrame picture = projector_picture(shell, stage);
+    const auto& lines = studio.panels.nudge->picture;
+    if (shell.nudge_open && lines) {
+        draw_texture(lines->texture, picture);
+        return draw_caption(shell, stage, "The mock-up's lines, as the projector draws them");
+    }
     draw_texture(frame.drive_texture, picture);
     std::string caption = fmt::format("{} × {} pixels, ", frame.size_px.x, frame.size_px.y);
     caption += studio.setup && studio.setup->table

@@ -15,6 +15,7 @@
 #include "studio/kit/theme.h"
 #include "studio/kit/widgets.h"
 #include "studio/kit/words.h"
+#include "studio/nudge/nudge_panel.h"
 #include "studio/results.h"
 #include "studio/window/shell.h"
 
@@ -340,6 +341,7 @@ void take_capture(Shell& shell) {
 }
 
 void show_capture(Shell& shell, bool shown) {
+    if (shown) show_nudge(shell, false);
     shell.capture_open = shown;
     CapturePanelState& state = *shell.studio.panels.capture;
     if (shown) {

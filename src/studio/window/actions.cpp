@@ -10,6 +10,7 @@
 #include "studio/artwork/artwork_edit.h"
 #include "studio/capture/capture_panel.h"
 #include "studio/look_files.h"
+#include "studio/nudge/nudge_panel.h"
 #include "studio/paint/library_panel.h"
 #include "studio/product/new_session.h"
 #include "studio/product/open_session.h"
@@ -89,6 +90,8 @@ void give_up(Shell& shell) {
         stop_trying(studio);
     } else if (studio.tried || studio.trying) {
         stop_trying(studio);
+    } else if (shell.nudge_open) {
+        show_nudge(shell, false);
     } else if (studio.renaming_look) {
         studio.renaming_look.reset();
     } else if (!studio.notices.empty()) {
@@ -139,6 +142,11 @@ void add_file_actions(std::vector<Action>& list) {
         show_capture(s, !s.capture_open);
     }));
     list.back().checked = [](const Shell& s) { return s.capture_open; };
+    list.push_back(action("nudge", "Projector", "Move the mock-up by hand…", {}, [](Shell& s) {
+        show_nudge(s, !s.nudge_open);
+    }));
+    list.back().enabled = [](const Shell& s) { return !s.capture_open; };
+    list.back().checked = [](const Shell& s) { return s.nudge_open; };
     list.push_back(
         action("ballot", "File", "Ballot", {}, [](Shell& s) { s.ballots_open = !s.ballots_open; }));
     list.back().checked = [](const Shell& s) { return s.ballots_open; };

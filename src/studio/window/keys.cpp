@@ -6,6 +6,7 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
+#include "studio/nudge/nudge_panel.h"
 #include "studio/paint/library_panel.h"
 #include "studio/paint/users_library.h"
 #include "studio/window/actions.h"
@@ -58,6 +59,9 @@ bool handle_key(Shell& shell, const InputEvent& event) {
     }
     if ((event.modifiers & (GLFW_MOD_ALT | GLFW_MOD_SUPER)) != 0) return false;
     const KeyboardOwner owner = keyboard_owner(shell);
+    const bool writes =
+        owner.text_field || owner.dialog || ImGui::GetCurrentContext()->OpenPopupStack.Size > 0;
+    if (shell.nudge_open && !writes && nudge_key(shell, chord)) return true;
     const Action* action = action_for(chord, owner);
     // Dear ImGui has a meaning of its own for Tab and would use it for its list of windows.
     if (!action && chord.key == GLFW_KEY_TAB) return true;

@@ -13,6 +13,7 @@
 #include "studio/calibration_panel.h"
 #include "studio/capture/capture_panel.h"
 #include "studio/kit/theme.h"
+#include "studio/nudge/nudge_panel.h"
 #include "studio/paint/library_panel.h"
 #include "studio/paint/swatch_textures.h"
 #include "studio/product/open_session.h"
@@ -106,9 +107,15 @@ void draw_right_column(Shell& shell) {
     take_swatches(shell.studio);
     if (std::exchange(shell.studio.panels.calibration->capture_wanted, false))
         show_capture(shell, true);
+    if (std::exchange(shell.studio.panels.calibration->nudge_wanted, false))
+        show_nudge(shell, true);
     if (shell.capture_open) {
         shell.studio.panels.library->owns_arrows = false;
         return draw_capture_panel(shell);
+    }
+    if (shell.nudge_open) {
+        shell.studio.panels.library->owns_arrows = false;
+        return draw_nudge_panel(shell);
     }
     if (shell.ballots_open) {
         shell.studio.panels.library->owns_arrows = false;

@@ -11,6 +11,7 @@
 #include "studio/artwork/artwork_edit.h"
 #include "studio/capture/capture_panel.h"
 #include "studio/kit/tab_order.h"
+#include "studio/nudge/nudge_panel.h"
 #include "studio/projector_control.h"
 #include "studio/window/shell.h"
 
@@ -209,6 +210,9 @@ MapState state_of_shell(const Shell& shell) {
     state["question"] = quoted(shell.question ? shell.question->what : "");
     state["capture"] =
         quoted(shell.capture_open ? name_of(studio.panels.capture->view.doing) : "closed");
+    state["nudge"] = quoted(shell.nudge_open ? in_words(nudged_so_far(shell)) : "closed");
+    state["nudge_drawn"] = text(studio.panels.nudge->drawn &&
+                                *studio.panels.nudge->drawn == studio.panels.nudge->view);
     state["capture_paused"] = studio.panels.capture->view.paused ? "true" : "false";
     state["capture_says"] = quoted(words_of(*studio.panels.capture));
     Json preflight = Json::object();

@@ -13,6 +13,7 @@
 #include "studio/calibration_panel.h"
 #include "studio/capture/capture_panel.h"
 #include "studio/kit/words.h"
+#include "studio/nudge/nudge_panel.h"
 #include "studio/paint/users_library.h"
 #include "studio/results.h"
 #include "studio/window/shell.h"
@@ -244,6 +245,14 @@ void ask_for_photograph(Shell& shell) {
     const Studio& studio = shell.studio;
     if (studio.view != StageView::photograph || !studio.frame || !studio.setup) return;
     const glm::dvec3 eye_mm = shown_document(studio).eye_mm;
+    if (shell.nudge_open) {
+        NudgePanelState& nudge = *studio.panels.nudge;
+        if (!nudge.lines || nudge.photographed == nudge.lines) return;
+        nudge.photographed = nudge.lines;
+        studio.bench->photograph(
+            studio.frame->number, nudge.lines, eye_mm, studio.setup->design_white_y);
+        return;
+    }
     // Not by its number: a frame comes again when more of it is there.
     const bool same =
         studio.frame->pictures == shell.photographed && eye_mm == shell.photographed_from_mm;
@@ -421,6 +430,7 @@ void take_results(Shell& shell) {
     start_first_calibration(shell);
     take_calibration(shell);
     take_capture(shell);
+    take_nudge(shell);
     if (studio.glowing_part && studio.now_s >= studio.glowing_until_s) studio.glowing_part.reset();
     const auto newest = shell.results->newest_frame();
     if (newest && !newest->problem.empty() && newest->number > shell.problem_number) {
