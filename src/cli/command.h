@@ -63,6 +63,7 @@ Command calibrate_color_command();
 Command calibrate_compare_command();
 Command calibrate_drift_command();
 Command calibrate_geometry_command();
+Command calibrate_nudge_command();
 Command calibrate_register_command();
 Command calibrate_scan_command();
 Command capture_command();

@@ -68,6 +68,7 @@ int run(const std::vector<std::string>& arguments) {
                                      calibrate_compare_command(),
                                      calibrate_drift_command(),
                                      calibrate_geometry_command(),
+                                     calibrate_nudge_command(),
                                      calibrate_register_command(),
                                      calibrate_scan_command(),
                                      measure_brdf_command(),

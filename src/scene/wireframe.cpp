@@ -66,12 +66,12 @@ Front front_of(const Mesh& mesh, const View& view) {
     return front;
 }
 
-enum class Edge { none, line, outline };
+enum class LineKind { none, line, outline };
 
 /// Between two facets that are seen side by side.
-Edge edge_between(const Mesh& mesh, std::uint32_t one, std::uint32_t other, double step_mm) {
-    if (one == other) return Edge::none;
-    if (one == kNothing || other == kNothing) return Edge::outline;
+LineKind edge_between(const Mesh& mesh, std::uint32_t one, std::uint32_t other, double step_mm) {
+    if (one == other) return LineKind::none;
+    if (one == kNothing || other == kNothing) return LineKind::outline;
     struct Facet {
         glm::dvec3 a, b, c, normal;
     };
@@ -93,10 +93,10 @@ Edge edge_between(const Mesh& mesh, std::uint32_t one, std::uint32_t other, doub
             nearest = std::min(nearest, std::abs(glm::dot(plane.normal, corner - plane.a)));
         return nearest;
     };
-    if (off(f, g) > step_mm && off(g, f) > step_mm) return Edge::outline;
+    if (off(f, g) > step_mm && off(g, f) > step_mm) return LineKind::outline;
     const bool other_part = mesh.triangle_part[one] != mesh.triangle_part[other];
-    return other_part || std::abs(glm::dot(f.normal, g.normal)) < kCrease_cos ? Edge::line
-                                                                              : Edge::none;
+    return other_part || std::abs(glm::dot(f.normal, g.normal)) < kCrease_cos ? LineKind::line
+                                                                              : LineKind::none;
 }
 
 }  // namespace
@@ -112,7 +112,7 @@ Image8 wireframe_picture(const Mesh& mesh, const View& view, const WireframeColo
             for (std::size_t y = begin; y < end; ++y)
                 for (std::size_t x = 0; x < width; ++x) {
                     const std::size_t at = y * width + x;
-                    Edge edge = Edge::none;
+                    LineKind edge = LineKind::none;
                     const auto look_at_pixel = [&](std::size_t neighbour) {
                         edge = std::max(
                             edge,
@@ -121,9 +121,9 @@ Image8 wireframe_picture(const Mesh& mesh, const View& view, const WireframeColo
                     };
                     if (x > 0) look_at_pixel(at - 1);
                     if (y > 0) look_at_pixel(at - width);
-                    const glm::u8vec3& colour = edge == Edge::outline ? colours.outline
-                                                : edge == Edge::line  ? colours.line
-                                                                      : colours.elsewhere;
+                    const glm::u8vec3& colour = edge == LineKind::outline ? colours.outline
+                                                : edge == LineKind::line  ? colours.line
+                                                                          : colours.elsewhere;
                     for (int c = 0; c < 3; ++c)
                         picture.at(static_cast<int>(x), static_cast<int>(y), c) = colour[c];
                 }

@@ -102,6 +102,8 @@ class Photographer {
         take_new_session();
         take_ballot();
         take_calibrating();
+        take_nudge();
+        take_capture();
         program().click("show-numbers");
         settle();
         take("monitor-numbers");
@@ -173,6 +175,37 @@ class Photographer {
         program().click("cancel-calibration");
         wait_for_rest();
         program().click("tab:Paints");
+    }
+
+    void take_nudge() {
+        program().click("menu:Projector");
+        program().click("menu:nudge");
+        for (int k = 0; k < 3; ++k) program().press_key("Right");
+        program().press_key("ctrl+Up");
+        program().wait_for_state("nudge_drawn", true);
+        settle();
+        take("nudge");
+        program().click("nudge:start-over");
+        program().click("nudge:close");
+        program().click("view:preview");
+    }
+
+    /// The simulated bench's geometry is found; that takes a minute.
+    void take_capture() {
+        program().click("menu:Projector");
+        program().click("menu:capture");
+        program().click("camera");
+        program().click("camera:bench:default");
+        program().item("capture-geometry");
+        program().click("capture-geometry");
+        const bool found =
+            wait_until([&] { return program().state("capture_steps").contains("geometry"); }, 300s);
+        if (!found) throw std::runtime_error("the geometry is not found");
+        program().move_away();
+        settle();
+        take("capture");
+        program().click("capture-close");
+        wait_for_rest();
     }
 
     static std::string lower(std::string word) {
