@@ -190,6 +190,10 @@ Worker<CaptureJobs>::Turn CaptureThread::Implementation::next(CaptureJobs& asked
         return {[this, calibration = *std::exchange(asked.drift, std::nullopt)] {
             attempt(CaptureView::Doing::checking, [&] { look_for_drift_now(calibration); });
         }};
+    if (asked.repose)
+        return {[this, calibration = *std::exchange(asked.repose, std::nullopt)] {
+            attempt(CaptureView::Doing::checking, [&] { find_mockup_now(calibration); });
+        }};
     if (asked.step) {
         const CaptureStep step = *std::exchange(asked.step, std::nullopt);
         const bool anew = std::exchange(asked.anew, false);
@@ -226,6 +230,7 @@ void CaptureThread::use(CaptureSetup setup) {
         asked.fit = asked.watching = asked.shut = false;
         asked.step.reset();
         asked.drift.reset();
+        asked.repose.reset();
         asked.settings.clear();
         asked.open = true;
     });
@@ -237,6 +242,7 @@ void CaptureThread::close() {
         asked.open = asked.fit = asked.watching = false;
         asked.step.reset();
         asked.drift.reset();
+        asked.repose.reset();
         asked.settings.clear();
         asked.shut = true;
     });
@@ -263,6 +269,11 @@ void CaptureThread::look_for_drift(std::filesystem::path calibration) {
         [&](CaptureJobs& asked) { asked.drift = std::move(calibration); });
 }
 
+void CaptureThread::find_mockup_again(std::filesystem::path calibration) {
+    implementation_->worker.change(
+        [&](CaptureJobs& asked) { asked.repose = std::move(calibration); });
+}
+
 void CaptureThread::take_again(std::size_t showing) {
     implementation_->worker.change([&](CaptureJobs& asked) {
         asked.again.push_back(showing);
@@ -283,6 +294,7 @@ void CaptureThread::cancel() {
         asked.fit = false;
         asked.step.reset();
         asked.drift.reset();
+        asked.repose.reset();
         implementation_->abandon = true;
     });
 }

@@ -91,6 +91,9 @@ struct CaptureView {
     /// Of the calibration that came of it against the one in use, and of the bench against how that
     /// one left it.
     std::vector<GradedFigure> compared, drift;
+    /// Of a mock-up that was found again, and the calibration in use as carried along with it.
+    std::vector<GradedFigure> found_again;
+    std::optional<std::filesystem::path> reposed;
     std::shared_ptr<const Image8> live, shown;  ///< sRGB; device values, small
     std::vector<CaptureTile> tiles;             ///< by showing
     CaptureHistogram histogram;                 ///< of the newest photograph or live view
@@ -127,6 +130,8 @@ class CaptureThread {
     void start(CaptureStep step, bool anew);
     /// Compares the bench with how that calibration left it.
     void look_for_drift(std::filesystem::path calibration);
+    /// Finds a mock-up that was bumped, with two photographs, and carries that calibration along.
+    void find_mockup_again(std::filesystem::path calibration);
     void take_again(std::size_t showing);  ///< at once while it captures, else goes on with that
     void set_paused(bool paused);          ///< before the next picture
     void next();                           ///< the picture by hand was taken

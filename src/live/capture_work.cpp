@@ -164,6 +164,26 @@ void CaptureThread::Implementation::look_for_drift_now(const std::filesystem::pa
     publish([&](CaptureView& view) { view.drift = grade_figures(drift); });
 }
 
+void CaptureThread::Implementation::find_mockup_now(const std::filesystem::path& calibration) {
+    publish([](CaptureView& view) {
+        view.found_again.clear();
+        view.reposed.reset();
+    });
+    check_calibrations_folder();
+    const auto origin = calibration.empty() ? std::nullopt : read_origin(calibration);
+    if (!origin)
+        throw Refused("the calibration in use does not say where everything stood",
+                      "calibrate with a camera first");
+    const ReposedCalibration reposed = repose_through_ports(
+        ports(), read_calibration(calibration), *origin, *request().product, progress());
+    const auto kept = keep_reposed(reposed);
+    publish([&](CaptureView& view) {
+        view.found_again = grade_figures(reposed.found);
+        view.reposed = kept;
+        view.drift.clear();  // Of where it stood before.
+    });
+}
+
 /// What is asked of a step follows from the set-up as it is now.
 void CaptureThread::Implementation::show_steps() {
     if (setup.width == 0 && !bench.simulated) return;

@@ -26,7 +26,8 @@ inline constexpr auto kBetweenLooks = std::chrono::milliseconds(20);
 struct CaptureJobs {
     CaptureSetup setup;
     bool open = false, shut = false, fit = false, anew = false;
-    std::optional<std::filesystem::path> drift;  ///< the calibration to compare with
+    std::optional<std::filesystem::path> drift;   ///< the calibration to compare with
+    std::optional<std::filesystem::path> repose;  ///< the calibration to carry along
     std::optional<CaptureStep> step;
     std::vector<std::pair<std::string, std::string>> settings;  ///< of the camera, to be made
     bool watching = false;           ///< the camera is open, and nothing else is to be done
@@ -62,6 +63,7 @@ struct CaptureThread::Implementation {
     void capture_by_hand();
     void check_now();
     void look_for_drift_now(const std::filesystem::path& calibration);
+    void find_mockup_now(const std::filesystem::path& calibration);
     void fit_curve();
     void show_steps();
     MeetRecording meet(const std::vector<std::size_t>& again);

@@ -155,6 +155,13 @@ std::filesystem::path keep_nudged(const std::filesystem::path& calibration,
     });
 }
 
+std::filesystem::path keep_reposed(const ReposedCalibration& reposed) {
+    return keep([&](const std::filesystem::path& folder) {
+        write_reposed(folder, reposed);
+        return reposed.calibration.id;
+    });
+}
+
 std::vector<std::filesystem::path> kept_calibrations() {
     std::vector<std::filesystem::path> kept;
     std::error_code error;

@@ -11,6 +11,7 @@
 #include "core/progress.h"
 #include "jobs/calibrate/bench_calibration.h"
 #include "jobs/calibrate/calibration_origin.h"
+#include "jobs/calibrate/reposed_calibration.h"
 #include "scene/colour_calibration.h"
 #include "scene/product.h"
 #include "scene/view.h"
@@ -61,6 +62,9 @@ std::filesystem::path keep_calibration(const BenchCalibration& made,
 std::filesystem::path keep_nudged(const std::filesystem::path& calibration,
                                   const View& projector,
                                   const Mesh& mesh);
+
+/// The same of one whose mock-up was found again after a bump.
+std::filesystem::path keep_reposed(const ReposedCalibration& reposed);
 
 /// Folders of the calibrations kept in the user's folder, newest first.
 std::vector<std::filesystem::path> kept_calibrations();

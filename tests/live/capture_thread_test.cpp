@@ -4,10 +4,13 @@
 #include <cmath>
 #include <thread>
 
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "core/json.h"
 #include "core/paths.h"
 #include "live/capture_pictures.h"
+#include "live/projector_setup.h"
 #include "scene/library.h"
 #include "support/jpeg.h"
 #include "support/ptpip_camera.h"
@@ -134,6 +137,60 @@ TEST(CaptureThread, ChecksWhatItMadeAndSeesThatNothingMoved) {
     ASSERT_TRUE(drift.why.empty()) << drift.why;
     for (const GradedFigure& figure : drift.drift)
         EXPECT_EQ(figure.grade, Grade::good) << figure.name << " " << figure.value;
+}
+
+/// The bench's mock-up shifted; all else stays. The bench's frame is the mock-up's.
+void bump(const std::filesystem::path& bench_file, const glm::dvec3& shift_mm) {
+    Json bench = read_json_file(bench_file);
+    const auto shift = [&](Json& point) {
+        for (int k = 0; k < 3; ++k) {
+            Json& value = point[static_cast<std::size_t>(k)];
+            value = value.get<double>() - shift_mm[k];
+        }
+    };
+    for (const char* view : {"projector", "camera"})
+        for (const char* point : {"from_mm", "at_mm"}) shift(bench[view][point]);
+    for (auto& surface : bench["surroundings"]) shift(surface["corner_mm"]);
+    shift(bench["eye_mm"]);
+    write_json_file(bench_file, bench);
+}
+
+TEST(CaptureThread, FindsABumpedMockupAgain) {
+    CaptureRoom room;
+    room.capture->start(CaptureStep::colour, true);
+    const CaptureView made = wait_until(*room.capture, [](const CaptureView& view) {
+        return view.finished.has_value() || !view.why.empty();
+    });
+    ASSERT_TRUE(made.finished) << made.why;
+    wait_until(*room.capture, rests);
+    const View before = read_camera_file(*made.finished / "projector.json");
+
+    room.capture->close();
+    const glm::dvec3 shift_mm(3.0, 0.0, 2.0);
+    bump(room.setup.camera.what, shift_mm);
+    room.capture->use(room.setup);
+    wait_until(*room.capture, [](const CaptureView& view) { return view.live != nullptr; });
+    room.capture->find_mockup_again(*made.finished);
+    const CaptureView found = wait_until(*room.capture, [](const CaptureView& view) {
+        return (view.reposed && rests(view)) || !view.why.empty();
+    });
+    ASSERT_TRUE(found.reposed) << found.why;
+    EXPECT_FALSE(found.found_again.empty());
+    EXPECT_EQ(kept_calibrations().front(), *found.reposed);
+    // The mock-up's middle is where it was pushed to, seen from the projector.
+    const View now = read_camera_file(*found.reposed / "projector.json");
+    const Bounds bounds = bounds_of(room.setup.product->mesh);
+    const glm::dvec3 middle = 0.5 * (bounds.low + bounds.high);
+    const glm::dvec3 moved_mm =
+        inverse(before.view_from_world) * (now.view_from_world * middle) - middle;
+    EXPECT_LT(glm::distance(moved_mm, shift_mm), 0.5)
+        << moved_mm.x << " " << moved_mm.y << " " << moved_mm.z;
+
+    // Without a calibration there is nothing to carry along.
+    room.capture->find_mockup_again("");
+    const CaptureView refused =
+        wait_until(*room.capture, [](const CaptureView& view) { return !view.why.empty(); });
+    EXPECT_NE(refused.why.find("where everything stood"), std::string::npos) << refused.why;
 }
 
 TEST(CaptureThread, GoesOnAfterItWasStoppedAndPauses) {

@@ -216,6 +216,30 @@ void draw_drift(Shell& shell, bool ready) {
     name_last_item("drift");
 }
 
+/// After a bump: the calibration in use, carried to where the mock-up stands now.
+void draw_find_again(Shell& shell, bool ready) {
+    Studio& studio = shell.studio;
+    const CaptureView& view = studio.panels.capture->view;
+    const std::string& in_use = studio.session.document().calibration;
+    if (in_use.empty() || !ready) return;
+    if (ImGui::Button("Find the bumped mock-up again", {-FLT_MIN, 0.0f}))
+        studio.capture->find_mockup_again(in_use);
+    name_last_item("find-again");
+    tooltip(
+        "Two photographs of stripes tell where it stands now; the calibration in use and its "
+        "colours are carried there, as a calibration of its own. For bumps of some millimetres.");
+    if (!view.reposed) return;
+    draw_figures(view.found_again);
+    const bool used =
+        view.reposed->lexically_normal() == std::filesystem::path(in_use).lexically_normal();
+    begin_disabled(used);
+    if (ImGui::Button(used ? "In use" : "Put it to use", {-FLT_MIN, 0.0f}))
+        commit(studio, SetCalibration{view.reposed->string()});
+    name_last_item("accept-found-again");
+    tooltip("Undo returns to the one before.");
+    end_disabled();
+}
+
 void draw_step(Shell& shell, const StepWords& words, bool ready) {
     CapturePanelState& state = *shell.studio.panels.capture;
     const CaptureStepView& step = state.view.step(words.step);
@@ -303,7 +327,10 @@ void draw_capture_steps(Shell& shell, bool can_show) {
         if (!by_hand) draw_effort(shell);
         draw_next(shell, can_show);
         draw_trouble(view);
-        if (!view.finished || is_accepted(state)) draw_drift(shell, ready && !by_hand);
+        if (!view.finished || is_accepted(state)) {
+            draw_drift(shell, ready && !by_hand);
+            draw_find_again(shell, ready && !by_hand);
+        }
     }
     heading("Steps");
     for (const StepWords& words : kSteps) draw_step(shell, words, ready);

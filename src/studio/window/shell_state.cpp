@@ -227,6 +227,7 @@ MapState state_of_shell(const Shell& shell) {
     state["capture_steps"] = steps.dump();
     state["capture_drift"] =
         quoted(capture.drift.empty() ? "" : to_string(grade_of(capture.drift).grade));
+    state["capture_reposed"] = quoted(capture.reposed ? capture.reposed->string() : "");
     state["capture_times"] = fmt::format(
         "[{:.3f}, {:.3f}, {:.3f}]", capture.capture_s, capture.camera_s, capture.projector_s);
     state["scale"] = fmt::format("{:.3f}", studio.ui_scale);
