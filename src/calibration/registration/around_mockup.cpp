@@ -27,7 +27,7 @@ bool meets(const Tracer& tracer, const Rigid3& now_from_then, const Ray& ray) {
 /// A border of a stripe as the map had it: between the pixel before the edge and that after it.
 struct MappedEdge {
     glm::dvec2 projector_px{0.0}, camera_px{0.0};
-    glm::dvec2 per_px{0.0};  ///< camera pixels for one projector pixel across the stripes
+    double camera_px_per_px = 0.0;  ///< across the stripes
     bool rising = false;
 };
 
@@ -44,23 +44,12 @@ std::vector<MappedEdge> mapped_edges(const StripeCode& code, const ImageF& aroun
             one.projector_px = code.rows ? glm::dvec2(x + 0.5, y) : glm::dvec2(x, y + 0.5);
             const glm::dvec2 a(before[0], before[1]), b(after[0], after[1]);
             one.camera_px = 0.5 * (a + b);
-            one.per_px = b - a;
+            one.camera_px_per_px = glm::length(b - a);
             one.rising = k % 2 == 0;
             edges.push_back(one);
         }
     }
     return edges;
-}
-
-/// Between two rays that nearly meet.
-std::optional<glm::dvec3> where_rays_meet(const Ray& a, const Ray& b) {
-    const double cosine = glm::dot(a.direction, b.direction), sine2 = 1.0 - cosine * cosine;
-    if (sine2 < 1e-8) return std::nullopt;
-    const glm::dvec3 between = b.origin - a.origin;
-    const double along_a = glm::dot(between, a.direction), along_b = glm::dot(between, b.direction);
-    const double t = (along_a - cosine * along_b) / sine2, s = (cosine * along_a - along_b) / sine2;
-    if (!(t > 0.0) || !(s > 0.0)) return std::nullopt;
-    return 0.5 * (a.origin + t * a.direction + b.origin + s * b.direction);
 }
 
 }  // namespace
@@ -80,7 +69,7 @@ AroundEvidence evidence_around(const Mesh& mesh,
                    "what is around the mock-up is not two channels of the projector's size");
     const Rigid3 now_from_then = inverse(then_from_now);
     std::vector<double> offsets;
-    std::size_t still = 0, agree = 0;
+    std::size_t still = 0;
     for (const MappedEdge& edge : mapped_edges(code, around)) {
         const auto lit = find_ray(projector, edge.projector_px);
         const auto seen = find_ray(camera, edge.camera_px);
@@ -89,48 +78,27 @@ AroundEvidence evidence_around(const Mesh& mesh,
         if (meets(tracer, now_from_then, *lit) || meets(tracer, now_from_then, *seen) ||
             meets(tracer, {}, *lit) || meets(tracer, {}, *seen))
             continue;
-        const double stripe_px = code.mean_stripe_px() * glm::length(edge.per_px);
+        const double stripe_px = code.mean_stripe_px() * edge.camera_px_per_px;
         if (stripe_px < 3.0) continue;  // the camera does not part them
         const double within_px = std::max(2.0, 0.4 * stripe_px);
         ++evidence.places;
         const double offset = sight.offset_of(edge.camera_px, edge.rising, within_px);
         if (std::isfinite(offset)) offsets.push_back(std::abs(offset));
-        if (std::abs(offset) < kFound_px) {
-            ++still;
-            ++agree;
-            continue;
-        }
-        // As the table would be seen that moved with the mock-up
-        const auto place = where_rays_meet(*lit, *seen);
-        if (!place) continue;
-        const auto moved_lit = project(projector, then_from_now * *place);
-        const auto moved_seen = project(camera, then_from_now * *place);
-        if (!moved_lit || !moved_seen) continue;
-        const double across = code.across(*moved_lit);
-        for (const bool rising : {false, true}) {
-            const double by = code.nearest_edge(across, rising) - across;
-            if (!(std::abs(by) < 0.6 * code.mean_stripe_px())) continue;
-            const double moved = sight.offset_of(*moved_seen + by * edge.per_px, rising, within_px);
-            if (std::abs(moved) < kFound_px) {
-                ++agree;
-                break;
-            }
-        }
+        still += std::abs(offset) < kFound_px;
     }
     if (evidence.places == 0) return evidence;
     const auto count = static_cast<double>(evidence.places);
     evidence.still_share = static_cast<double>(still) / count;
-    evidence.agree_share = static_cast<double>(agree) / count;
     evidence.offset_px = median(offsets);
     return evidence;
 }
 
 void check_pair(const AroundEvidence& around) {
-    if (around.places < kLeastAround || around.agree_share >= 0.5) return;
+    if (around.places < kLeastAround || around.still_share >= 0.5) return;
     throw Refused(
-        fmt::format("camera or projector moved too: of what stands around the mock-up only "
-                    "{:.0f}% is seen where it was",
-                    100.0 * around.agree_share),
+        fmt::format("of what stands around the mock-up only {:.0f}% is seen where it was: camera "
+                    "or projector moved too, or all that the mock-up stands on",
+                    100.0 * around.still_share),
         "let everything stand still, and photograph the geometry again");
 }
 

@@ -20,7 +20,9 @@ AroundEvidence evidence_around(const Mesh& mesh,
                                const StripeSight& sight,
                                const Rigid3& then_from_now);
 
-/// Throws Refused where fewer than half of enough places agree.
+/// Throws Refused where enough places are known and fewer than half are seen where they were. A
+/// table that was bumped is refused like a camera: stripes one way do not tell a camera that nods
+/// from a table that tips with the mock-up on it.
 void check_pair(const AroundEvidence& around);
 
 }  // namespace livery

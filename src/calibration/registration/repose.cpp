@@ -16,6 +16,7 @@
 #include "calibration/registration/rotation.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/random.h"
 #include "core/statistics.h"
 
 namespace livery {
@@ -25,12 +26,12 @@ namespace {
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-constexpr std::size_t kForSearch = 1500, kForFit = 20000;  // crossings
+constexpr std::size_t kForSearch = 600, kForFit = 20000;  // crossings
 constexpr std::size_t kLeastCrossings = 200;
 constexpr double kLeastAgreement = 0.6, kLargestMedian_px = 0.5;
 constexpr double kSlips = 0.03;  // as free_turns()
 constexpr double kFacing = 0.15;
-constexpr int kSearchRounds = 12, kFitRounds = 30;
+constexpr int kStarts = 300, kSearchRounds = 10, kFitRounds = 30;
 
 const char* const kAnew =
     "see that it is the calibration's mock-up, and find where everything stands with the geometry "
@@ -215,43 +216,20 @@ std::vector<CrossingRay> thinned_out(const std::vector<CrossingRay>& all, std::s
     return some;
 }
 
-/// Places to begin with, the old one first: nearer, farther and tilted by what moves the stripes by
-/// a good stripe at a time, since an edge is taken for its neighbour from there on.
-std::vector<Rigid3> starts_of(const Fitting& fitting, const View& camera) {
-    const glm::dvec3 eye = centre_in_world(camera);
-    const glm::dvec3 toward = glm::normalize(fitting.middle - eye);
-    const auto here = across_at(fitting, fitting.middle),
-               beyond = across_at(fitting, fitting.middle + toward);
-    const double px_per_mm = here && beyond ? std::abs(*beyond - *here) : 0.0;
-    if (!(px_per_mm > 0.0))
-        throw Refused("projector and camera look at the mock-up from one place",
-                      "calibrate with the camera beside the projector");
-    const double step_mm = 0.8 * fitting.code.mean_stripe_px() / px_per_mm;
-    const double tilt_mm = std::min(step_mm, 0.1 * fitting.radius_mm);
-    const glm::dvec3 aside = glm::normalize(
-        glm::cross(toward, std::abs(toward.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0)));
-    const glm::dvec3 up = glm::cross(aside, toward);
-    std::vector<Rigid3> starts;
-    std::vector<double> sizes;
-    for (int depth = -3; depth <= 3; ++depth)
-        for (int about_up = -1; about_up <= 1; ++about_up)
-            for (int about_aside = -1; about_aside <= 1; ++about_aside) {
-                const glm::dvec3 turn = tilt_mm * (static_cast<double>(about_up) * up +
-                                                   static_cast<double>(about_aside) * aside);
-                const glm::dvec3 shift = depth * step_mm * toward;
-                Vector6 step;
-                step << turn.x, turn.y, turn.z, shift.x, shift.y, shift.z;
-                starts.push_back(moved_by(fitting, step, {}));
-                sizes.push_back(std::abs(depth) + std::abs(about_up) + std::abs(about_aside));
-            }
-    std::vector<std::size_t> order(starts.size());
-    for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return sizes[a] < sizes[b];
-    });
-    std::vector<Rigid3> ordered;
-    for (const std::size_t k : order) ordered.push_back(starts[k]);
-    return ordered;
+/// Places to begin with: the old one, and more and more from all around it. A border is taken for
+/// its neighbour from half a stripe on, which a centimetre is more than. What the product leaves
+/// open is not `turned`: nothing would turn it back.
+Rigid3 start_of(const Fitting& fitting, int number, bool turned) {
+    if (number == 0) return {};
+    constexpr double kFarthest_mm = 12.0, kMostTurned_rad = 0.09;  // 5 degrees
+    Random random(static_cast<std::uint64_t>(number), 17);
+    const double reach = std::min(1.0, 0.3 + 0.7 * number / (0.5 * kStarts));
+    const auto one = [&] { return reach * (2.0 * random.uniform() - 1.0); };
+    Vector6 step;
+    for (int k = 0; k < 3; ++k)
+        step[k] = turned ? kMostTurned_rad * fitting.radius_mm * one() : 0.0;
+    for (int k = 3; k < 6; ++k) step[k] = kFarthest_mm * one();
+    return moved_by(fitting, step, {});
 }
 
 /// The way in the camera's picture in which the stripes' number grows, over the mesh as it lay.
@@ -328,11 +306,10 @@ Repose find_mockup_again(const Mesh& mesh,
 
     const std::vector<CrossingRay> few = thinned_out(rays, kForSearch);
     std::optional<PoseFit> best;
-    const std::vector<Rigid3> starts = starts_of(fitting, input.camera);
-    for (std::size_t k = 0; k < starts.size(); ++k) {
-        progress.update(0.1 + 0.6 * static_cast<double>(k) / static_cast<double>(starts.size()),
-                        "looking for the mock-up");
-        PoseFit fit = fitted(fitting, starts[k], few, kSearchRounds);
+    for (int k = 0; k < kStarts; ++k) {
+        progress.update(0.1 + 0.6 * k / kStarts, "looking for the mock-up");
+        PoseFit fit =
+            fitted(fitting, start_of(fitting, k, input.free_turns == 0), few, kSearchRounds);
         const std::size_t agree = agreeing(fit.rows);
         if (!best || agree > agreeing(best->rows)) best = std::move(fit);
         // Unequal stripes agree by the dozen in one place alone.

@@ -27,13 +27,11 @@ struct ReposeInput {
     ImageF around;
 };
 
-/// What stands around the mock-up: a place agrees that is seen where it was, or where it would be
-/// had it moved with the mock-up, as the table does that was bumped.
+/// What stands around the mock-up.
 struct AroundEvidence {
-    std::size_t places = 0;
-    double still_share = 0.0;  ///< of the places: seen where they were
-    double agree_share = 0.0;  ///< seen there or moved with the mock-up
-    double offset_px = 0.0;    ///< of what is found again where it was, camera pixels, median
+    std::size_t places = 0;    ///< borders of stripes that were and should be seen there
+    double still_share = 0.0;  ///< of them: seen where they were
+    double offset_px = 0.0;    ///< of those found near, camera pixels, median
 };
 
 struct Repose {

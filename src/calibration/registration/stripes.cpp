@@ -1,11 +1,9 @@
 #include "calibration/registration/stripes.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <optional>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -38,7 +36,8 @@ ImageF linear_light(const Photograph& photograph) {
 float zero_after(const ImageF& signal, int x, int y, bool down) {
     const auto at = [&](int k) { return down ? signal.at(x, y + k) : signal.at(x + k, y); };
     const float before = at(0), after = at(1);
-    if (!((before < 0.0f) != (after < 0.0f))) return -1.0f;
+    if (!std::isfinite(before) || !std::isfinite(after)) return -1.0f;
+    if ((before < 0.0f) == (after < 0.0f)) return -1.0f;
     const float outer_before = at(-1), outer_after = at(2);
     const bool border = (outer_before < 0.0f) == (before < 0.0f) &&
                         (outer_after < 0.0f) == (after < 0.0f) &&
