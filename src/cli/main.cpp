@@ -69,6 +69,7 @@ int run(const std::vector<std::string>& arguments) {
                                      calibrate_drift_command(),
                                      calibrate_geometry_command(),
                                      calibrate_register_command(),
+                                     calibrate_repose_command(),
                                      calibrate_scan_command(),
                                      measure_brdf_command(),
                                      fit_brdf_command(),

@@ -87,9 +87,7 @@ bool wants_rows(const View& projector, const View& camera, const glm::dvec3& mid
     return std::abs(far->y - near->y) > std::abs(far->x - near->x);
 }
 
-std::string stripe_role(const StripeCode& code, bool inverse) {
-    return fmt::format("repose-{}{}", code.rows ? "rows" : "columns", inverse ? "-inverse" : "");
-}
+std::string stripe_role(bool inverse) { return inverse ? "repose-inverse" : "repose"; }
 
 Image8 stripe_picture(const StripeCode& code, bool inverse) {
     Image8 picture(code.width, code.height, 3);

@@ -37,8 +37,8 @@ StripeCode stripe_code(int width, int height, bool rows);
 /// a side: a surface's depth then shows in rows.
 bool wants_rows(const View& projector, const View& camera, const glm::dvec3& middle_mm);
 
-/// "repose-columns", "repose-columns-inverse", or those of rows.
-std::string stripe_role(const StripeCode& code, bool inverse);
+/// "repose" or "repose-inverse".
+std::string stripe_role(bool inverse);
 Image8 stripe_picture(const StripeCode& code, bool inverse);
 
 /// A border between two stripes as the camera sees it.
