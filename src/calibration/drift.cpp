@@ -248,10 +248,10 @@ Drift drift_where_both_lit(DriftReference then, const DriftReference& now) {
     return drift_between(then, now);
 }
 
-Drift look_for_drift(const BenchPorts& ports,
-                     const DriftReference& then,
-                     const Image8& mockup,
-                     const Progress& progress) {
+DriftReference photograph_ends(const BenchPorts& ports,
+                               const DriftReference& then,
+                               const Image8& mockup,
+                               const Progress& progress) {
     constexpr int kPatience = 8;  // photographs of a projector that has just been found
     const auto show = [&](bool lit, const char* role) {
         Image8 drive(mockup.width, mockup.height, 3);
@@ -276,8 +276,16 @@ Drift look_for_drift(const BenchPorts& ports,
         white = ports.photograph(then.exposure_s);
         if (light(white, black) > 0.5) white = ports.photograph(then.exposure_s);  // all of it
     }
+    return drift_reference(white, black, then.late);
+}
+
+Drift look_for_drift(const BenchPorts& ports,
+                     const DriftReference& then,
+                     const Image8& mockup,
+                     const Progress& progress) {
+    const DriftReference now = photograph_ends(ports, then, mockup, progress);
     progress.update(0.9, "comparing");
-    return drift_between(then, drift_reference(white, black, then.late));
+    return drift_between(then, now);
 }
 
 std::vector<GradedFigure> grade_figures(const Drift& drift) {

@@ -40,9 +40,14 @@ Drift drift_between(const DriftReference& then, const DriftReference& now);
 /// The same where both were lit: one of them may have lit what stands around too.
 Drift drift_where_both_lit(DriftReference then, const DriftReference& now);
 
-/// Shows white and black on the mock-up (`mockup`: one channel of the projector's size, non-zero:
-/// lit), photographs each at the exposure of then, and compares. Throws as drift_between() and the
-/// ports.
+/// Shows black, and white on the mock-up (`mockup`: one channel of the projector's size, non-zero:
+/// lit), and photographs each at the exposure of then. Throws as the ports.
+DriftReference photograph_ends(const BenchPorts& ports,
+                               const DriftReference& then,
+                               const Image8& mockup,
+                               const Progress& progress = {});
+
+/// The same, compared with then. Throws as drift_between() and the ports.
 Drift look_for_drift(const BenchPorts& ports,
                      const DriftReference& then,
                      const Image8& mockup,

@@ -11,8 +11,16 @@
 namespace livery {
 
 bool is_known_role(std::string_view role) {
-    static constexpr std::string_view plain[] = {
-        "white", "black", "dark-gray", "bright-gray", "red", "green", "blue", "gray-levels"};
+    static constexpr std::string_view plain[] = {"white",
+                                                 "black",
+                                                 "dark-gray",
+                                                 "bright-gray",
+                                                 "red",
+                                                 "green",
+                                                 "blue",
+                                                 "gray-levels",
+                                                 "repose",
+                                                 "repose-inverse"};
     if (std::find(std::begin(plain), std::end(plain), role) != std::end(plain)) return true;
 
     static constexpr std::string_view inverse = "-inverse";

@@ -33,7 +33,7 @@ struct PatternsManifest {
 
 /// Whether `role` is one that calibration knows: gray-column-N[-inverse], gray-row-N[-inverse],
 /// phase-column-N, phase-row-N, colors-N, verify-N, white, black, dark-gray, bright-gray, red,
-/// green, blue, gray-levels.
+/// green, blue, gray-levels, repose[-inverse].
 bool is_known_role(std::string_view role);
 
 /// Writes 000.png, 001.png, ... and a manifest.json that becomes a captures folder's manifest once

@@ -65,6 +65,7 @@ Command calibrate_drift_command();
 Command calibrate_geometry_command();
 Command calibrate_nudge_command();
 Command calibrate_register_command();
+Command calibrate_repose_command();
 Command calibrate_scan_command();
 Command capture_command();
 Command check_command();

@@ -70,6 +70,7 @@ int run(const std::vector<std::string>& arguments) {
                                      calibrate_geometry_command(),
                                      calibrate_nudge_command(),
                                      calibrate_register_command(),
+                                     calibrate_repose_command(),
                                      calibrate_scan_command(),
                                      measure_brdf_command(),
                                      fit_brdf_command(),

@@ -4,15 +4,13 @@
 
 #include <fmt/format.h>
 
-#include "capture/patient_camera.h"
 #include "cli/capture_report.h"
 #include "cli/command.h"
-#include "cli/monitor_projector.h"
+#include "cli/opened_bench.h"
 #include "core/error.h"
 #include "jobs/calibrate/calibration_folder.h"
 #include "jobs/calibrate/calibration_origin.h"
 #include "jobs/calibrate/calibration_versions.h"
-#include "jobs/capture_bench.h"
 #include "scene/library.h"
 #include "scene/mockup_mask.h"
 
@@ -111,9 +109,6 @@ Command calibrate_drift_command() {
         {"--product", "FILE|NAME", "the mock-up (default car)", &arguments->product, false, {}},
     };
     command.run = [arguments](const CommonOptions&, const Progress& progress) {
-        const CameraChoice choice = parse_camera_choice(arguments->camera);
-        if (choice.kind == CameraChoice::Kind::folder)
-            throw std::invalid_argument("--camera: found a folder, expected a camera");
         const std::filesystem::path folder = arguments->calibration;
         const auto product = find_product(arguments->product);
         const auto origin = read_origin(folder);
@@ -123,24 +118,13 @@ Command calibrate_drift_command() {
                             "nothing",
                             "a calibration that livery capture or the window made");
         const Image8 mockup = mockup_mask(product->mesh, projector_of_calibration(folder));
-        CaptureBench bench = open_capture_bench(choice, product, progress);
-        std::unique_ptr<MonitorProjector> projector;
-        if (!bench.show) {
-            if (arguments->monitor.empty())
-                throw std::invalid_argument(
-                    "--monitor: found none, expected the projector's (livery capture --list)");
-            projector = std::make_unique<MonitorProjector>(arguments->monitor);
-            bench.show = projector->port(progress);
-        }
-        BenchPorts ports;
-        ports.show = bench.show;
-        ports.photograph = patient(*bench.camera, progress, say_wait);
+        const OpenedBench opened =
+            open_bench(arguments->camera, arguments->monitor, product, progress);
         Outcome outcome;
-        for (const std::string& change :
-             what_changed(*origin, *product, projector ? projector->words() : ""))
+        for (const std::string& change : what_changed(*origin, *product, opened.projector_words()))
             outcome.text += "changed: " + change + "\n";
         try {
-            const Drift drift = look_for_drift(ports, *origin->ends, mockup, progress);
+            const Drift drift = look_for_drift(opened.ports, *origin->ends, mockup, progress);
             outcome.figures = {
                 {"shift_median_px", drift.shift_median_px},
                 {"shift_p95_px", drift.shift_p95_px},

@@ -1,11 +1,14 @@
 #include "jobs/calibrate/calibration_origin.h"
 
+#include <limits>
+
 #include <fmt/format.h>
 
 #include "core/error.h"
 #include "core/image_io.h"
 #include "core/json_ranges.h"
 #include "core/paths.h"
+#include "scene/mockup_mask.h"
 
 namespace livery {
 
@@ -14,12 +17,35 @@ namespace {
 constexpr int kFormatVersion = 1;
 constexpr const char* kFile = "origin.json";
 constexpr const char* kRoom = "room.json";
+constexpr const char* kAround = "around.exr";
 
-ImageF read_plane(const std::filesystem::path& file) {
+ImageF read_plane(const std::filesystem::path& file, int channels = 1) {
     ImageF plane = read_image(file).image;
-    if (plane.channels != 1)
-        throw FileError(file, "channels", std::to_string(plane.channels), "one");
+    if (plane.channels != channels)
+        throw FileError(file, "channels", std::to_string(plane.channels), std::to_string(channels));
     return plane;
+}
+
+/// What is no longer known must not be read with what is new.
+void write_or_remove(const std::filesystem::path& file, const ImageF& plane) {
+    if (!plane.empty()) {
+        write_exr(file, plane);
+        return;
+    }
+    std::error_code error;
+    std::filesystem::remove(file, error);
+    if (error) throw FileError(file, "", error.message(), "a file that can be removed");
+}
+
+ImageF around_of(const RoomPose& room, const Mesh& mesh) {
+    ImageF around = room.map.camera_px;
+    if (around.empty()) return around;
+    const Image8 mockup = mockup_mask(mesh, room.geometry.projector);
+    for (std::size_t i = 0; i < mockup.values.size(); ++i)
+        if (mockup.values[i] || room.map.edge.values[i])
+            around.values[2 * i] = around.values[2 * i + 1] =
+                std::numeric_limits<float>::quiet_NaN();
+    return around;
 }
 
 }  // namespace
@@ -31,7 +57,10 @@ CalibrationOrigin origin_of(const BenchCalibration& made, const BenchCalibration
         origin.shape = shape_hash(request.product->mesh);
     }
     origin.made_with = request.made_with;
-    if (made.room) origin.room = made.room->geometry;
+    if (made.room) {
+        origin.room = made.room->geometry;
+        if (request.product) origin.around = around_of(*made.room, request.product->mesh);
+    }
     if (!made.live.white.image.empty())
         origin.ends =
             drift_reference(made.live.white, made.live.black, made.live.latency_photographs);
@@ -57,6 +86,8 @@ void write_origin(const std::filesystem::path& folder, const CalibrationOrigin& 
         write_exr(folder / "white.exr", origin.ends->white);
         write_exr(folder / "black.exr", origin.ends->black);
     }
+    if (!origin.reposed_from.empty()) json["reposed_from"] = origin.reposed_from;
+    write_or_remove(folder / kAround, origin.around);
     if (origin.room) write_room_file(folder / kRoom, *origin.room);
     write_json_file(folder / kFile, json);
 }
@@ -72,7 +103,8 @@ CalibrationOrigin parse_origin(const std::string& text, const std::filesystem::p
                      "made_with",
                      "capture_seconds",
                      "solve_seconds",
-                     "ends"});
+                     "ends",
+                     "reposed_from"});
     root["kind"].one_of({"origin"});
     CalibrationOrigin origin;
     origin.product = root["product"].text();
@@ -80,6 +112,7 @@ CalibrationOrigin parse_origin(const std::string& text, const std::filesystem::p
     origin.made_with = root["made_with"].text();
     origin.capture_seconds = root["capture_seconds"].number_between(0.0, 1e6);
     origin.solve_seconds = root["solve_seconds"].number_between(0.0, 1e6);
+    if (root.has("reposed_from")) origin.reposed_from = root["reposed_from"].text();
     if (root.has("ends")) {
         const JsonReader ends = root["ends"];
         ends.allow_only({"exposure_s", "late", "light"});
@@ -103,6 +136,15 @@ std::optional<CalibrationOrigin> read_origin(const std::filesystem::path& folder
     }
     if (std::filesystem::exists(folder / kRoom, error))
         origin.room = read_room_file(folder / kRoom);
+    if (with_photographs && origin.room && std::filesystem::exists(folder / kAround, error)) {
+        origin.around = read_plane(folder / kAround, 2);
+        const View& view = origin.room->projector;
+        if (origin.around.width != view.width || origin.around.height != view.height)
+            throw FileError(folder / kAround,
+                            "size",
+                            fmt::format("{}x{}", origin.around.width, origin.around.height),
+                            fmt::format("{}x{}, as the projector", view.width, view.height));
+    }
     return origin;
 }
 

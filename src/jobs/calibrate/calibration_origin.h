@@ -21,6 +21,10 @@ struct CalibrationOrigin {
     std::string made_with;               ///< camera and projector, in words
     std::optional<RoomGeometry> room;    ///< as found; nothing: the pose was given
     std::optional<DriftReference> ends;  ///< nothing: the photographs were taken before
+    /// Where the camera saw the projector's pixels off the mock-up (2 channels, NaN: unknown);
+    /// empty: nobody knows.
+    ImageF around;
+    std::string reposed_from;  ///< id of the calibration that it was made of; empty: of photographs
     double capture_seconds = 0.0, solve_seconds = 0.0;
 };
 
@@ -28,7 +32,8 @@ struct CalibrationOrigin {
 CalibrationOrigin origin_of(const BenchCalibration& made, const BenchCalibrationRequest& request);
 
 /// `origin.json`, with `white.exr` and `black.exr` (mean of the channels, linear per second) where
-/// there are photographs of the end. Throws FileError.
+/// there are photographs of the end, `around.exr` where that is known, and `room.json`. Throws
+/// FileError.
 void write_origin(const std::filesystem::path& folder, const CalibrationOrigin& origin);
 /// Nothing: the folder has none. `with_photographs`: those of the end, which take longer to read.
 /// Throws FileError.
