@@ -61,19 +61,19 @@ LitPlaces lit_places(const Mesh& mesh,
 }
 
 /// A pixel of then that lit the place, with its share.
-struct Source {
+struct CarriedFrom {
     std::size_t pixel = 0;
     double share = 0.0;
 };
 
 /// The pixels of then around a place of the mesh that were measured there. Empty: too few.
-std::vector<Source> sources_of(const ColourCalibration& then,
-                               const LitPlaces& lit,
-                               const View& projector,
-                               const glm::dvec3& place,
-                               const glm::dvec3& normal,
-                               float least_irradiance) {
-    std::vector<Source> sources;
+std::vector<CarriedFrom> sources_of(const ColourCalibration& then,
+                                    const LitPlaces& lit,
+                                    const View& projector,
+                                    const glm::dvec3& place,
+                                    const glm::dvec3& normal,
+                                    float least_irradiance) {
+    std::vector<CarriedFrom> sources;
     const auto pixel = project(projector, place);
     if (!pixel) return sources;
     const double left = std::floor(pixel->x - 0.5), top = std::floor(pixel->y - 0.5);
@@ -99,18 +99,18 @@ std::vector<Source> sources_of(const ColourCalibration& then,
             weight += share;
         }
     if (weight < 0.5) return {};
-    for (Source& source : sources) source.share /= weight;
+    for (CarriedFrom& source : sources) source.share /= weight;
     return sources;
 }
 
 void carry_pixel(const ColourCalibration& then,
                  const LitPlaces& lit_then,
-                 const std::vector<Source>& sources,
+                 const std::vector<CarriedFrom>& sources,
                  double irradiance,
                  std::size_t pixel,
                  ColourCalibration& now) {
     bool filled = false;
-    for (const Source& source : sources) {
+    for (const CarriedFrom& source : sources) {
         const auto plane = [&](const ImageF& from, ImageF& to, std::size_t channels, double by) {
             for (std::size_t c = 0; c < channels; ++c)
                 to.values[channels * pixel + c] += static_cast<float>(
@@ -132,14 +132,14 @@ void carry_pixel(const ColourCalibration& then,
 
 /// Where the camera sees a place now: where it saw it, and how far the pose moves it.
 std::optional<glm::dvec2> seen_now(const ColourCalibration& then,
-                                   const std::vector<Source>& sources,
+                                   const std::vector<CarriedFrom>& sources,
                                    const PairOfViews& views_then,
                                    const PairOfViews& views_now,
                                    const glm::dvec3& place) {
     const auto before = project(views_then.camera, place), after = project(views_now.camera, place);
     if (!before || !after) return std::nullopt;
     glm::dvec2 seen(0.0);
-    for (const Source& source : sources)
+    for (const CarriedFrom& source : sources)
         seen += source.share * glm::dvec2(then.camera_px.values[2 * source.pixel],
                                           then.camera_px.values[2 * source.pixel + 1]);
     return seen + *after - *before;
@@ -194,12 +194,12 @@ ColourCalibration carry_colours(const ColourCalibration& then,
             }
             now.status.values[p] = static_cast<std::uint8_t>(PixelStatus::not_decoded);
             if (!std::isfinite(place.x)) continue;
-            const std::vector<Source> sources = sources_of(then,
-                                                           lit_then,
-                                                           views_then.projector,
-                                                           place,
-                                                           glm::dvec3(lit_now.normals[p]),
-                                                           least_irradiance);
+            const std::vector<CarriedFrom> sources = sources_of(then,
+                                                                lit_then,
+                                                                views_then.projector,
+                                                                place,
+                                                                glm::dvec3(lit_now.normals[p]),
+                                                                least_irradiance);
             if (sources.empty()) continue;
             carry_pixel(then, lit_then, sources, irradiance, p, now);
             if (const auto seen = seen_now(then, sources, views_then, views_now, place)) {
