@@ -166,6 +166,7 @@ TEST(CaptureThread, FindsABumpedMockupAgain) {
     const View before = read_camera_file(*made.finished / "projector.json");
 
     room.capture->close();
+    wait_until(*room.capture, [](const CaptureView& view) { return view.camera.empty(); });
     const glm::dvec3 shift_mm(3.0, 0.0, 2.0);
     bump(room.setup.camera.what, shift_mm);
     room.capture->use(room.setup);
