@@ -187,6 +187,18 @@ put("mockup_pose", "scan.json",
     {**POSE, "format_version": 1, "kind": "pose", "product": "assets/car.json", "method": "scan",
      "mesh_scale": 0.04, "rms_px": 0.2, "rms_mm": 0.1, "inliers": 40000,
      "covariance": [1e-8 if k % 7 == 0 else 0 for k in range(36)], "warnings": ["a"]})
+VIEW = {k: v for k, v in CAMERA.items() if k != "format_version"}
+put("room", "car.json",
+    {"format_version": 1, "kind": "room", "projector": VIEW, "camera": VIEW, "pair_median_px": 0.1,
+     "pair_inlier_share": 0.98, "median_px": 0.05, "rms_px": 0.1, "rms_mm": 0.02, "inliers": 2637,
+     "correspondences": 2640, "agreement": 0.99, "free_turns": 3, "turns_through_mm": [0, 40, -2.5],
+     "warnings": ["a"], "made_of": "05c98728"})
+ORIGIN = {"format_version": 1, "kind": "origin", "product": "car", "shape": "05c98728",
+          "made_with": "bench default", "capture_seconds": 12.5, "solve_seconds": 3}
+put("origin", "bench.json", ORIGIN)
+put("origin", "bumped.json",
+    {**ORIGIN, "ends": {"exposure_s": 0.1, "late": 1, "light": [1, 2.5, 0.7]},
+     "reposed_from": "9fdef912"})
 put("picked_points", "six.csv", "x_mm,y_mm,z_mm,u_px,v_px\n" + "".join(
     "%d,%d,%d,%d.5,%d\n" % (k, 7 * k % 5, k * k, 100 + 90 * k, 400 - 3 * k) for k in range(6)))
 put("picked_points", "others.csv", "# roof\r\nname,v_px,\"u_px\",z_mm,y_mm,x_mm\r\nleft,1e2,-3,0,0,9e9\r\n")

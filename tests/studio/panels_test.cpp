@@ -178,7 +178,8 @@ TEST_P(Panels, FitIntoTheNarrowestColumn) {
         {draw_lighting_panel,
          {"light:0:intensity", "light-pad:1", "eye:distance", "exposure", "quality:draft"}},
         {draw_plan_panel, {"frame-total", "skipped-passes", "pass:prepare:clearcoat"}},
-        {draw_calibration_panel, {"calibrate", "open-nudge", "design-white", "keep-hue", "calibration:none"}},
+        {draw_calibration_panel,
+         {"calibrate", "open-nudge", "design-white", "keep-hue", "calibration:none"}},
         {draw_ballot, {"ballot:start", "ballot:look:1", "ballot:close-panel"}}};
     for (const auto& [draw, expected] : panels) {
         const ItemPlaces places = frames(studio, draw, 3);

@@ -14,7 +14,6 @@ namespace livery {
 
 namespace {
 
-constexpr int kFormatVersion = 1;
 constexpr const char* kFile = "origin.json";
 constexpr const char* kRoom = "room.json";
 constexpr const char* kAround = "around.exr";
@@ -72,7 +71,7 @@ CalibrationOrigin origin_of(const BenchCalibration& made, const BenchCalibration
 }
 
 void write_origin(const std::filesystem::path& folder, const CalibrationOrigin& origin) {
-    Json json = {{"format_version", kFormatVersion},
+    Json json = {{"format_version", kOriginVersion},
                  {"kind", "origin"},
                  {"product", origin.product},
                  {"shape", origin.shape},
@@ -90,38 +89,6 @@ void write_origin(const std::filesystem::path& folder, const CalibrationOrigin& 
     write_or_remove(folder / kAround, origin.around);
     if (origin.room) write_room_file(folder / kRoom, *origin.room);
     write_json_file(folder / kFile, json);
-}
-
-CalibrationOrigin parse_origin(const std::string& text, const std::filesystem::path& file) {
-    const Json json = parse_json(text, file);
-    const JsonReader root(file, json);
-    root.require_format_version(kFormatVersion);
-    root.allow_only({"format_version",
-                     "kind",
-                     "product",
-                     "shape",
-                     "made_with",
-                     "capture_seconds",
-                     "solve_seconds",
-                     "ends",
-                     "reposed_from"});
-    root["kind"].one_of({"origin"});
-    CalibrationOrigin origin;
-    origin.product = root["product"].text();
-    origin.shape = root["shape"].text();
-    origin.made_with = root["made_with"].text();
-    origin.capture_seconds = root["capture_seconds"].number_between(0.0, 1e6);
-    origin.solve_seconds = root["solve_seconds"].number_between(0.0, 1e6);
-    if (root.has("reposed_from")) origin.reposed_from = root["reposed_from"].text();
-    if (root.has("ends")) {
-        const JsonReader ends = root["ends"];
-        ends.allow_only({"exposure_s", "late", "light"});
-        origin.ends.emplace();
-        origin.ends->exposure_s = ends["exposure_s"].number_between(1e-9, 1e6);
-        origin.ends->late = ends["late"].integer(0, 1000);
-        origin.ends->light = vec3_within(ends["light"], 1e12);
-    }
-    return origin;
 }
 
 std::optional<CalibrationOrigin> read_origin(const std::filesystem::path& folder,

@@ -15,6 +15,8 @@
 
 namespace livery {
 
+inline constexpr int kOriginVersion = 1;  ///< of the format
+
 struct CalibrationOrigin {
     std::string product;                 ///< its name
     std::string shape;                   ///< shape_hash() of the mock-up's mesh

@@ -80,9 +80,8 @@ RoomGeometry room_now(RoomGeometry room, const Repose& found, const std::string&
     room.median_px = found.median_px;
     // Of a normal distribution of that median, across the stripes alone.
     room.rms_px = 1.4826 * found.median_px;
-    room.rms_mm = room.rms_px *
-                  glm::length(centre_in_world(found.projector)) /
-                  found.projector.focal_px.x;
+    room.rms_mm =
+        room.rms_px * glm::length(centre_in_world(found.projector)) / found.projector.focal_px.x;
     room.correspondences = found.on_product;
     room.inliers =
         static_cast<std::size_t>(found.agree_share * static_cast<double>(found.on_product));
