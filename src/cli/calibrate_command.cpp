@@ -122,13 +122,11 @@ Command calibrate_color_command() {
             for (const auto& warning : calibration.warnings)
                 outcome.text += "warning: " + warning + "\n";
         } catch (const Refused& refused) {
-            outcome.exit_code = 1;
             outcome.figures = {{"valid_fraction", nullptr},
                                {"additivity_error", nullptr},
                                {"condition_p99", nullptr},
-                               {"response", nullptr},
-                               {"refused", {{{"why", refused.why()}, {"fix", refused.fix()}}}}};
-            outcome.text = fmt::format("refused: {}\nfix: {}\n", refused.why(), refused.fix());
+                               {"response", nullptr}};
+            report_refusal(refused, outcome);
         }
         return outcome;
     };

@@ -84,9 +84,7 @@ struct CaptureCommandRun {
     BenchCalibrationRequest& request() { return staged.request; }
 
     void refuse(const Refused& refused) {
-        outcome.exit_code = 1;
-        outcome.figures["refused"] = {{{"why", refused.why()}, {"fix", refused.fix()}}};
-        outcome.text += fmt::format("refused: {}\nfix: {}\n", refused.why(), refused.fix());
+        report_refusal(refused, outcome);
         if (!arguments.out.empty())
             outcome.text += "What was photographed is kept in " + arguments.out +
                             "; the same command goes on with it.\n";

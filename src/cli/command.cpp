@@ -28,6 +28,12 @@ GlDevice CommonOptions::gl_device() const {
     return GlDevice::automatic;
 }
 
+void report_refusal(const Refused& refused, Outcome& outcome) {
+    outcome.exit_code = 1;
+    outcome.figures["refused"] = {{{"why", refused.why()}, {"fix", refused.fix()}}};
+    outcome.text += fmt::format("refused: {}\nfix: {}\n", refused.why(), refused.fix());
+}
+
 glm::ivec2 parse_size(const std::string& option, const std::string& text) {
     glm::ivec2 size{0};
     const char* end = text.data() + text.size();

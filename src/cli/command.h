@@ -11,6 +11,7 @@
 
 #include <glm/vec2.hpp>
 
+#include "core/error.h"
 #include "core/json.h"
 #include "core/progress.h"
 #include "gl/context.h"
@@ -45,6 +46,10 @@ struct Outcome {
     std::string text;
     int exit_code = 0;  ///< 0: done; 1: ran, and the answer is "no"
 };
+
+/// The answer is no: exit code 1, `refused` beside the figures that there are, why and what helps
+/// after the text.
+void report_refusal(const Refused& refused, Outcome& outcome);
 
 struct Command {
     std::string name;  ///< "demo" or, in a group, "calibrate color"

@@ -122,10 +122,8 @@ Command calibrate_geometry_command() {
             outcome.figures = figures_of(geometry);
             outcome.text = text_of(geometry, arguments->out);
         } catch (const Refused& refused) {
-            outcome.exit_code = 1;
-            outcome.figures = {{"poses", Json::array()},
-                               {"refused", {{{"why", refused.why()}, {"fix", refused.fix()}}}}};
-            outcome.text = fmt::format("refused: {}\nfix: {}\n", refused.why(), refused.fix());
+            outcome.figures = {{"poses", Json::array()}};
+            report_refusal(refused, outcome);
         }
         return outcome;
     };

@@ -23,14 +23,6 @@ Json numbers_of(const auto& list) {
     return numbers;
 }
 
-Json refused_json(const Refused& refused) {
-    return {{{"why", refused.why()}, {"fix", refused.fix()}}};
-}
-
-std::string refused_text(const Refused& refused) {
-    return fmt::format("refused: {}\nfix: {}\n", refused.why(), refused.fix());
-}
-
 Json figures_of(const RegisteredMockup& mockup) {
     const MockupPose& pose = mockup.pose;
     Json figures = {{"rms_px", pose.rms_px},
@@ -186,12 +178,8 @@ Command calibrate_register_command() {
             outcome.figures = figures_of(mockup);
             outcome.text = text_of(mockup, arguments->out);
         } catch (const Refused& refused) {
-            outcome.exit_code = 1;
-            outcome.figures = {{"rms_px", nullptr},
-                               {"rms_mm", nullptr},
-                               {"inliers", 0},
-                               {"refused", refused_json(refused)}};
-            outcome.text = refused_text(refused);
+            outcome.figures = {{"rms_px", nullptr}, {"rms_mm", nullptr}, {"inliers", 0}};
+            report_refusal(refused, outcome);
         }
         tell_notes(request.product->notes, outcome);
         return outcome;
@@ -282,9 +270,8 @@ Command calibrate_scan_command() {
             for (const std::string& warning : light.warnings)
                 outcome.text += "warning: " + warning + "\n";
         } catch (const Refused& refused) {
-            outcome.exit_code = 1;
-            outcome.figures = {{"points", 0}, {"triangles", 0}, {"refused", refused_json(refused)}};
-            outcome.text = refused_text(refused);
+            outcome.figures = {{"points", 0}, {"triangles", 0}};
+            report_refusal(refused, outcome);
         }
         return outcome;
     };

@@ -142,9 +142,7 @@ Command calibrate_repose_command() {
             write_reposed(arguments->out, reposed);
             report_found(reposed, arguments->out, outcome);
         } catch (const Refused& refused) {
-            outcome.exit_code = 1;
-            outcome.figures["refused"] = {{{"why", refused.why()}, {"fix", refused.fix()}}};
-            outcome.text += fmt::format("refused: {}\nfix: {}\n", refused.why(), refused.fix());
+            report_refusal(refused, outcome);
         }
         return outcome;
     };

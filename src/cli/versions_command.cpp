@@ -84,9 +84,7 @@ Command calibrate_compare_command() {
                     older.string());
             conclude(grade_figures(difference), outcome);
         } catch (const Refused& refused) {
-            outcome.exit_code = 1;
-            outcome.figures["refused"] = {{{"why", refused.why()}, {"fix", refused.fix()}}};
-            outcome.text = fmt::format("refused: {}\nfix: {}\n", refused.why(), refused.fix());
+            report_refusal(refused, outcome);
         }
         return outcome;
     };
@@ -134,9 +132,7 @@ Command calibrate_drift_command() {
                 {"room_light", drift.room_light}};
             conclude(grade_figures(drift), outcome);
         } catch (const Refused& refused) {
-            outcome.exit_code = 1;
-            outcome.figures["refused"] = {{{"why", refused.why()}, {"fix", refused.fix()}}};
-            outcome.text += fmt::format("refused: {}\nfix: {}\n", refused.why(), refused.fix());
+            report_refusal(refused, outcome);
         }
         return outcome;
     };
