@@ -1,15 +1,16 @@
 #include "capture/video_camera.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
+#include <deque>
 #include <filesystem>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -128,10 +129,11 @@ class VideoCamera : public Camera {
     std::mutex mutex_;
     std::condition_variable changed_;
     bool stop_ = false;
-    std::string ended_;               ///< why no frame comes any more
-    std::uint64_t number_ = 0;        ///< of the newest frame
-    Image8 newest_;                   ///< RGB
-    Clock::time_point drained_at_{};  ///< when the last read began that had to wait for its frame
+    std::string ended_;             ///< why no frame comes any more
+    std::uint64_t number_ = 0;      ///< of the newest frame
+    Image8 newest_;                 ///< RGB
+    bool waited_ = false;           ///< its read had to wait for it
+    Clock::time_point began_at_{};  ///< that read
 };
 
 void VideoCamera::open() {
@@ -160,18 +162,27 @@ void VideoCamera::close() {
 }
 
 void VideoCamera::grab() {
-    // Of the last reads, how long they took: a frame that lay in a buffer already comes at once. A
-    // reader that fell behind, on a busy machine or while the stream was opened, finds several.
-    std::array<double, 16> took_s{};
+    // Of the last second's reads, how long they took: a frame that lay in a buffer already comes at
+    // once. A reader that fell behind, on a busy machine or while the stream was opened, finds
+    // several, and so does one whose network stood still.
+    std::deque<std::pair<Clock::time_point, double>> took_s;
     const double frames_per_second = video_->get(VideoSetting::frames_per_second);
-    took_s[0] = 1.0 / (frames_per_second > 1.0 ? std::min(frames_per_second, 240.0) : 30.0);
-    for (std::size_t read = 1;; ++read) {
+    took_s.emplace_back(
+        Clock::now(), 1.0 / (frames_per_second > 1.0 ? std::min(frames_per_second, 240.0) : 30.0));
+    for (;;) {
         const auto began = Clock::now();
         const std::optional<VideoFrame> frame = video_->read();
-        const double read_s = std::chrono::duration<double>(Clock::now() - began).count();
-        took_s[read % took_s.size()] = read_s;
+        const auto ended = Clock::now();
+        const double read_s = std::chrono::duration<double>(ended - began).count();
+        took_s.emplace_back(ended, read_s);
+        while (ended - took_s.front().first > std::chrono::seconds(1)) took_s.pop_front();
+        const double longest_s =
+            std::max_element(took_s.begin(), took_s.end(), [](const auto& one, const auto& other) {
+                return one.second < other.second;
+            })->second;
         const std::lock_guard lock(mutex_);
-        if (read_s > 0.25 * *std::max_element(took_s.begin(), took_s.end())) drained_at_ = began;
+        waited_ = read_s > 0.25 * longest_s;
+        began_at_ = began;
         if (!frame) ended_ = video_->problem();
         if (stop_ || !frame) {
             changed_.notify_all();
@@ -250,12 +261,12 @@ Photograph VideoCamera::photograph(double exposure_s) {
     };
     if (grabber_.joinable()) {
         std::unique_lock lock(mutex_);
-        // The one on its way began before, and so did those that lie in a buffer: the first that
-        // had to be waited for from now on did not.
+        // The one on its way began before, and so may those that lie in a buffer: only frames that
+        // had to be waited for from now on count.
         const auto asked_at = Clock::now();
         while (added < options_.frames) {
             next_frame(lock, number_ + 1);
-            if (drained_at_ >= asked_at) add(newest_);
+            if (waited_ && began_at_ >= asked_at) add(newest_);
         }
     } else {
         for (int k = 0; k < options_.frames; ++k) {

@@ -70,13 +70,13 @@ TEST(VideoCamera, PhotographsWhatTheStreamShowsNow) {
 
 // A network that stands still for a moment sends what it kept all at once, and it is of before.
 TEST(VideoCamera, PassesOverFramesThatLayInABuffer) {
-    constexpr int kKept = 8;
+    constexpr int kKept = 20;
     std::atomic<int> level{40}, kept{0};
     std::atomic<bool> hold{false};
     const MjpegServer server([&] {
         if (hold.exchange(false)) {
             kept = kKept;
-            std::this_thread::sleep_for(std::chrono::milliseconds(300));
+            std::this_thread::sleep_for(std::chrono::milliseconds(400));
         }
         const int shown = kept > 0 ? 40 : level.load();
         if (kept > 0) --kept;
