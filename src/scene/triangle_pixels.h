@@ -1,4 +1,4 @@
-// Which of a picture's pixels a triangle covers. Internal to scene/.
+// Which of a picture's pixels a triangle covers.
 #pragma once
 
 #include <cmath>

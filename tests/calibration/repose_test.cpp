@@ -321,7 +321,7 @@ TEST(Stripes, AreUnlikeAnywhereElse) {
         const Image8 picture = stripe_picture(code, false), inverse = stripe_picture(code, true);
         for (int x = 0; x < width; ++x)
             ASSERT_EQ(picture.at(x, 0) + inverse.at(x, 0), 255) << "one of them lights it";
-        // Shifted by one period to a dozen, a quarter of the edges or fewer meet one of their sign.
+        // Shifted by one period to a dozen, fewer edges meet one of their sign than must agree.
         const double period = 2.0 * code.mean_stripe_px();
         for (double by = period; by < 12.0 * period; by += 1.0) {
             int meet = 0;

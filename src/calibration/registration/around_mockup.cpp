@@ -8,7 +8,6 @@
 #include <glm/geometric.hpp>
 
 #include "core/error.h"
-#include "core/statistics.h"
 
 namespace livery {
 
@@ -56,23 +55,21 @@ std::vector<MappedEdge> mapped_edges(const StripeCode& code, const ImageF& aroun
 
 AroundEvidence evidence_around(const Mesh& mesh,
                                const Tracer& tracer,
-                               const View& projector,
-                               const View& camera,
-                               const StripeCode& code,
-                               const ImageF& around,
+                               const ReposeInput& input,
                                const StripeSight& sight,
                                const Rigid3& then_from_now) {
     AroundEvidence evidence;
+    const StripeCode& code = input.code;
+    const ImageF& around = input.around;
     if (around.empty()) return evidence;
     check_argument(around.width == code.width && around.height == code.height &&
                        around.channels == 2 && !mesh.triangles.empty(),
                    "what is around the mock-up is not two channels of the projector's size");
     const Rigid3 now_from_then = inverse(then_from_now);
-    std::vector<double> offsets;
     std::size_t still = 0;
     for (const MappedEdge& edge : mapped_edges(code, around)) {
-        const auto lit = find_ray(projector, edge.projector_px);
-        const auto seen = find_ray(camera, edge.camera_px);
+        const auto lit = find_ray(input.projector, edge.projector_px);
+        const auto seen = find_ray(input.camera, edge.camera_px);
         if (!lit || !seen) continue;
         // Nor where the mock-up stood: the map is nearly its own there.
         if (meets(tracer, now_from_then, *lit) || meets(tracer, now_from_then, *seen) ||
@@ -83,13 +80,11 @@ AroundEvidence evidence_around(const Mesh& mesh,
         const double within_px = std::max(2.0, 0.4 * stripe_px);
         ++evidence.places;
         const double offset = sight.offset_of(edge.camera_px, edge.rising, within_px);
-        if (std::isfinite(offset)) offsets.push_back(std::abs(offset));
         still += std::abs(offset) < kFound_px;
     }
     if (evidence.places == 0) return evidence;
     const auto count = static_cast<double>(evidence.places);
     evidence.still_share = static_cast<double>(still) / count;
-    evidence.offset_px = median(offsets);
     return evidence;
 }
 

@@ -9,14 +9,11 @@ namespace livery {
 inline constexpr std::size_t kLeastAround = 100;
 
 /// Borders of stripes off the mock-up, of then and of now, where `around` knows where they were
-/// seen. `views`, `then_from_now` and `sight` as find_mockup_again() has them. A place that is
-/// found again lies within half a camera pixel: the map's and the crossing's error, three times.
+/// seen; none without it. A place that is found again lies within half a camera pixel: the map's
+/// and the crossing's error, three times.
 AroundEvidence evidence_around(const Mesh& mesh,
                                const Tracer& tracer,
-                               const View& projector,
-                               const View& camera,
-                               const StripeCode& code,
-                               const ImageF& around,
+                               const ReposeInput& input,
                                const StripeSight& sight,
                                const Rigid3& then_from_now);
 

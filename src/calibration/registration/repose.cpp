@@ -339,14 +339,7 @@ Repose find_mockup_again(const Mesh& mesh,
             "the product looks the same when it is turned: its turn is taken to be what it was");
 
     progress.update(0.9, "looking at what stands around");
-    result.around = evidence_around(mesh,
-                                    tracer,
-                                    input.projector,
-                                    input.camera,
-                                    input.code,
-                                    input.around,
-                                    sight,
-                                    fit.then_from_now);
+    result.around = evidence_around(mesh, tracer, input, sight, fit.then_from_now);
     check_pair(result.around);
     if (result.around.places < kLeastAround)
         result.warnings.push_back(

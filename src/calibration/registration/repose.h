@@ -31,7 +31,6 @@ struct ReposeInput {
 struct AroundEvidence {
     std::size_t places = 0;    ///< borders of stripes that were and should be seen there
     double still_share = 0.0;  ///< of them: seen where they were
-    double offset_px = 0.0;    ///< of those found near, camera pixels, median
 };
 
 struct Repose {

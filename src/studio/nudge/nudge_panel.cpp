@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cfloat>
+#include <cmath>
+#include <filesystem>
 #include <stdexcept>
 #include <utility>
 
@@ -53,6 +55,12 @@ constexpr std::array<Way, 12> kWays{{
 }};
 
 NudgePanelState& state_of(Shell& shell) { return *shell.studio.panels.nudge; }
+
+/// Loaded anew, for another design white say, it is still the one that is being moved.
+bool is_of(const NudgePanelState& state, const ProjectorSetup& setup) {
+    return state.setup && state.setup->calibration && setup.calibration &&
+           state.setup->calibration->id == setup.calibration->id && state.setup->view == setup.view;
+}
 
 bool is_moved(const NudgePanelState& state) {
     return state.setup && state.view != state.setup->view;
@@ -208,13 +216,13 @@ void show_nudge(Shell& shell, bool shown) {
     }
     stop_trying(studio);
     if (shell.signal_test_open) show_signal_test(shell, false);
-    if (state.setup != studio.setup) {
+    if (!is_of(state, *studio.setup)) {
         const double step_px = state.step_px;
         state = {};
         state.step_px = step_px;
-        state.setup = studio.setup;
         state.view = studio.setup->view;
     }
+    state.setup = studio.setup;
     shell.nudge_open = true;
     studio.view = StageView::projector;
     if (state.picture) shell.results->show_instead(state.picture);
@@ -224,7 +232,7 @@ void take_nudge(Shell& shell) {
     NudgePanelState& state = state_of(shell);
     Studio& studio = shell.studio;
     if (!shell.nudge_open) return;
-    if (state.setup != studio.setup) return show_nudge(shell, false);  // Another is in use now.
+    if (!studio.setup || !is_of(state, *studio.setup)) return show_nudge(shell, false);
     if (state.drawing || (state.drawn && *state.drawn == state.view)) return;
     state.drawing = true;
     studio.background->run(

@@ -10,6 +10,7 @@
 #include <glm/matrix.hpp>
 
 #include "core/error.h"
+#include "scene/triangle_pixels.h"
 
 namespace livery {
 
@@ -40,27 +41,20 @@ struct Canvas {
 
     /// Corners: x, y in samples, rows down; z grows towards the viewer.
     void draw(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, float shade) {
-        const float area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
-        if (area == 0.0f) return;
-        const glm::vec3 low = glm::min(a, glm::min(b, c)), high = glm::max(a, glm::max(b, c));
-        const int left = std::max(0, static_cast<int>(std::ceil(low.x - 0.5f)));
-        const int right = std::min(size.x - 1, static_cast<int>(std::floor(high.x - 0.5f)));
-        const int top = std::max(0, static_cast<int>(std::ceil(low.y - 0.5f)));
-        const int bottom = std::min(size.y - 1, static_cast<int>(std::floor(high.y - 0.5f)));
-        for (int y = top; y <= bottom; ++y) {
-            for (int x = left; x <= right; ++x) {
-                const float px = static_cast<float>(x) + 0.5f, py = static_cast<float>(y) + 0.5f;
-                const float u = ((px - a.x) * (c.y - a.y) - (c.x - a.x) * (py - a.y)) / area;
-                const float v = ((b.x - a.x) * (py - a.y) - (px - a.x) * (b.y - a.y)) / area;
-                if (u < 0.0f || v < 0.0f || u + v > 1.0f) continue;
-                const float z = a.z + u * (b.z - a.z) + v * (c.z - a.z);
-                const auto at = static_cast<std::size_t>(y) * static_cast<std::size_t>(size.x) +
-                                static_cast<std::size_t>(x);
-                if (z <= depth[at]) continue;
-                depth[at] = z;
-                grey[at] = shade;
-            }
-        }
+        const glm::dvec3 depths(a.z, b.z, c.z);
+        for_each_pixel(size,
+                       glm::dvec2(a),
+                       glm::dvec2(b),
+                       glm::dvec2(c),
+                       [&](int x, int y, const glm::dvec3& weights) {
+                           const auto z = static_cast<float>(glm::dot(weights, depths));
+                           const auto at =
+                               static_cast<std::size_t>(y) * static_cast<std::size_t>(size.x) +
+                               static_cast<std::size_t>(x);
+                           if (z <= depth[at]) return;
+                           depth[at] = z;
+                           grey[at] = shade;
+                       });
     }
 };
 
