@@ -42,38 +42,63 @@ constexpr std::size_t kBlock = 1024;  // pixels; the working set stays in the fi
 constexpr int kWeakPart = 5;
 constexpr std::uint8_t kMostWeakBits = 3;
 
-/// Binary number of each pixel from the signs of its bit pairs, and how many of them were weak;
-/// fixed trip counts vectorise.
+/// One axis of a block of pixels. Bytes, so that a vector register holds as many pixels as it can.
+struct AxisOfBlock {
+    std::array<std::uint8_t, kBlock> coarse, fine;  ///< Gray code, its last eight bits in `fine`
+    std::array<std::uint8_t, kBlock> weak;          ///< bits that were answered weakly
+    std::array<std::uint16_t, kBlock> number;       ///< columns or rows
+};
+
+/// The least answer to a stripe that is not weak, of each pixel.
+template <typename T>
+void least_answers(const T* white, const T* black, T* __restrict least) {
+    for (std::size_t i = 0; i < kBlock; ++i) {
+        const T above = white[i] > black[i] ? white[i] : black[i];
+        const T lit_by = static_cast<T>(above - black[i]);
+        if constexpr (std::is_floating_point_v<T>)
+            least[i] = lit_by / static_cast<T>(kWeakPart);
+        else  // rounded up: whole answers below it are those below the fifth itself
+            least[i] = static_cast<T>(lit_by / kWeakPart + (lit_by % kWeakPart != 0 ? 1 : 0));
+    }
+}
+
+/// Gray code from the signs of an axis' bit pairs, how many of them were weak, and the sum of all
+/// answers. Fixed trip counts vectorise, and so it must be known that what is written is not read.
 template <typename T>
 void decode_axis(const Planes<T>& planes,
                  int first_bit,
                  int bits,
                  std::size_t offset,
-                 std::uint16_t* code,
-                 std::uint8_t* weak,
-                 ContrastOf<T>* contrast) {
-    std::fill_n(code, kBlock, std::uint16_t{0});
-    std::fill_n(weak, kBlock, std::uint8_t{0});
-    const T* const white = planes.white + offset;
-    const T* const black = planes.black + offset;
+                 const T* __restrict least,
+                 AxisOfBlock& axis,
+                 ContrastOf<T>* __restrict contrast) {
+    axis.coarse.fill(0);
+    axis.fine.fill(0);
+    axis.weak.fill(0);
     for (int bit = 0; bit < bits; ++bit) {
-        const T* const positive =
-            planes.stripes[static_cast<std::size_t>(2 * (first_bit + bit))] + offset;
-        const T* const negative =
-            planes.stripes[static_cast<std::size_t>(2 * (first_bit + bit) + 1)] + offset;
+        const auto at = static_cast<std::size_t>(2 * (first_bit + bit));
+        const T* const __restrict positive = planes.stripes[at] + offset;
+        const T* const __restrict negative = planes.stripes[at + 1] + offset;
+        std::uint8_t* const __restrict code =
+            bit < bits - 8 ? axis.coarse.data() : axis.fine.data();
+        std::uint8_t* const __restrict weak = axis.weak.data();
         for (std::size_t i = 0; i < kBlock; ++i) {
-            // Gray to binary: each bit is the exclusive or of all Gray bits so far.
-            const auto gray = static_cast<std::uint16_t>(positive[i] > negative[i] ? 1 : 0);
-            const auto previous = code[i];
-            code[i] = static_cast<std::uint16_t>((previous << 1) | (gray ^ (previous & 1)));
-            const T high = positive[i] > negative[i] ? positive[i] : negative[i];
-            const T low = positive[i] > negative[i] ? negative[i] : positive[i];
-            const auto answer = static_cast<ContrastOf<T>>(high - low);
+            const bool above = positive[i] > negative[i];
+            const T high = above ? positive[i] : negative[i];
+            const T low = above ? negative[i] : positive[i];
+            const T answer = static_cast<T>(high - low);
+            code[i] = static_cast<std::uint8_t>(code[i] + code[i] + (above ? 1 : 0));
+            weak[i] = static_cast<std::uint8_t>(weak[i] + (answer < least[i] ? 1 : 0));
             contrast[i] = static_cast<ContrastOf<T>>(contrast[i] + answer);
-            const auto dark = static_cast<ContrastOf<T>>(black[i]);
-            const bool is_weak = static_cast<ContrastOf<T>>(kWeakPart * answer + dark) < white[i];
-            weak[i] = static_cast<std::uint8_t>(weak[i] + (is_weak ? 1 : 0));
         }
+    }
+    for (std::size_t i = 0; i < kBlock; ++i) {
+        // Gray to binary: each bit is the exclusive or of all Gray bits before it.
+        unsigned code = static_cast<unsigned>(axis.coarse[i]) << 8 | axis.fine[i];
+        code ^= code >> 8;
+        code ^= code >> 4;
+        code ^= code >> 2;
+        axis.number[i] = static_cast<std::uint16_t>(code ^ code >> 1);
     }
 }
 
@@ -105,19 +130,19 @@ DecodeCounts decode_block(const Planes<T>& planes,
                           std::size_t offset,
                           std::size_t count,
                           float threshold,
-                          float* projector_px,
-                          std::uint8_t* decoded) {
-    std::array<std::uint16_t, kBlock> column, row;
-    std::array<std::uint8_t, kBlock> weak_columns, weak_rows;
+                          float* __restrict projector_px,
+                          std::uint8_t* __restrict decoded) {
+    std::array<T, kBlock> least;
+    least_answers(planes.white + offset, planes.black + offset, least.data());
+    AxisOfBlock columns_of, rows_of;
     std::array<ContrastOf<T>, kBlock> contrast{};
-    decode_axis(
-        planes, 0, planes.column_bits, offset, column.data(), weak_columns.data(), contrast.data());
+    decode_axis(planes, 0, planes.column_bits, offset, least.data(), columns_of, contrast.data());
     decode_axis(planes,
                 planes.column_bits,
                 planes.row_bits,
                 offset,
-                row.data(),
-                weak_rows.data(),
+                least.data(),
+                rows_of,
                 contrast.data());
 
     // A third of the mean contrast: blur takes it from the two finest bits of each axis, light
@@ -127,21 +152,25 @@ DecodeCounts decode_block(const Planes<T>& planes,
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const auto columns = static_cast<unsigned>(planes.projector_width);
     const auto rows = static_cast<unsigned>(planes.projector_height);
-    DecodeCounts counts;
+    unsigned lit_count = 0, decoded_count = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const float lit_by = static_cast<float>(planes.white[offset + i]) -
                              static_cast<float>(planes.black[offset + i]);
         const bool lit = lit_by > threshold;
         const bool good = lit & (static_cast<float>(contrast[i]) >= share * lit_by) &
-                          (weak_columns[i] <= kMostWeakBits) & (weak_rows[i] <= kMostWeakBits) &
-                          (column[i] < columns) & (row[i] < rows);
-        counts.lit += lit;
-        counts.decoded += good;
+                          (columns_of.weak[i] <= kMostWeakBits) &
+                          (rows_of.weak[i] <= kMostWeakBits) & (columns_of.number[i] < columns) &
+                          (rows_of.number[i] < rows);
+        lit_count += lit ? 1u : 0u;
+        decoded_count += good ? 1u : 0u;
         decoded[i] = good ? 255 : 0;
-        projector_px[2 * i] = good ? static_cast<float>(column[i]) + 0.5f : nan;
-        projector_px[2 * i + 1] = good ? static_cast<float>(row[i]) + 0.5f : nan;
     }
-    return counts;
+    for (std::size_t i = 0; i < count; ++i) {
+        const bool good = decoded[i] != 0;
+        projector_px[2 * i] = good ? static_cast<float>(columns_of.number[i]) + 0.5f : nan;
+        projector_px[2 * i + 1] = good ? static_cast<float>(rows_of.number[i]) + 0.5f : nan;
+    }
+    return {lit_count, decoded_count};
 }
 
 /// Standard deviation of the noise, from second differences along rows (structure cancels).
