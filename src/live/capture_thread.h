@@ -98,8 +98,8 @@ struct CaptureView {
     std::vector<CaptureTile> tiles;             ///< by showing
     CaptureHistogram histogram;                 ///< of the newest photograph or live view
     int taken = 0, kept_from_before = 0;
-    /// Of the finished capture from its start to the last photograph, and what of it was waiting
-    /// for the camera and for the projector.
+    /// Of the finished capture's geometry and colours, each from its start to its last photograph,
+    /// and what of it was waiting for the camera and for the projector.
     double capture_s = 0.0, camera_s = 0.0, projector_s = 0.0;
     std::optional<std::filesystem::path> finished;  ///< the calibration that came of it
 

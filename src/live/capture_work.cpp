@@ -138,6 +138,11 @@ void CaptureThread::Implementation::finish() {
         view.capture_s = made.live.capture_seconds;
         view.camera_s = made.live.camera_seconds;
         view.projector_s = made.live.projector_seconds;
+        if (run.room) {
+            view.capture_s += run.room->capture_seconds;
+            view.camera_s += run.room->camera_seconds;
+            view.projector_s += run.room->projector_seconds;
+        }
     });
 }
 

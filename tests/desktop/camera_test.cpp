@@ -296,15 +296,24 @@ TEST_F(CameraBeforeMonitor, FirstSessionInTheWindowTakesFivePresses) {
     type("sheet-distance", sheets.lens_distance_mm);
     const std::string before = document.calibration;
     // Five presses of one button: it names what comes next.
+    double wizard_s = 0.0, photographing_s = 0.0;
     for (const char* step : {"look", "geometry", "colour", "check"}) {
         SCOPED_TRACE(step);
         program->wait_for_state("capture_next", step);
+        const auto pressed = std::chrono::steady_clock::now();
         program->click("capture-next-step");
         ASSERT_TRUE(wait_until([&] { return program->state("capture_next") != step; }, 120s))
             << says();
         program->wait_for_state("capture", "watching");
         ASSERT_EQ(says(), "");
+        const double step_s =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - pressed).count();
+        const auto times = program->state("capture_times").get<std::vector<double>>();
+        std::printf("    %s %.1f s, captured %.1f s so far\n", step, step_s, times.at(0));
+        wizard_s += step_s;
+        photographing_s = times.at(0);
     }
+    std::printf("    wizard %.1f s, of which capture %.1f s\n", wizard_s, photographing_s);
     EXPECT_EQ(program->state("calibration"), before) << "nobody has accepted the new one";
     program->click("accept");
     ASSERT_TRUE(wait_until([&] { return program->state("calibration") != before; }, patience));
