@@ -59,7 +59,8 @@ FN REAL coat_average_transmission(IN(CoatPrepared) c) {
 
 // Length of the refracted path through a coat of thickness 1.
 FN REAL coat_path(IN(CoatPrepared) c, REAL mu) {
-    REAL cos2 = R(1.0) - (R(1.0) - mu * mu) * c.inverse_index_squared;
+    // 1 less the squared sine in two parts, for which a coat of index 1 leaves the digits of mu
+    REAL cos2 = (R(1.0) - c.inverse_index_squared) + mu * mu * c.inverse_index_squared;
     return MUTATED(coat_path, R(1.0) / sqrt(max(cos2, R(1e-4))));
 }
 

@@ -9,9 +9,10 @@ vec3 measured_row(sampler2DArray grid, int layer, int row, int column, int next,
 }
 
 vec3 measured_layer(sampler2DArray grid, int layer, vec3 at, ivec3 size) {
-    int column = min(int(at.z), size.z - 1);
+    // What is no number has no index.
+    int column = clamp(int(at.z), 0, size.z - 1);
     int next = column + 1 == size.z ? 0 : column + 1;
-    int row = min(int(at.x), size.x - 2);
+    int row = clamp(int(at.x), 0, size.x - 2);
     return mix(measured_row(grid, layer, row, column, next, at.z - float(column)),
                measured_row(grid, layer, row + 1, column, next, at.z - float(column)),
                at.x - float(row));
@@ -22,7 +23,7 @@ vec3 measured_eval(sampler2DArray grid, vec3 wi, vec3 wo) {
     ivec3 texels = textureSize(grid, 0);
     ivec3 size = ivec3(texels.y, texels.z, texels.x);
     vec3 at = half_difference_nodes(half_difference(wi, wo), vec3(size));
-    int layer = min(int(at.y), size.y - 2);
+    int layer = clamp(int(at.y), 0, size.y - 2);
     vec3 logarithm = mix(measured_layer(grid, layer, at, size),
                          measured_layer(grid, layer + 1, at, size),
                          at.y - float(layer));

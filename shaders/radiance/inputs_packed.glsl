@@ -21,6 +21,7 @@ uniform sampler2DArray u_lights;
 uniform sampler2D u_sky;
 uniform sampler2DArray u_mirror;
 uniform float u_mirror_unit;
+uniform int u_mirror_place[MIRROR_LAYERS];  // of each layer in u_mirror; -1: nowhere
 
 // Direction to the eye, mean squared slope of the normals.
 vec4 eye_here() {
@@ -47,13 +48,19 @@ vec3 sky_here() {
 }
 
 vec3 mirror_layer_here(int layer) {
-    return texelFetch(u_mirror, ivec3(gl_FragCoord.xy, layer), 0).rgb;
+    return texelFetch(u_mirror, ivec3(gl_FragCoord.xy, u_mirror_place[layer]), 0).rgb;
 }
 
 // How many times as much of what is mirrored grazes as does of even light, for three lobes each
-// (src/radiance/light/mirror_quadrature.h).
+// (src/radiance/light/mirror_lobes.h). What no paint reads is not there.
 vec3 grazing_here(int layer) {
-    return mirror_layer_here(MIRROR_LOBES + layer);
+    return u_mirror_place[MIRROR_LOBES + layer] < 0 ? vec3(1.0)
+                                                    : mirror_layer_here(MIRROR_LOBES + layer);
+}
+
+// What is no number stays none (shade.glsl): max may drop it.
+float not_negative(float value) {
+    return IS_NAN(value) ? value : max(value, 0.0);
 }
 
 // Environment over a mirror lobe, between four layers. Their cubic may fall short of nothing beside
@@ -63,7 +70,7 @@ vec3 mirrored_here(vec4 layers, float alpha) {
     vec3 sum = (1.0 - layers.y - layers.z - layers.w) * mirror_layer_here(first) +
                layers.y * mirror_layer_here(first + 1) + layers.z * mirror_layer_here(first + 2) +
                layers.w * mirror_layer_here(first + 3);
-    return u_mirror_unit * max(sum, vec3(0.0));
+    return u_mirror_unit * vec3(not_negative(sum.x), not_negative(sum.y), not_negative(sum.z));
 }
 
 #endif

@@ -34,7 +34,8 @@ void main() {
             covered += samples;
             ++at;
         } while ((word & 0x80000000u) != 0u);
-        colour = sum / covered;
+        // Fragments of less than half a sample cover nothing.
+        colour = covered > 0.0 ? sum / covered : vec3(0.0);
     }
     radiance = vec4(colour, covered * (1.0 / float(SAMPLES)));
 }

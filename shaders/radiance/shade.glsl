@@ -5,7 +5,8 @@
 //                     LAMBERT too where it sees all light alike. Else ANY_MODEL, which is called as
 //                     it is, with WEIGHTS, MIRRORS and BSDF_TURN2 (src/radiance/shading.cpp)
 //   LIGHTS n          directional lights, 0 and more; LIGHT_COUNT, the same as a number
-//   ENVIRONMENT       0 or 1
+//   ENVIRONMENT       0 or 1: light from all around, by the environment or by other parts
+//   MIRRORED          0 or 1: what is mirrored of the environment as well
 //   GLINTS            true if flakes of car paint are seen one by one; needs glints.glsl
 //   VEC4, UNIFORM     as the language has them
 //   IS_NAN(x)         whether x is no number, in a way that no optimiser takes out
@@ -24,6 +25,20 @@ FN REAL exposed(REAL value) {
 FN VEC3 exposed(VEC3 colour) {
     return VEC3(exposed(colour.x), exposed(colour.y), exposed(colour.z));
 }
+
+#ifndef LAMBERT
+FN REAL sum_of(VEC3 v) {
+    return v.x + v.y + v.z;
+}
+FN REAL sum_of(VEC4 v) {
+    return v.x + v.y + v.z + v.w;
+}
+// A colour of which a sum of all that it was made from is told: no number where that is none. The
+// formulas clamp, and what a clamp makes of no number is a number or not, as each driver likes.
+FN VEC3 made_from(REAL inputs, VEC3 colour) {
+    return colour + VEC3(IS_NAN(inputs) ? inputs : R(0.0));
+}
+#endif
 
 #ifdef LAMBERT
 
@@ -48,10 +63,12 @@ FN VEC3 shaded() {
     VEC4 eye = eye_here();
     VEC3 wo = VEC3(eye.x, eye.y, eye.z);
     VEC3 sum = VEC3(R(0.0));
+    REAL inputs = sum_of(eye);
 
 #if LIGHTS > 0
     for (int k = 0; k < LIGHT_COUNT; ++k) {
         VEC4 light = light_here(k);
+        inputs += sum_of(light) + u_light_radius2[k];
         VEC3 wi = VEC3(light.x, light.y, light.z);
         VEC3 h = wi + wo;
         REAL length_h = sqrt(max(dot(h, h), R(1e-8)));
@@ -65,17 +82,19 @@ FN VEC3 shaded() {
 #endif
 
 #if ENVIRONMENT
-    REAL at = sqrt(clamp(wo.z, R(0.0), R(1.0))) * REAL(WEIGHTS - 1);
+    // What is no number has no index.
+    REAL cosine = IS_NAN(wo.z) ? R(0.0) : clamp(wo.z, R(0.0), R(1.0));
+    REAL at = sqrt(cosine) * REAL(WEIGHTS - 1);
     int below = min(int(at), WEIGHTS - 2);
     REAL share = at - REAL(below);
     sum += MUTATED(shade_any_sky, mix(u_sky_weight[below], u_sky_weight[below + 1], share)) *
            sky_here();
-#if MIRRORS
+#if MIRRORS && MIRRORED
     sum += mix(u_mirror_weight[below], u_mirror_weight[below + 1], share) *
            mirrored_here(u_base_layers, u_lobe_alpha);
 #endif
 #endif
-    return exposed(sum);
+    return exposed(made_from(inputs, sum));
 }
 
 #else
@@ -97,8 +116,10 @@ FN VEC3 shaded() {
     VEC4 eye = eye_here();
     VEC3 wo = VEC3(eye.x, eye.y, eye.z);
     Passage to = passage_of(u_paint, wo.z);
+    REAL inputs = sum_of(eye);
 #ifdef GLINTS
     VEC4 place = GLINTS ? place_here() : eye;
+    inputs += sum_of(place);
 #endif
     VEC3 sum = VEC3(R(0.0));
 
@@ -109,6 +130,7 @@ FN VEC3 shaded() {
         VEC3 h = wi + wo;
         REAL hh = max(dot(h, h), R(1e-8));
         REAL disc = u_light_radius2[k];
+        inputs += sum_of(light) + disc;
         VEC3 lobes = VEC3(R(0.0));
         lobes.x = disc_distribution_visibility(wi, wo, hh, slopes_of(u_paint, 0), disc, eye.w);
         if (lobe_count(u_paint) > 1) {
@@ -140,17 +162,21 @@ FN VEC3 shaded() {
 #endif
 
     if (ENVIRONMENT != 0) {
+        sum += MUTATED(shade_sky, sky_weight(u_paint, to) * sky_here());
+    }
+    if (ENVIRONMENT != 0 && MIRRORED != 0) {
         MirrorGrazing grazing;
         grazing.narrow = grazing_here(0);
         grazing.middle = grazing_here(1);
         grazing.wide = grazing_here(2);
         grazing.entry = grazing_here(3);
-        sum += MUTATED(shade_sky, sky_weight(u_paint, to) * sky_here());
+        inputs += sum_of(grazing.narrow) + sum_of(grazing.middle) + sum_of(grazing.wide) +
+                  sum_of(grazing.entry);
         sum += mirrored_by(0, to, wo.z, grazing);
         if (lobe_count(u_paint) > 1) sum += mirrored_by(1, to, wo.z, grazing);
         if (lobe_count(u_paint) > 2) sum += mirrored_by(2, to, wo.z, grazing);
     }
-    return exposed(sum);
+    return exposed(made_from(inputs, sum));
 }
 
 #endif

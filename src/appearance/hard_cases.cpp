@@ -10,6 +10,7 @@
 
 #include "appearance/model_table.h"
 #include "core/parallel.h"
+#include "core/worst_error.h"
 
 namespace livery {
 
@@ -61,11 +62,12 @@ std::vector<glm::vec3> make_adversarial() {
 
 bool good(float value) { return std::isfinite(value) && value >= 0.0f; }
 
-double relative(double value, double truth) {
-    return truth > kLeastComparedValue ? std::abs(value / truth - 1.0) : 0.0;
-}
-
 }  // namespace
+
+double relative_error(double value, double truth) {
+    if (truth <= kLeastComparedValue) return worst_if_nan(0.0 * value);
+    return worst_if_nan(std::abs(value / truth - 1.0));
+}
 
 double exponent_of(double alpha) { return 2.0 / (alpha * alpha) - 2.0; }
 
@@ -203,12 +205,13 @@ std::vector<PrecisionError> precision_errors(ReflectanceModel model,
                     const glm::dvec3 truth = evaluate(model, wide, wi, wo);
                     const glm::dvec3 value(evaluate(model, narrow, d.wi, d.wo));
                     for (int c = 0; c < 3; ++c) {
-                        row.float_worst = std::max(row.float_worst, relative(value[c], truth[c]));
+                        row.float_worst =
+                            worse_of(row.float_worst, relative_error(value[c], truth[c]));
                     }
                     const double density =
-                        relative(static_cast<double>(pdf(model, narrow, d.wi, d.wo)),
-                                 pdf(model, wide, wi, wo));
-                    row.float_density_worst = std::max(row.float_density_worst, density);
+                        relative_error(static_cast<double>(pdf(model, narrow, d.wi, d.wo)),
+                                       pdf(model, wide, wi, wo));
+                    row.float_density_worst = worse_of(row.float_density_worst, density);
                 }
             }
         }
@@ -224,7 +227,9 @@ double reciprocity_error(ReflectanceModel model, std::size_t pairs_each, std::ui
         for (const RoundedPair& d : ledger_directions(alpha, pairs_each, random)) {
             const glm::dvec3 there(evaluate(model, p, d.wi, d.wo));
             const glm::dvec3 back(evaluate(model, p, d.wo, d.wi));
-            for (int c = 0; c < 3; ++c) worst = std::max(worst, relative(back[c], there[c]));
+            for (int c = 0; c < 3; ++c) {
+                worst = worse_of(worst, relative_error(back[c], there[c]));
+            }
         }
     }
     return worst;
@@ -285,7 +290,8 @@ WorstAlbedo worst_albedo(ReflectanceModel model, int points) {
             p.coat_alpha = one.coat_alpha;
             p.coat_f0 = one.coat_f0;
             p.coat_transmittance = glm::dvec3(1.0);
-            const double albedo = directional_albedo(model, p, direction_at(one.mu, 0.3), points).x;
+            const double albedo =
+                worst_if_nan(directional_albedo(model, p, direction_at(one.mu, 0.3), points).x);
             const std::scoped_lock lock(mutex);
             if (albedo > worst.albedo) worst = {albedo, one.alpha, one.mu, one.f0};
         }

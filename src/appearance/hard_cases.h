@@ -1,5 +1,5 @@
 // Inputs at which reflectance models break, and what a model does at them: the measurements behind
-// the accuracy ledger and its tests.
+// the stability ledger and its tests.
 #pragma once
 
 #include <cstddef>
@@ -43,6 +43,8 @@ InvalidValues count_invalid(ReflectanceModel model, std::size_t inputs, std::uin
 /// How far values lie from those in double at the same inputs, relative, wherever double exceeds
 /// 1e-6.
 inline constexpr double kLeastComparedValue = 1e-6;
+/// Infinite where a value is no number, however dark.
+double relative_error(double value, double truth);
 struct PrecisionError {
     double alpha = 0.0;
     double allowed = 0.0;  ///< max(1e-4, 4e-7 / alpha)

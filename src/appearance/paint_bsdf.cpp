@@ -52,6 +52,19 @@ f32::BsdfEnvironment environment_weights(const PaintBsdf& bsdf, float mu) {
                          : environment_weights(bsdf.model, bsdf.parameters, mu);
 }
 
+glm::vec3 hemispherical_albedo(const PaintBsdf& bsdf) {
+    // Gauss and Legendre's three nodes for the cosine from 0 to 1, each under twice its cosine
+    constexpr std::array<float, 3> kCosine{0.11270167f, 0.5f, 0.88729833f};
+    constexpr std::array<float, 3> kWeight{0.27777778f, 0.44444444f, 0.27777778f};
+    glm::vec3 albedo(0.0f);
+    for (std::size_t k = 0; k < kCosine.size(); ++k) {
+        const f32::BsdfEnvironment weights = environment_weights(bsdf, kCosine[k]);
+        albedo +=
+            2.0f * kCosine[k] * kWeight[k] * (weights.diffuse + weights.specular + weights.coat);
+    }
+    return glm::min(albedo, glm::vec3(1.0f));
+}
+
 float lobe_alpha(const PaintBsdf& bsdf) {
     return bsdf.measured ? bsdf.measured->lobe_alpha
                          : lobe_alpha(model_info(bsdf.model), bsdf.parameters);

@@ -29,6 +29,8 @@ glm::vec3 evaluate(const PaintBsdf& bsdf, glm::vec3 wi, glm::vec3 wo);
 glm::vec3 sample(const PaintBsdf& bsdf, glm::vec3 wo, glm::vec3 u);
 float pdf(const PaintBsdf& bsdf, glm::vec3 wi, glm::vec3 wo);
 f32::BsdfEnvironment environment_weights(const PaintBsdf& bsdf, float mu);
+/// The share of even light from all around that the surface returns, by environment_weights().
+glm::vec3 hemispherical_albedo(const PaintBsdf& bsdf);
 /// The GGX slope parameter that is about as wide as the main lobe; 1 without a lobe.
 float lobe_alpha(const PaintBsdf& bsdf);
 

@@ -202,7 +202,7 @@ const std::vector<ParameterInfo>& parameter_table() {
         parameter(
             "coat_alpha",
             "Coat roughness",
-            "The same of the coat: polished varnish 0.01 to 0.03.",
+            "The same of the coat: polished varnish 0.003 to 0.03.",
             ParameterKind::number,
             1e-4,
             1.0,

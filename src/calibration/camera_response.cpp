@@ -199,7 +199,7 @@ double residual_of(const Problem& problem, const Eigen::VectorXd& unknowns) {
         square += sum_square - sum * sum / weight_sum;
         weights += weight_sum;
     }
-    return std::sqrt(std::max(0.0, square) / weights);
+    return std::sqrt(std::max(square, 0.0) / weights);
 }
 
 }  // namespace

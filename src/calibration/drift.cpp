@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/statistics.h"
+#include "core/worst_error.h"
 
 namespace livery {
 
@@ -303,10 +304,9 @@ std::vector<GradedFigure> grade_figures(const Drift& drift) {
         "The mock-up, the camera or the projector was bumped: find where everything stands again.",
         far ? Grade::bad : grade_of(drift.shift_median_px, 0.3, 1.0)};
     figures.push_back(std::move(moved));
-    const double low = std::min({drift.light_ratio.x, drift.light_ratio.y, drift.light_ratio.z}),
-                 high = std::max({drift.light_ratio.x, drift.light_ratio.y, drift.light_ratio.z});
+    const glm::dvec3 changed = glm::abs(drift.light_ratio - 1.0);
     figures.push_back(graded_share("Light changed by",
-                                   std::max(std::abs(low - 1.0), std::abs(high - 1.0)),
+                                   worse_of({changed.x, changed.y, changed.z}),
                                    0.03,
                                    0.10,
                                    "The projector's light on the mock-up against that of the "

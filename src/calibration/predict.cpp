@@ -14,6 +14,7 @@
 #include "core/mutation.h"
 #include "core/parallel.h"
 #include "core/statistics.h"
+#include "core/worst_error.h"
 
 namespace livery {
 namespace {
@@ -70,14 +71,14 @@ double unmixing_deviation(const ColourCalibration& c,
                           const std::vector<std::uint32_t>& measured,
                           const std::array<float, 9>& pooled) {
     float largest = 0.0f;
-    for (const float value : pooled) largest = std::max(largest, std::abs(value));
+    for (const float value : pooled) largest = worse_of(largest, std::abs(value));
     std::vector<float> deviations;
     deviations.reserve(measured.size());
     for (const std::uint32_t pixel : measured) {
         float worst = 0.0f;
         for (std::size_t k = 0; k < 9; ++k) {
             const float value = c.unmixing.values[9 * static_cast<std::size_t>(pixel) + k];
-            worst = std::max(worst, std::abs(value - pooled[k]));
+            worst = worse_of(worst, std::abs(value - pooled[k]));
         }
         deviations.push_back(worst / largest);
     }
@@ -208,7 +209,7 @@ ColourCalibration predict_hidden(ColourCalibration c, const ImageF& geometry) {
     const auto errors = leave_out_errors(c, geometry, measured, pixels);
     c.prediction_error_median = static_cast<double>(median(errors));
     c.prediction_error_p95 = static_cast<double>(quantile(errors, 0.95));
-    if (c.prediction_error_median > kPredictionLimit) {
+    if (!(c.prediction_error_median <= kPredictionLimit)) {
         return refuse(
             "from the pose, the measured pixels would be predicted with a median error "
             "of " +

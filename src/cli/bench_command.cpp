@@ -1,6 +1,8 @@
 // livery bench
 
 #include <memory>
+#include <sstream>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -8,11 +10,12 @@
 #include "core/error.h"
 #include "core/marked_block.h"
 #include "core/paths.h"
-#include "ledger/accuracy.h"
+#include "ledger/accuracy/accuracy.h"
 #include "ledger/geometry_errors.h"
 #include "ledger/speed.h"
 #include "ledger/speed_plot.h"
 #include "ledger/speed_table.h"
+#include "ledger/stability.h"
 
 namespace livery {
 
@@ -68,6 +71,8 @@ Json json_of(const std::vector<LedgerEffect>& benched) {
                  {"work_items", level.work_items},
                  {"error", level.error ? Json(*level.error) : Json(nullptr)},
                  {"p95", level.error_p95 ? Json(*level.error_p95) : Json(nullptr)},
+                 {"p99", level.error_p99 ? Json(*level.error_p99) : Json(nullptr)},
+                 {"swap_ms", level.swap_ms ? Json(*level.swap_ms) : Json(nullptr)},
                  {"unit", level.error ? Json(level.unit) : Json(nullptr)}});
         }
         effects.push_back({{"name", effect.name}, {"levels", levels}});
@@ -86,25 +91,38 @@ Json json_of(const SpeedLedger& result) {
             {"effects", effects}};
 }
 
+/// "2/8".
+std::pair<int, int> parse_shard(const std::string& text) {
+    const auto refuse = [&] {
+        return std::invalid_argument(
+            fmt::format("--shard: found \"{}\", expected I/N with I from 1 to N, as 1/2", text));
+    };
+    int shard = 0, shards = 0;
+    char slash = 0, more = 0;
+    std::istringstream words(text);
+    if (!(words >> shard >> slash >> shards) || slash != '/' || words >> more) throw refuse();
+    if (shards < 1 || shards > 1000 || shard < 1 || shard > shards) throw refuse();
+    return {shard, shards};
+}
+
 }  // namespace
 
 Command bench_command() {
     struct Arguments {
-        std::string out, markdown, suite = "speed";
+        std::string out, markdown, references, shard = "1/1", suite = "speed";
         bool quick = false;
     };
     const auto arguments = std::make_shared<Arguments>();
     Command command;
     command.name = "bench";
     command.summary =
-        "time every stage on this machine, or measure how far reflectance models can be trusted, "
-        "or "
-        "what a wrong pose costs";
+        "time every stage on this machine, or measure what accuracy costs in time, how far what is "
+        "drawn can be trusted, or what a wrong pose costs";
     command.example = "livery bench --suite speed --out bench";
     command.options = {
         {"--out",
          "DIR",
-         "also write bench.json and the plot speed.svg there",
+         "also write bench.json and the plots speed.svg and accuracy.svg there, accuracy.csv",
          &arguments->out,
          false,
          {}},
@@ -121,13 +139,28 @@ Command bench_command() {
          &arguments->quick,
          false,
          {}},
+        {"--references",
+         "DIR",
+         "accuracy: where traced pictures and rows are kept, to go on from and to share between "
+         "shards (default: in the user's folder)",
+         &arguments->references,
+         false,
+         {}},
+        {"--shard",
+         "I/N",
+         "accuracy: measure every N-th scene, from the I-th on; runs that share --references add "
+         "up",
+         &arguments->shard,
+         false,
+         {}},
         {"--suite",
          "NAME",
-         "speed, accuracy (of the reflectance models), geometry (what a wrong pose costs) or all "
-         "(default speed)",
+         "speed, accuracy (each effect's error beside its time), stability (of what is drawn, "
+         "where "
+         "it loses most digits), geometry (what a wrong pose costs) or all (default speed)",
          &arguments->suite,
          false,
-         {"speed", "accuracy", "geometry", "all"}},
+         {"speed", "stability", "accuracy", "geometry", "all"}},
     };
     command.run = [arguments](const CommonOptions& common, const Progress& progress) {
         const auto wanted = [&](const char* suite) {
@@ -159,8 +192,23 @@ Command bench_command() {
             outcome.text += text_of(result);
             markdown = markdown_of(result);
         };
+        std::string accuracy_plot, accuracy_csv;
         if (wanted("accuracy")) {
-            add(measure_accuracy(common.gl_device(), arguments->quick, seed, progress));
+            AccuracyOptions options;
+            options.device = common.gl_device();
+            options.quick = arguments->quick;
+            options.folder = arguments->references.empty()
+                                 ? user_folder() / "cache" / "accuracy"
+                                 : std::filesystem::path(arguments->references);
+            options.seed = seed;
+            std::tie(options.shard, options.shards) = parse_shard(arguments->shard);
+            const AccuracyLedger ledger = measure_accuracy(options, progress);
+            add(ledger);
+            accuracy_plot = plot_of(ledger);
+            accuracy_csv = csv_of(ledger);
+        }
+        if (wanted("stability")) {
+            add(measure_stability(common.gl_device(), arguments->quick, seed, progress));
         }
         if (wanted("geometry")) {
             add(measure_geometry_errors(common.gl_device(), arguments->quick, seed, progress));
@@ -170,6 +218,10 @@ Command bench_command() {
             const std::filesystem::path out = arguments->out;
             write_json_file(out / "bench.json", outcome.figures);
             if (wanted("speed")) write_text_file(out / "speed.svg", plot);
+            if (wanted("accuracy")) {
+                write_text_file(out / "accuracy.svg", accuracy_plot);
+                write_text_file(out / "accuracy.csv", accuracy_csv);
+            }
         }
         if (!arguments->markdown.empty())
             replace_marked_block(arguments->markdown, "bench", markdown);

@@ -35,6 +35,7 @@ std::string paint_name_of(const std::filesystem::path& file) {
 Json figures_of(const BrdfFit& fit) {
     return {{"name", model_info(fit.material.model).name},
             {"parameters", json_of(fit.material)["parameters"]},
+            {"error", weighed_error(fit)},
             {"error_log", fit.error_log},
             {"error_de00", fit.difference.de00_mean},
             {"error_de00_p95", fit.difference.de00_p95},
@@ -43,23 +44,25 @@ Json figures_of(const BrdfFit& fit) {
 }
 
 std::string text_of(const std::vector<BrdfFit>& fits) {
-    std::string text = fmt::format("{:<22} {:>9} {:>6} {:>9} {:>7} {:>8}\n",
+    std::string text = fmt::format("{:<22} {:>6} {:>9} {:>6} {:>9} {:>7} {:>8}\n",
                                    "model",
+                                   "error",
                                    "CIEDE2000",
                                    "95%",
                                    "log error",
                                    "albedo",
                                    "seconds");
     for (const BrdfFit& fit : fits) {
-        text += fmt::format("{:<22} {:>9.2f} {:>6.1f} {:>9.3f} {:>7.3f} {:>8.2f}\n",
+        text += fmt::format("{:<22} {:>6.2f} {:>9.2f} {:>6.1f} {:>9.3f} {:>7.3f} {:>8.2f}\n",
                             model_info(fit.material.model).name,
+                            weighed_error(fit),
                             fit.difference.de00_mean,
                             fit.difference.de00_p95,
                             fit.error_log,
                             fit.largest_albedo,
                             fit.seconds);
     }
-    return text;
+    return text + fmt::format("error: {}\n", kWeighedError);
 }
 
 }  // namespace
@@ -120,8 +123,10 @@ Command fit_brdf_command() {
             fits.front().difference.de00_p95);
         write_material_file(arguments->out, paint);
         Outcome outcome;
-        outcome.figures = {
-            {"models", Json::array()}, {"samples", samples.pairs.size()}, {"file", arguments->out}};
+        outcome.figures = {{"models", Json::array()},
+                           {"error_is", kWeighedError},
+                           {"samples", samples.pairs.size()},
+                           {"file", arguments->out}};
         for (const BrdfFit& fit : fits) outcome.figures["models"].push_back(figures_of(fit));
         outcome.text = text_of(fits) +
                        fmt::format("wrote {} ({})\n", arguments->out, model_info(paint.model).name);

@@ -63,6 +63,12 @@ std::vector<Option> frame_options(FrameArguments& arguments) {
          &arguments.quality,
          false,
          {"draft", "normal", "high", "reference"}},
+        {"--levels",
+         "EFFECT=LEVEL,...",
+         "levels of single effects instead of the quality's (shadows=sharp,interreflection=none)",
+         &arguments.levels,
+         false,
+         {}},
         {"--budget-ms",
          "N",
          "the best quality that the last bench predicts within N ms",
@@ -175,6 +181,17 @@ ResolvedFrame resolve_frame(const FrameArguments& arguments, const CommonOptions
     } else if (!arguments.quality.empty()) {
         request.quality = parse_quality(arguments.quality);
     }
+    if (!arguments.levels.empty()) {
+        if (request.quality == Quality::reference) {
+            throw std::invalid_argument(
+                "--levels: found --quality reference, expected draft, normal or high");
+        }
+        try {
+            request.levels = parse_levels(arguments.levels, levels_of(request.quality));
+        } catch (const std::invalid_argument& error) {
+            throw std::invalid_argument(std::string("--levels: ") + error.what());
+        }
+    }
     return frame;
 }
 
@@ -203,9 +220,12 @@ Json json_of(const FramePlan& plan) {
         total += pass.ms.value_or(0.0);
     }
     for (const SkippedPass& pass : plan.skipped) {
-        skipped.push_back({{"name", to_string(pass.id)}, {"why", pass.why}});
+        skipped.push_back({{"name", to_string(pass.id)},
+                           {"why", pass.why},
+                           {"error_bound_de00", or_null(pass.error_bound)}});
     }
     return {{"quality", to_string(plan.quality)},
+            {"levels", plan.quality == Quality::reference ? "" : to_string(plan.levels)},
             {"passes", passes},
             {"skipped", skipped},
             {"ms_total", total}};
@@ -221,7 +241,9 @@ std::string text_of(const FramePlan& plan) {
         text += fmt::format("runs  {:<30} {:<12} {}\n", to_string(pass.id), cost, pass.why);
     }
     for (const SkippedPass& pass : plan.skipped) {
-        text += fmt::format("skips {:<30} {:<12} {}\n", to_string(pass.id), "", pass.why);
+        const std::string most =
+            pass.error_bound ? fmt::format(" (CIEDE2000 {:.1f} at most)", *pass.error_bound) : "";
+        text += fmt::format("skips {:<30} {:<12} {}{}\n", to_string(pass.id), "", pass.why, most);
     }
     return text;
 }

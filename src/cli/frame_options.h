@@ -14,7 +14,7 @@ namespace livery {
 
 struct FrameArguments {
     std::string product = "car", unit, look = "solid-red", calibration, camera, eye;
-    std::string quality, stage = "radiance";
+    std::string quality, levels, stage = "radiance";
     double budget_ms = 0.0;
     double design_white = 20.0;
     std::string gamut = "strict";

@@ -17,7 +17,8 @@ Command plan_command() {
     command.run = [arguments](const CommonOptions& common, const Progress& progress) {
         const ResolvedFrame frame = resolve_frame(*arguments, common);
         const RenderRequest& request = frame.request;
-        FramePlan plan = plan_frame(request.scene, request.quality, request.stage);
+        FramePlan plan = request.levels ? plan_frame(request.scene, *request.levels, request.stage)
+                                        : plan_frame(request.scene, request.quality, request.stage);
         const std::string note = predict(plan, request.scene, request.view, progress);
         Outcome outcome;
         outcome.figures = json_of(plan);

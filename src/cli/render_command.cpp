@@ -1,11 +1,15 @@
 // livery render
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include "cli/frame_options.h"
+#include "core/colour.h"
 
 namespace livery {
 
@@ -30,6 +34,43 @@ std::size_t not_finite_pixels(const ImageF& picture) {
     return count;
 }
 
+/// The middle one of the covered pixels' relative half widths.
+double median_confidence(const RenderedFrame& rendered) {
+    std::vector<double> relative;
+    const glm::dvec3 weights = glm::transpose(xyz_from_working())[1];
+    for (std::size_t i = 0; i < rendered.radiance_working.pixel_count(); ++i) {
+        const float* v = rendered.radiance_working.values.data() + 4 * i;
+        if (v[3] == 0.0f) continue;
+        const double luminance = glm::dot(weights, glm::dvec3(v[0], v[1], v[2]));
+        const auto half_width = static_cast<double>(rendered.traced->confidence.values[i]);
+        if (luminance > 0.0) relative.push_back(half_width / luminance);
+    }
+    if (relative.empty()) return 0.0;
+    const auto middle = relative.begin() + static_cast<std::ptrdiff_t>(relative.size() / 2);
+    std::nth_element(relative.begin(), middle, relative.end());
+    return *middle;
+}
+
+/// How many samples it took, and how sure they are.
+void tell_traced(const RenderedFrame& rendered, double error, Outcome& outcome) {
+    const ReferenceResult& traced = *rendered.traced;
+    const double confidence = median_confidence(rendered);
+    outcome.figures["spp"] = traced.samples_per_pixel;
+    outcome.figures["mean_spp"] = traced.mean_samples;
+    outcome.figures["median_relative_confidence_95"] = confidence;
+    outcome.text += fmt::format("{:.0f} samples a pixel, {} at most; median 95% confidence {:.2g}%",
+                                traced.mean_samples,
+                                traced.samples_per_pixel,
+                                100.0 * confidence);
+    if (error > 0.0) {
+        outcome.figures["unresolved_fraction"] = traced.unresolved_fraction;
+        outcome.text += fmt::format("; {:.2g}% of the pixels did not reach {:.2g}%",
+                                    100.0 * traced.unresolved_fraction,
+                                    100.0 * error);
+    }
+    outcome.text += "\n";
+}
+
 std::string nothing_seen(const Mesh& mesh) {
     const auto [low, high] = bounds_of(mesh);
     return fmt::format(
@@ -49,8 +90,8 @@ Command render_command() {
     struct Arguments {
         FrameArguments frame;
         std::string backend = "gl", out;
-        int samples = 0, bounces = 0;
-        double seconds = 0.0;
+        int samples = 0, bounces = kReferenceBounces;
+        double seconds = 0.0, error = 0.0;
     };
     const auto arguments = std::make_shared<Arguments>();
     Command command;
@@ -68,9 +109,16 @@ Command render_command() {
           {"gl", "reference"}},
          {"--spp", "N", "reference: samples a pixel", &arguments->samples, false, {}},
          {"--seconds", "S", "reference: stop after S seconds", &arguments->seconds, false, {}},
+         {"--error",
+          "E",
+          "reference: stop where 95% confidence reaches E of a pixel's luminance",
+          &arguments->error,
+          false,
+          {}},
          {"--bounces",
           "N",
-          "reference: scatterings after the first (default 0)",
+          fmt::format("reference: scatterings after the first (default {}; 0: direct light only)",
+                      kReferenceBounces),
           &arguments->bounces,
           false,
           {}},
@@ -81,20 +129,23 @@ Command render_command() {
             arguments->frame.stage == "projector" ? FrameStage::projector : FrameStage::radiance);
         ResolvedFrame frame = resolve_frame(arguments->frame, common);
         RenderRequest& request = frame.request;
-        if (arguments->samples < 0 || arguments->seconds < 0.0 || arguments->bounces < 0) {
+        if (arguments->samples < 0 || arguments->seconds < 0.0 || arguments->error < 0.0 ||
+            arguments->bounces < 0) {
             throw std::invalid_argument(
-                "--spp, --seconds, --bounces: found a negative number, expected 0 or more");
+                "--spp, --seconds, --error, --bounces: found a negative number, expected 0 or "
+                "more");
         }
         request.backend = arguments->backend == "reference" || request.quality == Quality::reference
                               ? RenderBackend::reference
                               : RenderBackend::gl;
         if (request.backend == RenderBackend::gl &&
-            (arguments->samples > 0 || arguments->seconds > 0.0)) {
+            (arguments->samples > 0 || arguments->seconds > 0.0 || arguments->error > 0.0)) {
             throw std::invalid_argument(
-                "--spp, --seconds: found --backend gl, expected --backend reference");
+                "--spp, --seconds, --error: found --backend gl, expected --backend reference");
         }
         request.samples_per_pixel = arguments->samples;
         request.seconds = arguments->seconds;
+        request.error = arguments->error;
         request.bounces = arguments->bounces;
         if (frame.compensation) request.compensation = &*frame.compensation;
         const RenderedFrame rendered = render_frame(request, progress);
@@ -107,12 +158,12 @@ Command render_command() {
         outcome.figures["ms_total"] = rendered.ms_total;
         outcome.figures["renderer"] = rendered.renderer;
         outcome.figures["file"] = arguments->out;
-        if (rendered.samples_per_pixel > 0) outcome.figures["spp"] = rendered.samples_per_pixel;
-        outcome.text = text_of(rendered.plan) + frame.budget_note +
-                       fmt::format("{:.0f} ms in all with {}; wrote {}\n",
-                                   rendered.ms_total,
-                                   rendered.renderer,
-                                   arguments->out);
+        outcome.text = text_of(rendered.plan) + frame.budget_note;
+        if (rendered.traced) tell_traced(rendered, arguments->error, outcome);
+        outcome.text += fmt::format("{:.0f} ms in all with {}; wrote {}\n",
+                                    rendered.ms_total,
+                                    rendered.renderer,
+                                    arguments->out);
         tell_design_white(frame, outcome);
         tell_notes(frame.notes, outcome);
         std::vector<std::string> warnings;

@@ -88,7 +88,7 @@ glm::dvec3 xyz_from_lab(glm::dvec3 lab, glm::dvec3 white_xyz) {
            white_xyz;
 }
 
-double ciede2000(glm::dvec3 lab_a, glm::dvec3 lab_b) {
+glm::dvec3 ciede2000_vector(glm::dvec3 lab_a, glm::dvec3 lab_b) {
     constexpr double degree = std::numbers::pi / 180.0;
     const auto pow7 = [](double v) { return v * v * v * v * v * v * v; };
     const auto hue_deg = [](double a, double b) {
@@ -140,7 +140,13 @@ double ciede2000(glm::dvec3 lab_a, glm::dvec3 lab_b) {
     const double rc = 2.0 * std::sqrt(pow7(c) / (pow7(c) + pow7(25.0)));
     const double rt = -std::sin(2.0 * theta * degree) * rc;
     const double x = dl / sl, y = dc / sc, z = dh / sh;
-    return std::sqrt(std::max(0.0, x * x + y * y + z * z + rt * y * z));
+    // x^2 + y^2 + z^2 + rt y z, the last two completed to squares; |rt| is at most 2. In this order
+    // max keeps what is no number: of such a colour the difference is none either.
+    return {x, y + 0.5 * rt * z, z * std::sqrt(std::max(1.0 - 0.25 * rt * rt, 0.0))};
+}
+
+double ciede2000(glm::dvec3 lab_a, glm::dvec3 lab_b) {
+    return glm::length(ciede2000_vector(lab_a, lab_b));
 }
 
 namespace {

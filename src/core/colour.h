@@ -30,6 +30,8 @@ glm::dvec3 xyz_from_lab(glm::dvec3 lab, glm::dvec3 white_xyz);
 
 /// CIEDE2000 (Sharma, Wu, Dalal 2005), k_L = k_C = k_H = 1.
 double ciede2000(glm::dvec3 lab_a, glm::dvec3 lab_b);
+/// A vector of that length, each part of which passes 0 smoothly: what least squares can take.
+glm::dvec3 ciede2000_vector(glm::dvec3 lab_a, glm::dvec3 lab_b);
 
 /// Oklab (Ottosson 2020) of XYZ relative to D65 with Y = 1.
 glm::dvec3 oklab_from_xyz(glm::dvec3 xyz);

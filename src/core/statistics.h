@@ -2,19 +2,27 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <concepts>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace livery {
 
-/// Value at a fraction in [0, 1] of the sorted values, the nearest of them; 0 for none. Takes a
-/// copy to reorder.
+/// Value at a fraction in [0, 1] of the sorted values, the nearest of them; 0 for none. What is no
+/// number counts as larger than all that are. Takes a copy to reorder.
 template <typename T>
 T quantile(std::vector<T> values, double fraction) {
     if (values.empty()) return T{};
     const auto rank =
         static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1) + 0.5);
-    std::nth_element(values.begin(), values.begin() + rank, values.end());
+    auto end = values.end();
+    if constexpr (std::floating_point<T>) {
+        end = std::partition(values.begin(), end, [](T value) { return !std::isnan(value); });
+        if (rank >= end - values.begin()) return std::numeric_limits<T>::quiet_NaN();
+    }
+    std::nth_element(values.begin(), values.begin() + rank, end);
     return values[static_cast<std::size_t>(rank)];
 }
 

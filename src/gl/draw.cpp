@@ -3,6 +3,7 @@
 #include <epoxy/gl.h>
 
 #include "gl/check.h"
+#include "gl/counters.h"
 
 namespace livery {
 namespace {
@@ -62,6 +63,7 @@ void prepare(const Program& program,
     apply(state);
     program.use();
     vertices.bind();
+    ++gl_detail::counted().draws;
 }
 
 }  // namespace

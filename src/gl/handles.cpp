@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "gl/check.h"
+#include "gl/counters.h"
 
 namespace livery {
 namespace gl_detail {
@@ -65,6 +66,34 @@ FormatFacts facts(TexelFormat format) {
             return {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, 1, TexelKind::depth};
     }
     throw std::invalid_argument("unknown texel format");
+}
+
+/// Bytes of one channel on the device.
+std::size_t channel_bytes(TexelFormat format) {
+    switch (format) {
+        case TexelFormat::r8:
+        case TexelFormat::rg8:
+        case TexelFormat::rgba8:
+        case TexelFormat::r8ui:
+            return 1;
+        case TexelFormat::r16f:
+        case TexelFormat::rg16f:
+        case TexelFormat::rgba16f:
+        case TexelFormat::r16ui:
+            return 2;
+        default:
+            return 4;
+    }
+}
+
+std::size_t bytes_of(const TextureShape& shape, TexelFormat format) {
+    std::size_t texels = 0;
+    for (int level = 0; level < shape.levels; ++level) {
+        texels += static_cast<std::size_t>(std::max(shape.width >> level, 1)) *
+                  static_cast<std::size_t>(std::max(shape.height >> level, 1));
+    }
+    return texels * static_cast<std::size_t>(std::max(shape.layers, 1)) *
+           static_cast<std::size_t>(facts(format).channels) * channel_bytes(format);
 }
 
 bool accepts(const FormatFacts& format, GLenum type) {
@@ -125,6 +154,9 @@ Texture2D::Texture2D(TextureShape shape,
     glTextureParameteri(name, GL_TEXTURE_WRAP_S, wrap_of(wrap_horizontal));
     glTextureParameteri(name, GL_TEXTURE_WRAP_T, wrap_of(wrap_vertical));
     throw_on_gl_error("creating a texture of " + size_text(shape.width, shape.height));
+    GlCounters& counted = gl_detail::counted();
+    ++counted.textures;
+    counted.texture_bytes += bytes_of(shape, format);
 }
 
 void Texture2D::upload_any(
@@ -149,6 +181,10 @@ void Texture2D::upload_any(
                    std::to_string(count) + " values for " + size_text(rect.width, rect.height) +
                        " texels of " + std::to_string(f.channels) + " channels, expected " +
                        std::to_string(expected));
+    const std::size_t type_bytes = type == GL_UNSIGNED_BYTE                             ? 1
+                                   : type == GL_UNSIGNED_SHORT || type == GL_HALF_FLOAT ? 2
+                                                                                        : 4;
+    gl_detail::counted().upload_bytes += count * type_bytes;
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     if (shape_.layers > 0) {
         glTextureSubImage3D(name_.get(),
@@ -237,6 +273,30 @@ void copy_texels(unsigned from_texture_name, const Texture2D& to, const PixelRec
     check_gl("copying texels");
 }
 
+void copy_layers(const Texture2D& from, const Texture2D& to) {
+    check_argument(from.format() == to.format() && from.width() == to.width() &&
+                       from.height() == to.height() && from.shape().layers > 0 &&
+                       from.shape().layers <= to.shape().layers,
+                   "layers copied between textures of " + size_text(from.width(), from.height()) +
+                       " and " + size_text(to.width(), to.height()));
+    glCopyImageSubData(from.name(),
+                       GL_TEXTURE_2D_ARRAY,
+                       0,
+                       0,
+                       0,
+                       0,
+                       to.name(),
+                       GL_TEXTURE_2D_ARRAY,
+                       0,
+                       0,
+                       0,
+                       0,
+                       from.width(),
+                       from.height(),
+                       from.shape().layers);
+    check_gl("copying layers");
+}
+
 void bind_texture(unsigned unit, unsigned texture_name) {
     glBindTextureUnit(unit, texture_name);
     check_gl("binding a texture");
@@ -251,12 +311,17 @@ Buffer::Buffer(const void* data, std::size_t bytes) : bytes_(bytes) {
     name_ = GlName<gl_detail::delete_buffer>(name);
     glNamedBufferStorage(name, static_cast<GLsizeiptr>(bytes), data, GL_DYNAMIC_STORAGE_BIT);
     throw_on_gl_error("creating a buffer of " + std::to_string(bytes) + " bytes");
+    GlCounters& counted = gl_detail::counted();
+    ++counted.buffers;
+    counted.buffer_bytes += bytes;
+    if (data) counted.upload_bytes += bytes;
 }
 
 void Buffer::update(const void* data, std::size_t bytes, std::size_t byte_offset) {
     check_argument(byte_offset <= bytes_ && bytes <= bytes_ - byte_offset,
                    std::to_string(bytes) + " bytes at " + std::to_string(byte_offset) +
                        " for a buffer of " + std::to_string(bytes_));
+    gl_detail::counted().upload_bytes += bytes;
     glNamedBufferSubData(
         name_.get(), static_cast<GLintptr>(byte_offset), static_cast<GLsizeiptr>(bytes), data);
     check_gl("updating a buffer");
@@ -350,6 +415,7 @@ Framebuffer::Framebuffer(const std::vector<const Texture2D*>& colours,
     height_ = first.height();
     GLuint name = 0;
     glCreateFramebuffers(1, &name);
+    ++gl_detail::counted().framebuffers;
     name_ = GlName<gl_detail::delete_framebuffer>(name);
     const auto attach = [&](GLenum where, const Texture2D& texture) {
         check_argument(texture.width() == width_ && texture.height() == height_,

@@ -125,6 +125,9 @@ void bind_texture(unsigned unit, unsigned texture_name);
 /// The same rectangle of level 0 from one texture into another, whose format has as many bits.
 void copy_texels(unsigned from_texture_name, const Texture2D& to, const PixelRect& rect);
 
+/// All layers of an array's level 0 to the first ones of another, of the same size and format.
+void copy_layers(const Texture2D& from, const Texture2D& to);
+
 /// Bytes on the device: vertices, indices, uniform or shader storage blocks.
 class Buffer {
   public:

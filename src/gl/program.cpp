@@ -10,6 +10,7 @@
 
 #include "core/mutation.h"
 #include "gl/check.h"
+#include "gl/counters.h"
 
 namespace livery {
 namespace gl_detail {
@@ -61,6 +62,7 @@ Shader compile(GLenum stage, const ShaderSource& source) {
 #endif
     glShaderSource(shader.get(), 1, &text, nullptr);
     glCompileShader(shader.get());
+    gl_detail::counted().shader_bytes += source.text.size();
     GLint ok = GL_FALSE;
     glGetShaderiv(shader.get(), GL_COMPILE_STATUS, &ok);
     if (ok != GL_TRUE) {
@@ -96,6 +98,7 @@ void Program::link(const std::vector<unsigned>& shaders, const std::string& what
     name_ = GlName<gl_detail::delete_program>(glCreateProgram());
     for (const unsigned shader : shaders) glAttachShader(name_.get(), shader);
     glLinkProgram(name_.get());
+    ++gl_detail::counted().programs;
     for (const unsigned shader : shaders) glDetachShader(name_.get(), shader);
     GLint ok = GL_FALSE;
     glGetProgramiv(name_.get(), GL_LINK_STATUS, &ok);
@@ -179,6 +182,14 @@ bool Program::set(std::string_view uniform, const glm::mat4& value) {
     return where >= 0;
 }
 
+bool Program::set(std::string_view uniform, std::span<const int> array) {
+    const int where = location(uniform);
+    if (where >= 0) {
+        glProgramUniform1iv(name_.get(), where, static_cast<GLsizei>(array.size()), array.data());
+    }
+    return where >= 0;
+}
+
 bool Program::set(std::string_view uniform, std::span<const float> array) {
     const int where = location(uniform);
     if (where >= 0) {
@@ -205,6 +216,7 @@ bool Program::set(std::string_view uniform, std::span<const glm::vec4> array) {
 
 void dispatch(const Program& compute, unsigned groups_x, unsigned groups_y, unsigned groups_z) {
     compute.use();
+    ++gl_detail::counted().dispatches;
     glDispatchCompute(groups_x, groups_y, groups_z);
     glMemoryBarrier(GL_ALL_BARRIER_BITS);
     check_gl("running a compute program");

@@ -45,6 +45,7 @@ class Program {
     bool set(std::string_view uniform, const glm::uvec2& value);
     bool set(std::string_view uniform, const glm::mat3& value);
     bool set(std::string_view uniform, const glm::mat4& value);
+    bool set(std::string_view uniform, std::span<const int> array);
     bool set(std::string_view uniform, std::span<const float> array);
     bool set(std::string_view uniform, std::span<const glm::vec3> array);
     bool set(std::string_view uniform, std::span<const glm::vec4> array);

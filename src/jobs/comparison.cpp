@@ -7,6 +7,7 @@
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/worst_error.h"
 
 namespace livery {
 
@@ -23,6 +24,7 @@ ErrorStatistics statistics_of(std::vector<float> errors) {
     ErrorStatistics statistics;
     statistics.pixels = errors.size();
     if (errors.empty()) return statistics;
+    for (float& error : errors) error = worst_if_nan(error);
     std::sort(errors.begin(), errors.end());
     const auto ranked = [&](double fraction) {
         const auto rank =

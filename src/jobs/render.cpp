@@ -1,13 +1,14 @@
 #include "jobs/render.h"
 
+#include <algorithm>
 #include <chrono>
+#include <numeric>
 
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/image_io.h"
 #include "jobs/picture.h"
 #include "radiance/renderer.h"
-#include "reference/path_tracer.h"
 
 namespace livery {
 
@@ -37,10 +38,11 @@ RenderedFrame render_by_reference(const RenderRequest& request, const Progress& 
     ReferenceOptions options;
     options.samples_per_pixel = request.samples_per_pixel > 0 ? request.samples_per_pixel
                                                               : reference_samples(request.quality);
-    // A time limit alone must not be cut short by a sample limit.
-    if (request.seconds > 0.0 && request.samples_per_pixel == 0)
+    // A limit of time or error alone must not be cut short by a sample limit.
+    if ((request.seconds > 0.0 || request.error > 0.0) && request.samples_per_pixel == 0)
         options.samples_per_pixel = 1 << 20;
     options.seconds = request.seconds;
+    options.error = request.error;
     options.bounces = request.bounces;
     options.seed = request.seed;
     ReferenceResult traced = trace_reference(request.scene, request.view, options, progress);
@@ -48,13 +50,27 @@ RenderedFrame render_by_reference(const RenderRequest& request, const Progress& 
     RenderedFrame frame;
     frame.radiance_working = std::move(traced.radiance_working);
     frame.renderer = "reference";
-    frame.samples_per_pixel = traced.samples_per_pixel;
     frame.plan = plan_frame(request.scene, Quality::reference, request.stage);
     PlannedPass& pass = *find_pass(frame.plan, PassKind::path_tracer);
-    pass.work_items = static_cast<double>(frame.radiance_working.pixel_count()) *
-                      static_cast<double>(traced.samples_per_pixel);
+    pass.work_items =
+        std::accumulate(traced.samples.values.begin(), traced.samples.values.end(), 0.0);
     pass.ms = 1000.0 * traced.seconds;
+    frame.traced = std::move(traced);
     return frame;
+}
+
+void write_traced(const std::filesystem::path& file,
+                  const ImageF& over_black,
+                  const ReferenceResult& traced) {
+    ImageF all(over_black.width, over_black.height, 7);
+    for (std::size_t i = 0; i < all.pixel_count(); ++i) {
+        float* v = all.values.data() + 7 * i;
+        std::copy_n(over_black.values.data() + 4 * i, 4, v);
+        v[4] = traced.standard_error.values[i] * traced.standard_error.values[i];
+        v[5] = traced.confidence.values[i];
+        v[6] = traced.samples.values[i];
+    }
+    write_exr(file, all, {"R", "G", "B", "A", "variance.Y", "confidence.Y", "samples.Y"});
 }
 
 void compensate_frame(RenderedFrame& frame, const CompensationTable& table) {
@@ -81,10 +97,11 @@ RenderedFrame render_frame(const RenderRequest& request, const Progress& progres
         frame = render_by_reference(request, progress);
     } else {
         const HeadlessContext context(request.gl_device);
+        const EffectLevels levels = request.levels.value_or(levels_of(request.quality));
         RadianceRenderer renderer(std::make_shared<const FrameGeometry>(
-            request.scene.product, request.view, progress, sub_samples_of(request.quality)));
+            request.scene.product, request.view, progress, sub_samples_of(levels)));
         frame.renderer = context.renderer();
-        frame.plan = plan_frame(request.scene, request.quality, request.stage);
+        frame.plan = plan_frame(request.scene, levels, request.stage);
         renderer.render(request.scene, frame.plan, progress);
         frame.radiance_working = renderer.read_back();
     }
@@ -130,6 +147,7 @@ void write_frame(const std::filesystem::path& file, const RenderedFrame& frame, 
         const glm::dvec3 rgb = rec709_from_working() * glm::dvec3(v[0], v[1], v[2]);
         for (int c = 0; c < 3; ++c) v[c] = static_cast<float>(rgb[c]);
     }
+    if (frame.traced) return write_traced(file, over_black, *frame.traced);
     write_exr(file, over_black, {"R", "G", "B", "A"});
 }
 

@@ -10,6 +10,7 @@
 #include "core/image.h"
 #include "core/progress.h"
 #include "gl/context.h"
+#include "reference/path_tracer.h"
 #include "scene/frame_plan.h"
 #include "scene/scene.h"
 #include "scene/view.h"
@@ -22,12 +23,14 @@ struct RenderRequest {
     Scene scene;
     View view;
     Quality quality = Quality::normal;
+    std::optional<EffectLevels> levels{};  ///< gl only; none: the quality's
     FrameStage stage = FrameStage::radiance;
     RenderBackend backend = RenderBackend::gl;
     GlDevice gl_device = GlDevice::automatic;
-    int samples_per_pixel = 0;  ///< reference only; 0: by the quality
-    double seconds = 0.0;       ///< reference only; 0: by samples
-    int bounces = 0;            ///< reference only
+    int samples_per_pixel = 0;        ///< reference only; 0: by the quality
+    double seconds = 0.0;             ///< reference only; 0: by samples
+    double error = 0.0;               ///< reference only, as ReferenceOptions has it; 0: by samples
+    int bounces = kReferenceBounces;  ///< reference only
     std::uint64_t seed = 1;
     const CompensationTable* compensation = nullptr;  ///< needed for FrameStage::projector
 };
@@ -38,8 +41,8 @@ struct RenderedFrame {
     FramePlan plan;           ///< with measured milliseconds
     CompensationStats compensation;
     double ms_total = 0.0;
-    std::string renderer;  ///< GL_RENDERER, or "reference"
-    int samples_per_pixel = 0;
+    std::string renderer;                   ///< GL_RENDERER, or "reference"
+    std::optional<ReferenceResult> traced;  ///< by reference: all but its picture
 };
 
 /// Everything from scratch, for files. Throws std::invalid_argument (projector stage without a
@@ -50,9 +53,10 @@ RenderedFrame render_frame(const RenderRequest& request, const Progress& progres
 /// write_frame does not write, and for a folder that is not there.
 void check_frame_file(const std::filesystem::path& file, FrameStage stage);
 
-/// EXR: linear Rec.709, multiplied by the coverage in A as OpenEXR has it. PNG: sRGB over black for
-/// looking at, or device values when the frame reached the projector stage. Throws FileError for
-/// another suffix.
+/// EXR: linear Rec.709, multiplied by the coverage in A as OpenEXR has it; of a traced picture also
+/// what is known of it: variance.Y (of the mean luminance), confidence.Y (half of its 95%
+/// interval), both of what covers the pixel, and samples.Y. PNG: sRGB over black for looking at, or
+/// device values when the frame reached the projector stage. Throws FileError for another suffix.
 void write_frame(const std::filesystem::path& file, const RenderedFrame& frame, FrameStage stage);
 
 }  // namespace livery

@@ -13,6 +13,7 @@
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/paths.h"
+#include "core/worst_error.h"
 #include "jobs/camera_to_xyz_file.h"
 
 namespace livery {
@@ -176,12 +177,12 @@ std::vector<LampResponse> responses_of(std::span<const LitSphere> lit,
     LampResponse mean;
     for (const WhiteLamp& white : whites) {
         mean.units += white.response.units / static_cast<double>(whites.size());
-        mean.rms = std::max(mean.rms, white.response.rms);
+        mean.rms = worse_of(mean.rms, white.response.rms);
     }
     report.white_rms = mean.rms;
     for (const WhiteLamp& white : whites) {
         const glm::dvec3 off = glm::abs(white.response.units / mean.units - 1.0);
-        report.lamp_spread = std::max({report.lamp_spread, off.x, off.y, off.z});
+        report.lamp_spread = worse_of({report.lamp_spread, off.x, off.y, off.z});
     }
     std::vector<LampResponse> responses(lit.size(), mean);
     for (std::size_t k = 0; k < lit.size(); ++k) {

@@ -1,5 +1,5 @@
 // `livery bench --suite geometry`: what a wrong pose, lens, mesh or size costs the audience.
-// docs/accuracy.md holds its table.
+// docs/geometry-errors.md holds its table.
 #pragma once
 
 #include <string>

@@ -13,10 +13,11 @@ struct LedgerLevel {
     double fastest_ms = 0.0;
     int repeats = 0;
     double work_items = 0.0;
-    std::optional<double> p95_ms, longest_ms;  ///< where a person waits for each one
-    std::optional<double> error;               ///< where there is a truth to compare with
-    std::optional<double> error_p95;           ///< where `error` is a median
-    std::string unit;                          ///< of the error
+    std::optional<double> p95_ms, longest_ms;    ///< where a person waits for each one
+    std::optional<double> error;                 ///< where there is a truth to compare with
+    std::optional<double> error_p95, error_p99;  ///< where `error` is a median
+    std::optional<double> swap_ms;               ///< beside `ms`, which is a new light's
+    std::string unit;                            ///< of the error
 };
 
 struct LedgerEffect {

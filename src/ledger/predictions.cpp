@@ -99,6 +99,13 @@ std::string predict(FramePlan& plan,
 }
 
 std::string predict_drawn(FramePlan& plan, const std::vector<PassCost>& costs) {
+    if (plan.quality != Quality::reference && plan.levels != levels_of(plan.quality)) {
+        for (PlannedPass& pass : plan.passes) {
+            pass.unpredicted_because =
+                "the bench times the levels of qualities, and these are others";
+        }
+        return "no predictions: the bench times the levels of qualities, and these are others";
+    }
     // The bench times shading per fragment and all else per pixel of the mock-up.
     const PlannedPass* resolve = find_pass(plan, PassKind::resolve);
     const double pixels = resolve ? resolve->work_items : 0.0;

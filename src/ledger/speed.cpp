@@ -11,12 +11,11 @@
 #include "compensation/gpu_pass.h"
 #include "core/parallel.h"
 #include "jobs/synthetic_calibration.h"
+#include "ledger/accuracy/truth.h"
 #include "ledger/artwork_times.h"
 #include "ledger/desktop_times.h"
 #include "ledger/first_frame_times.h"
-#include "radiance/accuracy.h"
 #include "radiance/renderer.h"
-#include "reference/path_tracer.h"
 #include "scene/library.h"
 #include "twin/description.h"
 
@@ -231,23 +230,25 @@ void time_frames(SpeedLedger& result,
     }
 }
 
-/// What each quality level is worth: the same look by the path tracer, on a part of the picture at
-/// its own scale (the car's bonnet and wing), direct light.
+/// What each quality level is worth: the first look against the path tracer with all bounces, over
+/// the whole mock-up, a quarter of its pixels.
 void compare_with_reference(SpeedLedger& result,
                             const TimedScene& scene,
                             const Progress& progress) {
-    const Scene& look = scene.looks.front();
-    const View part = cropped(scene.projector, 680, 470, 160, 100);
-    ReferenceOptions options;
-    options.samples_per_pixel = 400;
+    AccuracyScene whole;
+    whole.scene = scene.looks.front();
+    whole.view = resized(scene.projector, 320, 200);
+    TruthOptions options;
+    options.samples_per_pixel = 128;
     progress.update(0.0, "tracing the truth");
-    const ReferenceResult truth = trace_reference(look, part, options, progress);
+    const Truth truth = truth_of(whole, options, progress);
     for (const Quality quality : {Quality::draft, Quality::normal, Quality::high}) {
         RadianceRenderer renderer(std::make_shared<const FrameGeometry>(
-            scene.product, part, progress, sub_samples_of(quality)));
-        FramePlan plan = plan_frame(look, quality, FrameStage::radiance);
-        renderer.render(look, plan, progress);
-        const RadianceError error = radiance_error(renderer.read_back(), truth.radiance_working);
+            scene.product, whole.view, progress, sub_samples_of(quality)));
+        FramePlan plan = plan_frame(whole.scene, quality, FrameStage::radiance);
+        renderer.render(whole.scene, plan, progress);
+        const ErrorStatistics error =
+            statistics_of(colour_differences(renderer.read_back(), truth.radiance_working));
 
         const auto& frames = effect(result, "first frame").levels;
         const std::string name = fmt::format("1280x800, {}", to_string(quality));
@@ -257,11 +258,12 @@ void compare_with_reference(SpeedLedger& result,
             });
         LedgerLevel level = *frame;
         level.error = error.median;
-        level.unit = "of design white, median difference from the path tracer";
+        level.error_p95 = error.p95;
+        level.unit = "CIEDE2000";
         effect(result, "quality level: first frame, and its error").levels.push_back(level);
         for (PassCost& cost : result.pass_costs) {
             if (cost.pass == PassKind::resolve && cost.quality == quality) {
-                cost.error = error.median;
+                cost.error = error.p95;
             }
         }
     }

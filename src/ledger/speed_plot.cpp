@@ -6,23 +6,14 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "ledger/svg.h"
 
 namespace livery {
 namespace {
 
-constexpr double kWidth = 1000.0, kHeight = 620.0;
 constexpr double kLeft = 78.0, kRight = 742.0, kTop = 96.0, kBottom = 548.0;
 constexpr double kLabelHeight = 40.0, kRefresh_ms = 1000.0 / 60.0;
 constexpr const char* kInk = "#1d2430";
-constexpr const char* kSoft = "#66707f";
-
-/// A logarithmic axis from `low` to `high` along the picture.
-struct Axis {
-    double low, high, begin_px, end_px;
-    double at(double value) const {
-        return begin_px + (end_px - begin_px) * std::log(value / low) / std::log(high / low);
-    }
-};
 
 struct Series {
     SwapStage stage;
@@ -34,74 +25,16 @@ struct Series {
     double label_px = 0.0;
 };
 
-std::string text(double x, double y, std::string_view words, std::string_view attributes) {
-    return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" {}>{}</text>\n", x, y, attributes, words);
-}
-
-std::string line(double x1, double y1, double x2, double y2, std::string_view attributes) {
-    return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" {}/>\n",
-                       x1,
-                       y1,
-                       x2,
-                       y2,
-                       attributes);
-}
-
-/// 10 000 as 10k, 2 000 000 as 2M.
-std::string short_number(double value) {
-    if (value >= 1e6) return fmt::format("{:g}M", value / 1e6);
-    if (value >= 1e3) return fmt::format("{:g}k", value / 1e3);
-    return fmt::format("{:g}", value);
-}
-
-std::string grid(const Axis& x, const Axis& y) {
-    std::string svg;
-    const auto each = [](const Axis& axis, const auto& draw) {
-        for (double decade = std::pow(10.0, std::floor(std::log10(axis.low))); decade <= axis.high;
-             decade *= 10.0) {
-            for (const double digit : {1.0, 2.0, 5.0}) {
-                const double value = decade * digit;
-                if (value >= 0.999 * axis.low && value <= 1.001 * axis.high) {
-                    draw(value, digit == 1.0);
-                }
-            }
-        }
-    };
-    each(x, [&](double value, bool decade) {
-        svg += line(x.at(value),
-                    kTop,
-                    x.at(value),
-                    kBottom,
-                    decade ? "class=\"major\"" : "class=\"minor\"");
-        svg += text(x.at(value),
-                    kBottom + 22.0,
-                    short_number(value),
-                    "class=\"tick\" text-anchor=\"middle\"");
-    });
-    each(y, [&](double value, bool decade) {
-        svg += line(kLeft,
-                    y.at(value),
-                    kRight,
-                    y.at(value),
-                    decade ? "class=\"major\"" : "class=\"minor\"");
-        svg += text(kLeft - 10.0,
-                    y.at(value) + 4.5,
-                    fmt::format("{:g}", value),
-                    "class=\"tick\" text-anchor=\"end\"");
-    });
-    svg += text(0.5 * (kLeft + kRight),
-                kBottom + 50.0,
-                "pixels of the mock-up in the projector's picture",
-                "class=\"name\" text-anchor=\"middle\"");
-    svg += text(kLeft - 10.0, kTop - 14.0, "ms", "class=\"name\" text-anchor=\"end\"");
+std::string grid(const LogAxis& x, const LogAxis& y) {
+    std::string svg = svg_grid(x, y, "pixels of the mock-up in the projector's picture", "ms");
     if (kRefresh_ms > y.low && kRefresh_ms < y.high) {
         const double at = y.at(kRefresh_ms);
-        svg += line(kLeft,
-                    at,
-                    kRight,
-                    at,
-                    "stroke=\"#b3261e\" stroke-width=\"1\" stroke-dasharray=\"2 4\"");
-        svg += text(
+        svg += svg_line(kLeft,
+                        at,
+                        kRight,
+                        at,
+                        "stroke=\"#b3261e\" stroke-width=\"1\" stroke-dasharray=\"2 4\"");
+        svg += svg_text(
             kLeft + 8.0, at - 6.0, "one refresh at 60 Hz", "font-size=\"12\" fill=\"#b3261e\"");
     }
     return svg;
@@ -109,8 +42,8 @@ std::string grid(const Axis& x, const Axis& y) {
 
 std::string draw(const Series& series,
                  const std::vector<SweepPoint>& sweep,
-                 const Axis& x,
-                 const Axis& y) {
+                 const LogAxis& x,
+                 const LogAxis& y) {
     double first = x.high, last = x.low;
     std::string marks;
     for (const SweepPoint& point : sweep) {
@@ -135,7 +68,7 @@ std::string draw(const Series& series,
                     series.stage == SwapStage::whole ? 2.0 : 1.4,
                     series.hollow ? " stroke-dasharray=\"1 5\"" : "");
     std::string svg =
-        line(x.at(first), y.at(fitted(first)), x.at(last), y.at(fitted(last)), style) + marks;
+        svg_line(x.at(first), y.at(fitted(first)), x.at(last), y.at(fitted(last)), style) + marks;
     const double end = y.at(fitted(last));
     svg += fmt::format(
         "<path d=\"M{:.1f} {:.1f} L{:.1f} {:.1f} L{:.1f} {:.1f}\" fill=\"none\" stroke=\"{}\" "
@@ -147,22 +80,22 @@ std::string draw(const Series& series,
         kRight + 14.0,
         series.label_px,
         series.colour);
-    svg += text(kRight + 20.0,
-                series.label_px - 2.0,
-                series.name,
-                fmt::format("font-size=\"14\" font-weight=\"600\" fill=\"{}\"", series.colour));
-    svg += text(kRight + 20.0,
-                series.label_px + 15.0,
-                fmt::format("{:.1f} ns a pixel · slope {:.2f} · R² {:.3f}",
-                            series.law.typical_ns,
-                            series.law.slope,
-                            series.law.r2),
-                "font-size=\"12\" class=\"soft\"");
+    svg += svg_text(kRight + 20.0,
+                    series.label_px - 2.0,
+                    series.name,
+                    fmt::format("font-size=\"14\" font-weight=\"600\" fill=\"{}\"", series.colour));
+    svg += svg_text(kRight + 20.0,
+                    series.label_px + 15.0,
+                    fmt::format("{:.1f} ns a pixel · slope {:.2f} · R² {:.3f}",
+                                series.law.typical_ns,
+                                series.law.slope,
+                                series.law.r2),
+                    "font-size=\"12\" class=\"soft\"");
     return svg;
 }
 
 /// Labels beside the ends of their lines, none over another.
-void place_labels(std::vector<Series>& all, const Axis& y, double pixels) {
+void place_labels(std::vector<Series>& all, const LogAxis& y, double pixels) {
     for (Series& series : all) {
         series.label_px = y.at(series.law.scale * std::pow(pixels, series.law.slope));
     }
@@ -204,7 +137,7 @@ std::string sweep_svg(const std::vector<SweepPoint>& sweep) {
     add(SwapStage::correction, all_threads, "#d55e00", false);
     add(SwapStage::mixing, all_threads, "#009e73", false);
 
-    Axis x{1e12, 0.0, kLeft, kRight - 14.0}, y{1e12, 0.0, kBottom, kTop};
+    LogAxis x{1e12, 0.0, kLeft, kRight - 14.0}, y{1e12, 0.0, kBottom, kTop};
     for (const SweepPoint& point : sweep) {
         x.low = std::min(x.low, point.pixels);
         x.high = std::max(x.high, point.pixels);
@@ -223,24 +156,8 @@ std::string sweep_svg(const std::vector<SweepPoint>& sweep) {
         sweep.begin(), sweep.end(), [](const SweepPoint& a, const SweepPoint& b) {
             return a.width * a.height < b.width * b.height;
         });
-    std::string svg = fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
-        "height=\"{1}\" "
-        "font-family=\"Inter, 'Helvetica Neue', Arial, sans-serif\" fill=\"{2}\">\n"
-        "<style>.minor{{stroke:#eceff3}}.major{{stroke:#d5dae1}}.tick{{font-size:12.5px;fill:{3}}}"
-        ".name{{font-size:13.5px;fill:{3}}}.soft{{fill:{3}}}</style>\n"
-        "<rect width=\"{0}\" height=\"{1}\" rx=\"10\" fill=\"#ffffff\"/>\n",
-        kWidth,
-        kHeight,
-        kInk,
-        kSoft);
-    svg += text(kLeft - 50.0,
-                38.0,
-                "Paint swap to projector input, against the mock-up's pixels",
-                "font-size=\"21\" font-weight=\"700\"");
-    svg += text(
-        kLeft - 50.0,
-        62.0,
+    std::string svg = svg_begin(
+        "Paint swap to projector input, against the mock-up's pixels",
         fmt::format(
             "Projectors of {}×{} to {}×{}, the mock-up on 1 to 60% of the picture; each point the "
             "median of {} swaps",
@@ -248,11 +165,10 @@ std::string sweep_svg(const std::vector<SweepPoint>& sweep) {
             smallest->height,
             largest->width,
             largest->height,
-            sweep.front().repeats),
-        "font-size=\"14\" class=\"soft\"");
+            sweep.front().repeats));
     svg += grid(x, y);
     for (const Series& series : all) svg += draw(series, sweep, x, y);
-    return svg + "</svg>\n";
+    return svg + svg_end();
 }
 
 }  // namespace livery

@@ -44,11 +44,6 @@ void run_giving_way(std::optional<Urgency> urgency, const std::function<void()>&
     if (error) std::rethrow_exception(error);
 }
 
-bool mirrors(const Scene& scene) {
-    return any_paint(scene,
-                     [](const Material& paint) { return model_info(paint.model).mirrors(); });
-}
-
 template <typename T>
 bool all_same(const std::vector<T>& a, const std::vector<T>& b, bool (*same)(const T&, const T&)) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), same);
@@ -70,6 +65,16 @@ void add_milliseconds(FramePlan& plan, const FramePlan& more, bool add_passes) {
             plan.passes.push_back(pass);
         }
     }
+}
+
+bool covers(const std::vector<MirrorLayers>& solved, const Scene& scene) {
+    const std::vector<MirrorLayers> worn = mirror_layers_of(scene);
+    return std::equal(
+        worn.begin(),
+        worn.end(),
+        solved.begin(),
+        solved.end(),
+        [](const auto& of_part, const auto& known) { return (of_part & ~known).none(); });
 }
 
 /// What a paint's program depends on.
@@ -152,18 +157,27 @@ void FrameLane::solve(const FrameDescription& description,
     SolveKeys keys = with_quality(keys_of(description), quality);
     if (keys[1] && same_light(*keys[0], *keys[1])) keys[1].reset();
     solved_ = {};
-    prepared_ = mirrors_solved_ = false;
+    prepared_ = false;
     sides_ = {};
     solve_light(0, description.scene, *keys[0], urgency, progress);
-    bool mirroring = mirrors(description.scene);
     if (keys[1]) {
         solve_light(1, *description.wipe_to, *keys[1], urgency, progress);
-        mirroring = mirroring && mirrors(*description.wipe_to);
     } else {
         lights_[1] = {};
+        // Its paints may mirror other layers of the light that both have
+        if (description.wipe_to) {
+            solve_light(0, *description.wipe_to, *keys[0], urgency, progress);
+        }
     }
-    mirrors_solved_ = mirroring || (!keys[0]->environment && (!keys[1] || !keys[1]->environment));
     solved_ = std::move(keys);
+    note_mirrors();
+}
+
+void FrameLane::note_mirrors() {
+    for (std::size_t k = 0; k < lights_.size(); ++k) {
+        mirrors_[k] =
+            lights_[k].renderer ? lights_[k].renderer->mirrored() : std::vector<MirrorLayers>();
+    }
 }
 
 void FrameLane::solve_light(std::size_t index,
@@ -189,7 +203,12 @@ void FrameLane::solve_light(std::size_t index,
 }
 
 void FrameLane::prepare(const FrameDescription& description, const Progress& progress) {
-    std::vector<PlannedPass> passes;
+    prepare_mirrors(description, progress);
+    prepare_programs(description, progress);
+    prepared_ = true;
+}
+
+void FrameLane::prepare_programs(const FrameDescription& description, const Progress& progress) {
     std::set<ProgramOf> programs = programs_likely_next(description.library.get());
     for (std::size_t side = 0; side < side_count(description); ++side) {
         any_paint(side_of(description, side), [&](const Material& paint) {
@@ -209,11 +228,12 @@ void FrameLane::prepare(const FrameDescription& description, const Progress& pro
             const std::size_t index = nearest_of(solved_, keys_of(description), side);
             RadianceRenderer& renderer = *lights_[index].renderer;
             FramePlan plan = plan_frame(scene, solved_[index]->quality, FrameStage::projector);
-            run_giving_way(Urgency::background, [&] { renderer.solve(scene, plan, progress); });
-            renderer.prepare(scene, plan, progress);
+            run_giving_way(Urgency::background,
+                           [&] { renderer.solve(scene, plan, progress, LightBetweenParts::kept); });
+            renderer.prepare(scene, plan, progress, LightBetweenParts::kept);
         }
         if (used) continue;
-        PlannedPass& pass = passes.emplace_back();
+        PlannedPass& pass = prepare_passes_.emplace_back();
         const ModelInfo& model = model_info(program.model);
         pass.id = {PassKind::prepare, "", program.model, program.glints};
         pass.why = fmt::format("{}{} may be next: made ready ahead",
@@ -221,18 +241,46 @@ void FrameLane::prepare(const FrameDescription& description, const Progress& pro
                                program.glints ? " and glints" : "");
         pass.ms = milliseconds_since(start);
     }
-    prepare_passes_ = std::move(passes);
-    prepared_ = mirrors_solved_ = true;
+}
+
+void FrameLane::prepare_mirrors(const FrameDescription& description, const Progress& progress) {
+    prepare_passes_.clear();
+    std::set<std::size_t> lights;
+    for (std::size_t side = 0; side < side_count(description); ++side) {
+        const std::size_t index = nearest_of(solved_, keys_of(description), side);
+        if (!lights.insert(index).second) continue;  // both sides have it
+        const Scene scene = scene_of(description, side);
+        FramePlan plan = plan_frame(scene, solved_[index]->quality, FrameStage::projector);
+        plan_ahead(plan);
+        PlannedPass* pass = find_pass(plan, mirrored_ahead_pass());
+        if (!pass) continue;
+        RadianceRenderer& renderer = *lights_[index].renderer;
+        run_giving_way(Urgency::background, [&] { renderer.solve(scene, plan, progress); });
+        prepare_passes_.push_back(*pass);
+        renderer.prepare(scene, plan, progress);
+    }
+    note_mirrors();
+}
+
+bool can_draw(const SolveKeys& solved,
+              const SolvedMirrors& mirrors,
+              const FrameDescription& description) {
+    if (!solved[0]) return false;
+    const SolveKeys keys = keys_of(description);
+    for (std::size_t side = 0; side < side_count(description); ++side) {
+        if (!same_pose(*solved[0], *keys[side])) return false;
+        try {
+            const std::size_t light = nearest_of(solved, keys, side);
+            if (!covers(mirrors[light], side_of(description, side))) return false;
+        } catch (const std::invalid_argument&) {
+            continue;  // a paint that cannot be: drawing it says why
+        }
+    }
+    return true;
 }
 
 bool FrameLane::can_draw(const FrameDescription& description) const {
-    if (!solved_[0]) return false;
-    const SolveKeys keys = keys_of(description);
-    for (std::size_t side = 0; side < side_count(description); ++side) {
-        if (!same_pose(*solved_[0], *keys[side])) return false;
-        if (!mirrors_solved_ && mirrors(side_of(description, side))) return false;
-    }
-    return true;
+    return livery::can_draw(solved_, mirrors_, description);
 }
 
 Scene FrameLane::scene_of(const FrameDescription& description, std::size_t side) const {
@@ -303,7 +351,7 @@ std::shared_ptr<FinishedFrame> FrameLane::draw_picture(const FrameDescription& d
     solved_ = {};
     sides_ = {};
     composed_ = {};
-    prepared_ = mirrors_solved_ = false;
+    prepared_ = false;
     throw;
 }
 
@@ -345,7 +393,8 @@ void FrameLane::draw_side(const FrameDescription& description, std::size_t index
         const auto start = Clock::now();
         RadianceRenderer& renderer = *lights_[light].renderer;
         FramePlan drawn = plan_side(description, index);
-        renderer.render(scene, drawn);
+        // What a new paint sends to other parts is solved on the back lane (solve_key.h).
+        renderer.render(scene, drawn, {}, LightBetweenParts::kept);
         auto radiance = path_->take(renderer);
         side.shade_ms += milliseconds_since(start);
         add_milliseconds(drawn, side.plan, false);

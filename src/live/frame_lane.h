@@ -34,6 +34,15 @@ class GeometryCache {
     std::shared_ptr<const FrameGeometry> newest_;
 };
 
+/// Of each light that is solved, of each part, which layers of what it mirrors are.
+using SolvedMirrors = std::array<std::vector<MirrorLayers>, 2>;
+
+/// Whether a lane that has solved this can draw the description without solving more: the same
+/// pose, and all that its paints mirror.
+bool can_draw(const SolveKeys& solved,
+              const SolvedMirrors& mirrors,
+              const FrameDescription& description);
+
 /// For one thread, with its context current from creation to destruction.
 class FrameLane {
   public:
@@ -49,10 +58,12 @@ class FrameLane {
                const Progress& progress);
     /// What any other paint may need in the light that is solved, so that none has to wait.
     void prepare(const FrameDescription& description, const Progress& progress);
+    /// Of that, what any may mirror.
+    void prepare_mirrors(const FrameDescription& description, const Progress& progress);
 
     const SolveKeys& solved() const { return solved_; }
-    bool is_prepared() const { return prepared_; }
-    /// Whether draw() has nothing to solve: the same pose, and no first paint that mirrors.
+    const SolvedMirrors& mirrors() const { return mirrors_; }
+    bool is_prepared() const { return prepared_; }  ///< for any other paint
     bool can_draw(const FrameDescription& description) const;
 
     /// The description's paints in the light that is solved; only what changed since the last one
@@ -87,6 +98,8 @@ class FrameLane {
         std::shared_ptr<const FramePictures> pictures;
     };
 
+    void note_mirrors();
+    void prepare_programs(const FrameDescription& description, const Progress& progress);
     void solve_light(std::size_t index,
                      const Scene& scene,
                      const SolveKey& key,
@@ -113,7 +126,8 @@ class FrameLane {
     };
     std::array<Solved, 2> lights_;
     SolveKeys solved_;
-    bool prepared_ = false, mirrors_solved_ = false;
+    SolvedMirrors mirrors_;
+    bool prepared_ = false;
     std::vector<PlannedPass> prepare_passes_;
 
     std::array<Side, 2> sides_;

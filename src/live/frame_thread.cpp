@@ -54,7 +54,12 @@ struct FrameJobs {
     /// What a lane can do, told by its thread.
     struct LaneState {
         SolveKeys solved;
+        SolvedMirrors mirrors;
         bool prepared = false;
+        /// The newest's light, whatever its quality, and all that its paints mirror of it.
+        bool shows_light(const FrameDescription& newest, const SolveKeys& wanted) const {
+            return covers_light(solved, wanted) && can_draw(solved, mirrors, newest);
+        }
     };
     std::array<LaneState, 2> lanes;
 
@@ -63,7 +68,8 @@ struct FrameJobs {
         Newest description;
         SolveKeys wanted;  ///< at the quality of this task
         bool for_showing = true;
-        bool whole = false;  ///< prepares for other paints, too
+        bool whole = false;        ///< prepares for other paints, too
+        bool all_mirrors = false;  ///< or, of that, only what they mirror
     };
     std::optional<Task> task;
     std::optional<FrameThread::Solving> solving;
@@ -73,27 +79,30 @@ struct FrameJobs {
     std::string unfinished_of(const SolveKeys& solved, const SolveKeys& wanted) const;
     bool disturbs(const FrameDescription& description) const;
     void note(std::size_t index, const FrameLane& lane) {
-        lanes[index] = {lane.solved(), lane.is_prepared()};
+        lanes[index] = {lane.solved(), lane.mirrors(), lane.is_prepared()};
     }
 };
 
-/// What the back lane should do next, if anything: show a new light as a draft; then at the quality
-/// that is wanted; then catch up with the front, to be as good a start for the next light.
+/// What the back lane should do next, if anything: show a new light, or what a new paint mirrors of
+/// it, as a draft; then at the quality that is wanted; then catch up with the front, to be as good
+/// a start for the next light. Only the very first draft leaves out what other paints would mirror.
 std::optional<FrameJobs::Task> FrameJobs::next_task() const {
     if (!newest || newest == failed) return std::nullopt;
     const auto wanted = wanted_of(*newest);
     if (!wanted) return std::nullopt;
     const LaneState& ahead = lanes[front];
     const LaneState& own = lanes[1 - front];
-    const bool light_shown = covers_light(ahead.solved, *wanted);
+    const bool light_shown = ahead.shows_light(*newest, *wanted);
     const bool all_shown = light_shown && missing_of(ahead.solved, *wanted).empty();
-    const bool solved_already = own.solved[0] && missing_of(own.solved, *wanted).empty();
+    const bool solved_already =
+        own.shows_light(*newest, *wanted) && missing_of(own.solved, *wanted).empty();
     if (all_shown && ahead.prepared) {
         if (solved_already && own.prepared) return std::nullopt;
         return Task{newest, *wanted, false, true};
     }
     if (!light_shown && !solved_already) {
-        return Task{newest, with_quality(*wanted, Quality::draft), true, false};
+        const bool first = last_good == nullptr;
+        return Task{newest, with_quality(*wanted, Quality::draft), true, false, !first};
     }
     return Task{newest, *wanted, true, true};
 }
@@ -104,22 +113,25 @@ bool FrameJobs::front_can_draw(const FrameLane& lane) const {
     return !wanted_of(*newest) || lane.can_draw(*newest);
 }
 
-/// Whether a description makes the task that runs worthless. A draft is finished for its light even
-/// if a newer light waits, or a light that is dragged would never be seen to move.
+/// Whether a description makes the task that runs worthless, or cannot wait for it. A draft is
+/// finished for its light even if a newer light waits, or a light that is dragged would never be
+/// seen to move.
 bool FrameJobs::disturbs(const FrameDescription& description) const {
     if (!task) return false;
     const auto wanted = wanted_of(description);
     if (!wanted) return false;
     const bool draft_of_this_pose =
         task->for_showing && !task->whole && same_pose(*task->wanted[0], *(*wanted)[0]);
-    return !draft_of_this_pose && !missing_of(task->wanted, *wanted).empty();
+    if (draft_of_this_pose) return false;
+    const LaneState& ahead = lanes[front];
+    const bool lacks_mirrors =
+        covers_light(ahead.solved, *wanted) && !can_draw(ahead.solved, ahead.mirrors, description);
+    return lacks_mirrors || !missing_of(task->wanted, *wanted).empty();
 }
 
 std::string FrameJobs::unfinished_of(const SolveKeys& solved, const SolveKeys& wanted) const {
     const std::string missing = missing_of(solved, wanted);
-    if (missing.empty()) return "";
-    const double fraction = solving ? solving->fraction : 0.0;
-    return fmt::format("{}: solving, {:.0f}%", missing, 100.0 * fraction);
+    return missing.empty() ? "" : missing + ": solving";
 }
 
 }  // namespace
@@ -197,6 +209,7 @@ void FrameThread::Implementation::work_behind(const FrameJobs::Task& task,
         lane.solve(*task.description, task.wanted[0]->quality, urgency, progress);
         // Everything that drawing makes once, before the front is held.
         lane.draw_ahead(*task.description);
+        if (task.all_mirrors) lane.prepare_mirrors(*task.description, progress);
         if (task.whole) lane.prepare(*task.description, progress);
     } catch (const Cancelled&) {
     } catch (...) {

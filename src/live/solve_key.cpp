@@ -2,11 +2,32 @@
 
 #include <algorithm>
 
+#include <glm/common.hpp>
+
+#include "appearance/paint_bsdf.h"
 #include "core/error.h"
 
 namespace livery {
 
 namespace {
+
+/// Of an albedo of 1.
+constexpr float kSteps = 64.0f;
+
+std::vector<glm::ivec3> sends_on(const Scene& scene, Quality quality) {
+    // Asked several times a frame: most qualities need not look at the scene.
+    if (quality == Quality::reference || levels_of(quality)[Effect::interreflection] == 0) {
+        return {};
+    }
+    const FramePlan plan = plan_frame(scene, quality, FrameStage::radiance);
+    if (!find_pass(plan, PassKind::interreflection)) return {};
+    std::vector<glm::ivec3> steps;
+    for (const Material& material : scene.part_materials) {
+        const glm::vec3 albedo = hemispherical_albedo(bsdf_of(material));
+        steps.emplace_back(glm::round(kSteps * albedo));
+    }
+    return steps;
+}
 
 std::string difference(const SolveKey& solved, const SolveKey& wanted) {
     if (solved.product != wanted.product) return "product";
@@ -31,7 +52,8 @@ SolveKeys keys_of(const FrameDescription& description) {
                         scene.lights,
                         scene.eye_in_world_mm,
                         description.quality,
-                        scene.relief};
+                        scene.relief,
+                        sends_on(scene, description.quality)};
     };
     SolveKeys keys{key_of(description.scene), std::nullopt};
     if (description.wipe_to) {
@@ -44,7 +66,9 @@ SolveKeys keys_of(const FrameDescription& description) {
 
 SolveKeys with_quality(SolveKeys keys, Quality quality) {
     for (auto& key : keys) {
-        if (key) key->quality = quality;
+        if (!key) continue;
+        key->quality = quality;
+        if (quality == Quality::draft) key->sends_on.clear();
     }
     return keys;
 }
@@ -71,16 +95,18 @@ std::string missing_of(const SolveKeys& solved, const SolveKeys& wanted) {
     for (std::size_t side = 0; side < wanted.size(); ++side) {
         if (!wanted[side]) continue;
         if (!solved[0]) return "picture";
-        const std::string missing =
-            difference(*solved[nearest_of(solved, wanted, side)], *wanted[side]);
+        const SolveKey& nearest = *solved[nearest_of(solved, wanted, side)];
+        const std::string missing = difference(nearest, *wanted[side]);
         if (!missing.empty()) return missing;
+        const bool shared = side == 1 && !solved[1];
+        if (!shared && nearest.sends_on != wanted[side]->sends_on) return "light between parts";
     }
     return "";
 }
 
 bool covers_light(const SolveKeys& solved, const SolveKeys& wanted) {
     return solved[0] &&
-           missing_of(with_quality(solved, Quality::normal), with_quality(wanted, Quality::normal))
+           missing_of(with_quality(solved, Quality::draft), with_quality(wanted, Quality::draft))
                .empty();
 }
 

@@ -20,6 +20,9 @@ struct SolveKey {
     glm::dvec3 eye_mm{0.0};
     Quality quality = Quality::normal;
     std::vector<PartArtwork> relief{};
+    /// What each part sends on of its light, in steps that nobody sees; empty: no light between
+    /// parts is asked for.
+    std::vector<glm::ivec3> sends_on{};
 };
 /// Of the scene left of a wipe's line (or of all) and of the one right of it. What is solved has a
 /// right one only where its light differs from the left one's.
@@ -30,17 +33,19 @@ using SolveKeys = std::array<std::optional<SolveKey>, 2>;
 SolveKeys keys_of(const FrameDescription& description);
 SolveKeys with_quality(SolveKeys keys, Quality quality);
 
-bool same_pose(const SolveKey& a, const SolveKey& b);   ///< product and projector
-bool same_light(const SolveKey& a, const SolveKey& b);  ///< all but the quality
+bool same_pose(const SolveKey& a, const SolveKey& b);  ///< product and projector
+/// All but the quality and what parts send on.
+bool same_light(const SolveKey& a, const SolveKey& b);
 
 /// Which of `solved` to draw a side of `wanted` with: its own light if that is there, else the
 /// nearest thing. `solved` has at least a left one.
 std::size_t nearest_of(const SolveKeys& solved, const SolveKeys& wanted, std::size_t side);
 
-/// What is solved otherwise than it is wanted: "light", "environment", "eye", "normal quality", ...
-/// Empty when nothing is.
+/// What is solved otherwise than it is wanted: "light", "environment", "eye", "normal quality",
+/// "light between parts", ... Empty when nothing is. Sides of a wipe that share their light share
+/// the left one's light between parts.
 std::string missing_of(const SolveKeys& solved, const SolveKeys& wanted);
-/// The same, quality aside.
+/// The same, quality and light between parts aside.
 bool covers_light(const SolveKeys& solved, const SolveKeys& wanted);
 
 }  // namespace livery

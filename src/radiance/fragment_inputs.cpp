@@ -1,6 +1,7 @@
 #include "radiance/fragment_inputs.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <numbers>
@@ -38,40 +39,25 @@ bool same_map(const std::shared_ptr<const Environment>& a,
            a->radiance_working.values == b->radiance_working.values;
 }
 
-/// Whether a draft mirrors at a fragment the mean of what it does on both sides in the same row:
-/// all three whole pixels of one surface that turns by less than a degree, so that no reflection
-/// moves by more than another one.
-bool lies_between(const SurfaceMap& map, std::size_t i) {
-    constexpr float kOneDegree = 0.99985f;
-    const Fragment &left = map.fragments[i - 1], &own = map.fragments[i],
-                   &right = map.fragments[i + 1];
-    const auto width = static_cast<std::uint32_t>(map.width);
-    const std::uint32_t x = own.pixel % width;
-    return x % 2 == 1 && x + 1 < width && left.pixel + 1 == own.pixel &&
-           own.pixel + 1 == right.pixel && left.part == own.part && right.part == own.part &&
-           left.coverage == 1.0f && own.coverage == 1.0f && right.coverage == 1.0f &&
-           glm::dot(left.normal, right.normal) > kOneDegree &&
-           glm::dot(left.normal, own.normal) > kOneDegree;
-}
-
 glm::vec3 radiance_working(const DirectionalLight& light) {
     return glm::vec3(working_from_rec709() * light.radiance_rec709);
 }
 
 }  // namespace
 
-QualityRays rays_of(Quality quality) {
-    switch (quality) {
-        case Quality::draft:
-            return {1, {8, 0, true}, 0};
-        case Quality::normal:
-            return {16, {16, 128, false}, 16};
-        case Quality::high:
-            return {64, {64, 256, false}, 24};
-        case Quality::reference:
-            break;
-    }
-    throw std::invalid_argument("the reference level is the path tracer's");
+FragmentRays rays_of(const EffectLevels& levels) {
+    constexpr std::array kLight{0, 1, 16, 64};
+    constexpr std::array<SkyRays, 4> kSky{
+        {{0, 0, false}, {8, 0, true}, {16, 128, false}, {64, 256, false}}};
+    constexpr std::array kMirror{0, 16, 24};
+    constexpr std::array kBounces{0, 1, 16};
+    const auto at = [&](const auto& table, Effect effect) {
+        return table.at(static_cast<std::size_t>(levels[effect]));
+    };
+    return {at(kLight, Effect::shadows),
+            at(kSky, Effect::occlusion),
+            at(kMirror, Effect::mirrored_environment),
+            at(kBounces, Effect::interreflection)};
 }
 
 double StageClock::now_ms() {
@@ -81,6 +67,7 @@ double StageClock::now_ms() {
 
 FragmentInputs::FragmentInputs(const Mesh& mesh,
                                const Tracer& tracer,
+                               std::shared_ptr<SharedExchange> exchange,
                                const View& view,
                                const SurfaceMap& map,
                                const PackedLayout& layout,
@@ -88,42 +75,45 @@ FragmentInputs::FragmentInputs(const Mesh& mesh,
                                bool keep_better)
     : mesh_(mesh),
       tracer_(tracer),
+      shared_exchange_(std::move(exchange)),
       pixels_(pixel_size_of(view)),
       map_(&map),
       layout_(layout),
       device_(device),
-      keep_better_(keep_better) {}
+      keep_better_(keep_better),
+      mirror_(mesh, tracer, map, layout) {}
 
 void FragmentInputs::use(const SurfaceMap& map) {
     map_ = &map;
     lights_.clear();
     sky_visibility_.reset();
-    mirror_visibility_.reset();
-    visibility_eye_.reset();
     sky_made_ = {};
-    mirror_made_ = {};
-    directions_stale_ = diffuse_light_stale_ = places_stale_ = true;
+    mirror_.use(map);
+    drop_exchange();
+    directions_stale_ = sky_stale_ = diffuse_light_stale_ = places_stale_ = true;
 }
 
 void FragmentInputs::solve(const Scene& scene,
                            const FramePlan& plan,
                            StageClock& clock,
-                           const Progress& progress) {
+                           const Progress& progress,
+                           bool keep_exchange) {
     solve_lights(scene, plan, clock, progress);
     solve_sky(scene, plan, clock, progress);
-    solve_mirror(scene, plan, clock, progress);
+    solve_exchange(scene, plan, clock, progress, keep_exchange);
+    solve_mirror(scene, plan, clock, progress, keep_exchange);
 }
 
 void FragmentInputs::solve_lights(const Scene& scene,
                                   const FramePlan& plan,
                                   StageClock& clock,
                                   const Progress& progress) {
-    const int rays = rays_of(plan.quality).light;
+    const int rays = rays_of(plan.levels).light;
     std::size_t planned = 0;
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
         const PassId pass = visibility_pass(i);
-        if (!find_pass(plan, pass)) continue;
         const DirectionalLight& light = scene.lights[i];
+        if (light.radiance_rec709 == glm::dvec3(0.0)) continue;
         const auto found = std::find_if(lights_.begin(), lights_.end(), [&](const Light& l) {
             return l.index == i && enough(l.rays, rays) && same_disc(l.light, light);
         });
@@ -136,6 +126,7 @@ void FragmentInputs::solve_lights(const Scene& scene,
             next.at = std::move(found->at);
             lights_.erase(found);
         }
+        if (stale && rays == 0) next.at = unhidden_light(*map_, light);
         clock.run(pass, stale, [&] {
             next.at = light_at_fragments(mesh_, tracer_, *map_, light, rays, progress);
         });
@@ -152,7 +143,7 @@ void FragmentInputs::solve_sky(const Scene& scene,
                                StageClock& clock,
                                const Progress& progress) {
     if (!find_pass(plan, PassKind::environment_irradiance)) {
-        if (sky_made_.of) directions_stale_ = diffuse_light_stale_ = true;
+        if (sky_made_.of) sky_stale_ = diffuse_light_stale_ = true;
         sky_made_ = {};
         diffused_ = nullptr;
         filtered_.diffuse = filtered_.blurred = filtered_.hardly_blurred = {};
@@ -160,7 +151,7 @@ void FragmentInputs::solve_sky(const Scene& scene,
         return;
     }
     const bool occluded = find_pass(plan, PassKind::ambient_occlusion) != nullptr;
-    const SkyRays sky_rays = rays_of(plan.quality).sky;
+    const SkyRays sky_rays = rays_of(plan.levels).sky;
     const int rays = occluded ? sky_rays.first : 0;
     const bool stands = sky_made_.of == scene.environment && enough(sky_made_.rays, rays);
     const bool visible =
@@ -179,112 +170,133 @@ void FragmentInputs::solve_sky(const Scene& scene,
         diffused_ = scene.environment;
         sky_ = sky_at_fragments(
             mesh_, *map_, *scene.environment, filtered_, occluded ? &*sky_visibility_ : nullptr);
-        sky_made_ = {scene.environment, occluded ? sky_visibility_->rays.first : 0, {}};
-        directions_stale_ = diffuse_light_stale_ = true;
+        sky_made_ = {scene.environment, occluded ? sky_visibility_->rays.first : 0};
+        sky_stale_ = diffuse_light_stale_ = true;
     });
+}
+
+void FragmentInputs::drop_exchange() {
+    exchanged_.at_fragments = {};
+    ++exchanged_.version;
+    sky_stale_ = diffuse_light_stale_ = true;
+}
+
+void FragmentInputs::solve_exchange(const Scene& scene,
+                                    const FramePlan& plan,
+                                    StageClock& clock,
+                                    const Progress& progress,
+                                    bool keep) {
+    Exchanged& made = exchanged_;
+    if (!find_pass(plan, PassKind::interreflection)) {
+        if (!made.at_fragments.seen.empty() && !keep) drop_exchange();
+        return;
+    }
+    const auto environment =
+        find_pass(plan, PassKind::environment_irradiance) ? scene.environment : nullptr;
+    const bool same_light =
+        !made.direct.empty() && made.lights == scene.lights && made.environment == environment;
+    const int bounces = rays_of(plan.levels).bounces;
+    const bool same_paints =
+        same_relief(made.artwork, scene.artwork) && std::equal(made.paints.begin(),
+                                                               made.paints.end(),
+                                                               scene.part_materials.begin(),
+                                                               scene.part_materials.end(),
+                                                               same_reflectance);
+    const bool stands = keep || (same_light && !made.at_fragments.seen.empty() && same_paints &&
+                                 enough(made.bounces, bounces));
+    clock.run(PassKind::interreflection, !stands, [&] {
+        made.nodes = shared_exchange_->of(mesh_, tracer_, progress);
+        if (!same_light) {
+            made.direct = direct_at_nodes(
+                mesh_, tracer_, *made.nodes, scene.lights, environment.get(), filtered_, progress);
+            made.lights = scene.lights;
+            made.environment = environment;
+        }
+        made.at_fragments = exchanged_at_fragments(
+            mesh_,
+            *map_,
+            made.nodes->nodes,
+            exchanged_at_nodes(
+                *made.nodes, made.direct, albedo_at_nodes(scene, made.nodes->nodes), bounces));
+        made.paints = scene.part_materials;
+        made.artwork = scene.artwork;
+        made.bounces = bounces;
+        ++made.version;
+        sky_stale_ = diffuse_light_stale_ = true;
+    });
+}
+
+void FragmentInputs::filter_gaussians(const Scene& scene, const Progress& progress) {
+    filtered_.gaussians =
+        filter_environment(*scene.environment, {false, false, false, true}, progress).gaussians;
+    layered_ = scene.environment;
 }
 
 void FragmentInputs::solve_mirror(const Scene& scene,
                                   const FramePlan& plan,
                                   StageClock& clock,
-                                  const Progress& progress) {
+                                  const Progress& progress,
+                                  bool keep_exchange) {
     // A scene whose paints do not mirror keeps what the next one may; one without environment not.
-    if (!find_pass(plan, PassKind::mirrored_environment)) {
+    const bool ahead = find_pass(plan, mirrored_ahead_pass()) != nullptr;
+    if (!ahead && !find_pass(plan, PassKind::mirrored_environment)) {
         if (find_pass(plan, PassKind::environment_irradiance)) return;
-        if (mirror_made_.of) changed_.glossy = true;
-        mirror_made_ = {};
+        mirror_.clear();
         layered_ = nullptr;
         filtered_.gaussians.clear();
-        mirror_visibility_.reset();
-        mirror_texels_ = {};
         return;
     }
-    clock.run(PassKind::environment_filter, !same_map(layered_, scene.environment), [&] {
-        filtered_.gaussians =
-            filter_environment(*scene.environment, {false, false, false, true}, progress).gaussians;
+    // Without what hides it, nothing is known of what other parts send into a mirror either
+    const bool hides = plan.levels[Effect::reflected_occlusion] > 0;
+    MirrorInputs::Light light{
+        scene.environment, scene.eye_in_world_mm, hides ? rays_of(plan.levels).mirror : 0};
+    const MirrorInputs::Light& made = mirror_.light();
+    if (made.environment == light.environment && made.eye_mm == light.eye_mm &&
+        enough(made.nodes, light.nodes)) {
+        light.nodes = made.nodes;
+    }
+    const auto solve_layers = [&](const MirrorInputs::LayersOfParts& layers) {
+        const SkyVisibility* joints = sky_visibility_ ? &*sky_visibility_ : nullptr;
+        mirror_.solve(light, layers, filtered_, joints, progress);
+    };
+    const auto any = [](const MirrorInputs::LayersOfParts& layers) {
+        return std::any_of(layers.begin(), layers.end(), [](const auto& of) { return of.any(); });
+    };
+    mirror_.hide_behind(exchanged_.at_fragments.seen, exchanged_.version);
+    // Who keeps light between parts draws with what was mirrored behind other light of it, too
+    const auto worn = mirror_.missing(light, mirror_layers_of(scene), !keep_exchange);
+    const bool filtered = same_map(layered_, scene.environment);
+    if (filtered) layered_ = scene.environment;
+    clock.run(PassKind::environment_filter, !filtered, [&] { filter_gaussians(scene, progress); });
+    clock.run(PassKind::reflection_occlusion, mirror_.lacks_visibility(light, worn), [&] {
+        mirror_.trace(light, worn, progress);
     });
-    layered_ = scene.environment;
-    const glm::dvec3 eye = scene.eye_in_world_mm;
-    const bool occluded = find_pass(plan, PassKind::reflection_occlusion) != nullptr;
-    const int rays = occluded ? rays_of(plan.quality).mirror : 0;
-    const bool stands = mirror_made_.of == scene.environment && mirror_made_.eye_mm == eye &&
-                        enough(mirror_made_.rays, rays);
-    const bool visible =
-        !occluded || stands ||
-        (mirror_visibility_ && enough(mirror_visibility_->quadrature.nodes(), rays) &&
-         visibility_eye_ == eye);
-    clock.run(PassKind::reflection_occlusion, !visible, [&] {
-        mirror_visibility_ = solve_mirror_visibility(mesh_, tracer_, *map_, eye, rays, progress);
-        visibility_eye_ = eye;
-    });
-    clock.run(PassKind::mirrored_environment, !stands, [&] {
-        fill_mirror(scene, occluded, progress);
-        mirror_made_ = {
-            scene.environment, occluded ? mirror_visibility_->quadrature.nodes() : 0, eye};
+    clock.run(PassKind::mirrored_environment, any(worn), [&] { solve_layers(worn); });
+    if (!ahead) return;
+    const auto others = mirror_.missing(
+        light,
+        MirrorInputs::LayersOfParts(scene.part_materials.size(), MirrorLayers().set()),
+        false);
+    clock.run(mirrored_ahead_pass(), any(others), [&] {
+        if (!same_map(layered_, scene.environment)) filter_gaussians(scene, progress);
+        if (mirror_.lacks_visibility(light, others)) mirror_.trace(light, others, progress);
+        solve_layers(others);
     });
 }
 
-void FragmentInputs::fill_mirror(const Scene& scene, bool occluded, const Progress& progress) {
-    const MirrorVisibility* visibility = occluded ? &*mirror_visibility_ : nullptr;
-    const SkyVisibility* joints = !occluded && sky_visibility_ ? &*sky_visibility_ : nullptr;
-    // Half floats hold the radiance in units in which the brightest texel fits.
-    const ImageF& sharpest = filtered_.gaussians.front();
-    const float largest = *std::max_element(sharpest.values.begin(), sharpest.values.end()) *
-                          static_cast<float>(scene.environment->scale);
-    const float unit = std::max(1.0f, largest / kHalfLargest);
-    const MirroredEnvironment environment(
-        *scene.environment, filtered_, mesh_, *map_, scene.eye_in_world_mm, visibility);
-    const std::size_t layer_size = static_cast<std::size_t>(layout_.rows) * kPackedWidth * 4;
-    std::vector<std::vector<float>> texels(kMirrorLayers);
-    parallel_for(texels.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) texels[k].assign(layer_size, 0.0f);
-    });
-    parallel_for(map_->fragments.size(), 1024, [&](std::size_t begin, std::size_t end) {
-        progress.check_stop();
-        MirroredEnvironment::Scratch scratch;
-        const auto is_mean = [&](std::size_t i) {
-            return !occluded && i > begin && i + 1 < end && lies_between(*map_, i);
-        };
-        for (std::size_t i = begin; i < end; ++i) {
-            if (is_mean(i)) continue;
-            const MirroredLight light = environment.at_fragment(i, scratch);
-            // Who does not ask which lobes are hidden dims those of a joint like its diffuse light
-            const bool joint = joints && map_->fragments[i].coverage < 1.0f;
-            const float scale = (joint ? joints->openness(i) : 1.0f) / unit;
-            const std::size_t at = 4 * layout_.address(i, map_->fragments[i].part);
-            const auto store = [&](std::size_t layer, const glm::vec3& value) {
-                for (std::size_t c = 0; c < 3; ++c) {
-                    texels[layer][at + c] = value[static_cast<int>(c)];
-                }
-            };
-            for (std::size_t k = 0; k < light.lobe.size(); ++k) store(k, light.lobe[k] * scale);
-            for (std::size_t k = 0; k < light.grazing.size(); ++k) {
-                store(light.lobe.size() + k, light.grazing[k]);
-            }
-        }
-        for (std::size_t i = begin; i < end; ++i) {
-            if (!is_mean(i)) continue;
-            const auto address = [&](std::size_t j) {
-                return 4 * layout_.address(j, map_->fragments[j].part);
-            };
-            const std::size_t left = address(i - 1), at = address(i), right = address(i + 1);
-            for (std::vector<float>& layer : texels) {
-                for (std::size_t c = 0; c < 3; ++c) {
-                    layer[at + c] = 0.5f * (layer[left + c] + layer[right + c]);
-                }
-            }
-        }
-    });
-    mirror_texels_ = std::move(texels);
-    mirror_unit_ = unit;
+std::vector<MirrorLayers> FragmentInputs::mirrored() const {
+    std::vector<MirrorLayers> layers(mesh_.parts.size(), MirrorLayers().set());
+    const std::vector<MirrorLayers> missing = mirror_.missing(mirror_.light(), layers, false);
+    for (std::size_t p = 0; p < layers.size(); ++p) layers[p] &= ~missing[p];
+    return layers;
 }
 
 FragmentInputs::Changed FragmentInputs::upload(const Scene& scene, StageClock& clock) {
-    if (!mirror_made_.of) shading_.mirror = InputLayers();
-    if (!mirror_texels_.empty()) {
+    if (mirror_.has_uploads()) {
         clock.add(PassKind::mirrored_environment, [&] {
-            upload_mirror();
-            changed_.glossy = true;
+            const MirrorInputs::Uploaded done = mirror_.upload(device_, shading_);
+            if (done.other_light) changed_.glossy = true;
+            if (done.more_room) ++layers_made_;
         });
     }
     const bool other_eye = eye_ != scene.eye_in_world_mm;
@@ -294,6 +306,11 @@ FragmentInputs::Changed FragmentInputs::upload(const Scene& scene, StageClock& c
         directions_stale_ = false;
         changed_.glossy = true;
     });
+    if (sky_stale_) {
+        upload_sky();
+        sky_stale_ = false;
+        changed_.glossy = true;
+    }
     clock.run(PassKind::diffuse_light, diffuse_light_stale_, [&] {
         upload_diffuse_light();
         diffuse_light_stale_ = false;
@@ -305,15 +322,6 @@ FragmentInputs::Changed FragmentInputs::upload(const Scene& scene, StageClock& c
     });
     shading_.product_scale = scene.product->product_scale;
     return std::exchange(changed_, {});
-}
-
-void FragmentInputs::upload_mirror() {
-    make(shading_.mirror, kMirrorLayers, InputLayers::Precision::half);
-    for (std::size_t k = 0; k < mirror_texels_.size(); ++k) {
-        shading_.mirror.upload(mirror_texels_[k], static_cast<int>(k));
-    }
-    shading_.mirror_unit = mirror_unit_;
-    mirror_texels_ = {};
 }
 
 void FragmentInputs::upload_directions(const Scene& scene) {
@@ -343,20 +351,29 @@ void FragmentInputs::upload_directions(const Scene& scene) {
             return glm::vec4(to_local(fragment(i), light.at[i].direction), light.at[i].visibility);
         });
     }
-    if (sky_.empty()) {
+}
+
+void FragmentInputs::upload_sky() {
+    const std::vector<glm::vec3>& between = exchanged_.at_fragments.on_diffuser;
+    if (sky_.empty() && between.empty()) {
         shading_.sky = InputLayers();
         return;
     }
     make(shading_.sky, 0, InputLayers::Precision::half);
-    upload(shading_.sky, 0, [&](std::size_t i) {
-        return glm::vec4(glm::min(sky_[i], glm::vec3(kHalfLargest)), 1.0f);
-    });
+    const auto light_on = [&](std::size_t i) {
+        const glm::vec3 sum = (sky_.empty() ? glm::vec3(0.0f) : sky_[i]) +
+                              (between.empty() ? glm::vec3(0.0f) : between[i]);
+        return glm::vec4(glm::min(sum, glm::vec3(kHalfLargest)), 1.0f);
+    };
+    shading_.sky.upload(packed(*map_, layout_, light_on), 0);
 }
 
 void FragmentInputs::upload_diffuse_light() {
     make(shading_.lit, 0, InputLayers::Precision::half);
     const auto light_on = [&](std::size_t i) {
         glm::vec3 sum = sky_.empty() ? glm::vec3(0.0f) : sky_[i];
+        const std::vector<glm::vec3>& between = exchanged_.at_fragments.on_diffuser;
+        if (!between.empty()) sum += between[i];
         for (const Light& light : lights_) {
             const float cosine = glm::dot(map_->fragments[i].normal, light.at[i].direction);
             sum +=

@@ -9,9 +9,10 @@
 
 #include "radiance/glints.h"
 #include "radiance/light/environment_filter.h"
+#include "radiance/light/interreflection.h"
 #include "radiance/light/light_visibility.h"
-#include "radiance/light/mirrored_environment.h"
 #include "radiance/light/sky_visibility.h"
+#include "radiance/mirror_inputs.h"
 #include "radiance/packed_fragments.h"
 #include "radiance/shading.h"
 #include "scene/frame_plan.h"
@@ -19,13 +20,14 @@
 
 namespace livery {
 
-/// How much is spent on what a level of quality solves; rays are a fragment's.
-struct QualityRays {
-    int light = 16;   ///< toward each light with a size
-    SkyRays sky;      ///< toward the environment
+/// What the levels of effects mean here; rays are a fragment's.
+struct FragmentRays {
+    int light = 16;   ///< toward each light with a size; 0: nothing is hidden
+    SkyRays sky;      ///< toward the environment; 0: nothing is hidden
     int mirror = 16;  ///< nodes a ring of half vectors' slopes; 0: unoccluded (mirror_rings)
+    int bounces = 1;  ///< of light between parts
 };
-QualityRays rays_of(Quality quality);
+FragmentRays rays_of(const EffectLevels& levels);
 
 /// Runs one stage where the plan lists it and its result does not stand; times it.
 class StageClock {
@@ -46,14 +48,13 @@ class StageClock {
         ++passes_run_;
         return true;
     }
-    /// What more a listed pass takes after it ran.
+    /// What a pass takes after it ran, listed or not.
     template <typename Work>
     void add(const PassId& pass, const Work& work) {
         PlannedPass* planned = find_pass(*plan_, pass);
-        if (!planned) return;
         const double begin = now_ms();
         work();
-        planned->ms = planned->ms.value_or(0.0) + now_ms() - begin;
+        if (planned) planned->ms = planned->ms.value_or(0.0) + now_ms() - begin;
     }
     int passes_run() const { return passes_run_; }
     static double now_ms();
@@ -74,6 +75,7 @@ class FragmentInputs {
     /// With `keep_better`, what was solved with more rays than the plan's quality asks for stands.
     FragmentInputs(const Mesh& mesh,
                    const Tracer& tracer,
+                   std::shared_ptr<SharedExchange> exchange,
                    const View& view,
                    const SurfaceMap& map,
                    const PackedLayout& layout,
@@ -84,11 +86,13 @@ class FragmentInputs {
     void use(const SurfaceMap& map);
 
     /// Solves everything that the plan lists and that does not stand, without OpenGL. A stop leaves
-    /// what was solved until then; what a plan does not list is kept while its light stays.
+    /// what was solved until then; what a plan does not list is kept while its light stays. With
+    /// `keep_exchange` light between parts stays that of other paints, or none.
     void solve(const Scene& scene,
                const FramePlan& plan,
                StageClock& clock,
-               const Progress& progress);
+               const Progress& progress,
+               bool keep_exchange);
     /// Which paints must be shaded again.
     struct Changed {
         bool diffuse = false;  ///< the plain diffuse ones
@@ -96,6 +100,9 @@ class FragmentInputs {
     };
     /// Hands what solve() changed to the device that shades.
     Changed upload(const Scene& scene, StageClock& clock);
+    /// Of each part, the layers of what it mirrors that are solved in the last solve()'s light; all
+    /// where that has no environment.
+    std::vector<MirrorLayers> mirrored() const;
     const ShadingInputs& shading() const { return shading_; }
     int layers_made() const { return layers_made_; }
 
@@ -108,10 +115,13 @@ class FragmentInputs {
     };
     void solve_lights(const Scene&, const FramePlan&, StageClock&, const Progress&);
     void solve_sky(const Scene&, const FramePlan&, StageClock&, const Progress&);
-    void solve_mirror(const Scene&, const FramePlan&, StageClock&, const Progress&);
-    void fill_mirror(const Scene&, bool occluded, const Progress&);
-    void upload_mirror();
+    void solve_exchange(const Scene&, const FramePlan&, StageClock&, const Progress&, bool keep);
+    void solve_mirror(
+        const Scene&, const FramePlan&, StageClock&, const Progress&, bool keep_exchange);
+    void filter_gaussians(const Scene&, const Progress&);
+    void drop_exchange();
     void upload_directions(const Scene&);
+    void upload_sky();
     void upload_diffuse_light();
     void upload_places();
     bool enough(int rays, int wanted) const {
@@ -121,6 +131,7 @@ class FragmentInputs {
 
     const Mesh& mesh_;
     const Tracer& tracer_;
+    const std::shared_ptr<SharedExchange> shared_exchange_;
     const PixelSize pixels_;
     const SurfaceMap* map_;
     const PackedLayout& layout_;
@@ -134,21 +145,32 @@ class FragmentInputs {
     std::shared_ptr<const Environment> layered_;   ///< that filtered_.gaussians was made for
     std::optional<SkyVisibility> sky_visibility_;
     std::vector<glm::vec3> sky_;
-    std::optional<MirrorVisibility> mirror_visibility_;
-    std::optional<glm::dvec3> visibility_eye_;
-    std::vector<std::vector<float>> mirror_texels_;  ///< a layer each; solved, not yet uploaded
-    float mirror_unit_ = 1.0f;
+    MirrorInputs mirror_;
 
-    /// What sky_ and the mirror were made of. No rays: unoccluded.
+    /// Light that parts send to one another: what it was made of, and from one step to the next.
+    struct Exchanged {
+        std::shared_ptr<const NodeExchange> nodes;
+        std::vector<DirectionalLight> lights;
+        std::shared_ptr<const Environment> environment;
+        std::vector<glm::vec3> direct;  ///< at the nodes; empty: not solved
+        std::vector<Material> paints;
+        std::vector<PartArtwork> artwork;
+        int bounces = 0;
+        ExchangedLight at_fragments;  ///< empty: none
+        int version = 0;              ///< of at_fragments
+    };
+    Exchanged exchanged_;
+
+    /// What sky_ was made of. No rays: unoccluded.
     struct Made {
         std::shared_ptr<const Environment> of;
         int rays = 0;
-        glm::dvec3 eye_mm{0.0};
     };
-    Made sky_made_, mirror_made_;
+    Made sky_made_;
     std::optional<glm::dvec3> eye_;  ///< that shading_.eye is for
     /// Sticky, so that a stop between two passes loses nothing.
-    bool directions_stale_ = true, diffuse_light_stale_ = true, places_stale_ = true;
+    bool directions_stale_ = true, sky_stale_ = true, diffuse_light_stale_ = true,
+         places_stale_ = true;
     Changed changed_;
     ShadingInputs shading_;
     int layers_made_ = 0;

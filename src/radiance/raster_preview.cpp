@@ -324,8 +324,13 @@ Program& RasterPreview::State::ready(const Scene& scene,
     const auto count = static_cast<int>(lights.size());
     const PartArtwork* relief = relief_of(scene, part);
     const bool glints = count > 0 && has_glints(material);
-    Program& program = shading_program(
-        {material.model, count, light->environment != nullptr, over, relief != nullptr, glints});
+    Program& program =
+        shading_program({material.model,
+                         count,
+                         light->environment ? Surroundings::mirrored : Surroundings::none,
+                         over,
+                         relief != nullptr,
+                         glints});
     set_paint(program, material, scene.exposure_ev, measured);
     set_view(program);
     program.set("u_eye_mm", glm::vec3(scene.eye_in_world_mm));

@@ -1,6 +1,7 @@
 #include "radiance/renderer.h"
 
 #include <algorithm>
+#include <array>
 #include <deque>
 #include <optional>
 
@@ -61,31 +62,22 @@ bool same(const Shaded& a, const Shaded& b) {
                       same_reflectance);
 }
 
+/// Adds to `sum` what is asked of OpenGL while it lives.
+class CountGl {
+  public:
+    explicit CountGl(GlCounters& sum) : sum_(sum), before_(gl_counters() - sum) {}
+    ~CountGl() { sum_ = gl_counters() - before_; }
+    CountGl(const CountGl&) = delete;
+    CountGl& operator=(const CountGl&) = delete;
+
+  private:
+    GlCounters& sum_;
+    const GlCounters before_;
+};
+
 bool is_plain(const Material& material) { return model_info(material.model).same_from_all_sides; }
 
 }  // namespace
-
-int sub_samples_of(Quality quality) { return quality == Quality::draft ? 4 : 16; }
-
-FrameGeometry::FrameGeometry(std::shared_ptr<const Product> its_product,
-                             const View& its_view,
-                             const Progress& progress,
-                             int sub_samples)
-    : product(std::move(its_product)), view(its_view) {
-    check_argument(product != nullptr, "a renderer needs a product");
-    const double begin_ms = StageClock::now_ms();
-    tracer = std::make_shared<const Tracer>(product->mesh);
-    tracer_ms = StageClock::now_ms() - begin_ms;
-    map = build_surface_map(product->mesh, *tracer, view, sub_samples, progress);
-    ms = StageClock::now_ms() - begin_ms;
-}
-
-FrameGeometry::FrameGeometry(const FrameGeometry& other, int sub_samples, const Progress& progress)
-    : product(other.product), view(other.view), tracer(other.tracer) {
-    const double begin_ms = StageClock::now_ms();
-    map = build_surface_map(product->mesh, *tracer, view, sub_samples, progress);
-    ms = StageClock::now_ms() - begin_ms;
-}
 
 struct RadianceRenderer::State {
     std::shared_ptr<const FrameGeometry> geometry;
@@ -111,7 +103,6 @@ struct RadianceRenderer::State {
 
     std::vector<std::optional<Shaded>> parts;  ///< as last shaded
     std::deque<GlTimer> timers;
-    int own_textures = 0;
     Counters counters;
 
     State(std::shared_ptr<const FrameGeometry> its_geometry,
@@ -123,6 +114,7 @@ struct RadianceRenderer::State {
           layout(layout_of(map)),
           inputs(geometry->product->mesh,
                  *geometry->tracer,
+                 geometry->exchange,
                  geometry->view,
                  map,
                  layout,
@@ -131,7 +123,11 @@ struct RadianceRenderer::State {
           artwork(geometry->product->mesh, geometry->view, map, layout, device),
           parts(geometry->product->mesh.parts.size()) {}
 
-    void solve(const Scene& scene, FramePlan& plan, StageClock& clock, const Progress& progress);
+    void solve(const Scene& scene,
+               FramePlan& plan,
+               StageClock& clock,
+               const Progress& progress,
+               LightBetweenParts exchanged);
     void make_shading();
     void make_target();
     std::shared_ptr<ImageF> blank_picture();
@@ -160,8 +156,9 @@ struct RadianceRenderer::State {
 void RadianceRenderer::State::solve(const Scene& scene,
                                     FramePlan& plan,
                                     StageClock& clock,
-                                    const Progress& progress) {
-    rays_of(plan.quality);
+                                    const Progress& progress,
+                                    LightBetweenParts exchanged) {
+    check_argument(plan.quality != Quality::reference, "the reference level is the path tracer's");
     check_fits(scene, plan, geometry->product.get());
     if (PlannedPass* pass = find_pass(plan, PassKind::surface_map)) {
         pass->ms = map_reported ? 0.0 : geometry->ms;
@@ -176,7 +173,7 @@ void RadianceRenderer::State::solve(const Scene& scene,
         inputs.use(scene.relief.empty() ? map : tilted);
         relief = scene.relief;
     }
-    inputs.solve(scene, plan, clock, progress);
+    inputs.solve(scene, plan, clock, progress, exchanged == LightBetweenParts::kept);
     if (!clock.run(PassKind::artwork, !artwork.stands(scene), [&] { artwork.solve(scene); })) {
         artwork.solve(scene);  // what is there no more
     }
@@ -192,7 +189,6 @@ void RadianceRenderer::State::make_shading() {
         shaded = Texture2D(kPackedWidth, layout.rows, TexelFormat::rgba16f);
         shaded_framebuffer = Framebuffer({&shaded});
     }
-    ++own_textures;
 }
 
 void RadianceRenderer::State::make_target() {
@@ -200,7 +196,6 @@ void RadianceRenderer::State::make_target() {
     target = Texture2D(map.width, map.height, TexelFormat::rgba16f);
     target_framebuffer = Framebuffer({&target});
     target.clear();
-    ++own_textures;
 }
 
 std::shared_ptr<ImageF> RadianceRenderer::State::blank_picture() {
@@ -309,10 +304,7 @@ void RadianceRenderer::State::run_resolve(FramePlan& plan) {
         pass->ms = StageClock::now_ms() - begin;
         return;
     }
-    if (!resolve) {
-        resolve.emplace(map, layout);
-        own_textures += ResolvePass::kTextures;
-    }
+    if (!resolve) resolve.emplace(map, layout);
     make_target();
     GlTimer& timer = timer_for(pass);
     timer.start();
@@ -341,16 +333,27 @@ RadianceRenderer::RadianceRenderer(std::shared_ptr<const FrameGeometry> geometry
 
 RadianceRenderer::~RadianceRenderer() = default;
 
-void RadianceRenderer::solve(const Scene& scene, FramePlan& plan, const Progress& progress) {
+void RadianceRenderer::solve(const Scene& whole,
+                             FramePlan& plan,
+                             const Progress& progress,
+                             LightBetweenParts exchanged) {
+    const Scene scene = at_levels(whole, plan.levels);
     StageClock clock(plan, &progress);
     const Progress silent{{}, progress.stop};
-    state_->solve(scene, plan, clock, silent);
+    state_->solve(scene, plan, clock, silent, exchanged);
 }
 
-void RadianceRenderer::prepare(const Scene& scene, FramePlan& plan, const Progress& progress) {
+std::vector<MirrorLayers> RadianceRenderer::mirrored() const { return state_->inputs.mirrored(); }
+
+void RadianceRenderer::prepare(const Scene& whole,
+                               FramePlan& plan,
+                               const Progress& progress,
+                               LightBetweenParts exchanged) {
+    const Scene scene = at_levels(whole, plan.levels);
     State& s = *state_;
+    const CountGl count(s.counters.gl);
     StageClock clock(plan);
-    s.solve(scene, plan, clock, progress);
+    s.solve(scene, plan, clock, progress, exchanged);
     s.upload(scene, clock);
     if (s.device == ShadingDevice::processor) return;
     for (const Material& material : scene.part_materials) {
@@ -364,10 +367,15 @@ void RadianceRenderer::prepare(const Scene& scene, FramePlan& plan, const Progre
     }
 }
 
-void RadianceRenderer::render(const Scene& scene, FramePlan& plan, const Progress& progress) {
+void RadianceRenderer::render(const Scene& whole,
+                              FramePlan& plan,
+                              const Progress& progress,
+                              LightBetweenParts exchanged) {
+    const Scene scene = at_levels(whole, plan.levels);
     State& s = *state_;
+    const CountGl count(s.counters.gl);
     StageClock clock(plan);
-    s.solve(scene, plan, clock, progress);
+    s.solve(scene, plan, clock, progress, exchanged);
     count_work(scene, plan);
     const int before = clock.passes_run();
     s.upload(scene, clock);
@@ -378,10 +386,11 @@ void RadianceRenderer::render(const Scene& scene, FramePlan& plan, const Progres
     s.read_timers();
 }
 
-void RadianceRenderer::count_work(const Scene& scene, FramePlan& plan) const {
+void RadianceRenderer::count_work(const Scene& whole, FramePlan& plan) const {
+    const Scene scene = at_levels(whole, plan.levels);
     const State& s = *state_;
     const auto fragments = static_cast<double>(s.map.fragments.size());
-    const QualityRays rays = rays_of(plan.quality);
+    const FragmentRays rays = rays_of(plan.levels);
     const auto set = [&](const PassId& id, double items) {
         if (PlannedPass* pass = find_pass(plan, id)) pass->work_items = items;
     };
@@ -396,9 +405,15 @@ void RadianceRenderer::count_work(const Scene& scene, FramePlan& plan) const {
     set(PassKind::relief, static_cast<double>(tilted));
     set(PassKind::environment_irradiance, fragments);
     set(PassKind::ambient_occlusion, fragments * rays.sky.first);
+    set(PassKind::interreflection, fragments);
     set(PassKind::environment_filter, static_cast<double>(kFilterTexels));
-    set(PassKind::reflection_occlusion, fragments * mirror_rays(rays.mirror));
-    set(PassKind::mirrored_environment, fragments * mirror_nodes(rays.mirror));
+    std::size_t mirroring = 0;
+    const std::vector<MirrorLayers> mirrored = mirror_layers_of(scene);
+    for (std::size_t p = 0; p < mirrored.size(); ++p) {
+        if (mirrored[p].any()) mirroring += s.layout.fragments(p);
+    }
+    set(PassKind::reflection_occlusion, static_cast<double>(mirroring) * mirror_rays(rays.mirror));
+    set(PassKind::mirrored_environment, static_cast<double>(mirroring) * mirror_nodes(rays.mirror));
     set(PassKind::directions, fragments);
     set(PassKind::diffuse_light, fragments);
     set(PassKind::glint_places, fragments);
@@ -430,6 +445,7 @@ std::shared_ptr<const ImageF> RadianceRenderer::picture() const {
 
 unsigned RadianceRenderer::texture() const {
     State& s = *state_;
+    const CountGl count(s.counters.gl);
     s.make_target();
     if (s.picture && s.target_stale) {
         s.target.upload(std::span<const float>(s.picture->values));
@@ -448,9 +464,12 @@ const std::shared_ptr<const FrameGeometry>& RadianceRenderer::geometry() const {
 
 RadianceRenderer::Counters RadianceRenderer::counters() const {
     Counters counters = state_->counters;
-    counters.programs = state_->programs.compiled() + (state_->resolve ? 1 : 0);
-    counters.textures =
-        state_->own_textures + state_->inputs.layers_made() + state_->artwork.layers_made();
+    counters.programs = static_cast<int>(counters.gl.programs);
+    counters.textures = static_cast<int>(counters.gl.textures);
+    if (state_->device == ShadingDevice::processor) {
+        counters.textures += (state_->processor ? 1 : 0) + state_->inputs.layers_made() +
+                             state_->artwork.layers_made();
+    }
     return counters;
 }
 

@@ -7,7 +7,10 @@
 
 #include "core/image.h"
 #include "core/progress.h"
+#include "gl/counters.h"
+#include "radiance/frame_geometry.h"
 #include "radiance/lanes/input_layers.h"
+#include "radiance/light/mirror_lobes.h"
 #include "radiance/surface_map.h"
 #include "scene/frame_plan.h"
 #include "scene/scene.h"
@@ -16,26 +19,9 @@
 
 namespace livery {
 
-/// Rays a pixel of the surface map that a level is worth: few for the first picture of a pose.
-int sub_samples_of(Quality quality);
-
-/// What a product and a view fix, whatever it is painted and lit with: rays through the product and
-/// its surface map. Immutable: renderers of the same product and view share it.
-struct FrameGeometry {
-    FrameGeometry(std::shared_ptr<const Product> its_product,
-                  const View& its_view,
-                  const Progress& progress = {},
-                  int sub_samples = 16);
-    /// The same product and view with another number of sub-samples.
-    FrameGeometry(const FrameGeometry& other, int sub_samples, const Progress& progress = {});
-
-    std::shared_ptr<const Product> product;
-    View view;
-    std::shared_ptr<const Tracer> tracer;  ///< shared with maps of other numbers of sub-samples
-    SurfaceMap map;
-    double ms = 0.0;         ///< that making it took
-    double tracer_ms = 0.0;  ///< of it: the tree of the product's triangles
-};
+/// Light that parts send to one another, when paints have changed: solved anew, or left as it is of
+/// the paints before, so that a new one need not wait for the light that it sends on.
+enum class LightBetweenParts { solved, kept };
 
 /// Draws one product from one view; needs a current OpenGL context, the same for its whole life.
 /// What does not change between frames (surface map, visibility, filtered environment, programs)
@@ -56,16 +42,29 @@ class RadianceRenderer {
 
     /// The part of render() that needs no OpenGL, ahead of it: on any thread, while no other call
     /// runs. Stopped by `progress`, it keeps what it has solved until then.
-    void solve(const Scene& scene, FramePlan& plan, const Progress& progress = {});
+    void solve(const Scene& scene,
+               FramePlan& plan,
+               const Progress& progress = {},
+               LightBetweenParts exchanged = LightBetweenParts::solved);
+
+    /// Of each part, what it mirrors that is solved, in the light of the last solve(); all of it
+    /// where that has no environment.
+    std::vector<MirrorLayers> mirrored() const;
 
     /// Everything that render() would need for this scene, programs included, without drawing.
-    void prepare(const Scene& scene, FramePlan& plan, const Progress& progress = {});
+    void prepare(const Scene& scene,
+                 FramePlan& plan,
+                 const Progress& progress = {},
+                 LightBetweenParts exchanged = LightBetweenParts::solved);
 
     /// Shades whatever changed since the last call, and nothing else. Fills in the plan's measured
     /// milliseconds (0 for a pass whose result still stood) and work items. `plan` must be
     /// plan_frame() of this scene; passes of other stages (compensation) are left alone. Throws
     /// std::invalid_argument for another product or the path tracer's level.
-    void render(const Scene& scene, FramePlan& plan, const Progress& progress = {});
+    void render(const Scene& scene,
+                FramePlan& plan,
+                const Progress& progress = {},
+                LightBetweenParts exchanged = LightBetweenParts::solved);
 
     /// Fills in `work_items`, what each pass's cost is linear in (rays, texels, fragments, pixels),
     /// without drawing.
@@ -84,10 +83,12 @@ class RadianceRenderer {
 
     ShadingDevice device() const;  ///< gl or processor
 
-    /// Programs compiled, textures (or arrays in their place) allocated and passes run so far: a
-    /// test counts that what is not in the plan costs nothing.
+    /// What this renderer did so far. What it asked of OpenGL is counted there, at the calls.
     struct Counters {
-        int programs = 0, textures = 0, passes_run = 0, fragments_shaded = 0;
+        int programs = 0;  ///< linked
+        int textures = 0;  ///< made; with the processor's arrays in their place
+        int passes_run = 0, fragments_shaded = 0;
+        GlCounters gl{};
     };
     Counters counters() const;
 

@@ -16,7 +16,6 @@ class ResolvePass {
 
     void run(const Texture2D& shaded_fragments, const Framebuffer& target);
     std::size_t pixels() const { return pixels_; }  ///< that one run touches
-    static constexpr int kTextures = 2;
 
   private:
     Program program_;

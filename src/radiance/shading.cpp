@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <string>
 
@@ -42,16 +43,55 @@ glm::vec4 mirror_layers(float alpha) {
 
 bool has_own_shading(ReflectanceModel model) { return model_info(model).prepared.type != nullptr; }
 
+float exposure_of(double exposure_ev, std::span<const float> numbers) {
+    const bool good =
+        std::all_of(numbers.begin(), numbers.end(), [](float v) { return !std::isnan(v); });
+    return good ? static_cast<float>(std::exp2(exposure_ev))
+                : std::numeric_limits<float>::quiet_NaN();
+}
+
 PaintUniforms uniforms_of(const Material& material, double exposure_ev) {
     PaintUniforms u;
-    u.exposure = static_cast<float>(std::exp2(exposure_ev));
     u.paint = model_info(material.model).prepared.of(parameters_of(material));
+    u.exposure = exposure_of(exposure_ev, u.paint.numbers);
     for (std::size_t lobe = 0; lobe < u.paint.lobe_slopes.size(); ++lobe) {
         const glm::vec2 slopes = u.paint.lobe_slopes[lobe];
         u.lobe_layers.at(lobe) = mirror_layers(std::sqrt(slopes.x * slopes.y));
     }
     return u;
 }
+
+namespace {
+
+/// `weights_under` a cosine are those of the model. What is mirrored comes with GGX's own
+/// correction, which changes slowly with the cosine.
+template <typename Real, typename WeightsUnder>
+void tabulate_weights(float lobe_alpha,
+                      const WeightsUnder& weights_under,
+                      std::array<glm::vec<3, Real>, kEnvironmentWeights>& sky,
+                      std::array<glm::vec<3, Real>, kEnvironmentWeights>& mirror) {
+    constexpr int kApart = 4;
+    std::array<Real, (kEnvironmentWeights - 1) / kApart + 1> correction;
+    const auto root_of = [](std::size_t k) {
+        return static_cast<Real>(k) / static_cast<Real>(kEnvironmentWeights - 1);
+    };
+    for (std::size_t i = 0; i < correction.size(); ++i) {
+        const auto root = static_cast<double>(root_of(i * kApart));
+        correction[i] = static_cast<Real>(
+            mirror_correction(root * root, std::max(static_cast<double>(lobe_alpha), 0.01)));
+    }
+    for (std::size_t k = 0; k < sky.size(); ++k) {
+        const Real t = root_of(k);
+        const auto weights = weights_under(std::max(t * t, static_cast<Real>(kLowestCosine)));
+        const std::size_t below = std::min(k / kApart, correction.size() - 2);
+        const Real past = static_cast<Real>(k) / kApart - static_cast<Real>(below);
+        sky[k] = weights.diffuse;
+        mirror[k] = (weights.specular + weights.coat) /
+                    std::lerp(correction[below], correction[below + 1], past);
+    }
+}
+
+}  // namespace
 
 AnyModelUniforms any_model_uniforms_of(const Material& material, double exposure_ev) {
     const PaintBsdf bsdf = bsdf_of(material);
@@ -61,27 +101,30 @@ AnyModelUniforms any_model_uniforms_of(const Material& material, double exposure
     u.measured = bsdf.measured;
     u.lobe_alpha = lobe_alpha(bsdf);
     u.base_layers = mirror_layers(u.lobe_alpha);
-    // What is mirrored comes with GGX's own correction; it changes slowly with the cosine
-    constexpr int kApart = 4;
-    std::array<float, (kEnvironmentWeights - 1) / kApart + 1> correction;
-    const auto root_of = [](std::size_t k) {
-        return static_cast<float>(k) / static_cast<float>(kEnvironmentWeights - 1);
-    };
-    for (std::size_t i = 0; i < correction.size(); ++i) {
-        const auto root = static_cast<double>(root_of(i * kApart));
-        correction[i] = static_cast<float>(
-            mirror_correction(root * root, std::max(static_cast<double>(u.lobe_alpha), 0.01)));
-    }
-    for (std::size_t k = 0; k < u.sky_weight.size(); ++k) {
-        const float t = root_of(k);
-        const BsdfEnvironment weights = environment_weights(bsdf, std::max(t * t, kLowestCosine));
-        const std::size_t below = std::min(k / kApart, correction.size() - 2);
-        const float past = static_cast<float>(k) / kApart - static_cast<float>(below);
-        u.sky_weight[k] = weights.diffuse;
-        u.mirror_weight[k] = (weights.specular + weights.coat) /
-                             std::lerp(correction[below], correction[below + 1], past);
-    }
+    tabulate_weights(
+        u.lobe_alpha,
+        [&](float cosine) { return environment_weights(bsdf, cosine); },
+        u.sky_weight,
+        u.mirror_weight);
     return u;
+}
+
+EnvironmentWeights environment_weights_in_double(const Material& material) {
+    const PaintBsdf bsdf = bsdf_of(material);
+    EnvironmentWeights weights;
+    tabulate_weights(
+        lobe_alpha(bsdf),
+        [&](double cosine) {
+            if (!bsdf.measured) {
+                return model_info(bsdf.model).f64.environment(widened(bsdf.parameters), cosine);
+            }
+            // A measurement's are in a table, from one cosine of which to the next is rounding
+            const auto of_table = environment_weights(bsdf, static_cast<float>(cosine));
+            return f64::BsdfEnvironment{of_table.diffuse, of_table.specular, of_table.coat};
+        },
+        weights.sky,
+        weights.mirror);
+    return weights;
 }
 
 namespace {
@@ -162,22 +205,26 @@ void set_paint(Program& program,
 }
 
 Program make_shading_program(const ShadingKey& key, ShadingSource source) {
-    const auto [model, lights, environment, over, relief, glints] = key;
+    const auto [model, lights, surroundings, over, relief, glints] = key;
     const bool raster = source == ShadingSource::raster;
     const std::string defines = fmt::format(
         "#define LIGHTS {}\n#define LIGHT_COUNT LIGHTS\n#define ENVIRONMENT {}\n"
+        "#define MIRRORED {}\n"
         "#define VEC4 vec4\n#define UNIFORM uniform\n"
         "#define LAYERS {}\n#define FIRST_ALPHA {:.8f}\n#define MESH_ROW {}\n"
-        "#define WEIGHTS {}\n#define MIRRORS {}\n#define MIRROR_LOBES {}\n#define MOST_LOBES {}\n"
+        "#define WEIGHTS {}\n#define MIRRORS {}\n#define MIRROR_LOBES {}\n"
+        "#define MIRROR_LAYERS {}\n#define MOST_LOBES {}\n"
         "#define BSDF_TURN2 R({:.1f})\n",
         lights,
-        environment ? 1 : 0,
+        surroundings == Surroundings::none ? 0 : 1,
+        surroundings == Surroundings::mirrored ? 1 : 0,
         kLayerAlphas.size(),
         kLayerAlphas[1],
         kMeshRow,
         kEnvironmentWeights,
         model_info(model).mirrors() ? 1 : 0,
         kMirrorAlphas.size(),
+        kMirrorLayers,
         kMostLobes,
         lobe_turn_squared(model_info(model)));
     std::string text =
@@ -219,11 +266,14 @@ ShadingKey ShadingPrograms::key_of(const Material& material,
                                    const ShadingInputs& inputs,
                                    bool over) {
     const ModelInfo& model = model_info(material.model);
-    if (model.same_from_all_sides) return {material.model, 0, false, over, false, false};
+    if (model.same_from_all_sides)
+        return {material.model, 0, Surroundings::none, over, false, false};
     const bool lights = !inputs.light_irradiance.empty();
     return {material.model,
             static_cast<int>(inputs.light_irradiance.size()),
-            static_cast<bool>(model.mirrors() ? inputs.mirror : inputs.sky),
+            !inputs.sky                        ? Surroundings::none
+            : model.mirrors() && inputs.mirror ? Surroundings::mirrored
+                                               : Surroundings::diffuse,
             over,
             false,
             lights && has_glints(material)};
@@ -270,12 +320,14 @@ Program& ShadingPrograms::ready(const Material& material,
         program.set("u_glint_density",
                     static_cast<float>(glint_density_on_mock_up(material, inputs.product_scale)));
     }
-    if (std::get<2>(key)) {
+    const Surroundings surroundings = std::get<2>(key);
+    if (surroundings != Surroundings::none) {
         program.set("u_sky", 2);
         inputs.sky.texture().bind(2);
-        if (model_info(material.model).mirrors()) {
+        if (surroundings == Surroundings::mirrored) {
             program.set("u_mirror", 3);
             program.set("u_mirror_unit", inputs.mirror_unit);
+            program.set("u_mirror_place", inputs.mirror.places());
             inputs.mirror.texture().bind(3);
         }
     }

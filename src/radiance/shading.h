@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <span>
 #include <tuple>
 #include <vector>
 
@@ -43,9 +44,11 @@ enum class ShadingSource {
     packed,  ///< the surface map's textures
     raster   ///< the triangle that was rasterised there
 };
-/// Model, lights, environment, whether it lies over another paint (an artwork's), whether the part
-/// has a relief (ShadingSource::raster), glints.
-using ShadingKey = std::tuple<ReflectanceModel, int, bool, bool, bool, bool>;
+/// Light from all around: on diffusers alone, or mirrored as well.
+enum class Surroundings { none, diffuse, mirrored };
+/// Model, lights, light from all around, whether it lies over another paint (an artwork's), whether
+/// the part has a relief (ShadingSource::raster), glints.
+using ShadingKey = std::tuple<ReflectanceModel, int, Surroundings, bool, bool, bool>;
 
 /// Texels in a row of the textures that hold a mesh's arrays for ShadingSource::raster.
 inline constexpr int kMeshRow = 2048;
@@ -63,6 +66,9 @@ struct PaintUniforms {
     std::array<glm::vec4, kMostLobes> lobe_layers{};  ///< u_lobe_layers
 };
 PaintUniforms uniforms_of(const Material& material, double exposure_ev);
+/// 2^EV. No number if one of what a paint was prepared to is none: all that it covers must end
+/// black and counted, whatever the formulas' clamps would make of it.
+float exposure_of(double exposure_ev, std::span<const float> numbers);
 
 /// The same of any model: what ANY_MODEL of shade.glsl reads.
 inline constexpr int kEnvironmentWeights = 33;
@@ -75,6 +81,11 @@ struct AnyModelUniforms {
     float lobe_alpha = 1.0f;
 };
 AnyModelUniforms any_model_uniforms_of(const Material& material, double exposure_ev);
+/// Its weights of light from all around, with nothing rounded but the paint's own numbers.
+struct EnvironmentWeights {
+    std::array<glm::dvec3, kEnvironmentWeights> sky{}, mirror{};
+};
+EnvironmentWeights environment_weights_in_double(const Material& material);
 
 /// The coefficients of an artwork's paint.
 void set_coat(Program& program, const ArtworkCoat& coat);
@@ -105,7 +116,6 @@ class ShadingPrograms {
     /// The program that the paint would be shaded with, down to the machine's code: drivers put
     /// that off until the first draw, so one pixel is drawn, nowhere.
     void compile(const Material& material, const ShadingInputs& inputs, bool over = false);
-    int compiled() const { return static_cast<int>(programs_.size()); }
 
   private:
     static ShadingKey key_of(const Material& material, const ShadingInputs& inputs, bool over);

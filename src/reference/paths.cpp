@@ -1,5 +1,6 @@
 #include "reference/paths.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -21,10 +22,11 @@ float balance(float used, float other) {
     return LIVERY_MUTATED(reference_balance, used / (used + other));
 }
 
-glm::vec2 uniform_2d(Random& random) {
-    const float x = random.uniform_float();
-    return {x, random.uniform_float()};
-}
+/// The largest float below 1.
+constexpr float kBelowOne = 0x1.fffffep-1f;
+
+/// From this scattering on paths of little weight are ended by chance (Russian roulette).
+constexpr int kFirstRoulette = 4;
 
 }  // namespace
 
@@ -95,14 +97,19 @@ SurfacePoint PathScene::surface_at(const Hit& hit) const {
 }
 
 const PaintBsdf& PathScene::bsdf_at(const SurfacePoint& point,
-                                    Random& random,
+                                    float chance,
                                     PaintBsdf& made) const {
     for (std::size_t k = artwork_.size(); k-- > 0;) {
         const PartArtwork& artwork = artwork_[k];
         if (artwork.part != point.part) continue;
         const ArtworkPoint at = artwork_at(
             artwork, glm::dvec3(point.position_mm), glm::dvec3(point.normal), glm::dvec2(point.uv));
-        if (!(at.cover > 0.0) || random.uniform_float() >= static_cast<float>(at.cover)) continue;
+        const float cover = static_cast<float>(at.cover);
+        if (!(chance < cover)) {
+            // Of the paints below, the number is again any of [0, 1).
+            chance = std::min((chance - cover) / (1.0f - cover), kBelowOne);
+            continue;
+        }
         const bool same_everywhere = artwork.artwork.use == PictureUse::cover;
         if (same_everywhere) return artwork_bsdfs_[k];
         made = bsdf_of(material_at(artwork, at.rgba));
@@ -118,7 +125,10 @@ bool PathScene::open(const Vertex& vertex, const glm::vec3& direction) const {
     return !tracer_.occluded(ray);
 }
 
-glm::vec3 PathScene::light_on(const Vertex& vertex, Random& random) const {
+glm::vec3 PathScene::light_on(const Vertex& vertex,
+                              const PathNumbers& numbers,
+                              const SobolPoint& at,
+                              std::uint32_t bounce) const {
     glm::vec3 sum(0.0f);
     // Reflected light before its distance: value x cosine, 0 where nothing can come from there
     const auto reflected = [&](const glm::vec3& direction, glm::vec3& wi) {
@@ -137,8 +147,8 @@ glm::vec3 PathScene::light_on(const Vertex& vertex, Random& random) const {
         }
         sum += value * light.radiance * (weight / light.pdf);
     };
-    for (const DiscLight& light : lights_) {
-        const glm::vec2 u = uniform_2d(random);
+    for (std::size_t l = 0; l < lights_.size(); ++l) {
+        const DiscLight& light = lights_[l];
         if (light.is_point()) {
             glm::vec3 wi;
             const glm::vec3 value = reflected(light.direction(), wi);
@@ -146,11 +156,11 @@ glm::vec3 PathScene::light_on(const Vertex& vertex, Random& random) const {
                 sum += value * light.irradiance();
             }
         } else if (options_.sampling != ReferenceSampling::reflectance) {
-            add(light.sample(u));
+            add(light.sample(numbers.on_light(at, bounce, static_cast<std::uint32_t>(l))));
         }
     }
     if (!environment_.empty() && options_.sampling != ReferenceSampling::reflectance) {
-        add(environment_.sample(uniform_2d(random)));
+        add(environment_.sample(at.pair(PathNumbers::environment)));
     }
     return sum;
 }
@@ -170,7 +180,7 @@ glm::vec3 PathScene::light_along(const glm::vec3& direction, float reflectance_p
 glm::vec3 PathScene::radiance(SurfacePoint point,
                               const glm::vec3& ray_direction,
                               glm::vec3 wo,
-                              Random& random) const {
+                              const PathNumbers& numbers) const {
     // An open surface shows its inside: the side that is seen is the side that is shaded.
     if (glm::dot(point.geometric_normal, ray_direction) > 0.0f) {
         point.geometric_normal = -point.geometric_normal;
@@ -178,12 +188,14 @@ glm::vec3 PathScene::radiance(SurfacePoint point,
     }
     glm::vec3 sum(0.0f), throughput(1.0f);
     for (int bounce = 0;; ++bounce) {
+        const auto b = static_cast<std::uint32_t>(bounce);
+        const SobolPoint at = numbers.at(b);
         PaintBsdf made;
-        const Vertex vertex(bsdf_at(point, random, made), point, wo);
-        sum += throughput * light_on(vertex, random);
+        const Vertex vertex(bsdf_at(point, at[PathNumbers::paint], made), point, wo);
+        sum += throughput * light_on(vertex, numbers, at, b);
 
-        const glm::vec2 uv = uniform_2d(random);
-        const glm::vec3 wi = sample(vertex.bsdf, vertex.wo, glm::vec3(uv, random.uniform_float()));
+        const glm::vec3 u(at.pair(PathNumbers::direction), at[PathNumbers::lobe]);
+        const glm::vec3 wi = sample(vertex.bsdf, vertex.wo, u);
         if (!(wi.z > 0.0f)) return sum;
         const glm::vec3 direction = glm::normalize(vertex.world_from_local * wi);
         const float density = pdf(vertex.bsdf, wi, vertex.wo);
@@ -197,6 +209,12 @@ glm::vec3 PathScene::radiance(SurfacePoint point,
         const Hit hit = tracer_.closest(ray);
         if (!hit.valid()) return sum + throughput * light_along(direction, density);
         if (bounce == options_.bounces) return sum;
+        if (bounce + 1 >= kFirstRoulette) {
+            const float survival =
+                std::min(1.0f, std::max({throughput.x, throughput.y, throughput.z}));
+            if (!(at[PathNumbers::roulette] < survival)) return sum;
+            throughput /= survival;
+        }
         point = surface_at(hit);
         // The inside of a closed product is dark.
         if (glm::dot(point.geometric_normal, direction) >= 0.0f) return sum;

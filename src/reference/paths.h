@@ -7,9 +7,9 @@
 #include <glm/vec3.hpp>
 
 #include "appearance/paint_bsdf.h"
-#include "core/random.h"
 #include "reference/light_sampling.h"
 #include "reference/path_tracer.h"
+#include "reference/sobol.h"
 #include "tracing/tracer.h"
 
 namespace livery {
@@ -23,7 +23,7 @@ class PathScene {
     glm::vec3 radiance(SurfacePoint point,
                        const glm::vec3& ray_direction,
                        glm::vec3 wo,
-                       Random& random) const;
+                       const PathNumbers& numbers) const;
 
     const Tracer& tracer() const { return tracer_; }
     /// What was hit, with its relief.
@@ -32,12 +32,15 @@ class PathScene {
   private:
     struct Vertex;
 
-    glm::vec3 light_on(const Vertex& vertex, Random& random) const;
+    glm::vec3 light_on(const Vertex& vertex,
+                       const PathNumbers& numbers,
+                       const SobolPoint& at,
+                       std::uint32_t bounce) const;
     /// What an escaping direction sampled from the reflectance meets.
     glm::vec3 light_along(const glm::vec3& direction, float reflectance_pdf) const;
-    /// The paint at a point: artwork's, by chance as much as it covers, else the part's. `made`
-    /// keeps one that is only this point's.
-    const PaintBsdf& bsdf_at(const SurfacePoint& point, Random& random, PaintBsdf& made) const;
+    /// The paint at a point: artwork's, as often as it covers by a number in [0, 1), else the
+    /// part's. `made` keeps one that is only this point's.
+    const PaintBsdf& bsdf_at(const SurfacePoint& point, float chance, PaintBsdf& made) const;
     bool open(const Vertex& vertex, const glm::vec3& direction) const;
 
     const Mesh& mesh_;

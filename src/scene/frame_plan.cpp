@@ -11,12 +11,12 @@
 #include <fmt/format.h>
 
 #include "appearance/model_table.h"
+#include "appearance/paint_bsdf.h"
+#include "core/colour.h"
 #include "core/error.h"
 
 namespace livery {
 namespace {
-
-constexpr std::array kQualities{Quality::draft, Quality::normal, Quality::high, Quality::reference};
 
 void plan_pass(FramePlan& plan, PassId id, std::string why) {
     PlannedPass& pass = plan.passes.emplace_back();
@@ -66,34 +66,33 @@ Needs needs_of(const Scene& scene) {
 }
 
 void plan_lights(const Scene& scene, FramePlan& plan) {
+    const int level = plan.levels[Effect::shadows];
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
         const DirectionalLight& light = scene.lights[i];
         const std::string name = light_name(i);
         const PassId pass = visibility_pass(i);
         if (is_black(light.radiance_rec709)) {
             plan.skipped.push_back({pass, fmt::format("the {} light is black", name)});
+        } else if (level == 0) {
+            plan.skipped.push_back(
+                {pass, fmt::format("the {} light is drawn without shadows", name)});
         } else if (light.angle_rad <= 0.0) {
             plan_pass(
                 plan, pass, fmt::format("the look has a {} light, a point: sharp shadows", name));
-        } else if (plan.quality == Quality::draft) {
-            plan_pass(plan,
-                      pass,
-                      fmt::format("the look has a {} light {} wide; draft shows its "
-                                  "shadows sharp",
-                                  name,
-                                  degrees(light.angle_rad)));
         } else {
-            plan_pass(plan,
-                      pass,
-                      fmt::format("the look has a {} light {} wide: soft shadows",
-                                  name,
-                                  degrees(light.angle_rad)));
+            plan_pass(
+                plan,
+                pass,
+                fmt::format("the look has a {} light {} wide{}",
+                            name,
+                            degrees(light.angle_rad),
+                            level == 1 ? "; draft shows its shadows sharp" : ": soft shadows"));
         }
     }
     if (scene.lights.empty()) plan.skipped.push_back({visibility_pass(0), "the look has no light"});
 }
 
-void plan_environment(const Needs& needs, FramePlan& plan) {
+void plan_environment(const Needs& needs, const char* why_not, FramePlan& plan) {
     const std::string mirror = needs.mirror_parts.empty() ? "" : *needs.mirror_parts.begin();
     if (!needs.environment) {
         for (const PassKind pass : {PassKind::environment_irradiance,
@@ -101,18 +100,27 @@ void plan_environment(const Needs& needs, FramePlan& plan) {
                                     PassKind::environment_filter,
                                     PassKind::reflection_occlusion,
                                     PassKind::mirrored_environment}) {
-            plan.skipped.push_back({pass, "no environment in the look"});
+            plan.skipped.push_back({pass, why_not});
         }
+        plan.skipped.push_back({mirrored_ahead_pass(), why_not});
         return;
     }
     plan_pass(plan,
               PassKind::environment_irradiance,
               "the look has an environment that lights every part");
-    plan_pass(plan,
-              PassKind::ambient_occlusion,
-              plan.quality == Quality::draft
-                  ? "joints are darker than what they join; draft looks at nothing else"
-                  : "parts hide the environment from one another");
+    if (plan.levels[Effect::occlusion] == 0) {
+        plan.skipped.push_back(
+            {PassKind::ambient_occlusion, "the environment is drawn as if nothing hid it"});
+    } else {
+        plan_pass(plan,
+                  PassKind::ambient_occlusion,
+                  plan.levels[Effect::occlusion] == 1
+                      ? "joints are darker than what they join; draft looks at nothing else"
+                      : "parts hide the environment from one another");
+    }
+    plan.skipped.push_back({mirrored_ahead_pass(),
+                            "other parts and roughnesses wait until the window is idle; no paint "
+                            "of this frame mirrors so"});
     if (mirror.empty()) {
         for (const PassKind pass : {PassKind::environment_filter,
                                     PassKind::reflection_occlusion,
@@ -123,7 +131,7 @@ void plan_environment(const Needs& needs, FramePlan& plan) {
     }
     plan_pass(
         plan, PassKind::environment_filter, fmt::format("part {} mirrors the environment", mirror));
-    if (plan.quality == Quality::draft) {
+    if (plan.levels[Effect::reflected_occlusion] == 0) {
         plan.skipped.push_back(
             {PassKind::reflection_occlusion, "draft mirrors the environment through other parts"});
     } else {
@@ -131,14 +139,46 @@ void plan_environment(const Needs& needs, FramePlan& plan) {
                   PassKind::reflection_occlusion,
                   fmt::format("part {} may mirror other parts", mirror));
     }
-    plan_pass(plan,
-              PassKind::mirrored_environment,
-              "what each fragment mirrors does not depend on its paint's colour: solved once");
+    plan_pass(
+        plan,
+        PassKind::mirrored_environment,
+        fmt::format("what {} mirror at the roughnesses worn, whatever the paint's colour",
+                    needs.mirror_parts.size() == 1 ? fmt::format("fragments of part {}", mirror)
+                                                   : fmt::format("fragments of part {} and {} more",
+                                                                 mirror,
+                                                                 needs.mirror_parts.size() - 1)));
 }
 
-void plan_glints(const Scene& scene, FramePlan& plan) {
+/// Below this nobody sees it.
+constexpr double kUnseen_de00 = 0.25;
+
+void plan_interreflection(const Scene& scene, const Needs& needs, FramePlan& plan) {
+    if (!needs.environment && !any_light(scene)) {
+        plan.skipped.push_back({PassKind::interreflection, "no part has light to send on"});
+        return;
+    }
+    const ExchangeBound bound = exchange_bound(scene);
+    if (bound.share == 0.0) {
+        plan.skipped.push_back({PassKind::interreflection, "no part faces another, or itself"});
+        return;
+    }
+    const std::string most =
+        fmt::format("part {} may get as much as {:.0f}% of its own light from parts",
+                    scene.product->mesh.parts[bound.part].name,
+                    100.0 * bound.share);
+    if (bound.de00 < kUnseen_de00) {
+        plan.skipped.push_back(
+            {PassKind::interreflection, most + ": nobody sees that", bound.de00});
+    } else if (plan.levels[Effect::interreflection] == 0) {
+        plan.skipped.push_back({PassKind::interreflection, most + "; left out", bound.de00});
+    } else {
+        plan_pass(plan, PassKind::interreflection, most);
+    }
+}
+
+void plan_glints(const Scene& scene, const char* why_not, FramePlan& plan) {
     if (!any_paint(scene, has_glints)) {
-        plan.skipped.push_back({PassKind::glint_places, "no paint of the scene has glints"});
+        plan.skipped.push_back({PassKind::glint_places, why_not});
     } else if (!any_light(scene)) {
         plan.skipped.push_back(
             {PassKind::glint_places, "flakes glint under lights; the look has none"});
@@ -159,7 +199,10 @@ std::string paint_in_words(const Scene& scene, const Material& material) {
                        glint_scale_text(material));
 }
 
-void plan_shading(const Scene& scene, const Needs& needs, FramePlan& plan) {
+void plan_shading(const Scene& scene,
+                  const Needs& needs,
+                  const char* why_no_glints,
+                  FramePlan& plan) {
     if (needs.sided_parts.empty()) {
         plan.skipped.push_back(
             {PassKind::directions, "every paint looks the same from every side"});
@@ -189,7 +232,7 @@ void plan_shading(const Scene& scene, const Needs& needs, FramePlan& plan) {
                   PassKind::artwork,
                   "how much of each fragment artwork covers, once a pose and place of it");
     }
-    plan_glints(scene, plan);
+    plan_glints(scene, why_no_glints, plan);
     for (std::size_t i = 0; i < scene.part_materials.size(); ++i) {
         const Material& material = scene.part_materials[i];
         const std::string in_words = paint_in_words(scene, material);
@@ -222,29 +265,6 @@ void plan_shading(const Scene& scene, const Needs& needs, FramePlan& plan) {
 
 }  // namespace
 
-Quality parse_quality(const std::string& text) {
-    for (const Quality quality : kQualities) {
-        if (to_string(quality) == text) return quality;
-    }
-    throw std::invalid_argument(
-        fmt::format("quality \"{}\" is not one of draft, normal, high, reference", text));
-}
-
-std::string to_string(Quality quality) {
-    switch (quality) {
-        case Quality::draft:
-            return "draft";
-        case Quality::normal:
-            return "normal";
-        case Quality::high:
-            return "high";
-        case Quality::reference:
-            return "reference";
-    }
-    throw std::invalid_argument(
-        fmt::format("quality {} does not exist", static_cast<int>(quality)));
-}
-
 PassId visibility_pass(std::size_t light) {
     PassId pass(PassKind::light_visibility);
     pass.light = light;
@@ -269,6 +289,25 @@ PassId artwork_pass(const Scene& scene, std::size_t artwork) {
     return pass;
 }
 
+PassId mirrored_ahead_pass() {
+    PassId pass(PassKind::prepare);
+    pass.ahead = PassKind::mirrored_environment;
+    return pass;
+}
+
+void plan_ahead(FramePlan& plan) {
+    const auto skipped =
+        std::find_if(plan.skipped.begin(), plan.skipped.end(), [](const SkippedPass& pass) {
+            return pass.id == mirrored_ahead_pass();
+        });
+    const bool environment = find_pass(plan, PassKind::environment_irradiance) != nullptr;
+    if (skipped == plan.skipped.end() || !environment) return;
+    plan.skipped.erase(skipped);
+    plan_pass(plan,
+              mirrored_ahead_pass(),
+              "other parts may mirror next, and parts at other roughnesses: solved while idle");
+}
+
 const PlannedPass* find_pass(const FramePlan& plan, const PassId& id) {
     const auto found = std::find_if(plan.passes.begin(),
                                     plan.passes.end(),
@@ -280,39 +319,96 @@ PlannedPass* find_pass(FramePlan& plan, const PassId& id) {
     return const_cast<PlannedPass*>(find_pass(std::as_const(plan), id));
 }
 
-FramePlan plan_frame(const Scene& scene, Quality quality, FrameStage stage) {
+namespace {
+
+void check_scene(const Scene& scene) {
     check_argument(scene.product != nullptr, "plan_frame: the scene has no product");
     check_argument(scene.part_materials.size() == scene.product->mesh.parts.size(),
                    fmt::format("plan_frame: {} materials for {} parts",
                                scene.part_materials.size(),
                                scene.product->mesh.parts.size()));
-    const Needs needs = needs_of(scene);
-    FramePlan plan;
-    plan.quality = quality;
-    if (quality == Quality::reference) {
-        plan_pass(plan, PassKind::path_tracer, "the ground truth was asked for");
-        plan.skipped.push_back(
-            {PassKind::surface_map, "the path tracer finds what it sees by itself"});
-    } else {
-        plan_pass(plan, PassKind::surface_map, "what each projector pixel lights, once for a pose");
-        if (scene.relief.empty()) {
-            plan.skipped.push_back({PassKind::relief, "no part has a relief"});
-        } else {
-            plan_pass(plan,
-                      PassKind::relief,
-                      fmt::format("the relief of part {} tilts its surface before light is solved",
-                                  scene.product->mesh.parts[scene.relief.front().part].name));
-        }
-        plan_lights(scene, plan);
-        plan_environment(needs, plan);
-        plan_shading(scene, needs, plan);
-        plan_pass(plan, PassKind::resolve, "fragments of a pixel are mixed by their coverage");
-    }
+}
+
+void plan_stage(FrameStage stage, FramePlan& plan) {
     if (stage == FrameStage::projector) {
         plan_pass(plan, PassKind::compensation, "the frame goes to the projector");
     } else {
         plan.skipped.push_back({PassKind::compensation, "the frame stops at radiance"});
     }
+}
+
+}  // namespace
+
+ExchangeBound exchange_bound(const Scene& scene) {
+    const Product& product = *scene.product;
+    const PartExchange exchange =
+        product.exchange.parts == 0 ? part_exchange(product.mesh) : product.exchange;
+    std::vector<double> albedo;
+    for (const Material& material : scene.part_materials) {
+        const glm::vec3 rgb = hemispherical_albedo(bsdf_of(material));
+        albedo.push_back(static_cast<double>(std::max({rgb.x, rgb.y, rgb.z})));
+    }
+    ExchangeBound bound;
+    for (std::size_t to = 0; to < albedo.size(); ++to) {
+        double share = 0.0;
+        for (std::size_t from = 0; from < albedo.size(); ++from) {
+            share += albedo[from] * static_cast<double>(exchange.of(to, from));
+        }
+        if (share > bound.share) bound = {to, share, 0.0};
+    }
+    // Of a middle grey
+    const glm::dvec3 white = xyz_from_working() * glm::dvec3(1.0), grey = 0.2 * white;
+    bound.de00 = ciede2000(lab_from_xyz(grey, white),
+                           lab_from_xyz(grey * (1.0 + std::min(bound.share, 1.0)), white));
+    return bound;
+}
+
+FramePlan plan_frame(const Scene& scene, Quality quality, FrameStage stage) {
+    if (quality != Quality::reference) return plan_frame(scene, levels_of(quality), stage);
+    check_scene(scene);
+    FramePlan plan;
+    plan.quality = quality;
+    plan_pass(plan, PassKind::path_tracer, "the ground truth was asked for");
+    plan.skipped.push_back({PassKind::surface_map, "the path tracer finds what it sees by itself"});
+    plan_stage(stage, plan);
+    return plan;
+}
+
+FramePlan plan_frame(const Scene& whole, const EffectLevels& levels, FrameStage stage) {
+    check_scene(whole);
+    check_levels(levels);
+    const Scene scene = at_levels(whole, levels);
+    const auto left_out = [&](Effect effect) {
+        return levels[effect] == 0 && calls_for(whole, effect);
+    };
+    const Needs needs = needs_of(scene);
+    FramePlan plan;
+    plan.quality = nearest_quality(levels);
+    plan.levels = levels;
+    plan_pass(plan, PassKind::surface_map, "what each projector pixel lights, once for a pose");
+    if (scene.relief.empty()) {
+        plan.skipped.push_back({PassKind::relief,
+                                left_out(Effect::relief) ? "the surface is drawn without its relief"
+                                                         : "no part has a relief"});
+    } else {
+        plan_pass(plan,
+                  PassKind::relief,
+                  fmt::format("the relief of part {} tilts its surface before light is solved",
+                              scene.product->mesh.parts[scene.relief.front().part].name));
+    }
+    plan_lights(scene, plan);
+    plan_environment(needs,
+                     left_out(Effect::environment) ? "the environment is left out"
+                                                   : "no environment in the look",
+                     plan);
+    plan_interreflection(scene, needs, plan);
+    plan_shading(scene,
+                 needs,
+                 left_out(Effect::glints) ? "flakes are drawn as a smooth lobe"
+                                          : "no paint of the scene has glints",
+                 plan);
+    plan_pass(plan, PassKind::resolve, "fragments of a pixel are mixed by their coverage");
+    plan_stage(stage, plan);
     return plan;
 }
 

@@ -5,14 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "scene/effects.h"
 #include "scene/pass_id.h"
 #include "scene/scene.h"
 
 namespace livery {
-
-enum class Quality { draft, normal, high, reference };
-Quality parse_quality(const std::string& text);  ///< throws std::invalid_argument with the names
-std::string to_string(Quality quality);
 
 struct PlannedPass {
     PassId id;
@@ -27,10 +24,14 @@ struct PlannedPass {
 struct SkippedPass {
     PassId id;
     std::string why;
+    /// What leaving it out costs at most, as CIEDE2000 somewhere on the product; none: nothing, or
+    /// not bounded.
+    std::optional<double> error_bound{};
 };
 
 struct FramePlan {
-    Quality quality = Quality::normal;
+    Quality quality = Quality::normal;  ///< the nearest to `levels`, or the path tracer's
+    EffectLevels levels;                ///< unused by the path tracer
     std::vector<PlannedPass> passes;
     std::vector<SkippedPass> skipped;
 };
@@ -44,12 +45,28 @@ PassId shade_pass(const Scene& scene, std::size_t part);
 /// Of the scene's k-th artwork, over the paint of its part.
 PassId artwork_pass(const Scene& scene, std::size_t artwork);
 
+/// What parts and roughnesses mirror that the scene does not wear: for the paint that may be next.
+PassId mirrored_ahead_pass();
+/// Moves that pass from those that the frame skips to those that run.
+void plan_ahead(FramePlan& plan);
+
 /// That pass of the plan, or null.
 const PlannedPass* find_pass(const FramePlan& plan, const PassId& id);
 PlannedPass* find_pass(FramePlan& plan, const PassId& id);
 
 /// Lists passes with the reason and skipped ones with theirs. Nothing that is not in the plan is
-/// compiled, allocated or run.
+/// compiled, allocated or run. Throws std::invalid_argument for levels that there are not.
+FramePlan plan_frame(const Scene& scene, const EffectLevels& levels, FrameStage stage);
+/// At that quality's levels, or by the path tracer.
 FramePlan plan_frame(const Scene& scene, Quality quality, FrameStage stage);
+
+/// What light that parts send to one another may add, were nothing between them: the largest share
+/// of a place's own light, and that as CIEDE2000.
+struct ExchangeBound {
+    std::size_t part = 0;  ///< where it is largest
+    double share = 0.0;
+    double de00 = 0.0;
+};
+ExchangeBound exchange_bound(const Scene& scene);
 
 }  // namespace livery

@@ -24,6 +24,8 @@ const char* name_of(PassKind kind) {
             return "environment-irradiance";
         case PassKind::ambient_occlusion:
             return "ambient-occlusion";
+        case PassKind::interreflection:
+            return "interreflection";
         case PassKind::environment_filter:
             return "environment-filter";
         case PassKind::reflection_occlusion:
@@ -59,6 +61,7 @@ std::string to_string(const PassId& pass) {
     }
     if (!pass.part.empty()) text += ":" + pass.part;
     if (pass.artwork) text += fmt::format(":artwork-{}", *pass.artwork + 1);
+    if (pass.ahead) text += std::string(":") + name_of(*pass.ahead);
     if (pass.model) text += fmt::format(":{}", model_info(*pass.model).name);
     return pass.glints ? text + "+glints" : text;
 }

@@ -19,6 +19,7 @@ enum class PassKind {
     light_visibility,
     environment_irradiance,
     ambient_occlusion,
+    interreflection,
     environment_filter,
     reflection_occlusion,
     mirrored_environment,
@@ -39,6 +40,7 @@ struct PassId {
     bool glints = false;                    ///< and single flakes
     std::optional<std::size_t> artwork;     ///< of the scene, that is shaded over the part
     std::optional<std::size_t> light;       ///< of the scene, that is seen; none: any
+    std::optional<PassKind> ahead;          ///< that is prepared: more of it than the frame reads
 
     /// A kind stands for its pass where it has but one.
     PassId(PassKind its_kind = PassKind::surface_map,
@@ -50,7 +52,7 @@ struct PassId {
 };
 
 /// For people and in JSON: "surface-map", "key-visibility", "shade:body:car-paint+glints",
-/// "shade:body:artwork-1:clearcoat", "prepare:ggx".
+/// "shade:body:artwork-1:clearcoat", "prepare:ggx", "prepare:mirrored-environment".
 std::string to_string(const PassId& pass);
 std::string light_name(std::size_t light);  ///< key, fill, light-3, ...
 

@@ -6,6 +6,7 @@
 #include <glm/matrix.hpp>
 
 #include "core/json_ranges.h"
+#include "core/worst_error.h"
 
 namespace livery {
 
@@ -15,7 +16,7 @@ glm::dmat3 read_rotation(const JsonReader& field) {
     double worst = 0.0;
     for (int column = 0; column < 3; ++column) {
         for (int row = 0; row < 3; ++row) {
-            worst = std::max(worst, std::abs(identity[column][row] - (row == column ? 1.0 : 0.0)));
+            worst = worse_of(worst, std::abs(identity[column][row] - (row == column ? 1.0 : 0.0)));
         }
     }
     // Files carry six digits or more; a scale or a mirror is a mistake of another kind.

@@ -80,6 +80,7 @@ Product load_product(const std::filesystem::path& file, std::optional<LengthUnit
     product.name = file.stem().string();
     if (file.extension() != ".json") {
         product.mesh = load_mesh(file, &product.notes, unit);
+        product.exchange = part_exchange(product.mesh);
         return product;
     }
     const ProductFile said = parse_product_file(read_text_file(file), file);
@@ -87,6 +88,7 @@ Product load_product(const std::filesystem::path& file, std::optional<LengthUnit
     product.product_scale = said.product_scale;
     product.mesh = load_mesh(said.mesh, &product.notes, unit ? unit : said.unit);
     apply(said, file, product.mesh);
+    product.exchange = part_exchange(product.mesh);
     return product;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mesh/mesh.h"
+#include "scene/part_exchange.h"
 #include "scene/view.h"
 
 namespace livery {
@@ -18,6 +19,7 @@ struct Product {
     double product_scale = 1.0;  ///< product millimetres per mock-up millimetre (25 for the car)
     std::filesystem::path file;  ///< where it came from
     std::vector<std::string> notes;  ///< what was dropped, repaired or assumed while loading
+    PartExchange exchange{};         ///< of the mesh; empty: whoever asks works it out
 };
 
 /// Of a mock-up's shape: positions and triangles as they are.

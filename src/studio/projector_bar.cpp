@@ -6,6 +6,7 @@
 
 #include "studio/kit/theme.h"
 #include "studio/kit/widgets.h"
+#include "studio/plan_panel.h"
 #include "studio/projector_control.h"
 #include "studio/window/actions.h"
 #include "studio/window/shell.h"
@@ -174,9 +175,9 @@ void draw_status_line(Shell& shell) {
     } else if (studio.background->is_busy()) {
         right += "Loading or saving…";
     }
-    if (studio.frame) {
-        right += fmt::format(
-            "{}paint to picture {:.0f} ms", right.empty() ? "" : "     ", studio.frame->ms_total);
+    // Of the last picture that had to be drawn: one that was there already took no time.
+    if (const double ms = studio.panels.plan->measured.total_ms; studio.frame && ms > 0.0) {
+        right += fmt::format("{}paint to picture {:.0f} ms", right.empty() ? "" : "     ", ms);
     }
     ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(right.c_str()).x);
     ImGui::TextColored(colours::dim_text, "%s", right.c_str());

@@ -24,7 +24,8 @@ const char* what_it_does(Quality quality) {
         case Quality::normal:
             return "Soft shadows; parts hide the environment from one another.";
         case Quality::high:
-            return "As normal, with more samples of shadows and mirrored light.";
+            return "As normal, with more samples of shadows and mirrored light; parts light one "
+                   "another.";
         case Quality::reference:
             return "The ground truth, path traced.";
     }
@@ -132,7 +133,8 @@ std::string quality_text(Studio& studio, Quality quality) {
                             milliseconds(cost->solve_ms),
                             milliseconds(cost->frame_ms));
         if (cost->error)
-            text += fmt::format(" Median error {:.2g} % of white.", 100.0 * *cost->error);
+            text +=
+                fmt::format(" Off by CIEDE2000 {:.2g} or less on 95% of the car.", *cost->error);
     } else if (!costs) {
         text += " What it costs here is not known: run livery bench --suite speed.";
     }

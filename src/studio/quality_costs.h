@@ -28,7 +28,7 @@ bool runs_every_frame(const PassId& pass);
 struct QualityCost {
     double solve_ms = 0.0;        ///< light, once
     double frame_ms = 0.0;        ///< each paint swap
-    std::optional<double> error;  ///< the frame's median, of design white
+    std::optional<double> error;  ///< as PassCost has it
 };
 /// From the last bench, for as many pixels as `pixels` (of the mock-up). Nothing when it did not
 /// time that quality.

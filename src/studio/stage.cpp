@@ -122,7 +122,10 @@ void draw_message(const StageFrame& stage, const std::string& text) {
 void draw_caption(const Shell& shell, const StageFrame& stage, std::string text) {
     const auto& frame = shell.studio.frame;
     const bool waits = frame && !frame->unfinished.empty() && !shell.nudge_open;
-    const std::string unfinished = waits ? "Not all there yet: " + frame->unfinished : "";
+    std::string unfinished = waits ? "Not all there yet: " + frame->unfinished : "";
+    if (const auto solving = shell.studio.frames->solving(); waits && solving) {
+        unfinished += fmt::format(", {:.0f}%", 100.0 * solving->fraction);
+    }
     if (text.empty() && unfinished.empty()) return;
     ImDrawList& list = *ImGui::GetWindowDrawList();
     ImFont* font = small_font();

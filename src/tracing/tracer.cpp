@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/error.h"
+#include "tracing/ray_counters.h"
 
 #if defined(__SSE2__)
 #include <xmmintrin.h>
@@ -165,6 +166,7 @@ Tracer::Tracer(Tracer&&) noexcept = default;
 Tracer& Tracer::operator=(Tracer&&) noexcept = default;
 
 Hit Tracer::closest(const TraceRay& ray) const {
+    tracing_detail::count_closest(1);
     const FlushDenormals flush;
     RTCRayHit query{};
     query.ray = embree_ray(ray);
@@ -179,6 +181,7 @@ Hit Tracer::closest(const TraceRay& ray) const {
 }
 
 bool Tracer::occluded(const TraceRay& ray) const {
+    tracing_detail::count_occluded(1);
     const FlushDenormals flush;
     RTCRay query = embree_ray(ray);
     RTCIntersectContext context;
@@ -189,6 +192,7 @@ bool Tracer::occluded(const TraceRay& ray) const {
 
 void Tracer::closest(std::span<const TraceRay> rays, std::span<Hit> hits) const {
     check_argument(rays.size() == hits.size(), "closest: as many hits as rays are needed");
+    tracing_detail::count_closest(rays.size());
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
@@ -208,6 +212,7 @@ void Tracer::closest_from(const glm::vec3& origin,
                           std::span<Hit> hits) const {
     check_argument(directions.size() == hits.size(),
                    "closest_from: as many hits as directions are needed");
+    tracing_detail::count_closest(directions.size());
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
@@ -236,6 +241,7 @@ void Tracer::occluded(std::span<const TraceRay> rays,
                       std::span<std::uint8_t> blocked,
                       RayOrder order) const {
     check_argument(rays.size() == blocked.size(), "occluded: as many answers as rays are needed");
+    tracing_detail::count_occluded(rays.size());
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = order == RayOrder::neighbours ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT

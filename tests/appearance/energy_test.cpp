@@ -8,6 +8,7 @@
 #include "appearance/bsdf.h"
 #include "appearance/models.h"
 #include "core/random.h"
+#include "core/worst_error.h"
 
 namespace livery {
 namespace {
@@ -81,7 +82,7 @@ struct WeightError {
 
     void add(double weight, double truth) {
         const double error = weight / truth - 1.0;
-        worst = std::max(worst, std::abs(error));
+        worst = worse_of(worst, std::abs(error));
         sum += error;
         ++count;
     }
@@ -111,7 +112,7 @@ TEST_P(Energy, LightFromAllAroundIsWeightedByTheAlbedo) {
                 const double mirrored = albedo_by_slopes(GetParam(), p, wo).x;
                 const double mirror = weighed(GetParam(), p, mu);
                 if (f0 < 0.1) {
-                    faint = std::max(faint, std::abs(mirror - mirrored));
+                    faint = worse_of(faint, std::abs(mirror - mirrored));
                 } else if (mirrored > 0.0) {
                     lobes.add(mirror, mirrored);
                 }

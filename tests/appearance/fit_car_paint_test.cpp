@@ -6,8 +6,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "appearance/bsdf.h"
@@ -15,6 +17,7 @@
 #include "appearance/measured/measured_reflectance.h"
 #include "core/colour.h"
 #include "core/random.h"
+#include "core/worst_error.h"
 #include "support/merl_fits.h"
 #include "support/reference_data.h"
 
@@ -117,18 +120,47 @@ TEST(FitCarPaint, GivesBackThePaintThatMadeTheSamples) {
     EXPECT_NEAR(fit.material.coat_f0 / 0.04, 1.0, 0.06);
 }
 
+// Colours of a film repeat with its thickness, so it is found among many or not at all. The model's
+// own film, through noise of 2%: what is left is the noise's.
+TEST(FitCarPaint, FindsTheFilmThatMadeTheColours) {
+    for (const auto& [nm, eta] : {std::pair{180.0, 2.3}, std::pair{420.0, 1.8}}) {
+        Material paint;
+        paint.model = ReflectanceModel::car_paint;
+        paint.diffuse = {0.02, 0.02, 0.03};
+        paint.f0 = glm::dvec3(0.03);
+        paint.alpha = glm::dvec2(0.3);
+        paint.flake_f0 = glm::dvec3(0.12);
+        paint.flake_alpha = 0.12;
+        paint.film_nm = nm;
+        paint.film_eta = eta;
+        const f64::BsdfParameters p = parameters_of_f64(paint);
+        const ReflectanceFunction truth = [&](const glm::dvec3& wi, const glm::dvec3& wo) {
+            return evaluate(paint.model, p, wi, wo);
+        };
+        FitSamples samples = fit_samples(truth, everywhere, {60, 16, 16});
+        Random random(9);
+        for (glm::dvec3& value : samples.values_working) {
+            for (int c = 0; c < 3; ++c) value[c] *= std::exp(0.02 * random.normal());
+        }
+        const BrdfFit fit = fit_model(paint.model, samples, truth);
+        print(fmt::format("{:.0f} nm of {:.1f}", fit.material.film_nm, fit.material.film_eta), fit);
+        EXPECT_NEAR(fit.material.film_nm * fit.material.film_eta / (nm * eta), 1.0, 0.06);
+        EXPECT_LT(fit.difference.de00_mean, 0.5);
+    }
+}
+
 TEST(FitCarPaint, ComesNearEffectPaints) {
     LIVERY_NEEDS_REFERENCE_DATA(data);
     const auto tables = read_sgd_fits(data / "materials/sgd_bagher2012_merl.csv");
     std::vector<double> differences;
     for (const std::string& name : chosen(kEffectPaints)) {
         const BrdfFit fit = fit_of(fit_named(tables, name));
-        EXPECT_LE(fit.difference.de00_mean, 5.0) << name;
+        EXPECT_LE(fit.difference.de00_mean, 2.5) << name;
         EXPECT_LE(fit.largest_albedo, 1.0 + 1e-4) << name;
-        differences.push_back(fit.difference.de00_mean);
+        differences.push_back(worst_if_nan(fit.difference.de00_mean));
     }
     std::sort(differences.begin(), differences.end());
-    EXPECT_LE(differences[differences.size() / 2], 2.0);
+    EXPECT_LE(differences[differences.size() / 2], 1.2);
 }
 
 TEST(FitCarPaint, ComesNearSolidPaints) {

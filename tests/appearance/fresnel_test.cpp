@@ -9,6 +9,7 @@
 #include "appearance/bsdf.h"
 #include "appearance/gloss_optics.h"
 #include "appearance/models.h"
+#include "core/worst_error.h"
 
 namespace livery {
 namespace {
@@ -110,7 +111,7 @@ TEST(Fresnel, AlbedoOfACoatIsNeverTooSmall) {
                     directional_albedo(ReflectanceModel::ggx, p, direction(mu, 0.0), 128).x;
                 const double excess = f64::coat_albedo(f64::coat_prepare(p), mu, 1.0) - truth;
                 low = std::min(low, excess);
-                high = std::max(high, excess);
+                high = worse_of(high, excess);
             }
         }
     }

@@ -40,6 +40,19 @@ TEST_P(Stability, IsTheSameWithLightAndEyeExchanged) {
     }
 }
 
+TEST(RelativeError, IsInfiniteWhereAValueIsNoNumber) {
+    const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
+    EXPECT_DOUBLE_EQ(relative_error(1.5, 1.0), 0.5);
+    EXPECT_DOUBLE_EQ(relative_error(0.5, 1.0), 0.5);
+    EXPECT_EQ(relative_error(1e-3, 1e-7), 0.0);  // darker than what is compared
+    for (const double truth : {0.0, 1e-7, 1.0, nan}) {
+        EXPECT_EQ(relative_error(nan, truth), inf) << truth;
+        EXPECT_EQ(relative_error(inf, truth), inf) << truth;
+    }
+    EXPECT_EQ(relative_error(1.0, nan), inf);
+    EXPECT_EQ(relative_error(inf, inf), inf);
+}
+
 /// Of values from float-rounded local directions, at every slope parameter.
 constexpr double kWorstError = 1e-4;
 

@@ -12,6 +12,7 @@
 #include "appearance/models.h"
 #include "core/colour.h"
 #include "core/spectrum.h"
+#include "core/worst_error.h"
 
 namespace livery {
 namespace {
@@ -99,8 +100,8 @@ TEST(ThinFilm, ColoursAreThoseOfAirysFormula) {
                     const glm::dvec3 value =
                         f64::film_reflectance(f64::film_prepare(film_on(n, nm)), hh_of(sine));
                     const glm::dvec3 away = glm::abs(value - truth);
-                    errors.push_back(std::max({away.x, away.y, away.z}));
-                    colours.push_back(colour_difference(value, truth));
+                    errors.push_back(worse_of({away.x, away.y, away.z}));
+                    colours.push_back(worst_if_nan(colour_difference(value, truth)));
                 }
             }
         }
@@ -212,14 +213,14 @@ TEST(ThinFilm, PaintWithItKeepsEnergyAndWeighsTheEnvironment) {
                         ReflectanceModel::car_paint, rounded(p), static_cast<float>(mu));
                     const glm::dvec3 sum(e.diffuse + e.specular + e.coat);
                     const glm::dvec3 away = glm::abs(sum - coloured);
-                    worst = std::max({worst, away.x, away.y, away.z});
+                    worst = worse_of({worst, away.x, away.y, away.z});
                 }
                 p.diffuse = glm::dvec3(1.0);
                 p.f0 = glm::dvec3(0.0);
                 p.coat_f0 = 0.0;
                 const glm::dvec3 white =
                     directional_albedo(ReflectanceModel::car_paint, p, direction(mu, 0.0), 48);
-                most = std::max({most, white.x, white.y, white.z});
+                most = worse_of({most, white.x, white.y, white.z});
             }
         }
     }

@@ -8,6 +8,7 @@
 
 #include "core/image_io.h"
 #include "core/paths.h"
+#include "core/worst_error.h"
 #include "environments.h"
 #include "scene/look.h"
 
@@ -106,8 +107,8 @@ TEST(Studio, IsSmooth) {
         for (int x = 0; x < map.width; ++x) {
             if (std::abs(direction_of(map, x, y).y) > 0.98) continue;  // columns crowd at the poles
             const double here = luminance(map, x, y);
-            steepest = std::max(steepest, std::abs(here - luminance(map, (x + 1) % map.width, y)));
-            steepest = std::max(steepest, std::abs(here - luminance(map, x, y + 1)));
+            steepest = worse_of(steepest, std::abs(here - luminance(map, (x + 1) % map.width, y)));
+            steepest = worse_of(steepest, std::abs(here - luminance(map, x, y + 1)));
         }
     }
     EXPECT_LT(steepest, 0.15 * 8.0);

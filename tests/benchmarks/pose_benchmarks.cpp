@@ -2,7 +2,7 @@
 #include "benchmarks/car.h"
 #include "radiance/light/environment_filter.h"
 #include "radiance/light/light_visibility.h"
-#include "radiance/light/mirrored_environment.h"
+#include "radiance/light/mirror_visibility.h"
 #include "radiance/light/sky_visibility.h"
 #include "reference/path_tracer.h"
 
@@ -53,11 +53,16 @@ void MirrorVisibilityOfThePose(benchmark::State& state) {
     const Threads threads(state);
     const FrameGeometry& geometry = *geometry_of_width(static_cast<int>(state.range(0)));
     for (auto _ : state) {
-        benchmark::DoNotOptimize(solve_mirror_visibility(car().product->mesh,
-                                                         *geometry.tracer,
-                                                         geometry.map,
-                                                         car().looks.front().eye_in_world_mm,
-                                                         16));
+        const Mesh& mesh = car().product->mesh;
+        MirrorVisibility visibility(geometry.map, mesh.parts.size(), 16);
+        add_mirror_visibility(mesh,
+                              *geometry.tracer,
+                              geometry.map,
+                              car().looks.front().eye_in_world_mm,
+                              std::vector<bool>(mesh.parts.size(), true),
+                              {},
+                              visibility);
+        benchmark::DoNotOptimize(visibility);
     }
     count_items(state, geometry.map.fragments.size());
 }
@@ -76,6 +81,7 @@ BENCHMARK(EnvironmentFilter)->Unit(benchmark::kMillisecond)->UseRealTime();
 void PathTracer(benchmark::State& state) {
     const View view = cropped(car().projector, 680, 470, 80, 50);
     ReferenceOptions options;
+    options.bounces = 0;  // as what is drawn
     options.samples_per_pixel = 4;
     for (auto _ : state) {
         benchmark::DoNotOptimize(trace_reference(car().looks.front(), view, options));

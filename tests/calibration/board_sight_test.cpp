@@ -10,6 +10,7 @@
 #include "calibration/geometry/find_board.h"
 #include "calibration/support/board_photographs.h"
 #include "core/error.h"
+#include "core/worst_error.h"
 
 namespace livery {
 namespace {
@@ -54,10 +55,10 @@ std::pair<double, double> worst_errors(const BoardScene& scene, const BoardSight
             const glm::dvec2 p =
                 turned ? glm::dvec2(600, 450) - sight.board_mm[k] : sight.board_mm[k];
             const glm::dvec3 place = scene.camera_from_board * glm::dvec3(p, 0.0);
-            worst.first = std::max(
+            worst.first = worse_of(
                 worst.first, glm::distance(*project(scene.camera, place), sight.camera_px[k]));
             worst.second =
-                std::max(worst.second,
+                worse_of(worst.second,
                          glm::distance(*project(scene.projector, place), sight.projector_px[k]));
         }
         if (worst.first < least.first) least = worst;

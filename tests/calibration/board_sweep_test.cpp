@@ -10,6 +10,7 @@
 #include "calibration/geometry/choose_model.h"
 #include "calibration/support/board_sights.h"
 #include "core/error.h"
+#include "core/worst_error.h"
 
 namespace livery {
 namespace {
@@ -111,7 +112,7 @@ TEST(BoardSweep, PosesTiltsAndNoise) {
                        LensModel::k1_k2);
         const std::vector<double> all = scores(found, t);
         double worst = 0.0;
-        for (const double score : all) worst = std::max(worst, std::abs(score));
+        for (const double score : all) worst = worse_of(worst, std::abs(score));
         const auto held_out = held_out_px(found, unseen);
         ASSERT_TRUE(held_out);
         std::printf(

@@ -9,6 +9,7 @@
 #include "calibration/support/messages.h"
 #include "calibration/support/synthetic_bench.h"
 #include "core/error.h"
+#include "core/worst_error.h"
 
 namespace livery {
 namespace {
@@ -82,7 +83,7 @@ struct LiveBench {
 double largest_relative_difference(const glm::dmat3& a, const glm::dmat3& b) {
     double largest = 0.0;
     for (int k = 0; k < 3; ++k)
-        for (int c = 0; c < 3; ++c) largest = std::max(largest, std::abs(a[k][c] - b[k][c]));
+        for (int c = 0; c < 3; ++c) largest = worse_of(largest, std::abs(a[k][c] - b[k][c]));
     return largest;
 }
 

@@ -10,6 +10,7 @@
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/random.h"
+#include "core/worst_error.h"
 
 namespace livery {
 namespace {
@@ -55,7 +56,7 @@ double worst_error(const CameraResponse& found, const std::function<double(doubl
     const double scale = linear_of(curve, 180.0 / 255.0) / found.linear_from_file[180];
     double worst = 0.0;
     for (const std::size_t value : {12u, 25u, 50u, 100u, 150u, 210u, 240u})
-        worst = std::max(worst,
+        worst = worse_of(worst,
                          std::abs(scale * found.linear_from_file[value] /
                                       linear_of(curve, static_cast<double>(value) / 255.0) -
                                   1.0));

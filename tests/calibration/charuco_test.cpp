@@ -13,6 +13,7 @@
 #include "calibration/geometry/board_sight.h"
 #include "calibration/geometry/find_board.h"
 #include "calibration/support/board_photographs.h"
+#include "core/worst_error.h"
 
 namespace livery {
 namespace {
@@ -136,7 +137,7 @@ double worst_error(const BoardScene& scene, const BoardSight& sight) {
     for (std::size_t k = 0; k < sight.board_mm.size(); ++k) {
         const auto seen =
             project(scene.camera, scene.camera_from_board * glm::dvec3(sight.board_mm[k], 0.0));
-        worst = std::max(worst, glm::distance(*seen, sight.camera_px[k]));
+        worst = worse_of(worst, glm::distance(*seen, sight.camera_px[k]));
     }
     return worst;
 }

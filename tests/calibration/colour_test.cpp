@@ -9,6 +9,7 @@
 #include "calibration/support/synthetic_bench.h"
 #include "core/colour.h"
 #include "core/error.h"
+#include "core/worst_error.h"
 
 namespace livery {
 namespace {
@@ -82,7 +83,7 @@ Recovery recover(const SyntheticBench& bench,
             const glm::dvec3 error = bench.response(found) - bench.response(drive);
             recovery.rms += glm::dot(error, error) / 3.0;
             recovery.worst =
-                std::max({recovery.worst, std::abs(error.x), std::abs(error.y), std::abs(error.z)});
+                worse_of({recovery.worst, std::abs(error.x), std::abs(error.y), std::abs(error.z)});
             ++recovery.count;
         }
     recovery.rms = std::sqrt(recovery.rms / std::max(recovery.count, 1));

@@ -9,6 +9,7 @@
 #include "calibration/support/messages.h"
 #include "core/error.h"
 #include "core/random.h"
+#include "core/worst_error.h"
 
 namespace livery {
 namespace {
@@ -58,7 +59,7 @@ double largest_error_at_nodes(const TableFit& fit, const LightOf& light) {
                     std::pow(r * step, 2.2), std::pow(g * step, 2.0), std::pow(b * step, 2.4));
                 const glm::dvec3 n = light(u) / light(glm::dvec3(1.0));
                 for (int k = 0; k < 3; ++k)
-                    largest = std::max(
+                    largest = worse_of(
                         largest,
                         std::abs(static_cast<double>(fit.table.n_from_drive[i][k]) - n[k]));
             }

@@ -12,6 +12,7 @@
 #include "calibration/support/fringe_scene.h"
 #include "calibration/support/messages.h"
 #include "core/error.h"
+#include "core/worst_error.h"
 
 namespace livery {
 namespace {
@@ -56,7 +57,7 @@ PlaceErrors errors_of(const FringeScene& scene,
                 const double error = places.projector_px.at(x, y, axis) - truth[axis];
                 errors.rms += 0.5 * error * error;
                 errors.rms_of_sigma += 0.5 * error * error / (sigma * sigma);
-                errors.largest = std::max(errors.largest, std::abs(error));
+                errors.largest = worse_of(errors.largest, std::abs(error));
             }
         }
     errors.rms = std::sqrt(errors.rms / std::max(errors.fine, 1));
@@ -86,7 +87,7 @@ double largest_error(int shifts, const Response& response) {
             cosine += value * std::cos(kTurn * n / shifts);
         }
         const double found = std::atan2(sine, cosine) / kTurn * kFringePeriod_px;
-        largest = std::max(largest, std::abs(std::remainder(found - place, kFringePeriod_px)));
+        largest = worse_of(largest, std::abs(std::remainder(found - place, kFringePeriod_px)));
     }
     return largest;
 }
@@ -114,7 +115,7 @@ TEST(Fringes, FiveShiftsAreTheFewestThatNoResponseMovesByATwentiethOfAPixel) {
         for (int shifts = 3; shifts <= 8; ++shifts) {
             const double error = largest_error(shifts, one.response);
             std::printf("  %d: %.3f px", shifts, error);
-            if (shifts == 4) worst_of_four = std::max(worst_of_four, error);
+            if (shifts == 4) worst_of_four = worse_of(worst_of_four, error);
             if (shifts == kFringeShifts) {
                 EXPECT_LT(error, 0.05) << one.name;
             }
@@ -267,10 +268,10 @@ TEST(FringeDecoding, DirectAndGlobalLightComeApart) {
                 wrongly += global;
                 const double white = scene.white_level;
                 // Blur of .5 px takes 1.9%, noise and response 1% each.
-                worst = std::max(worst,
+                worst = worse_of(worst,
                                  std::abs(code.light.direct.at(x, y) / white -
                                           scene.direct({x + 0.5, y + 0.5})));
-                worst = std::max(worst,
+                worst = worse_of(worst,
                                  std::abs(code.light.global.at(x, y) / white -
                                           scene.global({x + 0.5, y + 0.5})));
             }

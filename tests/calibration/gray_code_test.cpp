@@ -8,6 +8,7 @@
 #include "calibration/support/messages.h"
 #include "calibration/support/synthetic_bench.h"
 #include "core/error.h"
+#include "core/worst_error.h"
 
 namespace livery {
 namespace {
@@ -243,7 +244,7 @@ MapError error_of(const ProjectorToCamera& map, const ProjectorToCamera& truth, 
             const double dx = map.camera_px.at(x, y, 0) - truth.camera_px.at(x, y, 0);
             const double dy = map.camera_px.at(x, y, 1) - truth.camera_px.at(x, y, 1);
             error.rms += dx * dx + dy * dy;
-            error.largest = std::max({error.largest, std::abs(dx), std::abs(dy)});
+            error.largest = worse_of({error.largest, std::abs(dx), std::abs(dy)});
             ++error.count;
         }
     error.rms = std::sqrt(error.rms / std::max(error.count, 1));

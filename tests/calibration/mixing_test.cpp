@@ -10,6 +10,7 @@
 #include "calibration/support/messages.h"
 #include "calibration/support/synthetic_bench.h"
 #include "core/error.h"
+#include "core/worst_error.h"
 
 namespace livery {
 namespace {
@@ -32,7 +33,7 @@ glm::dmat3 unit_diagonal(glm::dmat3 v) {
 double largest_difference(const glm::dmat3& a, const glm::dmat3& b) {
     double largest = 0.0;
     for (int k = 0; k < 3; ++k)
-        for (int c = 0; c < 3; ++c) largest = std::max(largest, std::abs(a[k][c] - b[k][c]));
+        for (int c = 0; c < 3; ++c) largest = worse_of(largest, std::abs(a[k][c] - b[k][c]));
     return largest;
 }
 
@@ -109,7 +110,7 @@ TEST(MixRobustly, KeepsAColouredSurfaceApart) {
         for (int k = 0; k < 3; ++k) v[k] *= bench.tint(p);
         const double error =
             largest_difference(glm::inverse(glm::dmat3(mixing.unmixing[i])), unit_diagonal(v));
-        worst = std::max(worst, error);
+        worst = worse_of(worst, error);
         square += error * error;
         count += 1.0;
     }

@@ -68,12 +68,19 @@ TEST_F(Fit, WritesThePaintThatItFound) {
     const Json& models = answer["models"];
     ASSERT_GT(models.size(), 2u);
     for (std::size_t k = 0; k < models.size(); ++k) {
-        for (const char* field : {"name", "parameters", "error_log", "error_de00", "seconds"}) {
+        for (const char* field : {"name",
+                                  "parameters",
+                                  "error",
+                                  "error_log",
+                                  "error_de00",
+                                  "error_de00_p95",
+                                  "seconds"}) {
             EXPECT_TRUE(models[k].contains(field)) << field;
         }
         const Json& before = models[k > 0 ? k - 1 : 0];
-        EXPECT_LE(before["error_de00"], models[k]["error_de00"]);
+        EXPECT_LE(before["error"], models[k]["error"]);
     }
+    EXPECT_TRUE(answer["error_is"].is_string());
     const Material paint = read_material_file(out());
     EXPECT_EQ(paint.name, "my green");
     EXPECT_NE(paint.provenance.find("my_green.csv"), std::string::npos) << paint.provenance;

@@ -1,6 +1,7 @@
 // The program as its users meet it: real commands, real files, small pictures.
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <fstream>
 #include <functional>
@@ -219,6 +220,28 @@ TEST(Program, RendersBothBackendsAndPlans) {
                                              (folder / "truth.exr").string()});
     ASSERT_EQ(reference.exit_code, 0) << reference.err;
     EXPECT_EQ(json_of(reference)["spp"], 2);
+    EXPECT_EQ(json_of(reference)["mean_spp"], 2.0);
+    // What is known of each pixel stands beside it, and the picture is still one for others.
+    const ImageFile truth = read_image(folder / "truth.exr");
+    const auto channel = [&](const std::string& name) {
+        const auto found = std::ranges::find(truth.channel_names, name);
+        EXPECT_NE(found, truth.channel_names.end()) << name;
+        return static_cast<std::size_t>(found - truth.channel_names.begin());
+    };
+    const std::size_t variance = channel("variance.Y"), confidence = channel("confidence.Y"),
+                      samples = channel("samples.Y"), alpha = channel("A");
+    int sure = 0;
+    for (std::size_t i = 0; i < truth.image.pixel_count(); ++i) {
+        const float* v =
+            truth.image.values.data() + i * static_cast<std::size_t>(truth.image.channels);
+        EXPECT_EQ(v[samples], 2.0f);
+        if (v[alpha] < 1.0f) continue;
+        // Student's t of one degree of freedom
+        EXPECT_NEAR(v[confidence], 12.706f * std::sqrt(v[variance]), 1e-4f * v[confidence]);
+        sure += v[confidence] > 0.0f ? 1 : 0;
+    }
+    EXPECT_GT(sure, 100);
+    EXPECT_EQ(livery_run({"check", (folder / "truth.exr").string()}).exit_code, 0);
 
     // Without a bench on this machine nothing is predicted, and the answer says why.
     ::setenv("LIVERY_HOME", (folder / "home").c_str(), 1);

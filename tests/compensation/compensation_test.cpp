@@ -14,6 +14,7 @@
 #include "compensation/synthetic.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/worst_error.h"
 #include "support/message_of.h"
 
 namespace livery {
@@ -103,7 +104,7 @@ TEST(Compensate, RecoversTheDrivesThatMadeAColour) {
             for (std::size_t k = 0; k < 3; ++k) {
                 const double error =
                     static_cast<double>(out.values[3 * i + k]) - drives[i][static_cast<int>(k)];
-                worst = std::max(worst, std::abs(error));
+                worst = worse_of(worst, std::abs(error));
                 sum += error;
             }
         }
@@ -134,7 +135,7 @@ TEST(Compensate, GivesTheLightThatWasAskedFor) {
             glm::dvec3(wanted.values[4 * i], wanted.values[4 * i + 1], wanted.values[4 * i + 2]) *
             white_y;
         sum_ratio += shown.y / asked.y;
-        worst = std::max(worst, glm::length(shown - asked) / glm::length(asked));
+        worst = worse_of(worst, glm::length(shown - asked) / glm::length(asked));
     }
     EXPECT_NEAR(sum_ratio / static_cast<double>(world.mixing.size()), 1.0, 0.002);
     EXPECT_LT(worst, 0.025);

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "compensation/white_segment.h"
+#include "core/worst_error.h"
 
 namespace livery {
 namespace {
@@ -60,7 +61,7 @@ TEST_F(DriveTableTest, InverseIsBetterThanHalfALevel) {
         }
         glm::vec3 residual;
         const glm::vec3 found = drive_of_n(table_, n_at_linear(table_, linear, nullptr), &residual);
-        for (int k = 0; k < 3; ++k) worst = std::max(worst, std::abs(found[k] - drive[k]));
+        for (int k = 0; k < 3; ++k) worst = worse_of(worst, std::abs(found[k] - drive[k]));
     }
     EXPECT_LT(worst, 0.5f);
 }
@@ -87,7 +88,7 @@ TEST_F(DriveTableTest, OutsideTheGamutGivesTheNearestPoint) {
             }
         }
         const double excess = static_cast<double>(glm::length(residual) - nearest);
-        worst_excess = std::max(worst_excess, excess);
+        worst_excess = worse_of(worst_excess, excess);
         sum_excess += excess;
     }
     EXPECT_LT(worst_excess, 0.05);
@@ -119,10 +120,11 @@ Shown show_random_colours(const World& world, const CompensationTable& table, do
             xyz_from_working() *
             glm::dvec3(wanted.values[4 * i], wanted.values[4 * i + 1], wanted.values[4 * i + 2]);
         const double error = glm::length(got - asked) / glm::length(asked);
-        shown.worst = std::max(shown.worst, error);
+        shown.worst = worse_of(shown.worst, error);
         shown.mean += error / static_cast<double>(world.mixing.size());
         shown.mean_ratio += got.y / asked.y / static_cast<double>(world.mixing.size());
-        de.push_back(ciede2000(lab_from_xyz(got, d65_xyz()), lab_from_xyz(asked, d65_xyz())));
+        de.push_back(
+            worst_if_nan(ciede2000(lab_from_xyz(got, d65_xyz()), lab_from_xyz(asked, d65_xyz()))));
     }
     std::sort(de.begin(), de.end());
     shown.median_de = de[de.size() / 2];

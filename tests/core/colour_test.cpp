@@ -1,5 +1,6 @@
 #include "core/colour.h"
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -28,6 +29,18 @@ TEST(Colour, Ciede2000MatchesSharmasPairs) {
         ++pairs;
     }
     EXPECT_EQ(pairs, 34);
+}
+
+TEST(Colour, Ciede2000OfWhatIsNoNumberIsNone) {
+    // Nothing would be a perfect match.
+    const double nan = std::nan("");
+    for (int c = 0; c < 3; ++c) {
+        glm::dvec3 spoiled(50.0, 10.0, -20.0);
+        spoiled[c] = nan;
+        EXPECT_TRUE(std::isnan(ciede2000(spoiled, {50.0, 10.0, -20.0}))) << c;
+        EXPECT_TRUE(std::isnan(ciede2000({50.0, 10.0, -20.0}, spoiled))) << c;
+    }
+    EXPECT_TRUE(std::isnan(ciede2000(lab_from_xyz(glm::dvec3(nan), d65_xyz()), glm::dvec3(0.0))));
 }
 
 TEST(Colour, Ciede2000MatchesItsHardestPairs) {

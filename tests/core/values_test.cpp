@@ -1,8 +1,9 @@
-// Hashes, random numbers and parallel loops.
+// Hashes, random numbers, parallel loops, order statistics and the worst of errors.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <mutex>
 #include <set>
 #include <stdexcept>
@@ -15,9 +16,42 @@
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/random.h"
+#include "core/statistics.h"
+#include "core/worst_error.h"
 
 namespace livery {
 namespace {
+
+TEST(WorstError, IsWhatIsNoNumber) {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    constexpr double kInf = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(worse_of(0.25, 0.5), 0.5);
+    EXPECT_EQ(worse_of(0.5, 0.25), 0.5);
+    EXPECT_EQ(worse_of(0.5, kNan), kInf);
+    EXPECT_EQ(worse_of(kNan, 0.5), kInf);
+    EXPECT_EQ(worse_of({0.1, kNan, 0.2}), kInf);
+    EXPECT_EQ(worse_of({-3.0, -2.0}), -2.0);
+    EXPECT_EQ(worst_if_nan(-1.5f), -1.5f);
+    EXPECT_EQ(worst_if_nan(std::numeric_limits<float>::quiet_NaN()),
+              std::numeric_limits<float>::infinity());
+}
+
+TEST(Quantile, CountsWhatIsNoNumberAsTheLargest) {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    for (std::size_t at = 0; at < 5; ++at) {
+        std::vector<double> values{4.0, 1.0, 3.0, 2.0, 5.0};
+        EXPECT_EQ(median(values), 3.0);
+        values.insert(values.begin() + static_cast<std::ptrdiff_t>(at), kNan);
+        values.insert(values.begin() + static_cast<std::ptrdiff_t>(at), kNan);
+        EXPECT_EQ(median(values), 4.0);
+        EXPECT_EQ(quantile(values, 0.0), 1.0);
+        EXPECT_EQ(quantile(values, 4.0 / 6.0), 5.0);
+        EXPECT_TRUE(std::isnan(quantile(values, 5.0 / 6.0)));
+        EXPECT_TRUE(std::isnan(quantile(values, 1.0)));
+    }
+    EXPECT_TRUE(std::isnan(median(std::vector<double>{kNan})));
+    EXPECT_EQ(median(std::vector<int>{3, 1, 2}), 2);
+}
 
 TEST(Hash, IsXxh3WithNothingAdded) {
     // The published XXH3_128bits of no input, seed 0.

@@ -1,5 +1,8 @@
 #include "jobs/comparison.h"
 
+#include <cmath>
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include "core/colour.h"
@@ -24,6 +27,28 @@ Image8 mask(const std::vector<int>& values) {
         image.values[i] = static_cast<std::uint8_t>(values[i]);
     }
     return image;
+}
+
+TEST(Comparison, APixelThatIsNoNumberIsTheWorst) {
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    for (std::size_t at = 0; at <= 20; ++at) {
+        std::vector<float> errors(20, 1.0f);
+        errors.insert(errors.begin() + static_cast<std::ptrdiff_t>(at), kNan);
+        const ErrorStatistics statistics = statistics_of(errors);
+        EXPECT_EQ(statistics.pixels, 21u);
+        EXPECT_EQ(statistics.median, 1.0);
+        EXPECT_EQ(statistics.p95, 1.0);
+        EXPECT_EQ(statistics.worst, std::numeric_limits<double>::infinity());
+        EXPECT_FALSE(statistics.mean < 1e9);
+    }
+    const glm::dvec3 grey = 10.0 * d65_xyz();
+    const Image8 all = mask({255, 255, 255}), none = mask({0, 0, 0});
+    const Comparison result = compare_xyz(row({grey, grey, grey}),
+                                          row({grey, glm::dvec3(std::nan("")), grey}),
+                                          40.0 * d65_xyz(),
+                                          {all, none, all, all});
+    EXPECT_EQ(result.interior.worst, std::numeric_limits<double>::infinity());
+    EXPECT_EQ(result.interior.median, 0.0);
 }
 
 TEST(Comparison, SortsPixelsByKind) {

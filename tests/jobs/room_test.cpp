@@ -7,6 +7,7 @@
 
 #include "calibration/predict.h"
 #include "compensation/compensation.h"
+#include "core/worst_error.h"
 #include "jobs/calibrate/bench_calibration.h"
 #include "jobs/projector_irradiance.h"
 #include "scene/mockup_mask.h"
@@ -164,8 +165,8 @@ TEST(Room, TheResponseHoldsInTheDark) {
             const double n =
                 (static_cast<double>(k - 1) + (drive - low) / std::max(high - low, 1e-9)) / last;
             const double truth = channel_light(description.projector, channel, drive / 255.0, 0.0);
-            if (std::abs(n / truth - 1.0) > worst) {
-                worst = std::abs(n / truth - 1.0);
+            if (!(std::abs(n / truth - 1.0) <= worst)) {
+                worst = worst_if_nan(std::abs(n / truth - 1.0));
                 worst_drive = drive;
             }
         }

@@ -9,6 +9,7 @@
 
 #include "core/image_io.h"
 #include "core/paths.h"
+#include "core/worst_error.h"
 #include "jobs/file_check.h"
 #include "jobs/sphere_bench.h"
 #include "support/file_error.h"
@@ -189,7 +190,7 @@ TEST_F(SphereProblems, ALampOfItsOwnStrengthIsKnownByItsOwnWhite) {
     const auto spread = [&](const SphereMeasurement& report) {
         std::vector<double> values;
         for (const glm::dvec3& value : report.reflectance.values) {
-            values.push_back(value.y * std::numbers::pi / lambert_paint().diffuse.y);
+            values.push_back(worst_if_nan(value.y * std::numbers::pi / lambert_paint().diffuse.y));
         }
         std::sort(values.begin(), values.end());
         return glm::dvec2(values[values.size() / 10], values[values.size() * 9 / 10]);

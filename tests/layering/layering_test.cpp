@@ -1,5 +1,5 @@
 // Reads the lists in docs/architecture.md and holds every #include of src/ against them; names of
-// types, sizes of folders.
+// types, sizes of folders, errors that a NaN would not count in.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -149,6 +149,34 @@ std::vector<std::string> crowded_folders(const std::filesystem::path& source) {
     return found;
 }
 
+/// Errors that a NaN leaves as they were: std::max(worst, NaN) is `worst` (core/worst_error.h has
+/// what to write instead). By their names, some where absolute values are kept. Whole numbers are
+/// never NaN.
+std::vector<std::string> errors_deaf_to_nan(const std::filesystem::path& source) {
+    static const std::regex kept(
+        R"(([\w.]*(worst|error|deviation|violation|change)\w*) = std::max\()"
+        R"(|([\w.]*(?:largest|steepest|off|apart)) =\s+std::max\(\{?\s*\3,\s*(static_cast<double>\()?(std::abs|glm::distance)\()");
+    static const std::regex whole(R"(^[^;]*static_cast<int>[^;]*;)");
+    std::vector<std::string> found;
+    for (const char* folder : {"src", "tests"}) {
+        if (!std::filesystem::exists(source / folder)) continue;
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(source / folder)) {
+            if (!is_source(entry.path())) continue;
+            const std::string text = text_of(entry.path());
+            for (std::sregex_iterator it(text.begin(), text.end(), kept), end; it != end; ++it) {
+                const auto at = text.begin() + it->position();
+                if (std::regex_search(std::string(at, std::min(at + 300, text.end())), whole)) {
+                    continue;
+                }
+                found.push_back(std::filesystem::relative(entry.path(), source).generic_string() +
+                                ":" + std::to_string(1 + std::count(text.begin(), at, '\n')) +
+                                ": " + it->str());
+            }
+        }
+    }
+    return found;
+}
+
 std::string joined(const std::vector<std::string>& lines) {
     std::string text;
     for (const auto& line : lines) text += line + "\n";
@@ -220,6 +248,31 @@ TEST(Layering, NoTwoTypesHaveOneName) {
 TEST(Layering, NoFolderIsCrowded) {
     const auto found = crowded_folders(kSource);
     EXPECT_TRUE(found.empty()) << joined(found);
+}
+
+TEST(Errors, NoneIsDeafToNan) {
+    const auto found = errors_deaf_to_nan(kSource);
+    EXPECT_TRUE(found.empty()) << joined(found);
+}
+
+TEST(Errors, PlantedOnesAreFound) {
+    const TemporaryFolder folder;
+    std::filesystem::create_directories(folder / "src/core");
+    folder.write("src/core/a.cpp",
+                 "row.worst = "
+                 "std::max(row.worst, x);\n"
+                 "worst = worse_of(worst, x);\n"
+                 "largest = "
+                 "std::max(largest,\n std::abs(a - b));\n"
+                 "largest = "
+                 "std::max(largest, std::abs(static_cast<int>(a)));\n"
+                 "high = "
+                 "std::max(high, value);\n");
+    EXPECT_EQ(joined(errors_deaf_to_nan(folder.path())),
+              "src/core/a.cpp:1: row.worst = "
+              "std::max(\n"
+              "src/core/a.cpp:3: largest = "
+              "std::max(largest,\n std::abs(\n");
 }
 
 TEST(Layering, PlantedNamesAndCrowdsAreFound) {

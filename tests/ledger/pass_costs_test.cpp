@@ -57,6 +57,22 @@ TEST(PassCosts, DependOnNeitherPartNorLight) {
     EXPECT_EQ(cost_key(visibility_pass(3)), PassId(PassKind::light_visibility));
 }
 
+TEST(PassCosts, PredictNothingOfOtherLevels) {
+    FramePlan plan;
+    plan.levels = levels_of(Quality::normal);
+    PlannedPass& pass = plan.passes.emplace_back();
+    pass.id = PassKind::resolve;
+    pass.work_items = 10.0;
+    const std::vector<PassCost> costs{{PassKind::resolve, Quality::normal, 1.0, 10.0, 2.0}};
+    EXPECT_EQ(predict_drawn(plan, costs), "");
+    EXPECT_EQ(plan.passes[0].predicted_ms, 1.0);
+    plan.passes[0].predicted_ms.reset();
+    plan.levels[Effect::shadows] = 3;
+    EXPECT_NE(predict_drawn(plan, costs), "");
+    EXPECT_FALSE(plan.passes[0].predicted_ms.has_value());
+    EXPECT_NE(plan.passes[0].unpredicted_because, "");
+}
+
 TEST(PassCosts, AQualityThatIsNoneIsNamed) {
     EXPECT_TRUE(fails_with(
         [] {

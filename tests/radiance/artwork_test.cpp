@@ -5,12 +5,12 @@
 
 #include "appearance/model_table.h"
 #include "core/image_io.h"
-#include "radiance/accuracy.h"
 #include "radiance/artwork_inputs.h"
 #include "radiance/direct_oracle.h"
 #include "radiance/raster_preview.h"
 #include "radiance/renderer_fixture.h"
 #include "scene/artwork_coats.h"
+#include "support/radiance_error.h"
 #include "support/temporary_folder.h"
 
 namespace livery {

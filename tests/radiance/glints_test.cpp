@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "core/random.h"
+#include "core/worst_error.h"
 #include "gl/draw.h"
 #include "gl/read_back.h"
 #include "radiance/glints_source.h"
@@ -190,7 +191,7 @@ TEST(Glints, ChangeWithoutAStep) {
                 const glm::dvec4 place(
                     100.0 * off(), 100.0 * off(), 100.0 * off(), std::exp2(0.1 * off()));
                 const glm::dvec4 moved = place + step * glm::dvec4(off(), off(), off(), off());
-                worst = std::max(worst, std::abs(a.factor(place) - b.factor(moved)));
+                worst = worse_of(worst, std::abs(a.factor(place) - b.factor(moved)));
             }
             EXPECT_LT(worst, before) << step;
             if (first == 0.0) first = worst;
@@ -248,6 +249,7 @@ TEST(Glints, AreNeverNegativeNorNoNumber) {
 
 /// Asserts how far two computations of the same factors are apart, as shares of 1 + the factor.
 void expect_close(const char* what, std::vector<double> errors) {
+    for (double& error : errors) error = worst_if_nan(error);
     std::sort(errors.begin(), errors.end());
     const double p99 = errors[errors.size() * 99 / 100];
     std::printf("    %-24s 99%% %.1e worst %.1e\n", what, p99, errors.back());

@@ -6,9 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "appearance/measured_like.h"
-#include "radiance/accuracy.h"
 #include "radiance/raster_preview.h"
 #include "radiance/renderer_fixture.h"
+#include "support/radiance_error.h"
 
 namespace livery {
 namespace {

@@ -13,6 +13,7 @@
 
 #include "appearance/material_library.h"
 #include "core/paths.h"
+#include "core/worst_error.h"
 #include "radiance/direct_oracle.h"
 #include "radiance/renderer_fixture.h"
 #include "scene/look.h"
@@ -281,7 +282,7 @@ double grain_of(const Subject& subject, const ImageF& image, int reach) {
                 mean += green(image, static_cast<std::size_t>(v * image.width + u)) / count;
             }
         }
-        apart.push_back(std::abs(green(image, pixel) / mean - 1.0));
+        apart.push_back(worst_if_nan(std::abs(green(image, pixel) / mean - 1.0)));
     }
     std::nth_element(
         apart.begin(), apart.begin() + static_cast<std::ptrdiff_t>(apart.size() / 2), apart.end());
@@ -335,7 +336,7 @@ TEST_P(Mirror, NarrowLobesKeepTheEdgesOfWhatTheyMirror) {
         const auto steepest = [&](const ImageF& image) {
             std::vector<double> steps;
             for (const std::size_t i : subject.pixels) {
-                steps.push_back(std::abs(green(image, i + 1) - green(image, i - 1)));
+                steps.push_back(worst_if_nan(std::abs(green(image, i + 1) - green(image, i - 1))));
             }
             std::sort(steps.begin(), steps.end());
             // Over the edge's own pixels, one a row

@@ -8,10 +8,12 @@
 #include <gtest/gtest.h>
 
 #include "appearance/model_table.h"
+#include "core/worst_error.h"
 #include "gl/context.h"
 #include "radiance/renderer.h"
 #include "radiance/scenes.h"
 #include "radiance/shading.h"
+#include "support/direct_levels.h"
 
 namespace livery {
 namespace {
@@ -40,7 +42,7 @@ std::vector<double> interior_differences(const ImageF& a, const ImageF& b, const
             double largest = 0.0;
             for (int c = 0; c < 3; ++c) {
                 largest =
-                    std::max(largest, static_cast<double>(std::abs(a.at(x, y, c) - b.at(x, y, c))));
+                    worse_of(largest, static_cast<double>(std::abs(a.at(x, y, c) - b.at(x, y, c))));
             }
             differences.push_back(largest);
         }
@@ -80,7 +82,7 @@ TEST(RasterPreview, AgreesWithTheSurfaceMapInside) {
             scene.environment = gradient();
         }
         RadianceRenderer renderer(scene.product, view);
-        FramePlan plan = plan_frame(scene, Quality::normal, FrameStage::radiance);
+        FramePlan plan = plan_frame(scene, direct_levels(Quality::normal), FrameStage::radiance);
         renderer.render(scene, plan);
         RasterPreview preview(scene.product);
         preview.render(scene, view);
@@ -116,7 +118,7 @@ TEST(RasterPreview, ShowsTheGlintsOfTheProjectorsPixels) {
     glinting.part_materials[0].glint_density_per_mm2 = 3000.0;
     const auto drawn = [&](const Scene& some) {
         RadianceRenderer renderer(some.product, projector);
-        FramePlan plan = plan_frame(some, Quality::normal, FrameStage::radiance);
+        FramePlan plan = plan_frame(some, direct_levels(Quality::normal), FrameStage::radiance);
         renderer.render(some, plan);
         return renderer.read_back();
     };

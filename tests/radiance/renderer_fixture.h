@@ -10,6 +10,7 @@
 #include "gl/context.h"
 #include "radiance/renderer.h"
 #include "radiance/scenes.h"
+#include "support/direct_levels.h"
 
 namespace livery {
 
@@ -18,8 +19,12 @@ class Renderer : public testing::TestWithParam<ShadingDevice> {
   protected:
     HeadlessContext context{GlDevice::software};
 
+    /// Direct light alone, as the oracles have it.
     static FramePlan plan(const Scene& scene, Quality quality = Quality::normal) {
-        return plan_frame(scene, quality, FrameStage::radiance);
+        if (quality == Quality::reference) {
+            return plan_frame(scene, quality, FrameStage::radiance);
+        }
+        return plan_frame(scene, direct_levels(quality), FrameStage::radiance);
     }
     static ImageF draw(const Scene& scene, const View& view, Quality quality = Quality::normal) {
         return draw(scene, view, quality, GetParam());

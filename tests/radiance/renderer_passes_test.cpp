@@ -162,7 +162,7 @@ TEST_P(RendererPasses, ADraftOfANewLightKeepsTheBetterEnvironmentWhereAsked) {
     FramePlan its_plan = plan(scene);
     renderer.render(scene, its_plan);
     scene.lights[0].direction = {0.0, 0.6, 0.8};
-    FramePlan draft = plan_frame(scene, Quality::draft, FrameStage::radiance);
+    FramePlan draft = plan(scene, Quality::draft);
     renderer.render(scene, draft);
     EXPECT_EQ(*find_pass(draft, PassKind::environment_irradiance)->ms, 0.0);
     EXPECT_EQ(*find_pass(draft, PassKind::mirrored_environment)->ms, 0.0);

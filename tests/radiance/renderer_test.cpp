@@ -14,11 +14,11 @@
 #include "core/colour.h"
 #include "gl/context.h"
 #include "gl/read_back.h"
-#include "radiance/accuracy.h"
 #include "radiance/direct_oracle.h"
 #include "radiance/light/mirror_quadrature.h"
 #include "radiance/renderer_fixture.h"
 #include "radiance/shading.h"
+#include "support/radiance_error.h"
 
 namespace livery {
 namespace {

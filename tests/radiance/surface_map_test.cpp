@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "core/worst_error.h"
 #include "radiance/ray_grid.h"
 
 namespace livery {
@@ -239,7 +240,7 @@ TEST(SurfaceMap, InterpolatedRaysFollowTheLens) {
                 const auto back =
                     project(view, centre_in_world(view) + 1000.0 * glm::dvec3(*direction));
                 ASSERT_TRUE(back);
-                worst_px = std::max(worst_px, glm::distance(*back, pixel));
+                worst_px = worse_of(worst_px, glm::distance(*back, pixel));
             }
         }
         EXPECT_LT(worst_px, 1e-3) << "k1 = " << k1;

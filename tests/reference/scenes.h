@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "reference/path_tracer.h"
+#include "support/small_meshes.h"
 
 namespace livery {
 
@@ -32,33 +33,6 @@ inline Scene scene_of(Mesh mesh, Material material, glm::dvec3 eye_mm) {
     scene.product = std::move(product);
     scene.eye_in_world_mm = eye_mm;
     return scene;
-}
-
-/// Appends a flat quad a, b, c, d, counter-clockwise seen from its outside.
-inline void add_quad(Mesh& mesh, glm::vec3 a, glm::vec3 b, glm::vec3 c, glm::vec3 d) {
-    const auto first = static_cast<std::uint32_t>(mesh.positions_mm.size());
-    const glm::vec3 n = glm::normalize(glm::cross(b - a, c - a));
-    for (const glm::vec3& p : {a, b, c, d}) {
-        mesh.positions_mm.push_back(p);
-        mesh.normals.push_back(n);
-        mesh.tangents.emplace_back(glm::normalize(b - a), 1.0f);
-        mesh.uvs.emplace_back(0.0f);
-    }
-    mesh.triangles.emplace_back(first, first + 1, first + 2);
-    mesh.triangles.emplace_back(first, first + 2, first + 3);
-    mesh.triangle_part.insert(mesh.triangle_part.end(), 2, 0);
-    if (mesh.parts.empty()) mesh.parts.push_back({"part", "", glm::dvec3(0.5)});
-}
-
-/// A level square of half side `half_mm` at y = 0.
-inline Mesh floor_mesh(float half_mm) {
-    Mesh mesh;
-    add_quad(mesh,
-             {-half_mm, 0, half_mm},
-             {half_mm, 0, half_mm},
-             {half_mm, 0, -half_mm},
-             {-half_mm, 0, -half_mm});
-    return mesh;
 }
 
 inline DirectionalLight light_toward(glm::dvec3 direction, double angle_rad) {

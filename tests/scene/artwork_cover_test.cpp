@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "core/random.h"
+#include "core/worst_error.h"
 
 namespace livery {
 namespace {
@@ -73,7 +74,7 @@ Difference difference_of(const Artwork& artwork, bool along_axes) {
         const glm::dvec2 at(artwork.size_mm * 4.0 * (random.uniform() - 0.5),
                             artwork.size_mm * 4.0 * (random.uniform() - 0.5));
         const double d = std::abs(shape_cover(artwork, at, a, b) - counted(artwork, at, a, b));
-        difference.largest = std::max(difference.largest, d);
+        difference.largest = worse_of(difference.largest, d);
         difference.mean += d / kCases;
     }
     std::printf("    %-8s largest %.4f mean %.5f (seed %d)\n",
@@ -163,7 +164,7 @@ TEST(ShapeCover, FloatAgreesWithDoubleAndStaysWithinItsRange) {
         // least side, under the shape's own least
         const double place = 2.0 * 8e-6 / std::max(0.02 * length, 0.002 * artwork.size_mm);
         if (std::abs(truth - static_cast<double>(value)) > place) {
-            largest = std::max(largest, std::abs(truth - static_cast<double>(value)));
+            largest = worse_of(largest, std::abs(truth - static_cast<double>(value)));
         }
     }
     std::printf("    float against double, beyond a place's rounding: %.2e\n", largest);

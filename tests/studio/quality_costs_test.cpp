@@ -104,6 +104,7 @@ TEST(RememberCosts, OfOneFrameAddUpToItsTotal) {
 
 TEST(PredictDrawn, ScalesByTheFramesOwnWork) {
     FramePlan plan;
+    plan.levels = levels_of(plan.quality);
     plan.quality = Quality::normal;
     plan.passes.resize(4);
     plan.passes[0].id = visibility_pass(0);

@@ -11,7 +11,6 @@
 namespace livery {
 namespace {
 
-constexpr double kFloor = 0.01;       // of f cos: darker is not seen beside a highlight
 constexpr double kDifference = 1e-5;  // of a coordinate, whose natural scale is 1
 
 /// Of the model `clearcoat`. A coat of less (index 1.33) is none: the lobe of the base would stand
@@ -50,54 +49,50 @@ struct Coordinate {
     }
 };
 
-/// Not searched: a tint, which samples can hardly tell from the colours below it, and what a paint
-/// need not have.
+/// A film of less has no colour of its own.
+constexpr double kThinnestFilm_nm = 20.0;
+
+/// Not searched unless asked for: a tint, which samples can hardly tell from the colours below it,
+/// and what a paint need not have.
 bool is_fixed(const ParameterInfo& parameter) {
-    return parameter.optional || std::string(parameter.name) == "coat_transmittance";
+    return parameter.optional || std::string_view(parameter.name) == "coat_transmittance";
 }
 
-std::vector<Coordinate> coordinates_of(const ModelInfo& model,
-                                       const std::vector<std::string>& held = {}) {
+double lowest_of(const ModelInfo& model, const ParameterInfo& parameter) {
+    const std::string_view name = parameter.name;
+    if (model.model == ReflectanceModel::clearcoat && name == "coat_f0") return kLeastCoatF0;
+    return name == "film_nm" ? kThinnestFilm_nm : parameter.low;
+}
+
+bool holds(const std::vector<std::string>& names, const char* name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::vector<Coordinate> coordinates_of(const ModelInfo& model, const FitSearch& how = {}) {
     std::vector<Coordinate> coordinates;
     for (const char* name : model.parameters) {
         const ParameterInfo& info = parameter_info(name);
-        if (is_fixed(info) || std::find(held.begin(), held.end(), name) != held.end()) continue;
-        const bool is_varnish =
-            model.model == ReflectanceModel::clearcoat && std::string_view(info.name) == "coat_f0";
-        const double low = is_varnish ? kLeastCoatF0 : info.low;
+        if (holds(how.held, name) || (is_fixed(info) && !holds(how.freed, name))) continue;
         const std::size_t count = info.kind == ParameterKind::colour ? 3 : 1;
-        for (std::size_t k = 0; k < count; ++k) coordinates.push_back({&info, k, low});
+        for (std::size_t k = 0; k < count; ++k) {
+            coordinates.push_back({&info, k, lowest_of(model, info)});
+        }
     }
     return coordinates;
 }
 
-double measure(Metric metric, double value, double cosine) {
-    const double seen = std::max(value, 0.0) * cosine;
-    return metric == Metric::logarithm ? std::log(seen + kFloor) : std::cbrt(seen);
-}
-
-/// Residuals of all samples, and their differences by each coordinate.
-class Residuals : public ceres::CostFunction {
+/// Residuals and their differences by each coordinate.
+class Differentiated : public ceres::CostFunction {
   public:
-    Residuals(const ModelInfo& model,
-              const FitSamples& samples,
-              const f64::BsdfParameters& start,
-              const FitSearch& how)
+    Differentiated(const ModelInfo& model,
+                   const Residuals& residuals,
+                   const f64::BsdfParameters& start,
+                   const FitSearch& how)
         : model_(model),
-          samples_(samples),
-          stride_(how.stride),
-          metric_(how.metric),
+          residuals_(residuals),
           start_(start),
-          coordinates_(coordinates_of(model, how.held)) {
-        const std::size_t used = (samples.pairs.size() + stride_ - 1) / stride_;
-        wanted_.reserve(3 * used);
-        for (std::size_t i = 0; i < samples.pairs.size(); i += stride_) {
-            const double cosine = samples.pairs[i].wi.z;
-            for (int c = 0; c < 3; ++c) {
-                wanted_.push_back(measure(metric_, samples.values_working[i][c], cosine));
-            }
-        }
-        set_num_residuals(static_cast<int>(wanted_.size()));
+          coordinates_(coordinates_of(model, how)) {
+        set_num_residuals(static_cast<int>(residuals.count));
         mutable_parameter_block_sizes()->push_back(static_cast<int>(coordinates_.size()));
     }
 
@@ -113,22 +108,15 @@ class Residuals : public ceres::CostFunction {
         for (const Coordinate& c : coordinates_) x.push_back(c.encode(c.get(start_)));
         return x;
     }
-    double rms(const f64::BsdfParameters& p) const {
-        std::vector<double> residuals(wanted_.size());
-        evaluate(p, residuals.data());
-        double sum = 0.0;
-        for (const double r : residuals) sum += r * r;
-        return std::sqrt(sum / static_cast<double>(residuals.size()));
-    }
 
     bool Evaluate(const double* const* x, double* residuals, double** jacobians) const override {
-        evaluate(parameters(x[0]), residuals);
+        residuals_.write(*model_.f64.bound(parameters(x[0])), residuals);
         if (!jacobians || !jacobians[0]) return true;
         const std::size_t columns = coordinates_.size();
-        std::vector<double> moved(x[0], x[0] + columns), changed(wanted_.size());
+        std::vector<double> moved(x[0], x[0] + columns), changed(residuals_.count);
         for (std::size_t k = 0; k < columns; ++k) {
             moved[k] += kDifference;
-            evaluate(parameters(moved.data()), changed.data());
+            residuals_.write(*model_.f64.bound(parameters(moved.data())), changed.data());
             moved[k] = x[0][k];
             for (std::size_t i = 0; i < changed.size(); ++i) {
                 jacobians[0][i * columns + k] = (changed[i] - residuals[i]) / kDifference;
@@ -138,25 +126,10 @@ class Residuals : public ceres::CostFunction {
     }
 
   private:
-    void evaluate(const f64::BsdfParameters& p, double* residuals) const {
-        const auto bsdf = model_.f64.bound(p);
-        std::size_t at = 0;
-        for (std::size_t i = 0; i < samples_.pairs.size(); i += stride_) {
-            const DirectionPair& pair = samples_.pairs[i];
-            const glm::dvec3 value = bsdf->eval(pair.wi, pair.wo);
-            for (int c = 0; c < 3; ++c, ++at) {
-                residuals[at] = measure(metric_, value[c], pair.wi.z) - wanted_[at];
-            }
-        }
-    }
-
     const ModelInfo& model_;
-    const FitSamples& samples_;
-    std::size_t stride_;
-    Metric metric_;
+    const Residuals& residuals_;
     f64::BsdfParameters start_;
     std::vector<Coordinate> coordinates_;
-    std::vector<double> wanted_;
 };
 
 class StopWhenAsked : public ceres::IterationCallback {
@@ -175,17 +148,27 @@ class StopWhenAsked : public ceres::IterationCallback {
 
 bool can_be_fitted(const ModelInfo& model) { return !coordinates_of(model).empty(); }
 
+double rms_of(const ModelInfo& model,
+              const Residuals& residuals,
+              const f64::BsdfParameters& parameters) {
+    std::vector<double> values(residuals.count);
+    residuals.write(*model.f64.bound(parameters), values.data());
+    double sum = 0.0;
+    for (const double r : values) sum += r * r;
+    return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
 Found search_from(const ModelInfo& model,
-                  const FitSamples& samples,
+                  const Residuals& residuals,
                   const f64::BsdfParameters& start,
                   const FitSearch& how,
                   const Progress& progress) {
-    Residuals residuals(model, samples, start, how);
-    std::vector<double> x = residuals.encoded();
+    Differentiated function(model, residuals, start, how);
+    std::vector<double> x = function.encoded();
     ceres::Problem::Options ours;
     ours.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     ceres::Problem problem(ours);
-    problem.AddResidualBlock(&residuals, nullptr, x.data());
+    problem.AddResidualBlock(&function, nullptr, x.data());
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
     options.max_num_iterations = how.steps;
@@ -197,15 +180,8 @@ Found search_from(const ModelInfo& model,
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem, &summary);
     progress.check_stop();
-    const f64::BsdfParameters found = residuals.parameters(x.data());
-    return {found, residuals.rms(found)};
-}
-
-double rms_of(const ModelInfo& model,
-              const FitSamples& samples,
-              const f64::BsdfParameters& parameters,
-              const FitSearch& how) {
-    return Residuals(model, samples, parameters, how).rms(parameters);
+    const f64::BsdfParameters found = function.parameters(x.data());
+    return {found, rms_of(model, residuals, found)};
 }
 
 }  // namespace livery

@@ -107,23 +107,6 @@ std::vector<f64::BsdfParameters> starts_by_width(const ModelInfo& model, const F
     return starts;
 }
 
-/// A simpler model's parameters where this one has them too.
-f64::BsdfParameters start_from(const ModelInfo& model,
-                               const BrdfFit& simpler,
-                               f64::BsdfParameters p) {
-    f64::BsdfParameters known = parameters_of_f64(simpler.material);
-    const ModelInfo& its_model = model_info(simpler.material.model);
-    for (const char* name : its_model.parameters) {
-        if (!model.has(name)) continue;
-        const ParameterInfo& info = parameter_info(name);
-        const auto from = info.in_f64(known), to = info.in_f64(p);
-        for (int k = 0; k < info.count(); ++k) {
-            *to[static_cast<std::size_t>(k)] = *from[static_cast<std::size_t>(k)];
-        }
-    }
-    return p;
-}
-
 /// For a coat over two lobes: from one lobe without a coat to two without, to two under coats of
 /// several widths. The larger model alone may end in a worse valley than the smaller.
 std::vector<f64::BsdfParameters> starts_by_lobes(const ModelInfo& model,
@@ -132,6 +115,7 @@ std::vector<f64::BsdfParameters> starts_by_lobes(const ModelInfo& model,
                                                  std::size_t stride,
                                                  const Progress& progress) {
     const ModelInfo& one_lobe = model_info(ReflectanceModel::ggx);
+    const Residuals residuals = sample_residuals(samples, Metric::logarithm, stride);
     const auto nearest = [](std::span<const Found> found) {
         return *std::min_element(found.begin(), found.end(), [](const Found& a, const Found& b) {
             return a.rms < b.rms;
@@ -139,20 +123,16 @@ std::vector<f64::BsdfParameters> starts_by_lobes(const ModelInfo& model,
     };
     std::vector<Found> found;
     for (const f64::BsdfParameters& start : starts_by_width(one_lobe, sight)) {
-        found.push_back(search_from(
-            one_lobe, samples, start, {Metric::logarithm, stride, kOneLobeSteps}, progress));
+        found.push_back(
+            search_from(one_lobe, residuals, start, {.steps = kOneLobeSteps}, progress));
     }
     f64::BsdfParameters p = nearest(found).parameters;
     found.clear();
     for (const LobeSplit& split : kLobeSplits) {
         f64::BsdfParameters start = with_two_lobes(model, p, split);
         start.coat_f0 = 0.0;
-        found.push_back(
-            search_from(model,
-                        samples,
-                        start,
-                        {Metric::logarithm, stride, kTwoLobeSteps, {"coat_f0", "coat_alpha"}},
-                        progress));
+        found.push_back(search_from(
+            model, residuals, start, {kTwoLobeSteps, {"coat_f0", "coat_alpha"}}, progress));
     }
     p = nearest(found).parameters;
     std::vector<f64::BsdfParameters> starts;
@@ -166,6 +146,40 @@ std::vector<f64::BsdfParameters> starts_by_lobes(const ModelInfo& model,
 
 }  // namespace
 
+std::vector<f64::BsdfParameters> embedded(const ModelInfo& model, const Material& simpler) {
+    const ModelInfo& its = model_info(simpler.model);
+    f64::BsdfParameters known = parameters_of_f64(simpler);
+    f64::BsdfParameters p = parameters_of_f64(Material{});
+    // Nothing of what the simpler one has not.
+    for (const char* name : {"diffuse_roughness", "specular", "f0", "flake_f0", "coat_f0"}) {
+        if (model.has(name)) start_with(model, p, name, glm::dvec3(0.0));
+    }
+    for (const char* name : its.parameters) {
+        if (!model.has(name)) continue;
+        const ParameterInfo& info = parameter_info(name);
+        const auto from = info.in_f64(known);
+        glm::dvec3 value(0.0);
+        for (int k = 0; k < info.count(); ++k) value[k] = *from[static_cast<std::size_t>(k)];
+        start_with(model, p, name, value);
+    }
+    if (!its.mirrors() || !model.mirrors()) return {p};
+    // One lobe by another's name.
+    const glm::dvec3 share = its.has("specular") ? known.specular : known.f0;
+    const double alpha = static_cast<double>(lobe_alpha(its, rounded(known)));
+    start_with(model, p, "specular", share);
+    start_with(model, p, "f0", share);
+    start_with(model, p, "exponent", glm::dvec3(std::max(2.0 / (alpha * alpha) - 2.0, 1.0)));
+    start_with(model, p, "alpha", glm::dvec3(alpha));
+    if (model.has("flake_alpha")) p.flake_alpha = alpha;
+    if (!model.has("coat_f0") || its.has("coat_f0")) return {p};
+    // An interface is no flake: it stands for the coat.
+    f64::BsdfParameters coated = p;
+    coated.f0 = glm::dvec3(0.0);
+    start_with(model, coated, "coat_f0", glm::dvec3((share.x + share.y + share.z) / 3.0));
+    start_with(model, coated, "coat_alpha", glm::dvec3(alpha));
+    return {p, coated};
+}
+
 std::vector<f64::BsdfParameters> fit_starts(const ModelInfo& model,
                                             const FitSamples& samples,
                                             std::span<const BrdfFit> simpler,
@@ -174,9 +188,8 @@ std::vector<f64::BsdfParameters> fit_starts(const ModelInfo& model,
     const FirstSight sight = first_sight(samples);
     std::vector<f64::BsdfParameters> starts = starts_by_width(model, sight);
     for (const BrdfFit& fit : simpler) {
-        if (fit.material.model != model.model) {
-            starts.push_back(start_from(model, fit, starts.front()));
-        }
+        if (fit.material.model == model.model) continue;
+        for (const auto& start : embedded(model, fit.material)) starts.push_back(start);
     }
     if (model.has("flake_alpha")) {
         for (const auto& start : starts_by_lobes(model, samples, sight, stride, progress)) {

@@ -10,6 +10,10 @@
 
 namespace livery {
 
+/// A fitted paint of another model as one of this: the same where this model holds the other, which
+/// the first of them shows; an interface may also be taken for a coat.
+std::vector<f64::BsdfParameters> embedded(const ModelInfo& model, const Material& simpler);
+
 /// From several widths of the lobes, and from `simpler` fits of the same samples. Two lobes also
 /// start from what one lobe finds and two without a coat, on every `stride`th sample. Throws
 /// Cancelled.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -22,16 +23,35 @@ namespace {
 
 constexpr int kRelativePairs = 20'000;
 
-glm::dvec3 lab_under_light(const glm::dvec3& reflectance, double cosine) {
-    const glm::dvec3 seen =
-        glm::clamp(reflectance * (std::numbers::pi * cosine), glm::dvec3(0.0), glm::dvec3(1.0));
-    return lab_from_xyz(xyz_from_working() * seen, d65_xyz());
-}
+double luminance_of(const glm::dvec3& working) { return (xyz_from_working() * working).y; }
 
-glm::vec3 texel_at(const MeasuredGrid& grid, int theta_d, int theta_h, int phi_d) {
-    const int index = (theta_d * grid.size.theta_h + theta_h) * grid.size.phi_d + phi_d;
-    const float* texel = grid.texels.data() + 4 * static_cast<std::size_t>(index);
-    return {texel[0], texel[1], texel[2]};
+/// By the shader's own steps; its angles are those of f32 or f64.
+template <typename Real, typename Nodes>
+glm::vec<3, Real> interpolated(const MeasuredGrid& grid, const Nodes& nodes) {
+    using Vec3 = glm::vec<3, Real>;
+    const MeasuredGridSize& size = grid.size;
+    const Vec3 at = nodes(Vec3(size.theta_h, size.theta_d, size.phi_d));
+    if (std::isnan(at.x + at.y + at.z)) return Vec3(std::numeric_limits<Real>::quiet_NaN());
+    const int column = std::min(static_cast<int>(at.z), size.phi_d - 1);
+    const int next = column + 1 == size.phi_d ? 0 : column + 1;
+    const int row = std::min(static_cast<int>(at.x), size.theta_h - 2);
+    const int layer = std::min(static_cast<int>(at.y), size.theta_d - 2);
+    const auto texel_at = [&](int theta_d, int theta_h, int phi_d) {
+        const int index = (theta_d * size.theta_h + theta_h) * size.phi_d + phi_d;
+        const float* texel = grid.texels.data() + 4 * static_cast<std::size_t>(index);
+        return Vec3(texel[0], texel[1], texel[2]);
+    };
+    const auto in_row = [&](int l, int r) {
+        return glm::mix(
+            texel_at(l, r, column), texel_at(l, r, next), at.z - static_cast<Real>(column));
+    };
+    const auto in_layer = [&](int l) {
+        return glm::mix(in_row(l, row), in_row(l, row + 1), at.x - static_cast<Real>(row));
+    };
+    const Vec3 logarithm =
+        glm::mix(in_layer(layer), in_layer(layer + 1), at.y - static_cast<Real>(layer));
+    return glm::mat<3, 3, Real>(working_from_xyz()) *
+           (glm::exp2(logarithm) - Vec3(kMeasuredGridFloor));
 }
 
 }  // namespace
@@ -73,24 +93,16 @@ MeasuredGrid resampled(const MeasuredReflectance& measured,
 
 glm::vec3 evaluate(const MeasuredGrid& grid, glm::vec3 wi, glm::vec3 wo) {
     if (!(wi.z > 0.0f && wo.z > 0.0f)) return glm::vec3(0.0f);
-    const MeasuredGridSize& size = grid.size;
-    const glm::vec3 at = f32::half_difference_nodes(
-        f32::half_difference(wi, wo), glm::vec3(size.theta_h, size.theta_d, size.phi_d));
-    const int column = std::min(static_cast<int>(at.z), size.phi_d - 1);
-    const int next = column + 1 == size.phi_d ? 0 : column + 1;
-    const int row = std::min(static_cast<int>(at.x), size.theta_h - 2);
-    const int layer = std::min(static_cast<int>(at.y), size.theta_d - 2);
-    const auto in_row = [&](int l, int r) {
-        return glm::mix(texel_at(grid, l, r, column),
-                        texel_at(grid, l, r, next),
-                        at.z - static_cast<float>(column));
-    };
-    const auto in_layer = [&](int l) {
-        return glm::mix(in_row(l, row), in_row(l, row + 1), at.x - static_cast<float>(row));
-    };
-    const glm::vec3 logarithm =
-        glm::mix(in_layer(layer), in_layer(layer + 1), at.y - static_cast<float>(layer));
-    return glm::mat3(working_from_xyz()) * (glm::exp2(logarithm) - glm::vec3(kMeasuredGridFloor));
+    return interpolated<float>(grid, [&](const glm::vec3& size) {
+        return f32::half_difference_nodes(f32::half_difference(wi, wo), size);
+    });
+}
+
+glm::dvec3 evaluate_in_double(const MeasuredGrid& grid, glm::dvec3 wi, glm::dvec3 wo) {
+    if (!(wi.z > 0.0 && wo.z > 0.0)) return glm::dvec3(0.0);
+    return interpolated<double>(grid, [&](const glm::dvec3& size) {
+        return f64::half_difference_nodes(f64::half_difference(wi, wo), size);
+    });
 }
 
 std::string measured_glsl() {
@@ -135,13 +147,16 @@ std::vector<DirectionPair> lit_sphere_pairs(int pixels_across) {
     return pairs;
 }
 
-ReflectanceDifference difference_of(const ReflectanceFunction& value,
-                                    const ReflectanceFunction& truth) {
-    ReflectanceDifference difference;
-    std::vector<double> relative;
+glm::dvec3 lab_on_sphere(const glm::dvec3& reflectance, double cosine) {
+    const glm::dvec3 seen =
+        glm::clamp(reflectance * (std::numbers::pi * cosine), glm::dvec3(0.0), glm::dvec3(1.0));
+    return lab_from_xyz(xyz_from_working() * seen, d65_xyz());
+}
+
+DifferenceTruth difference_truth(const ReflectanceFunction& truth) {
+    DifferenceTruth known;
     Random random(1);
     constexpr double kLowest = 0.17;
-    const auto luminance = [](const glm::dvec3& v) { return (xyz_from_working() * v).y; };
     for (int k = 0; k < kRelativePairs; ++k) {
         const auto direction = [&] {
             return direction_from_angles(std::acos(1.0 - (1.0 - kLowest) * random.uniform()),
@@ -149,22 +164,44 @@ ReflectanceDifference difference_of(const ReflectanceFunction& value,
         };
         const glm::dvec3 wi = direction();
         const glm::dvec3 wo = direction();
-        const double expected = luminance(truth(wi, wo));
+        const double expected = luminance_of(truth(wi, wo));
         if (expected <= 0.0) continue;
-        relative.push_back(std::abs(luminance(value(wi, wo)) - expected) / expected);
+        known.pairs.push_back({wi, wo});
+        known.luminances.push_back(expected);
+    }
+    known.sphere_pairs = lit_sphere_pairs();
+    for (const DirectionPair& pair : known.sphere_pairs) {
+        known.sphere_labs.push_back(lab_on_sphere(truth(pair.wi, pair.wo), pair.wi.z));
+    }
+    return known;
+}
+
+ReflectanceDifference difference_of(const ReflectanceFunction& value,
+                                    const DifferenceTruth& truth) {
+    ReflectanceDifference difference;
+    std::vector<double> relative;
+    for (std::size_t k = 0; k < truth.pairs.size(); ++k) {
+        const double luminance = luminance_of(value(truth.pairs[k].wi, truth.pairs[k].wo));
+        relative.push_back(std::abs(luminance - truth.luminances[k]) / truth.luminances[k]);
     }
     difference.relative_median = quantile(relative, 0.5);
     difference.relative_p95 = quantile(relative, 0.95);
     std::vector<double> colours;
     double sum = 0.0;
-    for (const DirectionPair& pair : lit_sphere_pairs()) {
-        colours.push_back(ciede2000(lab_under_light(value(pair.wi, pair.wo), pair.wi.z),
-                                    lab_under_light(truth(pair.wi, pair.wo), pair.wi.z)));
+    for (std::size_t k = 0; k < truth.sphere_pairs.size(); ++k) {
+        const DirectionPair& pair = truth.sphere_pairs[k];
+        colours.push_back(
+            ciede2000(lab_on_sphere(value(pair.wi, pair.wo), pair.wi.z), truth.sphere_labs[k]));
         sum += colours.back();
     }
     difference.de00_mean = sum / static_cast<double>(colours.size());
     difference.de00_p95 = quantile(colours, 0.95);
     return difference;
+}
+
+ReflectanceDifference difference_of(const ReflectanceFunction& value,
+                                    const ReflectanceFunction& truth) {
+    return difference_of(value, difference_truth(truth));
 }
 
 ReflectanceDifference resampling_error(const MeasuredGrid& grid,

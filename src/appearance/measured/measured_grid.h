@@ -40,6 +40,8 @@ MeasuredGrid resampled(const MeasuredReflectance& measured,
 
 /// In the working space as evaluate() of what was measured, by the shader's own steps, in float.
 glm::vec3 evaluate(const MeasuredGrid& grid, glm::vec3 wi, glm::vec3 wo);
+/// The same steps in double.
+glm::dvec3 evaluate_in_double(const MeasuredGrid& grid, glm::dvec3 wi, glm::dvec3 wo);
 
 /// GLSL to put after `#version`: `vec3 measured_eval(sampler2DArray grid,
 /// vec3 wi, vec3 wo)`. Throws FileError when the shipped sources are not found.
@@ -56,9 +58,21 @@ struct ReflectanceDifference {
 };
 
 using ReflectanceFunction = std::function<glm::dvec3(const glm::dvec3& wi, const glm::dvec3& wo)>;
+/// What a truth shows to difference_of(), for many values to be held against.
+struct DifferenceTruth {
+    std::vector<DirectionPair> pairs;  ///< of the relative differences
+    std::vector<double> luminances;
+    std::vector<DirectionPair> sphere_pairs;
+    std::vector<glm::dvec3> sphere_labs;
+};
+DifferenceTruth difference_truth(const ReflectanceFunction& truth);
+
 /// Both give values in the working space.
+ReflectanceDifference difference_of(const ReflectanceFunction& value, const DifferenceTruth& truth);
 ReflectanceDifference difference_of(const ReflectanceFunction& value,
                                     const ReflectanceFunction& truth);
+/// L*a*b* of a pixel of the sphere by its reflectance and the cosine of its light.
+glm::dvec3 lab_on_sphere(const glm::dvec3& reflectance, double cosine);
 
 /// What the grid loses.
 ReflectanceDifference resampling_error(const MeasuredGrid& grid,

@@ -13,6 +13,7 @@
 #include "calibration/colour/colour_report.h"
 #include "core/error.h"
 #include "core/statistics.h"
+#include "core/worst_error.h"
 
 namespace livery {
 namespace {
@@ -31,7 +32,7 @@ void refuse_saturated(const Evidence& e) {
         over /= std::max(1.0, e.lit_count);
         if (over <= kMostSaturated) continue;
         names += (names.empty() ? "" : " and ") + c->name;
-        worst = std::max(worst, over);
+        worst = worse_of(worst, over);
     }
     if (!names.empty())
         throw Refused(names + ": over-exposed, " + percent(worst) +

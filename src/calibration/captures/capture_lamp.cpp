@@ -10,6 +10,7 @@
 #include "calibration/colour/colour_report.h"
 #include "core/error.h"
 #include "core/statistics.h"
+#include "core/worst_error.h"
 
 namespace livery {
 namespace {
@@ -232,7 +233,7 @@ void refuse_fast_drift(const Evidence& e, const LampDrift& drift) {
     double change = 0.0;
     for (const CaptureSummary* c : {e.red, e.green, e.blue, e.levels})
         if (c)
-            change = std::max(
+            change = worse_of(
                 change,
                 std::abs(drift.light_at(c->taken_at) / drift.light_at(e.bright->taken_at) - 1.0));
     if (change > kLargestChangeInColours)

@@ -18,6 +18,7 @@
 #include "core/parallel.h"
 #include "core/statistics.h"
 #include "core/utc.h"
+#include "core/worst_error.h"
 
 namespace livery {
 namespace {
@@ -298,7 +299,7 @@ ColourCalibration calibrate_colour(const std::vector<RoledPhotograph>& captures,
             response_error = verdict.unexplained;
             for (std::size_t k = 0; k < 3; ++k) {
                 const double of_span = scattered.of_span[static_cast<int>(k)];
-                const double off = std::max(std::abs(curves[k].n[0] + of_span),
+                const double off = worse_of(std::abs(curves[k].n[0] + of_span),
                                             std::abs(curves[k].n[255] + of_span - 1.0));
                 if (off > 0.2)
                     throw Refused("black and white blocks of gray-levels lie " + percent(off) +

@@ -8,6 +8,7 @@
 #include "calibration/colour/colour.h"
 #include "core/error.h"
 #include "core/statistics.h"
+#include "core/worst_error.h"
 
 namespace livery {
 namespace {
@@ -142,7 +143,7 @@ void report(const PixelMixing& mixing,
         if (!is_valid(status[i])) continue;
         conditions.push_back(mixing.condition[i]);
         const glm::vec3 dark = mixing.dark[i], bright = mixing.dark[i] + mixing.span[i];
-        ambient.push_back(std::max(0.0f, dark.x + dark.y + dark.z) /
+        ambient.push_back(std::max(dark.x + dark.y + dark.z, 0.0f) /
                           (bright.x + bright.y + bright.z));
     }
     calibration.condition_p99 = static_cast<double>(quantile(std::move(conditions), 0.99));
@@ -182,13 +183,13 @@ void report(const PixelMixing& mixing,
                            " of the lit pixels are too dark and stay black: shadow, grazing light, "
                            "noise or too short an "
                            "exposure; more shots, or move the projector");
-    if (!with_table && response_error > 0.01)
+    if (!with_table && !(response_error <= 0.01))
         warnings.push_back("the grey levels' white blocks lie " + percent(response_error) +
                            " from bright-gray, more than scattered light explains: the lamp "
                            "changed, or the projector's focus is soft; warm up the lamp, focus");
     double violation = 0.0;
     for (const ResponseCurve& curve : calibration.response)
-        violation = std::max(violation, curve.largest_violation);
+        violation = worse_of(violation, curve.largest_violation);
     if (violation > 0.01)
         warnings.push_back("the response falls by up to " + percent(violation) +
                            " between neighbouring grey levels before it is made monotone: noise, "

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/mutation.h"
+#include "core/worst_error.h"
 
 namespace livery {
 namespace {
@@ -153,7 +154,7 @@ TableFit fit_drive_table(const std::vector<TableSample>& samples) {
     for (const TableSample& sample : samples) {
         const glm::dvec3 error = n_of(light_of(sample)) - sample.n;
         // Noise is no fault of the fit.
-        square += std::max(0.0, glm::dot(error, error) / 3.0 - sample.variance);
+        square += worse_of(0.0, glm::dot(error, error) / 3.0 - sample.variance);
         count += 1.0;
     }
     fit.rms_error = std::sqrt(square / std::max(count, 1.0));

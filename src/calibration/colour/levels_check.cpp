@@ -8,6 +8,7 @@
 #include "calibration/colour/colour_report.h"
 #include "core/error.h"
 #include "core/statistics.h"
+#include "core/worst_error.h"
 
 namespace livery {
 namespace {
@@ -28,7 +29,7 @@ constexpr double kOtherExposure = 0.02;
 struct Exposure {
     double over_bright = 1.0;
     double doubt = 0.0;  ///< f is not the same for both kinds of block: half of what it explains
-    double off() const { return std::max(0.0, std::abs(over_bright - 1.0) - doubt); }
+    double off() const { return worse_of(0.0, std::abs(over_bright - 1.0) - doubt); }
 };
 Exposure exposure_of(const Pattern& levels,
                      std::size_t channel,
@@ -120,7 +121,7 @@ LevelsVerdict check_levels(const LevelsSamples& seen,
     for (std::size_t k = 0; k < 3; ++k) {
         const Exposure here =
             exposure_of(levels, k, curves[k], scattered.of_span[static_cast<int>(k)]);
-        if (here.off() > exposure.off()) exposure = here;
+        if (!(here.off() <= exposure.off())) exposure = here;
     }
     if (exposure.off() > kOtherExposure)
         verdict.warnings.push_back(

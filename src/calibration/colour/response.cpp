@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/mutation.h"
 #include "core/statistics.h"
+#include "core/worst_error.h"
 
 namespace livery {
 namespace {
@@ -101,7 +102,7 @@ Levels fit_smooth(const Levels& y, const Levels& weight) {
 double largest_fall(std::span<const double> values) {
     double highest = -std::numeric_limits<double>::infinity(), fall = 0.0;
     for (const double value : values) {
-        fall = std::max(fall, highest - value);
+        fall = worse_of(fall, highest - value);
         highest = std::max(highest, value);
     }
     return fall;

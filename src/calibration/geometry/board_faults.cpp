@@ -9,6 +9,7 @@
 #include "calibration/geometry/charuco.h"
 #include "calibration/geometry/find_board.h"
 #include "core/statistics.h"
+#include "core/worst_error.h"
 
 namespace livery {
 
@@ -160,7 +161,7 @@ BoardMovement movement_during_code(const std::vector<RoledPhotograph>& photograp
             const bool lost = glm::distance(there[k], starts[k]) < 1e-3;
             apart.push_back(lost ? reach_px : glm::distance(there[k], corners_px[k]));
         }
-        const double off = median(apart);
+        const double off = worst_if_nan(median(apart));
         if (off > worst.px) worst = {one.role, off};
     }
     return worst;

@@ -9,6 +9,7 @@
 #include "calibration/geometry/find_board.h"
 #include "calibration/geometry/homography.h"
 #include "core/error.h"
+#include "core/worst_error.h"
 
 namespace livery {
 
@@ -90,7 +91,7 @@ glm::dmat3 px_from_board(const std::vector<const PlacedMarker*>& markers) {
 double worst_corner(const glm::dmat3& homography, const PlacedMarker& marker) {
     double worst = 0.0;
     for (std::size_t k = 0; k < 4; ++k)
-        worst = std::max(
+        worst = worse_of(
             worst,
             glm::distance(mapped(homography, marker.board_mm[k]), marker.seen->corners_px[k]));
     return worst;

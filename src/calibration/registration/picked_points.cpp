@@ -11,6 +11,7 @@
 
 #include "calibration/registration/rotation.h"
 #include "core/error.h"
+#include "core/worst_error.h"
 
 namespace livery {
 
@@ -248,7 +249,7 @@ double held(const View& lens, const Fit& fit, const Bounds& box, double sigma_px
             for (int c = 0; c < 2; ++c) slope(c, k) = (after[c] - before[c]) / (2.0 * step);
         }
         const Eigen::Matrix2d spread = slope * covariance * slope.transpose();
-        largest = std::max(largest, sigma_px * std::sqrt(std::max(0.0, spread.trace())));
+        largest = worse_of(largest, sigma_px * std::sqrt(worse_of(0.0, spread.trace())));
     }
     return largest;
 }
@@ -274,7 +275,7 @@ PickedPose pose_from_points(const View& lens,
         throw Refused("no pose puts the points where they were picked",
                       "check that each line has the mesh's point and its own pixel");
     const double sigma = deviation(fits[0].squares, used.size());
-    if (sigma > largest_px) {
+    if (!(sigma <= largest_px)) {
         const auto worst = *std::max_element(used.begin(), used.end(), [&](auto a, auto b) {
             return distance_px(lens, fits[0].view_from_mesh, points[a]) <
                    distance_px(lens, fits[0].view_from_mesh, points[b]);

@@ -355,8 +355,8 @@ Repose find_mockup_again(const Mesh& mesh,
     const Matrix6 covariance =
         fit.equations.scale_px * fit.equations.scale_px * fit.equations.covariance();
     for (int k = 0; k < 3; ++k) {
-        result.turn_error_rad[k] = std::sqrt(std::max(0.0, covariance(k, k))) / fitting.radius_mm;
-        result.shift_error_mm[k] = std::sqrt(std::max(0.0, covariance(k + 3, k + 3)));
+        result.turn_error_rad[k] = std::sqrt(std::max(covariance(k, k), 0.0)) / fitting.radius_mm;
+        result.shift_error_mm[k] = std::sqrt(std::max(covariance(k + 3, k + 3), 0.0));
     }
     return result;
 }

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "core/worst_error.h"
+
 namespace livery {
 
 std::vector<GradedFigure> grade_figures(const ColourCalibration& calibration) {
@@ -54,9 +56,7 @@ std::vector<GradedFigure> grade_figures(const ColourCalibration& calibration) {
                                    "Darken the room."));
     double violation = 0.0;
     for (const ResponseCurve& curve : calibration.response) {
-        violation = std::isfinite(curve.largest_violation)
-                        ? std::max(violation, curve.largest_violation)
-                        : curve.largest_violation;
+        violation = worse_of(violation, curve.largest_violation);
     }
     figures.push_back(graded_share("Response fall",
                                    violation,

@@ -21,6 +21,7 @@
 #define LIGHTS 1
 #define LIGHT_COUNT job.light_count
 #define ENVIRONMENT 1
+#define MIRRORED 1
 #define MIRRORS 1
 #define WEIGHTS kEnvironmentWeights
 #define BSDF_TURN2 turn2
@@ -108,7 +109,7 @@ void shade_any_model(const LaneJob& job, const ModelInfo& model, const AnyModelU
                 continue;
             }
             const glm::vec4 mean = shader.four(job.artwork);
-            if (!(mean.w > 0.0f)) continue;
+            if (mean.w <= 0.0f) continue;  // what is no number must show
             const glm::vec3 colour = shader.shaded();
             for (int c = 0; c < 3; ++c) {
                 to[c] = to[c] * (1.0f - job.of_cover * mean.w) +

@@ -28,10 +28,19 @@ class InputLayers {
     /// True when it is new; nothing happens to one that has this size. 0 layers: a texture that is
     /// no array, one layer on the processor.
     bool make(ShadingDevice device, int rows, int layers, Precision precision);
-    /// R, G, B, A of each place of the layout; of `half`, the processor takes colours
-    /// only, and a negative one as 0.
-    void upload(std::span<const float> rgba, int layer);
+    /// Room for some of so many layers, and for those that had it, with what they hold; places
+    /// that nobody uploads to are black. True where there is more than before.
+    bool make_room(ShadingDevice device,
+                   int rows,
+                   const std::vector<bool>& layers,
+                   Precision precision);
+    /// R, G, B, A of each place of the layout, or of some rows of it; of `half`, the processor
+    /// takes colours only, and a negative one as 0.
+    void upload(std::span<const float> rgba, int layer, int first_row = 0);
     explicit operator bool() const { return rows_ > 0; }
+    bool has(std::size_t layer) const { return places_[layer] >= 0; }
+    /// Where each layer is in the texture; -1: nowhere.
+    std::span<const int> places() const { return places_; }
 
     const Texture2D& texture() const { return texture_; }
     /// For the processor, in blocks of kLaneBlock fragments (lane_shading.h).
@@ -41,6 +50,7 @@ class InputLayers {
   private:
     ShadingDevice device_ = ShadingDevice::gl;
     int rows_ = 0, layers_ = 0;
+    std::vector<int> places_;
     Texture2D texture_;
     std::vector<std::vector<float>> floats_;
     std::vector<std::vector<std::uint16_t>> halves_;

@@ -24,9 +24,10 @@ struct LaneJob {
     const float* light_irradiance = nullptr;  ///< R, G, B of each
     const float* light_radius2 = nullptr;
     int light_count = 0;
-    const std::uint16_t* lit = nullptr;            ///< half floats, 3 channels
-    const std::uint16_t* sky = nullptr;            ///< the same
-    const std::uint16_t* const* mirror = nullptr;  ///< the same for each layer
+    const std::uint16_t* lit = nullptr;  ///< half floats, 3 channels
+    const std::uint16_t* sky = nullptr;  ///< the same
+    /// The same for each layer; null: nothing is mirrored, or one that the paint does not read.
+    const std::uint16_t* const* mirror = nullptr;
     float mirror_unit = 1.0f;
     const std::uint16_t* const* grazing = nullptr;  ///< after those layers: how much of it grazes
     const float* places = nullptr;  ///< 4 channels: position, side of a pixel there, in mm

@@ -53,7 +53,7 @@ void ProcessorShading::shade(const Material& material,
     const ModelInfo& model = model_info(material.model);
     std::vector<const float*> lights;
     std::vector<const std::uint16_t*> mirror;
-    const bool environment = static_cast<bool>(model.mirrors() ? inputs.mirror : inputs.sky);
+    const auto environment = static_cast<bool>(inputs.sky);
     if (model.same_from_all_sides) {
         job.lit = inputs.lit.halves(0);
     } else {
@@ -66,9 +66,9 @@ void ProcessorShading::shade(const Material& material,
         job.light_irradiance = lights.empty() ? nullptr : &inputs.light_irradiance[0].x;
         job.light_radius2 = inputs.light_radius2.data();
         if (environment) job.sky = inputs.sky.halves(0);
-        if (environment && model.mirrors()) {
+        if (environment && model.mirrors() && inputs.mirror) {
             for (std::size_t k = 0; k < kMirrorLayers; ++k) {
-                mirror.push_back(inputs.mirror.halves(k));
+                mirror.push_back(inputs.mirror.has(k) ? inputs.mirror.halves(k) : nullptr);
             }
             job.mirror = mirror.data();
             job.mirror_unit = inputs.mirror_unit;
@@ -129,7 +129,8 @@ void ProcessorShading::resolve(ImageF* picture) const {
                 for (std::size_t c = 0; c < 3; ++c) sum[c] += samples * from[c];
                 covered += samples;
             } while (FragmentIndex::more(word));
-            for (std::size_t c = 0; c < 3; ++c) to[c] = sum[c] / covered;
+            // Fragments of less than half a sample cover nothing.
+            for (std::size_t c = 0; c < 3; ++c) to[c] = covered > 0.0f ? sum[c] / covered : 0.0f;
             to[3] = share * covered;
         }
     });

@@ -172,4 +172,9 @@ std::vector<LightAtFragment> light_at_fragments(const Mesh& mesh,
     return result;
 }
 
+std::vector<LightAtFragment> unhidden_light(const SurfaceMap& map, const DirectionalLight& light) {
+    const glm::vec3 centre(glm::normalize(light.direction));
+    return std::vector<LightAtFragment>(map.fragments.size(), LightAtFragment{centre, 1.0f});
+}
+
 }  // namespace livery

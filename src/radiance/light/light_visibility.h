@@ -29,6 +29,9 @@ std::vector<LightAtFragment> light_at_fragments(const Mesh& mesh,
                                                 int rays_per_fragment,
                                                 const Progress& progress = {});
 
+/// The same where nothing hides the light.
+std::vector<LightAtFragment> unhidden_light(const SurfaceMap& map, const DirectionalLight& light);
+
 /// Share of a light's disc that a point sees: `ray_count` stratified rays, turned by a hash of
 /// `seed`. The horizon of `normal` does not count.
 float disc_openness(const Tracer& tracer,

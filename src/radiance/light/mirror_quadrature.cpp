@@ -151,24 +151,26 @@ MirrorQuadrature::Even even_under(double mu) {
     return even;
 }
 
+static_assert(kMirrorAlphas.size() == kLastLobe + 1 - kFirstLobe && kLastLobe + 1 == kRowLists);
+
+using Node = MirrorQuadrature::Node;
+
 /// A node around the slope (x, y); weights not yet normalised.
-MirrorQuadrature::Node node_at(double x, double y, const Cells& cells) {
-    MirrorQuadrature::Node node{};
+Node node_at(double x, double y, const Cells& cells) {
+    Node node{};
     const glm::dvec3 h = glm::normalize(glm::dvec3(x, y, 1.0));
     const glm::dvec3 wi = 2.0 * glm::dot(cells.wo, h) * h - cells.wo;
     const Cell cell = cell_around(wi, cells);
-    node.half_vector = Texel{static_cast<float>(h.x),
-                             static_cast<float>(h.y),
-                             static_cast<float>(h.z),
-                             static_cast<float>(cell.cut * cell.variance)};
+    node[kHalfVectorX] = static_cast<float>(h.x);
+    node[kHalfVectorY] = static_cast<float>(h.y);
+    node[kHalfVectorZ] = static_cast<float>(h.z);
+    node[kVariance] = static_cast<float>(cell.cut * cell.variance);
     if (cell.variance <= 0.0) return node;
-    node.grazing = Texel{static_cast<float>(grazing_weight(glm::dot(cells.wo, h))),
-                         static_cast<float>(grazing_weight(wi.z)),
-                         0.0f,
-                         0.0f};
+    node[kHalfAngleWeight] = static_cast<float>(grazing_weight(glm::dot(cells.wo, h)));
+    node[kEntryWeight] = static_cast<float>(grazing_weight(wi.z));
     const Shares weights = sharpened(cell, wi, cells);
     for (std::size_t k = 0; k < weights.size(); ++k) {
-        node.weight[k / 4][k % 4] = static_cast<float>(weights[k]);
+        node[kFirstLobe + k] = static_cast<float>(weights[k]);
     }
     return node;
 }
@@ -185,9 +187,7 @@ double slope_of(const MirrorRings& size, std::size_t ring) {
 /// so that each looks all around.
 double first_of(std::size_t ring) { return 1.5 * static_cast<double>(ring % 8); }
 
-std::vector<MirrorQuadrature::Node> nodes_under(double mu,
-                                                const MirrorRings& size,
-                                                const Shares& returned) {
+std::vector<Node> nodes_under(double mu, const MirrorRings& size, const Shares& returned) {
     const glm::dvec3 wo(std::sqrt(1.0 - mu * mu), 0.0, mu);
     // Mirrored, slopes along the eye's plane move light 1 / mu times as far as those across it.
     // Half way between slopes and directions, cells are stretched by little in either.
@@ -196,10 +196,12 @@ std::vector<MirrorQuadrature::Node> nodes_under(double mu,
     const double inner = kFirstRing * std::exp(-0.5 * size.step);
     const Cells middle{wo, across, 0.0, kPi * inner * inner, size.overlap};
     const Cells around{wo, across, std::sinh(size.step) * turn, 0.0, size.overlap};
-    std::vector<MirrorQuadrature::Node> nodes;
+    std::vector<Node> nodes;
     for (std::size_t k = 0; k < MirrorQuadrature::kFacets; ++k) {
         nodes.push_back(node_at(0.0, 0.0, middle));
-        for (Texel& w : nodes.back().weight) w *= 1.0f / MirrorQuadrature::kFacets;
+        for (std::size_t list = kFirstLobe; list < kRowLists; ++list) {
+            nodes.back()[list] *= 1.0f / MirrorQuadrature::kFacets;
+        }
     }
     for (std::size_t ring = 0; ring < rings_of(size); ++ring) {
         const double slope = slope_of(size, ring);
@@ -210,39 +212,14 @@ std::vector<MirrorQuadrature::Node> nodes_under(double mu,
     }
     for (std::size_t k = 0; k < kMirrorAlphas.size(); ++k) {
         float whole = 0.0f;
-        for (const MirrorQuadrature::Node& node : nodes) whole += node.weight[k / 4][k % 4];
+        for (const Node& node : nodes) whole += node[kFirstLobe + k];
         const float scale = static_cast<float>(returned[k]) / whole;
-        for (MirrorQuadrature::Node& node : nodes) node.weight[k / 4][k % 4] *= scale;
+        for (Node& node : nodes) node[kFirstLobe + k] *= scale;
     }
     return nodes;
 }
 
 }  // namespace
-
-MirrorMix mirror_mix(double alpha) {
-    // Cubic in the logarithm, which treats a lobe's core (1 / alpha^2) and its tail (alpha^2)
-    // alike: linear, both would be up to 6% too bright. Linear before the second and after the last
-    // but one, where a cubic would extrapolate.
-    const auto of = [](std::size_t k) { return std::log(static_cast<double>(kMirrorAlphas[k])); };
-    const std::size_t last = kMirrorAlphas.size() - 1;
-    const double x = std::clamp(std::log(alpha), of(0), of(last));
-    std::size_t below = 0;
-    while (below + 2 <= last && of(below + 1) <= x) ++below;
-    const std::size_t first = std::clamp<std::size_t>(below, 1, last - 2) - 1;
-    MirrorMix mix;
-    mix.first = static_cast<int>(first);
-    const bool inside = below > 0 && below + 1 < last;
-    for (std::size_t k = first; k < first + mix.share.size(); ++k) {
-        if (!inside && (k < below || k > below + 1)) continue;
-        double share = 1.0;
-        for (std::size_t j = first; j < first + mix.share.size(); ++j) {
-            if (j == k || (!inside && (j < below || j > below + 1))) continue;
-            share *= (x - of(j)) / (of(k) - of(j));
-        }
-        mix.share[k - first] = static_cast<float>(share);
-    }
-    return mix;
-}
 
 double mirror_correction(double cosine_to_eye, double alpha) {
     // Over the visible normals, of which one half mirrors the other; closer together toward those
@@ -306,7 +283,8 @@ MirrorQuadrature::MirrorQuadrature(const MirrorRings& size) : nodes_(size.nodes)
             }
         }
     });
-    rows_.resize((kRows + 1) * count_);
+    places_ = (count_ / kFacets + kNodeBlock - 1) / kNodeBlock * kNodeBlock;
+    rows_.resize((kRows + 1) * kFacets * kRowLists * places_);
     for (std::size_t row = 0; row <= kRows; ++row) even_.push_back(even_under(cosine_of(row)));
     parallel_for(kRows + 1, 8, [&](std::size_t begin, std::size_t end) {
         for (std::size_t row = begin; row < end; ++row) {
@@ -317,14 +295,24 @@ MirrorQuadrature::MirrorQuadrature(const MirrorRings& size) : nodes_(size.nodes)
             for (std::size_t k = 0; k < its_own.size(); ++k) {
                 its_own[k] = std::lerp(returned[below][k], returned[below + 1][k], share);
             }
-            const auto nodes = nodes_under(cosine_of(row), size, its_own);
-            std::copy(nodes.begin(),
-                      nodes.end(),
-                      rows_.begin() + static_cast<std::ptrdiff_t>(row * count_));
+            fill_row(row, nodes_under(cosine_of(row), size, its_own));
         }
     });
     find_beside(rings_of(size));
     share_out_rays(rings_of(size), size);
+}
+
+void MirrorQuadrature::fill_row(std::size_t row, std::span<const Node> nodes) {
+    for (std::size_t facet = 0; facet < kFacets; ++facet) {
+        float* lists = &rows_[(row * kFacets + facet) * kRowLists * places_];
+        // Places without a node look the way that the facet does
+        std::fill_n(lists + kHalfVectorZ * places_, places_, 1.0f);
+        for (std::size_t k = facet; k < nodes.size(); k += kFacets) {
+            for (std::size_t list = 0; list < kRowLists; ++list) {
+                lists[list * places_ + k / kFacets] = nodes[k][list];
+            }
+        }
+    }
 }
 
 void MirrorQuadrature::find_beside(std::size_t rings) {
@@ -408,8 +396,10 @@ MirrorQuadrature::Row MirrorQuadrature::seen_under(float sine) const {
     const float at = std::sqrt(std::clamp(1.0f - sine, 0.0f, 1.0f)) * static_cast<float>(kRows);
     const std::size_t below = std::min(static_cast<std::size_t>(at), kRows - 1);
     Row row;
-    row.below_ = &rows_[below * count_];
-    row.above_ = row.below_ + count_;
+    row.places_ = places_;
+    row.facet_size_ = kRowLists * places_;
+    row.row_size_ = kFacets * row.facet_size_;
+    row.below_ = &rows_[below * row.row_size_];
     row.even_ = &even_[below];
     row.share_ = at - static_cast<float>(below);
     return row;

@@ -11,32 +11,14 @@
 #include <span>
 #include <vector>
 
+#include <glm/vec3.hpp>
+
+#include "core/huge_pages.h"
+#include "radiance/lanes/mirror_sums.h"
+#include "radiance/light/mirror_lobes.h"
 #include "radiance/light/sphere_lookup.h"
 
 namespace livery {
-
-/// Slope parameters for which each fragment keeps what it mirrors; paints in between interpolate.
-inline constexpr std::array<float, 12> kMirrorAlphas{
-    0.01f, 0.02f, 0.03f, 0.042f, 0.06f, 0.085f, 0.12f, 0.17f, 0.24f, 0.34f, 0.5f, 1.0f};
-
-/// Fresnel's term rises where light grazes, and a lobe at a slant takes light from grazing and from
-/// steep directions: how bright each is decides what is reflected. Some lobes (of kMirrorAlphas)
-/// keep that for each fragment, others interpolate (shade.glsl has the same): for the mirror's own
-/// Fresnel term, under the half angle, and for that of a coat above, under the angle of incidence.
-/// The former have more, since they make up for the errors of ggx_albedo_fit() as well.
-using GrazingLobes = std::array<std::size_t, 3>;
-inline constexpr std::array<GrazingLobes, 3> kHalfAngleLobes{{{1, 3, 4}, {5, 6, 7}, {8, 10, 11}}};
-inline constexpr GrazingLobes kEntryLobes{4, 7, 10};
-/// Layers of what is mirrored: the lobes, then how much of it grazes, three lobes a layer.
-inline constexpr std::size_t kGrazingLayers = kHalfAngleLobes.size() + 1;
-inline constexpr std::size_t kMirrorLayers = kMirrorAlphas.size() + kGrazingLayers;
-
-/// A lobe between the tabulated ones: four that follow one another, and the share of each.
-struct MirrorMix {
-    int first = 0;
-    std::array<float, 4> share{};
-};
-MirrorMix mirror_mix(double alpha);
 
 /// What the lobe really returns of even light, over what ggx_albedo_fit() says (f0 = 1): the fit
 /// may be too large, by up to .7%, but never too small. Whoever shades multiplies by the fit.
@@ -62,15 +44,8 @@ class MirrorQuadrature {
     /// multiple of kFacets nodes.
     static constexpr std::size_t kFacets = 4;
 
-    struct Node {
-        /// Its half vector in its facet's frame (x the eye's projection, z the normal), of about
-        /// unit length; then the variance of the Gaussian over its cell, rad^2 along each axis.
-        Texel half_vector;
-        /// Share in each of kMirrorAlphas' lobes; all nodes together have mirror_correction().
-        std::array<Texel, kMirrorAlphas.size() / 4> weight;
-        /// Fresnel's weight under the half angle and under the angle of incidence; two unused.
-        Texel grazing;
-    };
+    /// What is kept of a node, in the order of a row's lists (lanes/mirror_sums.h).
+    using Node = std::array<float, kRowLists>;
     /// What shade.glsl takes those weights to be on the mean over lobes of even light.
     struct Even {
         std::array<Texel, kGrazingLayers> of;  ///< kHalfAngleLobes, then kEntryLobes
@@ -80,19 +55,37 @@ class MirrorQuadrature {
 
     int nodes() const { return nodes_; }  ///< a ring
     std::size_t count() const { return count_; }
+    /// Places of a facet's nodes in a row's lists: the last few stand for none, and have no weight.
+    std::size_t places() const { return places_; }
+    /// Of node k among those of all facets.
+    std::size_t place_of(std::size_t k) const { return k % kFacets * places_ + k / kFacets; }
 
     /// Nodes as an eye sees them whose direction has this sine to the normal, between two tabulated
-    /// ones.
+    /// ones: their half vectors in their facet's frame (x the eye's projection, z the normal), of
+    /// about unit length; the variance of the Gaussian over each one's cell, rad^2 along each axis;
+    /// their share in each of kMirrorAlphas' lobes, all nodes together mirror_correction().
     class Row {
       public:
-        Node node(std::size_t k) const;
+        /// A facet's lists, as sums over nodes read them.
+        const float* below(std::size_t facet) const { return below_ + facet * facet_size_; }
+        const float* above(std::size_t facet) const { return below(facet) + row_size_; }
+        float share() const { return share_; }
+        glm::vec3 half_vector(std::size_t k) const {
+            return {of(k, kHalfVectorX), of(k, kHalfVectorY), of(k, kHalfVectorZ)};
+        }
+        /// What the widest lobe has nothing of has nothing to give.
+        bool has_weight(std::size_t k) const { return of(k, kLastLobe) > 0.0f; }
         Even even() const;
 
       private:
         friend class MirrorQuadrature;
-        const Node* below_ = nullptr;
-        const Node* above_ = nullptr;
+        float of(std::size_t k, std::size_t list) const {
+            const float* at = below(k % kFacets) + list * places_ + k / kFacets;
+            return at[0] + share_ * (at[row_size_] - at[0]);
+        }
+        const float* below_ = nullptr;
         const Even* even_ = nullptr;
+        std::size_t places_ = 0, facet_size_ = 0, row_size_ = 0;
         float share_ = 0.0f;
     };
     Row seen_under(float sine) const;
@@ -118,32 +111,19 @@ class MirrorQuadrature {
   private:
     static constexpr std::size_t kBeside = 6;
 
+    void fill_row(std::size_t row, std::span<const Node> nodes);
     void find_beside(std::size_t rings);
     void share_out_rays(std::size_t rings, const MirrorRings& size);
 
     int nodes_ = 0;
-    std::size_t count_ = 0;
-    std::vector<Node> rows_;
+    std::size_t count_ = 0, places_ = 0;
+    LargeTable<float> rows_;  ///< row, facet, list, node
     std::vector<Even> even_;
     std::vector<Ray> rays_;
     std::vector<std::uint16_t> beside_;
     std::vector<std::array<std::uint8_t, kTurns>> nearest_;
     std::array<std::vector<std::size_t>, kTurns> traced_;
 };
-
-// Inline: once for each of a fragment's nodes.
-
-inline MirrorQuadrature::Node MirrorQuadrature::Row::node(std::size_t k) const {
-    const Texel share{share_, share_, share_, share_};
-    const auto between = [&](const Texel& a, const Texel& b) { return a + share * (b - a); };
-    Node result;
-    result.half_vector = between(below_[k].half_vector, above_[k].half_vector);
-    for (std::size_t i = 0; i < result.weight.size(); ++i) {
-        result.weight[i] = between(below_[k].weight[i], above_[k].weight[i]);
-    }
-    result.grazing = between(below_[k].grazing, above_[k].grazing);
-    return result;
-}
 
 inline MirrorQuadrature::Even MirrorQuadrature::Row::even() const {
     const Texel share{share_, share_, share_, share_};

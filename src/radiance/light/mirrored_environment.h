@@ -4,78 +4,85 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <glm/vec3.hpp>
 
-#include "core/progress.h"
 #include "radiance/fragment_neighbours.h"
+#include "radiance/lanes/mirror_sums.h"
 #include "radiance/light/environment_filter.h"
+#include "radiance/light/mirror_lobes.h"
 #include "radiance/light/mirror_quadrature.h"
+#include "radiance/light/mirror_visibility.h"
 #include "radiance/light/sphere_lookup.h"
 #include "radiance/surface_map.h"
-#include "tracing/tracer.h"
 
 namespace livery {
 
-/// Which rays of each fragment meet the product: independent of the environment.
-struct MirrorVisibility {
-    MirrorQuadrature quadrature;
-    std::vector<std::uint64_t> blocked;  ///< a word a fragment, of MirrorQuadrature::Ray's bits
-    /// Fragments that cannot learn from their neighbours, in their order, and the words of every
-    /// other turn of each, from its own on.
-    std::vector<std::uint32_t> alone;
-    static constexpr std::size_t kWordsAlone = MirrorQuadrature::kTurns / 2;
-    std::vector<std::array<std::uint64_t, kWordsAlone>> blocked_alone;
-};
-MirrorVisibility solve_mirror_visibility(const Mesh& mesh,
-                                         const Tracer& tracer,
-                                         const SurfaceMap& map,
-                                         glm::dvec3 eye_mm,
-                                         int nodes,
-                                         const Progress& progress = {});
+/// Layers that are asked for, and the lobes that they are made of.
+class MirrorLobes {
+  public:
+    explicit MirrorLobes(const MirrorLayers& layers);
+    const MirrorLayers& layers() const { return layers_; }
+    std::size_t count() const { return count_; }
+    const int* lobes() const { return lobes_.data(); }
+    const bool* grazes() const { return grazes_.data(); }
+    std::size_t place_of(std::size_t lobe) const { return place_[lobe]; }
 
-struct MirroredLight {
-    std::array<glm::vec3, kMirrorAlphas.size()> lobe;
-    /// Of kHalfAngleLobes, then kEntryLobes: how many times as much of the light stands where
-    /// Fresnel's term is high as does of even light.
-    std::array<glm::vec3, kGrazingLayers> grazing;
+  private:
+    MirrorLayers layers_;
+    std::size_t count_ = 0;
+    std::array<int, kMirrorAlphas.size()> lobes_{};
+    std::array<bool, kMirrorAlphas.size()> grazes_{};
+    std::array<std::size_t, kMirrorAlphas.size()> place_{};  ///< of each lobe among lobes_
 };
 
-/// Mean radiance of the environment over fragments' mirror lobes, one for each of kMirrorAlphas,
-/// times mirror_correction().
+/// Of the lobes of kMirrorAlphas, the mean radiance of the environment over the fragment's mirror
+/// lobe, times mirror_correction(). Of kHalfAngleLobes, then kEntryLobes: how many times as much of
+/// the light stands where Fresnel's term is high as does of even light.
+using MirroredLight = std::array<glm::vec3, kMirrorLayers>;
+
 class MirroredEnvironment {
   public:
-    /// Without `visibility` nothing is hidden, and a pixel has one normal.
+    /// Without `visibility` nothing is hidden, and a pixel has one normal. What hides the
+    /// environment sends `product` at each fragment (working space; empty: it is black).
     MirroredEnvironment(const Environment& environment,
                         const FilteredEnvironment& filtered,
                         const Mesh& mesh,
                         const SurfaceMap& map,
                         glm::dvec3 eye_mm,
-                        const MirrorVisibility* visibility);
+                        const MirrorVisibility* visibility,
+                        std::span<const glm::vec3> product = {});
 
     /// For one thread.
     class Scratch {
         friend class MirroredEnvironment;
         std::vector<FragmentNeighbours::Neighbour> neighbours;
-        std::vector<float> seen;   ///< share of each node
-        std::vector<float> width;  ///< of its Gaussian's variance
+        std::vector<float> seen_nodes;   ///< share of each node
+        std::vector<float> seen, width;  ///< by place: the same, and of its Gaussian's variance
+        std::vector<float> light;
+        std::array<float, kNodeLists * kMirrorAlphas.size()> sums{};
     };
-    MirroredLight at_fragment(std::size_t fragment, Scratch& scratch) const;
+    /// Layers that are not asked for are left black.
+    MirroredLight at_fragment(std::size_t fragment,
+                              const MirrorLobes& lobes,
+                              Scratch& scratch) const;
 
   private:
     /// Whether any node is hidden, and by how much each.
     bool find_seen(std::size_t fragment, Scratch& scratch) const;
     void ask_neighbours(std::size_t fragment, Scratch& scratch) const;
-    void ask_itself(std::size_t fragment, const std::uint64_t* words, Scratch& scratch) const;
+    void ask_itself(const MirrorVisibility::Alone& alone, Scratch& scratch) const;
 
     float scale_;
-    SpherePlaces places_;
+    MirrorSumJob job_;
     GaussianLayers layers_;
     const Mesh& mesh_;
     const SurfaceMap& map_;
     glm::dvec3 eye_mm_;
     const MirrorVisibility* visibility_;
+    std::span<const glm::vec3> product_;
     std::optional<MirrorQuadrature> unoccluded_;
     const MirrorQuadrature& quadrature_;
     std::optional<FragmentNeighbours> neighbours_;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -13,7 +12,9 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "core/huge_pages.h"
 #include "core/image.h"
+#include "radiance/lanes/mirror_sums.h"
 #include "radiance/light/environment_filter.h"
 #include "scene/look.h"
 
@@ -33,6 +34,8 @@ class SpherePlaces {
         Texel u, v;
     };
     Four of(const Texel& x, const Texel& y, const Texel& z) const;
+    /// Of the environment about +y, and half of one.
+    float turns() const { return turns_; }
 
   private:
     float turns_;
@@ -61,21 +64,31 @@ class SphereStack {
   private:
     int width_ = 0, height_ = 0;
     std::size_t count_ = 0;
-    std::vector<Texel> texels_;
+    LargeTable<Texel> texels_;
 };
 
-/// An environment's Gaussians, of both sizes.
+/// An environment's Gaussians, of both sizes. Those that follow one another lie side by side, each
+/// such pair in a picture of its own: nodes near one another read it in few places.
 class GaussianLayers {
   public:
     explicit GaussianLayers(const FilteredEnvironment& filtered);
 
-    /// Under a Gaussian of that variance along each axis, rad^2: two layers mixed so that the
-    /// variance is right.
-    Texel at(const glm::vec2& uv, float variance) const;
+    /// For sums over many directions (lanes/mirror_sums.h).
+    GaussianTexels sharp() const { return sharp_.texels(); }
+    GaussianTexels wide() const { return wide_.texels(); }
 
   private:
-    std::size_t sharp_count_ = 0, count_ = 0;
-    SphereStack sharp_, wide_;
+    class Pairs {
+      public:
+        Pairs() = default;
+        explicit Pairs(std::span<const ImageF> pictures);
+        GaussianTexels texels() const;
+
+      private:
+        int width_ = 0, height_ = 0, count_ = 0;
+        LargeTable<Texel> texels_;  ///< pair, row, column, which of the two
+    };
+    Pairs sharp_, wide_;
 };
 
 // Inline: once for each of a fragment's lobes and samples.
@@ -98,33 +111,6 @@ inline SphereStack::Footprint SphereStack::at(const glm::vec2& uv) const {
     const std::size_t upper = line(row), lower = line(row + 1);
     return {{texel(upper + left), texel(upper + right), texel(lower + left), texel(lower + right)},
             {(1.0f - fx) * (1.0f - fy), fx * (1.0f - fy), (1.0f - fx) * fy, fx * fy}};
-}
-
-inline Texel GaussianLayers::at(const glm::vec2& uv, float variance) const {
-    constexpr float kPerFirst = 1.0f / (kFirstGaussian_rad * kFirstGaussian_rad);
-    // Variances double from layer to layer: the exponent is the layer, the mantissa the share
-    const float ratio = std::max(variance * kPerFirst, 0.0f);
-    std::size_t below = 0;
-    float share = ratio;
-    if (ratio >= 1.0f) {
-        const auto bits = std::bit_cast<std::uint32_t>(ratio);
-        below = (bits >> 23u) - 126u;
-        share = std::bit_cast<float>((bits & 0x007fffffu) | 0x3f800000u) - 1.0f;
-        if (below + 1 >= count_) {
-            below = count_ - 2;
-            share = 1.0f;
-        }
-    }
-    const float rest = 1.0f - share;
-    const Texel of_below{rest, rest, rest, rest}, of_above{share, share, share, share};
-    if (below + 1 < sharp_count_) {
-        const SphereStack::Footprint place = sharp_.at(uv);
-        return of_below * place.in(below) + of_above * place.in(below + 1);
-    }
-    const SphereStack::Footprint place = wide_.at(uv);
-    const Texel above = of_above * place.in(below + 1 - sharp_count_);
-    if (below >= sharp_count_) return of_below * place.in(below - sharp_count_) + above;
-    return of_below * sharp_.at(uv).in(below) + above;
 }
 
 }  // namespace livery

@@ -1,4 +1,4 @@
-#include "ledger/accuracy.h"
+#include "ledger/stability.h"
 
 #include <algorithm>
 #include <chrono>
@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "appearance/model_table.h"
+#include "core/worst_error.h"
 #include "ledger/reflectance_on_gpu.h"
 
 namespace livery {
@@ -31,28 +32,27 @@ double gpu_error(
         for (std::size_t k = 0; k < pairs.size(); ++k) {
             const glm::dvec3 truth = evaluate(model, wide, pairs[k].wi, pairs[k].wo);
             for (int c = 0; c < 3; ++c) {
-                if (!(truth[c] > kLeastComparedValue)) continue;
-                worst = std::max(worst, std::abs(values[k][c] / truth[c] - 1.0));
+                worst = worse_of(worst, relative_error(values[k][c], truth[c]));
             }
         }
     }
     return worst;
 }
 
-double worst_in_float(const ModelAccuracy& model) {
+double worst_in_float(const ModelStability& model) {
     double worst = 0.0;
-    for (const PrecisionError& row : model.in_float) worst = std::max(worst, row.float_worst);
+    for (const PrecisionError& row : model.in_float) worst = worse_of(worst, row.float_worst);
     return worst;
 }
 
-double worst_on_gpu(const ModelAccuracy& model) {
+double worst_on_gpu(const ModelStability& model) {
     return *std::max_element(model.on_gpu.begin(), model.on_gpu.end());
 }
 
 /// Every slope parameter that a model was measured at.
-std::set<double> all_alphas(const AccuracyLedger& result) {
+std::set<double> all_alphas(const StabilityLedger& result) {
     std::set<double> alphas;
-    for (const ModelAccuracy& model : result.models) {
+    for (const ModelStability& model : result.models) {
         for (const PrecisionError& row : model.in_float) alphas.insert(row.alpha);
     }
     return alphas;
@@ -60,20 +60,37 @@ std::set<double> all_alphas(const AccuracyLedger& result) {
 
 }  // namespace
 
-AccuracyLedger measure_accuracy(GlDevice device,
-                                bool quick,
-                                std::uint64_t seed,
-                                const Progress& progress) {
+StabilityLedger measure_stability(GlDevice device,
+                                  bool quick,
+                                  std::uint64_t seed,
+                                  const Progress& progress) {
     using Clock = std::chrono::steady_clock;
     const std::size_t part = quick ? 100 : 1;
-    AccuracyLedger result;
-    result.renderer = HeadlessContext(device).renderer();
+    StabilityLedger result;
+    {
+        const HeadlessContext context(device);
+        result.renderer = context.renderer();
+        std::vector<ReflectanceModel> models;
+        for (const ModelInfo& info : model_table()) models.push_back(info.model);
+        models.push_back(ReflectanceModel::measured);
+        for (const ReflectanceModel model : models) {
+            progress.update(0.0, std::string("drawing ") + model_info(model).name);
+            const auto start = Clock::now();
+            std::vector<DrawnError> rows = drawn_errors(model, quick, seed, progress);
+            const double ms =
+                std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+            for (DrawnError& row : rows) {
+                row.ms = ms / static_cast<double>(rows.size());
+                result.drawn.push_back(row);
+            }
+        }
+    }
     for (const ModelInfo& info : model_table()) {
         progress.update(
             static_cast<double>(result.models.size()) / static_cast<double>(model_table().size()),
             info.name);
         const auto start = Clock::now();
-        ModelAccuracy& model = result.models.emplace_back();
+        ModelStability& model = result.models.emplace_back();
         model.model = info.model;
         model.in_float = precision_errors(info.model, kPairs / part, seed);
         Random random(seed);
@@ -90,9 +107,9 @@ AccuracyLedger measure_accuracy(GlDevice device,
     return result;
 }
 
-std::vector<LedgerEffect> effects_of(const AccuracyLedger& result) {
-    std::vector<LedgerEffect> effects;
-    for (const ModelAccuracy& model : result.models) {
+std::vector<LedgerEffect> effects_of(const StabilityLedger& result) {
+    std::vector<LedgerEffect> effects = effects_of(result.drawn);
+    for (const ModelStability& model : result.models) {
         LedgerEffect& effect = effects.emplace_back();
         effect.name = fmt::format("reflectance: {}", model_info(model.model).name);
         const auto add = [&](const std::string& name, double error, const std::string& unit) {
@@ -120,16 +137,17 @@ std::vector<LedgerEffect> effects_of(const AccuracyLedger& result) {
     return effects;
 }
 
-std::string text_of(const AccuracyLedger& result) {
-    std::string text = fmt::format("OpenGL: {}\n{:<24}{:>10}{:>10}{:>12}{:>10}{:>9}\n",
-                                   result.renderer,
-                                   "model",
-                                   "float",
-                                   "OpenGL",
-                                   "exchanged",
-                                   "albedo",
-                                   "invalid");
-    for (const ModelAccuracy& model : result.models) {
+std::string text_of(const StabilityLedger& result) {
+    std::string text = text_of(result.drawn);
+    text += fmt::format("OpenGL: {}\n{:<24}{:>10}{:>10}{:>12}{:>10}{:>9}\n",
+                        result.renderer,
+                        "model",
+                        "float",
+                        "OpenGL",
+                        "exchanged",
+                        "albedo",
+                        "invalid");
+    for (const ModelStability& model : result.models) {
         text += fmt::format("{:<24}{:>10.1e}{:>10.1e}{:>12.1e}{:>10.5f}{:>9}\n",
                             model_info(model.model).name,
                             worst_in_float(model),
@@ -141,15 +159,15 @@ std::string text_of(const AccuracyLedger& result) {
     return text;
 }
 
-std::string markdown_of(const AccuracyLedger& result) {
-    std::string text = fmt::format(
-        "OpenGL: {}. {} inputs a model.\n\n"
+std::string markdown_of(const StabilityLedger& result) {
+    std::string text = fmt::format("OpenGL: {}.\n\n", result.renderer) + markdown_of(result.drawn);
+    text += fmt::format(
+        "\nThe models by themselves, {} inputs each:\n\n"
         "| model | float against double | OpenGL against double | light and eye exchanged | "
         "largest albedo | where | claims at most 1 | invalid values |\n"
         "| --- | --- | --- | --- | --- | --- | --- | --- |\n",
-        result.renderer,
         result.models.front().invalid.inputs);
-    for (const ModelAccuracy& model : result.models) {
+    for (const ModelStability& model : result.models) {
         const ModelInfo& info = model_info(model.model);
         text += fmt::format(
             "| `{}` | {:.1e} | {:.1e} | {:.1e} | {:.5f} | {}, cosine {:g} | {} | {} |\n",
@@ -177,7 +195,7 @@ std::string markdown_of(const AccuracyLedger& result) {
         rule += " --- |";
     }
     text += rule + "\n";
-    for (const ModelAccuracy& model : result.models) {
+    for (const ModelStability& model : result.models) {
         text += fmt::format("| `{}` |", model_info(model.model).name);
         for (const double alpha : alphas) {
             std::string cell = " |";

@@ -1,4 +1,4 @@
-#include "radiance/accuracy.h"
+#include "support/radiance_error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/worst_error.h"
 
 namespace livery {
 
@@ -30,7 +31,7 @@ RadianceError radiance_error(const ImageF& rendered, const ImageF& truth) {
         for (int c = 0; c < 3; ++c) {
             const double difference = static_cast<double>(a[c]) - static_cast<double>(b[c]);
             error.mean_signed += difference / 3.0;
-            largest = std::max(largest, std::abs(difference));
+            largest = worse_of(largest, std::abs(difference));
         }
         differences.push_back(largest);
     }

@@ -1,0 +1,82 @@
+#include "core/error.h"
+#include "core/hash.h"
+#include "core/json.h"
+#include "core/paths.h"
+#include "ledger/accuracy/rows.h"
+
+namespace livery {
+
+namespace {
+
+/// Counts up when what is drawn changes.
+constexpr int kDrawn = 1;
+
+Json json_of(const AccuracyRow& row) {
+    return {{"format_version", 1},
+            {"scene", row.scene},
+            {"effect", row.effect},
+            {"level", row.level},
+            {"own_ms", row.own_ms},
+            {"solve_ms", row.solve_ms},
+            {"swap_ms", row.swap_ms},
+            {"fragments", row.fragments},
+            {"pixels", row.error.pixels},
+            {"median", row.error.median},
+            {"p95", row.error.p95},
+            {"p99", row.p99},
+            {"mean", row.error.mean},
+            {"worst", row.error.worst},
+            {"floor_median", row.floor_median},
+            {"floor_p95", row.floor_p95},
+            {"floor_p99", row.floor_p99}};
+}
+
+}  // namespace
+
+std::string hash_of(const AccuracyRow& row, const std::string& truth_hash) {
+    Hasher hasher;
+    hasher.add(truth_hash);
+    hasher.add(row.effect);
+    hasher.add(row.level);
+    hasher.add(std::span<const int>(row.levels.of));
+    const int version[] = {kDrawn};
+    hasher.add(std::span<const int>(version));
+    return hasher.hex();
+}
+
+std::optional<AccuracyRow> read_row(const std::filesystem::path& folder, const std::string& hash) {
+    const std::filesystem::path file = folder / (hash + ".json");
+    std::error_code error;
+    if (!std::filesystem::exists(file, error)) return std::nullopt;
+    const Json json = read_json_file(file);
+    const JsonReader read(file, json);
+    read.require_format_version(1);
+    const auto number = [&](const char* name) { return read[name].number_between(0.0, 1e12); };
+    AccuracyRow row;
+    row.scene = read["scene"].text();
+    row.effect = read["effect"].text();
+    row.level = read["level"].text();
+    row.own_ms = number("own_ms");
+    row.solve_ms = number("solve_ms");
+    row.swap_ms = number("swap_ms");
+    row.fragments = number("fragments");
+    row.error.pixels = static_cast<std::size_t>(number("pixels"));
+    row.error.median = number("median");
+    row.error.p95 = number("p95");
+    row.p99 = number("p99");
+    row.error.mean = number("mean");
+    row.error.worst = number("worst");
+    row.floor_median = number("floor_median");
+    row.floor_p95 = number("floor_p95");
+    row.floor_p99 = number("floor_p99");
+    return row;
+}
+
+void write_row(const std::filesystem::path& folder,
+               const std::string& hash,
+               const AccuracyRow& row) {
+    make_output_folder(folder);
+    write_json_file(folder / (hash + ".json"), json_of(row));
+}
+
+}  // namespace livery

@@ -1,0 +1,107 @@
+#include "ledger/accuracy/scenes.h"
+
+#include <functional>
+#include <memory>
+
+#include "scene/library.h"
+#include "twin/description.h"
+
+namespace livery {
+
+namespace {
+
+constexpr int kWidth = 640, kHeight = 400;
+
+struct NamedLook {
+    const char* name;
+    Look look;
+    std::function<void(Scene&)> change{};
+};
+
+Look with_body(const char* paint) {
+    Look look = find_look("solid-red");
+    look.parts["body"] = paint;
+    return look;
+}
+
+Material& body_of(Scene& scene) {
+    return scene.part_materials.at(static_cast<std::size_t>(part_index(*scene.product, "body")));
+}
+
+std::vector<NamedLook> looks() {
+    std::vector<NamedLook> all;
+    all.push_back({"solid red", find_look("solid-red")});
+    all.push_back({"silver with glints", with_body("silver metallic"), [](Scene& scene) {
+                       body_of(scene).glint_density_per_mm2 = 1000.0;
+                       body_of(scene).glint_scale = 30.0;
+                   }});
+    all.push_back({"pearl with a film", with_body("blue-green pearl")});
+    // Bright and matt, so that parts light one another; with stripes and a woven relief
+    NamedLook satin{"satin white", with_body("satin white")};
+    Artwork stripes;
+    stripes.name = "stripes";
+    stripes.part = "body";
+    stripes.paint = "satin raspberry";
+    stripes.size_mm = 30.0;
+    stripes.place.direction = {0.0, -1.0, 0.0};
+    stripes.place.up = {0.0, 0.0, 1.0};
+    Artwork weave;
+    weave.name = "weave";
+    weave.part = "trim";
+    weave.shape = ArtworkShape::picture;
+    weave.picture = "assets/patterns/weave.png";
+    weave.use = PictureUse::relief;
+    weave.repeat = true;
+    weave.size_mm = 6.0;
+    satin.look.artwork = {stripes, weave};
+    all.push_back(std::move(satin));
+    return all;
+}
+
+/// The studio as shipped; and a grey sky with a low sun.
+std::vector<std::pair<const char*, std::function<void(Look&)>>> lights() {
+    return {{"studio", [](Look&) {}}, {"overcast", [](Look& look) {
+                                           look.environment.file =
+                                               "assets/environments/overcast.hdr";
+                                           DirectionalLight sun;
+                                           sun.direction = unit_direction({0.8, 0.5, 0.35});
+                                           sun.angle_rad = 0.0093;
+                                           look.lights = {sun};
+                                       }}};
+}
+
+}  // namespace
+
+AccuracyScene resized(const AccuracyScene& scene, int width, int height) {
+    return {scene.name, scene.scene, resized(scene.view, width, height)};
+}
+
+std::vector<AccuracyScene> accuracy_scenes(bool quick, const Progress& progress) {
+    std::vector<AccuracyScene> scenes;
+    for (const char* name : {"car", "sphere"}) {
+        const std::string product_name = name;
+        const auto product = find_product(product_name);
+        const BenchDescription bench = read_bench_file(*bench_of_shipped_product(product_name));
+        const View view = resized(bench.projector.view, kWidth, kHeight);
+        for (const auto& [light_name, light] : lights()) {
+            std::shared_ptr<const Environment> environment;
+            for (const NamedLook& one : looks()) {
+                progress.check_stop();
+                Look look =
+                    product_name == "car" ? one.look : find_look_for("solid-red", product->mesh);
+                if (product_name != "car") look.parts.begin()->second = one.look.parts.at("body");
+                light(look);
+                AccuracyScene& scene = scenes.emplace_back();
+                scene.name = product_name + ", " + one.name + ", " + light_name;
+                scene.view = view;
+                scene.scene = make_scene(product, look, bench.eye_mm, environment);
+                environment = scene.scene.environment;
+                if (product_name == "car" && one.change) one.change(scene.scene);
+                if (quick) return scenes;
+            }
+        }
+    }
+    return scenes;
+}
+
+}  // namespace livery

@@ -1,0 +1,26 @@
+// What the price of accuracy is measured on: looks that together call for every effect, in two
+// lights, on the whole car, and a sphere.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/progress.h"
+#include "scene/scene.h"
+#include "scene/view.h"
+
+namespace livery {
+
+struct AccuracyScene {
+    std::string name;  ///< "car, pearl, overcast"
+    Scene scene;
+    View view;
+};
+
+/// `quick`: one look on the car in one light.
+std::vector<AccuracyScene> accuracy_scenes(bool quick, const Progress& progress = {});
+
+/// The same scene in a picture of another size.
+AccuracyScene resized(const AccuracyScene& scene, int width, int height);
+
+}  // namespace livery

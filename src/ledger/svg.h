@@ -1,0 +1,28 @@
+// Plots with logarithmic axes as SVG.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace livery {
+
+/// From `low` to `high` along the picture.
+struct LogAxis {
+    double low, high, begin_px, end_px;
+    double at(double value) const;
+};
+
+std::string svg_text(double x, double y, std::string_view words, std::string_view attributes);
+std::string svg_line(double x1, double y1, double x2, double y2, std::string_view attributes);
+
+/// White ground, a title and what it is of; classes minor, major, tick, name and soft.
+std::string svg_begin(std::string_view title, std::string_view subtitle);
+std::string svg_end();
+
+/// Lines at 1, 2 and 5 of every decade, and what the axes are.
+std::string svg_grid(const LogAxis& x,
+                     const LogAxis& y,
+                     std::string_view x_name,
+                     std::string_view y_name);
+
+}  // namespace livery

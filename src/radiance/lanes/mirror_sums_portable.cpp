@@ -1,0 +1,2 @@
+#define LIVERY_LANES portable
+#include "radiance/lanes/mirror_sums.inc"

@@ -1,0 +1,69 @@
+// Points all over a mesh between which light is exchanged.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "mesh/mesh.h"
+
+namespace livery {
+
+/// Where a mesh may have its light looked up: its vertices, and a grid in every triangle that is
+/// longer than what lies between two nodes.
+struct ExchangePoints {
+    std::vector<glm::vec3> positions_mm, normals;  ///< of each; the unit shading normal
+    std::vector<std::uint32_t> within;             ///< a triangle that it lies in
+    std::vector<glm::vec2> uvs;
+    std::vector<std::uint16_t> part;
+    /// Of each triangle: steps a side, 1 where its corners are its points; the first of its grid.
+    std::vector<std::uint16_t> steps;
+    std::vector<std::uint32_t> grid;
+
+    float apart_mm = 0.0f;  ///< from one node to the next
+
+    std::size_t size() const { return positions_mm.size(); }
+
+    struct Share {
+        std::uint32_t index = 0;
+        float weight = 0.0f;
+    };
+    /// The three points around a place of a triangle, by linear weights that sum to 1.
+    std::array<Share, 3> around(const Mesh& mesh,
+                                std::uint32_t triangle,
+                                const glm::vec2& barycentric) const;
+};
+
+/// Points that lie close together, on one part and with normals that differ little, share a node:
+/// one of them. Between nodes light is interpolated.
+struct ExchangeNodes {
+    ExchangePoints points;
+    std::vector<std::uint32_t> point_of;  ///< of each node
+    std::vector<std::uint32_t> node_of;   ///< of each point
+    /// Nodes around each point, by weights that sum to 1, from `first` on.
+    std::vector<std::uint32_t> first;
+    std::vector<ExchangePoints::Share> nearby;
+
+    std::size_t size() const { return point_of.size(); }
+    const glm::vec3& position_mm(std::size_t node) const {
+        return points.positions_mm[point_of[node]];
+    }
+    const glm::vec3& normal(std::size_t node) const { return points.normals[point_of[node]]; }
+    std::uint16_t part(std::size_t node) const { return points.part[point_of[node]]; }
+    /// Where its rays start: off the surface, and a little inside its triangle, for at an edge
+    /// they would start within what meets there.
+    glm::vec3 ray_origin_mm(const Mesh& mesh, std::size_t node) const;
+
+    /// Of each point, from a value of each node.
+    std::vector<glm::vec3> at_points(const std::vector<glm::vec3>& at_nodes) const;
+};
+
+/// Nodes are a hundredth of the mesh's diagonal apart, or farther where that would make too many
+/// points.
+ExchangeNodes exchange_nodes(const Mesh& mesh);
+
+}  // namespace livery

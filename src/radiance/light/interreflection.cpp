@@ -1,0 +1,282 @@
+#include "radiance/light/interreflection.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <optional>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "appearance/paint_bsdf.h"
+#include "core/colour.h"
+#include "core/parallel.h"
+#include "core/random.h"
+#include "radiance/light/light_visibility.h"
+#include "radiance/light/sphere_lookup.h"
+#include "radiance/light/spiral.h"
+#include "scene/artwork_coats.h"
+
+namespace livery {
+
+namespace {
+
+/// Rays in all, and of a node.
+constexpr std::size_t kRays = 2'000'000;
+constexpr int kFewestRays = 16, kMostRays = 64;
+constexpr int kRaysALight = 8;
+
+/// Light that is left of the first bounce's, below which no further one is followed.
+constexpr float kNothingLeft = 1e-3f;
+
+double turn_of(std::size_t node) { return turn_of_fragment_rad(node, 29u, 7u); }
+
+std::vector<glm::vec3> cosine_directions(int count) {
+    std::vector<glm::vec3> directions;
+    for (int k = 0; k < count; ++k) {
+        const double u = (k + 0.5) / count, angle = kGoldenAngle_rad * k;
+        directions.emplace_back(
+            std::sqrt(u) * std::cos(angle), std::sqrt(u) * std::sin(angle), std::sqrt(1.0 - u));
+    }
+    return directions;
+}
+
+/// The node of one of the points around a hit, as often as that weighs.
+std::uint32_t node_of(const Mesh& mesh, const ExchangeNodes& nodes, const Hit& hit, float chance) {
+    const auto around = nodes.points.around(mesh, hit.triangle, hit.barycentric);
+    for (const ExchangePoints::Share& share : around) {
+        if (chance < share.weight) return nodes.node_of[share.index];
+        chance -= share.weight;
+    }
+    return nodes.node_of[around.back().index];
+}
+
+float brightest(const glm::vec3& v) { return std::max({v.x, v.y, v.z}); }
+
+/// Of all nodes: the mean over its rays of what is sent by those that it sees.
+void gather(const NodeExchange& exchange,
+            std::span<const glm::vec3> sent,
+            std::vector<glm::vec3>& gathered) {
+    const float share = 1.0f / static_cast<float>(exchange.rays);
+    parallel_for(gathered.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            glm::vec3 sum(0.0f);
+            for (std::size_t k = exchange.first[i]; k < exchange.first[i + 1]; ++k) {
+                sum += sent[exchange.seen[k]];
+            }
+            gathered[i] = share * sum;
+        }
+    });
+}
+
+}  // namespace
+
+NodeExchange solve_node_exchange(const Mesh& mesh, const Tracer& tracer, const Progress& progress) {
+    NodeExchange exchange;
+    exchange.nodes = exchange_nodes(mesh);
+    const ExchangeNodes& nodes = exchange.nodes;
+    const std::size_t count = nodes.size();
+    exchange.rays = std::clamp(
+        static_cast<int>(kRays / std::max<std::size_t>(count, 1)), kFewestRays, kMostRays);
+    exchange.blocked.assign(count, 0);
+    exchange.first.assign(count + 1, 0);
+    exchange.sends.assign(count, 0);
+    const auto spiral = cosine_directions(exchange.rays);
+
+    constexpr std::size_t kAtATime = 256;
+    std::vector<std::vector<std::uint32_t>> seen((count + kAtATime - 1) / kAtATime);
+    parallel_for(seen.size(), 1, [&](std::size_t begin, std::size_t end) {
+        progress.check_stop();
+        std::vector<glm::vec3> directions(spiral.size());
+        for (std::size_t block = begin; block < end; ++block) {
+            const std::size_t past = std::min(count, (block + 1) * kAtATime);
+            for (std::size_t i = block * kAtATime; i < past; ++i) {
+                const glm::vec3 n = nodes.normal(i);
+                turn_around(spiral, n, basis_around(n), turn_of(i), directions);
+                TraceRay ray;
+                ray.origin = nodes.ray_origin_mm(mesh, i);
+                const std::size_t before = seen[block].size();
+                for (std::size_t k = 0; k < directions.size(); ++k) {
+                    ray.direction = directions[k];
+                    const Hit hit = tracer.closest(ray);
+                    if (!hit.valid()) continue;
+                    exchange.blocked[i] |= std::uint64_t{1} << k;
+                    const glm::vec3 facing = surface_point(mesh, hit).geometric_normal;
+                    // The inside of a closed product is dark.
+                    if (glm::dot(facing, ray.direction) >= 0.0f) continue;
+                    const auto chance = static_cast<float>(
+                        hash_3d(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(k), 31u) *
+                        0x1p-32);
+                    seen[block].push_back(node_of(mesh, nodes, hit, chance));
+                }
+                exchange.first[i + 1] = static_cast<std::uint32_t>(seen[block].size() - before);
+            }
+        }
+    });
+    for (std::size_t i = 0; i < count; ++i) exchange.first[i + 1] += exchange.first[i];
+    exchange.seen.reserve(exchange.first.back());
+    for (const auto& some : seen) {
+        exchange.seen.insert(exchange.seen.end(), some.begin(), some.end());
+    }
+    for (const std::uint32_t node : exchange.seen) exchange.sends[node] = 1;
+    return exchange;
+}
+
+std::shared_ptr<const NodeExchange> SharedExchange::of(const Mesh& mesh,
+                                                       const Tracer& tracer,
+                                                       const Progress& progress) {
+    const std::scoped_lock lock(mutex_);
+    if (!made_) {
+        made_ = std::make_shared<const NodeExchange>(solve_node_exchange(mesh, tracer, progress));
+    }
+    return made_;
+}
+
+std::vector<glm::vec3> direct_at_nodes(const Mesh& mesh,
+                                       const Tracer& tracer,
+                                       const NodeExchange& exchange,
+                                       const std::vector<DirectionalLight>& lights,
+                                       const Environment* environment,
+                                       const FilteredEnvironment& filtered,
+                                       const Progress& progress) {
+    const ExchangeNodes& nodes = exchange.nodes;
+    struct Lamp {
+        glm::vec3 direction, radiance;
+    };
+    std::vector<Lamp> lamps;
+    for (const DirectionalLight& light : lights) {
+        lamps.push_back({glm::vec3(glm::normalize(light.direction)),
+                         glm::vec3(working_from_rec709() * light.radiance_rec709)});
+    }
+    const auto spiral = cosine_directions(exchange.rays);
+    std::optional<SpherePlaces> places;
+    SphereStack diffuse, around;
+    float scale = 0.0f;
+    if (environment) {
+        places.emplace(*environment);
+        diffuse = SphereStack({&filtered.diffuse, 1});
+        around = SphereStack({&filtered.blurred, 1});
+        scale = static_cast<float>(environment->scale);
+    }
+    std::vector<glm::vec3> direct(nodes.size(), glm::vec3(0.0f));
+    parallel_for(direct.size(), 512, [&](std::size_t begin, std::size_t end) {
+        progress.check_stop();
+        std::vector<glm::vec3> directions(spiral.size());
+        for (std::size_t i = begin; i < end; ++i) {
+            if (!exchange.sends[i]) continue;
+            const glm::vec3 n = nodes.normal(i);
+            for (std::size_t l = 0; l < lamps.size(); ++l) {
+                const float cosine = glm::dot(n, lamps[l].direction);
+                if (cosine <= 0.0f || lamps[l].radiance == glm::vec3(0.0f)) continue;
+                const float open = disc_openness(
+                    tracer, nodes.ray_origin_mm(mesh, i), n, lights[l], kRaysALight, i);
+                direct[i] += cosine * open * lamps[l].radiance;
+            }
+            if (!environment) continue;
+            glm::vec3 sky = scale * rgb_of(diffuse.at(places->of(n)).in(0));
+            if (exchange.blocked[i] != 0) {
+                // The same directions estimate the whole: the ratio is kinder to bright lamps
+                turn_around(spiral, n, basis_around(n), turn_of(i), directions);
+                Texel hidden{}, open{};
+                for (std::size_t k = 0; k < directions.size(); ++k) {
+                    const bool blocked = ((exchange.blocked[i] >> k) & 1u) != 0;
+                    (blocked ? hidden : open) += around.at(places->of(directions[k])).in(0);
+                }
+                sky *= rgb_of(open) / glm::max(rgb_of(hidden + open), glm::vec3(1e-20f));
+            }
+            direct[i] += sky;
+        }
+    });
+    return direct;
+}
+
+std::vector<glm::vec3> albedo_at_nodes(const Scene& scene, const ExchangeNodes& nodes) {
+    std::vector<glm::vec3> of_part;
+    for (const Material& material : scene.part_materials) {
+        of_part.push_back(hemispherical_albedo(bsdf_of(material)));
+    }
+    std::vector<glm::vec3> albedo(nodes.size());
+    for (std::size_t i = 0; i < albedo.size(); ++i) albedo[i] = of_part[nodes.part(i)];
+    for (const PartArtwork& artwork : scene.artwork) {
+        // Pictures are taken for their paint's own colour: of a decal the mean matters little
+        const glm::vec3 over = hemispherical_albedo(bsdf_of(artwork.material));
+        parallel_for(albedo.size(), 2048, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                if (nodes.part(i) != artwork.part) continue;
+                const ArtworkPoint at = artwork_at(artwork,
+                                                   glm::dvec3(nodes.position_mm(i)),
+                                                   glm::dvec3(nodes.normal(i)),
+                                                   glm::dvec2(nodes.points.uvs[nodes.point_of[i]]));
+                albedo[i] = glm::mix(albedo[i], over, static_cast<float>(at.cover));
+            }
+        });
+    }
+    return albedo;
+}
+
+ExchangedLight exchanged_at_nodes(const NodeExchange& exchange,
+                                  std::span<const glm::vec3> direct,
+                                  std::span<const glm::vec3> albedo,
+                                  int bounces) {
+    std::vector<glm::vec3> sent(direct.size()), gathered(direct.size()), sum(direct.size());
+    for (std::size_t i = 0; i < sent.size(); ++i) sent[i] = albedo[i] * direct[i];
+    float first = 0.0f;
+    for (int bounce = 0; bounce < bounces; ++bounce) {
+        gather(exchange, sent, gathered);
+        float largest = 0.0f;
+        for (std::size_t i = 0; i < sum.size(); ++i) {
+            sum[i] += gathered[i];
+            largest = std::max(largest, brightest(gathered[i]));
+            sent[i] = albedo[i] * gathered[i];
+        }
+        if (bounce == 0) first = largest;
+        if (largest <= kNothingLeft * first) break;
+    }
+    ExchangedLight result;
+    result.on_diffuser = std::move(sum);
+    // Who looks at what hides the surroundings sees all that it sends
+    for (std::size_t i = 0; i < sent.size(); ++i) {
+        sent[i] = albedo[i] * (direct[i] + (bounces > 1 ? result.on_diffuser[i] : glm::vec3(0.0f)));
+    }
+    result.seen.resize(sent.size());
+    gather(exchange, sent, result.seen);
+    for (std::size_t i = 0; i < sent.size(); ++i) {
+        const auto hidden = static_cast<float>(std::popcount(exchange.blocked[i]));
+        if (hidden > 0.0f) result.seen[i] *= static_cast<float>(exchange.rays) / hidden;
+    }
+    return result;
+}
+
+ExchangedLight exchanged_at_fragments(const Mesh& mesh,
+                                      const SurfaceMap& map,
+                                      const ExchangeNodes& nodes,
+                                      const ExchangedLight& at_nodes) {
+    const ExchangePoints& points = nodes.points;
+    const std::vector<glm::vec3> on_diffuser = nodes.at_points(at_nodes.on_diffuser);
+    const std::vector<glm::vec3> seen = nodes.at_points(at_nodes.seen);
+    ExchangedLight light;
+    light.on_diffuser.assign(map.fragments.size(), glm::vec3(0.0f));
+    light.seen = light.on_diffuser;
+    parallel_for(map.fragments.size(), 2048, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const glm::vec3 normal = map.fragments[i].normal;
+            float weight = 0.0f;
+            for (std::size_t s = 0; s < kSamplesAFragment; ++s) {
+                const SurfaceSample& sample = map.samples[i * kSamplesAFragment + s];
+                for (const auto& share : points.around(mesh, sample.triangle, sample.barycentric)) {
+                    if (glm::dot(points.normals[share.index], normal) <= 0.0f) continue;
+                    light.on_diffuser[i] += share.weight * on_diffuser[share.index];
+                    light.seen[i] += share.weight * seen[share.index];
+                    weight += share.weight;
+                }
+            }
+            if (weight <= 0.0f) continue;
+            light.on_diffuser[i] /= weight;
+            light.seen[i] /= weight;
+        }
+    });
+    return light;
+}
+
+}  // namespace livery

@@ -1,0 +1,80 @@
+// Light that parts of a product send to one another: radiosity between points of its surface
+// (Goral, Torrance, Greenberg, Battaile 1984), gathered by rays.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "core/progress.h"
+#include "radiance/light/environment_filter.h"
+#include "radiance/light/exchange_nodes.h"
+#include "radiance/surface_map.h"
+#include "scene/scene.h"
+#include "tracing/tracer.h"
+
+namespace livery {
+
+/// What each node sees of others along cosine-weighted directions: of the mesh alone, whatever it
+/// is painted and lit with.
+struct NodeExchange {
+    ExchangeNodes nodes;
+    int rays = 0;                        ///< of a node, 64 at most
+    std::vector<std::uint64_t> blocked;  ///< bit k: direction k meets the product
+    /// Nodes that each one sees from their outside, one a ray, from `first` on.
+    std::vector<std::uint32_t> first, seen;
+    std::vector<std::uint8_t> sends;  ///< 1: somebody sees it
+};
+NodeExchange solve_node_exchange(const Mesh& mesh,
+                                 const Tracer& tracer,
+                                 const Progress& progress = {});
+
+/// Solved by whoever asks first, for all who draw the same mesh.
+class SharedExchange {
+  public:
+    /// A stop leaves it to the next one.
+    std::shared_ptr<const NodeExchange> of(const Mesh& mesh,
+                                           const Tracer& tracer,
+                                           const Progress& progress);
+
+  private:
+    std::mutex mutex_;
+    std::shared_ptr<const NodeExchange> made_;
+};
+
+/// What a white diffuser at each sending node sends under the lights and the environment (null:
+/// none), as far as the product does not hide them; 0 at others. Working space, exposure not
+/// included.
+std::vector<glm::vec3> direct_at_nodes(const Mesh& mesh,
+                                       const Tracer& tracer,
+                                       const NodeExchange& exchange,
+                                       const std::vector<DirectionalLight>& lights,
+                                       const Environment* environment,
+                                       const FilteredEnvironment& filtered,
+                                       const Progress& progress = {});
+
+/// What each node returns of light: its part's hemispherical albedo, under artwork that of both.
+std::vector<glm::vec3> albedo_at_nodes(const Scene& scene, const ExchangeNodes& nodes);
+
+/// Light that came by other nodes.
+struct ExchangedLight {
+    std::vector<glm::vec3> on_diffuser;  ///< what a white diffuser sends of it
+    std::vector<glm::vec3> seen;  ///< the mean radiance of what hides the surroundings, all light
+};
+/// At each node, after so many bounces: 1, or as many as still add to it.
+ExchangedLight exchanged_at_nodes(const NodeExchange& exchange,
+                                  std::span<const glm::vec3> direct,
+                                  std::span<const glm::vec3> albedo,
+                                  int bounces);
+
+/// The same at the fragments, of the side that is seen.
+ExchangedLight exchanged_at_fragments(const Mesh& mesh,
+                                      const SurfaceMap& map,
+                                      const ExchangeNodes& nodes,
+                                      const ExchangedLight& at_nodes);
+
+}  // namespace livery

@@ -1,0 +1,97 @@
+#include "radiance/light/mirror_lobes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "appearance/bsdf.h"
+#include "appearance/measured/measured_paint.h"
+#include "appearance/model_table.h"
+#include "scene/artwork_coats.h"
+
+namespace livery {
+namespace {
+
+/// The four lobes that one in between is mixed of.
+void add_mix(double alpha, MirrorLayers& layers) {
+    const auto first = static_cast<std::size_t>(mirror_mix(alpha).first);
+    for (std::size_t k = first; k < first + MirrorMix().share.size(); ++k) layers.set(k);
+}
+
+/// Those that grazing_fresnel() of layers.glsl interpolates between.
+void add_half_angle(float alpha, MirrorLayers& layers) {
+    std::size_t last = 0;
+    const std::size_t count = 3 * kHalfAngleLobes.size();
+    const auto alpha_of = [](std::size_t k) {
+        return kMirrorAlphas[kHalfAngleLobes[k / 3][k % 3]];
+    };
+    while (last + 1 < count && alpha_of(last) < alpha) ++last;
+    layers.set(kMirrorAlphas.size() + last / 3);
+    if (last > 0) layers.set(kMirrorAlphas.size() + (last - 1) / 3);
+}
+
+}  // namespace
+
+MirrorMix mirror_mix(double alpha) {
+    // Cubic in the logarithm, which treats a lobe's core (1 / alpha^2) and its tail (alpha^2)
+    // alike: linear, both would be up to 6% too bright. Linear before the second and after the last
+    // but one, where a cubic would extrapolate.
+    const auto of = [](std::size_t k) { return std::log(static_cast<double>(kMirrorAlphas[k])); };
+    const std::size_t last = kMirrorAlphas.size() - 1;
+    const double x = std::clamp(std::log(alpha), of(0), of(last));
+    std::size_t below = 0;
+    while (below + 2 <= last && of(below + 1) <= x) ++below;
+    const std::size_t first = std::clamp<std::size_t>(below, 1, last - 2) - 1;
+    MirrorMix mix;
+    mix.first = static_cast<int>(first);
+    const bool inside = below > 0 && below + 1 < last;
+    for (std::size_t k = first; k < first + mix.share.size(); ++k) {
+        if (!inside && (k < below || k > below + 1)) continue;
+        double share = 1.0;
+        for (std::size_t j = first; j < first + mix.share.size(); ++j) {
+            if (j == k || (!inside && (j < below || j > below + 1))) continue;
+            share *= (x - of(j)) / (of(k) - of(j));
+        }
+        mix.share[k - first] = static_cast<float>(share);
+    }
+    return mix;
+}
+
+MirrorLayers mirror_layers_of(const Material& paint) {
+    const ModelInfo& model = model_info(paint.model);
+    MirrorLayers layers;
+    if (!model.mirrors()) return layers;
+    if (!model.prepared.type) {
+        // A measurement that nobody has read yet is black
+        const float measured = paint.measured ? paint.measured->lobe_alpha : 1.0f;
+        const bool is_formula = paint.model != ReflectanceModel::measured;
+        const float alpha = is_formula ? lobe_alpha(model, parameters_of(paint)) : measured;
+        add_mix(static_cast<double>(alpha), layers);
+        return layers;
+    }
+    const PreparedPaint prepared = model.prepared.of(parameters_of(paint));
+    // What lies under a coat is lit through it; what flakes reflect is the same from all sides
+    const bool coated = prepared.lobe_slopes.size() > 1;
+    const bool flakes = prepared.lobe_slopes.size() > 2;
+    constexpr std::size_t kCoat = 1;
+    for (std::size_t lobe = 0; lobe < prepared.lobe_slopes.size(); ++lobe) {
+        const glm::vec2 slopes = prepared.lobe_slopes[lobe];
+        const float alpha = std::sqrt(slopes.x * slopes.y);
+        add_mix(static_cast<double>(alpha), layers);
+        if (!flakes || lobe == kCoat) add_half_angle(alpha, layers);
+    }
+    if (coated) layers.set(kMirrorLayers - 1);
+    return layers;
+}
+
+std::vector<MirrorLayers> mirror_layers_of(const Scene& scene) {
+    std::vector<MirrorLayers> of_part;
+    for (const Material& paint : scene.part_materials) of_part.push_back(mirror_layers_of(paint));
+    for (const PartArtwork& artwork : scene.artwork) {
+        for (const ArtworkCoat& coat : coats_of(artwork)) {
+            of_part[artwork.part] |= mirror_layers_of(coat.material);
+        }
+    }
+    return of_part;
+}
+
+}  // namespace livery

@@ -1,0 +1,44 @@
+// The GGX lobes for which fragments keep what they mirror, and which of them a paint reads.
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <cstddef>
+#include <vector>
+
+#include "appearance/material.h"
+#include "scene/scene.h"
+
+namespace livery {
+
+/// Slope parameters for which each fragment keeps what it mirrors; paints in between interpolate.
+inline constexpr std::array<float, 12> kMirrorAlphas{
+    0.01f, 0.02f, 0.03f, 0.042f, 0.06f, 0.085f, 0.12f, 0.17f, 0.24f, 0.34f, 0.5f, 1.0f};
+
+/// Fresnel's term rises where light grazes, and a lobe at a slant takes light from grazing and from
+/// steep directions: how bright each is decides what is reflected. Some lobes (of kMirrorAlphas)
+/// keep that for each fragment, others interpolate (shade.glsl has the same): for the mirror's own
+/// Fresnel term, under the half angle, and for that of a coat above, under the angle of incidence.
+/// The former have more, since they make up for the errors of ggx_albedo_fit() as well.
+using GrazingLobes = std::array<std::size_t, 3>;
+inline constexpr std::array<GrazingLobes, 3> kHalfAngleLobes{{{1, 3, 4}, {5, 6, 7}, {8, 10, 11}}};
+inline constexpr GrazingLobes kEntryLobes{4, 7, 10};
+/// Layers of what is mirrored: the lobes, then how much of it grazes, three lobes a layer.
+inline constexpr std::size_t kGrazingLayers = kHalfAngleLobes.size() + 1;
+inline constexpr std::size_t kMirrorLayers = kMirrorAlphas.size() + kGrazingLayers;
+
+/// A lobe between the tabulated ones: four that follow one another, and the share of each.
+struct MirrorMix {
+    int first = 0;
+    std::array<float, 4> share{};
+};
+MirrorMix mirror_mix(double alpha);
+
+/// Some of those layers, in their order.
+using MirrorLayers = std::bitset<kMirrorLayers>;
+/// That shading a paint reads: none where it does not mirror.
+MirrorLayers mirror_layers_of(const Material& paint);
+/// Of each part, for its paint and all paints of the artwork that lies over it.
+std::vector<MirrorLayers> mirror_layers_of(const Scene& scene);
+
+}  // namespace livery

@@ -1,0 +1,105 @@
+// What fragments mirror of an environment, for the parts and the lobes that paints read: solved on
+// the CPU, kept until the eye or the environment changes, and added to when other paints are worn.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "core/progress.h"
+#include "radiance/light/environment_filter.h"
+#include "radiance/light/mirror_lobes.h"
+#include "radiance/light/mirror_visibility.h"
+#include "radiance/light/sky_visibility.h"
+#include "radiance/packed_fragments.h"
+#include "radiance/shading.h"
+#include "tracing/tracer.h"
+
+namespace livery {
+
+class MirrorInputs {
+  public:
+    MirrorInputs(const Mesh& mesh,
+                 const Tracer& tracer,
+                 const SurfaceMap& map,
+                 const PackedLayout& layout);
+
+    /// What is mirrored, and how finely.
+    struct Light {
+        std::shared_ptr<const Environment> environment;
+        glm::dvec3 eye_mm{0.0};
+        int nodes = 0;  ///< a ring (mirror_rings); 0: nothing is hidden
+        bool operator==(const Light&) const = default;
+    };
+    using LayersOfParts = std::vector<MirrorLayers>;
+
+    /// What the product sends to each fragment, where it hides the environment; empty: nothing. Of
+    /// another `version` than before, what was solved is missing() for who wants it, and stands for
+    /// who does not ask.
+    void hide_behind(std::span<const glm::vec3> product, int version);
+
+    /// Another map of the same fragments: nothing that was solved stands.
+    void use(const SurfaceMap& map);
+    /// The scene has no environment.
+    void clear();
+
+    /// The light that is solved; with no environment: none.
+    const Light& light() const { return light_; }
+    /// Of those that are wanted, what is not solved in that light; with `and_old`, nor behind what
+    /// the product sends now.
+    LayersOfParts missing(const Light& light,
+                          const LayersOfParts& wanted,
+                          bool and_old = true) const;
+    /// Whether rays to find out what hides those layers' light are yet to be traced.
+    bool lacks_visibility(const Light& light, const LayersOfParts& layers) const;
+    void trace(const Light& light, const LayersOfParts& layers, const Progress& progress);
+    /// `layers` are missing(). Without nodes, fragments that share their pixel are darkened as
+    /// `joints` says, if there.
+    void solve(const Light& light,
+               const LayersOfParts& layers,
+               const FilteredEnvironment& filtered,
+               const SkyVisibility* joints,
+               const Progress& progress);
+
+    bool has_uploads() const { return other_light_ || !solved_texels_.empty(); }
+    struct Uploaded {
+        bool other_light = false;  ///< what was shaded in the last one does not stand
+        bool more_room = false;
+    };
+    /// Hands what was solved to the device that shades.
+    Uploaded upload(ShadingDevice device, ShadingInputs& shading);
+
+  private:
+    /// Whether what was traced is of another eye or quality.
+    bool other_rays(const Light& light) const {
+        return !visibility_ || visibility_->quadrature.nodes() != light.nodes ||
+               visibility_eye_mm_ != light.eye_mm;
+    }
+
+    /// A layer of a part, in rows of the packed layout, four floats a texel.
+    struct Texels {
+        std::size_t part = 0, layer = 0;
+        std::vector<float> values;
+    };
+
+    const Mesh& mesh_;
+    const Tracer& tracer_;
+    const SurfaceMap* map_;
+    const PackedLayout& layout_;
+
+    std::optional<MirrorVisibility> visibility_;
+    glm::dvec3 visibility_eye_mm_{0.0};
+    Light light_;
+    LayersOfParts solved_;  ///< of each part, in that light
+    LayersOfParts newest_;  ///< of these, behind what the product sends now
+    std::span<const glm::vec3> product_;
+    int product_version_ = 0;
+    float unit_ = 1.0f;
+    std::vector<Texels> solved_texels_;  ///< not yet uploaded
+    bool other_light_ = false;           ///< since the last upload
+};
+
+}  // namespace livery

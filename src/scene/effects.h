@@ -1,0 +1,75 @@
+// What a frame may spend more or less on: its effects, each with levels from none to the dearest.
+#pragma once
+
+#include <array>
+#include <compare>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace livery {
+
+enum class Effect {
+    sub_samples,           ///< rays a pixel of the surface map
+    shadows,               ///< of the lights, sharp or soft
+    environment,           ///< light from all around
+    occlusion,             ///< of that light, by the product
+    mirrored_environment,  ///< nodes of mirror lobes
+    reflected_occlusion,   ///< of mirrored light, by the product
+    interreflection,       ///< light that parts send to one another
+    glints,                ///< single flakes
+    film,                  ///< thin films on flakes
+    relief,                ///< pictures of normals
+};
+inline constexpr std::size_t kEffects = 10;
+
+struct EffectLevel {
+    const char* name;      ///< in tables, "16 rays"
+    const char* in_words;  ///< what is seen at it
+};
+struct EffectInfo {
+    Effect effect;
+    const char* name;                 ///< in JSON and tables, "reflected-occlusion"
+    const char* in_words;             ///< "parts hide the mirrored environment"
+    std::vector<EffectLevel> levels;  ///< rising in cost; the first is none of it where that can be
+};
+/// In the order of Effect.
+const std::vector<EffectInfo>& effect_table();
+const EffectInfo& effect_info(Effect effect);
+
+/// An index into the levels of each effect.
+struct EffectLevels {
+    std::array<int, kEffects> of{};
+
+    int operator[](Effect effect) const { return of[static_cast<std::size_t>(effect)]; }
+    int& operator[](Effect effect) { return of[static_cast<std::size_t>(effect)]; }
+    auto operator<=>(const EffectLevels&) const = default;
+};
+
+/// Named sets of levels; `reference` is the path tracer.
+enum class Quality { draft, normal, high, reference };
+Quality parse_quality(const std::string& text);  ///< throws std::invalid_argument with the names
+std::string to_string(Quality quality);
+
+/// Throws std::invalid_argument for the path tracer's.
+EffectLevels levels_of(Quality quality);
+/// The dearest quality that spends on no effect more than these do; draft where none does.
+Quality nearest_quality(const EffectLevels& levels);
+/// Throws std::invalid_argument for a level that its effect does not have.
+void check_levels(const EffectLevels& levels);
+
+/// "shadows=sharp,interreflection=none": `levels` with those instead. Throws std::invalid_argument
+/// that lists the names there are.
+EffectLevels parse_levels(const std::string& text, EffectLevels levels);
+/// What parse_levels() reads: all of them.
+std::string to_string(const EffectLevels& levels);
+
+/// Whether a scene has anything for the effect to act on.
+bool calls_for(const Scene& scene, Effect effect);
+
+/// The scene without what its levels leave out of it: environment, glints, films, relief.
+Scene at_levels(const Scene& scene, const EffectLevels& levels);
+
+}  // namespace livery

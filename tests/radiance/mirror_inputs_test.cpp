@@ -1,0 +1,161 @@
+// What is mirrored is solved for the parts that mirror, at the roughnesses worn, and added to.
+#include <cmath>
+
+#include "appearance/model_table.h"
+#include "radiance/light/mirror_quadrature.h"
+#include "radiance/renderer_fixture.h"
+
+namespace livery {
+namespace {
+
+using MirrorInputs = Renderer;
+
+INSTANTIATE_TEST_SUITE_P(Devices,
+                         MirrorInputs,
+                         testing::Values(ShadingDevice::gl, ShadingDevice::processor),
+                         [](const auto& device) {
+                             return device.param == ShadingDevice::gl ? "OpenGl" : "Processor";
+                         });
+
+/// Half floats in three places, 2^-11 each.
+void expect_same(const ImageF& one, const ImageF& other) {
+    ASSERT_EQ(one.values.size(), other.values.size());
+    for (std::size_t i = 0; i < one.values.size(); ++i) {
+        ASSERT_NEAR(one.values[i], other.values[i], 1e-3f * (1e-3f + std::abs(one.values[i]))) << i;
+    }
+}
+
+Scene lit_by_the_studio(const Material& body, const Material& wheels) {
+    Scene scene = scene_of(two_spheres(), body);
+    scene.part_materials[1] = wheels;
+    scene.environment = studio();
+    return scene;
+}
+
+/// Paints of narrow, middle and wide lobes, of each number of them.
+std::vector<Material> paints() {
+    std::vector<Material> all;
+    for (const double alpha : {0.004, 0.05, 0.3, 0.8}) {
+        all.push_back(paint_of(ReflectanceModel::ggx, alpha));
+        all.push_back(paint_of(ReflectanceModel::clearcoat, alpha));
+    }
+    all.push_back(paint_of(ReflectanceModel::ward_duer, 0.13));
+    all.push_back(paint_of(ReflectanceModel::car_paint, 0.02));
+    all.push_back(paint_of(ReflectanceModel::lambert, 0.5));
+    return all;
+}
+
+TEST_P(MirrorInputs, TheWornRoughnessesLookAsIfAllWereSolved) {
+    const View view = test_view(48, 36);
+    for (const Quality quality : {Quality::draft, Quality::normal}) {
+        Scene scene = lit_by_the_studio(paint_of(ReflectanceModel::lambert, 0.5), {});
+        RadianceRenderer all = renderer_of(scene, view);
+        FramePlan ahead = plan(scene, quality);
+        plan_ahead(ahead);
+        all.prepare(scene, ahead);
+        for (const MirrorLayers& of_part : all.mirrored()) EXPECT_TRUE(of_part.all());
+        for (const Material& paint : paints()) {
+            SCOPED_TRACE(testing::Message() << model_info(paint.model).name << " " << paint.alpha.x
+                                            << " " << to_string(quality));
+            scene.part_materials[0] = paint;
+            FramePlan its_plan = plan(scene, quality);
+            all.render(scene, its_plan);
+            for (const PassKind kind :
+                 {PassKind::reflection_occlusion, PassKind::mirrored_environment}) {
+                const PlannedPass* pass = find_pass(its_plan, kind);
+                EXPECT_TRUE(!pass || *pass->ms == 0.0) << to_string(kind);
+            }
+            expect_same(draw(scene, view, quality), all.read_back());
+        }
+    }
+}
+
+// What a paint sends to other parts is mirrored by them. A paint that comes then wears lobes that
+// were solved before that, and is to be seen at once.
+TEST_P(MirrorInputs, APaintWaitsForNoLightBetweenParts) {
+    const View view = test_view(48, 36);
+    Scene scene = lit_by_the_studio(paint_of(ReflectanceModel::ggx, 0.2),
+                                    paint_of(ReflectanceModel::ggx, 0.2));
+    RadianceRenderer renderer = renderer_of(scene, view);
+    const auto planned = [&] { return plan_frame(scene, Quality::high, FrameStage::radiance); };
+    FramePlan ahead = planned();
+    ASSERT_NE(find_pass(ahead, PassKind::interreflection), nullptr);
+    plan_ahead(ahead);
+    renderer.prepare(scene, ahead);
+    const auto solved = [&](const Material& paint, LightBetweenParts between) {
+        scene.part_materials[0] = paint;
+        FramePlan its_plan = planned();
+        renderer.render(scene, its_plan, {}, between);
+        double ms = 0.0;
+        for (const PassKind kind : {PassKind::interreflection,
+                                    PassKind::reflection_occlusion,
+                                    PassKind::mirrored_environment}) {
+            ms += *find_pass(its_plan, kind)->ms;
+        }
+        return ms;
+    };
+    EXPECT_GT(solved(paint_of(ReflectanceModel::ggx, 0.03), LightBetweenParts::solved), 0.0);
+    Material coated = paint_of(ReflectanceModel::clearcoat, 0.5);
+    coated.diffuse = glm::dvec3(0.05);
+    EXPECT_EQ(solved(coated, LightBetweenParts::kept), 0.0);
+    EXPECT_GT(solved(coated, LightBetweenParts::solved), 0.0);
+    EXPECT_EQ(solved(coated, LightBetweenParts::solved), 0.0);
+}
+
+TEST_P(MirrorInputs, OnlyWhatIsReadIsSolved) {
+    const Scene scene = lit_by_the_studio(paint_of(ReflectanceModel::lambert, 0.5),
+                                          paint_of(ReflectanceModel::ggx, 0.2));
+    RadianceRenderer renderer = renderer_of(scene, test_view(64, 48));
+    FramePlan its_plan = plan(scene);
+    renderer.render(scene, its_plan);
+    EXPECT_TRUE(renderer.mirrored()[0].none());
+    // Lobes of .12 to .34; what grazes of .17 and of .24
+    EXPECT_EQ(renderer.mirrored()[1].to_string(), "0110001111000000");
+    const auto& begin = renderer.surface_map().part_begin;
+    EXPECT_EQ(find_pass(its_plan, PassKind::reflection_occlusion)->work_items,
+              mirror_rays(16) * static_cast<double>(begin[2] - begin[1]));
+}
+
+TEST_P(MirrorInputs, ASwapAddsWhatIsMissing) {
+    const View view = test_view(64, 48);
+    Scene scene = lit_by_the_studio(paint_of(ReflectanceModel::lambert, 0.5),
+                                    paint_of(ReflectanceModel::ggx, 0.2));
+    RadianceRenderer renderer = renderer_of(scene, view);
+    for (std::size_t k = 0; k < paints().size(); k += 2) {
+        scene.part_materials[k / 2 % 2] = paints()[k];
+        FramePlan its_plan = plan(scene);
+        renderer.render(scene, its_plan);
+        expect_same(draw(scene, view), renderer.read_back());
+    }
+    // What was worn once is there still
+    scene.part_materials[0] = paints()[0];
+    FramePlan its_plan = plan(scene);
+    renderer.render(scene, its_plan);
+    EXPECT_EQ(*find_pass(its_plan, PassKind::mirrored_environment)->ms, 0.0);
+    // Another eye begins anew, with what is worn
+    scene.eye_in_world_mm.x += 60.0;
+    its_plan = plan(scene);
+    renderer.render(scene, its_plan);
+    EXPECT_EQ(renderer.mirrored(), mirror_layers_of(scene));
+    expect_same(draw(scene, view), renderer.read_back());
+}
+
+TEST_P(MirrorInputs, ArtworkMirrorsToo) {
+    const View view = test_view(64, 48);
+    Scene scene = lit_by_the_studio(paint_of(ReflectanceModel::lambert, 0.5),
+                                    paint_of(ReflectanceModel::lambert, 0.5));
+    PartArtwork artwork;
+    artwork.part = 1;
+    artwork.material = paint_of(ReflectanceModel::clearcoat, 0.05);
+    scene.artwork = {artwork};
+    const std::vector<MirrorLayers> layers = mirror_layers_of(scene);
+    EXPECT_TRUE(layers[0].none());
+    EXPECT_EQ(layers[1], mirror_layers_of(artwork.material));
+    RadianceRenderer renderer = renderer_of(scene, view);
+    FramePlan its_plan = plan(scene);
+    renderer.render(scene, its_plan);
+    EXPECT_EQ(renderer.mirrored(), layers);
+}
+
+}  // namespace
+}  // namespace livery
