@@ -11,6 +11,8 @@
 #include "core/marked_block.h"
 #include "core/paths.h"
 #include "ledger/accuracy/accuracy.h"
+#include "ledger/budget_check.h"
+#include "ledger/effect_errors.h"
 #include "ledger/geometry_errors.h"
 #include "ledger/speed.h"
 #include "ledger/speed_plot.h"
@@ -122,7 +124,8 @@ Command bench_command() {
     command.options = {
         {"--out",
          "DIR",
-         "also write bench.json and the plots speed.svg and accuracy.svg there, accuracy.csv",
+         "also write bench.json and the plots speed.svg and accuracy.svg there, accuracy.csv, and "
+         "effect-errors.json",
          &arguments->out,
          false,
          {}},
@@ -155,12 +158,12 @@ Command bench_command() {
          {}},
         {"--suite",
          "NAME",
-         "speed, accuracy (each effect's error beside its time), stability (of what is drawn, "
-         "where "
-         "it loses most digits), geometry (what a wrong pose costs) or all (default speed)",
+         "speed, accuracy (each effect's error beside its time), budget (whether predictions and "
+         "chosen levels come true), stability (of what is drawn, where it loses most digits), "
+         "geometry (what a wrong pose costs) or all (default speed)",
          &arguments->suite,
          false,
-         {"speed", "stability", "accuracy", "geometry", "all"}},
+         {"speed", "stability", "accuracy", "budget", "geometry", "all"}},
     };
     command.run = [arguments](const CommonOptions& common, const Progress& progress) {
         const auto wanted = [&](const char* suite) {
@@ -169,7 +172,7 @@ Command bench_command() {
         // What cannot be written is found before the work.
         check_argument(arguments->markdown.empty() || arguments->suite != "all",
                        "--markdown writes one suite's tables: choose one with --suite");
-        const auto kept = ledger_file();
+        const auto kept = pass_costs_file();
         if (!arguments->out.empty()) make_output_folder(arguments->out);
         if (!arguments->markdown.empty()) check_marked_block(arguments->markdown, "bench");
         const auto seed = static_cast<std::uint64_t>(common.seed);
@@ -193,6 +196,7 @@ Command bench_command() {
             markdown = markdown_of(result);
         };
         std::string accuracy_plot, accuracy_csv;
+        EffectErrors errors;
         if (wanted("accuracy")) {
             AccuracyOptions options;
             options.device = common.gl_device();
@@ -205,10 +209,16 @@ Command bench_command() {
             const AccuracyLedger ledger = measure_accuracy(options, progress);
             add(ledger);
             accuracy_plot = plot_of(ledger);
+            errors = errors_of(ledger.rows);
+            // Those of one look would take the place of those of all
+            if (!arguments->quick) write_effect_errors(effect_errors_file(), errors);
             accuracy_csv = csv_of(ledger);
         }
         if (wanted("stability")) {
             add(measure_stability(common.gl_device(), arguments->quick, seed, progress));
+        }
+        if (wanted("budget")) {
+            add(check_budget(common.gl_device(), arguments->quick, seed, progress));
         }
         if (wanted("geometry")) {
             add(measure_geometry_errors(common.gl_device(), arguments->quick, seed, progress));
@@ -221,6 +231,7 @@ Command bench_command() {
             if (wanted("accuracy")) {
                 write_text_file(out / "accuracy.svg", accuracy_plot);
                 write_text_file(out / "accuracy.csv", accuracy_csv);
+                write_effect_errors(out / "effect-errors.json", errors);
             }
         }
         if (!arguments->markdown.empty())

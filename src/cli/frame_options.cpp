@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "core/json_ranges.h"
 #include "jobs/calibrate/calibration_folder.h"
-#include "ledger/predictions.h"
+#include "ledger/pass_costs.h"
 #include "scene/library.h"
 #include "scene/mockup_mask.h"
 #include "twin/description.h"
@@ -71,8 +71,14 @@ std::vector<Option> frame_options(FrameArguments& arguments) {
          {}},
         {"--budget-ms",
          "N",
-         "the best quality that the last bench predicts within N ms",
+         "levels of each effect with the least error that the last bench predicts within N ms",
          &arguments.budget_ms,
+         false,
+         {}},
+        {"--swap-budget-ms",
+         "N",
+         "the same for what runs with every paint; both may be given",
+         &arguments.swap_budget_ms,
          false,
          {}},
         {"--stage",
@@ -102,12 +108,15 @@ ResolvedFrame resolve_frame(const FrameArguments& arguments, const CommonOptions
     request.gl_device = common.gl_device();
     request.seed = static_cast<std::uint64_t>(common.seed);
     request.stage = arguments.stage == "projector" ? FrameStage::projector : FrameStage::radiance;
-    if (!arguments.quality.empty() && arguments.budget_ms > 0.0) {
+    const bool budgeted = arguments.budget_ms != 0.0 || arguments.swap_budget_ms != 0.0;
+    if (!arguments.quality.empty() && budgeted) {
         throw std::invalid_argument("--budget-ms: found --quality as well, expected one of them");
     }
-
-    if (arguments.budget_ms < 0.0) {
-        throw std::invalid_argument("--budget-ms: found a negative number, expected milliseconds");
+    for (const auto& [option, ms] : {std::pair("--budget-ms", arguments.budget_ms),
+                                     std::pair("--swap-budget-ms", arguments.swap_budget_ms)}) {
+        if (std::isfinite(ms) && ms >= 0.0) continue;
+        throw std::invalid_argument(
+            fmt::format("{}: found {}, expected milliseconds, more than 0", option, ms));
     }
     check_percentile("--design-white", arguments.design_white);
 
@@ -173,11 +182,23 @@ ResolvedFrame resolve_frame(const FrameArguments& arguments, const CommonOptions
     }
     request.scene = make_scene(product, find_look_for(arguments.look, product->mesh), eye_mm);
 
-    if (arguments.budget_ms > 0.0) {
-        const BudgetChoice choice =
-            quality_within(request.scene, request.view, request.stage, arguments.budget_ms);
-        request.quality = choice.quality;
-        frame.budget_note = choice.why;
+    if (budgeted) {
+        const auto costs = known_pass_costs();
+        if (!costs) {
+            throw Refused("--budget-ms: no bench has run on this machine, so no cost is known",
+                          "run livery bench --suite speed, or choose --quality");
+        }
+        const PriceList list = make_price_list(request.scene,
+                                               request.stage,
+                                               covered_areas(request.scene, request.view),
+                                               *costs,
+                                               known_effect_errors());
+        Budget budget;
+        if (arguments.budget_ms > 0.0) budget.first_frame_ms = arguments.budget_ms;
+        if (arguments.swap_budget_ms > 0.0) budget.swap_ms = arguments.swap_budget_ms;
+        request.levels = levels_within(list, budget);
+        request.quality = nearest_quality(*request.levels);
+        frame.priced = priced(list, *request.levels);
     } else if (!arguments.quality.empty()) {
         request.quality = parse_quality(arguments.quality);
     }
@@ -187,7 +208,9 @@ ResolvedFrame resolve_frame(const FrameArguments& arguments, const CommonOptions
                 "--levels: found --quality reference, expected draft, normal or high");
         }
         try {
-            request.levels = parse_levels(arguments.levels, levels_of(request.quality));
+            request.levels = parse_levels(
+                arguments.levels, request.levels ? *request.levels : levels_of(request.quality));
+            frame.priced.reset();
         } catch (const std::invalid_argument& error) {
             throw std::invalid_argument(std::string("--levels: ") + error.what());
         }
@@ -229,6 +252,35 @@ Json json_of(const FramePlan& plan) {
             {"passes", passes},
             {"skipped", skipped},
             {"ms_total", total}};
+}
+
+Json json_of(const PricedFrame& frame) {
+    const auto level = [](const EffectInfo& info, const LevelPrice& price) {
+        return Json{{"level", info.levels.at(static_cast<std::size_t>(price.level)).name},
+                    {"ms", price.time.all_ms},
+                    {"swap_ms", price.time.swap_ms},
+                    {"error", price.error}};
+    };
+    Json effects = Json::array();
+    for (const EffectPrice& price : frame.effects) {
+        const EffectInfo& info = effect_info(price.effect);
+        Json entry = {{"name", info.name},
+                      {"called_for", price.called_for},
+                      {"level", nullptr},
+                      {"ms", nullptr},
+                      {"error", nullptr},
+                      {"error_bound", price.bound ? Json(*price.bound) : Json(nullptr)},
+                      {"next", price.next ? level(info, *price.next) : Json(nullptr)},
+                      {"without", price.off ? level(info, *price.off) : Json(nullptr)},
+                      {"unit", "CIEDE2000, 95th percentile"}};
+        if (price.called_for) {
+            entry["level"] = info.levels.at(static_cast<std::size_t>(price.chosen.level)).name;
+            entry["ms"] = price.own_ms;
+            entry["error"] = price.added;
+        }
+        effects.push_back(std::move(entry));
+    }
+    return effects;
 }
 
 std::string text_of(const FramePlan& plan) {

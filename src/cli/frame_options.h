@@ -8,6 +8,7 @@
 #include "cli/command.h"
 #include "cli/design_white.h"
 #include "jobs/render.h"
+#include "ledger/budget.h"
 #include "scene/frame_plan.h"
 
 namespace livery {
@@ -15,7 +16,7 @@ namespace livery {
 struct FrameArguments {
     std::string product = "car", unit, look = "solid-red", calibration, camera, eye;
     std::string quality, levels, stage = "radiance";
-    double budget_ms = 0.0;
+    double budget_ms = 0.0, swap_budget_ms = 0.0;
     double design_white = 20.0;
     std::string gamut = "strict";
 };
@@ -28,8 +29,8 @@ struct ResolvedFrame {
     RenderRequest request;
     std::optional<CompensationTable> compensation;
     std::optional<DesignWhite> design_white;  ///< of that correction
-    std::vector<std::string> notes;  ///< what was assumed or repaired when loading the product
-    std::string budget_note;         ///< how --budget-ms chose the quality
+    std::vector<std::string> notes;     ///< what was assumed or repaired when loading the product
+    std::optional<PricedFrame> priced;  ///< where a budget chose the levels
 };
 ResolvedFrame resolve_frame(const FrameArguments& arguments, const CommonOptions& common);
 
@@ -38,6 +39,8 @@ void tell_design_white(const ResolvedFrame& frame, Outcome& outcome);
 
 /// passes[], skipped[] and ms_total.
 Json json_of(const FramePlan& plan);
+/// effects[]: level, milliseconds, what it leaves, what the next level would buy.
+Json json_of(const PricedFrame& frame);
 std::string text_of(const FramePlan& plan);
 
 }  // namespace livery

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "cli/frame_options.h"
-#include "ledger/predictions.h"
+#include "ledger/budget.h"
 
 namespace livery {
 
@@ -19,19 +19,39 @@ Command plan_command() {
         const RenderRequest& request = frame.request;
         FramePlan plan = request.levels ? plan_frame(request.scene, *request.levels, request.stage)
                                         : plan_frame(request.scene, request.quality, request.stage);
-        const std::string note = predict(plan, request.scene, request.view, progress);
+        const auto costs = known_pass_costs();
+        std::optional<PricedFrame> frame_price = frame.priced;
+        std::string note;
+        if (!costs) {
+            note = "no predictions: no bench has run on this machine (livery bench --suite speed)";
+            for (PlannedPass& pass : plan.passes) {
+                pass.unpredicted_because = "no bench has run on this machine";
+            }
+        } else if (plan.quality == Quality::reference) {
+            note = predict_times(plan, *costs);
+        } else {
+            const PriceList list =
+                make_price_list(request.scene,
+                                request.stage,
+                                covered_areas(request.scene, request.view, progress),
+                                *costs,
+                                known_effect_errors());
+            note = predict(plan, list);
+            if (!frame_price) frame_price = priced(list, plan.levels);
+        }
+        const PredictedTime time = predicted_time(plan);
         Outcome outcome;
         outcome.figures = json_of(plan);
-        double total = 0.0;
-        bool complete = true;
-        for (const PlannedPass& pass : plan.passes) {
-            total += pass.predicted_ms.value_or(0.0);
-            complete = complete && pass.predicted_ms.has_value();
-        }
         outcome.figures["ms_total"] = nullptr;
-        outcome.figures["predicted_ms_total"] = complete ? Json(total) : Json(nullptr);
+        outcome.figures["predicted_ms_total"] = time.complete ? Json(time.all_ms) : Json(nullptr);
         if (!note.empty()) outcome.figures["note"] = note;
-        outcome.text = text_of(plan) + frame.budget_note + (note.empty() ? "" : note + "\n");
+        outcome.text = text_of(plan);
+        if (frame_price) {
+            outcome.figures["effects"] = json_of(*frame_price);
+            outcome.figures["predicted_error"] = frame_price->error;
+            outcome.text += text_of(*frame_price);
+        }
+        if (!note.empty()) outcome.text += note + "\n";
         tell_design_white(frame, outcome);
         tell_notes(frame.notes, outcome);
         return outcome;

@@ -158,7 +158,11 @@ Command render_command() {
         outcome.figures["ms_total"] = rendered.ms_total;
         outcome.figures["renderer"] = rendered.renderer;
         outcome.figures["file"] = arguments->out;
-        outcome.text = text_of(rendered.plan) + frame.budget_note;
+        outcome.text = text_of(rendered.plan);
+        if (frame.priced) {
+            outcome.figures["effects"] = json_of(*frame.priced);
+            outcome.text += text_of(*frame.priced);
+        }
         if (rendered.traced) tell_traced(rendered, arguments->error, outcome);
         outcome.text += fmt::format("{:.0f} ms in all with {}; wrote {}\n",
                                     rendered.ms_total,

@@ -39,9 +39,9 @@ std::vector<ArtworkKind> kinds() {
 
 double shading_ms(RadianceRenderer& renderer,
                   const Scene& scene,
-                  Quality quality,
+                  const EffectLevels& levels,
                   double* cover_ms) {
-    FramePlan plan = plan_frame(scene, quality, FrameStage::radiance);
+    FramePlan plan = plan_frame(scene, levels, FrameStage::radiance);
     renderer.render(scene, plan);
     double sum = 0.0;
     for (const PlannedPass& pass : plan.passes) {
@@ -62,7 +62,7 @@ double milliseconds(const auto& work) {
 
 ArtworkTimes measure_artwork(RadianceRenderer& renderer,
                              const Scene& scene,
-                             Quality quality,
+                             const EffectLevels& levels,
                              const Progress& progress) {
     const auto body = static_cast<std::size_t>(part_index(*scene.product, "body"));
     const Material& paint = scene.part_materials[body];
@@ -87,13 +87,13 @@ ArtworkTimes measure_artwork(RadianceRenderer& renderer,
             with.artwork = {wearing(moved)};
             with.exposure_ev = scene.exposure_ev;
             double cover = 0.0;
-            shading_ms(renderer, with, quality, &cover);
+            shading_ms(renderer, with, levels, &cover);
             result.cover_ms.push_back(cover);
             Scene bare = scene;
             bare.exposure_ev = with.exposure_ev = scene.exposure_ev + 0.01 * (k + 1);
-            const double covered_ms = shading_ms(renderer, with, quality, nullptr);
+            const double covered_ms = shading_ms(renderer, with, levels, nullptr);
             bare.exposure_ev += 0.005;
-            more.push_back(covered_ms - shading_ms(renderer, bare, quality, nullptr));
+            more.push_back(covered_ms - shading_ms(renderer, bare, levels, nullptr));
         }
         LedgerLevel level = level_of(kind.name, more);
         level.work_items = result.body_fragments;

@@ -19,7 +19,7 @@ struct ArtworkTimes {
 /// `renderer` draws the scene, which has a body and no artwork, and has drawn it before.
 ArtworkTimes measure_artwork(RadianceRenderer& renderer,
                              const Scene& scene,
-                             Quality quality,
+                             const EffectLevels& levels,
                              const Progress& progress);
 
 }  // namespace livery

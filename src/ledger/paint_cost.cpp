@@ -10,7 +10,7 @@ PaintCost paint_cost(const Material& material, const std::optional<std::vector<P
     if (!costs) return {std::nullopt, "no bench has run on this machine"};
     const PassId shading(PassKind::shade, "", material.model, has_glints(material));
     for (const PassCost& cost : *costs) {
-        if (cost.pass == shading && cost.quality == Quality::normal && cost.work_items > 0.0) {
+        if (cost.pass == shading && cost.work_items > 0.0) {
             return {1e6 * cost.ms / cost.work_items, ""};
         }
     }

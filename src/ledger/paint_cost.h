@@ -5,12 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "ledger/predictions.h"
+#include "appearance/material.h"
+#include "ledger/pass_costs.h"
 
 namespace livery {
 
 struct PaintCost {
-    std::optional<double> ns_a_pixel;  ///< of shading at normal quality, by the last ledger
+    std::optional<double> ns_a_pixel;  ///< of shading, by the last ledger
     std::string why_not;               ///< when it is not known
 };
 

@@ -4,20 +4,13 @@
 #include "core/error.h"
 #include "core/json.h"
 #include "core/paths.h"
-#include "ledger/predictions.h"
+#include "ledger/pass_costs.h"
 
 namespace livery {
 
 namespace {
 
-Quality read_quality(const JsonReader& field) {
-    const std::string name = field.text();
-    try {
-        return parse_quality(name);
-    } catch (const std::invalid_argument&) {
-        field.fail(field.found(), "draft, normal, high or reference");
-    }
-}
+constexpr int kVersion = 2;  ///< 1 timed qualities
 
 /// As cost_key() has it; none: this version has no such pass.
 std::optional<PassId> pass_of(const std::string& words) {
@@ -39,7 +32,30 @@ std::optional<PassId> pass_of(const std::string& words) {
 
 }  // namespace
 
-std::filesystem::path ledger_file() { return user_folder() / "bench.json"; }
+PassId cost_key(const PassId& pass) { return {pass.kind, "", pass.model, pass.glints}; }
+
+int cost_level(const PassId& pass, const EffectLevels& levels) {
+    const auto effect = effect_of(pass);
+    return effect ? levels[*effect] : 0;
+}
+
+const PassCost* find_cost(const std::vector<PassCost>& costs,
+                          const PassId& pass,
+                          const EffectLevels& levels) {
+    const PassId key = cost_key(pass);
+    const int level = cost_level(pass, levels);
+    const auto found = std::find_if(costs.begin(), costs.end(), [&](const PassCost& cost) {
+        return cost.pass == key && cost.level == level;
+    });
+    return found == costs.end() ? nullptr : &*found;
+}
+
+double predicted_ms(const PassCost& cost, double work_items) {
+    if (!(cost.work_items > 0.0)) return cost.ms;
+    return cost.fixed_ms + (cost.ms - cost.fixed_ms) * work_items / cost.work_items;
+}
+
+std::filesystem::path pass_costs_file() { return user_folder() / "bench.json"; }
 
 void write_pass_costs(const std::filesystem::path& file,
                       const std::string& renderer,
@@ -48,12 +64,15 @@ void write_pass_costs(const std::filesystem::path& file,
     Json list = Json::array();
     for (const PassCost& cost : costs) {
         list.push_back({{"pass", to_string(cost.pass)},
-                        {"quality", to_string(cost.quality)},
+                        {"level", cost.level},
                         {"ms", cost.ms},
+                        {"fixed_ms", cost.fixed_ms},
                         {"work_items", cost.work_items}});
-        if (cost.error) list.back()["error"] = *cost.error;
+        if (cost.fragments_per_pixel) {
+            list.back()["fragments_per_pixel"] = *cost.fragments_per_pixel;
+        }
     }
-    write_json_file(file, {{"format_version", 1}, {"renderer", renderer}, {"passes", list}});
+    write_json_file(file, {{"format_version", kVersion}, {"renderer", renderer}, {"passes", list}});
 }
 
 std::optional<std::vector<PassCost>> read_pass_costs(const std::filesystem::path& file) {
@@ -62,20 +81,36 @@ std::optional<std::vector<PassCost>> read_pass_costs(const std::filesystem::path
     return parse_pass_costs(read_text_file(file), file);
 }
 
-std::vector<PassCost> parse_pass_costs(const std::string& text, const std::filesystem::path& file) {
+std::optional<std::vector<PassCost>> known_pass_costs() {
+    std::filesystem::path file;
+    try {
+        file = pass_costs_file();
+    } catch (const FileError&) {
+        return std::nullopt;
+    }
+    return read_pass_costs(file);
+}
+
+std::optional<std::vector<PassCost>> parse_pass_costs(const std::string& text,
+                                                      const std::filesystem::path& file) {
+    constexpr double kLongest_ms = 1e9, kMostItems = 1e15;
     const Json json = parse_json(text, file);
     const JsonReader reader(file, json);
-    reader.require_format_version(1);
+    reader.require_format_version(kVersion);
+    if (reader["format_version"].number() < kVersion) return std::nullopt;
     std::vector<PassCost> costs;
     const JsonReader passes = reader["passes"];
     for (std::size_t i = 0; i < passes.size(); ++i) {
         const JsonReader entry = passes.at(i);
         PassCost cost;
         const auto pass = pass_of(entry["pass"].text());
-        cost.quality = read_quality(entry["quality"]);
-        cost.ms = entry["ms"].number_between(0.0, 1e9);
-        cost.work_items = entry["work_items"].number_between(0.0, 1e12);
-        if (entry.has("error")) cost.error = entry["error"].number_between(0.0, 1e6);
+        cost.level = entry["level"].integer(0, 1000);
+        cost.ms = entry["ms"].number_between(0.0, kLongest_ms);
+        cost.fixed_ms = entry["fixed_ms"].number_between(0.0, cost.ms);
+        cost.work_items = entry["work_items"].number_between(0.0, kMostItems);
+        if (entry.has("fragments_per_pixel")) {
+            cost.fragments_per_pixel = entry["fragments_per_pixel"].number_between(0.01, 1e3);
+        }
         if (!pass) continue;  // another version's: no plan of this one lists it
         cost.pass = *pass;
         costs.push_back(cost);

@@ -1,62 +1,49 @@
-// What a frame will cost on this machine: from the last `livery bench` here, never from a guess.
+// What a frame will cost on this machine, and how far it will be from the truth: from the last
+// ledger, never from a guess.
 #pragma once
 
-#include <filesystem>
-#include <optional>
+#include <array>
 #include <string>
 #include <vector>
 
 #include "core/progress.h"
+#include "ledger/effect_errors.h"
+#include "ledger/pass_costs.h"
+#include "radiance/work_items.h"
 #include "scene/frame_plan.h"
 #include "scene/view.h"
 
 namespace livery {
 
-/// One kind of pass as the last ledger has it: milliseconds for so many work items.
-struct PassCost {
-    PassId pass;  ///< as cost_key() has it
-    Quality quality = Quality::normal;
-    double ms = 0.0;
-    double work_items = 0.0;  ///< 0: cost does not depend on the picture
-    /// At the pass that ends the frame: the whole frame's CIEDE2000 against the path tracer, its
-    /// 95th percentile over the mock-up.
-    std::optional<double> error;
-};
+/// How much of a picture each part covers, in pixels, counted by a coarse ray cast; a fragment a
+/// pixel.
+FrameCounts covered_areas(const Scene& scene, const View& view, const Progress& progress = {});
+/// The same of a frame that was drawn, from its plan's work items.
+FrameCounts covered_areas(const Scene& scene,
+                          const FramePlan& drawn,
+                          const std::vector<PassCost>& costs);
 
-/// Where the ledger leaves its costs: the user's folder.
-std::filesystem::path ledger_file();
-void write_pass_costs(const std::filesystem::path& file,
-                      const std::string& renderer,
+/// With as many fragments as the sub-samples of these levels led to when the bench ran; as they are
+/// where it did not time those.
+FrameCounts counts_at(FrameCounts areas,
+                      const EffectLevels& levels,
                       const std::vector<PassCost>& costs);
-/// Nothing when `livery bench` never ran on this machine. Throws FileError for a malformed file.
-std::optional<std::vector<PassCost>> read_pass_costs(const std::filesystem::path& file);
-/// The same of ledger_file(); nothing, too, without a home folder to keep one in.
-std::optional<std::vector<PassCost>> known_pass_costs();
-/// The same of its text.
-std::vector<PassCost> parse_pass_costs(const std::string& text, const std::filesystem::path& file);
 
-/// What the cost of a pass depends on: the same of any part, artwork and light, "shade:clearcoat".
-PassId cost_key(const PassId& pass);
+/// Fills predicted_ms of passes that know their work items, and the reason where it stays empty.
+/// Returns a note for people, empty when all is predicted.
+std::string predict_times(FramePlan& plan, const std::vector<PassCost>& costs);
 
-/// Fills predicted_ms and the reasons for those that stay empty; returns a note for people (empty
-/// when everything is predicted). Counts the mock-up's pixels with a coarse ray cast.
-std::string predict(FramePlan& plan,
-                    const Scene& scene,
-                    const View& view,
-                    const Progress& progress = {});
+/// Fills predicted_error: of an effect's first pass what its level leaves, of the pass that ends
+/// the frame all of it. CIEDE2000 at the 95th percentile.
+void predict_errors(FramePlan& plan,
+                    const std::array<bool, kEffects>& called_for,
+                    const EffectErrors& errors);
 
-/// The same from costs at hand, for a plan whose passes know their work items (a drawn frame's):
-/// casts no ray.
-std::string predict_drawn(FramePlan& plan, const std::vector<PassCost>& costs);
-
-struct BudgetChoice {
-    Quality quality = Quality::draft;
-    std::string why;
+/// Of all passes, and of those that run with every paint. `complete`: every one was predicted.
+struct PredictedTime {
+    double all_ms = 0.0, swap_ms = 0.0;
+    bool complete = true;
 };
-/// The best quality whose predicted frame fits. Throws Refused without a ledger.
-BudgetChoice quality_within(const Scene& scene,
-                            const View& view,
-                            FrameStage stage,
-                            double budget_ms);
+PredictedTime predicted_time(const FramePlan& plan);
 
 }  // namespace livery

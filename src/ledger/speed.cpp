@@ -56,24 +56,35 @@ LedgerEffect& effect(SpeedLedger& result, const std::string& name) {
     return result.effects.emplace_back(LedgerEffect{name, {}});
 }
 
-/// Milliseconds of every pass over the repeats of one quality.
+/// What is timed: the levels of a quality, or the dearest ones, which no quality has.
+struct TimedLevels {
+    std::string name;
+    EffectLevels levels;
+};
+
+std::vector<TimedLevels> timed_levels(bool quick) {
+    std::vector<TimedLevels> list;
+    // The first that has a level is what predictions of it come from
+    for (const Quality quality : {Quality::normal, Quality::draft, Quality::high}) {
+        list.push_back({to_string(quality), levels_of(quality)});
+    }
+    list.push_back({"dearest", dearest_levels()});
+    if (quick) list.resize(1);
+    return list;
+}
+
+/// Milliseconds and work of every pass over the repeats at some levels.
 struct PassTimes {
     std::map<PassId, std::vector<double>> ms;
     std::map<PassId, double> work_items;
 };
 
 void collect(PassTimes& times, const FramePlan& plan) {
-    // A prediction knows how much of the picture the mock-up fills, not how many rays that takes:
-    // all but shading is kept for its pixels.
-    double pixels = 0.0;
-    for (const PlannedPass& pass : plan.passes) {
-        if (pass.id == PassKind::resolve) pixels = pass.work_items;
-    }
     std::map<PassId, double> ms, items;
     for (const PlannedPass& pass : plan.passes) {
         if (!pass.ms) continue;
         ms[cost_key(pass.id)] += *pass.ms;
-        items[cost_key(pass.id)] += pass.id.kind == PassKind::shade ? pass.work_items : pixels;
+        items[cost_key(pass.id)] += pass.work_items;
     }
     for (const auto& [key, value] : ms) {
         if (value <= 0.0) continue;
@@ -82,11 +93,27 @@ void collect(PassTimes& times, const FramePlan& plan) {
     }
 }
 
+/// Of a pass at a level, in a smaller picture: with the larger one's it tells what even an empty
+/// one takes.
+using SmallTimes = std::map<std::pair<PassId, int>, LedgerLevel>;
+
+PassCost cost_of(const PassId& key, int level, const LedgerLevel& large, const SmallTimes& smalls) {
+    PassCost cost{key, level, large.ms, 0.0, large.work_items, std::nullopt};
+    const auto small = smalls.find({key, level});
+    if (small == smalls.end() || !(small->second.work_items < large.work_items)) return cost;
+    const double slope =
+        (large.ms - small->second.ms) / (large.work_items - small->second.work_items);
+    cost.fixed_ms = std::clamp(small->second.ms - slope * small->second.work_items,
+                               0.0,
+                               std::min(large.ms, small->second.ms));
+    return cost;
+}
+
 /// Car paint with glints and without, which no shipped look wears.
 void collect_car_paint(PassTimes& times,
                        RadianceRenderer& renderer,
                        const Scene& look,
-                       Quality quality,
+                       const EffectLevels& levels,
                        const Progress& progress) {
     constexpr int kRepeats = 22;
     Scene scene = look;
@@ -97,7 +124,7 @@ void collect_car_paint(PassTimes& times,
         progress.check_stop();
         paint.diffuse = glm::dvec3(k % 4 < 2 ? 0.05 : 0.06);
         paint.glint_density_per_mm2 = k % 2 == 0 ? 0.0 : 1000.0;
-        FramePlan plan = plan_frame(scene, quality, FrameStage::radiance);
+        FramePlan plan = plan_frame(scene, levels, FrameStage::radiance);
         renderer.render(scene, plan, progress);
         // The first of each compiles and touches what is kept
         if (k >= 2) collect(times, plan);
@@ -123,18 +150,22 @@ TimedScene load_scene(SpeedLedger& result, const Progress& progress) {
     return scene;
 }
 
-/// One resolution and quality: the first frame, then paint swaps, with the compensation after each.
+/// One resolution and set of levels: the first frame, then paint swaps, with the compensation after
+/// each.
 void time_frames(SpeedLedger& result,
+                 SmallTimes& smalls,
                  const TimedScene& scene,
                  const View& view,
-                 Quality quality,
+                 const TimedLevels& timed,
                  const Progress& progress) {
-    const std::string name = fmt::format("{}x{}, {}", view.width, view.height, to_string(quality));
+    const EffectLevels& levels = timed.levels;
+    const bool normal = levels == levels_of(Quality::normal);
+    const std::string name = fmt::format("{}x{}, {}", view.width, view.height, timed.name);
     const auto start = Clock::now();
     RadianceRenderer renderer(std::make_shared<const FrameGeometry>(
-        scene.product, view, progress, sub_samples_of(quality)));
+        scene.product, view, progress, sub_samples_of(levels)));
     PassTimes passes;
-    FramePlan first = plan_frame(scene.looks.front(), quality, FrameStage::radiance);
+    FramePlan first = plan_frame(scene.looks.front(), levels, FrameStage::radiance);
     renderer.render(scene.looks.front(), first, progress);
     const auto fragments = static_cast<double>(renderer.surface_map().fragments.size());
     effect(result, "first frame")
@@ -154,7 +185,7 @@ void time_frames(SpeedLedger& result,
     Texture2D input(view.width, view.height, TexelFormat::rgba8);
     // Programs and textures of every look are made before anything is timed.
     for (const Scene& look : scene.looks) {
-        FramePlan plan = plan_frame(look, quality, FrameStage::projector);
+        FramePlan plan = plan_frame(look, levels, FrameStage::projector);
         renderer.render(look, plan, progress);
         gpu.run(renderer.texture(), input, counts);
         counts.read(0);
@@ -167,7 +198,7 @@ void time_frames(SpeedLedger& result,
     for (int k = 0; k < kSwaps; ++k) {
         progress.update(static_cast<double>(k) / kSwaps, "timing " + name);
         const Scene& look = scene.looks[static_cast<std::size_t>(k) % scene.looks.size()];
-        FramePlan plan = plan_frame(look, quality, FrameStage::radiance);
+        FramePlan plan = plan_frame(look, levels, FrameStage::radiance);
 
         const auto began = Clock::now();
         renderer.render(look, plan, progress);
@@ -196,37 +227,44 @@ void time_frames(SpeedLedger& result,
         .levels.push_back(worked_level_of(name, cpu_frame, fragments));
     effect(result, "paint swap to projector input, correction in OpenGL")
         .levels.push_back(worked_level_of(name, gpu_frame, fragments));
-    if (quality == Quality::normal) {
+    if (normal) {
         const std::string size = fmt::format("{}x{}", view.width, view.height);
         effect(result, "correction").levels.push_back(worked_level_of(size, cpu_ms, pixels));
         effect(result, "correction in OpenGL, with its counts")
             .levels.push_back(worked_level_of(size, gpu_ms, pixels));
     }
-    if (view.width != 1280) return;
-    collect_car_paint(passes, renderer, scene.looks.front(), quality, progress);
-    ArtworkTimes artwork = measure_artwork(renderer, scene.looks.front(), quality, progress);
-    if (quality == Quality::normal) {
+    // The desktop corrects where it shades.
+    passes.ms[PassKind::compensation] = renderer.device() == ShadingDevice::gl ? gpu_ms : cpu_ms;
+    passes.work_items[PassKind::compensation] = pixels;
+    if (view.width != 1280) {
+        for (const auto& [key, ms] : passes.ms) {
+            smalls.insert({{key, cost_level(key, levels)},
+                           worked_level_of(name, ms, passes.work_items[key])});
+        }
+        return;
+    }
+    if (normal) {
+        collect_car_paint(passes, renderer, scene.looks.front(), levels, progress);
+        ArtworkTimes artwork = measure_artwork(renderer, scene.looks.front(), levels, progress);
         for (LedgerLevel& level : artwork.frames) {
             effect(result, "artwork over the body, shading beside a frame without")
                 .levels.push_back(std::move(level));
         }
+        // A prediction scales both by the fragments of the parts that wear it.
+        passes.ms[PassKind::artwork] = artwork.cover_ms;
+        passes.ms[PassKind::relief] = artwork.relief_ms;
+        passes.work_items[PassKind::artwork] = passes.work_items[PassKind::relief] =
+            artwork.body_fragments;
     }
-    // A prediction scales both by the fragments of the parts that wear it.
-    passes.ms[PassKind::artwork] = artwork.cover_ms;
-    passes.ms[PassKind::relief] = artwork.relief_ms;
-    passes.work_items[PassKind::artwork] = passes.work_items[PassKind::relief] =
-        artwork.body_fragments;
-    // The desktop corrects where it shades.
-    passes.ms[PassKind::compensation] = renderer.device() == ShadingDevice::gl ? gpu_ms : cpu_ms;
-    passes.work_items[PassKind::compensation] = pixels;
     for (const auto& [key, ms] : passes.ms) {
         const LedgerLevel level = worked_level_of(name, ms, passes.work_items[key]);
         effect(result, "pass " + to_string(key)).levels.push_back(level);
-        result.pass_costs.push_back({key,
-                                     quality,
-                                     level.ms,
-                                     key == PassKind::environment_filter ? 0.0 : level.work_items,
-                                     std::nullopt});
+        if (find_cost(result.pass_costs, key, levels)) continue;
+        PassCost& cost =
+            result.pass_costs.emplace_back(cost_of(key, cost_level(key, levels), level, smalls));
+        if (key == PassKind::surface_map) {
+            cost.fragments_per_pixel = fragments / static_cast<double>(map.covered_pixels);
+        }
     }
 }
 
@@ -261,11 +299,6 @@ void compare_with_reference(SpeedLedger& result,
         level.error_p95 = error.p95;
         level.unit = "CIEDE2000";
         effect(result, "quality level: first frame, and its error").levels.push_back(level);
-        for (PassCost& cost : result.pass_costs) {
-            if (cost.pass == PassKind::resolve && cost.quality == quality) {
-                cost.error = error.p95;
-            }
-        }
     }
 }
 
@@ -280,13 +313,11 @@ SpeedLedger measure_speed(GlDevice device, bool quick, const Progress& progress)
     result.threads = thread_count();
     const TimedScene scene = load_scene(result, progress);
     result.sweep = run_speed_sweep(scene.product, scene.looks, scene.projector, quick, progress);
-    const std::vector<Quality> qualities =
-        quick ? std::vector{Quality::normal}
-              : std::vector{Quality::draft, Quality::normal, Quality::high};
+    SmallTimes smalls;
     for (const auto& [width, height] : {std::pair(640, 400), std::pair(1280, 800)}) {
         const View view = resized(scene.projector, width, height);
-        for (const Quality quality : qualities) {
-            time_frames(result, scene, view, quality, progress);
+        for (const TimedLevels& levels : timed_levels(quick)) {
+            time_frames(result, smalls, scene, view, levels, progress);
         }
     }
     if (quick) {

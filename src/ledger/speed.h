@@ -7,7 +7,7 @@
 #include "core/progress.h"
 #include "gl/context.h"
 #include "ledger/level.h"
-#include "ledger/predictions.h"
+#include "ledger/pass_costs.h"
 #include "ledger/speed_sweep.h"
 
 namespace livery {

@@ -135,7 +135,7 @@ std::shared_ptr<const FrameGeometry> GeometryCache::get(const SolveKey& key,
             known = newest_;
         }
     }
-    const int sub_samples = sub_samples_of(key.quality);
+    const int sub_samples = sub_samples_of(key.levels);
     if (known && known->map.samples_per_pixel >= sub_samples) return known;
     auto made =
         known ? std::make_shared<const FrameGeometry>(*known, sub_samples, progress)
@@ -151,10 +151,10 @@ FrameLane::FrameLane(std::shared_ptr<GeometryCache> geometries, ShadingDevice de
       path_(make_drive_path(device_)) {}
 
 void FrameLane::solve(const FrameDescription& description,
-                      Quality quality,
+                      const EffectLevels& levels,
                       std::optional<Urgency> urgency,
                       const Progress& progress) {
-    SolveKeys keys = with_quality(keys_of(description), quality);
+    SolveKeys keys = with_levels(keys_of(description), levels);
     if (keys[1] && same_light(*keys[0], *keys[1])) keys[1].reset();
     solved_ = {};
     prepared_ = false;
@@ -186,10 +186,10 @@ void FrameLane::solve_light(std::size_t index,
                             std::optional<Urgency> urgency,
                             const Progress& progress) {
     Solved& light = lights_[index];
-    FramePlan plan = plan_frame(scene, key.quality, FrameStage::projector);
+    FramePlan plan = plan_frame(scene, key.levels, FrameStage::projector);
     const auto serves = [&](const FrameGeometry& geometry) {
         return same_pose({geometry.product, geometry.view, {}, {}, {}, {}}, key) &&
-               geometry.map.samples_per_pixel >= sub_samples_of(key.quality);
+               geometry.map.samples_per_pixel >= sub_samples_of(key.levels);
     };
     if (!light.renderer || !serves(*light.renderer->geometry())) {
         light = {};
@@ -227,7 +227,7 @@ void FrameLane::prepare_programs(const FrameDescription& description, const Prog
             }
             const std::size_t index = nearest_of(solved_, keys_of(description), side);
             RadianceRenderer& renderer = *lights_[index].renderer;
-            FramePlan plan = plan_frame(scene, solved_[index]->quality, FrameStage::projector);
+            FramePlan plan = plan_frame(scene, solved_[index]->levels, FrameStage::projector);
             run_giving_way(Urgency::background,
                            [&] { renderer.solve(scene, plan, progress, LightBetweenParts::kept); });
             renderer.prepare(scene, plan, progress, LightBetweenParts::kept);
@@ -250,7 +250,7 @@ void FrameLane::prepare_mirrors(const FrameDescription& description, const Progr
         const std::size_t index = nearest_of(solved_, keys_of(description), side);
         if (!lights.insert(index).second) continue;  // both sides have it
         const Scene scene = scene_of(description, side);
-        FramePlan plan = plan_frame(scene, solved_[index]->quality, FrameStage::projector);
+        FramePlan plan = plan_frame(scene, solved_[index]->levels, FrameStage::projector);
         plan_ahead(plan);
         PlannedPass* pass = find_pass(plan, mirrored_ahead_pass());
         if (!pass) continue;
@@ -311,6 +311,7 @@ void FrameLane::draw_ahead(const FrameDescription& description) {
 std::shared_ptr<FinishedFrame> FrameLane::draw(const FrameDescription& description) {
     std::shared_ptr<FinishedFrame> frame = draw_picture(description);
     frame->plan = told_plan(description.wipe_to.has_value());
+    frame->scene = scene_of(description, 0);
     return frame;
 }
 
@@ -358,7 +359,7 @@ std::shared_ptr<FinishedFrame> FrameLane::draw_picture(const FrameDescription& d
 FramePlan FrameLane::plan_side(const FrameDescription& description, std::size_t index) const {
     const std::size_t light = nearest_of(solved_, keys_of(description), index);
     FramePlan plan =
-        plan_frame(scene_of(description, index), solved_[light]->quality, FrameStage::projector);
+        plan_frame(scene_of(description, index), solved_[light]->levels, FrameStage::projector);
     PlannedPass& pass = *find_pass(plan, PassKind::compensation);
     const auto& table = description.setup->table;
     if (!table) pass.why = "without a calibration the frame goes out as sRGB";

@@ -23,8 +23,8 @@ int wipe_column(const SurfaceMap& map, double wipe_at);
 /// What a part that was clicked in the preview is painted with for a moment.
 Material glow_paint();
 
-/// The surface map of the newest product and view, for both lanes: with as many sub-samples as a
-/// quality is worth, or more.
+/// The surface map of the newest product and view, for both lanes: with as many sub-samples as
+/// levels ask for, or more.
 class GeometryCache {
   public:
     std::shared_ptr<const FrameGeometry> get(const SolveKey& key, const Progress& progress);
@@ -49,11 +49,11 @@ class FrameLane {
     explicit FrameLane(std::shared_ptr<GeometryCache> geometries,
                        ShadingDevice device = ShadingDevice::automatic);
 
-    /// Solves the description's light at this quality; rays are traced on threads that give way as
+    /// Solves the description's light at these levels; rays are traced on threads that give way as
     /// `urgency` says (none: on this thread, at its own priority). After a stop nothing can be
     /// drawn until a solve went through, which takes up what is there.
     void solve(const FrameDescription& description,
-               Quality quality,
+               const EffectLevels& levels,
                std::optional<Urgency> urgency,
                const Progress& progress);
     /// What any other paint may need in the light that is solved, so that none has to wait.

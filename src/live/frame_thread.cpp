@@ -102,7 +102,7 @@ std::optional<FrameJobs::Task> FrameJobs::next_task() const {
     }
     if (!light_shown && !solved_already) {
         const bool first = last_good == nullptr;
-        return Task{newest, with_quality(*wanted, Quality::draft), true, false, !first};
+        return Task{newest, with_levels(*wanted, levels_of(Quality::draft)), true, false, !first};
     }
     return Task{newest, *wanted, true, true};
 }
@@ -206,7 +206,7 @@ void FrameThread::Implementation::work_behind(const FrameJobs::Task& task,
     }
     std::exception_ptr error;
     try {
-        lane.solve(*task.description, task.wanted[0]->quality, urgency, progress);
+        lane.solve(*task.description, task.wanted[0]->levels, urgency, progress);
         // Everything that drawing makes once, before the front is held.
         lane.draw_ahead(*task.description);
         if (task.all_mirrors) lane.prepare_mirrors(*task.description, progress);

@@ -30,6 +30,7 @@ struct FrameDescription {
     double wipe_at = 0.5;          ///< fraction of the mock-up's width in the projector's picture
     std::optional<int> glowing_part;  ///< clicked in the preview: glows on the mock-up
     Quality quality = Quality::normal;
+    std::optional<EffectLevels> levels;  ///< chosen one by one; none: the quality's
     std::shared_ptr<const ProjectorSetup> setup;
     std::shared_ptr<const PaintLibrary> library;       ///< what is likely to be next; null: nothing
     std::chrono::steady_clock::time_point asked_at{};  ///< of the input that caused it
@@ -44,6 +45,7 @@ struct FinishedFrame {
     glm::ivec2 size_px{0};
     std::shared_ptr<const Fence> ready;
     std::shared_ptr<const FramePictures> pictures;  ///< for the bench and for files
+    Scene scene;                                    ///< drawn, left of a wipe
     FramePlan plan;  ///< measured milliseconds, and "prepare:..." passes that ran ahead
     CompensationStats compensation;
     double shade_ms = 0.0, compensate_ms = 0.0, ms_total = 0.0;

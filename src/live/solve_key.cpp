@@ -14,12 +14,10 @@ namespace {
 /// Of an albedo of 1.
 constexpr float kSteps = 64.0f;
 
-std::vector<glm::ivec3> sends_on(const Scene& scene, Quality quality) {
-    // Asked several times a frame: most qualities need not look at the scene.
-    if (quality == Quality::reference || levels_of(quality)[Effect::interreflection] == 0) {
-        return {};
-    }
-    const FramePlan plan = plan_frame(scene, quality, FrameStage::radiance);
+std::vector<glm::ivec3> sends_on(const Scene& scene, const EffectLevels& levels) {
+    // Asked several times a frame: most levels need not look at the scene.
+    if (levels[Effect::interreflection] == 0) return {};
+    const FramePlan plan = plan_frame(scene, levels, FrameStage::radiance);
     if (!find_pass(plan, PassKind::interreflection)) return {};
     std::vector<glm::ivec3> steps;
     for (const Material& material : scene.part_materials) {
@@ -36,7 +34,10 @@ std::string difference(const SolveKey& solved, const SolveKey& wanted) {
     if (solved.lights != wanted.lights) return "light";
     if (solved.eye_mm != wanted.eye_mm) return "eye";
     if (!same_relief(solved.relief, wanted.relief)) return "relief";
-    if (solved.quality != wanted.quality) return to_string(wanted.quality) + " quality";
+    if (solved.levels != wanted.levels) {
+        const Quality quality = nearest_quality(wanted.levels);
+        return wanted.levels == levels_of(quality) ? to_string(quality) + " quality" : "levels";
+    }
     return "";
 }
 
@@ -44,6 +45,8 @@ std::string difference(const SolveKey& solved, const SolveKey& wanted) {
 
 SolveKeys keys_of(const FrameDescription& description) {
     check_argument(description.setup != nullptr, "the frame has no projector");
+    const EffectLevels levels =
+        description.levels ? *description.levels : levels_of(description.quality);
     const auto key_of = [&](const Scene& scene) {
         check_argument(scene.product != nullptr, "the frame has no product");
         return SolveKey{scene.product,
@@ -51,9 +54,9 @@ SolveKeys keys_of(const FrameDescription& description) {
                         scene.environment,
                         scene.lights,
                         scene.eye_in_world_mm,
-                        description.quality,
+                        levels,
                         scene.relief,
-                        sends_on(scene, description.quality)};
+                        sends_on(scene, levels)};
     };
     SolveKeys keys{key_of(description.scene), std::nullopt};
     if (description.wipe_to) {
@@ -64,11 +67,11 @@ SolveKeys keys_of(const FrameDescription& description) {
     return keys;
 }
 
-SolveKeys with_quality(SolveKeys keys, Quality quality) {
+SolveKeys with_levels(SolveKeys keys, const EffectLevels& levels) {
     for (auto& key : keys) {
         if (!key) continue;
-        key->quality = quality;
-        if (quality == Quality::draft) key->sends_on.clear();
+        key->levels = levels;
+        if (levels[Effect::interreflection] == 0) key->sends_on.clear();
     }
     return keys;
 }
@@ -105,9 +108,8 @@ std::string missing_of(const SolveKeys& solved, const SolveKeys& wanted) {
 }
 
 bool covers_light(const SolveKeys& solved, const SolveKeys& wanted) {
-    return solved[0] &&
-           missing_of(with_quality(solved, Quality::draft), with_quality(wanted, Quality::draft))
-               .empty();
+    const EffectLevels draft = levels_of(Quality::draft);
+    return solved[0] && missing_of(with_levels(solved, draft), with_levels(wanted, draft)).empty();
 }
 
 }  // namespace livery

@@ -18,7 +18,7 @@ struct SolveKey {
     std::shared_ptr<const Environment> environment;
     std::vector<DirectionalLight> lights;
     glm::dvec3 eye_mm{0.0};
-    Quality quality = Quality::normal;
+    EffectLevels levels{};
     std::vector<PartArtwork> relief{};
     /// What each part sends on of its light, in steps that nobody sees; empty: no light between
     /// parts is asked for.
@@ -31,10 +31,10 @@ using SolveKeys = std::array<std::optional<SolveKey>, 2>;
 /// Throws std::invalid_argument when the description lacks a product or a projector, or wipes
 /// between two products.
 SolveKeys keys_of(const FrameDescription& description);
-SolveKeys with_quality(SolveKeys keys, Quality quality);
+SolveKeys with_levels(SolveKeys keys, const EffectLevels& levels);
 
 bool same_pose(const SolveKey& a, const SolveKey& b);  ///< product and projector
-/// All but the quality and what parts send on.
+/// All but levels and what parts send on.
 bool same_light(const SolveKey& a, const SolveKey& b);
 
 /// Which of `solved` to draw a side of `wanted` with: its own light if that is there, else the
@@ -42,10 +42,10 @@ bool same_light(const SolveKey& a, const SolveKey& b);
 std::size_t nearest_of(const SolveKeys& solved, const SolveKeys& wanted, std::size_t side);
 
 /// What is solved otherwise than it is wanted: "light", "environment", "eye", "normal quality",
-/// "light between parts", ... Empty when nothing is. Sides of a wipe that share their light share
-/// the left one's light between parts.
+/// "levels", "light between parts", ... Empty when nothing is. Sides of a wipe that share their
+/// light share the left one's light between parts.
 std::string missing_of(const SolveKeys& solved, const SolveKeys& wanted);
-/// The same, quality and light between parts aside.
+/// The same, levels and light between parts aside.
 bool covers_light(const SolveKeys& solved, const SolveKeys& wanted);
 
 }  // namespace livery

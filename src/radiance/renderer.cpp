@@ -17,11 +17,11 @@
 #include "radiance/artwork_inputs.h"
 #include "radiance/fragment_inputs.h"
 #include "radiance/lanes/processor_shading.h"
-#include "radiance/light/environment_filter.h"
 #include "radiance/packed_fragments.h"
 #include "radiance/relief_map.h"
 #include "radiance/resolve.h"
 #include "radiance/shading.h"
+#include "radiance/work_items.h"
 
 namespace livery {
 namespace {
@@ -386,49 +386,20 @@ void RadianceRenderer::render(const Scene& whole,
     s.read_timers();
 }
 
-void RadianceRenderer::count_work(const Scene& whole, FramePlan& plan) const {
-    const Scene scene = at_levels(whole, plan.levels);
+void RadianceRenderer::count_work(const Scene& scene, FramePlan& plan) const {
     const State& s = *state_;
-    const auto fragments = static_cast<double>(s.map.fragments.size());
-    const FragmentRays rays = rays_of(plan.levels);
-    const auto set = [&](const PassId& id, double items) {
-        if (PlannedPass* pass = find_pass(plan, id)) pass->work_items = items;
-    };
-    set(PassKind::surface_map, static_cast<double>(s.map.covered_pixels) * s.map.samples_per_pixel);
-    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-        const bool point = scene.lights[i].angle_rad <= 0.0;
-        const int most = static_cast<int>(kSamplesAFragment);
-        set(visibility_pass(i), fragments * (point ? std::min(rays.light, most) : rays.light));
-    }
-    std::size_t tilted = 0;
-    for (const PartArtwork& relief : scene.relief) tilted += s.layout.fragments(relief.part);
-    set(PassKind::relief, static_cast<double>(tilted));
-    set(PassKind::environment_irradiance, fragments);
-    set(PassKind::ambient_occlusion, fragments * rays.sky.first);
-    set(PassKind::interreflection, fragments);
-    set(PassKind::environment_filter, static_cast<double>(kFilterTexels));
-    std::size_t mirroring = 0;
-    const std::vector<MirrorLayers> mirrored = mirror_layers_of(scene);
-    for (std::size_t p = 0; p < mirrored.size(); ++p) {
-        if (mirrored[p].any()) mirroring += s.layout.fragments(p);
-    }
-    set(PassKind::reflection_occlusion, static_cast<double>(mirroring) * mirror_rays(rays.mirror));
-    set(PassKind::mirrored_environment, static_cast<double>(mirroring) * mirror_nodes(rays.mirror));
-    set(PassKind::directions, fragments);
-    set(PassKind::diffuse_light, fragments);
-    set(PassKind::glint_places, fragments);
+    FrameCounts counts;
+    counts.covered_pixels = static_cast<double>(s.map.covered_pixels);
+    counts.samples_per_pixel = s.map.samples_per_pixel;
     for (std::size_t p = 0; p < scene.part_materials.size(); ++p) {
-        set(shade_pass(scene, p), static_cast<double>(s.layout.fragments(p)));
+        counts.fragments_of_part.push_back(static_cast<double>(s.layout.fragments(p)));
     }
-    std::size_t worn = 0;
-    for (std::size_t k = 0; k < scene.artwork.size(); ++k) {
-        worn += s.layout.fragments(scene.artwork[k].part);
-        if (!s.artwork.stands(scene)) continue;
-        const std::size_t coats = coats_of(scene.artwork[k]).size();
-        set(artwork_pass(scene, k), static_cast<double>(coats * s.artwork.covered(k)));
+    if (s.artwork.stands(at_levels(scene, plan.levels))) {
+        for (std::size_t k = 0; k < scene.artwork.size(); ++k) {
+            counts.fragments_of_artwork.push_back(static_cast<double>(s.artwork.covered(k)));
+        }
     }
-    set(PassKind::artwork, static_cast<double>(worn));
-    set(PassKind::resolve, static_cast<double>(s.map.covered_pixels));
+    livery::count_work(scene, counts, plan);
 }
 
 ImageF RadianceRenderer::read_back() const { return *picture(); }

@@ -135,6 +135,14 @@ EffectLevels levels_of(Quality quality) {
     throw std::invalid_argument("the reference level is the path tracer's");
 }
 
+EffectLevels dearest_levels() {
+    EffectLevels levels;
+    for (const EffectInfo& info : effect_table()) {
+        levels[info.effect] = static_cast<int>(info.levels.size()) - 1;
+    }
+    return levels;
+}
+
 Quality nearest_quality(const EffectLevels& levels) {
     for (const Quality quality : {Quality::high, Quality::normal}) {
         const EffectLevels least = levels_of(quality);

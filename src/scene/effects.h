@@ -55,6 +55,8 @@ std::string to_string(Quality quality);
 
 /// Throws std::invalid_argument for the path tracer's.
 EffectLevels levels_of(Quality quality);
+/// The last level of each effect.
+EffectLevels dearest_levels();
 /// The dearest quality that spends on no effect more than these do; draft where none does.
 Quality nearest_quality(const EffectLevels& levels);
 /// Throws std::invalid_argument for a level that its effect does not have.

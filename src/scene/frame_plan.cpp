@@ -339,6 +339,37 @@ void plan_stage(FrameStage stage, FramePlan& plan) {
 
 }  // namespace
 
+std::optional<Effect> effect_of(const PassId& pass) {
+    switch (pass.kind) {
+        case PassKind::surface_map:
+            return Effect::sub_samples;
+        case PassKind::light_visibility:
+            return Effect::shadows;
+        case PassKind::environment_irradiance:
+        case PassKind::environment_filter:
+            return Effect::environment;
+        case PassKind::ambient_occlusion:
+            return Effect::occlusion;
+        case PassKind::mirrored_environment:
+            return Effect::mirrored_environment;
+        case PassKind::reflection_occlusion:
+            return Effect::reflected_occlusion;
+        case PassKind::interreflection:
+            return Effect::interreflection;
+        case PassKind::glint_places:
+            return Effect::glints;
+        case PassKind::relief:
+            return Effect::relief;
+        default:
+            return std::nullopt;
+    }
+}
+
+bool runs_every_frame(const PassId& pass) {
+    return pass.kind == PassKind::shade || pass == PassKind::diffuse_light ||
+           pass == PassKind::resolve || pass == PassKind::compensation;
+}
+
 ExchangeBound exchange_bound(const Scene& scene) {
     const Product& product = *scene.product;
     const PartExchange exchange =

@@ -39,6 +39,12 @@ struct FramePlan {
 /// What stage of the chain the frame must reach.
 enum class FrameStage { radiance, projector };
 
+/// Of which effect the pass is; none: it runs at any level of any.
+std::optional<Effect> effect_of(const PassId& pass);
+
+/// Runs with every paint swap; all others are solved once for a light, an eye and a pose.
+bool runs_every_frame(const PassId& pass);
+
 PassId visibility_pass(std::size_t light);
 /// With glints where single flakes are seen.
 PassId shade_pass(const Scene& scene, std::size_t part);

@@ -250,7 +250,11 @@ void apply(Document& document, const SetExposure& command) {
     document.exposure_ev = command.ev;
 }
 
-void apply(Document& document, const SetQuality& command) { document.quality = command.quality; }
+void apply(Document& document, const SetQuality& command) {
+    if (command.levels) check_levels(*command.levels);
+    document.quality = command.quality;
+    document.levels = command.levels;
+}
 
 void apply(Document& document, const SetCalibration& command) {
     check_text(command.folder, "the calibration's folder");

@@ -76,6 +76,7 @@ struct SetExposure {
 };
 struct SetQuality {
     Quality quality = Quality::normal;
+    std::optional<EffectLevels> levels{};  ///< of effects one by one; none: the quality's
 };
 struct SetCalibration {
     std::string folder;  ///< empty: uncorrected

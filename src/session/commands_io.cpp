@@ -128,10 +128,15 @@ void read(const JsonReader& fields, SetExposure& c) {
     c.ev = fields["ev"].number();
 }
 
-Json fields_of(const SetQuality& c) { return {{"quality", to_string(c.quality)}}; }
+Json fields_of(const SetQuality& c) {
+    Json json = {{"quality", to_string(c.quality)}};
+    if (c.levels) json["levels"] = to_string(*c.levels);
+    return json;
+}
 void read(const JsonReader& fields, SetQuality& c) {
-    fields.allow_only({"quality"});
+    fields.allow_only({"quality", "levels"});
     c.quality = read_quality(fields["quality"]);
+    if (fields.has("levels")) c.levels = read_levels(fields["levels"]);
 }
 
 Json fields_of(const SetCalibration& c) { return {{"folder", c.folder}}; }

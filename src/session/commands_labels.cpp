@@ -73,6 +73,7 @@ std::string label(const Document&, const SetExposure& command) {
     return fmt::format("Set exposure to {:.4g} EV", command.ev);
 }
 std::string label(const Document&, const SetQuality& command) {
+    if (command.levels) return "Set levels of effects";
     return fmt::format("Set quality to {}", to_string(command.quality));
 }
 std::string label(const Document&, const SetCalibration& command) {

@@ -33,8 +33,9 @@ struct Document {
     glm::dvec3 eye_mm{0.0};
     double exposure_ev = 0.0;  ///< the same for all looks
     Quality quality = Quality::normal;
-    std::string bench = "default";  ///< the simulated bench; a shipped name or a file
-    std::string calibration;        ///< folder; empty: none, the picture goes out uncorrected
+    std::optional<EffectLevels> levels;  ///< of effects one by one; none: the quality's
+    std::string bench = "default";       ///< the simulated bench; a shipped name or a file
+    std::string calibration;             ///< folder; empty: none, the picture goes out uncorrected
     double design_white_percentile = 20.0;
     GamutMapping gamut_mapping = GamutMapping::strict;  ///< the same for all looks
     /// What names of paints mean: shared and never changed. Not part of the document's text; null:

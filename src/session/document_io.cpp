@@ -92,6 +92,7 @@ Json json_of(const Document& document) {
     json["eye_mm"] = json_from(document.eye_mm);
     json["exposure_ev"] = document.exposure_ev;
     json["quality"] = to_string(document.quality);
+    if (document.levels) json["levels"] = to_string(*document.levels);
     json["bench"] = document.bench;
     json["calibration"] = document.calibration;
     json["design_white_percentile"] = document.design_white_percentile;
@@ -110,6 +111,7 @@ Document read_document(const JsonReader& root) {
                      "eye_mm",
                      "exposure_ev",
                      "quality",
+                     "levels",
                      "bench",
                      "calibration",
                      "design_white_percentile",
@@ -134,6 +136,7 @@ Document read_document(const JsonReader& root) {
     document.eye_mm = place_mm(root["eye_mm"]);
     document.exposure_ev = root["exposure_ev"].number_between(-30.0, 30.0);
     document.quality = read_quality(root["quality"]);
+    if (root.has("levels")) document.levels = read_levels(root["levels"]);
     document.bench = checked_text(root["bench"]);
     document.calibration = checked_text(root["calibration"]);
     document.design_white_percentile = root["design_white_percentile"].number_between(0.0, 100.0);

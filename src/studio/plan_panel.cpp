@@ -165,7 +165,7 @@ void draw_plan_panel(Studio& studio) {
     FinishedFrame frame = *studio.frame;
     show_last_measured(studio.panels.plan->measured, frame.plan);
     if (const auto* costs = bench_costs(studio)) {
-        predict_drawn(frame.plan, *costs);
+        predict_times(frame.plan, *costs);
     } else {
         for (PlannedPass& pass : frame.plan.passes) {
             pass.unpredicted_because = "no bench has run on this machine";

@@ -1,6 +1,8 @@
 // What the plan panel remembers between frames.
 #pragma once
 
+#include <array>
+#include <chrono>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,7 +15,14 @@ struct PlanPanelState {
     MeasuredCosts measured;
     bool costs_read = false;
     std::optional<std::vector<PassCost>> costs;
+    EffectErrors errors;
     std::string problem;
+    /// Of draft, normal and high, for the frame that was done then.
+    std::array<std::optional<QualityCost>, 3> of_qualities;
+    std::chrono::steady_clock::time_point priced_at{};
+    /// The levels in the document, for the frame that was done then.
+    std::optional<PricedFrame> frame_price;
+    std::chrono::steady_clock::time_point frame_priced_at{};
 };
 
 }  // namespace livery

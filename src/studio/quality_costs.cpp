@@ -32,50 +32,37 @@ const char* what_it_does(Quality quality) {
     throw std::invalid_argument("unknown quality");
 }
 
-/// Timed by the bench in the place of a look's own paint, not beside it.
-bool is_of_another_paint(const PassId& pass) {
-    const bool shades = pass.kind == PassKind::shade && pass.model == ReflectanceModel::car_paint;
-    return shades || pass == PassKind::glint_places;
-}
-
 }  // namespace
 
-bool runs_every_frame(const PassId& pass) {
-    return pass.kind == PassKind::shade || pass == PassKind::diffuse_light ||
-           pass == PassKind::resolve || pass == PassKind::compensation;
-}
-
-std::optional<QualityCost> quality_cost(const std::vector<PassCost>& costs,
-                                        Quality quality,
-                                        double pixels) {
-    const auto resolve = std::find_if(costs.begin(), costs.end(), [&](const PassCost& cost) {
-        return cost.quality == quality && cost.pass == PassKind::resolve;
-    });
-    if (resolve == costs.end() || !(resolve->work_items > 0.0) || !(pixels > 0.0)) {
-        return std::nullopt;
-    }
-    QualityCost sum;
-    sum.error = resolve->error;
-    for (const PassCost& cost : costs) {
-        // Of looks that have artwork or a relief: theirs to add.
-        const bool artwork = cost.pass == PassKind::artwork || cost.pass == PassKind::relief;
-        if (cost.quality != quality || artwork || is_of_another_paint(cost.pass)) continue;
-        const double ms = cost.work_items > 0.0 ? cost.ms * pixels / resolve->work_items : cost.ms;
-        (runs_every_frame(cost.pass) ? sum.frame_ms : sum.solve_ms) += ms;
-    }
-    return sum;
+std::optional<QualityCost> quality_cost(const PriceList& list, Quality quality) {
+    const PredictedTime time = time_of(list, levels_of(quality));
+    if (!time.complete) return std::nullopt;
+    return QualityCost{
+        time.all_ms - time.swap_ms, time.swap_ms, error_of(list, levels_of(quality))};
 }
 
 const std::vector<PassCost>* bench_costs(Studio& studio) {
     PlanPanelState& state = *studio.panels.plan;
     if (!std::exchange(state.costs_read, true)) {
         try {
-            state.costs = read_pass_costs(ledger_file());
+            state.costs = read_pass_costs(pass_costs_file());
+            state.errors = known_effect_errors();
         } catch (const FileError& error) {
             state.problem = error.what();
         }
     }
     return state.costs ? &*state.costs : nullptr;
+}
+
+std::optional<PriceList> price_list(Studio& studio) {
+    const std::vector<PassCost>* costs = bench_costs(studio);
+    if (!costs || !studio.frame || !studio.frame->scene.product) return std::nullopt;
+    const FinishedFrame& frame = *studio.frame;
+    return make_price_list(frame.scene,
+                           FrameStage::projector,
+                           covered_areas(frame.scene, frame.plan, *costs),
+                           *costs,
+                           studio.panels.plan->errors);
 }
 
 void remember_costs(MeasuredCosts& measured, const FinishedFrame& frame) {
@@ -123,11 +110,20 @@ double time_beside_passes_ms(const MeasuredCosts& measured, const FramePlan& pla
 
 std::string quality_text(Studio& studio, Quality quality) {
     std::string text = what_it_does(quality);
+    PlanPanelState& state = *studio.panels.plan;
+    // Asked of each quality in every frame of the window: priced once a frame of the mock-up.
+    if (studio.frame &&
+        std::exchange(state.priced_at, studio.frame->done_at) != studio.frame->done_at) {
+        const auto list = price_list(studio);
+        for (const Quality one : {Quality::draft, Quality::normal, Quality::high}) {
+            state.of_qualities.at(static_cast<std::size_t>(one)) =
+                list ? quality_cost(*list, one) : std::nullopt;
+        }
+    }
     const std::vector<PassCost>* costs = bench_costs(studio);
-    const PlannedPass* resolve =
-        studio.frame ? find_pass(studio.frame->plan, PassKind::resolve) : nullptr;
-    const auto cost =
-        costs && resolve ? quality_cost(*costs, quality, resolve->work_items) : std::nullopt;
+    const auto cost = quality == Quality::reference
+                          ? std::nullopt
+                          : state.of_qualities.at(static_cast<std::size_t>(quality));
     if (cost) {
         text += fmt::format(" By the last bench here: {} for new light, then {} a paint.",
                             milliseconds(cost->solve_ms),

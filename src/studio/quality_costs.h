@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "ledger/predictions.h"
+#include "ledger/budget.h"
 #include "scene/frame_plan.h"
 #include "studio/studio.h"
 
@@ -22,22 +22,20 @@ struct MeasuredCosts {
     bool newest_was_drawn = false;
 };
 
-/// Runs with every paint swap; all others are solved once for a light, an eye and a pose.
-bool runs_every_frame(const PassId& pass);
-
 struct QualityCost {
     double solve_ms = 0.0;        ///< light, once
     double frame_ms = 0.0;        ///< each paint swap
-    std::optional<double> error;  ///< as PassCost has it
+    std::optional<double> error;  ///< CIEDE2000 at the 95th percentile, by the ledger
 };
-/// From the last bench, for as many pixels as `pixels` (of the mock-up). Nothing when it did not
-/// time that quality.
-std::optional<QualityCost> quality_cost(const std::vector<PassCost>& costs,
-                                        Quality quality,
-                                        double pixels);
+/// At that quality's levels: from the last bench. Nothing when it did not time what the scene calls
+/// for.
+std::optional<QualityCost> quality_cost(const PriceList& list, Quality quality);
 
-/// The costs of the last bench on this machine, read once; null: none, and `problem` may say why.
+/// The costs of the last bench on this machine, read once with the ledger's errors; null: none, and
+/// `problem` may say why.
 const std::vector<PassCost>* bench_costs(Studio& studio);
+/// With them, what is known of the frame on the mock-up.
+std::optional<PriceList> price_list(Studio& studio);
 
 /// Once a frame of the window: keeps what the newest frame's passes took.
 void remember_costs(MeasuredCosts& measured, const FinishedFrame& frame);

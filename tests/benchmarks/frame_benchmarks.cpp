@@ -171,7 +171,7 @@ void swap(benchmark::State& state, ShadingDevice device) {
     description.quality = Quality::draft;
     description.setup = setup;
     FrameLane lane(std::make_shared<GeometryCache>(), device);
-    lane.solve(description, description.quality, {}, {});
+    lane.solve(description, levels_of(description.quality), {}, {});
     double compensate_ms = 0.0;
     std::size_t k = 0;
     const auto next = [&] {

@@ -250,9 +250,15 @@ put("calibration", "all.json",
      {"additivity_error": 0, "condition_p99": 5, "valid_fraction": 1, "ambient_fraction": 0,
       "mixing_spread": 0}, "warnings": ["a"]})
 put("pass_costs", "two.json",
-    {"format_version": 1, "renderer": "r", "passes": [
-        {"pass": "shade:ggx", "quality": "high", "ms": 1.5, "work_items": 1000},
-        {"pass": "dither", "quality": "draft", "ms": 2, "work_items": 0, "error": 0.1}]})
+    {"format_version": 2, "renderer": "r", "passes": [
+        {"pass": "surface-map", "level": 2, "ms": 1.5, "fixed_ms": 1, "work_items": 1000,
+         "fragments_per_pixel": 1.2},
+        {"pass": "dither", "level": 0, "ms": 2, "fixed_ms": 0, "work_items": 0}]})
+put("effect_errors", "one.json",
+    {"format_version": 1, "unit": "CIEDE2000", "scenes": [
+        {"scene": "car", "dearest": 3.05, "effects": {
+            "sub-samples": {"4": 4.01, "16": 3.16, "64": 3.05},
+            "shadows": {"none": 4.3}}}]})
 put("spectra", "three.csv",
     "# a comment\nnm,diffuse,f0\n" + "".join("%d,0.%d,0.04\n" % (nm, nm) for nm in (380, 500, 730)))
 PAINT = json.loads((ROOT / "materials/solid-red.json").read_text())

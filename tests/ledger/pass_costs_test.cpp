@@ -12,13 +12,21 @@ TEST(PassCosts, ComeBackAsTheyWereWritten) {
     const TemporaryFolder folder;
     const auto file = folder / "bench.json";
     EXPECT_EQ(read_pass_costs(file), std::nullopt);
-    write_pass_costs(file, "a renderer", {{PassKind::resolve, Quality::high, 1.5, 1000.0, 0.25}});
+    write_pass_costs(file, "a renderer", {{PassKind::surface_map, 2, 1.5, 0.5, 1000.0, 1.25}});
     const auto costs = read_pass_costs(file);
     ASSERT_TRUE(costs && costs->size() == 1);
-    EXPECT_EQ(costs->at(0).pass, PassId(PassKind::resolve));
-    EXPECT_EQ(costs->at(0).quality, Quality::high);
+    EXPECT_EQ(costs->at(0).pass, PassId(PassKind::surface_map));
+    EXPECT_EQ(costs->at(0).level, 2);
     EXPECT_EQ(costs->at(0).ms, 1.5);
-    EXPECT_EQ(costs->at(0).error, 0.25);
+    EXPECT_EQ(costs->at(0).fixed_ms, 0.5);
+    EXPECT_EQ(costs->at(0).fragments_per_pixel, 1.25);
+}
+
+TEST(PassCosts, OfWholeQualitiesAreNotTakenForThoseOfLevels) {
+    EXPECT_EQ(parse_pass_costs(R"({"format_version": 1, "passes": [
+                  {"pass": "resolve", "quality": "high", "ms": 1, "work_items": 1}]})",
+                               "bench.json"),
+              std::nullopt);
 }
 
 TEST(PassCosts, KnowEveryPassAgain) {
@@ -31,7 +39,7 @@ TEST(PassCosts, KnowEveryPassAgain) {
                                PassId(PassKind::shade, "", ReflectanceModel::car_paint, true),
                                PassId(PassKind::shade, "", ReflectanceModel::measured),
                                PassId(PassKind::compensation)}) {
-        costs.push_back({pass, Quality::normal, 1.0, 2.0, {}});
+        costs.push_back({pass, 0, 1.0, 0.0, 2.0, {}});
     }
     write_pass_costs(file, "a renderer", costs);
     const auto read = read_pass_costs(file);
@@ -42,12 +50,12 @@ TEST(PassCosts, KnowEveryPassAgain) {
 
 TEST(PassCosts, WhatAnotherVersionTimedIsLeftOut) {
     const auto costs = parse_pass_costs(
-        R"({"format_version": 1, "passes": [
-            {"pass": "gone", "quality": "high", "ms": 1, "work_items": 1},
-            {"pass": "shade:ggx", "quality": "high", "ms": 2, "work_items": 1}]})",
+        R"({"format_version": 2, "passes": [
+            {"pass": "gone", "level": 3, "ms": 1, "fixed_ms": 0, "work_items": 1},
+            {"pass": "shade:ggx", "level": 0, "ms": 2, "fixed_ms": 0, "work_items": 1}]})",
         "bench.json");
-    ASSERT_EQ(costs.size(), 1U);
-    EXPECT_EQ(costs[0].pass, PassId(PassKind::shade, "", ReflectanceModel::ggx));
+    ASSERT_TRUE(costs && costs->size() == 1);
+    EXPECT_EQ(costs->at(0).pass, PassId(PassKind::shade, "", ReflectanceModel::ggx));
 }
 
 TEST(PassCosts, DependOnNeitherPartNorLight) {
@@ -57,42 +65,48 @@ TEST(PassCosts, DependOnNeitherPartNorLight) {
     EXPECT_EQ(cost_key(visibility_pass(3)), PassId(PassKind::light_visibility));
 }
 
-TEST(PassCosts, PredictNothingOfOtherLevels) {
+TEST(PassCosts, AreThoseOfTheLevel) {
     FramePlan plan;
     plan.levels = levels_of(Quality::normal);
-    PlannedPass& pass = plan.passes.emplace_back();
-    pass.id = PassKind::resolve;
-    pass.work_items = 10.0;
-    const std::vector<PassCost> costs{{PassKind::resolve, Quality::normal, 1.0, 10.0, 2.0}};
-    EXPECT_EQ(predict_drawn(plan, costs), "");
-    EXPECT_EQ(plan.passes[0].predicted_ms, 1.0);
+    plan.passes.resize(2);
+    plan.passes[0].id = PassKind::light_visibility;
+    plan.passes[0].work_items = 20.0;
+    plan.passes[1].id = PassKind::resolve;
+    plan.passes[1].work_items = 10.0;
+    const int soft = plan.levels[Effect::shadows];
+    const std::vector<PassCost> costs{{PassKind::light_visibility, soft, 5.0, 1.0, 10.0, {}},
+                                      {PassKind::resolve, 0, 1.0, 0.0, 10.0, {}}};
+    EXPECT_EQ(predict_times(plan, costs), "");
+    // 1 ms whatever there is to do, .4 ms an item
+    EXPECT_DOUBLE_EQ(plan.passes[0].predicted_ms.value_or(0.0), 9.0);
+    EXPECT_DOUBLE_EQ(plan.passes[1].predicted_ms.value_or(0.0), 1.0);
+    EXPECT_TRUE(predicted_time(plan).complete);
+    EXPECT_DOUBLE_EQ(predicted_time(plan).all_ms, 10.0);
+    EXPECT_DOUBLE_EQ(predicted_time(plan).swap_ms, 1.0);
     plan.passes[0].predicted_ms.reset();
-    plan.levels[Effect::shadows] = 3;
-    EXPECT_NE(predict_drawn(plan, costs), "");
+    plan.levels[Effect::shadows] = soft + 1;
+    EXPECT_NE(predict_times(plan, costs), "");
     EXPECT_FALSE(plan.passes[0].predicted_ms.has_value());
-    EXPECT_NE(plan.passes[0].unpredicted_because, "");
+    EXPECT_NE(plan.passes[0].unpredicted_because.find("at shadows=64 rays"), std::string::npos)
+        << plan.passes[0].unpredicted_because;
+    EXPECT_FALSE(predicted_time(plan).complete);
 }
 
-TEST(PassCosts, AQualityThatIsNoneIsNamed) {
+TEST(PassCosts, ALevelThatIsNoneIsNamed) {
     EXPECT_TRUE(fails_with(
         [] {
-            parse_pass_costs(R"({"format_version": 1, "passes": [
-                                 {"pass": "a", "quality": "best", "ms": 1, "work_items": 1}]})",
+            parse_pass_costs(R"({"format_version": 2, "passes": [
+                                 {"pass": "a", "level": -1, "ms": 1, "work_items": 1}]})",
                              "bench.json");
         },
-        {"bench.json: passes[0].quality: found \"best\", expected draft, normal, high or"}));
+        {"bench.json: passes[0].level: found -1"}));
 }
 
 TEST(PassCosts, SayWhatAPaintCosts) {
     const std::vector<PassCost> costs{
-        {PassId(PassKind::shade, "", ReflectanceModel::ggx), Quality::high, 9.0, 1e6, {}},
-        {PassId(PassKind::shade, "", ReflectanceModel::ggx), Quality::normal, 3.0, 1e6, {}},
-        {PassId(PassKind::shade, "", ReflectanceModel::car_paint, true),
-         Quality::normal,
-         8.0,
-         1e6,
-         {}},
-        {PassId(PassKind::shade, "", ReflectanceModel::eon), Quality::normal, 3.0, 0.0, {}}};
+        {PassId(PassKind::shade, "", ReflectanceModel::ggx), 0, 3.0, 0.0, 1e6, {}},
+        {PassId(PassKind::shade, "", ReflectanceModel::car_paint, true), 0, 8.0, 0.0, 1e6, {}},
+        {PassId(PassKind::shade, "", ReflectanceModel::eon), 0, 3.0, 0.0, 0.0, {}}};
     Material paint;
     paint.model = ReflectanceModel::ggx;
     const PaintCost ggx = paint_cost(paint, costs);

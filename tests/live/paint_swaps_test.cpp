@@ -86,7 +86,7 @@ TEST_P(PaintSwapsOnADevice, CompileAndAllocateNothing) {
     description.setup = setup_of(test_view(128, 96), description.scene);
     description.library = read_paint_library();
     FrameLane lane(std::make_shared<GeometryCache>(), GetParam());
-    lane.solve(description, description.quality, {}, {});
+    lane.solve(description, levels_of(description.quality), {}, {});
     lane.prepare(description, {});
     // The first few make what later ones take turns with.
     for (int k = 0; k < 6; ++k) {

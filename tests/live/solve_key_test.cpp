@@ -25,8 +25,12 @@ TEST(SolveKey, SaysWhatIsMissing) {
     EXPECT_EQ(missing([](SolveKey& key) { key.environment = sky(1.0); }), "environment");
     EXPECT_EQ(missing([](SolveKey& key) { key.view.focal_px.x += 1.0; }), "projector");
     EXPECT_EQ(missing([](SolveKey& key) { key.product = nullptr; }), "product");
-    EXPECT_EQ(missing([](SolveKey& key) { key.quality = Quality::draft; }), "normal quality");
-    EXPECT_TRUE(covers_light(with_quality(wanted, Quality::draft), wanted));
+    const EffectLevels draft = levels_of(Quality::draft);
+    EXPECT_EQ(missing([&](SolveKey& key) { key.levels = draft; }), "normal quality");
+    EXPECT_TRUE(covers_light(with_levels(wanted, draft), wanted));
+    SolveKeys chosen = wanted;
+    chosen[0]->levels[Effect::shadows] = 0;
+    EXPECT_EQ(missing_of(wanted, chosen), "levels");
 }
 
 }  // namespace

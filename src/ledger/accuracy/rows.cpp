@@ -14,45 +14,6 @@ namespace {
 
 constexpr int kSwaps = 5;
 
-EffectLevels dearest() {
-    EffectLevels levels;
-    for (const EffectInfo& info : effect_table()) {
-        levels[info.effect] = static_cast<int>(info.levels.size()) - 1;
-    }
-    return levels;
-}
-
-bool is_of_swap(const PassId& pass) {
-    return pass.kind == PassKind::shade || pass == PassKind::resolve ||
-           pass == PassKind::compensation;
-}
-
-std::optional<Effect> effect_of(const PassId& pass) {
-    switch (pass.kind) {
-        case PassKind::surface_map:
-            return Effect::sub_samples;
-        case PassKind::light_visibility:
-            return Effect::shadows;
-        case PassKind::environment_irradiance:
-        case PassKind::environment_filter:
-            return Effect::environment;
-        case PassKind::ambient_occlusion:
-            return Effect::occlusion;
-        case PassKind::mirrored_environment:
-            return Effect::mirrored_environment;
-        case PassKind::reflection_occlusion:
-            return Effect::reflected_occlusion;
-        case PassKind::interreflection:
-            return Effect::interreflection;
-        case PassKind::glint_places:
-            return Effect::glints;
-        case PassKind::relief:
-            return Effect::relief;
-        default:
-            return std::nullopt;
-    }
-}
-
 }  // namespace
 
 std::vector<AccuracyRow> rows_to_measure(const std::vector<AccuracyScene>& scenes) {
@@ -73,7 +34,7 @@ std::vector<AccuracyRow> rows_to_measure(const std::vector<AccuracyScene>& scene
                 row.effect = info.name;
                 row.level = info.levels[k].name;
                 row.index = static_cast<int>(k);
-                row.levels = dearest();
+                row.levels = dearest_levels();
                 row.levels[info.effect] = row.index;
                 row.called_for = calls_for(scene.scene, info.effect);
             }
@@ -110,7 +71,7 @@ AccuracyRow RowMeasurement::measured(const AccuracyRow& row, const Progress& pro
     renderer.render(scene, plan, progress);
     for (const PlannedPass& pass : plan.passes) {
         const double ms = pass.ms.value_or(0.0);
-        if (!is_of_swap(pass.id)) result.solve_ms += ms;
+        if (!runs_every_frame(pass.id)) result.solve_ms += ms;
         const auto effect = effect_of(pass.id);
         if (effect && effect_info(*effect).name == row.effect) result.own_ms += ms;
     }

@@ -20,6 +20,7 @@
 #include "studio/light/environment_choice.h"
 #include "studio/light/light_pad.h"
 #include "studio/light/light_values.h"
+#include "studio/light/quality_section.h"
 #include "studio/quality_costs.h"
 #include "studio/studio.h"
 #include "twin/description.h"
@@ -291,24 +292,6 @@ void draw_exposure(Studio& studio) {
     state.held_ev.finish();
 }
 
-void draw_quality(Studio& studio) {
-    heading("Quality");
-    const Quality chosen = studio.session.document().quality;
-    const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
-    const float width = std::floor((ImGui::GetContentRegionAvail().x - 2.0f * gap) / 3.0f);
-    constexpr std::array qualities{Quality::draft, Quality::normal, Quality::high};
-    for (const Quality quality : qualities) {
-        if (quality != Quality::draft) ImGui::SameLine(0.0f, gap);
-        const std::string name = to_string(quality);
-        if (toggle_button(name.c_str(), quality == chosen, width) && quality != chosen) {
-            commit(studio, SetQuality{quality});
-        }
-        name_last_item("quality:" + name);
-        tooltip(quality_text(studio, quality));
-    }
-    dim_text(quality_text(studio, chosen));
-}
-
 }  // namespace
 
 void draw_lighting_panel(Studio& studio) {
@@ -339,7 +322,7 @@ void draw_lighting_panel(Studio& studio) {
     ImGui::Spacing();
     draw_exposure(studio);
     ImGui::Spacing();
-    draw_quality(studio);
+    draw_quality_section(studio);
 }
 
 }  // namespace livery

@@ -28,6 +28,8 @@ struct LightingPanelState {
     std::string thumbnail_problem;
     std::vector<std::string> shipped_environments;
     bool listed = false;
+    double budget_s = 0.0;       ///< 0: not moved yet
+    std::string budget_problem;  ///< why no levels fit it
 };
 
 }  // namespace livery

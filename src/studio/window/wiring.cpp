@@ -179,6 +179,7 @@ void ask_for_frame(Shell& shell) {
     description.wipe_at = key.wipe_at;
     description.glowing_part = key.glowing_part;
     description.quality = document.quality;
+    description.levels = document.levels;
     description.setup = studio.setup;
     description.library = document.library;
     description.asked_at = shell.input_at;

@@ -1,0 +1,46 @@
+// How far each level of each effect leaves a picture from the truth: what the last accuracy suite
+// measured, scene by scene.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ledger/accuracy/rows.h"
+#include "scene/effects.h"
+
+namespace livery {
+
+/// Of one scene of the ledger, CIEDE2000 at the 95th percentile of its pixels.
+struct SceneErrors {
+    std::string scene;
+    double dearest = 0.0;  ///< every effect at its last level
+    /// By effect and level, all others at their last; empty where the scene does not call for it.
+    std::array<std::vector<double>, kEffects> at_level;
+};
+using EffectErrors = std::vector<SceneErrors>;
+
+/// Of those scenes whose rows are all there.
+EffectErrors errors_of(const std::vector<AccuracyRow>& rows);
+
+/// What an effect's level adds to what all effects at their last level leave, squared. Errors of
+/// different effects fall on different pixels and directions: they add up as squares. Glints have
+/// no truth, since the path tracer draws them as a smooth lobe: what they change counts.
+double error_added(const SceneErrors& errors, Effect effect, int level);
+
+/// Of the levels, in the scene of the ledger where it is largest; effects that `called_for` denies
+/// add nothing. None without a scene that calls for as much.
+std::optional<double> error_of(const EffectErrors& errors,
+                               const EffectLevels& levels,
+                               const std::array<bool, kEffects>& called_for);
+
+std::filesystem::path effect_errors_file();  ///< in the user's folder
+void write_effect_errors(const std::filesystem::path& file, const EffectErrors& errors);
+/// Throws FileError for a malformed text.
+EffectErrors parse_effect_errors(const std::string& text, const std::filesystem::path& file);
+/// What was measured here, else what was shipped: errors hardly depend on the machine.
+EffectErrors known_effect_errors();
+
+}  // namespace livery

@@ -1,0 +1,49 @@
+// What passes take on this machine, from the last `livery bench --suite speed` here.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/frame_plan.h"
+
+namespace livery {
+
+/// One kind of pass at one level of its effect: milliseconds are linear in its work items.
+struct PassCost {
+    PassId pass;            ///< as cost_key() has it
+    int level = 0;          ///< of effect_of(pass); 0 where it is of none
+    double ms = 0.0;        ///< for `work_items` of them
+    double fixed_ms = 0.0;  ///< of which even an empty picture takes
+    double work_items = 0.0;
+    /// At the surface map: what its sub-samples lead to.
+    std::optional<double> fragments_per_pixel;
+};
+
+/// What the cost of a pass depends on: the same of any part, artwork and light, "shade:clearcoat".
+PassId cost_key(const PassId& pass);
+/// Of its effect; 0 where it is of none.
+int cost_level(const PassId& pass, const EffectLevels& levels);
+
+/// Null when it was not timed at that level.
+const PassCost* find_cost(const std::vector<PassCost>& costs,
+                          const PassId& pass,
+                          const EffectLevels& levels);
+double predicted_ms(const PassCost& cost, double work_items);
+
+/// Where the ledger leaves its costs: the user's folder.
+std::filesystem::path pass_costs_file();
+void write_pass_costs(const std::filesystem::path& file,
+                      const std::string& renderer,
+                      const std::vector<PassCost>& costs);
+/// Nothing when `livery bench` never ran on this machine, or only one of a Livery that timed
+/// otherwise. Throws FileError for a malformed file.
+std::optional<std::vector<PassCost>> read_pass_costs(const std::filesystem::path& file);
+/// The same of pass_costs_file(); nothing, too, without a home folder to keep one in.
+std::optional<std::vector<PassCost>> known_pass_costs();
+/// The same of its text.
+std::optional<std::vector<PassCost>> parse_pass_costs(const std::string& text,
+                                                      const std::filesystem::path& file);
+
+}  // namespace livery
