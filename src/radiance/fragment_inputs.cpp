@@ -176,7 +176,8 @@ void FragmentInputs::solve_sky(const Scene& scene,
 }
 
 void FragmentInputs::drop_exchange() {
-    exchanged_.at_fragments = {};
+    exchanged_.at_nodes = {};
+    exchanged_.on_diffuser.clear();
     ++exchanged_.version;
     sky_stale_ = diffuse_light_stale_ = true;
 }
@@ -188,7 +189,7 @@ void FragmentInputs::solve_exchange(const Scene& scene,
                                     bool keep) {
     Exchanged& made = exchanged_;
     if (!find_pass(plan, PassKind::interreflection)) {
-        if (!made.at_fragments.seen.empty() && !keep) drop_exchange();
+        if (!made.on_diffuser.empty() && !keep) drop_exchange();
         return;
     }
     const auto environment =
@@ -202,7 +203,7 @@ void FragmentInputs::solve_exchange(const Scene& scene,
                                                                scene.part_materials.begin(),
                                                                scene.part_materials.end(),
                                                                same_reflectance);
-    const bool stands = keep || (same_light && !made.at_fragments.seen.empty() && same_paints &&
+    const bool stands = keep || (same_light && !made.on_diffuser.empty() && same_paints &&
                                  enough(made.bounces, bounces));
     clock.run(PassKind::interreflection, !stands, [&] {
         made.nodes = shared_exchange_->of(mesh_, tracer_, progress);
@@ -212,12 +213,9 @@ void FragmentInputs::solve_exchange(const Scene& scene,
             made.lights = scene.lights;
             made.environment = environment;
         }
-        made.at_fragments = exchanged_at_fragments(
-            mesh_,
-            *map_,
-            made.nodes->nodes,
-            exchanged_at_nodes(
-                *made.nodes, made.direct, albedo_at_nodes(scene, made.nodes->nodes), bounces));
+        made.at_nodes = exchanged_at_nodes(
+            *made.nodes, made.direct, albedo_at_nodes(scene, made.nodes->nodes), bounces);
+        made.on_diffuser = at_fragments(mesh_, *map_, made.nodes->nodes, made.at_nodes.on_diffuser);
         made.paints = scene.part_materials;
         made.artwork = scene.artwork;
         made.bounces = bounces;
@@ -262,7 +260,9 @@ void FragmentInputs::solve_mirror(const Scene& scene,
     const auto any = [](const MirrorInputs::LayersOfParts& layers) {
         return std::any_of(layers.begin(), layers.end(), [](const auto& of) { return of.any(); });
     };
-    mirror_.hide_behind(exchanged_.at_fragments.seen, exchanged_.version);
+    mirror_.hide_behind(exchanged_.at_nodes.sent.empty() ? nullptr : exchanged_.nodes,
+                        exchanged_.at_nodes.sent,
+                        exchanged_.version);
     // Who keeps light between parts draws with what was mirrored behind other light of it, too
     const auto worn = mirror_.missing(light, mirror_layers_of(scene), !keep_exchange);
     const bool filtered = same_map(layered_, scene.environment);
@@ -354,7 +354,7 @@ void FragmentInputs::upload_directions(const Scene& scene) {
 }
 
 void FragmentInputs::upload_sky() {
-    const std::vector<glm::vec3>& between = exchanged_.at_fragments.on_diffuser;
+    const std::vector<glm::vec3>& between = exchanged_.on_diffuser;
     if (sky_.empty() && between.empty()) {
         shading_.sky = InputLayers();
         return;
@@ -372,7 +372,7 @@ void FragmentInputs::upload_diffuse_light() {
     make(shading_.lit, 0, InputLayers::Precision::half);
     const auto light_on = [&](std::size_t i) {
         glm::vec3 sum = sky_.empty() ? glm::vec3(0.0f) : sky_[i];
-        const std::vector<glm::vec3>& between = exchanged_.at_fragments.on_diffuser;
+        const std::vector<glm::vec3>& between = exchanged_.on_diffuser;
         if (!between.empty()) sum += between[i];
         for (const Light& light : lights_) {
             const float cosine = glm::dot(map_->fragments[i].normal, light.at[i].direction);

@@ -156,8 +156,9 @@ class FragmentInputs {
         std::vector<Material> paints;
         std::vector<PartArtwork> artwork;
         int bounces = 0;
-        ExchangedLight at_fragments;  ///< empty: none
-        int version = 0;              ///< of at_fragments
+        ExchangedLight at_nodes;             ///< empty: none
+        std::vector<glm::vec3> on_diffuser;  ///< at the fragments
+        int version = 0;                     ///< of both
     };
     Exchanged exchanged_;
 

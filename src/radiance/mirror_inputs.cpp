@@ -54,11 +54,15 @@ void MirrorInputs::clear() {
     if (light_.environment) other_light_ = true;
     light_ = {};
     visibility_.reset();
+    hits_.reset();
     solved_texels_.clear();
 }
 
-void MirrorInputs::hide_behind(std::span<const glm::vec3> product, int version) {
-    product_ = product;
+void MirrorInputs::hide_behind(std::shared_ptr<const NodeExchange> nodes,
+                               std::span<const glm::vec3> sent,
+                               int version) {
+    product_nodes_ = std::move(nodes);
+    product_sent_ = sent;
     if (product_version_ == version) return;
     product_version_ = version;
     // A draft knows nothing of what hides the environment
@@ -78,8 +82,11 @@ MirrorInputs::LayersOfParts MirrorInputs::missing(const Light& light,
 
 bool MirrorInputs::lacks_visibility(const Light& light, const LayersOfParts& layers) const {
     if (light.nodes == 0) return false;
+    const bool lacks_hits = product_nodes_ && !hits_;
     for (std::size_t p = 0; p < layers.size(); ++p) {
-        if (layers[p].any() && (other_rays(light) || !visibility_->parts[p])) return true;
+        if (layers[p].any() && (other_rays(light) || lacks_hits || !visibility_->parts[p])) {
+            return true;
+        }
     }
     return false;
 }
@@ -91,8 +98,12 @@ void MirrorInputs::trace(const Light& light,
         visibility_.emplace(*map_, layers.size(), light.nodes);
         visibility_eye_mm_ = light.eye_mm;
     }
+    hits_.reset();
     add_mirror_visibility(
         mesh_, tracer_, *map_, light.eye_mm, parts_of(layers), progress, *visibility_);
+    if (!product_nodes_) return;
+    hits_ = find_mirror_hits(
+        mesh_, tracer_, *map_, light.eye_mm, *visibility_, product_nodes_->nodes, progress);
 }
 
 void MirrorInputs::solve(const Light& light,
@@ -106,16 +117,18 @@ void MirrorInputs::solve(const Light& light,
     const float largest = *std::max_element(sharpest.values.begin(), sharpest.values.end()) *
                           static_cast<float>(light.environment->scale);
     const float unit = std::max(1.0f, largest / kHalfLargest);
-    const MirroredEnvironment environment(*light.environment,
-                                          filtered,
-                                          mesh_,
-                                          *map_,
-                                          light.eye_mm,
-                                          hides ? &*visibility_ : nullptr,
-                                          product_);
+    const MirroredEnvironment environment(
+        *light.environment,
+        filtered,
+        mesh_,
+        *map_,
+        light.eye_mm,
+        hides ? &*visibility_ : nullptr,
+        product_nodes_ && hits_ ? MirroredProduct{&*hits_, product_sent_} : MirroredProduct());
     std::vector<Texels> all;
     for (std::size_t part = 0; part < layers.size(); ++part) {
-        if (layers[part].none()) continue;
+        // A part out of the picture has no texels
+        if (layers[part].none() || layout_.fragments(part) == 0) continue;
         const MirrorLobes lobes(layers[part]);
         const std::size_t first_texels = all.size();
         const auto size =

@@ -11,6 +11,8 @@
 
 #include "core/progress.h"
 #include "radiance/light/environment_filter.h"
+#include "radiance/light/interreflection.h"
+#include "radiance/light/mirror_hits.h"
 #include "radiance/light/mirror_lobes.h"
 #include "radiance/light/mirror_visibility.h"
 #include "radiance/light/sky_visibility.h"
@@ -36,10 +38,12 @@ class MirrorInputs {
     };
     using LayersOfParts = std::vector<MirrorLayers>;
 
-    /// What the product sends to each fragment, where it hides the environment; empty: nothing. Of
+    /// What each node of the product sends, where it hides the environment; null: it is black. Of
     /// another `version` than before, what was solved is missing() for who wants it, and stands for
     /// who does not ask.
-    void hide_behind(std::span<const glm::vec3> product, int version);
+    void hide_behind(std::shared_ptr<const NodeExchange> nodes,
+                     std::span<const glm::vec3> sent,
+                     int version);
 
     /// Another map of the same fragments: nothing that was solved stands.
     void use(const SurfaceMap& map);
@@ -95,8 +99,10 @@ class MirrorInputs {
     Light light_;
     LayersOfParts solved_;  ///< of each part, in that light
     LayersOfParts newest_;  ///< of these, behind what the product sends now
-    std::span<const glm::vec3> product_;
+    std::shared_ptr<const NodeExchange> product_nodes_;
+    std::span<const glm::vec3> product_sent_;
     int product_version_ = 0;
+    std::optional<MirrorHits> hits_;  ///< of what visibility_ has traced; none: not asked for yet
     float unit_ = 1.0f;
     std::vector<Texels> solved_texels_;  ///< not yet uploaded
     bool other_light_ = false;           ///< since the last upload

@@ -48,9 +48,10 @@ struct MirrorSumJob {
     std::size_t nodes = 0;         ///< of each facet, a multiple of kNodeBlock
     const float* seen = nullptr;   ///< share of each node of each facet; null: all of all
     const float* width = nullptr;  ///< factor of its Gaussian's variance, where there is `seen`
-    float in_the_way[3] = {0.0f, 0.0f, 0.0f};  ///< R, G, B of what hides the share not seen
-    const int* lobes = nullptr;                ///< to be summed
-    const bool* grazes = nullptr;              ///< of each, whether what grazes is summed as well
+    /// Lists of R, of G and of B over all facets: what comes of the share not seen; null: nothing.
+    const float* in_the_way = nullptr;
+    const int* lobes = nullptr;    ///< to be summed
+    const bool* grazes = nullptr;  ///< of each, whether what grazes is summed as well
     std::size_t lobe_count = 0;
     float* light = nullptr;  ///< room for kNodeLists numbers of each node
     float* sums = nullptr;   ///< kNodeLists of each lobe

@@ -81,7 +81,6 @@ NodeExchange solve_node_exchange(const Mesh& mesh, const Tracer& tracer, const P
         static_cast<int>(kRays / std::max<std::size_t>(count, 1)), kFewestRays, kMostRays);
     exchange.blocked.assign(count, 0);
     exchange.first.assign(count + 1, 0);
-    exchange.sends.assign(count, 0);
     const auto spiral = cosine_directions(exchange.rays);
 
     constexpr std::size_t kAtATime = 256;
@@ -119,7 +118,6 @@ NodeExchange solve_node_exchange(const Mesh& mesh, const Tracer& tracer, const P
     for (const auto& some : seen) {
         exchange.seen.insert(exchange.seen.end(), some.begin(), some.end());
     }
-    for (const std::uint32_t node : exchange.seen) exchange.sends[node] = 1;
     return exchange;
 }
 
@@ -164,7 +162,6 @@ std::vector<glm::vec3> direct_at_nodes(const Mesh& mesh,
         progress.check_stop();
         std::vector<glm::vec3> directions(spiral.size());
         for (std::size_t i = begin; i < end; ++i) {
-            if (!exchange.sends[i]) continue;
             const glm::vec3 n = nodes.normal(i);
             for (std::size_t l = 0; l < lamps.size(); ++l) {
                 const float cosine = glm::dot(n, lamps[l].direction);
@@ -233,31 +230,18 @@ ExchangedLight exchanged_at_nodes(const NodeExchange& exchange,
         if (bounce == 0) first = largest;
         if (largest <= kNothingLeft * first) break;
     }
-    ExchangedLight result;
-    result.on_diffuser = std::move(sum);
-    // Who looks at what hides the surroundings sees all that it sends
-    for (std::size_t i = 0; i < sent.size(); ++i) {
-        sent[i] = albedo[i] * (direct[i] + (bounces > 1 ? result.on_diffuser[i] : glm::vec3(0.0f)));
-    }
-    result.seen.resize(sent.size());
-    gather(exchange, sent, result.seen);
-    for (std::size_t i = 0; i < sent.size(); ++i) {
-        const auto hidden = static_cast<float>(std::popcount(exchange.blocked[i]));
-        if (hidden > 0.0f) result.seen[i] *= static_cast<float>(exchange.rays) / hidden;
-    }
-    return result;
+    // Who looks at a node sees one bounce more than was followed
+    for (std::size_t i = 0; i < sent.size(); ++i) sent[i] = albedo[i] * (direct[i] + sum[i]);
+    return {std::move(sum), std::move(sent)};
 }
 
-ExchangedLight exchanged_at_fragments(const Mesh& mesh,
-                                      const SurfaceMap& map,
-                                      const ExchangeNodes& nodes,
-                                      const ExchangedLight& at_nodes) {
+std::vector<glm::vec3> at_fragments(const Mesh& mesh,
+                                    const SurfaceMap& map,
+                                    const ExchangeNodes& nodes,
+                                    const std::vector<glm::vec3>& at_nodes) {
     const ExchangePoints& points = nodes.points;
-    const std::vector<glm::vec3> on_diffuser = nodes.at_points(at_nodes.on_diffuser);
-    const std::vector<glm::vec3> seen = nodes.at_points(at_nodes.seen);
-    ExchangedLight light;
-    light.on_diffuser.assign(map.fragments.size(), glm::vec3(0.0f));
-    light.seen = light.on_diffuser;
+    const std::vector<glm::vec3> at_points = nodes.at_points(at_nodes);
+    std::vector<glm::vec3> result(map.fragments.size(), glm::vec3(0.0f));
     parallel_for(map.fragments.size(), 2048, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const glm::vec3 normal = map.fragments[i].normal;
@@ -266,17 +250,14 @@ ExchangedLight exchanged_at_fragments(const Mesh& mesh,
                 const SurfaceSample& sample = map.samples[i * kSamplesAFragment + s];
                 for (const auto& share : points.around(mesh, sample.triangle, sample.barycentric)) {
                     if (glm::dot(points.normals[share.index], normal) <= 0.0f) continue;
-                    light.on_diffuser[i] += share.weight * on_diffuser[share.index];
-                    light.seen[i] += share.weight * seen[share.index];
+                    result[i] += share.weight * at_points[share.index];
                     weight += share.weight;
                 }
             }
-            if (weight <= 0.0f) continue;
-            light.on_diffuser[i] /= weight;
-            light.seen[i] /= weight;
+            if (weight > 0.0f) result[i] /= weight;
         }
     });
-    return light;
+    return result;
 }
 
 }  // namespace livery

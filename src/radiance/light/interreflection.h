@@ -27,7 +27,6 @@ struct NodeExchange {
     std::vector<std::uint64_t> blocked;  ///< bit k: direction k meets the product
     /// Nodes that each one sees from their outside, one a ray, from `first` on.
     std::vector<std::uint32_t> first, seen;
-    std::vector<std::uint8_t> sends;  ///< 1: somebody sees it
 };
 NodeExchange solve_node_exchange(const Mesh& mesh,
                                  const Tracer& tracer,
@@ -46,9 +45,8 @@ class SharedExchange {
     std::shared_ptr<const NodeExchange> made_;
 };
 
-/// What a white diffuser at each sending node sends under the lights and the environment (null:
-/// none), as far as the product does not hide them; 0 at others. Working space, exposure not
-/// included.
+/// What a white diffuser at each node sends under the lights and the environment (null: none), as
+/// far as the product does not hide them. Working space, exposure not included.
 std::vector<glm::vec3> direct_at_nodes(const Mesh& mesh,
                                        const Tracer& tracer,
                                        const NodeExchange& exchange,
@@ -63,7 +61,7 @@ std::vector<glm::vec3> albedo_at_nodes(const Scene& scene, const ExchangeNodes& 
 /// Light that came by other nodes.
 struct ExchangedLight {
     std::vector<glm::vec3> on_diffuser;  ///< what a white diffuser sends of it
-    std::vector<glm::vec3> seen;  ///< the mean radiance of what hides the surroundings, all light
+    std::vector<glm::vec3> sent;         ///< by the node itself, of all light
 };
 /// At each node, after so many bounces: 1, or as many as still add to it.
 ExchangedLight exchanged_at_nodes(const NodeExchange& exchange,
@@ -71,10 +69,10 @@ ExchangedLight exchanged_at_nodes(const NodeExchange& exchange,
                                   std::span<const glm::vec3> albedo,
                                   int bounces);
 
-/// The same at the fragments, of the side that is seen.
-ExchangedLight exchanged_at_fragments(const Mesh& mesh,
-                                      const SurfaceMap& map,
-                                      const ExchangeNodes& nodes,
-                                      const ExchangedLight& at_nodes);
+/// A value of each node at the fragments, of the side that is seen.
+std::vector<glm::vec3> at_fragments(const Mesh& mesh,
+                                    const SurfaceMap& map,
+                                    const ExchangeNodes& nodes,
+                                    const std::vector<glm::vec3>& at_nodes);
 
 }  // namespace livery

@@ -69,7 +69,7 @@ MirroredEnvironment::MirroredEnvironment(const Environment& environment,
                                          const SurfaceMap& map,
                                          glm::dvec3 eye_mm,
                                          const MirrorVisibility* visibility,
-                                         std::span<const glm::vec3> product)
+                                         const MirroredProduct& product)
     : scale_(static_cast<float>(environment.scale)),
       layers_(filtered),
       mesh_(mesh),
@@ -107,8 +107,11 @@ bool MirroredEnvironment::find_seen(std::size_t fragment, Scratch& scratch) cons
         ask_neighbours(fragment, scratch);
     }
     const std::vector<float>& seen = scratch.seen_nodes;
-    scratch.seen.assign(MirrorQuadrature::kFacets * quadrature_.places(), 0.0f);
-    scratch.width.assign(scratch.seen.size(), 1.0f);
+    const std::size_t places = MirrorQuadrature::kFacets * quadrature_.places();
+    scratch.seen.assign(places, 0.0f);
+    scratch.width.assign(places, 1.0f);
+    const bool product_lit = product_.hits && scale_ > 0.0f;
+    scratch.in_the_way.assign(product_lit ? 3 * places : 0, 0.0f);
     for (std::size_t k = 0; k < seen.size(); ++k) {
         float least = 1.0f;
         for (const std::uint16_t beside : quadrature_.beside(k)) {
@@ -117,6 +120,11 @@ bool MirroredEnvironment::find_seen(std::size_t fragment, Scratch& scratch) cons
         const std::size_t place = quadrature_.place_of(k);
         scratch.seen[place] = seen[k];
         scratch.width[place] = 1.0f - (1.0f - kBesideHidden) * (1.0f - least);
+        if (!product_lit) continue;
+        for (std::size_t c = 0; c < 3; ++c) {
+            scratch.in_the_way[c * places + place] =
+                scratch.hidden_light[k][static_cast<int>(c)] / scale_;
+        }
     }
     return true;
 }
@@ -124,44 +132,75 @@ bool MirroredEnvironment::find_seen(std::size_t fragment, Scratch& scratch) cons
 void MirroredEnvironment::ask_neighbours(std::size_t fragment, Scratch& scratch) const {
     // By turn and bit; few neighbours hide anything
     std::array<std::array<float, 64>, MirrorQuadrature::kTurns> hidden{};
+    std::array<std::array<glm::vec3, 64>, MirrorQuadrature::kTurns> sent{};
     std::array<float, MirrorQuadrature::kTurns> whole{};
     const std::vector<std::uint64_t>& blocked = visibility_->blocked;
     for (const FragmentNeighbours::Neighbour& one : scratch.neighbours) {
         whole[one.turn] += one.weight;
+        std::uint32_t hit = product_.hits ? product_.hits->first[one.fragment] : 0;
         for (std::uint64_t left = blocked[one.fragment]; left != 0; left &= left - 1) {
-            hidden[one.turn][static_cast<std::size_t>(std::countr_zero(left))] += one.weight;
+            const auto bit = static_cast<std::size_t>(std::countr_zero(left));
+            hidden[one.turn][bit] += one.weight;
+            if (product_.hits) sent[one.turn][bit] += one.weight * product_.light(hit++);
         }
     }
     scratch.seen_nodes.resize(quadrature_.count());
+    scratch.hidden_light.resize(quadrature_.count());
     for (std::size_t k = 0; k < scratch.seen_nodes.size(); ++k) {
         const MirrorQuadrature::Ray& ray = quadrature_.ray(k);
-        scratch.seen_nodes[k] =
-            ray.turn == MirrorQuadrature::kStraight
-                ? share_seen(blocked[fragment], ray.bit)
-                : (whole[ray.turn] - hidden[ray.turn][ray.bit]) / whole[ray.turn];
+        if (ray.turn == MirrorQuadrature::kStraight) {
+            scratch.seen_nodes[k] = share_seen(blocked[fragment], ray.bit);
+            scratch.hidden_light[k] = sent_at(blocked[fragment], ray.bit, first_hit(fragment));
+        } else {
+            const float share = 1.0f / whole[ray.turn];
+            scratch.seen_nodes[k] = share * (whole[ray.turn] - hidden[ray.turn][ray.bit]);
+            scratch.hidden_light[k] = share * sent[ray.turn][ray.bit];
+        }
     }
+}
+
+glm::vec3 MirroredEnvironment::sent_at(std::uint64_t word,
+                                       std::uint8_t bit,
+                                       std::uint32_t first) const {
+    const std::uint64_t own = std::uint64_t{1} << bit;
+    if (!product_.hits || (word & own) == 0) return glm::vec3(0.0f);
+    return product_.light(first + static_cast<std::uint32_t>(std::popcount(word & (own - 1))));
 }
 
 void MirroredEnvironment::ask_itself(const MirrorVisibility::Alone& alone, Scratch& scratch) const {
     const std::size_t own_turn = neighbour_turn(map_, alone.fragment);
     // How many turns from the fragment's own on
     const auto word_of = [](std::size_t turns) { return turns % kNeighbourTurns / 2; };
+    // Where each word's hits begin
+    std::array<std::uint32_t, MirrorQuadrature::kTurns / 2> first{first_hit(alone.fragment)};
+    if (product_.hits) {
+        const auto index = static_cast<std::size_t>(&alone - visibility_->alone.data());
+        std::uint32_t next = product_.hits->first_alone[index];
+        for (std::size_t word = 1; word < first.size(); ++word) {
+            first[word] = next;
+            next += static_cast<std::uint32_t>(std::popcount(alone.blocked[word]));
+        }
+    }
     scratch.seen_nodes.assign(quadrature_.count(), 0.0f);
+    scratch.hidden_light.assign(quadrature_.count(), glm::vec3(0.0f));
     for (std::size_t k = 0; k < scratch.seen_nodes.size(); ++k) {
         const MirrorQuadrature::Ray& ray = quadrature_.ray(k);
+        const auto look = [&](std::size_t word, std::uint8_t bit, float share) {
+            scratch.seen_nodes[k] += share * share_seen(alone.blocked[word], bit);
+            scratch.hidden_light[k] += share * sent_at(alone.blocked[word], bit, first[word]);
+        };
         if (ray.turn == MirrorQuadrature::kStraight) {
-            scratch.seen_nodes[k] = share_seen(alone.blocked[0], ray.bit);
+            look(0, ray.bit, 1.0f);
             continue;
         }
         const std::size_t turns = (ray.turn + kNeighbourTurns - own_turn) % kNeighbourTurns;
         if (turns % 2 == 0) {
-            scratch.seen_nodes[k] = share_seen(alone.blocked[word_of(turns)], ray.bit);
+            look(word_of(turns), ray.bit, 1.0f);
             continue;
         }
         for (const std::size_t beside : {turns - 1, turns + 1}) {
             const std::size_t turn = (own_turn + beside) % kNeighbourTurns;
-            scratch.seen_nodes[k] +=
-                0.5f * share_seen(alone.blocked[word_of(beside)], quadrature_.nearest(k, turn));
+            look(word_of(beside), quadrature_.nearest(k, turn), 0.5f);
         }
     }
 }
@@ -179,9 +218,7 @@ MirroredLight MirroredEnvironment::at_fragment(std::size_t fragment,
     job.facets = for_sums.data();
     job.seen = hidden ? scratch.seen.data() : nullptr;
     job.width = scratch.width.data();
-    if (hidden && !product_.empty() && scale_ > 0.0f) {
-        for (int c = 0; c < 3; ++c) job.in_the_way[c] = product_[fragment][c] / scale_;
-    }
+    job.in_the_way = hidden && !scratch.in_the_way.empty() ? scratch.in_the_way.data() : nullptr;
     job.lobes = lobes.lobes();
     job.grazes = lobes.grazes();
     job.lobe_count = lobes.count();

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -12,6 +11,7 @@
 #include "radiance/fragment_neighbours.h"
 #include "radiance/lanes/mirror_sums.h"
 #include "radiance/light/environment_filter.h"
+#include "radiance/light/mirror_hits.h"
 #include "radiance/light/mirror_lobes.h"
 #include "radiance/light/mirror_quadrature.h"
 #include "radiance/light/mirror_visibility.h"
@@ -46,21 +46,23 @@ using MirroredLight = std::array<glm::vec3, kMirrorLayers>;
 class MirroredEnvironment {
   public:
     /// Without `visibility` nothing is hidden, and a pixel has one normal. What hides the
-    /// environment sends `product` at each fragment (working space; empty: it is black).
+    /// environment sends what `product` says; without hits it is black.
     MirroredEnvironment(const Environment& environment,
                         const FilteredEnvironment& filtered,
                         const Mesh& mesh,
                         const SurfaceMap& map,
                         glm::dvec3 eye_mm,
                         const MirrorVisibility* visibility,
-                        std::span<const glm::vec3> product = {});
+                        const MirroredProduct& product = {});
 
     /// For one thread.
     class Scratch {
         friend class MirroredEnvironment;
         std::vector<FragmentNeighbours::Neighbour> neighbours;
-        std::vector<float> seen_nodes;   ///< share of each node
+        std::vector<float> seen_nodes;        ///< share of each node
+        std::vector<glm::vec3> hidden_light;  ///< of the rest: what the product sends, by its share
         std::vector<float> seen, width;  ///< by place: the same, and of its Gaussian's variance
+        std::vector<float> in_the_way;   ///< by colour and place: hidden_light
         std::vector<float> light;
         std::array<float, kNodeLists * kMirrorAlphas.size()> sums{};
     };
@@ -74,6 +76,11 @@ class MirroredEnvironment {
     bool find_seen(std::size_t fragment, Scratch& scratch) const;
     void ask_neighbours(std::size_t fragment, Scratch& scratch) const;
     void ask_itself(const MirrorVisibility::Alone& alone, Scratch& scratch) const;
+    /// What is sent along the ray of a word's bit, if it is set; the word's hits begin at `first`.
+    glm::vec3 sent_at(std::uint64_t word, std::uint8_t bit, std::uint32_t first) const;
+    std::uint32_t first_hit(std::size_t fragment) const {
+        return product_.hits ? product_.hits->first[fragment] : 0;
+    }
 
     float scale_;
     MirrorSumJob job_;
@@ -82,7 +89,7 @@ class MirroredEnvironment {
     const SurfaceMap& map_;
     glm::dvec3 eye_mm_;
     const MirrorVisibility* visibility_;
-    std::span<const glm::vec3> product_;
+    MirroredProduct product_;
     std::optional<MirrorQuadrature> unoccluded_;
     const MirrorQuadrature& quadrature_;
     std::optional<FragmentNeighbours> neighbours_;
