@@ -61,7 +61,7 @@ TEST(Messages, NameTheOptionWhatWasFoundAndWhatWasExpected) {
     expect_refusal({"help", "nothing"}, {"\"nothing\"", "livery help"});
     expect_refusal({"plan", "--threads", "x"}, {"--threads", "\"x\"", "a whole number"});
     expect_refusal({"plan", "--budget-ms", "nan"}, {"--budget-ms", "\"nan\"", "finite"});
-    expect_refusal({"plan", "--budget-ms", "-4"}, {"--budget-ms", "negative"});
+    expect_refusal({"plan", "--budget-ms", "-4"}, {"--budget-ms", "found -4", "milliseconds"});
     expect_refusal({"plan", "--design-white", "300"}, {"--design-white", "300", "0 to 100"});
     expect_refusal({"plan", "--stage", "paint"}, {"--stage", "\"paint\"", "radiance, projector"});
     expect_refusal({"calibrate", "color", "--captures", "a", "--out", "b", "--mode", "plain"},

@@ -133,7 +133,7 @@ TEST(Ladders, Rise) {
             whole.name != "sphere, pearl with a film, studio") {
             continue;
         }
-        const AccuracyScene scene = resized(whole, 160, 100);
+        const AccuracyScene scene = resized(whole, 128, 80);
         TruthOptions options;
         options.samples_per_pixel = 64;
         const Truth truth = truth_of(scene, options);
