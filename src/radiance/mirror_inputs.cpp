@@ -12,6 +12,8 @@ namespace livery {
 namespace {
 
 constexpr float kHalfLargest = 65000.0f;
+/// Numbers that are kept of a part: a quarter of a gigabyte.
+constexpr std::size_t kMostKept = std::size_t{1} << 26u;
 
 /// Whether a draft mirrors at a fragment the mean of what it does on both sides in the same row:
 /// all three whole pixels of one surface that turns by less than a degree, so that no reflection
@@ -56,6 +58,7 @@ void MirrorInputs::clear() {
     visibility_.reset();
     hits_.reset();
     solved_texels_.clear();
+    kept_.clear();
 }
 
 void MirrorInputs::hide_behind(std::shared_ptr<const NodeExchange> nodes,
@@ -106,6 +109,54 @@ void MirrorInputs::trace(const Light& light,
         mesh_, tracer_, *map_, light.eye_mm, *visibility_, product_nodes_->nodes, progress);
 }
 
+void MirrorInputs::solve_part(const MirroredEnvironment& environment,
+                              std::size_t part,
+                              const MirrorLobes& lobes,
+                              std::span<Texels> texels,
+                              const SkyVisibility* joints,
+                              float unit,
+                              std::span<float> sums,
+                              bool known,
+                              const Progress& progress) const {
+    const std::size_t first = layout_.part_begin[part], count = layout_.fragments(part);
+    const std::size_t sums_each = MirroredEnvironment::kSumsALobe * lobes.count();
+    const bool draft = !environment.knows_what_hides();
+    const auto is_mean = [&](std::size_t i) { return draft && lies_between(*map_, i); };
+    parallel_for(count, 1024, [&](std::size_t begin, std::size_t end) {
+        progress.check_stop();
+        MirroredEnvironment::Scratch scratch;
+        for (std::size_t k = begin; k < end; ++k) {
+            const std::size_t i = first + k;
+            if (is_mean(i)) continue;
+            const MirroredLight mirrored = environment.at_fragment(
+                i,
+                lobes,
+                scratch,
+                sums.empty() ? sums : sums.subspan(k * sums_each, sums_each),
+                known);
+            // Who does not ask which lobes are hidden dims those of a joint like its diffuse light
+            const bool joint = draft && joints && map_->fragments[i].coverage < 1.0f;
+            const float scale = (joint ? joints->openness(i) : 1.0f) * unit;
+            for (Texels& to : texels) {
+                const float share = to.layer < kMirrorAlphas.size() ? scale : 1.0f;
+                for (int c = 0; c < 3; ++c) {
+                    to.values[4 * k + static_cast<std::size_t>(c)] = share * mirrored[to.layer][c];
+                }
+            }
+        }
+    });
+    if (!draft) return;
+    parallel_for(count, 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            if (!is_mean(first + k)) continue;
+            for (Texels& to : texels) {
+                float* at = &to.values[4 * k];
+                for (std::size_t c = 0; c < 3; ++c) at[c] = 0.5f * (at[c - 4] + at[c + 4]);
+            }
+        }
+    });
+}
+
 void MirrorInputs::solve(const Light& light,
                          const LayersOfParts& layers,
                          const FilteredEnvironment& filtered,
@@ -125,50 +176,38 @@ void MirrorInputs::solve(const Light& light,
         light.eye_mm,
         hides ? &*visibility_ : nullptr,
         product_nodes_ && hits_ ? MirroredProduct{&*hits_, product_sent_} : MirroredProduct());
+    if (light != light_) kept_.clear();
+    kept_.resize(layers.size());
     std::vector<Texels> all;
     for (std::size_t part = 0; part < layers.size(); ++part) {
+        const std::size_t fragments = layout_.fragments(part);
         // A part out of the picture has no texels
-        if (layers[part].none() || layout_.fragments(part) == 0) continue;
-        const MirrorLobes lobes(layers[part]);
+        if (layers[part].none() || fragments == 0) continue;
         const std::size_t first_texels = all.size();
         const auto size =
             static_cast<std::size_t>(layout_.rectangle(part).height) * kPackedWidth * 4;
         for (std::size_t k = 0; k < kMirrorLayers; ++k) {
             if (layers[part][k]) all.push_back({part, k, std::vector<float>(size, 0.0f)});
         }
-        const std::span<Texels> texels = std::span(all).subspan(first_texels);
-        const std::size_t first = layout_.part_begin[part], count = layout_.fragments(part);
-        const auto is_mean = [&](std::size_t i) { return !hides && lies_between(*map_, i); };
-        parallel_for(count, 1024, [&](std::size_t begin, std::size_t end) {
-            progress.check_stop();
-            MirroredEnvironment::Scratch scratch;
-            for (std::size_t k = begin; k < end; ++k) {
-                const std::size_t i = first + k;
-                if (is_mean(i)) continue;
-                const MirroredLight mirrored = environment.at_fragment(i, lobes, scratch);
-                // Who does not ask which lobes are hidden dims those of a joint like its diffuse
-                // light
-                const bool joint = !hides && joints && map_->fragments[i].coverage < 1.0f;
-                const float scale = (joint ? joints->openness(i) : 1.0f) / unit;
-                for (Texels& to : texels) {
-                    const float share = to.layer < kMirrorAlphas.size() ? scale : 1.0f;
-                    for (int c = 0; c < 3; ++c) {
-                        to.values[4 * k + static_cast<std::size_t>(c)] =
-                            share * mirrored[to.layer][c];
-                    }
-                }
-            }
-        });
-        if (hides) continue;
-        parallel_for(count, 4096, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t k = begin; k < end; ++k) {
-                if (!is_mean(first + k)) continue;
-                for (Texels& to : texels) {
-                    float* at = &to.values[4 * k];
-                    for (std::size_t c = 0; c < 3; ++c) at[c] = 0.5f * (at[c - 4] + at[c + 4]);
-                }
-            }
-        });
+        const MirrorLobes lobes(layers[part]);
+        KeptSums& kept = kept_[part];
+        const std::size_t sums = fragments * MirroredEnvironment::kSumsALobe * lobes.count();
+        const bool known = kept.layers == layers[part] && kept.values.size() == sums;
+        if (!known) {
+            kept = {};
+            if (product_nodes_ && hides && sums <= kMostKept) kept.values.resize(sums);
+        }
+        solve_part(environment,
+                   part,
+                   lobes,
+                   std::span(all).subspan(first_texels),
+                   joints,
+                   1.0f / unit,
+                   kept.values,
+                   known,
+                   progress);
+        // Not before: a stop leaves them half done
+        if (!kept.values.empty()) kept.layers = layers[part];
     }
     if (light != light_) {
         solved_texels_.clear();

@@ -22,6 +22,9 @@
 
 namespace livery {
 
+class MirroredEnvironment;
+class MirrorLobes;
+
 class MirrorInputs {
   public:
     MirrorInputs(const Mesh& mesh,
@@ -88,6 +91,22 @@ class MirrorInputs {
         std::size_t part = 0, layer = 0;
         std::vector<float> values;
     };
+    /// Of a part's fragments, what they mirror of the environment beside the product.
+    struct KeptSums {
+        MirrorLayers layers;
+        std::vector<float> values;
+    };
+    /// `sums`, if there are any, hold the environment's when they are `known`, and take it when
+    /// not.
+    void solve_part(const MirroredEnvironment& environment,
+                    std::size_t part,
+                    const MirrorLobes& lobes,
+                    std::span<Texels> texels,
+                    const SkyVisibility* joints,
+                    float unit,
+                    std::span<float> sums,
+                    bool known,
+                    const Progress& progress) const;
 
     const Mesh& mesh_;
     const Tracer& tracer_;
@@ -105,7 +124,9 @@ class MirrorInputs {
     std::optional<MirrorHits> hits_;  ///< of what visibility_ has traced; none: not asked for yet
     float unit_ = 1.0f;
     std::vector<Texels> solved_texels_;  ///< not yet uploaded
-    bool other_light_ = false;           ///< since the last upload
+    /// While light between parts is solved, so that other paints change no more than that; by part.
+    std::vector<KeptSums> kept_;
+    bool other_light_ = false;  ///< since the last upload
 };
 
 }  // namespace livery

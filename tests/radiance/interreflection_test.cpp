@@ -272,6 +272,26 @@ TEST_P(Interreflection, AMirrorShowsThePartThatItFaces) {
     EXPECT_GT(mirrored.x, 4.0f * mirrored.z) << "the blue wall shines in from behind";
 }
 
+TEST_P(Interreflection, AnotherWallIsMirroredAsIfItHadBeenThereAllAlong) {
+    const HeadlessContext context(GlDevice::automatic);
+    Scene scene = mirror_between_walls();
+    scene.eye_in_world_mm = {6.0, 12.0, 0.0};
+    const View view = look_at(scene.eye_in_world_mm, {0.0, 0.5, 0.0}, 0.2, 48, 36);
+    const auto geometry = std::make_shared<const FrameGeometry>(scene.product, view);
+    const auto drawn = [&](RadianceRenderer& renderer) {
+        FramePlan plan = plan_frame(scene, Quality::high, FrameStage::radiance);
+        renderer.render(scene, plan);
+        return renderer.read_back();
+    };
+    RadianceRenderer kept(geometry, false, GetParam());
+    const ImageF red = drawn(kept);
+    scene.part_materials[1].diffuse = {0.05, 0.6, 0.05};
+    const ImageF green = drawn(kept);
+    RadianceRenderer anew(geometry, false, GetParam());
+    EXPECT_EQ(green.values, drawn(anew).values);
+    EXPECT_NE(green.values, red.values);
+}
+
 INSTANTIATE_TEST_SUITE_P(Devices,
                          Interreflection,
                          ::testing::Values(ShadingDevice::gl, ShadingDevice::processor));

@@ -48,8 +48,8 @@ struct MirrorSumJob {
     std::size_t nodes = 0;         ///< of each facet, a multiple of kNodeBlock
     const float* seen = nullptr;   ///< share of each node of each facet; null: all of all
     const float* width = nullptr;  ///< factor of its Gaussian's variance, where there is `seen`
-    /// Lists of R, of G and of B over all facets: what comes of the share not seen; null: nothing.
-    const float* in_the_way = nullptr;
+    /// Lists of R, of G and of B over all facets: the light of nodes, in place of looking it up.
+    const float* given = nullptr;
     const int* lobes = nullptr;    ///< to be summed
     const bool* grazes = nullptr;  ///< of each, whether what grazes is summed as well
     std::size_t lobe_count = 0;

@@ -207,8 +207,12 @@ void MirroredEnvironment::ask_itself(const MirrorVisibility::Alone& alone, Scrat
 
 MirroredLight MirroredEnvironment::at_fragment(std::size_t fragment,
                                                const MirrorLobes& lobes,
-                                               Scratch& scratch) const {
+                                               Scratch& scratch,
+                                               std::span<float> sums,
+                                               bool known) const {
     const bool hidden = visibility_ && find_seen(fragment, scratch);
+    const bool product_lit = hidden && !scratch.in_the_way.empty();
+    const std::size_t sum_count = kNodeLists * lobes.count();
     const Facets facets = visibility_ ? facets_of(mesh_, map_, fragment, eye_mm_, quadrature_)
                                       : even_facets(map_.fragments[fragment], eye_mm_, quadrature_);
     std::array<MirrorFacet, MirrorQuadrature::kFacets> for_sums;
@@ -218,13 +222,23 @@ MirroredLight MirroredEnvironment::at_fragment(std::size_t fragment,
     job.facets = for_sums.data();
     job.seen = hidden ? scratch.seen.data() : nullptr;
     job.width = scratch.width.data();
-    job.in_the_way = hidden && !scratch.in_the_way.empty() ? scratch.in_the_way.data() : nullptr;
     job.lobes = lobes.lobes();
     job.grazes = lobes.grazes();
     job.lobe_count = lobes.count();
     job.light = scratch.light.data();
     job.sums = scratch.sums.data();
-    best_mirror_sums().sum(job);
+    if (known) {
+        std::copy_n(sums.begin(), sum_count, scratch.sums.begin());
+    } else {
+        best_mirror_sums().sum(job);
+        if (!sums.empty()) std::copy_n(scratch.sums.begin(), sum_count, sums.begin());
+    }
+    if (product_lit) {
+        job.given = scratch.in_the_way.data();
+        job.sums = scratch.of_product.data();
+        best_mirror_sums().sum(job);
+        for (std::size_t k = 0; k < sum_count; ++k) scratch.sums[k] += scratch.of_product[k];
+    }
 
     const Fragment& mean = map_.fragments[fragment];
     const float cosine = std::clamp(glm::dot(toward_eye(mean, eye_mm_), mean.normal), 0.0f, 1.0f);
@@ -237,8 +251,8 @@ MirroredLight MirroredEnvironment::at_fragment(std::size_t fragment,
     };
     for (std::size_t k = 0; k < kMirrorAlphas.size(); ++k) {
         if (!lobes.layers()[k]) continue;
-        const float* sums = sums_of(k);
-        result[k] = scale_ * glm::vec3(sums[0], sums[1], sums[2]);
+        const float* of = sums_of(k);
+        result[k] = scale_ * glm::vec3(of[0], of[1], of[2]);
     }
     for (std::size_t layer = 0; layer < kGrazingLayers; ++layer) {
         const std::size_t to = kMirrorAlphas.size() + layer;
@@ -246,10 +260,10 @@ MirroredLight MirroredEnvironment::at_fragment(std::size_t fragment,
         const std::size_t weight = layer < kHalfAngleLobes.size() ? 3 : 4;
         for (int k = 0; k < 3; ++k) {
             constexpr float kLargest = 8.0f;  // where the term is so small that no one sees it
-            const float* sums = sums_of(grazing_lobes(layer)[static_cast<std::size_t>(k)]);
-            const float usual = (sums[0] + sums[1] + sums[2]) * even.of[layer][k];
+            const float* of = sums_of(grazing_lobes(layer)[static_cast<std::size_t>(k)]);
+            const float usual = (of[0] + of[1] + of[2]) * even.of[layer][k];
             // Without light as of even light
-            result[to][k] = usual > 0.0f ? std::clamp(sums[weight] / usual, 0.0f, kLargest) : 1.0f;
+            result[to][k] = usual > 0.0f ? std::clamp(of[weight] / usual, 0.0f, kLargest) : 1.0f;
         }
     }
     return result;

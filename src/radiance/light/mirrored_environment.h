@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -55,6 +56,8 @@ class MirroredEnvironment {
                         const MirrorVisibility* visibility,
                         const MirroredProduct& product = {});
 
+    bool knows_what_hides() const { return visibility_ != nullptr; }
+
     /// For one thread.
     class Scratch {
         friend class MirroredEnvironment;
@@ -64,12 +67,17 @@ class MirroredEnvironment {
         std::vector<float> seen, width;  ///< by place: the same, and of its Gaussian's variance
         std::vector<float> in_the_way;   ///< by colour and place: hidden_light
         std::vector<float> light;
-        std::array<float, kNodeLists * kMirrorAlphas.size()> sums{};
+        std::array<float, kNodeLists * kMirrorAlphas.size()> sums{}, of_product{};
     };
-    /// Layers that are not asked for are left black.
+    /// Sums over the nodes that see the environment, to be kept: kSumsALobe numbers a lobe.
+    static constexpr std::size_t kSumsALobe = kNodeLists;
+    /// Layers that are not asked for are left black. `sums`, if there are any, take the
+    /// environment's; where those are `known` only the product's light is summed.
     MirroredLight at_fragment(std::size_t fragment,
                               const MirrorLobes& lobes,
-                              Scratch& scratch) const;
+                              Scratch& scratch,
+                              std::span<float> sums = {},
+                              bool known = false) const;
 
   private:
     /// Whether any node is hidden, and by how much each.
