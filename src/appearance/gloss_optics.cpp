@@ -15,6 +15,7 @@
 #include "appearance/directions.h"
 #include "appearance/paint_figures.h"
 #include "core/mutation.h"
+#include "core/quadrature.h"
 
 namespace livery {
 
@@ -32,31 +33,6 @@ Aperture receptor_at(double angle_deg) {
     if (angle_deg == 85.0) return {4.0, 6.0};
     throw std::invalid_argument(
         fmt::format("specular_gloss: {} degrees, expected 20, 60 or 85", angle_deg));
-}
-
-struct Node {
-    double at, weight;  ///< in 0 to 1
-};
-
-/// Gauss and Legendre's rule.
-std::vector<Node> quadrature(int points) {
-    std::vector<Node> nodes;
-    for (int k = 0; k < points; ++k) {
-        double x = std::cos(std::numbers::pi * (k + 0.75) / (points + 0.5));
-        double slope = 1.0;
-        for (int step = 0; step < 20; ++step) {
-            double p = 1.0, before = 0.0;
-            for (int n = 1; n <= points; ++n) {
-                const double next = ((2.0 * n - 1.0) * x * p - (n - 1.0) * before) / n;
-                before = p;
-                p = next;
-            }
-            slope = points * (x * p - before) / (x * x - 1.0);
-            x -= p / slope;
-        }
-        nodes.push_back({0.5 * (1.0 - x), 1.0 / ((1.0 - x * x) * slope * slope)});
-    }
-    return nodes;
 }
 
 /// A rectangle of directions around an axis in the plane of incidence, by its tangents.
@@ -92,7 +68,7 @@ class ApertureWindow {
 double received(const LuminanceFunction& luminance,
                 const ApertureWindow& receptor,
                 const glm::dvec3& wi) {
-    static const std::vector<Node> along_edge = quadrature(10), outward = quadrature(24);
+    static const std::vector<QuadratureNode> along_edge = gauss_legendre(10), outward = gauss_legendre(24);
     constexpr double kNearest = 1e-4;
     const double steps = std::log1p(1.0 / kNearest);
     const glm::dvec2 squeeze(wi.z, 1.0);
@@ -109,11 +85,11 @@ double received(const LuminanceFunction& luminance,
         const double distance = glm::length(foot);
         const double from = std::asinh(glm::dot(a, along) / distance);
         const double to = std::asinh(glm::dot(b, along) / distance);
-        for (const Node& t : along_edge) {
+        for (const QuadratureNode& t : along_edge) {
             const double v = from + t.at * (to - from);
             const glm::dvec2 far = foot + distance * std::sinh(v) * along;
             const double base = t.weight * (to - from) * distance * std::cosh(v);
-            for (const Node& s : outward) {
+            for (const QuadratureNode& s : outward) {
                 const double reach = kNearest * std::expm1(steps * s.at);
                 const glm::dvec2 at = mirror + reach * far / squeeze;
                 const glm::dvec3 wo = receptor.direction(at);
@@ -147,12 +123,12 @@ double fresnel_over_schlick(double f0, double cosine) {
 }
 
 double specular_gloss(const LuminanceFunction& luminance, double angle_deg) {
-    static const std::vector<Node> over_source = quadrature(3);
+    static const std::vector<QuadratureNode> over_source = gauss_legendre(3);
     const ApertureWindow receptor(-glm::radians(angle_deg), receptor_at(angle_deg));
     const ApertureWindow source(glm::radians(angle_deg), kSource);
     double paint = 0.0, standard = 0.0;
-    for (const Node& x : over_source) {
-        for (const Node& y : over_source) {
+    for (const QuadratureNode& x : over_source) {
+        for (const QuadratureNode& y : over_source) {
             const glm::dvec2 at = (2.0 * glm::dvec2(x.at, y.at) - 1.0) * source.half();
             const glm::dvec3 wi = source.direction(at);
             if (!(wi.z > 0.0)) continue;

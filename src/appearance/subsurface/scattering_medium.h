@@ -1,0 +1,44 @@
+// A homogeneous translucent medium: what light meets in it, and what follows from that.
+#pragma once
+
+#include <optional>
+
+namespace livery {
+
+/// Air lies outside. Without a thickness it is a half space, else a slab with air on both sides.
+struct ScatteringMedium {
+    double sigma_a_per_mm = 0.0;  ///< absorption
+    double sigma_s_per_mm = 0.0;  ///< scattering
+    double g = 0.0;               ///< mean cosine of Henyey and Greenstein's phase function
+    double eta = 1.5;             ///< index of refraction over that of air
+    std::optional<double> thickness_mm;
+
+    double sigma_t() const { return sigma_a_per_mm + sigma_s_per_mm; }
+    /// Isotropic scattering that spreads light as far (similarity relation).
+    double sigma_s_prime() const { return sigma_s_per_mm * (1.0 - g); }
+    double sigma_t_prime() const { return sigma_a_per_mm + sigma_s_prime(); }
+    /// sigma_s'/sigma_t'; 0 where nothing is met.
+    double albedo_prime() const;
+    /// 1/sigma_t', the unit of the models' accuracy; infinite where nothing is met.
+    double mean_free_path_mm() const { return 1.0 / sigma_t_prime(); }
+    /// sigma_t' times the thickness; infinite for a half space.
+    double reduced_depth() const;
+};
+
+/// What of the light never scatters, per unit power that arrives (specular) or enters (the others).
+struct UnscatteredLight {
+    double specular = 0.0;     ///< reflected by the surface before it enters
+    double transmitted = 0.0;  ///< through the slab, with what the surfaces throw to and fro
+    double reflected = 0.0;    ///< back out of the top after a mirror reflection at the bottom
+};
+UnscatteredLight unscattered_light(const ScatteringMedium& medium);
+
+/// The smallest radius at which a profile is evaluated, a thousandth of a mean free path: profiles
+/// go as 1/r below, and what is asked for within is the mean over the disc of this radius.
+double least_radius_mm(const ScatteringMedium& medium);
+
+/// Throws std::invalid_argument that names the quantity, what was found and what was expected:
+/// coefficients from 0 to 1e6 per mm, g within -1 and 1, eta .5 to 4, a thickness above 0.
+void check_medium(const ScatteringMedium& medium);
+
+}  // namespace livery

@@ -1,0 +1,260 @@
+#include "appearance/subsurface/subsurface_profile.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "appearance/subsurface/beam_diffusion.h"
+#include "appearance/subsurface/normalized_diffusion.h"
+#include "appearance/subsurface/over_plane.h"
+#include "appearance/subsurface/p3.h"
+#include "appearance/subsurface/single_scattering.h"
+#include "core/error.h"
+
+namespace livery {
+
+namespace {
+
+/// Thinner slabs, in mean free paths, are lit along their depth and not from one point in it.
+constexpr double kThinSlab = 2.5;
+
+/// A profile and its totals, of which each model makes its own.
+struct Made {
+    std::function<Exitance(double)> at;
+    Exitance totals;
+};
+
+Made of_points(const ScatteringMedium& medium,
+               const Diffusion& diffusion,
+               std::vector<double> depths,
+               std::vector<double> powers) {
+    const auto sources = std::make_shared<PointSources>(
+        diffusion, medium.thickness_mm, std::move(depths));
+    Made made;
+    for (std::size_t k = 0; k < powers.size(); ++k) {
+        const Exitance each = sources->total(k);
+        made.totals.reflected += powers[k] * each.reflected;
+        made.totals.transmitted += powers[k] * each.transmitted;
+    }
+    made.at = [sources, powers = std::move(powers)](double r) {
+        std::vector<Exitance> each;
+        sources->at(r, each);
+        Exitance sum;
+        for (std::size_t k = 0; k < powers.size(); ++k) {
+            sum.reflected += powers[k] * each[k].reflected;
+            sum.transmitted += powers[k] * each[k].transmitted;
+        }
+        return sum;
+    };
+    return made;
+}
+
+Made dipole(const ScatteringMedium& medium) {
+    return of_points(medium,
+                     classical_diffusion(medium),
+                     {medium.mean_free_path_mm()},
+                     {medium.albedo_prime()});
+}
+
+Made better_dipole(const ScatteringMedium& medium) {
+    const double albedo = medium.albedo_prime();
+    return of_points(medium,
+                     improved_diffusion(medium),
+                     {medium.mean_free_path_mm()},
+                     {albedo * albedo});
+}
+
+Made multipole(const ScatteringMedium& medium) {
+    if (medium.reduced_depth() >= kThinSlab) return dipole(medium);
+    static const auto nodes = gauss_legendre(16);
+    std::vector<double> depths, powers;
+    for (const QuadratureNode& node : nodes) {
+        const double depth = node.at * medium.reduced_depth();
+        depths.push_back(depth * medium.mean_free_path_mm());
+        powers.push_back(node.weight * medium.reduced_depth() * std::exp(-depth) *
+                         medium.albedo_prime());
+    }
+    return of_points(medium, classical_diffusion(medium), depths, powers);
+}
+
+Made beam_diffusion(const ScatteringMedium& medium) {
+    const auto diffusion = std::make_shared<BeamDiffusion>(medium);
+    return {[diffusion](double r) { return diffusion->at(r); }, diffusion->total()};
+}
+
+Made p3(const ScatteringMedium& medium) {
+    const auto dipole = std::make_shared<P3Dipole>(medium);
+    return {[dipole](double r) { return Exitance{dipole->at(r), 0.0}; }, {dipole->total(), 0.0}};
+}
+
+Made normalized(const ScatteringMedium& medium) {
+    const NormalizedDiffusion diffusion(exact_totals(medium).reflectance,
+                                        medium.mean_free_path_mm());
+    return {[diffusion](double r) { return Exitance{diffusion.at(r), 0.0}; },
+            {diffusion.total(), 0.0}};
+}
+
+/// With what scatters once, which `factor` does not change.
+Made with_single(const ScatteringMedium& medium, const Made& multiple, Exitance factor) {
+    const DiffuseTotals once = single_scattering_totals(medium);
+    Made made;
+    made.totals = {once.reflectance + factor.reflected * multiple.totals.reflected,
+                   once.transmittance + factor.transmitted * multiple.totals.transmitted};
+    made.at = [medium, factor, at = multiple.at](double r) {
+        const Exitance more = at(r);
+        return Exitance{
+            single_scattering_reflectance(medium, r) + factor.reflected * more.reflected,
+            single_scattering_transmittance(medium, r) + factor.transmitted * more.transmitted};
+    };
+    return made;
+}
+
+/// What is missing from single scattering to the exact total, in the shape of beam diffusion.
+Made scaled(const ScatteringMedium& medium) {
+    const Made multiple = beam_diffusion(medium);
+    const DiffuseTotals exact = exact_totals(medium), once = single_scattering_totals(medium);
+    const auto factor = [](double whole, double part, double shape) {
+        return shape > 0.0 ? std::max(whole - part, 0.0) / shape : 0.0;
+    };
+    return with_single(
+        medium,
+        multiple,
+        {factor(exact.reflectance, once.reflectance, multiple.totals.reflected),
+         factor(exact.transmittance, once.transmittance, multiple.totals.transmitted)});
+}
+
+Made made_of(SubsurfaceModel model, const ScatteringMedium& medium) {
+    const auto alone = Exitance{1.0, 1.0};
+    switch (model) {
+        case SubsurfaceModel::dipole: return dipole(medium);
+        case SubsurfaceModel::better_dipole:
+            return with_single(medium, better_dipole(medium), alone);
+        case SubsurfaceModel::beam_diffusion:
+            return with_single(medium, beam_diffusion(medium), alone);
+        case SubsurfaceModel::scaled_beam_diffusion: return scaled(medium);
+        case SubsurfaceModel::multipole: return multipole(medium);
+        case SubsurfaceModel::p3: return p3(medium);
+        case SubsurfaceModel::normalized_diffusion: return normalized(medium);
+    }
+    throw std::logic_error("subsurface_profile: no such model");
+}
+
+/// At r, or the mean over the smallest disc.
+double value_at(const std::function<double(double)>& profile, double least, double radius) {
+    check_argument(radius >= 0.0 && std::isfinite(radius),
+                   fmt::format("radius: found {} mm, expected 0 or more", radius));
+    if (!(least > 0.0)) return 0.0;
+    if (radius >= least) return profile(radius);
+    const auto both = [&](double r) { return Exitance{profile(r), 0.0}; };
+    return over_disc(1e-4 * least, least, both).reflected / (std::numbers::pi * least * least);
+}
+
+}  // namespace
+
+const std::vector<SubsurfaceModelInfo>& subsurface_models() {
+    using enum SubsurfaceModel;
+    static const std::vector<SubsurfaceModelInfo> models{
+        {dipole, "dipole", true, false, "a point source and its image (Jensen et al. 2001)"},
+        {better_dipole,
+         "better-dipole",
+         true,
+         false,
+         "Grosjean's diffusion and exitance (d'Eon 2012), with single scattering"},
+        {beam_diffusion,
+         "beam-diffusion",
+         true,
+         true,
+         "sources along the beam (Habel et al. 2013), with single scattering"},
+        {scaled_beam_diffusion,
+         "scaled-beam-diffusion",
+         true,
+         true,
+         "the same, diffusion scaled to the exact total"},
+        {multipole, "multipole", false, true, "images on both sides of a slab (Donner and Jensen 2005)"},
+        {p3, "p3", true, false, "third-order spherical harmonics, a point source and its image"},
+        {normalized_diffusion,
+         "normalized-diffusion",
+         true,
+         false,
+         "two exponentials fitted to Monte Carlo (Christensen and Burley 2015)"},
+    };
+    return models;
+}
+
+const SubsurfaceModelInfo& info_of(SubsurfaceModel model) {
+    for (const SubsurfaceModelInfo& info : subsurface_models()) {
+        if (info.model == model) return info;
+    }
+    throw std::logic_error("subsurface model without a row");
+}
+
+std::optional<SubsurfaceModel> find_subsurface_model(std::string_view name) {
+    for (const SubsurfaceModelInfo& info : subsurface_models()) {
+        if (info.name == name) return info.model;
+    }
+    return std::nullopt;
+}
+
+SubsurfaceProfile subsurface_profile(SubsurfaceModel model, const ScatteringMedium& medium) {
+    check_medium(medium);
+    const SubsurfaceModelInfo& info = info_of(model);
+    check_argument(medium.thickness_mm ? info.slab : info.half_space,
+                   fmt::format("model: found {} for a {}, expected a model of one",
+                               info.name,
+                               medium.thickness_mm ? "slab" : "half space"));
+    SubsurfaceProfile profile;
+    profile.model = model;
+    profile.least_radius_mm = least_radius_mm(medium);
+    // Nothing scatters: nothing comes back, and no model has a formula for it.
+    if (!(medium.sigma_s_prime() > 0.0)) {
+        profile.reflected = profile.transmitted = [](double) { return 0.0; };
+        return profile;
+    }
+    const Made made = made_of(model, medium);
+    profile.totals = {std::clamp(made.totals.reflected, 0.0, 1.0),
+                      std::clamp(made.totals.transmitted, 0.0, 1.0)};
+    profile.reflected = [at = made.at](double r) { return std::max(at(r).reflected, 0.0); };
+    profile.transmitted = [at = made.at](double r) { return std::max(at(r).transmitted, 0.0); };
+    if (model == SubsurfaceModel::p3) {
+        for (double paths = 1e-2; paths < 1e2 && !profile.was_negative; paths *= 1.3) {
+            profile.was_negative = made.at(paths * medium.mean_free_path_mm()).reflected < 0.0;
+        }
+    }
+    return profile;
+}
+
+double SubsurfaceProfile::reflectance(double radius_mm) const {
+    return value_at(reflected, least_radius_mm, radius_mm);
+}
+
+double SubsurfaceProfile::transmittance(double radius_mm) const {
+    return value_at(transmitted, least_radius_mm, radius_mm);
+}
+
+double energy_radius_mm(const SubsurfaceProfile& profile,
+                        const ScatteringMedium& medium,
+                        double share) {
+    check_argument(share > 0.0 && share < 1.0,
+                   fmt::format("share: found {}, expected above 0 and below 1", share));
+    if (!(profile.least_radius_mm > 0.0) || !(profile.totals.reflectance > 0.0)) return 0.0;
+    const double path = medium.mean_free_path_mm();
+    const auto f = [&](double r) { return Exitance{profile.reflected(r), 0.0}; };
+    // Rings of a tenth in the logarithm, until there is enough.
+    double within = over_disc(1e-5 * path, 1e-3 * path, f).reflected;
+    const double wanted = share * profile.totals.reflectance;
+    double r = 1e-3 * path;
+    for (int k = 0; k < 200; ++k) {
+        const double next = r * std::exp(0.1);
+        const double ring = std::numbers::pi * (next * next - r * r) * f(std::sqrt(r * next)).reflected;
+        if (within + ring >= wanted) return r * std::exp(0.1 * (wanted - within) / ring);
+        within += ring;
+        r = next;
+    }
+    return r;
+}
+
+}  // namespace livery

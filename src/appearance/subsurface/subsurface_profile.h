@@ -1,0 +1,69 @@
+// Diffuse reflectance profiles R_d(r) of translucent media: how far from where light enters it
+// leaves again, by the models of the field.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "appearance/subsurface/exact_totals.h"
+
+namespace livery {
+
+enum class SubsurfaceModel {
+    dipole,                 ///< Jensen, Marschner, Levoy and Hanrahan 2001
+    better_dipole,          ///< d'Eon 2012 with single scattering
+    beam_diffusion,         ///< Habel, Christensen and Jarosz 2013 with single scattering
+    scaled_beam_diffusion,  ///< the same, scaled to the exact total
+    multipole,              ///< Donner and Jensen 2005
+    p3,                     ///< third-order spherical harmonics, Hull and Foster 2001
+    normalized_diffusion,   ///< Christensen and Burley 2015
+};
+
+struct SubsurfaceModelInfo {
+    SubsurfaceModel model;
+    const char* name;
+    bool half_space, slab;
+    const char* summary;
+};
+const std::vector<SubsurfaceModelInfo>& subsurface_models();
+const SubsurfaceModelInfo& info_of(SubsurfaceModel model);
+/// Nothing for a name that no model has.
+std::optional<SubsurfaceModel> find_subsurface_model(std::string_view name);
+
+/// One model of one medium, with what does not depend on the radius worked out.
+struct SubsurfaceProfile {
+    SubsurfaceModel model = SubsurfaceModel::scaled_beam_diffusion;
+    /// Of light that scattered, over the whole plane, per unit power that enters.
+    DiffuseTotals totals;
+    /// Some values of the model were below 0 and are given as 0: not a medium for it.
+    bool was_negative = false;
+    /// What the model says at r > 0, per mm^2 and unit power that enters, never below 0.
+    std::function<double(double radius_mm)> reflected, transmitted;
+    double least_radius_mm = 0.0;
+
+    /// The profile at r, and the mean over the disc of `least_radius_mm` within it. Finite. Throws
+    /// std::invalid_argument for a negative radius or one that is no number.
+    double reflectance(double radius_mm) const;
+    double transmittance(double radius_mm) const;
+};
+
+/// Throws std::invalid_argument (a medium out of range, a model that knows no slab or nothing but
+/// slabs).
+SubsurfaceProfile subsurface_profile(SubsurfaceModel model, const ScatteringMedium& medium);
+
+struct ModelChoice {
+    SubsurfaceModel model;
+    std::string why;
+};
+/// The analytic model that is nearest to Monte Carlo for such a medium, and what says so.
+ModelChoice best_model(const ScatteringMedium& medium);
+
+/// Radius within which this share of what leaves the top does so, by the profile.
+double energy_radius_mm(const SubsurfaceProfile& profile,
+                        const ScatteringMedium& medium,
+                        double share);
+
+}  // namespace livery
