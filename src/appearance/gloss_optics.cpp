@@ -68,7 +68,8 @@ class ApertureWindow {
 double received(const LuminanceFunction& luminance,
                 const ApertureWindow& receptor,
                 const glm::dvec3& wi) {
-    static const std::vector<QuadratureNode> along_edge = gauss_legendre(10), outward = gauss_legendre(24);
+    static const std::vector<QuadratureNode> along_edge = gauss_legendre(10),
+                                             outward = gauss_legendre(24);
     constexpr double kNearest = 1e-4;
     const double steps = std::log1p(1.0 / kNearest);
     const glm::dvec2 squeeze(wi.z, 1.0);

@@ -59,6 +59,7 @@ int run(const std::vector<std::string>& arguments) {
                                      plan_command(),
                                      brdf_command(),
                                      albedo_command(),
+                                     bssrdf_command(),
                                      paints_command(),
                                      patterns_command(),
                                      board_command(),
@@ -74,6 +75,7 @@ int run(const std::vector<std::string>& arguments) {
                                      calibrate_scan_command(),
                                      measure_brdf_command(),
                                      fit_brdf_command(),
+                                     fit_bssrdf_command(),
                                      compensate_command(),
                                      check_command(),
                                      bench_command()};

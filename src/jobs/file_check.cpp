@@ -10,6 +10,8 @@
 #include "appearance/material_library.h"
 #include "appearance/measured/measured_paint.h"
 #include "appearance/measured/measured_reflectance.h"
+#include "appearance/subsurface/radial_profile.h"
+#include "appearance/subsurface/translucent_material.h"
 #include "calibration/registration/picked_points.h"
 #include "capture/captures_folder.h"
 #include "capture/patterns_folder.h"
@@ -267,6 +269,10 @@ FileKind kind_of_json(const Path& file, const Progress& progress) {
         return {"origin of a calibration",
                 [](const Path& path, FileCheck&) { read_origin(path.parent_path()); }};
     }
+    if (has("kind") && json["kind"] == "translucent") {
+        return {"translucent",
+                [](const Path& path, FileCheck&) { read_translucent_material(path); }};
+    }
     if (has("kind") && json["kind"] == "pose") {
         return {"pose", [](const Path& path, FileCheck&) { read_pose_file(path); }};
     }
@@ -291,12 +297,13 @@ FileKind kind_of_json(const Path& file, const Progress& progress) {
         return {"camera-to-xyz", [](const Path& path, FileCheck&) { read_camera_to_xyz(path); }};
     }
     return {"unknown", [](const Path& path, FileCheck&) {
-                throw FileError(path,
-                                "",
-                                "a JSON object of no known kind",
-                                "a material, look, product, bench, camera, geometry, pose, room, "
-                                "camera-to-xyz or captures "
-                                "file");
+                throw FileError(
+                    path,
+                    "",
+                    "a JSON object of no known kind",
+                    "a material, translucent material, look, product, bench, camera, geometry, "
+                    "pose, room, camera-to-xyz or captures "
+                    "file");
             }};
 }
 
@@ -323,6 +330,11 @@ FileKind kind_of_csv(const Path& file) {
                 }};
     }
     if (csv.find("theta_i")) return {"measured", check_measured};
+    if (csv.find("r_mm") && csv.find("rd")) {
+        return {"profile", [](const Path& path, FileCheck& check) {
+                    check.notes.push_back(std::to_string(read_profile_csv(path).size()) + " radii");
+                }};
+    }
     if (csv.find("u_px")) {
         return {
             "points", [](const Path& path, FileCheck& check) {
@@ -332,7 +344,8 @@ FileKind kind_of_csv(const Path& file) {
     throw FileError(file,
                     "header",
                     "'" + csv.names().front().substr(0, 40) + "', ...",
-                    "the columns of spectra, directions, measured reflectance or picked points");
+                    "the columns of spectra, directions, measured reflectance, a radial profile or "
+                    "picked points");
 }
 
 FileKind kind_of(const Path& file, const Progress& progress) {

@@ -34,7 +34,7 @@ void expect_refusal(const std::vector<std::string>& arguments,
 }
 
 TEST(Messages, NameTheOptionWhatWasFoundAndWhatWasExpected) {
-    expect_refusal({"bssrdf"}, {"\"bssrdf\"", "livery help"});
+    expect_refusal({"polish"}, {"\"polish\"", "livery help"});
     expect_refusal({"calibrate"}, {"\"calibrate\"", "livery help"});
     expect_refusal({"calibrate", "weather"}, {"\"calibrate weather\"", "livery help"});
     const auto geometry = [](std::vector<std::string> more) {

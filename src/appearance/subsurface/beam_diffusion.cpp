@@ -70,7 +70,8 @@ Exitance BeamDiffusion::at(double radius_mm) const {
 }
 
 Exitance BeamDiffusion::total() const {
-    return over_plane(1.0 / sigma_t_prime_, sources_.decay_per_mm(), [&](double r) { return at(r); });
+    return over_plane(
+        1.0 / sigma_t_prime_, sources_.decay_per_mm(), [&](double r) { return at(r); });
 }
 
 }  // namespace livery

@@ -1,11 +1,37 @@
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "appearance/subsurface/subsurface_profile.h"
 
 namespace livery {
 
-ModelChoice best_model(const ScatteringMedium&) {
-    return {SubsurfaceModel::scaled_beam_diffusion, ""};
+namespace {
+
+/// By how much of all light the profile was off in the media of docs/subsurface.md that are like
+/// this one, in per cent; for slabs the worse of both sides. The test of compared_media() holds it
+/// against Monte Carlo.
+int measured_error(const ScatteringMedium& medium) {
+    const double forward = std::abs(medium.g);
+    const bool no_step = std::abs(medium.eta - 1.0) < 0.1;
+    if (medium.thickness_mm) return forward > 0.5 ? 25 : 9;
+    if (forward > 0.85) return 25;
+    if (forward > 0.5 || no_step || medium.eta > 1.8) return 8;
+    return 4;
+}
+
+}  // namespace
+
+ModelChoice best_model(const ScatteringMedium& medium) {
+    constexpr auto kBest = SubsurfaceModel::scaled_beam_diffusion;
+    if (!(medium.sigma_s_prime() > 0.0)) {
+        return {kBest, "nothing scatters here, which every model knows"};
+    }
+    return {kBest,
+            fmt::format("single scattering and beam diffusion, scaled to the exact total, are the "
+                        "nearest to Monte Carlo in all kinds of media compared, within {}% of "
+                        "the light in those like this one",
+                        measured_error(medium))};
 }
 
 }  // namespace livery

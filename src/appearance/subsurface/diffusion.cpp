@@ -31,8 +31,7 @@ Point point(double sigma, double z, double r) {
 /// sinh(sigma x)/sinh(sigma l) for 0 <= x <= l, x/l where nothing is absorbed.
 double sinh_ratio(double sigma, double x, double l) {
     if (sigma * l < 1e-9) return x / l;
-    return std::exp(-sigma * (l - x)) * std::expm1(-2.0 * sigma * x) /
-           std::expm1(-2.0 * sigma * l);
+    return std::exp(-sigma * (l - x)) * std::expm1(-2.0 * sigma * x) / std::expm1(-2.0 * sigma * l);
 }
 
 }  // namespace
@@ -42,7 +41,8 @@ Diffusion classical_diffusion(const ScatteringMedium& medium) {
     Diffusion d;
     d.coefficient_mm = 1.0 / (3.0 * medium.sigma_t_prime());
     d.sigma_tr_per_mm = std::sqrt(medium.sigma_a_per_mm / d.coefficient_mm);
-    d.extrapolation_mm = 2.0 * d.coefficient_mm * (1.0 + 2.0 * moments.c1) / (1.0 - 2.0 * moments.c1);
+    d.extrapolation_mm =
+        2.0 * d.coefficient_mm * (1.0 + 2.0 * moments.c1) / (1.0 - 2.0 * moments.c1);
     return d;
 }
 
@@ -50,10 +50,10 @@ Diffusion improved_diffusion(const ScatteringMedium& medium) {
     const FresnelMoments moments = fresnel_moments(medium.eta);
     const double all = medium.sigma_t_prime();
     Diffusion d;
-    d.coefficient_mm =
-        (medium.sigma_a_per_mm + all) / (3.0 * all * all);  // 2 sigma_a + sigma_s'
+    d.coefficient_mm = (medium.sigma_a_per_mm + all) / (3.0 * all * all);  // 2 sigma_a + sigma_s'
     d.sigma_tr_per_mm = std::sqrt(medium.sigma_a_per_mm / d.coefficient_mm);
-    d.extrapolation_mm = 2.0 * d.coefficient_mm * (1.0 + 3.0 * moments.c2) / (1.0 - 2.0 * moments.c1);
+    d.extrapolation_mm =
+        2.0 * d.coefficient_mm * (1.0 + 3.0 * moments.c2) / (1.0 - 2.0 * moments.c1);
     d.fluence_share = 0.25 * (1.0 - 2.0 * moments.c1);
     d.flux_share = 0.5 * (1.0 - 3.0 * moments.c2);
     return d;
@@ -70,10 +70,10 @@ PointSources::PointSources(const Diffusion& diffusion,
     const double zb = diffusion_.extrapolation_mm;
     for (int n = 1; n <= kModes; ++n) {
         const double wave = n * kPi / period_;
-        mode_exit_.push_back((diffusion_.fluence_share / diffusion_.coefficient_mm *
-                                  std::sin(wave * zb) +
-                              diffusion_.flux_share * wave * std::cos(wave * zb)) /
-                             (kPi * period_));
+        mode_exit_.push_back(
+            (diffusion_.fluence_share / diffusion_.coefficient_mm * std::sin(wave * zb) +
+             diffusion_.flux_share * wave * std::cos(wave * zb)) /
+            (kPi * period_));
     }
     for (const double depth : depths_) {
         for (int n = 1; n <= kModes; ++n) {
@@ -142,9 +142,9 @@ void PointSources::at(double radius, std::vector<Exitance>& out) const {
         const double wave = (modes + 1) * kPi / period_;
         const double x = std::hypot(diffusion_.sigma_tr_per_mm, wave) * radius;
         if (modes > 0 && wave * radius > kPi / period_ * radius + 25.0) break;
-        weights[modes] = x < 700.0 ? mode_exit_[static_cast<std::size_t>(modes)] *
-                                         std::cyl_bessel_k(0.0, x)
-                                   : 0.0;
+        weights[modes] =
+            x < 700.0 ? mode_exit_[static_cast<std::size_t>(modes)] * std::cyl_bessel_k(0.0, x)
+                      : 0.0;
         ++modes;
     }
     for (std::size_t k = 0; k < depths_.size(); ++k) {

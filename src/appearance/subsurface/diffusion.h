@@ -10,11 +10,11 @@ namespace livery {
 
 /// A diffusion equation with its boundary condition and the way that light is taken to leave.
 struct Diffusion {
-    double coefficient_mm = 0.0;      ///< D
-    double sigma_tr_per_mm = 0.0;     ///< sqrt(sigma_a/D)
-    double extrapolation_mm = 0.0;    ///< z_b = 2 A D: where the fluence vanishes outside
-    double fluence_share = 0.0;       ///< of the exitance, times the fluence
-    double flux_share = 1.0;          ///< times the flux through the boundary
+    double coefficient_mm = 0.0;    ///< D
+    double sigma_tr_per_mm = 0.0;   ///< sqrt(sigma_a/D)
+    double extrapolation_mm = 0.0;  ///< z_b = 2 A D: where the fluence vanishes outside
+    double fluence_share = 0.0;     ///< of the exitance, times the fluence
+    double flux_share = 1.0;        ///< times the flux through the boundary
 };
 
 /// D = 1/(3 sigma_t'), A = (1 + 2 C1)/(1 - 2 C1), flux alone: Jensen et al. 2001, Donner and Jensen

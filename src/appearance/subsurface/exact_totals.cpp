@@ -70,7 +70,8 @@ std::pair<Matrix, Matrix> redistribution(const Vector& mu, double g, double cut,
 }
 
 /// A layer so thin that intensities go straight across it (the diamond rule, Wiscombe 1976).
-Layer thin_layer(const Angles& angles, double albedo, double depth, double g, double cut, int terms) {
+Layer thin_layer(
+    const Angles& angles, double albedo, double depth, double g, double cut, int terms) {
     const auto [forward, back] = redistribution(angles.mu, g, cut, terms);
     const Eigen::Index count = angles.mu.size();
     const Matrix one = Matrix::Identity(count, count);
@@ -106,8 +107,8 @@ DiffuseTotals exact_totals(const ScatteringMedium& medium, int points) {
     // All that enters a half space comes out again.
     if (!medium.thickness_mm && medium.sigma_a_per_mm == 0.0) return {1.0, 0.0};
     const Angles angles = angles_of(medium.eta, points);
-    const double cut = std::pow(std::abs(medium.g), points) *
-                       (medium.g < 0.0 && points % 2 != 0 ? -1.0 : 1.0);
+    const double cut =
+        std::pow(std::abs(medium.g), points) * (medium.g < 0.0 && points % 2 != 0 ? -1.0 : 1.0);
     const double scattered = medium.sigma_s_per_mm * (1.0 - cut);
     const double extinction = medium.sigma_a_per_mm + scattered;
     const double albedo = scattered / extinction;

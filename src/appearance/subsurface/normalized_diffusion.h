@@ -1,4 +1,5 @@
-// Normalised diffusion (Christensen and Burley 2015): two exponentials whose integral is the albedo.
+// Normalised diffusion (Christensen and Burley 2015): two exponentials whose integral is the
+// albedo.
 #pragma once
 
 namespace livery {

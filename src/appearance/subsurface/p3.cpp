@@ -37,9 +37,8 @@ P3Dipole::P3Dipole(const ScatteringMedium& medium) {
     const double diffusion = 3.0 * large2 / (35.0 * s1 * s2 * s3);
     const auto third = [&](double second) { return 3.0 * second / (7.0 * s3); };
     const double small_second = 2.0 * diffusion / (5.0 * s2 - 9.0 * small2 / (7.0 * s3));
-    roots_[0] = {std::sqrt(small2),
-                 strength(small2),
-                 {1.0, diffusion, small_second, third(small_second)}};
+    roots_[0] = {
+        std::sqrt(small2), strength(small2), {1.0, diffusion, small_second, third(small_second)}};
     const double large_second = (1.5 * s0 * s1 / large2 - 0.5) / large2;
     roots_[1] = {std::sqrt(large2),
                  -strength(large2),
@@ -59,10 +58,8 @@ double P3Dipole::moments_at(double depth, double radius) const {
     double sum = 0.0;
     for (const Root& r : roots_) {
         const double x = r.nu * d;
-        const std::array<double, 4> radial{1.0,
-                                           1.0 + x,
-                                           3.0 + x * (3.0 + x),
-                                           15.0 + x * (15.0 + x * (6.0 + x))};
+        const std::array<double, 4> radial{
+            1.0, 1.0 + x, 3.0 + x * (3.0 + x), 15.0 + x * (15.0 + x * (6.0 + x))};
         double of_root = 0.0, power = 1.0 / d;
         for (std::size_t l = 0; l < 4; ++l) {
             of_root += 0.5 * (2.0 * static_cast<double>(l) + 1.0) * passed_[l] * r.moment[l] *

@@ -19,7 +19,7 @@ class P3Dipole {
 
   private:
     struct Root {
-        double nu = 0.0;      ///< decay, per mm
+        double nu = 0.0;  ///< decay, per mm
         double strength = 0.0;
         /// G_l/nu^l: what the moment of degree l has of it.
         std::array<double, 4> moment{};

@@ -38,7 +38,8 @@ double least_radius_mm(const ScatteringMedium& medium) {
 void check_medium(const ScatteringMedium& medium) {
     const auto check = [](bool holds, const char* what, double found, const char* expected) {
         if (holds) return;
-        throw std::invalid_argument(fmt::format("{}: found {}, expected {}", what, found, expected));
+        throw std::invalid_argument(
+            fmt::format("{}: found {}, expected {}", what, found, expected));
     };
     const auto coefficient = [](double value) { return value >= 0.0 && value <= 1e6; };
     constexpr const char* kCoefficients = "0 to 1000000 per mm";

@@ -69,8 +69,8 @@ double exitance(const ScatteringMedium& medium, double r, Exit beams) {
     double low = 2.0 * std::atan(1.0 / deepest);
     const double thickness = medium.thickness_mm.value_or(0.0);
     if (medium.thickness_mm) {
-        low = beams.toward > 0.0 ? std::atan2(r, thickness)
-                                 : std::max(low, std::atan2(r, thickness));
+        low =
+            beams.toward > 0.0 ? std::atan2(r, thickness) : std::max(low, std::atan2(r, thickness));
     }
     if (low >= high) return 0.0;
     const auto at = [&](double angle) {
@@ -91,8 +91,9 @@ double exitance(const ScatteringMedium& medium, double r, Exit beams) {
         }
         return scattered * cosine * (1.0 - dielectric_reflectance(medium.eta, cosine));
     };
-    return LIVERY_MUTATED(single_scattering,
-                          medium.sigma_s_per_mm / r * integrate_angles(low, high, 1.0 - std::abs(medium.g), at));
+    return LIVERY_MUTATED(
+        single_scattering,
+        medium.sigma_s_per_mm / r * integrate_angles(low, high, 1.0 - std::abs(medium.g), at));
 }
 
 /// Over the plane, the depth integrated in closed form.
@@ -107,8 +108,7 @@ double total(const ScatteringMedium& medium, Exit beams) {
         const double weight = 2.0 * t.at * t.weight * (1.0 - critical);
         // int e^{-tau} e^{-tau/mu} dtau, and int e^{-(T - tau)} e^{-tau/mu} dtau
         const double steep = 1.0 + 1.0 / mu;
-        const double away =
-            (medium.thickness_mm ? -std::expm1(-optical * steep) : 1.0) / steep;
+        const double away = (medium.thickness_mm ? -std::expm1(-optical * steep) : 1.0) / steep;
         const double slope = 1.0 / mu - 1.0;
         const double x = optical * slope;
         const double toward =

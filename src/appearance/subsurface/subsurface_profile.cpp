@@ -32,8 +32,8 @@ Made of_points(const ScatteringMedium& medium,
                const Diffusion& diffusion,
                std::vector<double> depths,
                std::vector<double> powers) {
-    const auto sources = std::make_shared<PointSources>(
-        diffusion, medium.thickness_mm, std::move(depths));
+    const auto sources =
+        std::make_shared<PointSources>(diffusion, medium.thickness_mm, std::move(depths));
     Made made;
     for (std::size_t k = 0; k < powers.size(); ++k) {
         const Exitance each = sources->total(k);
@@ -54,18 +54,14 @@ Made of_points(const ScatteringMedium& medium,
 }
 
 Made dipole(const ScatteringMedium& medium) {
-    return of_points(medium,
-                     classical_diffusion(medium),
-                     {medium.mean_free_path_mm()},
-                     {medium.albedo_prime()});
+    return of_points(
+        medium, classical_diffusion(medium), {medium.mean_free_path_mm()}, {medium.albedo_prime()});
 }
 
 Made better_dipole(const ScatteringMedium& medium) {
     const double albedo = medium.albedo_prime();
-    return of_points(medium,
-                     improved_diffusion(medium),
-                     {medium.mean_free_path_mm()},
-                     {albedo * albedo});
+    return of_points(
+        medium, improved_diffusion(medium), {medium.mean_free_path_mm()}, {albedo * albedo});
 }
 
 Made multipole(const ScatteringMedium& medium) {
@@ -94,7 +90,9 @@ Made p3(const ScatteringMedium& medium) {
 Made normalized(const ScatteringMedium& medium) {
     const NormalizedDiffusion diffusion(exact_totals(medium).reflectance,
                                         medium.mean_free_path_mm());
-    return {[diffusion](double r) { return Exitance{diffusion.at(r), 0.0}; },
+    return {[diffusion](double r) {
+                return Exitance{diffusion.at(r), 0.0};
+            },
             {diffusion.total(), 0.0}};
 }
 
@@ -130,15 +128,20 @@ Made scaled(const ScatteringMedium& medium) {
 Made made_of(SubsurfaceModel model, const ScatteringMedium& medium) {
     const auto alone = Exitance{1.0, 1.0};
     switch (model) {
-        case SubsurfaceModel::dipole: return dipole(medium);
+        case SubsurfaceModel::dipole:
+            return dipole(medium);
         case SubsurfaceModel::better_dipole:
             return with_single(medium, better_dipole(medium), alone);
         case SubsurfaceModel::beam_diffusion:
             return with_single(medium, beam_diffusion(medium), alone);
-        case SubsurfaceModel::scaled_beam_diffusion: return scaled(medium);
-        case SubsurfaceModel::multipole: return multipole(medium);
-        case SubsurfaceModel::p3: return p3(medium);
-        case SubsurfaceModel::normalized_diffusion: return normalized(medium);
+        case SubsurfaceModel::scaled_beam_diffusion:
+            return scaled(medium);
+        case SubsurfaceModel::multipole:
+            return multipole(medium);
+        case SubsurfaceModel::p3:
+            return p3(medium);
+        case SubsurfaceModel::normalized_diffusion:
+            return normalized(medium);
     }
     throw std::logic_error("subsurface_profile: no such model");
 }
@@ -174,7 +177,11 @@ const std::vector<SubsurfaceModelInfo>& subsurface_models() {
          true,
          true,
          "the same, diffusion scaled to the exact total"},
-        {multipole, "multipole", false, true, "images on both sides of a slab (Donner and Jensen 2005)"},
+        {multipole,
+         "multipole",
+         false,
+         true,
+         "images on both sides of a slab (Donner and Jensen 2005)"},
         {p3, "p3", true, false, "third-order spherical harmonics, a point source and its image"},
         {normalized_diffusion,
          "normalized-diffusion",
@@ -249,7 +256,8 @@ double energy_radius_mm(const SubsurfaceProfile& profile,
     double r = 1e-3 * path;
     for (int k = 0; k < 200; ++k) {
         const double next = r * std::exp(0.1);
-        const double ring = std::numbers::pi * (next * next - r * r) * f(std::sqrt(r * next)).reflected;
+        const double ring =
+            std::numbers::pi * (next * next - r * r) * f(std::sqrt(r * next)).reflected;
         if (within + ring >= wanted) return r * std::exp(0.1 * (wanted - within) / ring);
         within += ring;
         r = next;
