@@ -14,7 +14,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr int kModes = 40;
 constexpr double kModesFrom = 0.2;  // of the period
-constexpr int kMostPairs = 40;
+constexpr int kMostPairs = 12;
 
 /// e^{-sigma d}/d and z (1 + sigma d) e^{-sigma d}/d^3.
 struct Point {
@@ -104,28 +104,34 @@ Exitance PointSources::images(double depth, double radius) const {
     const double sigma = diffusion_.sigma_tr_per_mm;
     const double zb = diffusion_.extrapolation_mm;
     const double thickness = *thickness_;
-    double top_fluence = 0.0, top_flux = 0.0, bottom_fluence = 0.0, bottom_flux = 0.0;
+    const double f = diffusion_.fluence_share / diffusion_.coefficient_mm;
+    const double e = diffusion_.flux_share;
+    Exitance sum;
     const auto add = [&](double z, double sign) {
         const Point top = point(sigma, z, radius);
         const Point bottom = point(sigma, thickness - z, radius);
-        top_fluence += sign * top.fluence;
-        top_flux += sign * top.flux;
-        bottom_fluence += sign * bottom.fluence;
-        bottom_flux += sign * bottom.flux;
+        sum.reflected += sign * (f * top.fluence + e * top.flux);
+        sum.transmitted += sign * (f * bottom.fluence + e * bottom.flux);
     };
-    for (int pair = 0; pair <= kMostPairs; ++pair) {
+    add(depth, 1.0);
+    add(-depth - 2.0 * zb, -1.0);
+    for (int pair = 1; pair <= kMostPairs; ++pair) {
+        const Exitance before = sum;
         for (const double side : {1.0, -1.0}) {
-            if (pair == 0 && side < 0.0) continue;
             const double shift = side * 2.0 * pair * period_;
             add(shift + depth, 1.0);
             add(shift - depth - 2.0 * zb, -1.0);
         }
         if (2.0 * pair * period_ * sigma > 40.0) break;
+        if (pair < kMostPairs) continue;
+        // Without absorption the pairs that are left fall off like the cube.
+        const double left =
+            0.5 * (kMostPairs - 1.0) * std::exp(-2.0 * kMostPairs * period_ * sigma);
+        sum.reflected += left * (sum.reflected - before.reflected);
+        sum.transmitted += left * (sum.transmitted - before.transmitted);
     }
-    const double f = diffusion_.fluence_share / diffusion_.coefficient_mm;
-    const double e = diffusion_.flux_share;
-    return {std::max(f * top_fluence + e * top_flux, 0.0) / (4.0 * kPi),
-            std::max(f * bottom_fluence + e * bottom_flux, 0.0) / (4.0 * kPi)};
+    return {std::max(sum.reflected, 0.0) / (4.0 * kPi),
+            std::max(sum.transmitted, 0.0) / (4.0 * kPi)};
 }
 
 void PointSources::at(double radius, std::vector<Exitance>& out) const {

@@ -152,6 +152,14 @@ DiffuseTotals exact_totals(const ScatteringMedium& medium, int points) {
     DiffuseTotals totals;
     totals.reflectance = LIVERY_MUTATED(exact_totals, std::clamp(up, 0.0, 1.0));
     totals.transmittance = medium.thickness_mm ? std::clamp(down, 0.0, 1.0) : 0.0;
+    // Rounding of forty doublings may gain some millionths, and lose them where nothing is
+    // absorbed.
+    const double scattered_share = 1.0 - unscattered.reflected - unscattered.transmitted;
+    const double sum = totals.reflectance + totals.transmittance;
+    if (sum > scattered_share || (medium.sigma_a_per_mm == 0.0 && sum > 0.0)) {
+        totals.reflectance *= scattered_share / sum;
+        totals.transmittance *= scattered_share / sum;
+    }
     return totals;
 }
 

@@ -222,10 +222,21 @@ SubsurfaceProfile subsurface_profile(SubsurfaceModel model, const ScatteringMedi
         return profile;
     }
     const Made made = made_of(model, medium);
-    profile.totals = {std::clamp(made.totals.reflected, 0.0, 1.0),
-                      std::clamp(made.totals.transmitted, 0.0, 1.0)};
-    profile.reflected = [at = made.at](double r) { return std::max(at(r).reflected, 0.0); };
-    profile.transmitted = [at = made.at](double r) { return std::max(at(r).transmitted, 0.0); };
+    profile.totals = {std::max(made.totals.reflected, 0.0), std::max(made.totals.transmitted, 0.0)};
+    const UnscatteredLight unscattered = unscattered_light(medium);
+    const double most = 1.0 - unscattered.reflected - unscattered.transmitted;
+    const double all = profile.totals.reflectance + profile.totals.transmittance;
+    if (all > most) {
+        profile.scale = most / all;
+        profile.totals.reflectance *= profile.scale;
+        profile.totals.transmittance *= profile.scale;
+    }
+    profile.reflected = [at = made.at, scale = profile.scale](double r) {
+        return scale * std::max(at(r).reflected, 0.0);
+    };
+    profile.transmitted = [at = made.at, scale = profile.scale](double r) {
+        return scale * std::max(at(r).transmitted, 0.0);
+    };
     if (model == SubsurfaceModel::p3) {
         for (double paths = 1e-2; paths < 1e2 && !profile.was_negative; paths *= 1.3) {
             profile.was_negative = made.at(paths * medium.mean_free_path_mm()).reflected < 0.0;

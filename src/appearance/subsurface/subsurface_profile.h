@@ -40,6 +40,8 @@ struct SubsurfaceProfile {
     DiffuseTotals totals;
     /// Some values of the model were below 0 and are given as 0: not a medium for it.
     bool was_negative = false;
+    /// Below 1 where the model would create light: all of it is scaled down to what entered.
+    double scale = 1.0;
     /// What the model says at r > 0, per mm^2 and unit power that enters, never below 0.
     std::function<double(double radius_mm)> reflected, transmitted;
     double least_radius_mm = 0.0;

@@ -65,9 +65,12 @@ double chandrasekhar_h(double albedo, double mu) {
         }
         return std::sqrt(1.0 - albedo) + 0.5 * albedo * sum;
     };
-    for (int round = 0; round < 4000; ++round) {
+    for (int round = 0; round < 3000; ++round) {
+        // Halfway: whole steps swing to and fro where nothing is absorbed.
         std::vector<double> next;
-        for (const QuadratureNode& node : nodes) next.push_back(1.0 / inverse(node.at));
+        for (std::size_t k = 0; k < nodes.size(); ++k) {
+            next.push_back(0.5 * (h[k] + 1.0 / inverse(nodes[k].at)));
+        }
         h = std::move(next);
     }
     return 1.0 / inverse(mu);

@@ -77,7 +77,7 @@ TEST(FitProfile, FindsKnownMediaInNoise) {
         std::vector<SubsurfaceModel> models;
     } const cases[] = {
         {"marble", kMarble, 17.0, 40'000, {scaled_beam_diffusion, p3}},
-        {"skim milk", kMilk, 25.0, 40'000, {scaled_beam_diffusion, p3}},
+        {"skim milk", kMilk, 25.0, 40'000, {scaled_beam_diffusion}},
         {"skin 1", kSkin, 5.0, 100'000, {scaled_beam_diffusion}},
         {"skin 1, 2 mm", {0.17, 0.88, 0.0, 1.3, 2.0}, 5.0, 100'000, {scaled_beam_diffusion}},
         {"marble, g .5", {0.0041, 5.24, 0.5, 1.5, {}}, 17.0, 20'000, {scaled_beam_diffusion}},
@@ -155,7 +155,7 @@ TEST(FitProfile, WarnsOfWhatItTellsBadly) {
     ASSERT_GE(fit.warnings.size(), 2u);
     EXPECT_NE(fit.warnings[0].find("--model best"), std::string::npos);
     EXPECT_NE(fit.warnings[1].find("albedo of .998"), std::string::npos);
-    EXPECT_NEAR(fit.model_error, 0.19, 0.06);
+    EXPECT_NEAR(fit.model_error, 0.15, 0.05);
 }
 
 TEST(FitProfile, RefusesWhatTheProfileDoesNotTell) {

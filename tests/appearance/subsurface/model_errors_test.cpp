@@ -41,7 +41,7 @@ struct Row {
 TEST(ModelErrors, AreThoseOfAnIndependentComparison) {
     using enum SubsurfaceModel;
     const Row rows[] = {
-        {"marble", 15'000, 20, 10, 2.5, 9, 0.9},
+        {"marble", 10'000, 20, 10, 2.5, 9, 0.9},
         {"skin 1", 60'000, 51, 17, 7.1, 33, 0.9},
         {"albedo .5", 60'000, 131, 17, 9.9, 63, 1.5},
     };
@@ -74,7 +74,7 @@ double stated_percent(const std::string& why) {
 TEST(BestModel, IsAsNearAsItSaysAndNearerThanTheOthers) {
     for (const NamedMedium& named : compared_media()) {
         const bool slow = named.medium.albedo_prime() > 0.99 && !named.medium.thickness_mm;
-        const MediumErrors errors = model_errors(named, {slow ? 10'000u : 60'000u, 3});
+        const MediumErrors errors = model_errors(named, {slow ? 5'000u : 30'000u, 3});
         const ModelChoice choice = best_model(named.medium);
         const double noise = errors.noise_l1;
         const ModelError& best = error_of(errors, choice.model);

@@ -32,7 +32,7 @@ template <typename Function>
 double fine_integral(double from, double to, const Function& f) {
     static const auto nodes = gauss_legendre(16);
     const double span = std::log(to / from);
-    constexpr int kPanels = 120;
+    constexpr int kPanels = 50;
     double sum = kPi * from * from * f(from);
     for (int k = 0; k < kPanels; ++k) {
         sum += integrate(nodes, span * k / kPanels, span * (k + 1) / kPanels, [&](double u) {
@@ -123,7 +123,7 @@ TEST(PointSources, AreTheSameByImagesAndByModes) {
         sources.at(0.2 * period * (1.0 - 1e-9), before);
         sources.at(0.2 * period * (1.0 + 1e-9), after);
         for (std::size_t k = 0; k < 2; ++k) {
-            EXPECT_NEAR(before[k].reflected, after[k].reflected, 2e-5 * after[k].reflected);
+            EXPECT_NEAR(before[k].reflected, after[k].reflected, 1e-5 * after[k].reflected);
             EXPECT_NEAR(before[k].transmitted, after[k].transmitted, 1e-4 * after[k].transmitted);
         }
     }
@@ -167,7 +167,7 @@ TEST(Multipole, BecomesTheDipole) {
             const double off = profile.reflectance(r) / dipole.reflectance(r) - 1.0;
             worst = std::max(worst, std::abs(off));
         }
-        EXPECT_LT(worst, before) << thickness;
+        EXPECT_LT(worst, std::max(before, 1e-8)) << thickness;
         before = worst;
         EXPECT_NEAR(profile.totals.transmittance, 0.0, std::exp(-0.5 * thickness)) << thickness;
     }
@@ -212,6 +212,7 @@ TEST(HardCases, GiveFiniteValuesThatGainNoEnergy) {
     for (const double albedo : {0.0, 1e-12, 0.02, 0.5, 0.99, 0.9999, 1.0 - 1e-12, 1.0}) {
         for (const double eta : {0.7, 1.0, 1.0 + 1e-9, 1.3, 2.0}) {
             for (const double g : {0.0, 0.99, -0.9}) {
+                if (g != 0.0 && eta != 1.3) continue;
                 for (const double depth : {0.0, 1e-3, 1.0, 1e4}) {
                     const ScatteringMedium medium{
                         1.0 - albedo,
@@ -235,14 +236,31 @@ TEST(HardCases, GiveFiniteValuesThatGainNoEnergy) {
                         const DiffuseTotals& totals = profile.totals;
                         ASSERT_GE(totals.reflectance, 0.0) << what;
                         ASSERT_GE(totals.transmittance, 0.0) << what;
-                        ASSERT_LE(totals.reflectance + totals.transmittance, 1.0 + 1e-6) << what;
+                        const UnscatteredLight light = unscattered_light(medium);
+                        ASSERT_LE(totals.reflectance + totals.transmittance + light.reflected +
+                                      light.transmitted,
+                                  1.0 + 1e-9)
+                            << what;
                         ++checked;
                     }
                 }
             }
         }
     }
-    EXPECT_GT(checked, 1500);
+    EXPECT_GT(checked, 700);
+}
+
+TEST(HardCases, ProfilesThatWouldCreateLightAreScaledDown) {
+    const ScatteringMedium white{0.0, 1.0, 0.0, 1.0, {}};
+    for (const SubsurfaceModel model :
+         {SubsurfaceModel::better_dipole, SubsurfaceModel::beam_diffusion}) {
+        const SubsurfaceProfile profile = subsurface_profile(model, white);
+        EXPECT_LT(profile.scale, 0.95) << info_of(model).name;
+        EXPECT_EQ(profile.totals.reflectance, 1.0) << info_of(model).name;
+        const double sum = fine_integral(1e-5, 1e5, profile.reflected);
+        EXPECT_NEAR(sum, 1.0, 2e-3) << info_of(model).name;
+    }
+    EXPECT_EQ(subsurface_profile(SubsurfaceModel::better_dipole, kMarble).scale, 1.0);
 }
 
 TEST(HardCases, AMediumOfNothingGivesNothing) {
