@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "appearance/subsurface/over_plane.h"
-#include "core/mutation.h"
 #include "core/quadrature.h"
 
 namespace livery {
@@ -65,7 +64,6 @@ Exitance BeamDiffusion::at(double radius_mm) const {
         sum.transmitted +=
             powers_[k] * each[k].transmitted * often(depths[k], *thickness_ - depths[k]);
     }
-    sum.reflected = LIVERY_MUTATED(beam_diffusion, sum.reflected);
     return sum;
 }
 

@@ -19,11 +19,11 @@ using Vector = Eigen::VectorXd;
 
 /// Cosines inside with their weights. The last is the normal itself, of no weight: what is seen
 /// along it is what a beam along it gives everywhere (reciprocity).
-struct Angles {
+struct Cosines {
     Vector mu, weight;
 };
 
-Angles angles_of(double eta, int points) {
+Cosines cosines_of(double eta, int points) {
     const double critical = critical_cosine(eta);
     const auto nodes = gauss_legendre(points);
     std::vector<std::pair<double, double>> found;
@@ -35,12 +35,12 @@ Angles angles_of(double eta, int points) {
     }
     found.emplace_back(1.0, 0.0);
     const auto count = static_cast<Eigen::Index>(found.size());
-    Angles angles{Vector(count), Vector(count)};
+    Cosines cosines{Vector(count), Vector(count)};
     for (Eigen::Index k = 0; k < count; ++k) {
-        angles.mu[k] = found[static_cast<std::size_t>(k)].first;
-        angles.weight[k] = found[static_cast<std::size_t>(k)].second;
+        cosines.mu[k] = found[static_cast<std::size_t>(k)].first;
+        cosines.weight[k] = found[static_cast<std::size_t>(k)].second;
     }
-    return angles;
+    return cosines;
 }
 
 /// Intensities that leave a layer for those that meet it.
@@ -71,12 +71,12 @@ std::pair<Matrix, Matrix> redistribution(const Vector& mu, double g, double cut,
 
 /// A layer so thin that intensities go straight across it (the diamond rule, Wiscombe 1976).
 Layer thin_layer(
-    const Angles& angles, double albedo, double depth, double g, double cut, int terms) {
-    const auto [forward, back] = redistribution(angles.mu, g, cut, terms);
-    const Eigen::Index count = angles.mu.size();
+    const Cosines& cosines, double albedo, double depth, double g, double cut, int terms) {
+    const auto [forward, back] = redistribution(cosines.mu, g, cut, terms);
+    const Eigen::Index count = cosines.mu.size();
     const Matrix one = Matrix::Identity(count, count);
-    const auto per_mu = angles.mu.cwiseInverse().asDiagonal();
-    const auto weights = angles.weight.asDiagonal();
+    const auto per_mu = cosines.mu.cwiseInverse().asDiagonal();
+    const auto weights = cosines.weight.asDiagonal();
     const Matrix across = 0.5 * depth * (per_mu * (one - 0.5 * albedo * forward * weights));
     const Matrix turned = 0.25 * albedo * depth * (per_mu * back * weights);
     const Matrix halved = (one + across).inverse();
@@ -106,7 +106,7 @@ DiffuseTotals exact_totals(const ScatteringMedium& medium, int points) {
     if (medium.sigma_s_per_mm == 0.0) return {};
     // All that enters a half space comes out again.
     if (!medium.thickness_mm && medium.sigma_a_per_mm == 0.0) return {1.0, 0.0};
-    const Angles angles = angles_of(medium.eta, points);
+    const Cosines cosines = cosines_of(medium.eta, points);
     const double cut =
         std::pow(std::abs(medium.g), points) * (medium.g < 0.0 && points % 2 != 0 ? -1.0 : 1.0);
     const double scattered = medium.sigma_s_per_mm * (1.0 - cut);
@@ -114,7 +114,7 @@ DiffuseTotals exact_totals(const ScatteringMedium& medium, int points) {
     const double albedo = scattered / extinction;
 
     // A layer of the thickness, or one so thick that nothing gets through.
-    const double thinnest = 0.02 * angles.mu.minCoeff();
+    const double thinnest = 0.02 * cosines.mu.minCoeff();
     double depth = thinnest;
     int doublings = 80;
     if (medium.thickness_mm) {
@@ -123,7 +123,7 @@ DiffuseTotals exact_totals(const ScatteringMedium& medium, int points) {
             static_cast<int>(std::ceil(std::log2(std::max(whole / thinnest, 1.0)))), 0, 80);
         depth = std::ldexp(whole, -doublings);
     }
-    Layer layer = thin_layer(angles, albedo, depth, medium.g, cut, points);
+    Layer layer = thin_layer(cosines, albedo, depth, medium.g, cut, points);
     for (int k = 0; k < doublings; ++k) {
         if (layer.transmitted.cwiseAbs().maxCoeff() < kNothing) break;
         layer = doubled(layer);
@@ -131,9 +131,9 @@ DiffuseTotals exact_totals(const ScatteringMedium& medium, int points) {
 
     // Even light of radiance 1 from above, and what the two boundaries then send to and fro: half
     // of it is the same from above and below, half the opposite.
-    Vector mirrored(angles.mu.size());
+    Vector mirrored(cosines.mu.size());
     for (Eigen::Index k = 0; k < mirrored.size(); ++k) {
-        mirrored[k] = dielectric_reflectance(medium.eta, angles.mu[k]);
+        mirrored[k] = dielectric_reflectance(medium.eta, cosines.mu[k]);
     }
     const Vector entering = 0.5 * (Vector::Ones(mirrored.size()) - mirrored);
     const Matrix one = Matrix::Identity(mirrored.size(), mirrored.size());

@@ -39,14 +39,14 @@ double sigma_tr_of(const ScatteringMedium& medium) {
     return std::sqrt(3.0 * medium.sigma_a_per_mm * medium.sigma_t_prime());
 }
 
-struct Window {
+struct RadiusWindow {
     double from_mm = 0.0, to_mm = 0.0;
 };
 
 /// Point sources are wrong nearer to the beam, where the phase function matters too, and noise
 /// rules further away. Where much is absorbed the two ends would meet: five mean free paths at
 /// least.
-Window window_of(const ScatteringMedium& medium, SubsurfaceModel model) {
+RadiusWindow window_of(const ScatteringMedium& medium, SubsurfaceModel model) {
     const double path = medium.mean_free_path_mm();
     const bool along_beam =
         model == SubsurfaceModel::beam_diffusion || model == SubsurfaceModel::scaled_beam_diffusion;
@@ -60,7 +60,7 @@ struct Weighed {
 
 /// Samples of the window with their shares of ln r, 1 in the mean.
 std::vector<Weighed> weighed_samples(const std::vector<ProfileSample>& samples,
-                                     const Window& window) {
+                                     const RadiusWindow& window) {
     std::vector<Weighed> found;
     for (const ProfileSample& s : samples) {
         if (s.r_mm >= window.from_mm && s.r_mm <= window.to_mm && s.r_mm > 0.0 && s.rd > 0.0) {
@@ -369,7 +369,7 @@ ProfileFit fit_profile(const std::vector<ProfileSample>& samples,
     // The window follows the parameters, and the parameters the window.
     Logarithms x = start_of(samples, options);
     std::vector<Weighed> inside;
-    Window window;
+    RadiusWindow window;
     for (int round = 0; round < 8; ++round) {
         progress.update(round / 8.0, "fit");
         window = window_of(medium_of(x, options), options.model);

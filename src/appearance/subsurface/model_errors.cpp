@@ -13,24 +13,24 @@ namespace livery {
 namespace {
 
 /// From the beam to where a thousandth is left, each an eighth wider than the one before.
-std::vector<Ring> rings_of(const ScatteringMedium& medium) {
+std::vector<ProfileRing> rings_of(const ScatteringMedium& medium) {
     const SubsurfaceProfile profile =
         subsurface_profile(SubsurfaceModel::scaled_beam_diffusion, medium);
     const double path = medium.mean_free_path_mm();
     const double end = std::max(energy_radius_mm(profile, medium, 0.999), 3.0 * path);
-    std::vector<Ring> rings{{0.0, 0.02 * path}};
+    std::vector<ProfileRing> rings{{0.0, 0.02 * path}};
     while (rings.back().outer_mm < end) {
         rings.push_back({rings.back().outer_mm, 1.125 * rings.back().outer_mm});
     }
     return rings;
 }
 
-double area_of(const Ring& ring) {
+double area_of(const ProfileRing& ring) {
     return std::numbers::pi * (ring.outer_mm - ring.inner_mm) * (ring.outer_mm + ring.inner_mm);
 }
 
 /// Mean over the ring's area. In the innermost, where profiles go as 1/r, too.
-double mean_over(const std::function<double(double)>& profile, const Ring& ring) {
+double mean_over(const std::function<double(double)>& profile, const ProfileRing& ring) {
     static const auto nodes = gauss_legendre(8);
     const double sum = integrate(nodes, ring.inner_mm, ring.outer_mm, [&](double r) {
         return 2.0 * std::numbers::pi * r * profile(r);
@@ -41,7 +41,7 @@ double mean_over(const std::function<double(double)>& profile, const Ring& ring)
 /// Share of `truth` that the values are off, by area.
 double l1_of(const std::vector<double>& values,
              const std::vector<Estimate>& truth,
-             const std::vector<Ring>& rings) {
+             const std::vector<ProfileRing>& rings) {
     double off = 0.0, all = 0.0;
     for (std::size_t k = 0; k < rings.size(); ++k) {
         off += std::abs(values[k] - truth[k].value) * area_of(rings[k]);
@@ -52,7 +52,7 @@ double l1_of(const std::vector<double>& values,
 
 double rms_ln_of(const std::vector<double>& values,
                  const std::vector<Estimate>& truth,
-                 const std::vector<Ring>& rings,
+                 const std::vector<ProfileRing>& rings,
                  double path) {
     double sum = 0.0;
     int count = 0;
@@ -91,7 +91,7 @@ MediumErrors model_errors(const NamedMedium& named,
                           const MonteCarloSettings& settings,
                           const Progress& progress) {
     const ScatteringMedium& medium = named.medium;
-    const std::vector<Ring> rings = rings_of(medium);
+    const std::vector<ProfileRing> rings = rings_of(medium);
     const MonteCarloProfile truth = monte_carlo_profile(medium, rings, settings, progress);
     const double whole = exact_totals(medium).reflectance;
     MediumErrors errors{named.name, medium, 0.0, {}, info_of(best_model(medium).model).name};
@@ -106,7 +106,7 @@ MediumErrors model_errors(const NamedMedium& named,
         if (medium.thickness_mm ? !info.slab : !info.half_space) continue;
         const SubsurfaceProfile profile = subsurface_profile(info.model, medium);
         std::vector<double> rd, rt;
-        for (const Ring& ring : rings) {
+        for (const ProfileRing& ring : rings) {
             rd.push_back(mean_over(profile.reflected, ring));
             rt.push_back(mean_over(profile.transmitted, ring));
         }

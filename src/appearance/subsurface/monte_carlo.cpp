@@ -31,8 +31,8 @@ constexpr double kOutOfReach = 40.0;
 /// Rings of any order and overlap, cut into pieces that do not overlap.
 class RingPieces {
   public:
-    explicit RingPieces(const std::vector<Ring>& rings) {
-        for (const Ring& ring : rings) {
+    explicit RingPieces(const std::vector<ProfileRing>& rings) {
+        for (const ProfileRing& ring : rings) {
             edges2_.push_back(ring.inner_mm * ring.inner_mm);
             edges2_.push_back(ring.outer_mm * ring.outer_mm);
         }
@@ -45,7 +45,7 @@ class RingPieces {
         return static_cast<std::size_t>(std::upper_bound(edges2_.begin(), edges2_.end(), radius2) -
                                         edges2_.begin());
     }
-    double mean_over(const Ring& ring, const std::vector<double>& power) const {
+    double mean_over(const ProfileRing& ring, const std::vector<double>& power) const {
         const std::size_t first = find(ring.inner_mm * ring.inner_mm);
         const std::size_t last = find(ring.outer_mm * ring.outer_mm);
         double sum = 0.0;
@@ -60,7 +60,7 @@ class RingPieces {
 };
 
 /// What one batch of photons did, in photons.
-struct Tally {
+struct PhotonTally {
     std::vector<double> top, bottom;  ///< by pieces of rings
     double reflected = 0.0, transmitted = 0.0, absorbed = 0.0;
     double unscattered_reflected = 0.0, unscattered_transmitted = 0.0;
@@ -106,7 +106,7 @@ class Walk {
           sigma_t_(medium.sigma_t()),
           albedo_(LIVERY_MUTATED(monte_carlo, medium.sigma_s_per_mm / sigma_t_)) {}
 
-    void photon(Random& random, Tally& tally) const {
+    void photon(Random& random, PhotonTally& tally) const {
         glm::dvec3 at{0.0}, along{0.0, 0.0, 1.0};
         double weight = 1.0;
         int scatterings = 0;
@@ -155,7 +155,7 @@ class Walk {
     }
 
   private:
-    static void leave(bool up, bool diffuse, double power, Tally& tally) {
+    static void leave(bool up, bool diffuse, double power, PhotonTally& tally) {
         if (diffuse) {
             (up ? tally.reflected : tally.transmitted) += power;
         } else {
@@ -163,7 +163,7 @@ class Walk {
         }
     }
     /// Whoever has scattered so often is far from the beam, and goes where diffusion goes.
-    void share_out(double depth, double weight, Tally& tally) const {
+    void share_out(double depth, double weight, PhotonTally& tally) const {
         const PointSources source(classical_diffusion(medium_), medium_.thickness_mm, {depth});
         const Exitance out = source.total(0);
         const double all = std::max(out.reflected + out.transmitted, 1.0);
@@ -204,21 +204,21 @@ MonteCarloProfile of_nothing(const ScatteringMedium& medium, std::size_t rings) 
 
 }  // namespace
 
-Ring ring_around(const ScatteringMedium& medium, double radius_mm) {
+ProfileRing ring_around(const ScatteringMedium& medium, double radius_mm) {
     const double least = least_radius_mm(medium);
     if (radius_mm < least) return {0.0, least};
     return {0.98 * radius_mm, 1.02 * radius_mm};
 }
 
 MonteCarloProfile monte_carlo_profile(const ScatteringMedium& medium,
-                                      const std::vector<Ring>& rings,
+                                      const std::vector<ProfileRing>& rings,
                                       const MonteCarloSettings& settings,
                                       const Progress& progress) {
     check_medium(medium);
     check_argument(
         settings.photons >= kBatches,
         fmt::format("photons: found {}, expected {} or more", settings.photons, kBatches));
-    for (const Ring& ring : rings) {
+    for (const ProfileRing& ring : rings) {
         check_argument(
             ring.inner_mm >= 0.0 && ring.outer_mm > ring.inner_mm && std::isfinite(ring.outer_mm),
             fmt::format("ring: found {} to {} mm, expected 0 <= inner < outer",
@@ -230,12 +230,12 @@ MonteCarloProfile monte_carlo_profile(const ScatteringMedium& medium,
     const RingPieces pieces(rings);
     const Walk walk(medium, pieces);
     const std::uint64_t each = (settings.photons + kBatches - 1) / kBatches;
-    std::vector<Tally> tallies(kBatches);
+    std::vector<PhotonTally> tallies(kBatches);
     for (std::size_t first = 0; first < kBatches; first += kBatchesAtOnce) {
         progress.update(static_cast<double>(first) / kBatches, "photons");
         parallel_for(kBatchesAtOnce, 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t k = first + begin; k < first + end; ++k) {
-                Tally tally;
+                PhotonTally tally;
                 tally.top.resize(pieces.count());
                 tally.bottom.resize(pieces.count());
                 Random random(settings.seed, k);
@@ -252,15 +252,15 @@ MonteCarloProfile monte_carlo_profile(const ScatteringMedium& medium,
     MonteCarloProfile profile;
     profile.photons = each * kBatches;
     const double per_photon = 1.0 / static_cast<double>(each);
-    const auto of = [&](double Tally::*member) {
+    const auto of = [&](double PhotonTally::*member) {
         return estimate([&](std::size_t k) { return tallies[k].*member * per_photon; });
     };
-    profile.total_reflectance = of(&Tally::reflected);
-    profile.total_transmittance = of(&Tally::transmitted);
-    profile.absorbed = of(&Tally::absorbed);
-    profile.unscattered_reflectance = of(&Tally::unscattered_reflected).value;
-    profile.unscattered_transmittance = of(&Tally::unscattered_transmitted).value;
-    for (const Ring& ring : rings) {
+    profile.total_reflectance = of(&PhotonTally::reflected);
+    profile.total_transmittance = of(&PhotonTally::transmitted);
+    profile.absorbed = of(&PhotonTally::absorbed);
+    profile.unscattered_reflectance = of(&PhotonTally::unscattered_reflected).value;
+    profile.unscattered_transmittance = of(&PhotonTally::unscattered_transmitted).value;
+    for (const ProfileRing& ring : rings) {
         profile.rd.push_back(estimate(
             [&](std::size_t k) { return pieces.mean_over(ring, tallies[k].top) * per_photon; }));
         profile.rt.push_back(estimate(

@@ -20,11 +20,11 @@ struct MonteCarloSettings {
 };
 
 /// From `inner_mm` up to `outer_mm` of the beam.
-struct Ring {
+struct ProfileRing {
     double inner_mm = 0.0, outer_mm = 0.0;
 };
 /// Within 2% of the radius; the disc of the medium's least radius for one within it.
-Ring ring_around(const ScatteringMedium& medium, double radius_mm);
+ProfileRing ring_around(const ScatteringMedium& medium, double radius_mm);
 
 /// Per unit power that enters along the normal at a point. Totals of light that scattered;
 /// reflected + transmitted + absorbed and what never scattered add up to 1 within rounding.
@@ -41,7 +41,7 @@ struct MonteCarloProfile {
 /// is dropped as absorbed at a weight of 1e-6, and after 50 000 scatterings shared out by
 /// diffusion. Throws std::invalid_argument (medium, rings, under 64 photons), Cancelled.
 MonteCarloProfile monte_carlo_profile(const ScatteringMedium& medium,
-                                      const std::vector<Ring>& rings,
+                                      const std::vector<ProfileRing>& rings,
                                       const MonteCarloSettings& settings,
                                       const Progress& progress = {});
 

@@ -32,7 +32,7 @@ std::vector<double> radii_between(double from, double to, int count) {
 std::vector<ProfileSample> measured(const ScatteringMedium& medium,
                                     const std::vector<double>& radii,
                                     std::uint64_t photons) {
-    std::vector<Ring> rings;
+    std::vector<ProfileRing> rings;
     for (const double r : radii) rings.push_back({0.95 * r, 1.05 * r});
     const MonteCarloProfile truth = monte_carlo_profile(medium, rings, {photons, kSeed});
     Random random(kSeed);

@@ -74,7 +74,7 @@ TEST(MonteCarlo, LosesNothingInHardCases) {
 
 TEST(MonteCarlo, IsTheSameOnAnyNumberOfThreads) {
     const ScatteringMedium medium{0.17, 0.88, 0.5, 1.3, 2.0};
-    const std::vector<Ring> rings{{0.0, 0.3}, {0.2, 1.0}, {0.5, 2.0}};
+    const std::vector<ProfileRing> rings{{0.0, 0.3}, {0.2, 1.0}, {0.5, 2.0}};
     const auto values = [&](int threads, std::uint64_t seed) {
         set_thread_count(threads);
         const MonteCarloProfile profile = monte_carlo_profile(medium, rings, {6400, seed});
@@ -91,7 +91,7 @@ TEST(MonteCarlo, IsTheSameOnAnyNumberOfThreads) {
 TEST(MonteCarlo, OverlappingRingsAreWhatTheyAreAlone) {
     const ScatteringMedium medium{0.17, 0.88, 0.0, 1.3, {}};
     const MonteCarloSettings settings{6400, kSeed};
-    const Ring wide{0.2, 2.0}, narrow{0.5, 1.0};
+    const ProfileRing wide{0.2, 2.0}, narrow{0.5, 1.0};
     const auto both = monte_carlo_profile(medium, {wide, narrow}, settings);
     EXPECT_NEAR(both.rd[0].value, monte_carlo_profile(medium, {wide}, settings).rd[0].value, 1e-12);
     EXPECT_NEAR(

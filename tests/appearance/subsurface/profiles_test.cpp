@@ -13,6 +13,7 @@
 #include "appearance/subsurface/p3.h"
 #include "appearance/subsurface/single_scattering.h"
 #include "appearance/subsurface/subsurface_profile.h"
+#include "core/worst_error.h"
 
 namespace livery {
 namespace {
@@ -165,7 +166,7 @@ TEST(Multipole, BecomesTheDipole) {
         double worst = 0.0;
         for (const double r : {0.0, 0.1, 1.0, 5.0, 10.0}) {
             const double off = profile.reflectance(r) / dipole.reflectance(r) - 1.0;
-            worst = std::max(worst, std::abs(off));
+            worst = worse_of(worst, std::abs(off));
         }
         EXPECT_LT(worst, std::max(before, 1e-8)) << thickness;
         before = worst;

@@ -14,7 +14,7 @@ namespace livery {
 struct ReferenceTable {
     std::string name;
     ScatteringMedium medium;
-    std::vector<Ring> rings;
+    std::vector<ProfileRing> rings;
     std::vector<Estimate> rd, rt;
 };
 

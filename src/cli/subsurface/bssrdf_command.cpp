@@ -8,14 +8,14 @@
 #include "appearance/subsurface/model_errors.h"
 #include "appearance/subsurface/translucent_material.h"
 #include "cli/command.h"
-#include "cli/medium_options.h"
+#include "cli/subsurface/medium_options.h"
 #include "core/marked_block.h"
 
 namespace livery {
 
 namespace {
 
-struct Arguments : MediumArguments {
+struct BssrdfArguments : MediumArguments {
     std::string model = "best", radii = "0.1,0.2,0.5,1,2,5,10", markdown;
     int photons = 1'000'000;
     bool compare = false;
@@ -36,7 +36,7 @@ std::vector<double> parse_radii(const std::string& text) {
     return radii;
 }
 
-MonteCarloSettings photons_of(const Arguments& arguments, const CommonOptions& common) {
+MonteCarloSettings photons_of(const BssrdfArguments& arguments, const CommonOptions& common) {
     if (arguments.photons < 1000 || arguments.photons > 2'000'000'000) {
         throw std::invalid_argument(
             fmt::format("--photons: found {}, expected 1000 to 2000000000", arguments.photons));
@@ -94,17 +94,17 @@ void run_monte_carlo(const ScatteringMedium& medium,
                      const MonteCarloSettings& settings,
                      const Progress& progress,
                      Json& figures) {
-    std::vector<Ring> rings;
+    std::vector<ProfileRing> rings;
     if (medium.sigma_t() > 0.0) {
         for (const double radius : radii) {
             // Without sigma_s' there is no shortest radius, and nothing to see.
-            Ring ring = ring_around(medium, radius);
+            ProfileRing ring = ring_around(medium, radius);
             if (!(ring.outer_mm > 0.0)) ring.outer_mm = 1e-9;
             rings.push_back(ring);
         }
     } else {
         rings.resize(radii.size());
-        for (Ring& ring : rings) ring.outer_mm = 1.0;
+        for (ProfileRing& ring : rings) ring.outer_mm = 1.0;
     }
     const MonteCarloProfile profile = monte_carlo_profile(medium, rings, settings, progress);
     figures["model"] = "montecarlo";
@@ -189,7 +189,7 @@ Json json_of(const MediumErrors& errors) {
             {"models", models}};
 }
 
-Outcome compare(const Arguments& arguments,
+Outcome compare(const BssrdfArguments& arguments,
                 const MonteCarloSettings& settings,
                 const Progress& progress) {
     if (!arguments.markdown.empty()) check_marked_block(arguments.markdown, "bssrdf");
@@ -215,7 +215,7 @@ Outcome compare(const Arguments& arguments,
 }  // namespace
 
 Command bssrdf_command() {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<BssrdfArguments>();
     std::vector<std::string> models{"best", "montecarlo"};
     for (const SubsurfaceModelInfo& info : subsurface_models()) models.push_back(info.name);
     Command command;

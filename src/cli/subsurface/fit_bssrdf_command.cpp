@@ -7,17 +7,17 @@
 #include "appearance/subsurface/fit_profile.h"
 #include "appearance/subsurface/translucent_material.h"
 #include "cli/command.h"
-#include "cli/medium_options.h"
+#include "cli/subsurface/medium_options.h"
 
 namespace livery {
 
 namespace {
 
-struct Arguments {
+struct BssrdfFitArguments {
     std::string profile, model = "best", g, eta, thickness_mm, spot_mm, name, out;
 };
 
-ProfileFitOptions options_of(const Arguments& arguments) {
+ProfileFitOptions options_of(const BssrdfFitArguments& arguments) {
     ProfileFitOptions options;
     options.eta = parse_number("--eta", arguments.eta).value_or(1.5);
     options.g = parse_number("--g", arguments.g).value_or(0.0);
@@ -76,7 +76,7 @@ std::string text_of(const ProfileFit& fit, const ProfileFitOptions& options) {
 
 TranslucentMaterial material_of(const ProfileFit& fit,
                                 const ProfileFitOptions& options,
-                                const Arguments& arguments) {
+                                const BssrdfFitArguments& arguments) {
     const std::filesystem::path profile = arguments.profile;
     TranslucentMaterial material;
     material.name = arguments.name.empty() ? profile.stem().string() : arguments.name;
@@ -99,7 +99,7 @@ TranslucentMaterial material_of(const ProfileFit& fit,
 }  // namespace
 
 Command fit_bssrdf_command() {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<BssrdfFitArguments>();
     std::vector<std::string> models{"best"};
     for (const SubsurfaceModelInfo& info : subsurface_models()) {
         if (info.model != SubsurfaceModel::normalized_diffusion) models.push_back(info.name);

@@ -1,4 +1,4 @@
-#include "cli/medium_options.h"
+#include "cli/subsurface/medium_options.h"
 
 #include <fmt/format.h>
 
