@@ -133,7 +133,7 @@ DiffuseTotals exact_totals(const ScatteringMedium& medium, int points) {
     // of it is the same from above and below, half the opposite.
     Vector mirrored(cosines.mu.size());
     for (Eigen::Index k = 0; k < mirrored.size(); ++k) {
-        mirrored[k] = dielectric_reflectance(medium.eta, cosines.mu[k]);
+        mirrored[k] = inner_reflectance(medium.eta, cosines.mu[k]);
     }
     const Vector entering = 0.5 * (Vector::Ones(mirrored.size()) - mirrored);
     const Matrix one = Matrix::Identity(mirrored.size(), mirrored.size());

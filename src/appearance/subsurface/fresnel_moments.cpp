@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "appearance/gloss_optics.h"
 #include "core/mutation.h"
 #include "core/quadrature.h"
 
@@ -11,13 +12,8 @@ double critical_cosine(double eta) {
     return eta > 1.0 ? std::sqrt((1.0 - 1.0 / eta) * (1.0 + 1.0 / eta)) : 0.0;
 }
 
-double dielectric_reflectance(double eta, double mu) {
-    const double sine2_outside = eta * eta * (1.0 - mu) * (1.0 + mu);
-    if (sine2_outside >= 1.0) return 1.0;
-    const double outside = std::sqrt(1.0 - sine2_outside);
-    const double across = (eta * mu - outside) / (eta * mu + outside);
-    const double along = (mu - eta * outside) / (mu + eta * outside);
-    const double value = 0.5 * (across * across + along * along);
+double inner_reflectance(double eta, double mu) {
+    const double value = dielectric_reflectance(mu, 1.0 / eta);
     return std::isfinite(value) ? value : 1.0;  // 0/0 at grazing incidence on no boundary
 }
 
@@ -32,7 +28,7 @@ FresnelMoments fresnel_moments(double eta) {
     for (const QuadratureNode& t : nodes) {
         const double mu = critical + (1.0 - critical) * t.at * t.at;
         const double weight = 2.0 * t.at * t.weight * (1.0 - critical);
-        const double f = dielectric_reflectance(eta, mu);
+        const double f = inner_reflectance(eta, mu);
         moments.c1 += weight * f * mu;
         moments.c2 += weight * f * mu * mu;
         const double passed = LIVERY_MUTATED(boundary_passed, weight * (1.0 - f) * mu);

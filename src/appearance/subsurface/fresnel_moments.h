@@ -7,7 +7,7 @@ namespace livery {
 
 /// Fresnel's unpolarised reflectance for a ray inside a medium of index `eta` (over that outside)
 /// at the cosine `mu` to the normal; 1 beyond the critical angle.
-double dielectric_reflectance(double eta, double mu);
+double inner_reflectance(double eta, double mu);
 
 /// Cosine of the critical angle inside; 0 where all angles get out (eta up to 1).
 double critical_cosine(double eta);

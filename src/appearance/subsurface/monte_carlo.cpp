@@ -120,7 +120,7 @@ class Walk {
             const double flight = -std::log1p(-random.uniform());
             double mirrored = 1.0;
             if (optical < kOutOfReach || flight >= optical) {
-                mirrored = dielectric_reflectance(medium_.eta, std::abs(along.z));
+                mirrored = inner_reflectance(medium_.eta, std::abs(along.z));
             }
             if (scatterings > 0 && mirrored < 1.0) {
                 const double x = at.x + boundary * along.x, y = at.y + boundary * along.y;

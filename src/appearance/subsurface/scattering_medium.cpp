@@ -21,7 +21,7 @@ double ScatteringMedium::reduced_depth() const {
 
 UnscatteredLight unscattered_light(const ScatteringMedium& medium) {
     UnscatteredLight light;
-    const double mirrored = dielectric_reflectance(medium.eta, 1.0);
+    const double mirrored = inner_reflectance(medium.eta, 1.0);
     light.specular = mirrored;
     if (!medium.thickness_mm) return light;
     const double once = std::exp(-medium.sigma_t() * *medium.thickness_mm);

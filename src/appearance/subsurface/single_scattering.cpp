@@ -26,7 +26,7 @@ struct Beams {
 
 Beams beams_of(const ScatteringMedium& medium) {
     if (!medium.thickness_mm) return {};
-    const double mirrored = dielectric_reflectance(medium.eta, 1.0);
+    const double mirrored = inner_reflectance(medium.eta, 1.0);
     const double once = std::exp(-medium.sigma_t() * *medium.thickness_mm);
     const double down = 1.0 / (1.0 - mirrored * mirrored * once * once);
     return {down, down * mirrored * once};
@@ -89,7 +89,7 @@ double exitance(const ScatteringMedium& medium, double r, Exit beams) {
                 beams.toward * phase(medium.g, cosine) *
                 std::exp(-sigma_t * (path + (medium.thickness_mm ? thickness - depth : 0.0)));
         }
-        return scattered * cosine * (1.0 - dielectric_reflectance(medium.eta, cosine));
+        return scattered * cosine * (1.0 - inner_reflectance(medium.eta, cosine));
     };
     return LIVERY_MUTATED(
         single_scattering,
@@ -116,7 +116,7 @@ double total(const ScatteringMedium& medium, Exit beams) {
         double scattered = 0.0;
         if (beams.away > 0.0) scattered += beams.away * phase(medium.g, -mu) * away;
         if (beams.toward > 0.0) scattered += beams.toward * phase(medium.g, mu) * toward;
-        sum += weight * scattered * (1.0 - dielectric_reflectance(medium.eta, mu));
+        sum += weight * scattered * (1.0 - inner_reflectance(medium.eta, mu));
     }
     return 2.0 * std::numbers::pi * sum * medium.sigma_s_per_mm / sigma_t;
 }

@@ -41,7 +41,7 @@ TEST(FresnelMoments, FollowTheBruteIntegralForEveryIndex) {
         constexpr int kSteps = 400'000;
         for (int k = 0; k < kSteps; ++k) {
             const double mu = (k + 0.5) / kSteps;
-            const double f = dielectric_reflectance(eta, mu);
+            const double f = inner_reflectance(eta, mu);
             ASSERT_GE(f, 0.0) << eta << " " << mu;
             ASSERT_LE(f, 1.0) << eta << " " << mu;
             c1 += f * mu / kSteps;
