@@ -1,0 +1,25 @@
+#include "evaluation/statistics/tails.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <unsupported/Eigen/SpecialFunctions>
+
+namespace livery {
+
+double chi_square_tail(double x, int degrees) {
+    if (!(x > 0.0)) return 1.0;
+    return std::clamp(Eigen::numext::igammac(0.5 * degrees, 0.5 * x), 0.0, 1.0);
+}
+
+Interval wilson_interval(int count, int of) {
+    if (of <= 0) return {};
+    const double n = of, share = count / n, z2 = kChiSquare95;
+    const double centre = (share + z2 / (2.0 * n)) / (1.0 + z2 / n);
+    const double half =
+        kNormal975 / (1.0 + z2 / n) * std::sqrt(share * (1.0 - share) / n + z2 / (4.0 * n * n));
+    return {count == 0 ? 0.0 : std::max(0.0, centre - half),
+            count == of ? 1.0 : std::min(1.0, centre + half)};
+}
+
+}  // namespace livery

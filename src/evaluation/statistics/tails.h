@@ -1,0 +1,20 @@
+// Tails of the distributions that large samples tend to, and intervals of shares.
+#pragma once
+
+namespace livery {
+
+/// The 97.5% point of the standard normal, and the 95% point of chi-square with one degree.
+inline constexpr double kNormal975 = 1.959963984540054;
+inline constexpr double kChiSquare95 = kNormal975 * kNormal975;
+
+/// P(X >= x) of chi-square with `degrees` >= 1.
+double chi_square_tail(double x, int degrees);
+
+struct Interval {
+    double low = 0.0, high = 1.0;
+};
+
+/// 95% interval of a share of `count` among `of` (Wilson 1927). Of none it is all of 0 to 1.
+Interval wilson_interval(int count, int of);
+
+}  // namespace livery

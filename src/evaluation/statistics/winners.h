@@ -1,0 +1,40 @@
+// Who would win another round.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "evaluation/statistics/ballot_law.h"
+#include "evaluation/statistics/rank_sums.h"
+
+namespace livery {
+
+/// Of rounds of as many evaluators, by rank sums.
+struct WinProbabilities {
+    std::vector<double> first;  ///< that each design is first; where several are, they share it
+    /// That two given designs are the top two. Where n designs reach the second place's sum, each
+    /// of their n (n - 1)/2 pairs has a share: with a tie for second place alone that is less than
+    /// an even split among those that tie, so this errs to the low side.
+    double top_two = 0.0;
+    Method method = Method::exact;
+    std::int64_t cases = 0;  ///< states of rank sums that there is room for, or draws
+};
+
+/// Under a law of ballots: by convolution over the sums while there are at most `most_states`, and
+/// 3 * 10^9 additions; otherwise from 10^5 draws. No evaluators: all designs tie.
+WinProbabilities win_probabilities(const BallotLaw& law,
+                                   int evaluators,
+                                   int top_a,
+                                   int top_b,
+                                   std::uint64_t seed,
+                                   std::int64_t most_states = 1'000'000);
+
+/// Of 10^4 rounds drawn from the ballots, with replacement (Efron 1979).
+WinProbabilities bootstrap_wins(const std::vector<RankedBallot>& ballots,
+                                int designs,
+                                bool has_least,
+                                int top_a,
+                                int top_b,
+                                std::uint64_t seed);
+
+}  // namespace livery
