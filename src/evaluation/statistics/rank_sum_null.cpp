@@ -38,7 +38,12 @@ class OneMoreBallot {
     void give(std::size_t place, double probability) {
         if (place == gains_.size()) {
             sorted_ = after_;
-            std::sort(sorted_.begin(), sorted_.end(), std::greater<>());
+            // By insertion: it was in order but for two or three.
+            for (std::size_t i = 1; i < sorted_.size(); ++i) {
+                for (std::size_t j = i; j > 0 && sorted_[j] > sorted_[j - 1]; --j) {
+                    std::swap(sorted_[j], sorted_[j - 1]);
+                }
+            }
             next_[sorted_] += probability;
             ++steps_;
             return;

@@ -64,7 +64,7 @@ RankSumNull rank_sum_null(int designs,
                           int evaluators,
                           bool has_least,
                           std::uint64_t seed,
-                          std::int64_t most_steps = 5'000'000);
+                          std::int64_t most_steps = 2'000'000);
 
 /// P(Q >= the counts' Q) under `null`, which must be that of their size.
 double friedman_p(const RankSumNull& null, const VoteCounts& counts);
