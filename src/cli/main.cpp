@@ -11,6 +11,7 @@
 
 #include "cli/command.h"
 #include "cli/console.h"
+#include "cli/evaluate/commands.h"
 #include "cli/outputs.h"
 #include "cli/parse.h"
 #include "core/error.h"
@@ -77,6 +78,9 @@ int run(const std::vector<std::string>& arguments) {
                                      fit_brdf_command(),
                                      fit_bssrdf_command(),
                                      compensate_command(),
+                                     evaluate_export_command(),
+                                     evaluate_order_command(),
+                                     evaluate_tally_command(),
                                      check_command(),
                                      bench_command()};
     for (Command& command : session_commands()) commands.push_back(std::move(command));

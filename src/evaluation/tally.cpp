@@ -1,19 +1,9 @@
 #include "evaluation/tally.h"
 
 #include "core/error.h"
+#include "evaluation/csv_field.h"
 
 namespace livery {
-
-namespace {
-
-std::string csv_field(const std::string& text) {
-    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-    std::string quoted = "\"";
-    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return quoted + '"';
-}
-
-}  // namespace
 
 std::string tally_csv(const Tally& tally) {
     check_argument(

@@ -76,6 +76,8 @@ TEST(Program, HelpNamesEveryCommandAndEachHasAnExample) {
                              "compensate",
                              "check",
                              "bench",
+                             "evaluate order",
+                             "evaluate tally",
                              "session apply"}) {
         EXPECT_NE(all.out.find(name), std::string::npos) << name;
         const ProgramRun one = livery_run({"help", name});

@@ -53,9 +53,9 @@ std::string what_would_tell(const std::optional<int>& needed) {
     return fmt::format("about {} more evaluators, in a fresh round, would tell", about);
 }
 
-class Words {
+class VerdictWords {
   public:
-    Words(const VoteStatistics& statistics, const std::vector<std::string>& names)
+    VerdictWords(const VoteStatistics& statistics, const std::vector<std::string>& names)
         : statistics_(statistics), verdict_(statistics.verdict), names_(names) {}
 
     std::string text() const {
@@ -149,7 +149,7 @@ class Words {
 }  // namespace
 
 std::string words_of(const VoteStatistics& statistics, const std::vector<std::string>& names) {
-    return Words(statistics, names).text();
+    return VerdictWords(statistics, names).text();
 }
 
 std::vector<std::string> default_names(int designs) {

@@ -130,7 +130,7 @@ TEST(ErrorRates, OfTheExactTestIsAtMostItsLevel) {
 
 TEST(ErrorRates, BetweenTwoThatAreEquallyGood) {
     constexpr int rounds = 1000;
-    for (const double others : {0.5, 0.1, 0.01}) {
+    for (const double others : {0.1, 0.01}) {
         const Rates found = rates({1.0, 1.0, others, others}, 10, false, rounds);
         print("two equal leaders", rounds, found);
         EXPECT_LE(found.winner, allowed(rounds)) << others;
@@ -158,8 +158,8 @@ TEST(ErrorRates, TheThresholdHoldsItsLevelInDrawnRounds) {
 }
 
 TEST(ErrorRates, WinnersAreFoundWhereThereAreSome) {
-    const Rates found = rates({8.0, 1.0, 1.0, 1.0}, 10, false, 200);
-    print("one of eight times the worth", 200, found);
+    const Rates found = rates({8.0, 1.0, 1.0, 1.0}, 10, false, 100);
+    print("one of eight times the worth", 100, found);
     EXPECT_GT(found.winner, 0.3);
     EXPECT_GT(found.preference, 0.9);
 }

@@ -1,0 +1,79 @@
+// livery evaluate export
+
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "cli/evaluate/commands.h"
+#include "core/error.h"
+#include "core/paths.h"
+#include "evaluation/closed_round.h"
+
+namespace livery {
+
+namespace {
+
+struct ExportArguments {
+    std::string ballots, out;
+    int round = 0;
+};
+
+Json json_of(const ClosedRound& round, int seed) {
+    Json ballots = Json::array();
+    for (const RankedBallot& ballot : round.ballots) {
+        ballots.push_back({{"best", ballot.best}, {"second", ballot.second}});
+    }
+    return {{"format_version", 1},
+            {"kind", "ballots"},
+            {"round", round.id},
+            {"created", round.created},
+            {"calibration_id", round.calibration_id},
+            {"designs", round.designs},
+            {"seed", seed},
+            {"ballots", ballots}};
+}
+
+}  // namespace
+
+Command evaluate_export_command() {
+    const auto arguments = std::make_shared<ExportArguments>();
+    Command command;
+    command.name = "evaluate export";
+    command.summary = "a round's ballots without names, in an order of chance, as CSV or JSON";
+    command.example = "livery evaluate export --ballots votes.livery-ballots --out round.csv";
+    command.options = {
+        {"--ballots", "FILE", "a file of ballots", &arguments->ballots, true, {}},
+        {"--round",
+         "N",
+         "which of its rounds (default: the last closed)",
+         &arguments->round,
+         false,
+         {}},
+        {"--out", "FILE", "what to write, .csv or .json", &arguments->out, true, {}},
+    };
+    command.run = [arguments](const CommonOptions& common, const Progress&) {
+        const std::filesystem::path out = arguments->out;
+        const bool csv = out.extension() == ".csv";
+        check_argument(csv || out.extension() == ".json",
+                       "--out: found \"" + arguments->out + "\", expected a name in .csv or .json");
+        const auto seed = static_cast<std::uint64_t>(common.seed);
+        const ClosedRound round =
+            read_closed_round(arguments->ballots, round_option(arguments->round), seed);
+        if (csv) {
+            write_text_file(out, ballots_csv(round, seed));
+        } else {
+            write_json_file(out, json_of(round, common.seed));
+        }
+        Outcome outcome;
+        outcome.figures = {{"file", arguments->out},
+                           {"round", round.id},
+                           {"ballots", round.ballots.size()},
+                           {"seed", common.seed}};
+        outcome.text = fmt::format(
+            "{}: {} ballots of round {}\n", arguments->out, round.ballots.size(), round.id);
+        return outcome;
+    };
+    return command;
+}
+
+}  // namespace livery
