@@ -11,28 +11,38 @@ namespace livery {
 
 struct LogEntry {
     enum class What {
-        open,    ///< `text` is the calibration's id
-        design,  ///< `text` is its name, `best` its index
-        vote,    ///< `text` is the evaluator
-        close
+        session,   ///< an audience: its seats are kept over rounds
+        seat,      ///< `text` is a name, or the hash of a phone's secret; `best` is 1 for a phone
+        open,      ///< `text` is the calibration's id, `best` whether the least is asked, `second`
+                   ///< the seed
+        design,    ///< `text` is its name, `best` its index, `second` its code
+        voting,    ///< the looks have been presented
+        vote,      ///< indices of designs; `least` is -1 where none is named
+        close,     ///< the round is locked
+        migrated,  ///< `text` is the last hash of the log of an older file
     };
     What what = What::open;
-    int round = 0;
-    std::string at;  ///< ISO 8601, UTC
+    int session = 0, round = 0, seat = 0;
+    std::string at = {};  ///< ISO 8601, UTC
     std::string text = {};
-    int best = 0, second = 0;
+    int best = 0, second = 0, least = -1;
+    int id = 0;             ///< from 1, without gaps; given by append_to_log
+    std::string hash = {};  ///< the same
 };
 
 /// The statements that make its table and keep it as it is.
 std::vector<std::string> log_schema();
 
-/// Appends, within the caller's transaction.
-void append_to_log(Database& database, const LogEntry& entry);
+/// Appends, within the caller's transaction, and fills in `id` and `hash`.
+void append_to_log(Database& database, LogEntry& entry);
 
-/// Throws FileError when an entry was changed, taken out or put in, or when the rounds and ballots
-/// are not what the entries lead to. The hash finds accidents and careless hands; somebody who may
-/// write the file and knows the program can forge it.
-void check_log(Database& database);
+/// All entries. Throws FileError when one was changed, taken out or put in. The hash finds
+/// accidents and careless hands; somebody who may write the file and knows the program can forge
+/// it.
+std::vector<LogEntry> read_log(Database& database);
+
+/// Throws FileError of ballots that are not as Livery wrote them.
+[[noreturn]] void fail_ballots(const Database& database, std::string field, std::string found);
 
 /// What a column must hold; FileError otherwise.
 int as_int(const Database& database, const DatabaseValue& value);

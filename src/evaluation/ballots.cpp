@@ -1,10 +1,14 @@
 #include "evaluation/ballots.h"
 
+#include <algorithm>
 #include <set>
 
 #include "core/error.h"
 #include "core/utc.h"
 #include "evaluation/ballot_log.h"
+#include "evaluation/ballot_tables.h"
+#include "evaluation/ballots_v1.h"
+#include "evaluation/design_codes.h"
 #include "evaluation/evaluator_name.h"
 
 namespace livery {
@@ -12,70 +16,171 @@ namespace livery {
 namespace {
 
 constexpr std::int32_t kApplicationId = 0x4c765642;  // "LvVB"
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
+constexpr std::size_t kReceiptDigits = 8;
+
+using What = LogEntry::What;
 
 std::string round_name(int round) { return "round " + std::to_string(round); }
 
-/// How many designs it has, and whether it is closed. Throws std::invalid_argument: no such round.
-struct RoundState {
-    int designs = 0;
-    bool closed = false;
-};
-RoundState state_of(Database& database, int round) {
-    const auto rows = database.run(
-        "SELECT closed IS NOT NULL, (SELECT count(*) FROM designs WHERE round = rounds.id) "
-        "FROM rounds WHERE id = ?1",
-        {std::int64_t{round}});
-    if (rows.empty()) {
+Round round_from(Database& database, const std::vector<DatabaseValue>& row) {
+    Round round;
+    round.id = as_int(database, row[0]);
+    round.created = as_text(database, row[1]);
+    round.calibration_id = as_text(database, row[2]);
+    round.closed = as_int(database, row[3]) != 0;
+    round.ballots = as_int(database, row[4]);
+    round.session = as_int(database, row[5]);
+    round.seed = as_int(database, row[6]);
+    round.asks_least = as_int(database, row[7]) != 0;
+    round.voting = as_int(database, row[8]) != 0;
+    // A round's designs never change, so a second look is as good as the first.
+    for (const auto& design :
+         database.run("SELECT name, code FROM designs WHERE round = ?1 ORDER BY position",
+                      {std::int64_t{round.id}})) {
+        round.designs.push_back(as_text(database, design[0]));
+        round.codes.push_back(as_int(database, design[1]));
+    }
+    return round;
+}
+
+std::vector<Round> rounds_where(Database& database,
+                                const std::string& condition,
+                                const std::vector<DatabaseValue>& values) {
+    std::vector<Round> rounds;
+    for (const auto& row :
+         database.run("SELECT id, created, calibration_id, closed IS NOT NULL, "
+                      "(SELECT count(*) FROM ballots WHERE session = rounds.session AND "
+                      "round = rounds.id), session, seed, asks_least, voting IS NOT NULL "
+                      "FROM rounds " +
+                          condition,
+                      values)) {
+        rounds.push_back(round_from(database, row));
+    }
+    return rounds;
+}
+
+/// Throws std::invalid_argument: no such round.
+Round round_of(Database& database, int id) {
+    auto found = rounds_where(database, "WHERE id = ?1", {std::int64_t{id}});
+    if (found.empty()) {
         const auto counted = database.run("SELECT count(*) FROM rounds");
-        throw std::invalid_argument("found " + round_name(round) + ", expected one of the " +
+        throw std::invalid_argument("found " + round_name(id) + ", expected one of the " +
                                     std::to_string(as_int(database, counted[0][0])) +
                                     " rounds in " + database.file().string());
     }
-    return {as_int(database, rows[0][1]), as_int(database, rows[0][0]) != 0};
+    return std::move(found.front());
+}
+
+std::optional<int> newest_session(Database& database) {
+    const auto rows = database.run("SELECT id FROM sessions ORDER BY id DESC LIMIT 1");
+    if (rows.empty()) return std::nullopt;
+    return as_int(database, rows[0][0]);
+}
+
+/// Within the caller's transaction.
+int make_session(Database& database) {
+    const int session = newest_session(database).value_or(0) + 1;
+    record(database, {.what = What::session, .session = session, .at = utc_now()});
+    return session;
+}
+
+std::optional<int> seat_with_key(Database& database, int session, const std::string& key) {
+    const auto rows = database.run("SELECT seat FROM seats WHERE session = ?1 AND key = ?2",
+                                   {std::int64_t{session}, key});
+    if (rows.empty()) return std::nullopt;
+    return as_int(database, rows[0][0]);
+}
+
+/// The next number of the session, within the caller's transaction; `text` as in LogEntry.
+int make_seat(Database& database, int session, const std::string& text, bool phone) {
+    const int seat = as_int(database,
+                            database.run("SELECT coalesce(max(seat), 0) FROM seats "
+                                         "WHERE session = ?1",
+                                         {std::int64_t{session}})[0][0]) +
+                     1;
+    record(database,
+           {.what = What::seat,
+            .session = session,
+            .seat = seat,
+            .at = utc_now(),
+            .text = text,
+            .best = phone ? 1 : 0});
+    return seat;
+}
+
+const char* const kBallotColumns =
+    "SELECT ballots.seat, ballots.best, ballots.second, ballots.least, log.hash "
+    "FROM ballots JOIN log ON log.id = ballots.entry ";
+
+CastBallot ballot_from(Database& database, const std::vector<DatabaseValue>& row) {
+    CastBallot ballot;
+    ballot.seat = as_int(database, row[0]);
+    ballot.choices.best = as_int(database, row[1]);
+    ballot.choices.second = as_int(database, row[2]);
+    if (!std::holds_alternative<std::monostate>(row[3])) {
+        ballot.choices.least = as_int(database, row[3]);
+    }
+    ballot.receipt = as_text(database, row[4]).substr(0, kReceiptDigits);
+    return ballot;
+}
+
+std::optional<CastBallot> ballot_at(Database& database, const Round& round, int seat) {
+    const auto rows =
+        database.run(std::string(kBallotColumns) +
+                         "WHERE ballots.session = ?1 AND ballots.round = ?2 AND ballots.seat = ?3",
+                     {std::int64_t{round.session}, std::int64_t{round.id}, std::int64_t{seat}});
+    if (rows.empty()) return std::nullopt;
+    return ballot_from(database, rows[0]);
+}
+
+void check_choices(const Choices& choices, const Round& round, const std::string& who) {
+    const std::string ballot = "ballot of " + who + ": ";
+    check_argument(choices.best != choices.second,
+                   ballot + "found design " + std::to_string(choices.best) +
+                       " as best and as second best, expected two designs");
+    check_argument(!choices.least || round.asks_least,
+                   ballot + "found a least one, expected none: " + round_name(round.id) +
+                       " does not ask for it");
+    check_argument(choices.least != choices.best && choices.least != choices.second,
+                   ballot + "found design " + std::to_string(choices.least.value_or(-1)) +
+                       " as least and as one of the best, expected another");
+    const int designs = static_cast<int>(round.designs.size());
+    for (const int design : {choices.best, choices.second, choices.least.value_or(choices.best)}) {
+        check_argument(design >= 0 && design < designs,
+                       ballot + "found design " + std::to_string(design) + ", expected 0 to " +
+                           std::to_string(designs - 1));
+    }
+}
+
+void check_setup(const RoundSetup& setup) {
+    check_argument(setup.designs.size() >= 2,
+                   "open_round: found " + std::to_string(setup.designs.size()) +
+                       " designs, expected at least 2 to choose between");
+    std::set<std::string> names;
+    for (const auto& name : setup.designs) {
+        check_argument(!name.empty(), "open_round: found a design without a name");
+        check_argument(names.insert(name).second,
+                       "open_round: found \"" + name + "\" twice, expected different names");
+    }
+    if (setup.codes.empty()) return;
+    check_argument(setup.codes.size() == setup.designs.size(),
+                   "open_round: found " + std::to_string(setup.codes.size()) + " codes for " +
+                       std::to_string(setup.designs.size()) + " designs, expected one each");
+    std::set<int> codes;
+    for (const int code : setup.codes) {
+        check_argument(code >= 100 && code <= 999 && codes.insert(code).second,
+                       "open_round: found code " + std::to_string(code) +
+                           ", expected different numbers from 100 to 999");
+    }
 }
 
 }  // namespace
 
 const std::vector<std::string>& ballots_schema() {
     static const std::vector<std::string> statements = [] {
-        std::vector<std::string> all = {
-            "CREATE TABLE rounds ("
-            " id INTEGER PRIMARY KEY,"
-            " created TEXT NOT NULL,"
-            " calibration_id TEXT NOT NULL,"
-            " closed TEXT) STRICT",
-            "CREATE UNIQUE INDEX one_open_round ON rounds (closed IS NULL) WHERE closed IS NULL",
-            "CREATE TABLE designs ("
-            " round INTEGER NOT NULL REFERENCES rounds (id),"
-            " position INTEGER NOT NULL CHECK (position >= 0),"
-            " name TEXT NOT NULL CHECK (name <> ''),"
-            " PRIMARY KEY (round, position), UNIQUE (round, name)) STRICT, WITHOUT ROWID",
-            "CREATE TABLE ballots ("
-            " round INTEGER NOT NULL,"
-            " name_key TEXT NOT NULL CHECK (name_key <> ''),"
-            " evaluator TEXT NOT NULL CHECK (evaluator <> ''),"
-            " best INTEGER NOT NULL,"
-            " second INTEGER NOT NULL,"
-            " at TEXT NOT NULL,"
-            " PRIMARY KEY (round, name_key),"
-            " CHECK (best <> second),"
-            " FOREIGN KEY (round, best) REFERENCES designs (round, position),"
-            " FOREIGN KEY (round, second) REFERENCES designs (round, position)"
-            ") STRICT, WITHOUT ROWID",
-            "CREATE TRIGGER ballot_in_time BEFORE INSERT ON ballots"
-            " WHEN (SELECT closed FROM rounds WHERE id = new.round) IS NOT NULL"
-            " BEGIN SELECT RAISE(ABORT, 'the round is closed'); END",
-            "CREATE TRIGGER ballot_changed_in_time BEFORE UPDATE ON ballots"
-            " WHEN (SELECT closed FROM rounds WHERE id = old.round) IS NOT NULL"
-            " BEGIN SELECT RAISE(ABORT, 'the round is closed'); END",
-            "CREATE TRIGGER ballot_kept BEFORE DELETE ON ballots"
-            " BEGIN SELECT RAISE(ABORT, 'ballots are not deleted'); END",
-            "CREATE TRIGGER round_closed_for_good BEFORE UPDATE ON rounds"
-            " WHEN old.closed IS NOT NULL"
-            " BEGIN SELECT RAISE(ABORT, 'the round is closed'); END",
-        };
-        for (std::string& statement : log_schema()) all.push_back(std::move(statement));
+        std::vector<std::string> all = ballot_tables_schema();
+        for (std::string& statement : ballots_v1_schema()) all.push_back(std::move(statement));
         return all;
     }();
     return statements;
@@ -85,132 +190,282 @@ BallotStore::BallotStore(const std::filesystem::path& file)
     : database_(file, Database::Mode::create, kApplicationId, kVersion, ballots_schema()) {
     database_.run("PRAGMA foreign_keys = ON");
     Transaction transaction(database_);
-    if (database_.version() == 0) {
-        for (const std::string& statement : ballots_schema()) database_.run(statement);
+    if (database_.version() != kVersion) {
+        if (database_.version() == 1) {
+            migrate_ballots_v1(database_);
+        } else {
+            for (const std::string& statement : ballot_tables_schema()) database_.run(statement);
+        }
         database_.set_version(kVersion);
     }
-    check_log(database_);
+    // A damaged index would hide ballots that the log's check finds in the tables.
+    const auto sound = database_.run("PRAGMA integrity_check(1)");
+    if (const std::string found = as_text(database_, sound.at(0).at(0)); found != "ok") {
+        fail_ballots(database_, "", "a damaged database (" + found + ")");
+    }
+    check_against_log(database_);
     transaction.commit();
 }
 
-int BallotStore::open_round(const std::vector<std::string>& designs,
-                            const std::string& calibration_id) {
-    check_argument(designs.size() >= 2,
-                   "open_round: found " + std::to_string(designs.size()) +
-                       " designs, expected at least 2 to choose between");
-    std::set<std::string> names;
-    for (const auto& name : designs) {
-        check_argument(!name.empty(), "open_round: found a design without a name");
-        check_argument(names.insert(name).second,
-                       "open_round: found \"" + name + "\" twice, expected different names");
+// --- sessions and seats ---
+
+int BallotStore::open_session() {
+    Transaction transaction(database_);
+    if (const auto other = open_round()) {
+        throw Refused(round_name(other->id) + " is still open",
+                      "close it before the next audience comes in");
     }
+    const int session = make_session(database_);
+    transaction.commit();
+    return session;
+}
+
+std::optional<int> BallotStore::session() const { return newest_session(database_); }
+
+std::optional<Invitation> BallotStore::invitation(int session) const {
+    const auto rows =
+        database_.run("SELECT token, code, code_until FROM invitations WHERE session = ?1",
+                      {std::int64_t{session}});
+    if (rows.empty()) return std::nullopt;
+    const auto* until = std::get_if<std::int64_t>(&rows[0][2]);
+    return Invitation{
+        as_text(database_, rows[0][0]), as_text(database_, rows[0][1]), until ? *until : 0};
+}
+
+void BallotStore::invite(int session, const Invitation& invitation) {
+    database_.run(
+        "INSERT INTO invitations VALUES (?1, ?2, ?3, ?4) ON CONFLICT (session) DO "
+        "UPDATE SET token = excluded.token, code = excluded.code, "
+        "code_until = excluded.code_until",
+        {std::int64_t{session}, invitation.token, invitation.code, invitation.code_until_s});
+}
+
+int BallotStore::join(int session, const std::string& secret_hash, int most_seats) {
+    Transaction transaction(database_);
+    if (const auto seat = seat_with_key(database_, session, phone_seat_key(secret_hash))) {
+        return *seat;
+    }
+    if (session != newest_session(database_)) {
+        throw Refused("this session is over", "join the one that is shown now");
+    }
+    if (const auto round = open_round()) {
+        throw Refused(round_name(round->id) + " has begun", "join before the next round");
+    }
+    const int phones =
+        as_int(database_,
+               database_.run("SELECT count(*) FROM seats WHERE session = ?1 AND key LIKE 'phone:%'",
+                             {std::int64_t{session}})[0][0]);
+    if (phones >= most_seats) {
+        throw Refused("all " + std::to_string(most_seats) + " seats are taken",
+                      "ask the operator for more, or for a ballot on paper");
+    }
+    const int seat = make_seat(database_, session, secret_hash, true);
+    transaction.commit();
+    return seat;
+}
+
+std::optional<int> BallotStore::seat_of_phone(int session, const std::string& secret_hash) const {
+    return seat_with_key(database_, session, phone_seat_key(secret_hash));
+}
+
+std::vector<Seat> BallotStore::seats(int session) const {
+    std::vector<Seat> seats;
+    for (const auto& row :
+         database_.run("SELECT seat, name FROM seats WHERE session = ?1 ORDER BY seat",
+                       {std::int64_t{session}})) {
+        seats.push_back({as_int(database_, row[0]), as_text(database_, row[1])});
+    }
+    return seats;
+}
+
+// --- rounds ---
+
+int BallotStore::open_round(const RoundSetup& setup) {
+    check_setup(setup);
+    const auto codes = setup.codes.empty()
+                           ? draw_codes(static_cast<int>(setup.designs.size()), setup.seed)
+                           : setup.codes;
     Transaction transaction(database_);
     if (const auto other = open_round()) {
         throw Refused(round_name(other->id) + " is still open", "close it before opening the next");
     }
-    const std::string now = utc_now();
-    database_.run("INSERT INTO rounds (created, calibration_id) VALUES (?1, ?2)",
-                  {now, calibration_id});
-    const int round = as_int(database_, database_.run("SELECT max(id) FROM rounds")[0][0]);
-    append_to_log(database_, {LogEntry::What::open, round, now, calibration_id});
-    for (std::size_t k = 0; k < designs.size(); ++k) {
-        const auto position = static_cast<int>(k);
-        database_.run("INSERT INTO designs VALUES (?1, ?2, ?3)",
-                      {std::int64_t{round}, std::int64_t{position}, designs[k]});
-        append_to_log(database_, {LogEntry::What::design, round, now, designs[k], position});
+    auto session = newest_session(database_);
+    if (!session) session = make_session(database_);
+    const int round =
+        as_int(database_, database_.run("SELECT coalesce(max(id), 0) FROM rounds")[0][0]) + 1;
+    const LogEntry base{.session = *session, .round = round, .at = utc_now()};
+    LogEntry opening = base;
+    opening.what = What::open;
+    opening.text = setup.calibration_id;
+    opening.best = setup.asks_least ? 1 : 0;
+    opening.second = setup.seed;
+    record(database_, opening);
+    for (std::size_t k = 0; k < setup.designs.size(); ++k) {
+        LogEntry design = base;
+        design.what = What::design;
+        design.text = setup.designs[k];
+        design.best = static_cast<int>(k);
+        design.second = codes[k];
+        record(database_, design);
+    }
+    if (!setup.presenting) {
+        LogEntry voting = base;
+        voting.what = What::voting;
+        record(database_, voting);
     }
     transaction.commit();
     return round;
 }
 
-void BallotStore::vote(int round, const Ballot& ballot) {
-    const std::string name = tidy_name(ballot.evaluator), key = name_key(ballot.evaluator);
-    check_argument(ballot.best != ballot.second,
-                   "ballot of " + name + ": found design " + std::to_string(ballot.best) +
-                       " as best and as second best, expected two designs");
+void BallotStore::start_voting(int id) {
     Transaction transaction(database_);
-    const RoundState state = state_of(database_, round);
-    for (const int design : {ballot.best, ballot.second}) {
-        check_argument(design >= 0 && design < state.designs,
-                       "ballot of " + name + ": found design " + std::to_string(design) +
-                           ", expected 0 to " + std::to_string(state.designs - 1));
+    const Round round = round_of(database_, id);
+    if (round.closed) {
+        throw Refused(round_name(id) + " is closed already", "open a new round to vote again");
     }
-    if (state.closed) {
-        throw Refused(round_name(round) + " is closed, so the ballot of " + name + " is too late",
-                      "open a new round and vote there");
-    }
-    const std::string now = utc_now();
-    database_.run(
-        "INSERT INTO ballots VALUES (?1, ?2, ?3, ?4, ?5, ?6) "
-        "ON CONFLICT (round, name_key) DO UPDATE SET evaluator = excluded.evaluator, "
-        "best = excluded.best, second = excluded.second, at = excluded.at",
-        {std::int64_t{round},
-         key,
-         name,
-         std::int64_t{ballot.best},
-         std::int64_t{ballot.second},
-         now});
-    append_to_log(database_, {LogEntry::What::vote, round, now, name, ballot.best, ballot.second});
+    if (round.voting) throw Refused(round_name(id) + " takes votes already", "vote");
+    record(database_,
+           {.what = What::voting, .session = round.session, .round = id, .at = utc_now()});
     transaction.commit();
 }
 
-void BallotStore::close_round(int round) {
+void BallotStore::close_round(int id) {
     Transaction transaction(database_);
-    if (state_of(database_, round).closed) {
-        throw Refused(round_name(round) + " is closed already", "open a new round to vote again");
+    const Round round = round_of(database_, id);
+    if (round.closed) {
+        throw Refused(round_name(id) + " is closed already", "open a new round to vote again");
     }
-    const std::string now = utc_now();
-    database_.run("UPDATE rounds SET closed = ?2 WHERE id = ?1", {std::int64_t{round}, now});
-    append_to_log(database_, {LogEntry::What::close, round, now});
+    record(database_,
+           {.what = What::close, .session = round.session, .round = id, .at = utc_now()});
     transaction.commit();
 }
 
 std::vector<Round> BallotStore::rounds() const {
-    std::vector<Round> rounds;
-    for (const auto& row : database_.run(
-             "SELECT id, created, calibration_id, closed IS NOT NULL, "
-             "(SELECT count(*) FROM ballots WHERE round = rounds.id) FROM rounds ORDER BY id")) {
-        Round round;
-        round.id = as_int(database_, row[0]);
-        round.created = as_text(database_, row[1]);
-        round.calibration_id = as_text(database_, row[2]);
-        round.closed = as_int(database_, row[3]) != 0;
-        round.ballots = as_int(database_, row[4]);
-        // A round's designs never change, so a second look is as good as the first.
-        for (const auto& design :
-             database_.run("SELECT name FROM designs WHERE round = ?1 ORDER BY position",
-                           {std::int64_t{round.id}})) {
-            round.designs.push_back(as_text(database_, design[0]));
-        }
-        rounds.push_back(std::move(round));
-    }
-    return rounds;
+    return rounds_where(database_, "ORDER BY id", {});
 }
 
 std::optional<Round> BallotStore::open_round() const {
-    for (auto& round : rounds()) {
-        if (!round.closed) return round;
-    }
-    return std::nullopt;
+    auto found = rounds_where(database_, "WHERE closed IS NULL", {});
+    if (found.empty()) return std::nullopt;
+    return std::move(found.front());
 }
 
-Tally BallotStore::tally(int round) const {
-    if (!state_of(database_, round).closed) {
-        throw Refused(round_name(round) + " is open: counts told now would sway the votes to come",
+std::optional<Round> BallotStore::last_round(int session) const {
+    auto found = rounds_where(
+        database_, "WHERE session = ?1 ORDER BY id DESC LIMIT 1", {std::int64_t{session}});
+    if (found.empty()) return std::nullopt;
+    return std::move(found.front());
+}
+
+// --- ballots ---
+
+CastBallot BallotStore::vote(int round, const Ballot& ballot) {
+    const std::string name = tidy_name(ballot.evaluator);
+    const Choices choices{ballot.best, ballot.second, ballot.least};
+    Transaction transaction(database_);
+    const int session = round_of(database_, round).session;
+    auto seat = seat_with_key(database_, session, named_seat_key(name));
+    if (!seat) seat = make_seat(database_, session, name, false);
+    const CastBallot cast = vote_within(round, *seat, choices, name);
+    transaction.commit();
+    return cast;
+}
+
+CastBallot BallotStore::vote(int round, int seat, const Choices& choices) {
+    Transaction transaction(database_);
+    const CastBallot cast = vote_within(round, seat, choices, "seat " + std::to_string(seat));
+    transaction.commit();
+    return cast;
+}
+
+CastBallot BallotStore::vote_within(int id,
+                                    int seat,
+                                    const Choices& choices,
+                                    const std::string& who) {
+    const Round round = round_of(database_, id);
+    check_choices(choices, round, who);
+    const auto seats = database_.run("SELECT 1 FROM seats WHERE session = ?1 AND seat = ?2",
+                                     {std::int64_t{round.session}, std::int64_t{seat}});
+    check_argument(!seats.empty(), "ballot of " + who + ": found no such seat in the session");
+    if (round.closed) {
+        throw Refused(round_name(id) + " is closed, so the ballot of " + who + " is too late",
+                      "open a new round and vote there");
+    }
+    if (!round.voting) {
+        throw Refused(
+            round_name(id) + " is still presented, so the ballot of " + who + " is too early",
+            "vote when all looks have been shown");
+    }
+    if (const auto present = ballot_at(database_, round, seat);
+        present && present->choices == choices) {
+        return *present;
+    }
+    record(database_,
+           {.what = What::vote,
+            .session = round.session,
+            .round = id,
+            .seat = seat,
+            .at = utc_now(),
+            .best = choices.best,
+            .second = choices.second,
+            .least = choices.least.value_or(-1)});
+    return *ballot_at(database_, round, seat);
+}
+
+std::optional<CastBallot> BallotStore::ballot_of(int round, int seat) const {
+    return ballot_at(database_, round_of(database_, round), seat);
+}
+
+std::vector<int> BallotStore::voted(int id) const {
+    const Round round = round_of(database_, id);
+    std::vector<int> seats;
+    for (const auto& row :
+         database_.run("SELECT seat FROM ballots WHERE session = ?1 AND round = ?2 ORDER BY seat",
+                       {std::int64_t{round.session}, std::int64_t{id}})) {
+        seats.push_back(as_int(database_, row[0]));
+    }
+    return seats;
+}
+
+std::vector<CastBallot> BallotStore::ballots(int id) const {
+    const Round round = round_of(database_, id);
+    if (!round.closed) {
+        throw Refused(round_name(id) + " is open: votes told now would sway those to come",
+                      "close the round, then ask for its ballots");
+    }
+    std::vector<CastBallot> ballots;
+    for (const auto& row :
+         database_.run(std::string(kBallotColumns) + "WHERE ballots.session = ?1 AND "
+                                                     "ballots.round = ?2 ORDER BY ballots.seat",
+                       {std::int64_t{round.session}, std::int64_t{id}})) {
+        ballots.push_back(ballot_from(database_, row));
+    }
+    return ballots;
+}
+
+Tally BallotStore::tally(int id) const {
+    const Round round = round_of(database_, id);
+    if (!round.closed) {
+        throw Refused(round_name(id) + " is open: counts told now would sway the votes to come",
                       "close the round, then ask for its tally");
     }
     Tally tally;
-    for (const auto& row : database_.run(
-             "SELECT name,"
-             " (SELECT count(*) FROM ballots b WHERE b.round = d.round AND b.best = d.position),"
-             " (SELECT count(*) FROM ballots b WHERE b.round = d.round AND b.second = d.position) "
-             "FROM designs d WHERE round = ?1 ORDER BY position",
-             {std::int64_t{round}})) {
-        tally.designs.push_back(as_text(database_, row[0]));
-        tally.best.push_back(as_int(database_, row[1]));
-        tally.second.push_back(as_int(database_, row[2]));
+    tally.designs = round.designs;
+    tally.best.resize(round.designs.size());
+    tally.second.resize(round.designs.size());
+    if (round.asks_least) tally.least.resize(round.designs.size());
+    for (const CastBallot& ballot : ballots(id)) {
+        ++tally.best[static_cast<std::size_t>(ballot.choices.best)];
+        ++tally.second[static_cast<std::size_t>(ballot.choices.second)];
+        if (ballot.choices.least) ++tally.least[static_cast<std::size_t>(*ballot.choices.least)];
     }
     return tally;
+}
+
+std::int64_t BallotStore::others_changes() const {
+    const auto rows = database_.run("PRAGMA data_version");
+    const auto* count = std::get_if<std::int64_t>(&rows.at(0).at(0));
+    return count ? *count : 0;
 }
 
 }  // namespace livery

@@ -1,4 +1,4 @@
-// Rounds of votes on looks: who, best, second best. SQLite, one file of their own.
+// Rounds of votes on looks: who, best, second best, perhaps least. SQLite, one file of their own.
 #pragma once
 
 #include <cstdint>
@@ -13,21 +13,63 @@
 
 namespace livery {
 
+/// Indices of the round's designs, all different.
+struct Choices {
+    int best = 0, second = 0;
+    std::optional<int> least = {};
+    bool operator==(const Choices&) const = default;
+};
+
+/// One that is typed in: in the window, or from paper.
 struct Ballot {
     std::string evaluator;     ///< as they want to be called; one ballot each a round
     int best = 0, second = 0;  ///< indices of the round's designs, different
+    std::optional<int> least = {};
+};
+
+struct RoundSetup {
+    std::vector<std::string> designs;
+    std::string calibration_id = {};  ///< that the designs are shown under; empty: uncorrected
+    std::vector<int> codes = {};      ///< a design each, 100 to 999; empty: drawn from the seed
+    int seed = 1;
+    bool asks_least = false;
+    bool presenting = false;  ///< votes count from start_voting() on; else at once
 };
 
 struct Round {
     int id = 0;
     std::string created;  ///< ISO 8601, UTC
     std::vector<std::string> designs;
-    std::string calibration_id;  ///< that the designs were shown under; empty: uncorrected
+    std::string calibration_id;
     bool closed = false;
     int ballots = 0;  ///< how many, all that is told before it is closed
+    int session = 0;
+    std::vector<int> codes;
+    int seed = 1;
+    bool asks_least = false;
+    bool voting =
+        false;  ///< the looks have been presented; true of closed rounds that were voted on
 };
 
-/// The statements that make the file: tables, and triggers that keep what is recorded.
+struct Seat {
+    int number = 0;
+    std::string name;  ///< empty: a phone, of which nothing is known
+};
+
+/// How phones come in: by the token in the QR code, or by six characters typed in.
+struct Invitation {
+    std::string token, code;
+    std::int64_t code_until_s = 0;  ///< seconds since 1970
+};
+
+struct CastBallot {
+    int seat = 0;
+    Choices choices;
+    std::string receipt;  ///< eight hexadecimal digits, the beginning of its log entry's hash
+};
+
+/// The statements that make the file (tables, and triggers that keep what is recorded), then those
+/// that made files of older formats.
 const std::vector<std::string>& ballots_schema();
 
 /// What a function has done is on disk when it returns. Several stores (and programs) may share a
@@ -36,23 +78,56 @@ const std::vector<std::string>& ballots_schema();
 /// twice, bad name); Refused, with the fix, for what the round's state forbids.
 class BallotStore {
   public:
-    /// Opens the file or makes it; reads the whole log and checks it.
+    /// Opens the file or makes it; reads the whole log and checks it. A file of format 1 becomes
+    /// one of format 2, in one transaction.
     explicit BallotStore(const std::filesystem::path& file);
 
-    /// At least two designs, all different. Refused while another round is open.
-    int open_round(const std::vector<std::string>& designs, const std::string& calibration_id);
+    /// A new audience: phones join anew. Refused while a round is open.
+    int open_session();
+    /// The newest; nothing in an empty file.
+    std::optional<int> session() const;
+    std::optional<Invitation> invitation(int session) const;
+    void invite(int session, const Invitation& invitation);
+    /// The seat of the phone with this secret's hash, a new one where it has none. Refused while a
+    /// round is open (who joined then would not have seen every look) and when `most_seats` phones
+    /// are in.
+    int join(int session, const std::string& secret_hash, int most_seats);
+    std::optional<int> seat_of_phone(int session, const std::string& secret_hash) const;
+    std::vector<Seat> seats(int session) const;
+
+    /// In the newest session, which is made where there is none. At least two designs, all
+    /// different. Refused while another round is open.
+    int open_round(const RoundSetup& setup);
+    int open_round(const std::vector<std::string>& designs, const std::string& calibration_id) {
+        return open_round(RoundSetup{designs, calibration_id});
+    }
+    /// Refused when votes are taken already, and when it is closed.
+    void start_voting(int round);
     /// A second ballot of the same evaluator (name_key) replaces the first, while the round is
-    /// open; both stay in the log. Refused when it is closed.
-    void vote(int round, const Ballot& ballot);
+    /// open; both stay in the log. Refused when it is closed or still presented.
+    CastBallot vote(int round, const Ballot& ballot);
+    /// The same for a seat. One that is as the seat's ballot is already changes nothing.
+    CastBallot vote(int round, int seat, const Choices& choices);
     /// For good. Refused when it is closed already.
     void close_round(int round);
+
     std::vector<Round> rounds() const;
     std::optional<Round> open_round() const;
+    /// The newest round of a session.
+    std::optional<Round> last_round(int session) const;
+    std::optional<CastBallot> ballot_of(int round, int seat) const;
+    /// The seats that have voted, never for what.
+    std::vector<int> voted(int round) const;
+    /// In the order of seats. Refused while the round is open.
+    std::vector<CastBallot> ballots(int round) const;
     /// Refused while the round is open.
     Tally tally(int round) const;
     const std::filesystem::path& file() const { return database_.file(); }
+    /// Changes when another program or store has changed the file.
+    std::int64_t others_changes() const;
 
   private:
+    CastBallot vote_within(int round, int seat, const Choices& choices, const std::string& who);
     mutable Database database_;
 };
 

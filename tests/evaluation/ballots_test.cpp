@@ -93,10 +93,13 @@ TEST(Ballots, ASecondOneReplacesTheFirstAndBothAreLogged) {
     EXPECT_EQ(tally.best, (std::vector<int>{1, 0, 0, 1}));
     EXPECT_EQ(tally.second, (std::vector<int>{0, 0, 2, 0}));
     auto raw = raw_ballots(file);
-    EXPECT_EQ(raw.run("SELECT text, best, second FROM log WHERE what = 'vote' ORDER BY id"),
-              (std::vector<std::vector<DatabaseValue>>{{"Åsa", std::int64_t{0}, std::int64_t{1}},
-                                                       {"Bo", std::int64_t{0}, std::int64_t{2}},
-                                                       {"åSA", std::int64_t{3}, std::int64_t{2}}}));
+    EXPECT_EQ(raw.run("SELECT seat, best, second FROM log WHERE what = 'vote' ORDER BY id"),
+              (std::vector<std::vector<DatabaseValue>>{
+                  {std::int64_t{1}, std::int64_t{0}, std::int64_t{1}},
+                  {std::int64_t{2}, std::int64_t{0}, std::int64_t{2}},
+                  {std::int64_t{1}, std::int64_t{3}, std::int64_t{2}}}));
+    EXPECT_EQ(raw.run("SELECT name FROM seats ORDER BY seat"),
+              (std::vector<std::vector<DatabaseValue>>{{"Åsa"}, {"Bo"}}));
 }
 
 TEST(Ballots, CountsStayHiddenAndAClosedRoundStaysClosed) {
@@ -185,14 +188,18 @@ TEST(Ballots, TheFileItselfRefusesWhatMakesNoSense) {
     raw.run("PRAGMA foreign_keys = ON");
     const std::string ballot = "INSERT INTO ballots VALUES ";
     for (const auto& [statement, why] : std::vector<std::pair<std::string, std::string>>{
-             {ballot + "(2, 'x', 'X', 1, 1, '')", "best <> second"},
-             {ballot + "(2, 'x', 'X', 1, 9, '')", "FOREIGN KEY"},
-             {ballot + "(2, 'x', 'X', 'one', 2, '')", "cannot store TEXT"},
-             {ballot + "(1, 'x', 'X', 1, 2, '')", "the round is closed"},
+             {ballot + "(1, 2, 1, 1, 1, NULL, '', 1)", "best <> second"},
+             {ballot + "(1, 2, 1, 1, 2, 2, '', 1)", "least"},
+             {ballot + "(1, 2, 1, 1, 9, NULL, '', 1)", "FOREIGN KEY"},
+             {ballot + "(1, 2, 9, 1, 2, NULL, '', 1)", "FOREIGN KEY"},
+             {ballot + "(2, 2, 1, 1, 2, NULL, '', 1)", "FOREIGN KEY"},
+             {ballot + "(1, 2, 1, 'one', 2, NULL, '', 1)", "cannot store TEXT"},
+             {ballot + "(1, 1, 1, 1, 2, NULL, '', 1)", "the round is not open for votes"},
              {"UPDATE ballots SET best = 2", "the round is closed"},
              {"DELETE FROM ballots", "ballots are not deleted"},
+             {"DELETE FROM seats", "seats are not deleted"},
              {"UPDATE rounds SET closed = NULL WHERE id = 1", "the round is closed"},
-             {"INSERT INTO rounds (created, calibration_id) VALUES ('', '')", "UNIQUE"},
+             {"INSERT INTO rounds VALUES (3, 1, '', '', 0, 1, NULL, NULL)", "UNIQUE"},
              {"UPDATE log SET best = 2", "only appended to"},
              {"DELETE FROM log", "only appended to"}}) {
         const std::string message = thrown<FileError>([&] { raw.run(statement); });
@@ -241,6 +248,8 @@ TEST(TallyText, QuotesWhatASpreadsheetWouldTear) {
               "design,best,second\r\nplain,1,0\r\n\"with, comma\",2,0\r\n"
               "\"with \"\"quotes\"\"\",3,1\r\n\"two\nlines\",4,0\r\n");
     EXPECT_EQ(tally_csv({}), "design,best,second\r\n");
+    EXPECT_EQ(tally_csv({{"a", "b"}, {1, 2}, {2, 1}, {0, 3}}),
+              "design,best,second,least\r\na,1,2,0\r\nb,2,1,3\r\n");
     EXPECT_EQ(thrown<std::invalid_argument>([] {
                   tally_csv({{"a"}, {1, 2}, {0}});
               }),

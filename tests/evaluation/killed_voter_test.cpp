@@ -72,7 +72,8 @@ TEST(KilledVoter, NoConfirmedVoteIsLost) {
 
         const BallotStore store(file);  // checks the log against the ballots
         std::set<int> found;
-        for (const auto& row : raw_ballots(file).run("SELECT evaluator FROM ballots")) {
+        for (const auto& row :
+             raw_ballots(file).run("SELECT name FROM ballots JOIN seats USING (session, seat)")) {
             found.insert(std::stoi(std::get<std::string>(row[0]).substr(6)));
         }
         for (const int voter : confirmed) EXPECT_TRUE(found.contains(voter)) << voter;
