@@ -1,0 +1,40 @@
+// What a phone and the server say to one another: JSON.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace livery {
+
+/// A vote by the looks' codes.
+struct VoteMessage {
+    int round = 0, best = 0, second = 0;
+    std::optional<int> least = {};
+};
+
+/// {"round": 3, "best": 412, "second": 907, "least": 133}; "least" may be missing or null. Throws
+/// FileError that names the field, for anything else.
+VoteMessage parse_vote(const std::string& body);
+
+/// {"code": "K7M2PQ"}. Throws FileError as above.
+std::string parse_join(const std::string& body);
+
+/// What the page shows.
+struct PageState {
+    /// "join": no seat yet; "shut": no seat, and nobody is let in; "waiting": for a round;
+    /// "presenting", "voting", "locked".
+    std::string state = "waiting";
+    int seat = 0;            ///< 0: none
+    int round = 0;           ///< 0: none
+    std::vector<int> codes;  ///< while voting, in rising order
+    bool asks_least = false;
+    std::optional<VoteMessage> ballot;  ///< the seat's own
+    std::string receipt;
+};
+std::string text_of(const PageState& state);
+
+/// {"problem": "..."}
+std::string problem_text(const std::string& problem);
+
+}  // namespace livery

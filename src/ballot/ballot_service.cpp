@@ -1,0 +1,243 @@
+#include "ballot/ballot_service.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <utility>
+
+#include "ballot/page_files.h"
+#include "ballot/secrets.h"
+#include "core/error.h"
+
+namespace livery {
+
+namespace {
+
+constexpr double kCodeLife_s = 600.0;
+constexpr std::string_view kJoinPath = "/join/";
+
+BallotResponse problem(int status, const std::string& text) {
+    BallotResponse response;
+    response.status = status;
+    response.body = problem_text(text);
+    return response;
+}
+
+BallotResponse wrong_method(const char* allowed) {
+    BallotResponse response =
+        problem(405, std::string("found another method, expected ") + allowed);
+    response.allow = allowed;
+    return response;
+}
+
+BallotResponse page_file(const BallotRequest& request, const char* type, std::string_view text) {
+    if (request.method != "GET" && request.method != "HEAD") return wrong_method("GET, HEAD");
+    BallotResponse response;
+    response.content_type = type;
+    response.body = text;
+    return response;
+}
+
+/// Why a request that changes something is refused before it is read; nothing when it is not.
+std::optional<BallotResponse> refused(const BallotRequest& request, const ServerNames& names) {
+    if (!origin_is_ours(request, names)) {
+        return problem(403, "found a request of another page, expected one of this server's own");
+    }
+    if (request.content_type != "application/json") {
+        return problem(415, "found another Content-Type, expected application/json");
+    }
+    return std::nullopt;
+}
+
+int index_of(const Round& round, int code) {
+    const auto found = std::find(round.codes.begin(), round.codes.end(), code);
+    check_argument(found != round.codes.end(),
+                   "found look " + std::to_string(code) + ", expected one of the round's");
+    return static_cast<int>(found - round.codes.begin());
+}
+
+/// What a body says; std::invalid_argument for a bad one, which is no fault of a file of ours.
+template <typename Parse>
+auto message_in(const std::string& body, const Parse& parse) {
+    try {
+        return parse(body);
+    } catch (const FileError& error) {
+        throw std::invalid_argument(error.what());
+    }
+}
+
+VoteMessage message_of(const Round& round, const Choices& choices) {
+    const auto code = [&](int index) { return round.codes.at(static_cast<std::size_t>(index)); };
+    VoteMessage vote{round.id, code(choices.best), code(choices.second)};
+    if (choices.least) vote.least = code(*choices.least);
+    return vote;
+}
+
+}  // namespace
+
+BallotService::BallotService(const std::filesystem::path& file, BallotServiceSettings settings)
+    : store_(file), settings_(std::move(settings)) {
+    if (!store_.session()) store_.open_session();
+}
+
+void BallotService::keep_invitation(double now_s) {
+    const auto session = store_.session();
+    if (!session) return;
+    auto invitation = store_.invitation(*session);
+    if (invitation && static_cast<double>(invitation->code_until_s) > now_s) return;
+    // The token stays: the QR code may hang on a wall.
+    if (!invitation) invitation = Invitation{random_secret(), "", 0};
+    invitation->code = random_join_code();
+    invitation->code_until_s = static_cast<std::int64_t>(std::ceil(now_s + kCodeLife_s));
+    store_.invite(*session, *invitation);
+}
+
+BallotResponse BallotService::answer(const BallotRequest& request, double now_s) {
+    try {
+        return route(request, now_s);
+    } catch (const Refused& why) {
+        return problem(409, std::string(why.what()));
+    } catch (const std::invalid_argument& error) {
+        return problem(400, error.what());
+    } catch (const std::exception&) {
+        // Which file, and what is wrong with it, is the operator's business.
+        return problem(503, "this could not be kept; try again, or vote on paper");
+    }
+}
+
+BallotResponse BallotService::route(const BallotRequest& request, double now_s) {
+    if (!host_is_ours(request, settings_.names)) {
+        return problem(421, "found another Host, expected the address that the operator shows");
+    }
+    if (request.path == "/") return page_file(request, "text/html; charset=utf-8", page_html());
+    if (request.path == "/page.css") {
+        return page_file(request, "text/css; charset=utf-8", page_css());
+    }
+    if (request.path == "/page.js") {
+        return page_file(request, "text/javascript; charset=utf-8", page_js());
+    }
+    if (request.path == "/state") {
+        if (request.method != "GET") return wrong_method("GET");
+        BallotResponse response;
+        response.body = text_of(state_for(request));
+        return response;
+    }
+    if (request.path == "/join") {
+        if (request.method != "POST") return wrong_method("POST");
+        if (auto no = refused(request, settings_.names)) return std::move(*no);
+        return join_by_code(request, now_s);
+    }
+    if (request.path.starts_with(kJoinPath)) {
+        if (request.method != "GET") return wrong_method("GET");
+        return join_by_token(request);
+    }
+    if (request.path == "/ballot") {
+        if (request.method != "PUT") return wrong_method("PUT");
+        if (auto no = refused(request, settings_.names)) return std::move(*no);
+        return take_vote(request);
+    }
+    return problem(404, "nothing is here");
+}
+
+// --- joining ---
+
+BallotResponse BallotService::seated(const BallotRequest& request, BallotResponse response) {
+    const int session = store_.session().value();
+    if (seat_of(request, session) != 0) return response;
+    const std::string secret = random_secret();
+    store_.join(session, hash_of_secret(secret), settings_.most_seats);
+    response.cookie = seat_cookie(secret, settings_.names.tls);
+    return response;
+}
+
+BallotResponse BallotService::join_by_token(const BallotRequest& request) {
+    // A browser that looks ahead must not take the seat of the person who then taps.
+    if (request.purpose.find("prefetch") != std::string::npos) {
+        return problem(403, "found a look ahead, expected a person");
+    }
+    const auto invitation = store_.invitation(store_.session().value());
+    const std::string token = request.path.substr(kJoinPath.size());
+    if (!invitation || !same_secret(token, invitation->token)) {
+        return problem(403, "this code is not the one that is shown now; scan it again");
+    }
+    BallotResponse response;
+    response.status = 303;
+    response.location = "/";
+    try {
+        return seated(request, response);
+    } catch (const Refused&) {
+        // The page says why, in words for people.
+        return response;
+    }
+}
+
+BallotResponse BallotService::join_by_code(const BallotRequest& request, double now_s) {
+    const std::string code = tidy_join_code(message_in(request.body, parse_join));
+    if (!attempts_.allowed(request.client, now_s)) {
+        return problem(429, "too many wrong codes; wait a minute, or scan the QR code");
+    }
+    const auto invitation = store_.invitation(store_.session().value());
+    if (!invitation || now_s >= static_cast<double>(invitation->code_until_s) ||
+        !same_secret(code, invitation->code)) {
+        attempts_.failed(request.client, now_s);
+        return problem(403, "this code is not the one that is shown now");
+    }
+    BallotResponse response = seated(request, {});
+    response.body = "{}";
+    return response;
+}
+
+// --- voting ---
+
+int BallotService::seat_of(const BallotRequest& request, int session) {
+    const auto secret = seat_secret(request.cookies);
+    if (!secret) return 0;
+    return store_.seat_of_phone(session, hash_of_secret(*secret)).value_or(0);
+}
+
+PageState BallotService::state_for(const BallotRequest& request) {
+    const int session = store_.session().value();
+    PageState state;
+    state.seat = seat_of(request, session);
+    const auto round = store_.last_round(session);
+    const bool open = round && !round->closed;
+    if (state.seat == 0) {
+        state.state = open ? "shut" : "join";
+        return state;
+    }
+    if (!round) return state;
+    state.round = round->id;
+    state.state = round->closed ? "locked" : round->voting ? "voting" : "presenting";
+    if (!round->voting) return state;
+    if (open) {
+        // Their order says nothing: codes are random.
+        state.codes = round->codes;
+        std::sort(state.codes.begin(), state.codes.end());
+        state.asks_least = round->asks_least;
+    }
+    if (const auto ballot = store_.ballot_of(round->id, state.seat)) {
+        state.ballot = message_of(*round, ballot->choices);
+        state.receipt = ballot->receipt;
+    }
+    return state;
+}
+
+BallotResponse BallotService::take_vote(const BallotRequest& request) {
+    const int session = store_.session().value();
+    const int seat = seat_of(request, session);
+    if (seat == 0) return problem(401, "found no seat, expected to have joined");
+    const VoteMessage vote = message_in(request.body, parse_vote);
+    const auto round = store_.last_round(session);
+    if (!round || round->id != vote.round) {
+        throw Refused("round " + std::to_string(vote.round) + " is not the one under vote",
+                      "look at the page again");
+    }
+    Choices choices{index_of(*round, vote.best), index_of(*round, vote.second)};
+    if (vote.least) choices.least = index_of(*round, *vote.least);
+    store_.vote(round->id, seat, choices);
+    BallotResponse response;
+    response.body = text_of(state_for(request));
+    return response;
+}
+
+}  // namespace livery

@@ -1,0 +1,56 @@
+// What the phone page's server answers: a function of the request, the clock and the ballots' file.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "ballot/ballot_guard.h"
+#include "ballot/ballot_http.h"
+#include "ballot/ballot_messages_io.h"
+#include "ballot/join_attempts.h"
+#include "evaluation/ballots.h"
+
+namespace livery {
+
+struct BallotServiceSettings {
+    ServerNames names;
+    int most_seats = 40;
+};
+
+/// Keeps no vote in memory: every answer is read from the file, and a vote is told to be received
+/// once it is on the disk. For one thread.
+///
+///     GET  /                    the page, with /page.css and /page.js
+///     GET  /join/TOKEN          from the QR code: a seat, and a redirect to /
+///     POST /join                {"code"}: the same by the six characters
+///     GET  /state               what the page shows
+///     PUT  /ballot              {"round", "best", "second", "least"}: as often as one likes
+class BallotService {
+  public:
+    /// Opens the file as BallotStore does, and makes its first session where there is none.
+    BallotService(const std::filesystem::path& file, BallotServiceSettings settings);
+
+    /// Never throws: what fails inside is an answer too.
+    BallotResponse answer(const BallotRequest& request, double now_s);
+
+    /// Gives the newest session its invitation, and a fresh code where the last has run out. To be
+    /// called every now and then; seconds since 1970.
+    void keep_invitation(double now_s);
+
+    BallotStore& store() { return store_; }
+
+  private:
+    BallotResponse route(const BallotRequest& request, double now_s);
+    BallotResponse join_by_token(const BallotRequest& request);
+    BallotResponse join_by_code(const BallotRequest& request, double now_s);
+    BallotResponse seated(const BallotRequest& request, BallotResponse response);
+    BallotResponse take_vote(const BallotRequest& request);
+    PageState state_for(const BallotRequest& request);
+    int seat_of(const BallotRequest& request, int session);
+
+    BallotStore store_;
+    BallotServiceSettings settings_;
+    JoinAttempts attempts_;
+};
+
+}  // namespace livery
