@@ -20,11 +20,14 @@ JoinAttempts::Bucket JoinAttempts::refilled(const std::string& client, double no
     const auto found = clients_.find(client);
     if (found == clients_.end()) return {kMost, now_s};
     const Bucket& bucket = found->second;
-    return {refill(bucket.left, now_s - bucket.at_s, kMost, kRefill_per_s), now_s};
+    return {refill(bucket.left, now_s - bucket.at_s, kMost, kRefill_per_s),
+            std::max(bucket.at_s, now_s)};
 }
 
 bool JoinAttempts::allowed(const std::string& client, double now_s) {
-    all_ = {refill(all_.left, now_s - all_.at_s, kMostOfAll, kRefillOfAll_per_s), now_s};
+    // A clock that goes back and forth gives nothing.
+    all_ = {refill(all_.left, now_s - all_.at_s, kMostOfAll, kRefillOfAll_per_s),
+            std::max(all_.at_s, now_s)};
     return all_.left >= 1.0 && refilled(client, now_s).left >= 1.0;
 }
 

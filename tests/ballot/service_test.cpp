@@ -1,0 +1,265 @@
+// What the server answers, without a network.
+#include <string>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "ballot/ballot_service.h"
+#include "support/temporary_folder.h"
+
+namespace livery {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double kNow = 1'700'000'000.0;
+
+class BallotServiceTest : public testing::Test {
+  protected:
+    BallotServiceTest()
+        : file_(folder_ / "ballots.sqlite"),
+          service_(file_, {{false, {"127.0.0.1:8470"}}, 3}),
+          operators_(file_) {
+        service_.keep_invitation(kNow);
+    }
+
+    static BallotRequest request(const std::string& method,
+                                 const std::string& path,
+                                 const std::string& secret = "",
+                                 const std::string& body = "") {
+        BallotRequest request;
+        request.method = method;
+        request.path = path;
+        request.host = "127.0.0.1:8470";
+        if (!secret.empty()) request.cookies = "livery-seat=" + secret;
+        if (method == "PUT" || method == "POST") {
+            request.origin = "http://127.0.0.1:8470";
+            request.fetch_site = "same-origin";
+            request.content_type = "application/json";
+        }
+        request.body = body;
+        request.client = "phone";
+        return request;
+    }
+    BallotResponse ask(const BallotRequest& request, double now = kNow) {
+        return service_.answer(request, now);
+    }
+    Json state(const std::string& secret) {
+        const auto answer = ask(request("GET", "/state", secret));
+        EXPECT_EQ(answer.status, 200);
+        return Json::parse(answer.body);
+    }
+    Invitation invitation() { return operators_.invitation(operators_.session().value()).value(); }
+    /// The secret of a new seat, by the QR code.
+    std::string join() {
+        const auto answer = ask(request("GET", "/join/" + invitation().token));
+        EXPECT_EQ(answer.status, 303);
+        EXPECT_EQ(answer.location, "/");
+        return answer.cookie ? seat_secret(*answer.cookie).value_or("") : "";
+    }
+    int open(bool presenting = false, bool least = false) {
+        RoundSetup setup;
+        setup.designs = {"a", "b", "c", "d"};
+        setup.codes = {412, 907, 133, 560};
+        setup.presenting = presenting;
+        setup.asks_least = least;
+        return operators_.open_round(setup);
+    }
+    BallotResponse vote(const std::string& secret, const std::string& body) {
+        return ask(request("PUT", "/ballot", secret, body));
+    }
+
+    TemporaryFolder folder_;
+    std::filesystem::path file_;
+    BallotService service_;
+    BallotStore operators_;  ///< the operator's program, on the same file
+};
+
+TEST_F(BallotServiceTest, GoesFromTheQrCodeToALockedVote) {
+    EXPECT_EQ(state("")["state"], "join");
+    const std::string secret = join();
+    ASSERT_EQ(secret.size(), 32u);
+    EXPECT_EQ(state(secret), (Json{{"state", "waiting"}, {"seat", 1}, {"round", 0}}));
+    const int round = open(true);
+    EXPECT_EQ(state(secret)["state"], "presenting");
+    EXPECT_FALSE(state(secret).contains("codes")) << "before they have been shown";
+    EXPECT_EQ(state("")["state"], "shut");
+    const std::string body = R"({"round": 1, "best": 907, "second": 560})";
+    EXPECT_EQ(vote(secret, body).status, 409) << "too early";
+    operators_.start_voting(round);
+    EXPECT_EQ(state(secret)["codes"], (Json{133, 412, 560, 907}));
+    const auto answer = vote(secret, body);
+    ASSERT_EQ(answer.status, 200) << answer.body;
+    const Json told = Json::parse(answer.body);
+    EXPECT_EQ(told["ballot"]["best"], 907);
+    EXPECT_EQ(told["receipt"].get<std::string>().size(), 8u);
+    EXPECT_EQ(told, state(secret)) << "a reload shows the same";
+    EXPECT_EQ(vote(secret, body).body, answer.body) << "sent twice";
+    EXPECT_EQ(operators_.open_round().value().ballots, 1);
+    EXPECT_EQ(vote(secret, R"({"round": 1, "best": 133, "second": 560})").status, 200);
+    operators_.close_round(round);
+    EXPECT_EQ(vote(secret, body).status, 409);
+    const Json locked = state(secret);
+    EXPECT_EQ(locked["state"], "locked");
+    EXPECT_EQ(locked["ballot"]["best"], 133);
+    EXPECT_EQ(operators_.tally(round).best, (std::vector<int>{0, 0, 1, 0}));
+}
+
+TEST_F(BallotServiceTest, ASeatIsKeptByItsCookieAlone) {
+    const std::string secret = join();
+    // The same phone scans once more.
+    const auto again = ask(request("GET", "/join/" + invitation().token, secret));
+    EXPECT_EQ(again.status, 303);
+    EXPECT_FALSE(again.cookie);
+    EXPECT_NE(join(), secret);
+    EXPECT_NE(join(), "");
+    EXPECT_EQ(operators_.seats(1).size(), 3u);
+    // All seats are taken: back to the page, without one.
+    EXPECT_EQ(join(), "");
+    EXPECT_EQ(operators_.seats(1).size(), 3u);
+    // Somebody else's cookie, a guess, an injection.
+    for (const std::string& guess : {std::string(32, '0'),
+                                     secret.substr(1) + "0",
+                                     std::string("' OR key LIKE 'phone:%' --"),
+                                     std::string("%")}) {
+        EXPECT_EQ(state(guess)["seat"], 0) << guess;
+        open();
+        EXPECT_EQ(vote(guess, R"({"round": 1, "best": 907, "second": 560})").status, 401);
+        operators_.close_round(operators_.open_round().value().id);
+    }
+    // The next audience: the old cookie is none.
+    operators_.open_session();
+    EXPECT_EQ(state(secret)["seat"], 0);
+}
+
+TEST_F(BallotServiceTest, ARestartKeepsSeatsTheQrCodeAndVotes) {
+    const std::string secret = join();
+    open();
+    ASSERT_EQ(vote(secret, R"({"round": 1, "best": 907, "second": 560})").status, 200);
+    const Json before = state(secret);
+    const Invitation invited = invitation();
+    BallotService other(file_, {{false, {"127.0.0.1:8470"}}, 3});
+    other.keep_invitation(kNow + 1.0);
+    EXPECT_EQ(Json::parse(other.answer(request("GET", "/state", secret), kNow).body), before);
+    EXPECT_EQ(invitation().token, invited.token);
+    EXPECT_EQ(invitation().code, invited.code);
+}
+
+TEST_F(BallotServiceTest, JoiningByCodeIsRationedAndExpires) {
+    const auto join_with = [&](const std::string& code, double now, const std::string& client) {
+        BallotRequest asked = request("POST", "/join", "", Json{{"code", code}}.dump());
+        asked.client = client;
+        return ask(asked, now);
+    };
+    const std::string code = invitation().code;
+    const auto answer = join_with(code, kNow, "a");
+    EXPECT_EQ(answer.status, 200);
+    EXPECT_TRUE(answer.cookie);
+    for (int k = 0; k < 5; ++k) EXPECT_EQ(join_with("222222", kNow, "b").status, 403);
+    EXPECT_EQ(join_with("222222", kNow, "b").status, 429);
+    EXPECT_EQ(join_with(code, kNow, "b").status, 429) << "right, but one of too many";
+    EXPECT_EQ(join_with(code.substr(0, 3) + "-" + code.substr(3), kNow, "c").status, 200);
+    // Ten minutes later it is another one.
+    EXPECT_EQ(join_with(code, kNow + 601.0, "d").status, 403);
+    const std::string token = invitation().token;
+    service_.keep_invitation(kNow + 601.0);
+    EXPECT_NE(invitation().code, code);
+    EXPECT_EQ(invitation().token, token) << "the QR code on the wall stays";
+    EXPECT_EQ(join_with(invitation().code, kNow + 602.0, "e").status, 200);
+    EXPECT_EQ(operators_.seats(1).size(), 3u);
+    EXPECT_EQ(join_with(invitation().code, kNow + 602.0, "f").status, 409) << "all seats taken";
+    EXPECT_EQ(join_with("", kNow, "g").status, 403);
+}
+
+TEST_F(BallotServiceTest, JoiningClosesWhenARoundBegins) {
+    open(true);
+    EXPECT_EQ(join(), "");
+    EXPECT_EQ(ask(request("POST", "/join", "", Json{{"code", invitation().code}}.dump())).status,
+              409);
+    EXPECT_TRUE(operators_.seats(1).empty());
+    // Nor does a wrong token, nor a browser that looks ahead.
+    operators_.close_round(1);
+    EXPECT_EQ(ask(request("GET", "/join/" + std::string(32, '0'))).status, 403);
+    EXPECT_EQ(ask(request("GET", "/join/")).status, 403);
+    BallotRequest ahead = request("GET", "/join/" + invitation().token);
+    ahead.purpose = "prefetch;prerender";
+    EXPECT_EQ(ask(ahead).status, 403);
+    EXPECT_EQ(ask(request("HEAD", "/join/" + invitation().token)).status, 405);
+    EXPECT_TRUE(operators_.seats(1).empty());
+}
+
+TEST_F(BallotServiceTest, RefusesForgedRequestsAndStoresNothing) {
+    const std::string secret = join();
+    open();
+    const std::string body = R"({"round": 1, "best": 907, "second": 560})";
+    const auto status = [&](auto change) {
+        BallotRequest forged = request("PUT", "/ballot", secret, body);
+        change(forged);
+        return ask(forged).status;
+    };
+    EXPECT_EQ(status([](BallotRequest& r) { r.host = "evil.example"; }), 421);
+    EXPECT_EQ(status([](BallotRequest& r) { r.host = ""; }), 421);
+    EXPECT_EQ(status([](BallotRequest& r) { r.origin = "http://evil.example"; }), 403);
+    EXPECT_EQ(status([](BallotRequest& r) { r.origin = ""; }), 403);
+    EXPECT_EQ(status([](BallotRequest& r) { r.origin = "null"; }), 403);
+    EXPECT_EQ(status([](BallotRequest& r) { r.fetch_site = "cross-site"; }), 403);
+    EXPECT_EQ(status([](BallotRequest& r) { r.content_type = "text/plain"; }), 415);
+    EXPECT_EQ(status([](BallotRequest& r) { r.method = "POST"; }), 405);
+    EXPECT_EQ(status([](BallotRequest& r) { r.cookies = ""; }), 401);
+    EXPECT_EQ(status([](BallotRequest& r) { r.path = "/ballot/"; }), 404);
+    EXPECT_EQ(status([](BallotRequest& r) { r.path = "/../ballots.sqlite"; }), 404);
+    for (const char* wrong : {R"({"round": 1, "best": 907, "second": 907})",
+                              R"({"round": 1, "best": 907, "second": 999})",
+                              R"({"round": 1, "best": 907, "second": 560, "least": 133})",
+                              R"({"round": 1, "best": "907'; DROP TABLE ballots", "second": 560})",
+                              R"({"round": 1, "best": "<script>alert(1)</script>"})",
+                              R"({"round": 1})",
+                              ""}) {
+        EXPECT_EQ(vote(secret, wrong).status, 400) << wrong;
+    }
+    EXPECT_EQ(vote(secret, R"({"round": 2, "best": 907, "second": 560})").status, 409);
+    EXPECT_EQ(operators_.open_round().value().ballots, 0);
+    EXPECT_EQ(operators_.seats(1).size(), 1u);
+    EXPECT_NO_THROW(BallotStore{file_});
+    // And the honest one is taken.
+    EXPECT_EQ(vote(secret, body).status, 200);
+}
+
+TEST_F(BallotServiceTest, ServesThePageAndNothingElse) {
+    EXPECT_NE(ask(request("GET", "/")).body.find("<!doctype html>"), std::string::npos);
+    EXPECT_EQ(ask(request("GET", "/page.js")).content_type, "text/javascript; charset=utf-8");
+    EXPECT_EQ(ask(request("GET", "/page.css")).content_type, "text/css; charset=utf-8");
+    EXPECT_EQ(ask(request("POST", "/")).allow, "GET, HEAD");
+    for (const char* path : {"", "/favicon.ico", "/page", "/page.js/", "//", "/state/", "/joint"}) {
+        EXPECT_EQ(ask(request("GET", path)).status, 404) << path;
+    }
+}
+
+TEST_F(BallotServiceTest, SaysWhenAVoteCouldNotBeKept) {
+    const std::string secret = join();
+    open();
+    {
+        Database other(file_, Database::Mode::existing, 0x4c765642, 2, ballots_schema());
+        other.run(
+            "CREATE TRIGGER ballot_lost BEFORE INSERT ON ballots "
+            "BEGIN SELECT RAISE(ABORT, 'disk on fire'); END");
+    }
+    const auto answer = vote(secret, R"({"round": 1, "best": 907, "second": 560})");
+    EXPECT_EQ(answer.status, 503);
+    EXPECT_EQ(answer.body.find("fire"), std::string::npos) << "that is the operator's business";
+    EXPECT_EQ(state(secret).count("ballot"), 0u);
+}
+
+TEST_F(BallotServiceTest, AsksForTheLeastWhereTheRoundDoes) {
+    const std::string secret = join();
+    open(false, true);
+    EXPECT_EQ(state(secret)["least"], true);
+    EXPECT_EQ(vote(secret, R"({"round": 1, "best": 907, "second": 560, "least": 907})").status,
+              400);
+    EXPECT_EQ(vote(secret, R"({"round": 1, "best": 907, "second": 560, "least": 133})").status,
+              200);
+    EXPECT_EQ(state(secret)["ballot"]["least"], 133);
+}
+
+}  // namespace
+}  // namespace livery
