@@ -241,8 +241,6 @@ HttpServer::HttpServer(const HttpSettings& settings, Answer answer)
                                       limits.idle_s,
                                       MHD_OPTION_STRICT_FOR_CLIENT,
                                       1,
-                                      MHD_OPTION_LISTENING_ADDRESS_REUSE,
-                                      1u,
                                       MHD_OPTION_NOTIFY_CONNECTION,
                                       &State::on_connection,
                                       state_.get(),
