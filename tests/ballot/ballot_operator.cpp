@@ -2,7 +2,7 @@
 //
 //   ballot_operator FILE open NAMES [present] [least]   a round, names with commas; its number
 //   ballot_operator FILE voting|lock ROUND
-//   ballot_operator FILE invitation                     {"token", "code"}
+//   ballot_operator FILE invitation                     {"token", "code"}, or null
 //   ballot_operator FILE show                           checks the log; rounds, seats, who has
 //   voted ballot_operator FILE ballots ROUND                  of a locked round: {"seat": [best,
 //   second]} ballot_operator FILE session                        a new audience
@@ -52,8 +52,9 @@ Json done(BallotStore& store, const std::vector<std::string>& words) {
     if (what == "session") return store.open_session();
     if (what == "show") return shown(store);
     if (what == "invitation") {
-        const Invitation invitation = store.invitation(store.session().value()).value();
-        return {{"token", invitation.token}, {"code", invitation.code}};
+        const auto invitation = store.invitation(store.session().value());
+        if (!invitation) return nullptr;
+        return {{"token", invitation->token}, {"code", invitation->code}};
     }
     if (what == "ballots") {
         Json ballots = Json::object();
