@@ -78,6 +78,7 @@ Command check_command();
 Command compensate_command();
 Command demo_command();
 Command desktop_command();
+Command evaluate_serve_command();
 Command fit_brdf_command();
 Command fit_bssrdf_command();
 Command measure_brdf_command();

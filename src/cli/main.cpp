@@ -80,6 +80,7 @@ int run(const std::vector<std::string>& arguments) {
                                      compensate_command(),
                                      evaluate_export_command(),
                                      evaluate_order_command(),
+                                     evaluate_serve_command(),
                                      evaluate_tally_command(),
                                      check_command(),
                                      bench_command()};

@@ -282,9 +282,6 @@ std::vector<Seat> BallotStore::seats(int session) const {
 
 int BallotStore::open_round(const RoundSetup& setup) {
     check_setup(setup);
-    const auto codes = setup.codes.empty()
-                           ? draw_codes(static_cast<int>(setup.designs.size()), setup.seed)
-                           : setup.codes;
     Transaction transaction(database_);
     if (const auto other = open_round()) {
         throw Refused(round_name(other->id) + " is still open", "close it before opening the next");
@@ -293,6 +290,9 @@ int BallotStore::open_round(const RoundSetup& setup) {
     if (!session) session = make_session(database_);
     const int round =
         as_int(database_, database_.run("SELECT coalesce(max(id), 0) FROM rounds")[0][0]) + 1;
+    const auto codes = setup.codes.empty()
+                           ? draw_codes(static_cast<int>(setup.designs.size()), setup.seed, round)
+                           : setup.codes;
     const LogEntry base{.session = *session, .round = round, .at = utc_now()};
     LogEntry opening = base;
     opening.what = What::open;

@@ -15,6 +15,8 @@ namespace livery {
 
 namespace {
 
+constexpr int kSeed = 1;  ///< of the codes that old rounds are given
+
 struct EntryV1 {
     int id = 0, round = 0, best = 0, second = 0;
     std::string at, what, text, hash;
@@ -180,8 +182,9 @@ void migrate_ballots_v1(Database& database) {
         if (entry.what == "open") {
             told.what = What::open;
             told.text = entry.text;
-            told.second = entry.round;
-            codes[entry.round] = draw_codes(static_cast<int>(designs[entry.round]), entry.round);
+            told.second = kSeed;
+            codes[entry.round] =
+                draw_codes(static_cast<int>(designs[entry.round]), kSeed, entry.round);
         } else if (entry.what == "design") {
             told.what = What::design;
             told.text = entry.text;

@@ -52,7 +52,20 @@ bool attempted(BallotPanelState& state, Work&& work) {
 
 void read_rounds(Studio& studio) {
     BallotPanelState& state = *studio.panels.ballot;
-    attempted(state, [&] { state.rounds = studio.ballots->rounds(); });
+    attempted(state, [&] {
+        state.others_changes = studio.ballots->others_changes();
+        state.rounds = studio.ballots->rounds();
+    });
+}
+
+/// What phones and other programs have done to the file meanwhile.
+void follow_others(Studio& studio) {
+    BallotPanelState& state = *studio.panels.ballot;
+    try {
+        if (studio.ballots->others_changes() != state.others_changes) read_rounds(studio);
+    } catch (const FileError& error) {
+        state.problem = error.what();
+    }
 }
 
 const Round* open_round(const BallotPanelState& state) {
@@ -438,6 +451,7 @@ void draw_ballot_panel(Studio& studio, bool& open) {
     if (!studio.ballots) {
         warning_text("Ballots cannot be kept: the ballot file could not be opened.");
     } else {
+        follow_others(studio);
         draw_page(studio);
     }
     if (!state.problem.empty()) {

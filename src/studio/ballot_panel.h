@@ -1,6 +1,7 @@
 // What the ballot panel remembers between frames.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -15,6 +16,7 @@ struct BallotPanelState {
     Page page = Page::start;
     bool was_open = false;             ///< in the frame before
     std::vector<Round> rounds;         ///< read when the panel opens and after each change
+    std::int64_t others_changes = 0;   ///< of the file, when they were read: phones vote too
     std::map<int, bool> chosen_looks;  ///< by the look's number
     std::string evaluator, thanked;
     bool focus_name = false;

@@ -8,13 +8,18 @@
 //   second]} ballot_operator FILE session                        a new audience
 
 #include <cstdio>
+#include <ctime>
 #include <exception>
+#include <filesystem>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include <arpa/inet.h>
+#include <gnutls/x509.h>
 #include <nlohmann/json.hpp>
 
+#include "core/paths.h"
 #include "evaluation/ballots.h"
 
 namespace {
@@ -35,6 +40,43 @@ Json shown(const BallotStore& store) {
     return {{"rounds", rounds}, {"seats", session ? store.seats(*session).size() : 0}};
 }
 
+/// A certificate that signs itself, good for a day.
+void make_certificate(const std::filesystem::path& folder) {
+    const auto good = [](int code) {
+        if (code < 0) throw std::runtime_error(gnutls_strerror(code));
+    };
+    gnutls_x509_privkey_t key = nullptr;
+    gnutls_x509_crt_t certificate = nullptr;
+    good(gnutls_x509_privkey_init(&key));
+    good(gnutls_x509_privkey_generate(
+        key, GNUTLS_PK_ECDSA, GNUTLS_CURVE_TO_BITS(GNUTLS_ECC_CURVE_SECP256R1), 0));
+    good(gnutls_x509_crt_init(&certificate));
+    const std::time_t now = std::time(nullptr);
+    const unsigned char serial[] = {1};
+    in_addr address{};
+    ::inet_pton(AF_INET, "127.0.0.1", &address);
+    good(gnutls_x509_crt_set_version(certificate, 3));
+    good(gnutls_x509_crt_set_serial(certificate, serial, sizeof serial));
+    good(gnutls_x509_crt_set_activation_time(certificate, now - 3600));
+    good(gnutls_x509_crt_set_expiration_time(certificate, now + 86400));
+    good(gnutls_x509_crt_set_dn_by_oid(certificate, GNUTLS_OID_X520_COMMON_NAME, 0, "test", 4));
+    good(gnutls_x509_crt_set_subject_alt_name(
+        certificate, GNUTLS_SAN_IPADDRESS, &address, sizeof address, GNUTLS_FSAN_SET));
+    good(gnutls_x509_crt_set_basic_constraints(certificate, 1, 0));
+    good(gnutls_x509_crt_set_key(certificate, key));
+    good(gnutls_x509_crt_sign2(certificate, certificate, key, GNUTLS_DIG_SHA256, 0));
+    gnutls_datum_t text{};
+    good(gnutls_x509_crt_export2(certificate, GNUTLS_X509_FMT_PEM, &text));
+    write_text_file(folder / "certificate.pem",
+                    {reinterpret_cast<const char*>(text.data), text.size});
+    gnutls_free(text.data);
+    good(gnutls_x509_privkey_export2(key, GNUTLS_X509_FMT_PEM, &text));
+    write_text_file(folder / "key.pem", {reinterpret_cast<const char*>(text.data), text.size});
+    gnutls_free(text.data);
+    gnutls_x509_crt_deinit(certificate);
+    gnutls_x509_privkey_deinit(key);
+}
+
 Json done(BallotStore& store, const std::vector<std::string>& words) {
     const std::string& what = words.at(0);
     if (what == "open") {
@@ -50,6 +92,7 @@ Json done(BallotStore& store, const std::vector<std::string>& words) {
     if (what == "voting") store.start_voting(std::stoi(words.at(1)));
     if (what == "lock") store.close_round(std::stoi(words.at(1)));
     if (what == "session") return store.open_session();
+    if (what == "certificate") make_certificate(words.at(1));
     if (what == "show") return shown(store);
     if (what == "invitation") {
         const auto invitation = store.invitation(store.session().value());

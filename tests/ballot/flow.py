@@ -2,7 +2,10 @@
 """A vote from the QR code to the locked round, over loopback: twelve seats at once, and what HTTP may not do.
 
     tests/ballot/flow.py build/release/bin/livery-ballots build/release/bin/ballot_operator"""
+import http.client
+import json
 import socket
+import ssl
 import subprocess
 import time
 
@@ -110,6 +113,41 @@ def protocol(server):
         print(f"slow {what}: cut off after {took:.1f} s")
 
 
+def encrypted(plain):
+    """The same with a certificate: a seat whose cookie never leaves encryption."""
+    folder = plain.file.parent
+    plain.operator("certificate", folder)
+    with serving("--certificate", folder / "certificate.pem", "--key", folder / "key.pem") as server:
+        check(server.place["url"].startswith("https://"), f"{server.place}")
+        trust = ssl.create_default_context(cafile=folder / "certificate.pem")
+
+        def ask(method, path, headers, body=None):
+            connection = http.client.HTTPSConnection("127.0.0.1", server.port, timeout=20, context=trust)
+            connection.request(method, path, body, {"Host": f"127.0.0.1:{server.port}", **headers})
+            answer = connection.getresponse()
+            text = answer.read()
+            connection.close()
+            return answer, text
+
+        joined, _ = ask("GET", "/join/" + server.operator("invitation")["token"], {})
+        cookie = joined.getheader("Set-Cookie")
+        check(joined.status == 303 and cookie.endswith("; Secure"), f"{joined.status} {cookie}")
+        round_ = server.operator("open", "a,b")
+        codes = server.operator("show")["rounds"][0]["codes"]
+        body = json.dumps({"round": round_, "best": codes[0], "second": codes[1]})
+        for scheme, status in (("http", 403), ("https", 200)):
+            answer, text = ask("PUT", "/ballot", {"Cookie": cookie.split(";")[0], "Content-Type": "application/json",
+                                                  "Origin": f"{scheme}://127.0.0.1:{server.port}"}, body)
+            check(answer.status == status, f"{scheme}: {answer.status} {text}")
+        # Plain HTTP gets nothing, and whoever never finishes the handshake is cut off.
+        check(not raw(server, b"GET / HTTP/1.1\r\nHost: x\r\n\r\n").startswith(b"HTTP"), "plain HTTP")
+        begin = time.monotonic()
+        raw(server, b"\x16\x03\x01")
+        check(time.monotonic() - begin < 15, "a handshake that never ends")
+        check(server.memory_kb() < 64 * 1024, "memory")
+        check(server.stop() == 0, "it did not end well")
+
+
 def failures(server):
     def refused(*options):
         done = subprocess.run([server.program, *options], capture_output=True, text=True, stdin=subprocess.DEVNULL,
@@ -131,6 +169,7 @@ def failures(server):
 with serving() as server:
     vote_of_twelve(server)
     protocol(server)
+    encrypted(server)
     failures(server)
     limits = open(f"/proc/{server.process.pid}/limits", encoding="ascii").read()
     for line in ("Max core file size        0", "Max processes             0", "Max data size             67108864"):

@@ -13,6 +13,7 @@ from server import check, serving
 
 PICTURES = os.environ.get("LIVERY_BALLOT_PICTURES")
 SEATS = 12
+IN_DOCUMENTS = ("join", "chosen", "received", "locked")
 
 # What is on screen with text: colours as [r, g, b], the ground that shows through, and what it says.
 TEXTS = """(() => {
@@ -83,7 +84,7 @@ def look_at(tab, name):
     check(len(pixels) > 10, f"{name}: nothing to be seen")
     coloured = [pixel for pixel in pixels if max(pixel) - min(pixel) > 2]
     check(not coloured, f"{name}: pixels with colour, as {coloured[:3]}")
-    if PICTURES:
+    if PICTURES and name in IN_DOCUMENTS:
         with open(os.path.join(PICTURES, f"phone-{name}.png"), "wb") as out:
             out.write(tab.picture(0.5))
 

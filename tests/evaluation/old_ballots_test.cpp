@@ -41,7 +41,7 @@ TEST(OldBallots, BecomeOnesWithSeatsAndCodes) {
         ASSERT_EQ(rounds.size(), 2u);
         EXPECT_EQ(rounds[0].designs,
                   (std::vector<std::string>{"Blau metallic", "Rot, solid", "Elfenbein"}));
-        EXPECT_EQ(rounds[0].codes, draw_codes(3, 1));
+        EXPECT_EQ(rounds[0].codes, draw_codes(3, 1, 1));
         EXPECT_EQ(rounds[0].calibration_id, "1234abcd");
         EXPECT_EQ(rounds[0].created, "2026-11-25T03:36:03Z");
         EXPECT_TRUE(rounds[0].closed);

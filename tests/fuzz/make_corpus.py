@@ -28,6 +28,13 @@ def shipped(target, *files):
         put(target, path.name, json.loads(path.read_text()))
 
 
+# What phones send: cookie, then body.
+SEAT = "livery-seat=0123456789abcdef0123456789abcdef"
+put("ballot_request", "vote", SEAT + '\n{"round":3,"best":412,"second":907,"least":133}')
+put("ballot_request", "two", "a=b; " + SEAT + "; c\n{\"round\":3,\"best\":412,\"second\":907,\"least\":null}")
+put("ballot_request", "join", '127.0.0.1:8470\n{"code":"K7M 2PQ"}')
+put("ballot_request", "origin", "127.0.0.1:8470\n127.0.0.1:8470")
+
 # Meshes.
 POINTS = [(0, 0, 0), (90, 0, 0), (0, 90, 0), (0, 0, 90)]
 FACES = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]

@@ -353,6 +353,27 @@ TEST_F(Panels, ABallotIsFilledByTheLettersThatItShows) {
     EXPECT_EQ(studio.shown_look, studio.session.document().looks[1].id);
 }
 
+TEST_F(Panels, TheBallotFollowsWhatPhonesDo) {
+    use_scale(1.0f);
+    Studio studio = make_studio();
+    studio.ballots = std::make_unique<BallotStore>(home_ / "ballots.sqlite");
+    BallotStore phones(home_ / "ballots.sqlite");
+    const int session = phones.open_session(), seat = phones.join(session, "a phone's", 9);
+    click(studio, draw_ballot, "ballot:start");
+    const BallotPanelState& state = *studio.panels.ballot;
+    ASSERT_EQ(state.rounds.size(), 1u);
+    EXPECT_EQ(state.rounds[0].session, session);
+    EXPECT_EQ(state.rounds[0].ballots, 0);
+    phones.vote(1, seat, {0, 1});
+    frames(studio, draw_ballot, 2);
+    EXPECT_EQ(state.rounds.at(0).ballots, 1);
+    EXPECT_EQ(state.page, BallotPanelState::Page::vote);
+    phones.close_round(1);
+    frames(studio, draw_ballot, 2);
+    EXPECT_EQ(state.page, BallotPanelState::Page::start);
+    EXPECT_EQ(state.problem, "");
+}
+
 TEST_F(Panels, AJunkEnvironmentIsRefusedWhenItIsChosenAndToldWhenItGoesBad) {
     use_scale(1.0f);
     Studio studio = make_studio();

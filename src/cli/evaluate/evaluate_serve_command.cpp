@@ -1,0 +1,281 @@
+// livery evaluate serve
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <set>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include "cli/command.h"
+#include "core/error.h"
+#include "evaluation/ballot_process.h"
+#include "evaluation/ballots.h"
+#include "evaluation/qr_code.h"
+
+namespace livery {
+
+namespace {
+
+constexpr int kLook_ms = 500;  ///< between two looks at who has joined and voted
+
+struct ServeArguments {
+    std::string ballots, interface = "lo", designs, certificate, key;
+    std::vector<std::string> hosts;
+    int port = kBallotPort, seats = 40;
+    bool least = false, new_audience = false;
+};
+
+std::vector<std::string> split_names(const std::string& text) {
+    std::vector<std::string> names;
+    std::istringstream stream(text);
+    for (std::string name; std::getline(stream, name, ',');) names.push_back(name);
+    return names;
+}
+
+/// A line that was typed; nothing when none came within the time. After the end of the input
+/// nothing is read any more.
+std::optional<std::string> typed_line(std::string& waiting, bool& at_end) {
+    pollfd input{STDIN_FILENO, POLLIN, 0};
+    if (waiting.find('\n') == std::string::npos) {
+        const int ready = ::poll(&input, at_end ? 0 : 1, kLook_ms);
+        char bytes[256];
+        if (ready > 0) {
+            const ssize_t got = ::read(STDIN_FILENO, bytes, sizeof bytes);
+            if (got > 0) {
+                waiting.append(bytes, static_cast<std::size_t>(got));
+            } else {
+                at_end = true;
+            }
+        }
+    }
+    const std::size_t end = waiting.find('\n');
+    if (end == std::string::npos) return std::nullopt;
+    std::string line = waiting.substr(0, end);
+    waiting.erase(0, end + 1);
+    return line;
+}
+
+/// What people read goes to stdout, or beside the JSON document to stderr; at once.
+class ServeSession {
+  public:
+    ServeSession(const ServeArguments& arguments, const CommonOptions& common)
+        : arguments_(arguments),
+          seed_(common.seed),
+          out_(common.json ? stderr : stdout),
+          store_(arguments.ballots) {
+        if (arguments.new_audience && store_.session()) store_.open_session();
+        start();
+        say(words_for(server_->place()));
+    }
+
+    Outcome run(const Progress& progress) {
+        std::string waiting;
+        bool at_end = false;
+        say(next_step());
+        for (bool over = false; !over;) {
+            progress.check_stop();
+            const auto line = typed_line(waiting, at_end);
+            look();
+            if (!line) continue;
+            if (*line == "q") {
+                over = true;
+            } else if (line->empty()) {
+                go_on();
+            } else {
+                say("Enter goes on, q and Enter ends.\n");
+            }
+        }
+        return told();
+    }
+
+  private:
+    void say(const std::string& text) {
+        std::fputs(text.c_str(), out_);
+        std::fflush(out_);
+    }
+
+    void start() {
+        BallotProcessOptions options;
+        options.ballots = arguments_.ballots;
+        options.interface = arguments_.interface;
+        // Started anew it is where it was: the QR code on the wall stays good.
+        if (server_) arguments_.port = server_->place().port;
+        options.port = arguments_.port;
+        options.hosts = arguments_.hosts;
+        options.certificate = arguments_.certificate;
+        options.key = arguments_.key;
+        options.seats = arguments_.seats;
+        server_.reset();
+        server_ = std::make_unique<BallotProcess>(options);
+    }
+
+    /// Says what has changed since the last look.
+    void look() {
+        if (!server_->running()) {
+            say("The ballots' server has ended; it is started again. No vote is lost.\n");
+            start();
+        }
+        const int session = store_.session().value();
+        if (const auto invitation = store_.invitation(session);
+            invitation && invitation->code != shown_code_ && !store_.open_round()) {
+            if (shown_code_.empty() || session != shown_session_) show_qr_code(invitation->token);
+            shown_code_ = invitation->code;
+            shown_session_ = session;
+            say(fmt::format("join code {} {}\n", shown_code_.substr(0, 3), shown_code_.substr(3)));
+        }
+        const std::size_t seats = store_.seats(session).size();
+        const auto round = store_.open_round();
+        const std::string words = round && round->voting
+                                      ? fmt::format("{} of {} have voted\n", round->ballots, seats)
+                                      : fmt::format("{} have joined\n", seats);
+        if (words != last_words_ && (seats > 0 || !last_words_.empty())) say(words);
+        last_words_ = words;
+    }
+
+    void show_qr_code(const std::string& token) {
+        const std::string url = join_url(server_->place(), token);
+        if (::isatty(::fileno(out_)) == 1) say(qr_text(qr_code(url)));
+        say("join at " + url + "\n");
+    }
+
+    std::string next_step() const {
+        if (arguments_.designs.empty()) {
+            return "Rounds are opened, presented and locked in the window. q and Enter ends.\n";
+        }
+        const auto round = store_.open_round();
+        if (!round) return "Enter: present the looks, and let nobody else in.\n";
+        return round->voting ? "Enter: lock the round and count.\n"
+                             : "Enter: the looks have been shown, votes count.\n";
+    }
+
+    void go_on() {
+        if (arguments_.designs.empty()) return say(next_step());
+        const auto round = store_.open_round();
+        if (!round) {
+            RoundSetup setup;
+            setup.designs = split_names(arguments_.designs);
+            setup.seed = seed_;
+            setup.asks_least = arguments_.least;
+            setup.presenting = true;
+            store_.open_round(setup);
+            const Round opened = store_.open_round().value();
+            say(fmt::format("round {}, seed {}\n", opened.id, opened.seed));
+            for (std::size_t k = 0; k < opened.designs.size(); ++k) {
+                say(fmt::format("{}  {}\n", opened.codes[k], opened.designs[k]));
+            }
+        } else if (!round->voting) {
+            store_.start_voting(round->id);
+        } else {
+            store_.close_round(round->id);
+            locked_.insert(round->id);
+            say(fmt::format("round {} is locked: {} ballots\n", round->id, round->ballots));
+            say(tally_csv(store_.tally(round->id)));
+        }
+        say(next_step());
+    }
+
+    Outcome told() {
+        Outcome outcome;
+        const int session = store_.session().value();
+        outcome.figures = {{"ballots", arguments_.ballots},
+                           {"url", url_of(server_->place())},
+                           {"interface", server_->place().interface},
+                           {"tls", server_->place().tls},
+                           {"session", session},
+                           {"seats", store_.seats(session).size()},
+                           {"rounds", Json::array()}};
+        for (const Round& round : store_.rounds()) {
+            if (!locked_.contains(round.id)) continue;
+            const Tally tally = store_.tally(round.id);
+            Json json = {{"id", round.id},
+                         {"seed", round.seed},
+                         {"designs", round.designs},
+                         {"codes", round.codes},
+                         {"ballots", round.ballots},
+                         {"best", tally.best},
+                         {"second", tally.second}};
+            if (round.asks_least) json["least"] = tally.least;
+            outcome.figures["rounds"].push_back(json);
+        }
+        if (const auto open = store_.open_round()) {
+            outcome.text = fmt::format("Round {} stays open.\n", open->id);
+        }
+        return outcome;
+    }
+
+    ServeArguments arguments_;
+    int seed_;
+    std::FILE* out_;
+    BallotStore store_;
+    std::unique_ptr<BallotProcess> server_;
+    std::string shown_code_, last_words_;
+    int shown_session_ = 0;
+    std::set<int> locked_;
+};
+
+}  // namespace
+
+Command evaluate_serve_command() {
+    const auto arguments = std::make_shared<ServeArguments>();
+    Command command;
+    command.name = "evaluate serve";
+    command.summary = "people vote with their phones, by QR code";
+    command.example =
+        "livery evaluate serve --ballots ballots.sqlite --designs red,silver,ivory --interface "
+        "wlan0";
+    command.options = {
+        {"--ballots",
+         "FILE",
+         "where votes are kept, made when it is not there",
+         &arguments->ballots,
+         true,
+         {}},
+        {"--designs",
+         "A,B,C",
+         "looks under vote: Enter presents them, lets people vote, locks (default: the window "
+         "does)",
+         &arguments->designs,
+         false,
+         {}},
+        {"--least", "", "ask for the least liked look too", &arguments->least, false, {}},
+        {"--new-audience",
+         "",
+         "let phones join anew (default: who was in is in)",
+         &arguments->new_audience,
+         false,
+         {}},
+        {"--interface",
+         "NAME",
+         "network to listen on (default lo: this machine alone)",
+         &arguments->interface,
+         false,
+         {}},
+        {"--port", "N", "default 8470; 0: any that is free", &arguments->port, false, {}},
+        {"--host",
+         "NAME",
+         "a further name of this machine, which the QR code then holds",
+         &arguments->hosts,
+         false,
+         {}},
+        {"--certificate", "FILE", "with --key: PEM, for HTTPS", &arguments->certificate, false, {}},
+        {"--key", "FILE", "the certificate's private key", &arguments->key, false, {}},
+        {"--seats", "N", "most phones, 1 to 400 (default 40)", &arguments->seats, false, {}},
+    };
+    command.run = [arguments](const CommonOptions& common, const Progress& progress) {
+        const auto names = split_names(arguments->designs);
+        if (!arguments->designs.empty() && names.size() < 2) {
+            throw std::invalid_argument(fmt::format(
+                "--designs: found {} name, expected at least 2, with commas", names.size()));
+        }
+        return ServeSession(*arguments, common).run(progress);
+    };
+    return command;
+}
+
+}  // namespace livery

@@ -1,0 +1,42 @@
+// What a phone, or anybody, may send: a cookie header, a join code and a body, each on a line of
+// its own.
+#include <algorithm>
+#include <string>
+
+#include "ballot/ballot_guard.h"
+#include "ballot/ballot_messages_io.h"
+#include "fuzz/fuzz.h"
+
+LIVERY_FUZZ(text) {
+    using namespace livery;
+    const std::size_t line = std::min(text.find('\n'), text.size());
+    const std::string first = text.substr(0, line);
+    const std::string rest = text.substr(std::min(line + 1, text.size()));
+    if (const auto secret = seat_secret(first)) {
+        fuzz::require(secret->size() == 32, "a secret has 32 digits");
+        fuzz::require(secret->find_first_not_of("0123456789abcdef") == std::string::npos,
+                      "a secret is hexadecimal");
+        fuzz::require(seat_secret(seat_cookie(*secret, true)) == secret, "a cookie comes back");
+    }
+    BallotRequest request;
+    request.host = first;
+    request.origin = "http://" + rest;
+    const ServerNames names{false, {"127.0.0.1:8470"}};
+    fuzz::require(!host_is_ours(request, names) || first.size() == 14, "one host is ours");
+    fuzz::require(!origin_is_ours(request, names) || first.size() == rest.size(),
+                  "an origin is the host's");
+    fuzz::require(same_secret(first, rest) == (first == rest), "secrets are compared");
+    const std::string problem = problem_text(first);
+    fuzz::require(printable(problem) == problem, "an answer is one line of UTF-8");
+    try {
+        parse_join(rest);
+    } catch (const FileError&) {
+    }
+    const VoteMessage vote = parse_vote(rest);
+    for (const int code : {vote.best, vote.second, vote.least.value_or(100)}) {
+        fuzz::require(code >= 100 && code <= 999, "a code has three digits");
+    }
+    PageState state;
+    state.ballot = vote;
+    fuzz::require(!text_of(state).empty(), "a vote can be told");
+}
