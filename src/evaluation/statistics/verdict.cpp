@@ -12,6 +12,9 @@ namespace livery {
 namespace {
 
 constexpr double kLevel = 0.05;
+// The law that the rival's p goes by is that of fitted worths: with .05 here, of two that are
+// equally good one was called the winner in up to 6% of drawn rounds.
+constexpr double kRivalLevel = 0.04;
 constexpr double kClear = 0.95, kLeading = 0.75;
 constexpr double kSameLogWorth = 1e-6;
 
@@ -82,7 +85,7 @@ Verdict judge(const VoteCounts& counts,
     if (verdict.not_apart.empty() && verdict.win_probability >= kClear) {
         verdict.rival_p = calibrated_pair_p(
             data, fit, counts.has_least(), evaluators, verdict.leader, verdict.rival, seed);
-        if (verdict.rival_p <= kLevel) {
+        if (verdict.rival_p <= kRivalLevel) {
             verdict.kind = VerdictKind::clear_winner;
             return verdict;
         }

@@ -38,7 +38,7 @@ std::vector<int> by_worth(const LuceFit& fit);
 
 /// A clear winner needs all of: Friedman's exact p at most .05; the 95% profile-likelihood interval
 /// of the leader against each other without 1; first in .95 of the rounds drawn again; the rival's
-/// calibrated p (calibrated_pair_p()) at most .05. `null` is that of the counts' size;
+/// calibrated p (calibrated_pair_p()) at most .04. `null` is that of the counts' size;
 /// `win_probability` is that of a design, asked for where Friedman's p passes.
 Verdict judge(const VoteCounts& counts,
               const LuceData& data,
