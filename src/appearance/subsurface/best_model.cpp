@@ -28,9 +28,9 @@ ModelChoice best_model(const ScatteringMedium& medium) {
         return {kBest, "nothing scatters here, which every model knows"};
     }
     return {kBest,
-            fmt::format("single scattering and beam diffusion, scaled to the exact total, are the "
-                        "nearest to Monte Carlo in all kinds of media compared, within {}% of "
-                        "the light in those like this one",
+            fmt::format("no model is measurably nearer to Monte Carlo in any medium compared than "
+                        "single scattering and beam diffusion scaled to the exact total: within "
+                        "{}% of the light in those like this one",
                         measured_error(medium))};
 }
 

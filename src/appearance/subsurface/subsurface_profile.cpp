@@ -14,6 +14,7 @@
 #include "appearance/subsurface/p3.h"
 #include "appearance/subsurface/single_scattering.h"
 #include "core/error.h"
+#include "core/paths.h"
 
 namespace livery {
 
@@ -209,10 +210,19 @@ std::optional<SubsurfaceModel> find_subsurface_model(std::string_view name) {
 SubsurfaceProfile subsurface_profile(SubsurfaceModel model, const ScatteringMedium& medium) {
     check_medium(medium);
     const SubsurfaceModelInfo& info = info_of(model);
-    check_argument(medium.thickness_mm ? info.slab : info.half_space,
-                   fmt::format("model: found {} for a {}, expected a model of one",
-                               info.name,
-                               medium.thickness_mm ? "slab" : "half space"));
+    const auto knows = [&](const SubsurfaceModelInfo& one) {
+        return medium.thickness_mm ? one.slab : one.half_space;
+    };
+    if (!knows(info)) {
+        std::vector<std::string> names;
+        for (const SubsurfaceModelInfo& one : subsurface_models()) {
+            if (knows(one)) names.emplace_back(one.name);
+        }
+        throw std::invalid_argument(fmt::format("model: found {} for a {}, expected {}",
+                                                info.name,
+                                                medium.thickness_mm ? "slab" : "half space",
+                                                list_of(names)));
+    }
     SubsurfaceProfile profile;
     profile.model = model;
     profile.least_radius_mm = least_radius_mm(medium);
