@@ -56,6 +56,8 @@ std::vector<std::string> chosen(std::vector<std::string> names, std::size_t few)
     return names;
 }
 
+bool everywhere(const DirectionPair&) { return true; }
+
 void print(const std::string& name, const BrdfFit& fit) {
     std::printf("    %-24s CIEDE2000 %.2f, 95%% %.1f, log error %.3f, albedo %.2f, %.1f s\n",
                 name.c_str(),
