@@ -292,7 +292,7 @@ def twelve_phones(browser, server):
 
 program = find_browser()
 if not program:
-    print("[  SKIPPED ] ballot.page: no Chromium")
+    print("[  SKIPPED ] ballot.page\nno Chromium")
     sys.exit(77)
 with serving() as server:
     browser = Browser(program)
