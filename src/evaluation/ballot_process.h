@@ -23,7 +23,7 @@ struct BallotProcessOptions {
 class BallotProcess {
   public:
     /// Waits until it listens, at most ten seconds. Throws std::runtime_error with what it said
-    /// when it does not start.
+    /// when it does not start. It ends with the thread that started it: the main one, say.
     explicit BallotProcess(const BallotProcessOptions& options);
     /// Ends it.
     ~BallotProcess();
