@@ -290,9 +290,10 @@ int BallotStore::open_round(const RoundSetup& setup) {
     if (!session) session = make_session(database_);
     const int round =
         as_int(database_, database_.run("SELECT coalesce(max(id), 0) FROM rounds")[0][0]) + 1;
-    const auto codes = setup.codes.empty()
-                           ? draw_codes(static_cast<int>(setup.designs.size()), setup.seed, round)
-                           : setup.codes;
+    const auto codes = setup.codes.empty() ? draw_codes(static_cast<int>(setup.designs.size()),
+                                                        static_cast<std::uint64_t>(setup.seed),
+                                                        round)
+                                           : setup.codes;
     const LogEntry base{.session = *session, .round = round, .at = utc_now()};
     LogEntry opening = base;
     opening.what = What::open;

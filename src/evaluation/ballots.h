@@ -30,7 +30,7 @@ struct Ballot {
 struct RoundSetup {
     std::vector<std::string> designs;
     std::string calibration_id = {};  ///< that the designs are shown under; empty: uncorrected
-    std::vector<int> codes = {};      ///< a design each, 100 to 999; empty: drawn from seed and round
+    std::vector<int> codes = {};  ///< a design each, 100 to 999; empty: drawn from seed and round
     int seed = 1;
     bool asks_least = false;
     bool presenting = false;  ///< votes count from start_voting() on; else at once

@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <system_error>
 
-#include "core/database.h"
 #include "core/error.h"
 #include "core/shuffle.h"
-#include "evaluation/ballot_log.h"
 #include "evaluation/ballots.h"
 #include "evaluation/csv_field.h"
 
@@ -31,21 +29,6 @@ Round find_round(const BallotStore& store, std::optional<int> id) {
                   "close the round, then ask for what it says");
 }
 
-/// The store tells counts alone. It has been opened before, so the file is sound.
-std::vector<RankedBallot> ballots_of(const std::filesystem::path& file, int round) {
-    constexpr std::int32_t application_id = 0x4c765642;
-    constexpr int newest_version = 1;
-    Database database(
-        file, Database::Mode::read_only, application_id, newest_version, ballots_schema());
-    std::vector<RankedBallot> ballots;
-    for (const auto& row :
-         database.run("SELECT best, second FROM ballots WHERE round = ?1 ORDER BY name_key",
-                      {std::int64_t{round}})) {
-        ballots.push_back({as_int(database, row[0]), as_int(database, row[1])});
-    }
-    return ballots;
-}
-
 }  // namespace
 
 ClosedRound read_closed_round(const std::filesystem::path& file,
@@ -58,9 +41,15 @@ ClosedRound read_closed_round(const std::filesystem::path& file,
     }
     const BallotStore store(file);
     const Round round = find_round(store, id);
-    store.tally(round.id);  // which refuses an open one
-    ClosedRound closed{
-        round.id, round.created, round.calibration_id, round.designs, ballots_of(file, round.id)};
+    ClosedRound closed{round.id, round.created, round.calibration_id, round.designs, {}, false};
+    // Which refuses an open one
+    for (const CastBallot& cast : store.ballots(round.id)) {
+        closed.ballots.push_back(
+            {cast.choices.best, cast.choices.second, cast.choices.least.value_or(-1)});
+    }
+    const auto names_least = [](const RankedBallot& ballot) { return ballot.least >= 0; };
+    closed.all_name_least = closed.designs.size() > 2 && !closed.ballots.empty() &&
+                            std::all_of(closed.ballots.begin(), closed.ballots.end(), names_least);
     // In the order of the file neighbours would stay neighbours.
     constexpr std::uint64_t stream = 3;
     Random random(seed, stream);
@@ -73,12 +62,18 @@ std::string ballots_csv(const ClosedRound& round, std::uint64_t seed) {
     text += "# calibration " +
             (round.calibration_id.empty() ? std::string("none") : round.calibration_id) + "\r\n";
     text += "# order of chance, seed " + std::to_string(seed) + "\r\n";
-    text += "best,second\r\n";
+    const bool any_least =
+        std::any_of(round.ballots.begin(), round.ballots.end(), [](const RankedBallot& ballot) {
+            return ballot.least >= 0;
+        });
+    text += any_least ? "best,second,least\r\n" : "best,second\r\n";
     const auto name = [&](int design) {
         return csv_field(round.designs[static_cast<std::size_t>(design)]);
     };
     for (const RankedBallot& ballot : round.ballots) {
-        text += name(ballot.best) + ',' + name(ballot.second) + "\r\n";
+        text += name(ballot.best) + ',' + name(ballot.second);
+        if (any_least) text += ',' + (ballot.least >= 0 ? name(ballot.least) : std::string());
+        text += "\r\n";
     }
     return text;
 }

@@ -17,6 +17,7 @@ struct ClosedRound {
     std::string calibration_id;  ///< empty: uncorrected
     std::vector<std::string> designs;
     std::vector<RankedBallot> ballots;  ///< without who cast them, in an order of chance
+    bool all_name_least = false;        ///< only then can the statistics take it into account
 };
 
 /// One round of a ballots file, the last closed one where no id is given; `seed` is the order's.
@@ -26,8 +27,8 @@ ClosedRound read_closed_round(const std::filesystem::path& file,
                               std::optional<int> id,
                               std::uint64_t seed);
 
-/// "best,second" and a line a ballot, as RFC 4180 quotes, after lines that begin with # and say
-/// which round it is and which seed gave the order. UTF-8.
+/// "best,second", with "least" where a ballot names one, and a line a ballot, as RFC 4180 quotes,
+/// after lines that begin with # and say which round it is and which seed gave the order. UTF-8.
 std::string ballots_csv(const ClosedRound& round, std::uint64_t seed);
 
 }  // namespace livery

@@ -1,13 +1,16 @@
 // The numbers under which designs are shown and voted on.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 namespace livery {
 
-/// Different three-digit numbers (100 to 999), one a design: a code says nothing about what it
-/// stands for, nor about its place. The same seed and round give the same codes, other rounds other
-/// ones, so that none means what it meant before. At most 900.
-std::vector<int> draw_codes(int designs, int seed, int round);
+/// One a design, 123 to 987 and all different: a code says nothing about what it stands for, nor
+/// about its place. No 0, no digit twice, no run (123, 321), none that reads as a number upside
+/// down; of up to 26 no two with the same digits or that differ in one place alone. The same seed
+/// and round give the same codes on every machine, other rounds other ones, so that none means what
+/// it meant before. At most 400.
+std::vector<int> draw_codes(int designs, std::uint64_t seed, int round);
 
 }  // namespace livery

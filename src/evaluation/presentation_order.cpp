@@ -1,12 +1,12 @@
 #include "evaluation/presentation_order.h"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <numeric>
 
 #include "core/error.h"
 #include "core/shuffle.h"
+#include "evaluation/design_codes.h"
 #include "evaluation/statistics/vote_counts.h"
 
 namespace livery {
@@ -19,29 +19,8 @@ void check_range(const char* name, int value, int low, int high) {
                        std::to_string(low) + " to " + std::to_string(high));
 }
 
-std::array<int, 3> digits_of(int code) { return {code / 100, code / 10 % 10, code % 10}; }
-
-bool is_plain(int code) {
-    const auto [a, b, c] = digits_of(code);
-    if (b == 0 || c == 0 || a == b || b == c || a == c) return false;
-    if (b - a == c - b && (b - a == 1 || b - a == -1)) return false;
-    const auto turns = [](int digit) {
-        return digit == 1 || digit == 6 || digit == 8 || digit == 9;
-    };
-    return !(turns(a) && turns(b) && turns(c));
-}
-
-bool are_alike(int one, int other) {
-    auto a = digits_of(one), b = digits_of(other);
-    int same = 0;
-    for (std::size_t k = 0; k < 3; ++k) same += a[k] == b[k] ? 1 : 0;
-    std::sort(a.begin(), a.end());
-    std::sort(b.begin(), b.end());
-    return same >= 2 || a == b;
-}
-
-// What chance decides, each from a stream of its own: one more code moves no wave.
-enum Stream : std::uint64_t { code_stream = 1, wave_stream = 2 };
+// A stream of its own: one more code moves no wave.
+constexpr std::uint64_t kWaveStream = 2;
 
 }  // namespace
 
@@ -68,30 +47,6 @@ std::vector<std::vector<int>> williams_rows(int designs) {
     return rows;
 }
 
-std::vector<std::string> random_codes(int designs, std::uint64_t seed) {
-    check_range("designs", designs, 2, kMostDesigns);
-    std::vector<int> all;
-    for (int code = 100; code < 1000; ++code) {
-        if (is_plain(code)) all.push_back(code);
-    }
-    Random random(seed, code_stream);
-    std::vector<int> chosen;
-    while (static_cast<int>(chosen.size()) < designs) {
-        // Where the first ones leave no room for the others, from the beginning.
-        chosen.clear();
-        shuffle(all, random);
-        for (const int code : all) {
-            const bool free = std::none_of(
-                chosen.begin(), chosen.end(), [&](int other) { return are_alike(code, other); });
-            if (free) chosen.push_back(code);
-            if (static_cast<int>(chosen.size()) == designs) break;
-        }
-    }
-    std::vector<std::string> codes;
-    for (const int code : chosen) codes.push_back(std::to_string(code));
-    return codes;
-}
-
 PresentationOrder presentation_order(int designs,
                                      int evaluators,
                                      int wave_size,
@@ -100,10 +55,10 @@ PresentationOrder presentation_order(int designs,
     order.rows = williams_rows(designs);
     check_range("evaluators", evaluators, 0, kMostEvaluators);
     check_range("wave", wave_size, 1, kMostEvaluators);
-    order.codes = random_codes(designs, seed);
+    for (const int code : draw_codes(designs, seed, 1)) order.codes.push_back(std::to_string(code));
     const auto rows = static_cast<int>(order.rows.size());
     const int waves = evaluators == 0 ? rows : (evaluators + wave_size - 1) / wave_size;
-    Random random(seed, wave_stream);
+    Random random(seed, kWaveStream);
     std::vector<int> sequence(order.rows.size());
     std::iota(sequence.begin(), sequence.end(), 0);
     for (int w = 0; w < waves; ++w) {

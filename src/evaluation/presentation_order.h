@@ -12,11 +12,6 @@ namespace livery {
 /// their number is odd. Throws std::invalid_argument outside 2 to 26.
 std::vector<std::vector<int>> williams_rows(int designs);
 
-/// One a design, 112 to 987, all different and none like another: no 0, no digit twice, no run
-/// (123, 321), no two with the same digits or that differ in one place alone, none that reads as a
-/// number upside down.
-std::vector<std::string> random_codes(int designs, std::uint64_t seed);
-
 /// Evaluators who look together, since one projector shows everyone one order.
 struct Wave {
     int row = 0;

@@ -83,5 +83,29 @@ TEST(ClosedRound, TellsNothingBeforeTheClose) {
     EXPECT_FALSE(std::filesystem::exists(none));
 }
 
+TEST(ClosedRound, KeepsTheLeastOnesAndSaysWhetherAllNamedOne) {
+    const TemporaryFolder folder;
+    const auto file = folder / "votes.sqlite";
+    BallotStore store(file);
+    RoundSetup setup{{"red", "silver", "sand"}};
+    setup.asks_least = true;
+    for (const bool all : {true, false}) {
+        const int round = store.open_round(setup);
+        store.vote(round, {"one", 0, 1, 2});
+        store.vote(round, {"two", 2, 1, all ? std::optional(0) : std::nullopt});
+        store.close_round(round);
+        const ClosedRound closed = read_closed_round(file, round, 1);
+        EXPECT_EQ(closed.all_name_least, all);
+        const std::string csv = ballots_csv(closed, 1);
+        EXPECT_NE(csv.find("best,second,least\r\n"), std::string::npos) << csv;
+        EXPECT_NE(csv.find("red,silver,sand\r\n"), std::string::npos) << csv;
+        EXPECT_NE(csv.find(all ? "sand,silver,red\r\n" : "sand,silver,\r\n"), std::string::npos)
+            << csv;
+        if (all) {
+            EXPECT_EQ(counts_of(closed.ballots, 3, true).least, (std::vector<int>{1, 0, 1}));
+        }
+    }
+}
+
 }  // namespace
 }  // namespace livery

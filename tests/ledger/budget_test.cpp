@@ -16,7 +16,8 @@
 namespace livery {
 namespace {
 
-/// A matt box under a lamp and a grey sky: shadows, environment, occlusion, light between its sides.
+/// A matt box under a lamp and a grey sky: shadows, environment, occlusion, light between its
+/// sides.
 Scene matt_box() {
     Product product;
     product.mesh = open_box();

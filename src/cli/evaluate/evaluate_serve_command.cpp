@@ -5,13 +5,13 @@
 #include <memory>
 #include <optional>
 #include <set>
-#include <sstream>
 
 #include <fmt/format.h>
 #include <poll.h>
 #include <unistd.h>
 
 #include "cli/command.h"
+#include "cli/evaluate/commands.h"
 #include "core/error.h"
 #include "evaluation/ballot_process.h"
 #include "evaluation/ballots.h"
@@ -29,13 +29,6 @@ struct ServeArguments {
     int port = kBallotPort, seats = 40;
     bool least = false, new_audience = false;
 };
-
-std::vector<std::string> split_names(const std::string& text) {
-    std::vector<std::string> names;
-    std::istringstream stream(text);
-    for (std::string name; std::getline(stream, name, ',');) names.push_back(name);
-    return names;
-}
 
 /// A line that was typed; nothing when none came within the time. After the end of the input
 /// nothing is read any more.
@@ -158,7 +151,7 @@ class ServeSession {
         const auto round = store_.open_round();
         if (!round) {
             RoundSetup setup;
-            setup.designs = split_names(arguments_.designs);
+            setup.designs = parse_names("--designs", arguments_.designs);
             setup.seed = seed_;
             setup.asks_least = arguments_.least;
             setup.presenting = true;
@@ -267,10 +260,10 @@ Command evaluate_serve_command() {
         {"--seats", "N", "most phones, 1 to 400 (default 40)", &arguments->seats, false, {}},
     };
     command.run = [arguments](const CommonOptions& common, const Progress& progress) {
-        const auto names = split_names(arguments->designs);
-        if (!arguments->designs.empty() && names.size() < 2) {
-            throw std::invalid_argument(fmt::format(
-                "--designs: found {} name, expected at least 2, with commas", names.size()));
+        if (!arguments->designs.empty() &&
+            parse_names("--designs", arguments->designs).size() < 2) {
+            throw std::invalid_argument(
+                "--designs: found 1 name, expected at least 2, with commas");
         }
         return ServeSession(*arguments, common).run(progress);
     };

@@ -22,6 +22,7 @@ Json json_of(const ClosedRound& round, int seed) {
     Json ballots = Json::array();
     for (const RankedBallot& ballot : round.ballots) {
         ballots.push_back({{"best", ballot.best}, {"second", ballot.second}});
+        if (ballot.least >= 0) ballots.back()["least"] = ballot.least;
     }
     return {{"format_version", 1},
             {"kind", "ballots"},

@@ -32,8 +32,11 @@ Outcome tally_of_round(const TallyArguments& arguments, std::uint64_t seed) {
     const ClosedRound round =
         read_closed_round(arguments.ballots, round_option(arguments.round), seed);
     const auto designs = static_cast<int>(round.designs.size());
-    const VoteStatistics statistics = vote_statistics(
-        counts_of(round.ballots, designs, false), round.designs, seed, &round.ballots);
+    const VoteStatistics statistics =
+        vote_statistics(counts_of(round.ballots, designs, round.all_name_least),
+                        round.designs,
+                        seed,
+                        &round.ballots);
     Outcome outcome = told(statistics, round.designs);
     outcome.figures["round"] = round.id;
     outcome.figures["calibration_id"] = round.calibration_id;
