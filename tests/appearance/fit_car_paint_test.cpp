@@ -50,7 +50,7 @@ const std::vector<std::string> kSolidPaints{
     "dark-blue-paint", "dark-red-paint", "light-red-paint", "purple-paint", "yellow-paint"};
 const std::vector<std::string> kSolidPaintsOfTheOtherSet{"orange-paint", "white-paint"};
 
-/// All, or the first few.
+/// All, or the first few of them.
 std::vector<std::string> chosen(std::vector<std::string> names, std::size_t few) {
     if (!std::getenv("LIVERY_ALL_PAINTS")) names.resize(few);
     return names;
@@ -123,7 +123,9 @@ TEST(FitCarPaint, GivesBackThePaintThatMadeTheSamples) {
 // Colours of a film repeat with its thickness, so it is found among many or not at all. The model's
 // own film, through noise of 2%: what is left is the noise's.
 TEST(FitCarPaint, FindsTheFilmThatMadeTheColours) {
-    for (const auto& [nm, eta] : {std::pair{180.0, 2.3}, std::pair{420.0, 1.8}}) {
+    std::vector<std::pair<double, double>> films{{180.0, 2.3}};
+    if (std::getenv("LIVERY_ALL_PAINTS")) films.emplace_back(420.0, 1.8);
+    for (const auto& [nm, eta] : films) {
         Material paint;
         paint.model = ReflectanceModel::car_paint;
         paint.diffuse = {0.02, 0.02, 0.03};
@@ -153,7 +155,7 @@ TEST(FitCarPaint, ComesNearEffectPaints) {
     LIVERY_NEEDS_REFERENCE_DATA(data);
     const auto tables = read_sgd_fits(data / "materials/sgd_bagher2012_merl.csv");
     std::vector<double> differences;
-    for (const std::string& name : chosen(kEffectPaints, 2)) {
+    for (const std::string& name : chosen(kEffectPaints, 1)) {
         const BrdfFit fit = fit_of(fit_named(tables, name));
         EXPECT_LE(fit.difference.de00_mean, 2.5) << name;
         EXPECT_LE(fit.largest_albedo, 1.0 + 1e-4) << name;
@@ -170,7 +172,7 @@ TEST(FitCarPaint, ComesNearSolidPaints) {
     for (const std::string& name : chosen(kSolidPaints, 1)) {
         EXPECT_LE(fit_of(fit_named(tables, name)).difference.de00_mean, 1.5) << name;
     }
-    for (const std::string& name : chosen(kSolidPaintsOfTheOtherSet, 1)) {
+    for (const std::string& name : chosen(kSolidPaintsOfTheOtherSet, 0)) {
         EXPECT_LE(fit_of(fit_named(others, name)).difference.de00_mean, 1.5) << name;
     }
 }
