@@ -201,7 +201,7 @@ TEST(FitStudy, Acrylics) {
              {samples_of(fit_named(sgd, name)), samples_of(fit_named(abc, name))}) {
             const BrdfFit fit = best_fit(name,
                                          measured_from(samples, MeasuredFormat::csv, name),
-                                         ReflectanceModel::ashikhmin_shirley);
+                                         ReflectanceModel::cook_torrance);
             EXPECT_LT(fit.difference.de00_mean, 1.5) << name;
         }
     }
