@@ -87,7 +87,7 @@ bool is_redundant(const EffectLevels& levels) {
     }
     // What is mirrored through parts has its own few nodes, whatever the level of those with rays
     return (levels[Effect::reflected_occlusion] == 0) !=
-           (levels[Effect::mirrored_environment] == 0);
+           (levels[Effect::mirrored_environment] < kMirrorsWithRays);
 }
 
 Times total_of(const TimesByLevel& times,

@@ -10,7 +10,7 @@ namespace livery {
 
 namespace {
 
-constexpr int kVersion = 2;  ///< 1 timed qualities
+constexpr int kVersion = 3;  ///< 1 timed qualities, 2 counted levels
 
 /// As cost_key() has it; none: this version has no such pass.
 std::optional<PassId> pass_of(const std::string& words) {
@@ -28,6 +28,23 @@ std::optional<PassId> pass_of(const std::string& words) {
     const auto found = std::find_if(
         known.begin(), known.end(), [&](const PassId& pass) { return to_string(pass) == words; });
     return found == known.end() ? std::nullopt : std::optional(*found);
+}
+
+/// Empty where the pass is of no effect.
+std::string level_name(const PassCost& cost) {
+    const auto effect = effect_of(cost.pass);
+    return effect ? effect_info(*effect).levels.at(static_cast<std::size_t>(cost.level)).name : "";
+}
+
+/// None: this version has no such level.
+std::optional<int> level_of(const PassId& pass, const std::string& name) {
+    const auto effect = effect_of(pass);
+    if (!effect) return name.empty() ? std::optional(0) : std::nullopt;
+    const std::vector<EffectLevel>& levels = effect_info(*effect).levels;
+    const auto found = std::find_if(
+        levels.begin(), levels.end(), [&](const EffectLevel& level) { return name == level.name; });
+    if (found == levels.end()) return std::nullopt;
+    return static_cast<int>(found - levels.begin());
 }
 
 }  // namespace
@@ -64,7 +81,7 @@ void write_pass_costs(const std::filesystem::path& file,
     Json list = Json::array();
     for (const PassCost& cost : costs) {
         list.push_back({{"pass", to_string(cost.pass)},
-                        {"level", cost.level},
+                        {"level", level_name(cost)},
                         {"ms", cost.ms},
                         {"fixed_ms", cost.fixed_ms},
                         {"work_items", cost.work_items}});
@@ -104,7 +121,7 @@ std::optional<std::vector<PassCost>> parse_pass_costs(const std::string& text,
         const JsonReader entry = passes.at(i);
         PassCost cost;
         const auto pass = pass_of(entry["pass"].text());
-        cost.level = entry["level"].integer(0, 1000);
+        const std::string level = entry["level"].text();
         cost.ms = entry["ms"].number_between(0.0, kLongest_ms);
         cost.fixed_ms = entry["fixed_ms"].number_between(0.0, cost.ms);
         cost.work_items = entry["work_items"].number_between(0.0, kMostItems);
@@ -112,7 +129,10 @@ std::optional<std::vector<PassCost>> parse_pass_costs(const std::string& text,
             cost.fragments_per_pixel = entry["fragments_per_pixel"].number_between(0.01, 1e3);
         }
         if (!pass) continue;  // another version's: no plan of this one lists it
+        const auto its_level = level_of(*pass, level);
+        if (!its_level) continue;
         cost.pass = *pass;
+        cost.level = *its_level;
         costs.push_back(cost);
     }
     return costs;

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "appearance/model_table.h"
 #include "compensation/compensation.h"
 #include "compensation/gpu_pass.h"
 #include "core/parallel.h"
@@ -69,6 +70,10 @@ std::vector<TimedLevels> timed_levels(bool quick) {
         list.push_back({to_string(quality), levels_of(quality)});
     }
     list.push_back({"dearest", dearest_levels()});
+    // What no quality has: mirrors by few nodes, through parts
+    EffectLevels few_nodes = levels_of(Quality::draft);
+    few_nodes[Effect::mirrored_environment] = kMirrorsWithRays - 1;
+    list.push_back({"draft with nodes", few_nodes});
     if (quick) list.resize(1);
     return list;
 }
@@ -109,25 +114,38 @@ PassCost cost_of(const PassId& key, int level, const LedgerLevel& large, const S
     return cost;
 }
 
-/// Car paint with glints and without, which no shipped look wears.
-void collect_car_paint(PassTimes& times,
-                       RadianceRenderer& renderer,
-                       const Scene& look,
-                       const EffectLevels& levels,
-                       const Progress& progress) {
-    constexpr int kRepeats = 22;
+/// A paint of every model on the body, with glints where the model has them: shipped looks wear
+/// few of them, and what has no time has no price.
+void collect_paints(PassTimes& times,
+                    RadianceRenderer& renderer,
+                    const Scene& look,
+                    const EffectLevels& levels,
+                    const Progress& progress) {
+    constexpr int kRepeats = 11;
     Scene scene = look;
-    Material& paint =
-        scene.part_materials.at(static_cast<std::size_t>(part_index(*scene.product, "body")));
-    paint.model = ReflectanceModel::car_paint;
-    for (int k = 0; k < kRepeats; ++k) {
-        progress.check_stop();
-        paint.diffuse = glm::dvec3(k % 4 < 2 ? 0.05 : 0.06);
-        paint.glint_density_per_mm2 = k % 2 == 0 ? 0.0 : 1000.0;
-        FramePlan plan = plan_frame(scene, levels, FrameStage::radiance);
-        renderer.render(scene, plan, progress);
-        // The first of each compiles and touches what is kept
-        if (k >= 2) collect(times, plan);
+    const auto body = static_cast<std::size_t>(part_index(*scene.product, "body"));
+    std::vector<Material> paints;
+    for (const ModelInfo& model : model_table()) {
+        Material& paint = paints.emplace_back();
+        paint.model = model.model;
+        if (model.model != ReflectanceModel::car_paint) continue;
+        paints.push_back(paint);
+        paints.back().glint_density_per_mm2 = 1000.0;
+    }
+    for (Material& paint : paints) {
+        for (int k = 0; k < kRepeats; ++k) {
+            progress.check_stop();
+            paint.diffuse = glm::dvec3(k % 2 == 0 ? 0.05 : 0.06);
+            scene.part_materials.at(body) = paint;
+            FramePlan plan = plan_frame(scene, levels, FrameStage::radiance);
+            renderer.render(scene, plan, progress);
+            // The first compiles and touches what is kept; what it solved for all others counts
+            if (k == 0) {
+                std::erase_if(plan.passes,
+                              [](const PlannedPass& pass) { return runs_every_frame(pass.id); });
+            }
+            collect(times, plan);
+        }
     }
 }
 
@@ -244,7 +262,7 @@ void time_frames(SpeedLedger& result,
         return;
     }
     if (normal) {
-        collect_car_paint(passes, renderer, scene.looks.front(), levels, progress);
+        collect_paints(passes, renderer, scene.looks.front(), levels, progress);
         ArtworkTimes artwork = measure_artwork(renderer, scene.looks.front(), levels, progress);
         for (LedgerLevel& level : artwork.frames) {
             effect(result, "artwork over the body, shading beside a frame without")

@@ -58,8 +58,6 @@ class FrameLane {
                const Progress& progress);
     /// What any other paint may need in the light that is solved, so that none has to wait.
     void prepare(const FrameDescription& description, const Progress& progress);
-    /// Of that, what any may mirror.
-    void prepare_mirrors(const FrameDescription& description, const Progress& progress);
 
     const SolveKeys& solved() const { return solved_; }
     const SolvedMirrors& mirrors() const { return mirrors_; }
@@ -99,6 +97,7 @@ class FrameLane {
     };
 
     void note_mirrors();
+    void prepare_mirrors(const FrameDescription& description, const Progress& progress);
     void prepare_programs(const FrameDescription& description, const Progress& progress);
     void solve_light(std::size_t index,
                      const Scene& scene,

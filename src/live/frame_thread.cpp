@@ -68,8 +68,7 @@ struct FrameJobs {
         Newest description;
         SolveKeys wanted;  ///< at the quality of this task
         bool for_showing = true;
-        bool whole = false;        ///< prepares for other paints, too
-        bool all_mirrors = false;  ///< or, of that, only what they mirror
+        bool whole = false;  ///< prepares for other paints, too
     };
     std::optional<Task> task;
     std::optional<FrameThread::Solving> solving;
@@ -85,7 +84,8 @@ struct FrameJobs {
 
 /// What the back lane should do next, if anything: show a new light, or what a new paint mirrors of
 /// it, as a draft; then at the quality that is wanted; then catch up with the front, to be as good
-/// a start for the next light. Only the very first draft leaves out what other paints would mirror.
+/// a start for the next light. A draft leaves out what other paints would mirror: whoever drags a
+/// light waits for none of them.
 std::optional<FrameJobs::Task> FrameJobs::next_task() const {
     if (!newest || newest == failed) return std::nullopt;
     const auto wanted = wanted_of(*newest);
@@ -101,8 +101,7 @@ std::optional<FrameJobs::Task> FrameJobs::next_task() const {
         return Task{newest, *wanted, false, true};
     }
     if (!light_shown && !solved_already) {
-        const bool first = last_good == nullptr;
-        return Task{newest, with_levels(*wanted, levels_of(Quality::draft)), true, false, !first};
+        return Task{newest, with_levels(*wanted, levels_of(Quality::draft)), true, false};
     }
     return Task{newest, *wanted, true, true};
 }
@@ -209,7 +208,6 @@ void FrameThread::Implementation::work_behind(const FrameJobs::Task& task,
         lane.solve(*task.description, task.wanted[0]->levels, urgency, progress);
         // Everything that drawing makes once, before the front is held.
         lane.draw_ahead(*task.description);
-        if (task.all_mirrors) lane.prepare_mirrors(*task.description, progress);
         if (task.whole) lane.prepare(*task.description, progress);
     } catch (const Cancelled&) {
     } catch (...) {

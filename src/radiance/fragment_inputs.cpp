@@ -49,7 +49,7 @@ FragmentRays rays_of(const EffectLevels& levels) {
     constexpr std::array kLight{0, 1, 16, 64};
     constexpr std::array<SkyRays, 4> kSky{
         {{0, 0, false}, {8, 0, true}, {16, 128, false}, {64, 256, false}}};
-    constexpr std::array kMirror{0, 16, 24};
+    constexpr std::array kMirror{kNoNodes, 0, 16, 24};
     constexpr std::array kBounces{0, 1, 16};
     const auto at = [&](const auto& table, Effect effect) {
         return table.at(static_cast<std::size_t>(levels[effect]));
@@ -90,6 +90,8 @@ void FragmentInputs::use(const SurfaceMap& map) {
     sky_made_ = {};
     mirror_.use(map);
     drop_exchange();
+    runs_.reset();
+    eye_.reset();
     directions_stale_ = sky_stale_ = diffuse_light_stale_ = places_stale_ = true;
 }
 
@@ -168,8 +170,13 @@ void FragmentInputs::solve_sky(const Scene& scene,
             filtered_.hardly_blurred = std::move(filtered.hardly_blurred);
         }
         diffused_ = scene.environment;
-        sky_ = sky_at_fragments(
-            mesh_, *map_, *scene.environment, filtered_, occluded ? &*sky_visibility_ : nullptr);
+        if (!runs_) runs_.emplace(*map_);
+        sky_ = sky_at_fragments(mesh_,
+                                *map_,
+                                *scene.environment,
+                                filtered_,
+                                occluded ? &*sky_visibility_ : nullptr,
+                                *runs_);
         sky_made_ = {scene.environment, occluded ? sky_visibility_->rays.first : 0};
         sky_stale_ = diffuse_light_stale_ = true;
     });
@@ -224,7 +231,17 @@ void FragmentInputs::solve_exchange(const Scene& scene,
     });
 }
 
-void FragmentInputs::filter_gaussians(const Scene& scene, const Progress& progress) {
+bool FragmentInputs::mirror_filtered(const Scene& scene, int nodes) const {
+    return same_map(nodes == kNoNodes ? look_up_of_ : layered_, scene.environment);
+}
+
+void FragmentInputs::filter_for_mirror(const Scene& scene, int nodes, const Progress& progress) {
+    if (nodes == kNoNodes) {
+        mirror_look_up_.emplace(
+            filter_environment(*scene.environment, {true, false, false, false}, progress));
+        look_up_of_ = scene.environment;
+        return;
+    }
     filtered_.gaussians =
         filter_environment(*scene.environment, {false, false, false, true}, progress).gaussians;
     layered_ = scene.environment;
@@ -240,14 +257,16 @@ void FragmentInputs::solve_mirror(const Scene& scene,
     if (!ahead && !find_pass(plan, PassKind::mirrored_environment)) {
         if (find_pass(plan, PassKind::environment_irradiance)) return;
         mirror_.clear();
-        layered_ = nullptr;
+        layered_ = look_up_of_ = nullptr;
         filtered_.gaussians.clear();
+        mirror_look_up_.reset();
         return;
     }
     // Without what hides it, nothing is known of what other parts send into a mirror either
     const bool hides = plan.levels[Effect::reflected_occlusion] > 0;
+    const int nodes = rays_of(plan.levels).mirror;
     MirrorInputs::Light light{
-        scene.environment, scene.eye_in_world_mm, hides ? rays_of(plan.levels).mirror : 0};
+        scene.environment, scene.eye_in_world_mm, hides ? nodes : std::min(nodes, 0)};
     const MirrorInputs::Light& made = mirror_.light();
     if (made.environment == light.environment && made.eye_mm == light.eye_mm &&
         enough(made.nodes, light.nodes)) {
@@ -255,7 +274,13 @@ void FragmentInputs::solve_mirror(const Scene& scene,
     }
     const auto solve_layers = [&](const MirrorInputs::LayersOfParts& layers) {
         const SkyVisibility* joints = sky_visibility_ ? &*sky_visibility_ : nullptr;
-        mirror_.solve(light, layers, filtered_, joints, progress);
+        if (!runs_) runs_.emplace(*map_);
+        const SmoothRuns& runs = *runs_;
+        if (light.nodes == kNoNodes) {
+            mirror_.look_up(light, layers, *mirror_look_up_, runs, joints, progress);
+        } else {
+            mirror_.solve(light, layers, filtered_, runs, joints, progress);
+        }
     };
     const auto any = [](const MirrorInputs::LayersOfParts& layers) {
         return std::any_of(layers.begin(), layers.end(), [](const auto& of) { return of.any(); });
@@ -265,9 +290,11 @@ void FragmentInputs::solve_mirror(const Scene& scene,
                         exchanged_.version);
     // Who keeps light between parts draws with what was mirrored behind other light of it, too
     const auto worn = mirror_.missing(light, mirror_layers_of(scene), !keep_exchange);
-    const bool filtered = same_map(layered_, scene.environment);
-    if (filtered) layered_ = scene.environment;
-    clock.run(PassKind::environment_filter, !filtered, [&] { filter_gaussians(scene, progress); });
+    const bool filtered = mirror_filtered(scene, light.nodes);
+    if (filtered) (light.nodes == kNoNodes ? look_up_of_ : layered_) = scene.environment;
+    clock.run(PassKind::environment_filter, !filtered, [&] {
+        filter_for_mirror(scene, light.nodes, progress);
+    });
     clock.run(PassKind::reflection_occlusion, mirror_.lacks_visibility(light, worn), [&] {
         mirror_.trace(light, worn, progress);
     });
@@ -278,7 +305,7 @@ void FragmentInputs::solve_mirror(const Scene& scene,
         MirrorInputs::LayersOfParts(scene.part_materials.size(), MirrorLayers().set()),
         false);
     clock.run(mirrored_ahead_pass(), any(others), [&] {
-        if (!same_map(layered_, scene.environment)) filter_gaussians(scene, progress);
+        if (!mirror_filtered(scene, light.nodes)) filter_for_mirror(scene, light.nodes, progress);
         if (mirror_.lacks_visibility(light, others)) mirror_.trace(light, others, progress);
         solve_layers(others);
     });
@@ -301,7 +328,8 @@ FragmentInputs::Changed FragmentInputs::upload(const Scene& scene, StageClock& c
     }
     const bool other_eye = eye_ != scene.eye_in_world_mm;
     clock.run(PassKind::directions, directions_stale_ || other_eye, [&] {
-        upload_directions(scene);
+        if (other_eye) upload_eye(scene);
+        if (directions_stale_) upload_lights();
         eye_ = scene.eye_in_world_mm;
         directions_stale_ = false;
         changed_.glossy = true;
@@ -324,17 +352,23 @@ FragmentInputs::Changed FragmentInputs::upload(const Scene& scene, StageClock& c
     return std::exchange(changed_, {});
 }
 
-void FragmentInputs::upload_directions(const Scene& scene) {
+template <typename Value>
+void FragmentInputs::upload_packed(InputLayers& input, int layer, const Value& value) {
+    pack(layout_, value, packed_);
+    input.upload(packed_, layer);
+}
+
+void FragmentInputs::upload_eye(const Scene& scene) {
     const auto fragment = [&](std::size_t i) -> const Fragment& { return map_->fragments[i]; };
-    const auto upload = [&](InputLayers& input, int layer, const auto& value) {
-        input.upload(packed(*map_, layout_, value), layer);
-    };
     make(shading_.eye, 0, InputLayers::Precision::full);
-    upload(shading_.eye, 0, [&](std::size_t i) {
+    upload_packed(shading_.eye, 0, [&](std::size_t i) {
         const glm::vec3 wo = toward_eye(fragment(i), scene.eye_in_world_mm);
         return glm::vec4(to_local(fragment(i), wo), fragment(i).normal_variance);
     });
+}
 
+void FragmentInputs::upload_lights() {
+    const auto fragment = [&](std::size_t i) -> const Fragment& { return map_->fragments[i]; };
     shading_.light_irradiance.clear();
     shading_.light_radius2.clear();
     if (!lights_.empty()) {
@@ -347,7 +381,7 @@ void FragmentInputs::upload_directions(const Scene& scene) {
             radiance_working(light.light));
         shading_.light_radius2.push_back(
             static_cast<float>(0.25 * light.light.angle_rad * light.light.angle_rad));
-        upload(shading_.lights, static_cast<int>(k), [&](std::size_t i) {
+        upload_packed(shading_.lights, static_cast<int>(k), [&](std::size_t i) {
             return glm::vec4(to_local(fragment(i), light.at[i].direction), light.at[i].visibility);
         });
     }
@@ -365,7 +399,7 @@ void FragmentInputs::upload_sky() {
                               (between.empty() ? glm::vec3(0.0f) : between[i]);
         return glm::vec4(glm::min(sum, glm::vec3(kHalfLargest)), 1.0f);
     };
-    shading_.sky.upload(packed(*map_, layout_, light_on), 0);
+    upload_packed(shading_.sky, 0, light_on);
 }
 
 void FragmentInputs::upload_diffuse_light() {
@@ -381,7 +415,7 @@ void FragmentInputs::upload_diffuse_light() {
         }
         return glm::vec4(glm::min(sum, glm::vec3(kHalfLargest)), 1.0f);
     };
-    shading_.lit.upload(packed(*map_, layout_, light_on), 0);
+    upload_packed(shading_.lit, 0, light_on);
 }
 
 void FragmentInputs::upload_places() {
@@ -390,7 +424,7 @@ void FragmentInputs::upload_places() {
         const Fragment& f = map_->fragments[i];
         return glm::vec4(f.position_mm, pixel_side_mm(pixels_, f.position_mm, f.normal));
     };
-    shading_.places.upload(packed(*map_, layout_, place_of), 0);
+    upload_packed(shading_.places, 0, place_of);
 }
 
 void FragmentInputs::make(InputLayers& input,

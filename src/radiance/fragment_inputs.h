@@ -11,10 +11,12 @@
 #include "radiance/light/environment_filter.h"
 #include "radiance/light/interreflection.h"
 #include "radiance/light/light_visibility.h"
+#include "radiance/light/mirror_look_up.h"
 #include "radiance/light/sky_visibility.h"
 #include "radiance/mirror_inputs.h"
 #include "radiance/packed_fragments.h"
 #include "radiance/shading.h"
+#include "radiance/smooth_runs.h"
 #include "scene/frame_plan.h"
 #include "scene/scene.h"
 
@@ -24,7 +26,7 @@ namespace livery {
 struct FragmentRays {
     int light = 16;   ///< toward each light with a size; 0: nothing is hidden
     SkyRays sky;      ///< toward the environment; 0: nothing is hidden
-    int mirror = 16;  ///< nodes a ring of half vectors' slopes; 0: unoccluded (mirror_rings)
+    int mirror = 16;  ///< nodes a ring of half vectors' slopes (mirror_rings), or kNoNodes
     int bounces = 1;  ///< of light between parts
 };
 FragmentRays rays_of(const EffectLevels& levels);
@@ -118,9 +120,13 @@ class FragmentInputs {
     void solve_exchange(const Scene&, const FramePlan&, StageClock&, const Progress&, bool keep);
     void solve_mirror(
         const Scene&, const FramePlan&, StageClock&, const Progress&, bool keep_exchange);
-    void filter_gaussians(const Scene&, const Progress&);
+    bool mirror_filtered(const Scene&, int nodes) const;
+    void filter_for_mirror(const Scene&, int nodes, const Progress&);
     void drop_exchange();
-    void upload_directions(const Scene&);
+    template <typename Value>
+    void upload_packed(InputLayers& input, int layer, const Value& value);
+    void upload_eye(const Scene&);
+    void upload_lights();
     void upload_sky();
     void upload_diffuse_light();
     void upload_places();
@@ -143,6 +149,9 @@ class FragmentInputs {
     FilteredEnvironment filtered_;
     std::shared_ptr<const Environment> diffused_;  ///< that filtered_.diffuse was made for
     std::shared_ptr<const Environment> layered_;   ///< that filtered_.gaussians was made for
+    std::optional<MirrorLookUp> mirror_look_up_;
+    std::shared_ptr<const Environment> look_up_of_;  ///< that mirror_look_up_ was made for
+    std::optional<SmoothRuns> runs_;                 ///< of map_
     std::optional<SkyVisibility> sky_visibility_;
     std::vector<glm::vec3> sky_;
     MirrorInputs mirror_;
@@ -174,6 +183,7 @@ class FragmentInputs {
          places_stale_ = true;
     Changed changed_;
     ShadingInputs shading_;
+    std::vector<float> packed_;  ///< what is handed over next, kept for the one after
     int layers_made_ = 0;
 };
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include <glm/geometric.hpp>
-
 #include "core/parallel.h"
 #include "radiance/light/mirrored_environment.h"
 
@@ -15,28 +13,26 @@ constexpr float kHalfLargest = 65000.0f;
 /// Numbers that are kept of a part: a quarter of a gigabyte.
 constexpr std::size_t kMostKept = std::size_t{1} << 26u;
 
-/// Whether a draft mirrors at a fragment the mean of what it does on both sides in the same row:
-/// all three whole pixels of one surface that turns by less than a degree, so that no reflection
-/// moves by more than another one.
-bool lies_between(const SurfaceMap& map, std::size_t i) {
-    constexpr float kOneDegree = 0.99985f;
-    if (i == 0 || i + 1 >= map.fragments.size()) return false;
-    const Fragment &left = map.fragments[i - 1], &own = map.fragments[i],
-                   &right = map.fragments[i + 1];
-    const auto width = static_cast<std::uint32_t>(map.width);
-    const std::uint32_t x = own.pixel % width;
-    return x % 2 == 1 && x + 1 < width && left.pixel + 1 == own.pixel &&
-           own.pixel + 1 == right.pixel && left.part == own.part && right.part == own.part &&
-           left.coverage == 1.0f && own.coverage == 1.0f && right.coverage == 1.0f &&
-           glm::dot(left.normal, right.normal) > kOneDegree &&
-           glm::dot(left.normal, own.normal) > kOneDegree;
-}
-
 /// Parts of which some layer is named.
 std::vector<bool> parts_of(const MirrorInputs::LayersOfParts& layers) {
     std::vector<bool> parts;
     for (const MirrorLayers& of_part : layers) parts.push_back(of_part.any());
     return parts;
+}
+
+/// Half floats hold the radiance in units in which the brightest texel fits.
+float unit_of(const MirrorInputs::Light& light, float largest) {
+    return std::max(1.0f, largest * static_cast<float>(light.environment->scale) / kHalfLargest);
+}
+
+/// Those of one part, which lie side by side.
+template <typename Texels>
+std::span<Texels> texels_of(std::vector<Texels>& all, std::size_t part) {
+    const auto first =
+        std::find_if(all.begin(), all.end(), [&](const Texels& one) { return one.part == part; });
+    const auto last =
+        std::find_if(first, all.end(), [&](const Texels& one) { return one.part != part; });
+    return {first, last};
 }
 
 }  // namespace
@@ -58,6 +54,7 @@ void MirrorInputs::clear() {
     visibility_.reset();
     hits_.reset();
     solved_texels_.clear();
+    spare_texels_.clear();
     kept_.clear();
 }
 
@@ -84,7 +81,7 @@ MirrorInputs::LayersOfParts MirrorInputs::missing(const Light& light,
 }
 
 bool MirrorInputs::lacks_visibility(const Light& light, const LayersOfParts& layers) const {
-    if (light.nodes == 0) return false;
+    if (light.nodes <= 0) return false;
     const bool lacks_hits = product_nodes_ && !hits_;
     for (std::size_t p = 0; p < layers.size(); ++p) {
         if (layers[p].any() && (other_rays(light) || lacks_hits || !visibility_->parts[p])) {
@@ -109,33 +106,47 @@ void MirrorInputs::trace(const Light& light,
         mesh_, tracer_, *map_, light.eye_mm, *visibility_, product_nodes_->nodes, progress);
 }
 
-void MirrorInputs::solve_part(const MirroredEnvironment& environment,
-                              std::size_t part,
-                              const MirrorLobes& lobes,
+std::vector<MirrorInputs::Texels> MirrorInputs::texels_for(const LayersOfParts& layers) {
+    std::vector<Texels> all;
+    for (std::size_t part = 0; part < layers.size(); ++part) {
+        // A part out of the picture has no texels
+        if (layout_.fragments(part) == 0) continue;
+        const auto size =
+            static_cast<std::size_t>(layout_.rectangle(part).height) * kPackedWidth * 4;
+        for (std::size_t k = 0; k < kMirrorLayers; ++k) {
+            if (!layers[part][k]) continue;
+            const auto spare = std::find_if(spare_texels_.begin(),
+                                            spare_texels_.end(),
+                                            [&](const Texels& one) { return one.part == part; });
+            if (spare == spare_texels_.end()) {
+                all.push_back({part, k, std::vector<float>(size, 0.0f)});
+            } else {
+                all.push_back({part, k, std::move(spare->values)});
+                spare_texels_.erase(spare);
+            }
+        }
+    }
+    return all;
+}
+
+template <typename MirroredBy>
+void MirrorInputs::solve_part(std::size_t part,
                               std::span<Texels> texels,
+                              const SmoothRuns* runs,
                               const SkyVisibility* joints,
                               float unit,
-                              std::span<float> sums,
-                              bool known,
+                              const MirroredBy& mirrored_by,
                               const Progress& progress) const {
     const std::size_t first = layout_.part_begin[part], count = layout_.fragments(part);
-    const std::size_t sums_each = MirroredEnvironment::kSumsALobe * lobes.count();
-    const bool draft = !environment.knows_what_hides();
-    const auto is_mean = [&](std::size_t i) { return draft && lies_between(*map_, i); };
     parallel_for(count, 1024, [&](std::size_t begin, std::size_t end) {
         progress.check_stop();
-        MirroredEnvironment::Scratch scratch;
+        auto mirrored_at = mirrored_by();
         for (std::size_t k = begin; k < end; ++k) {
             const std::size_t i = first + k;
-            if (is_mean(i)) continue;
-            const MirroredLight mirrored = environment.at_fragment(
-                i,
-                lobes,
-                scratch,
-                sums.empty() ? sums : sums.subspan(k * sums_each, sums_each),
-                known);
+            if (runs && !runs->is_end(i)) continue;
+            const MirroredLight mirrored = mirrored_at(i, k);
             // Who does not ask which lobes are hidden dims those of a joint like its diffuse light
-            const bool joint = draft && joints && map_->fragments[i].coverage < 1.0f;
+            const bool joint = runs && joints && map_->fragments[i].coverage < 1.0f;
             const float scale = (joint ? joints->openness(i) : 1.0f) * unit;
             for (Texels& to : texels) {
                 const float share = to.layer < kMirrorAlphas.size() ? scale : 1.0f;
@@ -145,29 +156,30 @@ void MirrorInputs::solve_part(const MirroredEnvironment& environment,
             }
         }
     });
-    if (!draft) return;
+    if (!runs) return;
     parallel_for(count, 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) {
-            if (!is_mean(first + k)) continue;
+        const auto from = [&](std::size_t i, std::size_t left, std::size_t right, float share) {
             for (Texels& to : texels) {
-                float* at = &to.values[4 * k];
-                for (std::size_t c = 0; c < 3; ++c) at[c] = 0.5f * (at[c - 4] + at[c + 4]);
+                const float* a = &to.values[4 * (left - first)];
+                const float* b = &to.values[4 * (right - first)];
+                float* at = &to.values[4 * (i - first)];
+                for (int c = 0; c < 3; ++c) at[c] = a[c] + share * (b[c] - a[c]);
             }
-        }
+        };
+        runs->between(first + begin, first + end, from);
     });
 }
 
 void MirrorInputs::solve(const Light& light,
                          const LayersOfParts& layers,
                          const FilteredEnvironment& filtered,
+                         const SmoothRuns& runs,
                          const SkyVisibility* joints,
                          const Progress& progress) {
     const bool hides = light.nodes > 0;
-    // Half floats hold the radiance in units in which the brightest texel fits.
     const ImageF& sharpest = filtered.gaussians.front();
-    const float largest = *std::max_element(sharpest.values.begin(), sharpest.values.end()) *
-                          static_cast<float>(light.environment->scale);
-    const float unit = std::max(1.0f, largest / kHalfLargest);
+    const float unit =
+        unit_of(light, *std::max_element(sharpest.values.begin(), sharpest.values.end()));
     const MirroredEnvironment environment(
         *light.environment,
         filtered,
@@ -178,37 +190,63 @@ void MirrorInputs::solve(const Light& light,
         product_nodes_ && hits_ ? MirroredProduct{&*hits_, product_sent_} : MirroredProduct());
     if (light != light_) kept_.clear();
     kept_.resize(layers.size());
-    std::vector<Texels> all;
+    std::vector<Texels> all = texels_for(layers);
     for (std::size_t part = 0; part < layers.size(); ++part) {
-        const std::size_t fragments = layout_.fragments(part);
-        // A part out of the picture has no texels
-        if (layers[part].none() || fragments == 0) continue;
-        const std::size_t first_texels = all.size();
-        const auto size =
-            static_cast<std::size_t>(layout_.rectangle(part).height) * kPackedWidth * 4;
-        for (std::size_t k = 0; k < kMirrorLayers; ++k) {
-            if (layers[part][k]) all.push_back({part, k, std::vector<float>(size, 0.0f)});
-        }
+        const std::span<Texels> texels = texels_of(all, part);
+        if (texels.empty()) continue;
         const MirrorLobes lobes(layers[part]);
         KeptSums& kept = kept_[part];
-        const std::size_t sums = fragments * MirroredEnvironment::kSumsALobe * lobes.count();
+        const std::size_t sums_each = MirroredEnvironment::kSumsALobe * lobes.count();
+        const std::size_t sums = layout_.fragments(part) * sums_each;
         const bool known = kept.layers == layers[part] && kept.values.size() == sums;
         if (!known) {
             kept = {};
             if (product_nodes_ && hides && sums <= kMostKept) kept.values.resize(sums);
         }
-        solve_part(environment,
-                   part,
-                   lobes,
-                   std::span(all).subspan(first_texels),
-                   joints,
-                   1.0f / unit,
-                   kept.values,
-                   known,
-                   progress);
+        const std::span<float> values(kept.values);
+        const auto mirrored_by = [&] {
+            return [&, scratch = MirroredEnvironment::Scratch()](std::size_t i,
+                                                                 std::size_t k) mutable {
+                const auto own = values.empty() ? values : values.subspan(k * sums_each, sums_each);
+                return environment.at_fragment(i, lobes, scratch, own, known);
+            };
+        };
+        solve_part(
+            part, texels, hides ? nullptr : &runs, joints, 1.0f / unit, mirrored_by, progress);
         // Not before: a stop leaves them half done
         if (!kept.values.empty()) kept.layers = layers[part];
     }
+    take(light, layers, unit, std::move(all));
+}
+
+void MirrorInputs::look_up(const Light& light,
+                           const LayersOfParts& layers,
+                           const MirrorLookUp& environment,
+                           const SmoothRuns& runs,
+                           const SkyVisibility* joints,
+                           const Progress& progress) {
+    const float unit = unit_of(light, environment.largest());
+    const MirrorLookUp::In in(environment, *light.environment, light.eye_mm);
+    kept_.clear();
+    std::vector<Texels> all = texels_for(layers);
+    for (std::size_t part = 0; part < layers.size(); ++part) {
+        const std::span<Texels> texels = texels_of(all, part);
+        if (texels.empty()) continue;
+        const MirrorLobes lobes(layers[part]);
+        const auto mirrored_by = [&] {
+            return [&](std::size_t i, std::size_t) {
+                return in.at_fragment(map_->fragments[i], lobes);
+            };
+        };
+        solve_part(part, texels, &runs, joints, 1.0f / unit, mirrored_by, progress);
+    }
+    take(light, layers, unit, std::move(all));
+}
+
+void MirrorInputs::take(const Light& light,
+                        const LayersOfParts& layers,
+                        float unit,
+                        std::vector<Texels> solved) {
     if (light != light_) {
         solved_texels_.clear();
         solved_.assign(layers.size(), MirrorLayers());
@@ -225,7 +263,7 @@ void MirrorInputs::solve(const Light& light,
     }
     // What waits to be uploaded and was solved again is not waited for
     std::erase_if(solved_texels_, [&](const Texels& old) { return layers[old.part][old.layer]; });
-    std::move(all.begin(), all.end(), std::back_inserter(solved_texels_));
+    std::move(solved.begin(), solved.end(), std::back_inserter(solved_texels_));
 }
 
 MirrorInputs::Uploaded MirrorInputs::upload(ShadingDevice device, ShadingInputs& shading) {
@@ -243,6 +281,8 @@ MirrorInputs::Uploaded MirrorInputs::upload(ShadingDevice device, ShadingInputs&
         shading.mirror.upload(
             texels.values, static_cast<int>(texels.layer), layout_.row_begin[texels.part]);
     }
+    // Memory that is new costs as much to touch as a draft to solve
+    spare_texels_ = std::move(solved_texels_);
     solved_texels_.clear();
     shading.mirror_unit = unit_;
     return done;

@@ -14,16 +14,15 @@
 #include "radiance/light/interreflection.h"
 #include "radiance/light/mirror_hits.h"
 #include "radiance/light/mirror_lobes.h"
+#include "radiance/light/mirror_look_up.h"
 #include "radiance/light/mirror_visibility.h"
 #include "radiance/light/sky_visibility.h"
 #include "radiance/packed_fragments.h"
 #include "radiance/shading.h"
+#include "radiance/smooth_runs.h"
 #include "tracing/tracer.h"
 
 namespace livery {
-
-class MirroredEnvironment;
-class MirrorLobes;
 
 class MirrorInputs {
   public:
@@ -36,7 +35,7 @@ class MirrorInputs {
     struct Light {
         std::shared_ptr<const Environment> environment;
         glm::dvec3 eye_mm{0.0};
-        int nodes = 0;  ///< a ring (mirror_rings); 0: nothing is hidden
+        int nodes = 0;  ///< a ring (mirror_rings); 0 or kNoNodes: nothing is hidden
         bool operator==(const Light&) const = default;
     };
     using LayersOfParts = std::vector<MirrorLayers>;
@@ -68,8 +67,17 @@ class MirrorInputs {
     void solve(const Light& light,
                const LayersOfParts& layers,
                const FilteredEnvironment& filtered,
+               const SmoothRuns& runs,
                const SkyVisibility* joints,
                const Progress& progress);
+
+    /// The same for kNoNodes.
+    void look_up(const Light& light,
+                 const LayersOfParts& layers,
+                 const MirrorLookUp& environment,
+                 const SmoothRuns& runs,
+                 const SkyVisibility* joints,
+                 const Progress& progress);
 
     bool has_uploads() const { return other_light_ || !solved_texels_.empty(); }
     struct Uploaded {
@@ -96,17 +104,23 @@ class MirrorInputs {
         MirrorLayers layers;
         std::vector<float> values;
     };
-    /// `sums`, if there are any, hold the environment's when they are `known`, and take it when
-    /// not.
-    void solve_part(const MirroredEnvironment& environment,
-                    std::size_t part,
-                    const MirrorLobes& lobes,
+    /// Rows for the layers asked for, of parts in the picture, with what others left in them.
+    std::vector<Texels> texels_for(const LayersOfParts& layers);
+    /// `mirrored_by(begin, end)` gives what is asked for each fragment of a stretch, by its index
+    /// and its place in the part. Where nothing is known to be hidden there are `runs`, at whose
+    /// ends alone it is asked, and what is hidden is guessed from `joints`.
+    template <typename MirroredBy>
+    void solve_part(std::size_t part,
                     std::span<Texels> texels,
+                    const SmoothRuns* runs,
                     const SkyVisibility* joints,
                     float unit,
-                    std::span<float> sums,
-                    bool known,
+                    const MirroredBy& mirrored_by,
                     const Progress& progress) const;
+    void take(const Light& light,
+              const LayersOfParts& layers,
+              float unit,
+              std::vector<Texels> solved);
 
     const Mesh& mesh_;
     const Tracer& tracer_;
@@ -124,6 +138,7 @@ class MirrorInputs {
     std::optional<MirrorHits> hits_;  ///< of what visibility_ has traced; none: not asked for yet
     float unit_ = 1.0f;
     std::vector<Texels> solved_texels_;  ///< not yet uploaded
+    std::vector<Texels> spare_texels_;   ///< uploaded: rows for the next of the same size
     /// While light between parts is solved, so that other paints change no more than that; by part.
     std::vector<KeptSums> kept_;
     bool other_light_ = false;  ///< since the last upload

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "core/parallel.h"
-
 namespace livery {
 
 PixelRect PackedLayout::rectangle(std::size_t part) const {
@@ -20,20 +18,6 @@ PackedLayout layout_of(const SurfaceMap& map) {
     }
     layout.rows = std::max(layout.row_begin.back(), 1);
     return layout;
-}
-
-std::vector<float> packed(const SurfaceMap& map,
-                          const PackedLayout& layout,
-                          const std::function<glm::vec4(std::size_t fragment)>& value) {
-    std::vector<float> texels(static_cast<std::size_t>(layout.rows) * kPackedWidth * 4, 0.0f);
-    parallel_for(map.fragments.size(), 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const glm::vec4 v = value(i);
-            float* texel = &texels[layout.address(i, map.fragments[i].part) * 4];
-            for (int c = 0; c < 4; ++c) texel[c] = v[c];
-        }
-    });
-    return texels;
 }
 
 }  // namespace livery

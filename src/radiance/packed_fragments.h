@@ -2,13 +2,14 @@
 // rectangle without a wasted pixel but in its last row.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include "core/parallel.h"
 #include "gl/handles.h"
 #include "radiance/surface_map.h"
 
@@ -33,9 +34,22 @@ struct PackedLayout {
 };
 PackedLayout layout_of(const SurfaceMap& map);
 
-/// A float texture with value(fragment index) at each fragment's place, 0 between parts.
-std::vector<float> packed(const SurfaceMap& map,
-                          const PackedLayout& layout,
-                          const std::function<glm::vec4(std::size_t fragment)>& value);
+/// Into a float texture, value(fragment index), a glm::vec4, at each fragment's place. `texels` may
+/// be that of another value and the same layout; of none it becomes 0 between parts.
+template <typename Value>
+void pack(const PackedLayout& layout, const Value& value, std::vector<float>& texels) {
+    const std::size_t size = static_cast<std::size_t>(layout.rows) * kPackedWidth * 4;
+    if (texels.size() != size) texels.assign(size, 0.0f);
+    for (std::size_t part = 0; part + 1 < layout.part_begin.size(); ++part) {
+        const std::size_t first = layout.part_begin[part];
+        float* to = texels.data() + layout.address(first, part) * 4;
+        parallel_for(layout.fragments(part), 4096, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k) {
+                const glm::vec4 v = value(first + k);
+                for (int c = 0; c < 4; ++c) to[4 * k + static_cast<std::size_t>(c)] = v[c];
+            }
+        });
+    }
+}
 
 }  // namespace livery

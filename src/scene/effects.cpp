@@ -63,7 +63,8 @@ const std::vector<EffectInfo>& effect_table() {
         {Effect::mirrored_environment,
          "mirrored-environment",
          "what glossy parts mirror of the environment",
-         {{"48 nodes", "12 rings of 4 nodes, one normal a pixel"},
+         {{"look-up", "the environment blurred for each lobe, looked up once"},
+          {"48 nodes", "12 rings of 4 nodes, one normal a pixel"},
           {"272 nodes", "17 rings of 16 nodes around four normals a pixel"},
           {"624 nodes", "26 rings of 24 nodes around four normals a pixel"}}},
         {Effect::reflected_occlusion,
@@ -126,9 +127,9 @@ EffectLevels levels_of(Quality quality) {
         case Quality::draft:
             return {{0, 1, 1, 1, 0, 0, 0, 1, 1, 1}};
         case Quality::normal:
-            return {{1, 2, 1, 2, 1, 1, 0, 1, 1, 1}};
+            return {{1, 2, 1, 2, 2, 1, 0, 1, 1, 1}};
         case Quality::high:
-            return {{1, 3, 1, 3, 2, 1, 1, 1, 1, 1}};
+            return {{1, 3, 1, 3, 3, 1, 1, 1, 1, 1}};
         case Quality::reference:
             break;
     }

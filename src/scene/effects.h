@@ -39,6 +39,10 @@ struct EffectInfo {
 const std::vector<EffectInfo>& effect_table();
 const EffectInfo& effect_info(Effect effect);
 
+/// The first level of Effect::mirrored_environment whose lobes know what hides them; those before
+/// are of a scene whose parts are mirrored through.
+inline constexpr int kMirrorsWithRays = 2;
+
 /// An index into the levels of each effect.
 struct EffectLevels {
     std::array<int, kEffects> of{};

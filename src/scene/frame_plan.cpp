@@ -366,8 +366,8 @@ std::optional<Effect> effect_of(const PassId& pass) {
 }
 
 bool runs_every_frame(const PassId& pass) {
-    return pass.kind == PassKind::shade || pass == PassKind::diffuse_light ||
-           pass == PassKind::resolve || pass == PassKind::compensation;
+    return pass.kind == PassKind::shade || pass == PassKind::resolve ||
+           pass == PassKind::compensation;
 }
 
 ExchangeBound exchange_bound(const Scene& scene) {

@@ -1,6 +1,10 @@
 // What each paint swap costs. Items are the mock-up's pixels, fragments where a part is shaded.
 #include <cstdint>
+#include <map>
+#include <string>
 #include <vector>
+
+#include <glm/geometric.hpp>
 
 #include "benchmarks/car.h"
 #include "compensation/compensation.h"
@@ -9,6 +13,7 @@
 #include "gl/context.h"
 #include "gl/draw.h"
 #include "jobs/synthetic_calibration.h"
+#include "ledger/pass_costs.h"
 #include "live/frame_lane.h"
 
 namespace livery::benchmarks {
@@ -197,6 +202,81 @@ void SwapInOpenGl(benchmark::State& state) { swap(state, ShadingDevice::gl); }
 BENCHMARK(SwapInOpenGl)
     ->ArgNames({"width", "mapping"})
     ->ArgsProduct({{640, 1280}, {0, 1}})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+/// A light, an eye or an environment that the mouse drags, as a draft shows it: what a lane solves
+/// and draws for each of its steps, until the projector's texture is there.
+template <typename Move>
+void drag(benchmark::State& state, const Move& move) {
+    HeadlessContext context(GlDevice::automatic);
+    const FrameGeometry& geometry = *geometry_of_width(static_cast<int>(state.range(0)));
+    auto setup = std::make_shared<ProjectorSetup>();
+    setup->view = geometry.view;
+    setup->table = table_of(geometry);
+    FrameDescription description;
+    description.scene = car().looks.front();
+    description.quality = Quality::draft;
+    description.setup = setup;
+    FrameLane lane(std::make_shared<GeometryCache>());
+    int step = 0;
+    const auto next = [&] {
+        move(description.scene, 0.02 * ++step);
+        lane.solve(description, levels_of(description.quality), {}, {});
+        const auto frame = lane.draw(description);
+        frame->ready->wait_for(60.0);
+        return frame->plan;
+    };
+    for (int warm = 0; warm < 3; ++warm) next();
+    std::map<std::string, double> ms;
+    for (auto _ : state) {
+        for (const PlannedPass& pass : next().passes) {
+            ms[to_string(cost_key(pass.id))] += pass.ms.value_or(0.0);
+        }
+    }
+    for (const auto& [pass, sum] : ms) {
+        if (sum <= 0.0) continue;
+        state.counters[pass] = benchmark::Counter(sum, benchmark::Counter::kAvgIterations);
+    }
+}
+
+void DraggingTheEye(benchmark::State& state) {
+    const glm::dvec3 eye_mm = car().looks.front().eye_in_world_mm;
+    drag(state, [&](Scene& scene, double step) {
+        scene.eye_in_world_mm = eye_mm + glm::dvec3(1000.0 * step, 0.0, 0.0);
+    });
+}
+BENCHMARK(DraggingTheEye)
+    ->ArgName("width")
+    ->Arg(640)
+    ->Arg(1280)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+void DraggingALight(benchmark::State& state) {
+    drag(state, [&](Scene& scene, double step) {
+        glm::dvec3& to_light = scene.lights.front().direction;
+        to_light = glm::normalize(to_light + glm::dvec3(0.05 * step, 0.0, 0.0));
+    });
+}
+BENCHMARK(DraggingALight)
+    ->ArgName("width")
+    ->Arg(640)
+    ->Arg(1280)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+void TurningTheEnvironment(benchmark::State& state) {
+    drag(state, [&](Scene& scene, double step) {
+        auto turned = std::make_shared<Environment>(*scene.environment);
+        turned->rotation_rad = step;
+        scene.environment = std::move(turned);
+    });
+}
+BENCHMARK(TurningTheEnvironment)
+    ->ArgName("width")
+    ->Arg(640)
+    ->Arg(1280)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 

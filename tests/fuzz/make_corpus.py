@@ -261,10 +261,10 @@ put("calibration", "all.json",
      {"additivity_error": 0, "condition_p99": 5, "valid_fraction": 1, "ambient_fraction": 0,
       "mixing_spread": 0}, "warnings": ["a"]})
 put("pass_costs", "two.json",
-    {"format_version": 2, "renderer": "r", "passes": [
-        {"pass": "surface-map", "level": 2, "ms": 1.5, "fixed_ms": 1, "work_items": 1000,
+    {"format_version": 3, "renderer": "r", "passes": [
+        {"pass": "surface-map", "level": "64", "ms": 1.5, "fixed_ms": 1, "work_items": 1000,
          "fragments_per_pixel": 1.2},
-        {"pass": "dither", "level": 0, "ms": 2, "fixed_ms": 0, "work_items": 0}]})
+        {"pass": "dither", "level": "", "ms": 2, "fixed_ms": 0, "work_items": 0}]})
 put("effect_errors", "one.json",
     {"format_version": 1, "unit": "CIEDE2000", "scenes": [
         {"scene": "car", "dearest": 3.05, "effects": {

@@ -16,7 +16,7 @@ TEST(PassCosts, ComeBackAsTheyWereWritten) {
     const auto costs = read_pass_costs(file);
     ASSERT_TRUE(costs && costs->size() == 1);
     EXPECT_EQ(costs->at(0).pass, PassId(PassKind::surface_map));
-    EXPECT_EQ(costs->at(0).level, 2);
+    EXPECT_EQ(costs->at(0).level, 2);  // by its name
     EXPECT_EQ(costs->at(0).ms, 1.5);
     EXPECT_EQ(costs->at(0).fixed_ms, 0.5);
     EXPECT_EQ(costs->at(0).fragments_per_pixel, 1.25);
@@ -25,6 +25,10 @@ TEST(PassCosts, ComeBackAsTheyWereWritten) {
 TEST(PassCosts, OfWholeQualitiesAreNotTakenForThoseOfLevels) {
     EXPECT_EQ(parse_pass_costs(R"({"format_version": 1, "passes": [
                   {"pass": "resolve", "quality": "high", "ms": 1, "work_items": 1}]})",
+                               "bench.json"),
+              std::nullopt);
+    EXPECT_EQ(parse_pass_costs(R"({"format_version": 2, "passes": [
+                  {"pass": "resolve", "level": 0, "ms": 1, "work_items": 1}]})",
                                "bench.json"),
               std::nullopt);
 }
@@ -50,9 +54,10 @@ TEST(PassCosts, KnowEveryPassAgain) {
 
 TEST(PassCosts, WhatAnotherVersionTimedIsLeftOut) {
     const auto costs = parse_pass_costs(
-        R"({"format_version": 2, "passes": [
-            {"pass": "gone", "level": 3, "ms": 1, "fixed_ms": 0, "work_items": 1},
-            {"pass": "shade:ggx", "level": 0, "ms": 2, "fixed_ms": 0, "work_items": 1}]})",
+        R"({"format_version": 3, "passes": [
+            {"pass": "gone", "level": "", "ms": 1, "fixed_ms": 0, "work_items": 1},
+            {"pass": "ambient-occlusion", "level": "gone", "ms": 1, "fixed_ms": 0, "work_items": 1},
+            {"pass": "shade:ggx", "level": "", "ms": 2, "fixed_ms": 0, "work_items": 1}]})",
         "bench.json");
     ASSERT_TRUE(costs && costs->size() == 1);
     EXPECT_EQ(costs->at(0).pass, PassId(PassKind::shade, "", ReflectanceModel::ggx));
@@ -95,11 +100,11 @@ TEST(PassCosts, AreThoseOfTheLevel) {
 TEST(PassCosts, ALevelThatIsNoneIsNamed) {
     EXPECT_TRUE(fails_with(
         [] {
-            parse_pass_costs(R"({"format_version": 2, "passes": [
+            parse_pass_costs(R"({"format_version": 3, "passes": [
                                  {"pass": "a", "level": -1, "ms": 1, "work_items": 1}]})",
                              "bench.json");
         },
-        {"bench.json: passes[0].level: found -1"}));
+        {"bench.json: passes[0].level: ", "found -1"}));
 }
 
 TEST(PassCosts, SayWhatAPaintCosts) {

@@ -147,23 +147,23 @@ double bias_of(const ImageF& image, const ImageF& truth, const std::vector<std::
 
 class Mirror : public Renderer {
   protected:
-    /// Draws one subject in one quality, paint after paint.
+    /// Draws one subject at some levels, paint after paint.
     class Drawer {
       public:
-        Drawer(const Subject& subject, Quality quality)
+        Drawer(const Subject& subject, const EffectLevels& levels)
             : scene_(subject.scene),
-              quality_(quality),
+              levels_(levels),
               renderer_(renderer_of(subject.scene, subject.view)) {}
         ImageF operator()(const Material& paint) {
             for (Material& material : scene_.part_materials) material = paint;
-            FramePlan its_plan = plan(scene_, quality_);
+            FramePlan its_plan = plan_frame(scene_, levels_, FrameStage::radiance);
             renderer_.render(scene_, its_plan);
             return renderer_.read_back();
         }
 
       private:
         Scene scene_;
-        Quality quality_;
+        EffectLevels levels_;
         RadianceRenderer renderer_;
     };
 };
@@ -174,12 +174,12 @@ INSTANTIATE_TEST_SUITE_P(Devices,
 
 TEST_P(Mirror, LobesOfAllWidthsAreAsBrightAsTheTruth) {
     // Asked: 1.5% at normal, 1% at high. The truth's seeds are fixed: with twice its samples it
-    // changes by under .3%, of the doors at alpha .03 by .5%. A draft hides nothing, and has few
-    // nodes for all lobes.
+    // changes by under .3%, of the doors at alpha .03 by .5%. Few nodes for all lobes hide nothing;
+    // a draft's look-up does not know how long a lobe grows either: .15 wherever.
     struct Case {
         Subject subject;
         OracleOptions truth;
-        double draft;
+        double nodes;
     };
     std::vector<Case> cases;
     cases.push_back({ring(0.15, 0.35), {2, 16}, 0.06});
@@ -190,24 +190,31 @@ TEST_P(Mirror, LobesOfAllWidthsAreAsBrightAsTheTruth) {
     for (Case& one : cases) {
         Subject& subject = one.subject;
         ASSERT_GT(subject.pixels.size(), 500u) << subject.name;
-        Drawer draft(subject, Quality::draft), normal(subject, Quality::normal);
-        Drawer high(subject, Quality::high);
+        EffectLevels few_nodes = direct_levels(Quality::draft);
+        few_nodes[Effect::mirrored_environment] = 1;
+        Drawer draft(subject, direct_levels(Quality::draft)), nodes(subject, few_nodes);
+        Drawer normal(subject, direct_levels(Quality::normal)),
+            high(subject, direct_levels(Quality::high));
         for (const double alpha : {0.03, 0.07, 0.2, 0.5}) {
             const ImageF truth = truth_of(subject, mirror_of(alpha), one.truth);
             const auto bias = [&](Drawer& drawer) {
                 return bias_of(drawer(mirror_of(alpha)), truth, subject.pixels);
             };
-            const double found[] = {bias(draft), bias(normal), bias(high)};
-            std::printf("    %s alpha %.2f: draft %+.4f normal %+.4f high %+.4f of %zu pixels\n",
-                        subject.name.c_str(),
-                        alpha,
-                        found[0],
-                        found[1],
-                        found[2],
-                        subject.pixels.size());
-            EXPECT_LT(std::abs(found[0]), one.draft) << subject.name << " alpha " << alpha;
-            EXPECT_LT(std::abs(found[1]), 0.015) << subject.name << " alpha " << alpha;
-            EXPECT_LT(std::abs(found[2]), 0.01) << subject.name << " alpha " << alpha;
+            const double found[] = {bias(draft), bias(nodes), bias(normal), bias(high)};
+            std::printf(
+                "    %s alpha %.2f: draft %+.4f nodes %+.4f normal %+.4f high %+.4f of %zu "
+                "pixels\n",
+                subject.name.c_str(),
+                alpha,
+                found[0],
+                found[1],
+                found[2],
+                found[3],
+                subject.pixels.size());
+            EXPECT_LT(std::abs(found[0]), 0.15) << subject.name << " alpha " << alpha;
+            EXPECT_LT(std::abs(found[1]), one.nodes) << subject.name << " alpha " << alpha;
+            EXPECT_LT(std::abs(found[2]), 0.015) << subject.name << " alpha " << alpha;
+            EXPECT_LT(std::abs(found[3]), 0.01) << subject.name << " alpha " << alpha;
         }
     }
 }
@@ -245,7 +252,8 @@ TEST_P(Mirror, CoatsAndWhatLiesUnderThemAreAsBrightAsTheTruth) {
     cases.push_back({bonnet(144, 0, {270, 110, 370}), {2, 96}});
     for (auto& [subject, options] : cases) {
         ASSERT_GT(subject.pixels.size(), 500u) << subject.name;
-        Drawer normal(subject, Quality::normal), high(subject, Quality::high);
+        Drawer normal(subject, direct_levels(Quality::normal)),
+            high(subject, direct_levels(Quality::high));
         for (const Paint& paint : {Paint{"nothing", 0.02, 0.2},
                                    Paint{"nothing", 0.1, 0.2},
                                    Paint{"metal", 0.02, 0.12},
@@ -302,7 +310,7 @@ TEST_P(Mirror, SmoothPanelsHaveNoGrain) {
          {Case{bonnet(320, 5), 4}, Case{ring(0.4, 1.0, 256, 5), 1}}) {
         ASSERT_GT(subject.pixels.size(), 1000u);
         for (const Quality quality : {Quality::draft, Quality::normal, Quality::high}) {
-            Drawer drawer(subject, quality);
+            Drawer drawer(subject, direct_levels(quality));
             for (const char* name : {"silver metallic", "champagne metallic", "blue green pearl"}) {
                 const auto paint = std::find_if(
                     library.begin(), library.end(), [&](const auto& m) { return m.name == name; });
@@ -345,7 +353,8 @@ TEST_P(Mirror, NarrowLobesKeepTheEdgesOfWhatTheyMirror) {
             return sum / 60.0;
         };
         for (const Quality quality : {Quality::normal, Quality::high}) {
-            const double found = steepest(Drawer(subject, quality)(mirror_of(alpha)));
+            const double found =
+                steepest(Drawer(subject, direct_levels(quality))(mirror_of(alpha)));
             std::printf("    alpha %g %s: %.4f, truth %.4f\n",
                         alpha,
                         to_string(quality).data(),

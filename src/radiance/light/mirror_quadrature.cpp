@@ -251,13 +251,14 @@ MirrorRings mirror_rings(int nodes) {
 }
 
 int mirror_nodes(int nodes) {
+    if (nodes == kNoNodes) return 1;
     const MirrorRings size = mirror_rings(nodes);
     return static_cast<int>(MirrorQuadrature::kFacets +
                             rings_of(size) * static_cast<std::size_t>(size.nodes));
 }
 
 int mirror_rays(int nodes) {
-    if (nodes == 0) return 0;
+    if (nodes <= 0) return 0;
     const MirrorRings size = mirror_rings(nodes);
     std::size_t straight = 0;
     while (slope_of(size, straight) < kStraightSlope) ++straight;

@@ -32,8 +32,10 @@ struct MirrorRings {
     double step = 0.0;
     double overlap = 1.0;
 };
-/// As wide as long for so many nodes a ring; 0: the draft's, where nothing is hidden.
+/// As wide as long for so many nodes a ring; 0: few, where nothing is hidden.
 MirrorRings mirror_rings(int nodes);
+/// In place of nodes a ring: no sum, one look-up a lobe (mirror_look_up.h).
+inline constexpr int kNoNodes = -1;
 /// What a fragment then costs: looks up the environment, and traces.
 int mirror_nodes(int nodes);
 int mirror_rays(int nodes);

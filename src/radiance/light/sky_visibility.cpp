@@ -181,7 +181,8 @@ std::vector<glm::vec3> sky_at_fragments(const Mesh& mesh,
                                         const SurfaceMap& map,
                                         const Environment& environment,
                                         const FilteredEnvironment& filtered,
-                                        const SkyVisibility* visibility) {
+                                        const SkyVisibility* visibility,
+                                        const SmoothRuns& runs) {
     const auto scale = static_cast<float>(environment.scale);
     const SpherePlaces places(environment);
     const SphereStack diffuse({&filtered.diffuse, 1});
@@ -208,12 +209,20 @@ std::vector<glm::vec3> sky_at_fragments(const Mesh& mesh,
     const SkyDirections more(visibility ? visibility->rays.more : 0);
     std::vector<glm::vec3> result(map.fragments.size());
     parallel_for(result.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            if (runs.is_end(i)) result[i] = open_sky(map.fragments[i].normal);
+        }
+    });
+    parallel_for(result.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        runs.between(begin, end, [&](std::size_t i, std::size_t left, std::size_t right, float s) {
+            result[i] = (1.0f - s) * result[left] + s * result[right];
+        });
+    });
+    parallel_for(visibility ? result.size() : 0, 1024, [&](std::size_t begin, std::size_t end) {
         std::vector<glm::vec3> directions(sky.count());
         for (std::size_t i = begin; i < end; ++i) {
-            const glm::vec3 n = map.fragments[i].normal;
-            result[i] = open_sky(n);
-            if (!visibility || visibility->blocked[i] == 0) continue;
-            sky.around(n, turn_of(i, 5u), directions);
+            if (visibility->blocked[i] == 0) continue;
+            sky.around(map.fragments[i].normal, turn_of(i, 5u), directions);
             result[i] *= share_seen(around_few, directions, &visibility->blocked[i]);
         }
     });

@@ -10,6 +10,7 @@
 #include "core/progress.h"
 #include "radiance/light/environment_filter.h"
 #include "radiance/light/sphere_lookup.h"
+#include "radiance/smooth_runs.h"
 #include "radiance/surface_map.h"
 #include "tracing/tracer.h"
 
@@ -43,12 +44,14 @@ SkyVisibility solve_sky_visibility(const Mesh& mesh,
                                    const Progress& progress = {});
 
 /// What a white diffuser at each fragment sends under the environment: the exact unoccluded value
-/// less the mean over the blocked directions. Without `visibility`, unoccluded.
+/// less the mean over the blocked directions. Without `visibility`, unoccluded. `runs` are the
+/// map's: what is unoccluded is looked up at their ends.
 std::vector<glm::vec3> sky_at_fragments(const Mesh& mesh,
                                         const SurfaceMap& map,
                                         const Environment& environment,
                                         const FilteredEnvironment& filtered,
-                                        const SkyVisibility* visibility);
+                                        const SkyVisibility* visibility,
+                                        const SmoothRuns& runs);
 
 /// The shading normal of a fragment's k-th sub-sample, on the seen side.
 glm::vec3 sample_normal(const Mesh& mesh,

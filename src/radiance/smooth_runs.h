@@ -1,0 +1,41 @@
+// Fragments between two others of an even surface: what changes slowly over it is worked out at a
+// quarter of them, and taken from both ends in between.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "radiance/surface_map.h"
+
+namespace livery {
+
+/// Of each fragment, where in its row the two are whose values it lies between. They and all
+/// between them are whole pixels of one part, whose normals turn by less than a degree, so that no
+/// reflection moves by more than two.
+class SmoothRuns {
+  public:
+    explicit SmoothRuns(const SurfaceMap& map);
+
+    /// Whether its value is its own.
+    bool is_end(std::size_t fragment) const { return runs_[fragment].before == 0; }
+    /// `from(fragment, left, right, share)` for each fragment from `begin` to `end` that lies
+    /// between two: those, and the share of the right one.
+    template <typename From>
+    void between(std::size_t begin, std::size_t end, const From& from) const {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Run run = runs_[i];
+            if (run.before == 0) continue;
+            const float length = static_cast<float>(run.before + run.after);
+            from(i, i - run.before, i + run.after, static_cast<float>(run.before) / length);
+        }
+    }
+
+  private:
+    struct Run {
+        std::uint8_t before = 0, after = 0;  ///< fragments to the left one and to the right one
+    };
+    std::vector<Run> runs_;
+};
+
+}  // namespace livery
