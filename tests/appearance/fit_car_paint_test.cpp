@@ -1,11 +1,10 @@
 // Car paint fitted to the paints of three sets of measurements: how near it comes.
 //
-// LIVERY_ALL_PAINTS=1 takes every paint instead of the first of each list: five minutes of one
+// LIVERY_THOROUGH=1 takes every paint instead of the first of each list: five minutes of one
 // core.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +20,7 @@
 #include "core/worst_error.h"
 #include "support/merl_fits.h"
 #include "support/reference_data.h"
+#include "support/thorough.h"
 
 namespace livery {
 namespace {
@@ -52,7 +52,7 @@ const std::vector<std::string> kSolidPaintsOfTheOtherSet{"orange-paint", "white-
 
 /// All, or the first few of them.
 std::vector<std::string> chosen(std::vector<std::string> names, std::size_t few) {
-    if (!std::getenv("LIVERY_ALL_PAINTS")) names.resize(few);
+    if (!thorough()) names.resize(few);
     return names;
 }
 
@@ -124,7 +124,7 @@ TEST(FitCarPaint, GivesBackThePaintThatMadeTheSamples) {
 // own film, through noise of 2%: what is left is the noise's.
 TEST(FitCarPaint, FindsTheFilmThatMadeTheColours) {
     std::vector<std::pair<double, double>> films{{180.0, 2.3}};
-    if (std::getenv("LIVERY_ALL_PAINTS")) films.emplace_back(420.0, 1.8);
+    if (thorough()) films.emplace_back(420.0, 1.8);
     for (const auto& [nm, eta] : films) {
         Material paint;
         paint.model = ReflectanceModel::car_paint;

@@ -1,10 +1,9 @@
 // What fitting reaches: the figures of docs/materials.md about measured paints, their halves, and
-// lacquers that no model is made for. LIVERY_ALL_PAINTS=1 takes all of them and all models, instead
+// lacquers that no model is made for. LIVERY_THOROUGH=1 takes all of them and all models, instead
 // of one of each kind and the model that is best of it: ten minutes of one core.
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -19,6 +18,7 @@
 #include "support/effect_lacquer.h"
 #include "support/merl_fits.h"
 #include "support/reference_data.h"
+#include "support/thorough.h"
 
 namespace livery {
 namespace {
@@ -26,7 +26,7 @@ namespace {
 /// All, or the first few.
 template <typename Value>
 std::vector<Value> chosen(std::vector<Value> all, std::size_t few) {
-    if (!std::getenv("LIVERY_ALL_PAINTS")) all.resize(std::min(few, all.size()));
+    if (!thorough()) all.resize(std::min(few, all.size()));
     return all;
 }
 
@@ -46,9 +46,8 @@ BrdfFit best_fit(const std::string& name,
                  ReflectanceModel likely = ReflectanceModel::car_paint) {
     const FitSamples samples = samples_of(measured);
     const std::vector<BrdfFit> fits =
-        std::getenv("LIVERY_ALL_PAINTS")
-            ? fit_all_models(samples, value_of(measured))
-            : std::vector{fit_model(likely, samples, value_of(measured))};
+        thorough() ? fit_all_models(samples, value_of(measured))
+                   : std::vector{fit_model(likely, samples, value_of(measured))};
     double seconds = 0.0;
     for (const BrdfFit& fit : fits) seconds += fit.seconds;
     std::printf("    %-24s", name.c_str());
@@ -91,7 +90,7 @@ TEST(FitStudy, HalvesOfMeasuredPaints) {
         for (std::size_t k = 0; k < all.pairs.size(); ++k) first.push_back(random.uniform() < 0.5);
         std::vector<bool> second = first;
         second.flip();
-        if (std::getenv("LIVERY_ALL_PAINTS")) {
+        if (thorough()) {
             best_fit(name, measured_from(all, MeasuredFormat::spectral_text, file));
         }
         const std::array halves{
