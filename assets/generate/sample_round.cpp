@@ -26,9 +26,9 @@ namespace {
 
 using What = LogEntry::What;
 
-constexpr int kSeed = 2026, kEvaluators = 24, kWave = 3;
+constexpr int kSeed = 15, kEvaluators = 24, kWave = 3;
 /// Ours: what the evaluators, whom there are none of, are taken to like.
-const std::vector<double> kWorths = {0.22, 0.40, 0.10, 0.28};
+const std::vector<double> kWorths = {0.22, 0.42, 0.08, 0.28};
 /// Those of the shipped looks.
 const std::vector<std::string> kDesigns = {
     "Solid red", "Silver metallic", "Solid ivory", "Blue metallic"};

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "core/html.h"
 #include "core/paths.h"
+#include "core/text/html.h"
 
 namespace livery {
 

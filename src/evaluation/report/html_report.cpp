@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "core/html.h"
 #include "core/pictures/png_bytes.h"
+#include "core/text/html.h"
 
 namespace livery {
 

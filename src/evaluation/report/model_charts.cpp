@@ -292,12 +292,13 @@ ReportChart power_chart(const VoteStatistics& statistics,
         "from {} at 5%. ",
         name(statistics.verdict.leader),
         name(statistics.verdict.rival));
-    chart.note += statistics.evaluators_needed
+    // Beyond what a round may have the figure would be a number and no more.
+    chart.note += statistics.evaluators_needed.value_or(kMostEvaluators + 1) <= kMostEvaluators
                       ? fmt::format(
-                            "80% need about {} evaluators; what leads is, in the mean, not as "
-                            "far ahead as it looks, so take that as the least.",
+                            "80% need about {} evaluators; what leads is, in the mean, not "
+                            "as far ahead as it looks, so take that as the least.",
                             *statistics.evaluators_needed)
-                      : std::string("No number of evaluators up to a million reaches 80%.");
+                      : fmt::format("80% would need more than {} evaluators.", kMostEvaluators);
     return chart;
 }
 

@@ -107,9 +107,10 @@ class ReportBuilder {
         const bool preference = statistics_.friedman_p <= 0.05;
         std::string text = fmt::format(
             "Any preference at all? {}: were all liked alike, ballots as far from even as these "
-            "would come about with p = {} ({}).",
+            "would come about with p {} ({}).",
             preference ? "Yes, at 5%" : "None is shown",
-            p_text(statistics_.friedman_p),
+            statistics_.friedman_p < 0.0001 ? p_text(statistics_.friedman_p)
+                                            : "= " + p_text(statistics_.friedman_p),
             statistics_.friedman_method == Method::exact ? "exact" : "drawn");
         const Verdict& verdict = statistics_.verdict;
         if (preference && verdict.leader >= 0 && statistics_.evaluators > 1) {

@@ -31,7 +31,7 @@ TEST(HtmlReport, HasEveryFigureAndTheVerdictFirst) {
                              "p = 0.0059 (exact)",
                              "chi-square 6.80",
                              ">0.109<",
-                             "Friedman&#39;s",
+                             "Friedman's Q 11.53",
                              "0.384",
                              "from 14.5 on",
                              ">2.37<",
@@ -42,9 +42,7 @@ TEST(HtmlReport, HasEveryFigureAndTheVerdictFirst) {
                              "91%",
                              "not recorded",
                              "may not be topped up"}) {
-        const std::string text =
-            part == std::string("Friedman&#39;s") ? "Friedman's Q 11.53" : part;
-        EXPECT_NE(html.find(text), std::string::npos) << text;
+        EXPECT_NE(html.find(part), std::string::npos) << part;
     }
     EXPECT_LT(html.find("Silver leads"), html.find("<table"));
 }
@@ -55,8 +53,8 @@ TEST(HtmlReport, CanBeReadWithoutEyesAndAsksNothingOfAnybody) {
     EXPECT_EQ(count_of(html, "<table>"), count_of(html, "<caption>"));
     EXPECT_EQ(count_of(html, "<svg"), count_of(html, "<desc"));
     EXPECT_EQ(count_of(html, "<svg"), count_of(html, "role=\"img\""));
-    EXPECT_EQ(count_of(html, "<tbody>"),
-              count_of(html, "scope=\"col\"") > 0 ? count_of(html, "<thead>") : 0);
+    EXPECT_EQ(count_of(html, "<tbody>"), count_of(html, "<thead>"));
+    EXPECT_GT(count_of(html, "scope=\"col\""), 20u);
     EXPECT_GT(count_of(html, "scope=\"row\""), 20u);
     EXPECT_NE(html.find("lang=\"en\""), std::string::npos);
     EXPECT_EQ(html.find("<script"), std::string::npos);
@@ -100,7 +98,7 @@ TEST(PdfReport, IsOneWhateverTheNamesHold) {
         pdf_of(round_report(source_of(table3(), {"red", "silver", "sand", "blue"})));
     EXPECT_TRUE(plain.bytes.starts_with("%PDF-1."));
     EXPECT_NE(plain.bytes.find("%%EOF"), std::string::npos);
-    EXPECT_EQ(count_of(plain.bytes, "/Type /Page\n"), static_cast<std::size_t>(plain.pages));
+    EXPECT_EQ(count_of(plain.bytes, "/Type /Page "), static_cast<std::size_t>(plain.pages));
     EXPECT_EQ(plain.unknown_characters, 0);
     EXPECT_NE(plain.bytes.find("/StructTreeRoot"), std::string::npos);
     EXPECT_NE(plain.bytes.find("Inter"), std::string::npos) << "the font is embedded";
