@@ -120,7 +120,10 @@ class PdfWriter {
     PdfFile written() {
         paragraph("H1", document_.title, style_of(21.0, 600), 3.0);
         paragraph("P", document_.subtitle, style_of(9.5, 400, kSoftInkColour), 14.0);
-        for (const ReportBlock& block : document_.blocks) std::visit(*this, block);
+        for (std::size_t k = 0; k < document_.blocks.size(); ++k) {
+            next_ = k + 1 < document_.blocks.size() ? &document_.blocks[k + 1] : nullptr;
+            std::visit(*this, document_.blocks[k]);
+        }
         end_page();
         PdfFile file;
         file.bytes = canvas_.finish(file.unknown_characters);
@@ -132,10 +135,9 @@ class PdfWriter {
         const bool second = heading.level <= 2;
         const PdfTextStyle style = style_of(second ? 14.0 : 10.5, 600);
         const double height = canvas_.size_of(heading.text, style).height;
-        // Never alone at the end of a page.
-        constexpr double company = 110.0;
         if (second && y_ > kTop) y_ += 14.0;
-        room_for(height + company);
+        // Never alone at the end of a page.
+        room_for(height + 6.0 + company());
         if (second && y_ > kTop) {
             canvas_.line({kLeft, y_ - 6.0}, {kLeft + kWidth, y_ - 6.0}, kGridColour, 0.7);
         }
@@ -166,7 +168,7 @@ class PdfWriter {
         const double scale = kWidth / chart.drawing.width;
         const double title_height = canvas_.size_of(chart.title, title).height;
         const double note_height = canvas_.size_of(chart.note, note).height;
-        room_for(title_height + 9.0 + scale * chart.drawing.height + 6.0 + note_height);
+        room_for(chart_height(chart));
         canvas_.bookmark(2, chart.title, page_, y_);
         tagged_text("H3", kLeft, chart.title, title);
         y_ += title_height + 9.0;
@@ -239,6 +241,21 @@ class PdfWriter {
     }
 
   private:
+    double chart_height(const ReportChart& chart) const {
+        return canvas_.size_of(chart.title, style_of(10.5, 600)).height + 9.0 +
+               kWidth / chart.drawing.width * chart.drawing.height + 6.0 +
+               canvas_.size_of(chart.note, style_of(8.2)).height;
+    }
+
+    /// What a heading needs of what follows it.
+    double company() const {
+        constexpr double some_lines = 110.0;
+        const auto* chart = next_ ? std::get_if<ReportChart>(next_) : nullptr;
+        const auto* pictures = next_ ? std::get_if<ReportPictures>(next_) : nullptr;
+        if (chart) return chart_height(*chart);
+        return pictures ? 0.5 * kWidth : some_lines;
+    }
+
     void end_page() {
         PdfTextStyle style = style_of(7.5, 400, kSoftInkColour, 0.0);
         style.on_baseline = true;
@@ -321,6 +338,7 @@ class PdfWriter {
     }
 
     const ReportDocument& document_;
+    const ReportBlock* next_ = nullptr;  ///< after the one that is being written
     int pages_ = 0, page_ = 1;
     double y_ = kTop;
     PdfCanvas canvas_;

@@ -121,17 +121,20 @@ ReportTable tests_table(const VoteStatistics& statistics, const ChartRows& rows)
     const Verdict& verdict = statistics.verdict;
     if (verdict.leader >= 0 && statistics.evaluators > 1) {
         const auto label = [&](int k) { return rows.labels[static_cast<std::size_t>(k)]; };
-        add({fmt::format(
-                 "{} against {}, by its own law", label(verdict.leader), label(verdict.rival)),
-             "likelihood ratio",
-             verdict.rival_p >= 1.0 ? "not near .05" : p_text(verdict.rival_p),
-             "",
-             "drawn at equal worths; asked to be at most .04"});
-        add({"The leader is first in rounds drawn again",
-             percent_text(verdict.win_probability),
-             "",
-             "",
-             statistics.resampled ? "single ballots" : "fitted worths"});
+        // Where no preference is shown nobody is judged to lead.
+        if (verdict.kind != VerdictKind::no_preference) {
+            add({fmt::format(
+                     "{} against {}, by its own law", label(verdict.leader), label(verdict.rival)),
+                 "likelihood ratio",
+                 verdict.rival_p >= 1.0 ? "not near .05" : p_text(verdict.rival_p),
+                 "",
+                 "drawn at equal worths; asked to be at most .04"});
+            add({"The leader is first in rounds drawn again",
+                 percent_text(verdict.win_probability),
+                 "",
+                 "",
+                 statistics.resampled ? "single ballots" : "fitted worths"});
+        }
         add({fmt::format("{} and {} are the top two again",
                          label(statistics.top_a),
                          label(statistics.top_b)),

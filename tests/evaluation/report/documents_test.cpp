@@ -83,6 +83,17 @@ TEST(HtmlReport, SaysOfNobodyAndOfOneWhatThereIsToSay) {
     EXPECT_EQ(one.find("may not be topped up"), std::string::npos);
 }
 
+TEST(HtmlReport, CallsNobodyALeaderWithoutAPreference) {
+    const std::string even =
+        html_of(round_report(source_of({{5, 3, 2}, {2, 4, 4}}, default_names(3))));
+    EXPECT_NE(even.find("show no preference"), std::string::npos);
+    EXPECT_NE(even.find("None is shown"), std::string::npos);
+    EXPECT_EQ(even.find("The leader is first"), std::string::npos);
+    EXPECT_EQ(even.find("would be first in"), std::string::npos);
+    const std::string told = html_of(round_report(source_of(table3(), default_names(4))));
+    EXPECT_NE(told.find("The leader is first"), std::string::npos);
+}
+
 TEST(HtmlReport, HasPicturesWithinItself) {
     ReportDocument document;
     document.title = "pictures";
