@@ -212,7 +212,7 @@ Command evaluate_vote_command() {
     const auto arguments = std::make_shared<VoteArguments>();
     Command command;
     command.name = "evaluate vote";
-    command.summary = "types in ballots that were cast on paper, by the looks' codes";
+    command.summary = "types in ballots cast on paper, without a network (phones: evaluate serve)";
     command.example = "livery evaluate vote --ballots votes.livery-ballots";
     command.options = {
         {"--ballots",

@@ -126,9 +126,9 @@ ReportTable tests_table(const VoteStatistics& statistics, const ChartRows& rows)
             add({fmt::format(
                      "{} against {}, by its own law", label(verdict.leader), label(verdict.rival)),
                  "likelihood ratio",
-                 verdict.rival_p >= 1.0 ? "not near .05" : p_text(verdict.rival_p),
+                 verdict.rival_p >= 1.0 ? "not asked for" : p_text(verdict.rival_p),
                  "",
-                 "drawn at equal worths; asked to be at most .04"});
+                 "drawn at equal worths; a clear winner needs .04"});
             add({"The leader is first in rounds drawn again",
                  percent_text(verdict.win_probability),
                  "",
