@@ -252,6 +252,18 @@ TEST(Evaluate, TakesBallotsOnPaperAllOrNone) {
     const auto bad = folder.write("bad.csv", "481,376\n481,481\n");
     EXPECT_EQ(evaluate({"vote", "--ballots", file, "--in", good.string()}).exit_code, 2)
         << "there is no such file";
+    // A file that is no good opens no round.
+    EXPECT_EQ(evaluate({"vote",
+                        "--ballots",
+                        file,
+                        "--designs",
+                        "red,silver,sand",
+                        "--codes",
+                        "481,376,912",
+                        "--in",
+                        bad.string()})
+                  .exit_code,
+              2);
     const Json opened = figures({"vote",
                                  "--ballots",
                                  file,

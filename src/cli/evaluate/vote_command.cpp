@@ -10,6 +10,7 @@
 #include "cli/evaluate/typed_lines.h"
 #include "core/error.h"
 #include "core/paths.h"
+#include "evaluation/design_codes.h"
 #include "evaluation/paper_typing.h"
 
 namespace livery {
@@ -53,7 +54,7 @@ class VoteSession {
     }
 
     Round chosen_round(int seed) {
-        if (!arguments_.designs.empty()) return opened_round(seed);
+        if (!arguments_.designs.empty()) return planned_round(seed);
         Round round;
         if (const auto wanted = round_option(arguments_.round)) {
             round = round_with(*wanted);
@@ -74,21 +75,36 @@ class VoteSession {
         return round;
     }
 
-    Round opened_round(int seed) {
+    /// As it will be opened: a file of ballots that is no good shall open none.
+    Round planned_round(int seed) const {
+        Round round;
+        round.designs = parse_names("--designs", arguments_.designs);
+        const std::size_t designs = round.designs.size();
+        check_argument(designs >= 2, "--designs: found 1 name, expected at least 2, with commas");
+        const auto rounds = store_.rounds();
+        const int next = rounds.empty() ? 1 : rounds.back().id + 1;
+        round.seed = seed;
+        round.asks_least = arguments_.least;
+        round.codes =
+            arguments_.codes.empty()
+                ? draw_codes(static_cast<int>(designs), static_cast<std::uint64_t>(seed), next)
+                : codes_for(designs);
+        return round;
+    }
+
+    void open_planned() {
+        if (arguments_.designs.empty()) return;
         RoundSetup setup;
-        setup.designs = parse_names("--designs", arguments_.designs);
-        check_argument(setup.designs.size() >= 2,
-                       "--designs: found 1 name, expected at least 2, with commas");
-        setup.seed = seed;
-        setup.asks_least = arguments_.least;
-        if (!arguments_.codes.empty()) setup.codes = codes_for(setup.designs.size());
-        const Round round = round_with(store_.open_round(setup));
-        std::string text = fmt::format("round {}, seed {}\n", round.id, round.seed);
-        for (std::size_t k = 0; k < round.designs.size(); ++k) {
-            text += fmt::format("{}  {}\n", round.codes[k], round.designs[k]);
+        setup.designs = round_.designs;
+        setup.codes = round_.codes;
+        setup.seed = round_.seed;
+        setup.asks_least = round_.asks_least;
+        round_ = round_with(store_.open_round(setup));
+        std::string text = fmt::format("round {}, seed {}\n", round_.id, round_.seed);
+        for (std::size_t k = 0; k < round_.designs.size(); ++k) {
+            text += fmt::format("{}  {}\n", round_.codes[k], round_.designs[k]);
         }
         say(text);
-        return round;
     }
 
     std::vector<int> codes_for(std::size_t designs) const {
@@ -103,6 +119,7 @@ class VoteSession {
     }
 
     void type(const Progress& progress) {
+        open_planned();
         PaperTyping typing(store_, round_.id);
         say(fmt::format("Round {}.\n{}", round_.id, typing.help()) + typing.prompt());
         TypedLines lines;
@@ -143,6 +160,7 @@ class VoteSession {
             text = read_text_file(name);
         }
         const auto papers = parse_paper_ballots(text, name, round_);
+        open_planned();
         const auto seats = store_.seats(round_.session);
         const auto ballots = numbered_ballots(papers, next_paper(seats));
         std::vector<bool> replaced;
