@@ -80,8 +80,10 @@ int run(const std::vector<std::string>& arguments) {
                                      compensate_command(),
                                      evaluate_export_command(),
                                      evaluate_order_command(),
+                                     evaluate_report_command(),
                                      evaluate_serve_command(),
                                      evaluate_tally_command(),
+                                     evaluate_vote_command(),
                                      check_command(),
                                      bench_command()};
     for (Command& command : session_commands()) commands.push_back(std::move(command));

@@ -68,7 +68,13 @@ void check_outputs(const Command& command) {
     for (const Option& option : command.options) {
         const auto* target = std::get_if<std::string*>(&option.target);
         if (option.flag != "--out" || !target || (*target)->empty()) continue;
-        option.value == "DIR" ? check_output_folder(**target) : check_output_file(**target);
+        const Path out = **target;
+        std::error_code error;
+        const bool either = option.value == "FILE|DIR";
+        const bool folder =
+            option.value == "DIR" ||
+            (either && (!out.has_extension() || std::filesystem::is_directory(out, error)));
+        folder ? check_output_folder(out) : check_output_file(out);
     }
 }
 

@@ -5,8 +5,8 @@
 
 namespace livery {
 
-/// Looks at the command's --out, a FILE or a DIR as its help calls it. Throws FileError. Leaves
-/// nothing behind, and what is there as it is.
+/// Looks at the command's --out, a FILE or a DIR as its help calls it, of FILE|DIR what has no
+/// suffix or is a folder. Throws FileError. Leaves nothing behind, and what is there as it is.
 void check_outputs(const Command& command);
 
 }  // namespace livery

@@ -15,6 +15,7 @@
 #include "core/module.h"
 #include "core/paths.h"
 #include "core/pictures/image_io_module.h"
+#include "core/pictures/png_bytes.h"
 #include "core/pictures/radiance_hdr.h"
 
 namespace livery {
@@ -124,12 +125,13 @@ struct ClosePicture {
     void operator()(void* picture) const { module_table().close(picture); }
 };
 
+/// The bytes of a picture file; `file` stands in messages.
 template <typename T>
-void write_image(const std::filesystem::path& file,
-                 const char* format,
-                 const Image<T>& image,
-                 int integer_bits,
-                 const std::vector<std::string>& channel_names) {
+std::string encoded(const std::filesystem::path& file,
+                    const char* format,
+                    const Image<T>& image,
+                    int integer_bits,
+                    const std::vector<std::string>& channel_names) {
     check_argument(
         image.width > 0 && image.height > 0 && image.channels > 0 &&
             image.values.size() == image.pixel_count() * static_cast<std::size_t>(image.channels),
@@ -140,7 +142,7 @@ void write_image(const std::filesystem::path& file,
     for (const auto& name : channel_names) names.push_back(name.c_str());
     std::string bytes;
     PictureError error;
-    const bool encoded = module_table().encode(
+    const bool done = module_table().encode(
         format,
         {image.width, image.height, image.channels, integer_bits, {}},
         image.values.data(),
@@ -150,8 +152,17 @@ void write_image(const std::filesystem::path& file,
         },
         &bytes,
         &error);
-    if (!encoded) throw FileError(file, "", error.text, "a picture that can be encoded");
-    write_text_file(file, bytes);
+    if (!done) throw FileError(file, "", error.text, "a picture that can be encoded");
+    return bytes;
+}
+
+template <typename T>
+void write_image(const std::filesystem::path& file,
+                 const char* format,
+                 const Image<T>& image,
+                 int integer_bits,
+                 const std::vector<std::string>& channel_names) {
+    write_text_file(file, encoded(file, format, image, integer_bits, channel_names));
 }
 
 /// Of `bytes`, or without them of the file itself, which has `size` bytes.
@@ -231,6 +242,11 @@ void write_png(const std::filesystem::path& file, const Image8& image) {
 void write_png(const std::filesystem::path& file, const Image16& image) {
     check_png_channels(image.channels);
     write_image(file, "png", image, 16, {});
+}
+
+std::string png_bytes(const Image8& image) {
+    check_png_channels(image.channels);
+    return encoded("a picture", "png", image, 8, {});
 }
 
 bool is_raw_suffix(const std::filesystem::path& file) {

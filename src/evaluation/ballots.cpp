@@ -361,15 +361,28 @@ std::optional<Round> BallotStore::last_round(int session) const {
 // --- ballots ---
 
 CastBallot BallotStore::vote(int round, const Ballot& ballot) {
+    Transaction transaction(database_);
+    const CastBallot cast = vote_by_name(round, ballot);
+    transaction.commit();
+    return cast;
+}
+
+std::vector<CastBallot> BallotStore::vote(int round, const std::vector<Ballot>& ballots) {
+    Transaction transaction(database_);
+    std::vector<CastBallot> cast;
+    for (const Ballot& ballot : ballots) cast.push_back(vote_by_name(round, ballot));
+    transaction.commit();
+    return cast;
+}
+
+/// Within the caller's transaction.
+CastBallot BallotStore::vote_by_name(int round, const Ballot& ballot) {
     const std::string name = tidy_name(ballot.evaluator);
     const Choices choices{ballot.best, ballot.second, ballot.least};
-    Transaction transaction(database_);
     const int session = round_of(database_, round).session;
     auto seat = seat_with_key(database_, session, named_seat_key(name));
     if (!seat) seat = make_seat(database_, session, name, false);
-    const CastBallot cast = vote_within(round, *seat, choices, name);
-    transaction.commit();
-    return cast;
+    return vote_within(round, *seat, choices, name);
 }
 
 CastBallot BallotStore::vote(int round, int seat, const Choices& choices) {

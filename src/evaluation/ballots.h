@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/database.h"
+#include "evaluation/ballot_log.h"
 #include "evaluation/tally.h"
 
 namespace livery {
@@ -106,6 +107,8 @@ class BallotStore {
     /// A second ballot of the same evaluator (name_key) replaces the first, while the round is
     /// open; both stay in the log. Refused when it is closed or still presented.
     CastBallot vote(int round, const Ballot& ballot);
+    /// All of them or, where one throws, none.
+    std::vector<CastBallot> vote(int round, const std::vector<Ballot>& ballots);
     /// The same for a seat. One that is as the seat's ballot is already changes nothing.
     CastBallot vote(int round, int seat, const Choices& choices);
     /// For good. Refused when it is closed already.
@@ -123,10 +126,13 @@ class BallotStore {
     /// Refused while the round is open.
     Tally tally(int round) const;
     const std::filesystem::path& file() const { return database_.file(); }
+    /// All that happened, in order.
+    std::vector<LogEntry> log() const { return read_log(database_); }
     /// Changes when another program or store has changed the file.
     std::int64_t others_changes() const;
 
   private:
+    CastBallot vote_by_name(int round, const Ballot& ballot);
     CastBallot vote_within(int round, int seat, const Choices& choices, const std::string& who);
     mutable Database database_;
 };

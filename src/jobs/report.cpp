@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/paths.h"
+#include "core/text/html.h"
 
 namespace livery {
 
@@ -40,29 +41,6 @@ Json figures_of(const ErrorStatistics& statistics) {
             {"worst", statistics.worst}};
 }
 
-std::string escaped(const std::string& text) {
-    std::string safe;
-    for (const char c : text) {
-        switch (c) {
-            case '<':
-                safe += "&lt;";
-                break;
-            case '>':
-                safe += "&gt;";
-                break;
-            case '&':
-                safe += "&amp;";
-                break;
-            case '"':
-                safe += "&quot;";
-                break;
-            default:
-                safe += c;
-        }
-    }
-    return safe;
-}
-
 std::string percent(double fraction) { return fmt::format("{:.1f}%", 100.0 * fraction); }
 
 std::string cell(const ErrorStatistics& statistics) {
@@ -90,17 +68,17 @@ std::string figure(const DesignResult& design,
     if (picture == design.pictures.end()) return "";
     return fmt::format(
         "<figure><img src=\"{}\" alt=\"{}, {}\"><figcaption>{}</figcaption></figure>\n",
-        escaped(picture->second.string()),
-        escaped(design.name),
-        escaped(caption),
-        escaped(caption));
+        html_escaped(picture->second.string()),
+        html_escaped(design.name),
+        html_escaped(caption),
+        html_escaped(caption));
 }
 
 std::string design_section(const DesignResult& design) {
     std::string html =
         fmt::format("<section><h2>{}</h2>\n<p class=\"verdict\">{}</p>\n<div class=\"row\">\n",
-                    escaped(design.name),
-                    escaped(verdict(design)));
+                    html_escaped(design.name),
+                    html_escaped(verdict(design)));
     html += figure(design, "sample", "Painted sample");
     html += figure(design, "wanted", "Wanted");
     html += figure(design, "uncorrected", "Uncorrected");
@@ -127,7 +105,7 @@ std::string design_table(const DemoResult& result) {
             "<tr><th>{}</th>{}{}{}{}{}<td>{}</td><td>{}</td>{}<td>{}</td><td>{}</td><td>{}</td>{}</"
             "tr>"
             "\n",
-            escaped(design.name),
+            html_escaped(design.name),
             cell(design.seen.corrected.interior),
             cell(design.seen.corrected.edge),
             cell(design.seen.corrected.clipped),
@@ -149,7 +127,8 @@ std::string calibration_section(const DemoResult& result) {
     const ColourCalibration& c = result.calibration;
     std::string html = "<section><h2>Calibration</h2><table>\n";
     const auto row = [&](const std::string& name, const std::string& value) {
-        html += fmt::format("<tr><th>{}</th><td>{}</td></tr>\n", escaped(name), escaped(value));
+        html += fmt::format(
+            "<tr><th>{}</th><td>{}</td></tr>\n", html_escaped(name), html_escaped(value));
     };
     row("Id", c.id);
     row("Made with", c.made_with + ", " + c.created);
@@ -172,7 +151,7 @@ std::string calibration_section(const DemoResult& result) {
     row("Picture off its place, median / 95th percentile", off_note(result));
     html += "</table>\n";
     for (const auto& warning : c.warnings) {
-        html += fmt::format("<p class=\"warning\">{}</p>\n", escaped(warning));
+        html += fmt::format("<p class=\"warning\">{}</p>\n", html_escaped(warning));
     }
     return html + "</section>\n";
 }
@@ -180,16 +159,17 @@ std::string calibration_section(const DemoResult& result) {
 std::string seconds_section(const DemoResult& result) {
     std::string html = "<section><h2>Seconds</h2><table>\n";
     for (const auto& [stage, seconds] : result.seconds) {
-        html += fmt::format("<tr><th>{}</th><td>{:.2f}</td></tr>\n", escaped(stage), seconds);
+        html += fmt::format("<tr><th>{}</th><td>{:.2f}</td></tr>\n", html_escaped(stage), seconds);
     }
     for (const DesignResult& design : result.designs) {
         html += fmt::format(
             "<tr><th>{}: shading, compensation</th><td>{:.1f} ms, {:.1f} ms</td></tr>\n",
-            escaped(design.name),
+            html_escaped(design.name),
             design.shade_ms,
             design.compensate_ms);
     }
-    return html + fmt::format("</table><p>OpenGL: {}</p></section>\n", escaped(result.renderer));
+    return html +
+           fmt::format("</table><p>OpenGL: {}</p></section>\n", html_escaped(result.renderer));
 }
 
 std::string paper_section() {
@@ -295,8 +275,8 @@ void write_report(const std::filesystem::path& file, const DemoResult& result) {
         "<h1>{0} on the {1} bench</h1>\n<p>Every figure here is simulated: the bench is a spectral "
         "model of "
         "projector, mock-up, room and camera. The calibration saw only its photographs.</p>\n",
-        escaped(result.product_name),
-        escaped(result.bench_name),
+        html_escaped(result.product_name),
+        html_escaped(result.bench_name),
         kStyle);
     html += design_table(result);
     for (const DesignResult& design : result.designs) html += design_section(design);

@@ -1,7 +1,9 @@
 // livery evaluate, as scripts and people call it.
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
+#include <regex>
 #include <sstream>
 
 #include <gtest/gtest.h>
@@ -176,6 +178,131 @@ TEST(Evaluate, TellsAndHandsOnARoundOfAFile) {
     EXPECT_NE(text.str().find("best,second\r\n"), std::string::npos) << text.str();
     EXPECT_EQ(evaluate({"export", "--ballots", file, "--out", "a.txt"}).exit_code, 2);
     EXPECT_EQ(evaluate({"export", "--ballots", file, "--round", "7", "--out", csv}).exit_code, 2);
+}
+
+std::string bytes_of(const std::filesystem::path& file) {
+    std::stringstream text;
+    text << std::ifstream(file, std::ios::binary).rdbuf();
+    return text.str();
+}
+
+TEST(Evaluate, ReportsARoundAsAPageAndAsPdf) {
+    const TemporaryFolder folder;
+    const auto out = folder / "report";
+    const Json found = figures({"report",
+                                "--best",
+                                "1,6,1,2",
+                                "--second",
+                                "0,3,2,5",
+                                "--names",
+                                "a<b,silver,サンド,blue",
+                                "--out",
+                                out.string()});
+    EXPECT_NEAR(found["friedman_exact_p"], 0.0059, 5e-5);
+    EXPECT_EQ(found["files"], Json({(out / "vote.html").string(), (out / "vote.pdf").string()}));
+    const std::string html = bytes_of(out / "vote.html");
+    EXPECT_NE(html.find("Silver leads, not separated from blue"), std::string::npos);
+    EXPECT_NE(html.find("a&lt;b"), std::string::npos);
+    EXPECT_TRUE(bytes_of(out / "vote.pdf").starts_with("%PDF-"));
+    EXPECT_GT(found["pdf_pages"], 2);
+    const ProgramRun run = evaluate({"report",
+                                     "--best",
+                                     "1,0",
+                                     "--second",
+                                     "0,1",
+                                     "--title",
+                                     "Spring",
+                                     "--out",
+                                     (folder / "a.html").string()});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_NE(bytes_of(folder / "a.html").find("<h1>Spring</h1>"), std::string::npos);
+    const auto refused = [&](std::vector<std::string> words, const std::string& part) {
+        words.insert(words.begin(), {"report", "--best", "1,0", "--second", "0,1"});
+        const ProgramRun bad = evaluate(words);
+        EXPECT_EQ(bad.exit_code, 2) << part;
+        EXPECT_NE(bad.err.find(part), std::string::npos) << bad.err;
+    };
+    refused({}, "--out");
+    refused({"--out", (folder / "a.doc").string()}, "--out: found");
+    refused({"--out", (folder / "none/a.pdf").string()}, "--out");
+    refused({"--out", (folder / "a.html").string() + "/b"}, "--out");
+    refused({"--out", (folder / "b.html").string(), "--details", "x"}, "--details: found it with");
+    EXPECT_FALSE(std::filesystem::exists(folder / "b.html"));
+}
+
+TEST(Evaluate, ShowsTheSampleAndSaysThatItIsOne) {
+    const TemporaryFolder folder;
+    const auto file = folder / "sample.html";
+    const Json found = figures({"report", "--sample", "--out", file.string()});
+    EXPECT_EQ(found["evaluators"], 24);
+    EXPECT_EQ(found["sample"], true);
+    const std::string html = bytes_of(file);
+    EXPECT_NE(html.find("made-up sample"), std::string::npos);
+    EXPECT_NE(html.find("data:image/png"), std::string::npos);
+    EXPECT_NE(html.find("Who saw which order, and when"), std::string::npos);
+    EXPECT_TRUE(std::regex_search(html, std::regex("[0-9a-f]{32}, of entry [0-9]+, which locked")));
+    EXPECT_EQ(figures({"tally", "--sample"})["best"], found["best"]);
+    EXPECT_EQ(evaluate({"tally", "--sample", "--best", "1,0", "--second", "0,1"}).exit_code, 2);
+}
+
+TEST(Evaluate, TakesBallotsOnPaperAllOrNone) {
+    const TemporaryFolder folder;
+    const std::string file = (folder / "votes.sqlite").string();
+    const auto good = folder.write("good.csv", "paper,best,second\n1,481,376\n2,912,481\n");
+    const auto bad = folder.write("bad.csv", "481,376\n481,481\n");
+    EXPECT_EQ(evaluate({"vote", "--ballots", file, "--in", good.string()}).exit_code, 2)
+        << "there is no such file";
+    // A file that is no good opens no round.
+    EXPECT_EQ(evaluate({"vote",
+                        "--ballots",
+                        file,
+                        "--designs",
+                        "red,silver,sand",
+                        "--codes",
+                        "481,376,912",
+                        "--in",
+                        bad.string()})
+                  .exit_code,
+              2);
+    const Json opened = figures({"vote",
+                                 "--ballots",
+                                 file,
+                                 "--designs",
+                                 "red,silver,sand",
+                                 "--codes",
+                                 "481,376,912",
+                                 "--in",
+                                 good.string()});
+    EXPECT_EQ(opened["added"], 2);
+    EXPECT_EQ(opened["papers"][1]["paper"], 2);
+    EXPECT_EQ(opened["papers"][1]["receipt"].get<std::string>().size(), 8u);
+    const ProgramRun wrong = evaluate({"vote", "--ballots", file, "--in", bad.string()});
+    EXPECT_EQ(wrong.exit_code, 2);
+    EXPECT_NE(wrong.err.find("bad.csv: line 2: found one look twice"), std::string::npos)
+        << wrong.err;
+    // The same papers once more are the same ballots; then from a pipe.
+    const Json again = figures({"vote", "--ballots", file, "--in", good.string()});
+    EXPECT_EQ(again["replaced"], 2);
+    EXPECT_EQ(again["ballots_in_round"], 2);
+    const ProgramRun piped =
+        run_program("sh",
+                    {"-c",
+                     "printf '376 481\\n376 912' | " + std::string(LIVERY_PROGRAM) +
+                         " evaluate vote --lock --ballots '" + file + "'"});
+    EXPECT_EQ(piped.exit_code, 0) << piped.err;
+    EXPECT_NE(piped.out.find("2 added, 0 replaced; round 1 holds 4 ballots and is locked"),
+              std::string::npos)
+        << piped.out;
+    EXPECT_EQ(figures({"tally", "--ballots", file})["best"], Json({1, 2, 1}));
+    const ProgramRun late = evaluate({"vote", "--ballots", file, "--in", good.string()});
+    EXPECT_EQ(late.exit_code, 1) << "no round is open";
+    EXPECT_EQ(
+        evaluate({"vote", "--ballots", file, "--round", "1", "--in", good.string()}).exit_code, 1);
+    EXPECT_EQ(
+        evaluate({"vote", "--ballots", file, "--round", "7", "--in", good.string()}).exit_code, 2);
+    EXPECT_EQ(evaluate({"vote", "--ballots", file, "--codes", "100,200", "--in", good.string()})
+                  .exit_code,
+              2);
 }
 
 }  // namespace

@@ -35,6 +35,15 @@ put("ballot_request", "two", "a=b; " + SEAT + "; c\n{\"round\":3,\"best\":412,\"
 put("ballot_request", "join", '127.0.0.1:8470\n{"code":"K7M 2PQ"}')
 put("ballot_request", "origin", "127.0.0.1:8470\n127.0.0.1:8470")
 
+# Ballots on paper, and what stands beside a round.
+put("paper_ballots", "codes", "481,376\n912;481\n# a comment\n376 912\n")
+put("paper_ballots", "named", "paper,second,best\n7,481,376\n3,912,481\n")
+put("paper_ballots", "least", "\ufeffbest,second,least\n481,376,912\n376,481,\n")
+put("round_details", "all", {
+    "format_version": 1, "kind": "round-details", "round": 1, "title": "t", "question": "q?", "note": "n",
+    "looks": [{"code": 376, "picture": "a.png", "reachability": {"reachable_fraction": .9, "de00_median": 1, "de00_p95": 2}}],
+    "showings": [{"at": "2026-11-20T09:00:00Z", "seats": [1, 2], "codes": [912, 376, 481]}]})
+
 # Meshes.
 POINTS = [(0, 0, 0), (90, 0, 0), (0, 90, 0), (0, 0, 90)]
 FACES = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]

@@ -8,7 +8,8 @@ set -euo pipefail
 . "$(dirname "$0")/installed.sh"
 
 # --- what lies there ---------------------------------------------------------------------------
-for file in bin/livery bin/livery-ballots lib/livery/livery_image_io.so share/livery/materials/solid-red.json \
+for file in bin/livery bin/livery-ballots lib/livery/livery_image_io.so lib/livery/livery_pdf.so \
+    share/livery/assets/sample-round/ballots.sqlite share/livery/materials/solid-red.json \
     share/livery/assets/car.glb share/livery/assets/looks/solid-red.json \
     share/livery/shaders/compensation/correct.comp share/livery/calibration/default.json \
     share/man/man1/livery.1 share/applications/livery.desktop share/mime/packages/livery.xml \

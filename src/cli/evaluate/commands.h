@@ -12,7 +12,9 @@ namespace livery {
 
 Command evaluate_export_command();
 Command evaluate_order_command();
+Command evaluate_report_command();
 Command evaluate_tally_command();
+Command evaluate_vote_command();
 
 /// "1,6,1,2". Throws std::invalid_argument that names the option, what was found and expected.
 std::vector<int> parse_counts(const std::string& option, const std::string& text);

@@ -7,11 +7,11 @@
 #include <set>
 
 #include <fmt/format.h>
-#include <poll.h>
 #include <unistd.h>
 
 #include "cli/command.h"
 #include "cli/evaluate/commands.h"
+#include "cli/evaluate/typed_lines.h"
 #include "core/error.h"
 #include "evaluation/ballot_process.h"
 #include "evaluation/ballots.h"
@@ -21,37 +21,12 @@ namespace livery {
 
 namespace {
 
-constexpr int kLook_ms = 500;  ///< between two looks at who has joined and voted
-
 struct ServeArguments {
     std::string ballots, interface = "lo", designs, certificate, key;
     std::vector<std::string> hosts;
     int port = kBallotPort, seats = 40;
     bool least = false, new_audience = false;
 };
-
-/// A line that was typed; nothing when none came within the time. After the end of the input
-/// nothing is read any more.
-std::optional<std::string> typed_line(std::string& waiting, bool& at_end) {
-    pollfd input{STDIN_FILENO, POLLIN, 0};
-    if (waiting.find('\n') == std::string::npos) {
-        const int ready = ::poll(&input, at_end ? 0 : 1, kLook_ms);
-        char bytes[256];
-        if (ready > 0) {
-            const ssize_t got = ::read(STDIN_FILENO, bytes, sizeof bytes);
-            if (got > 0) {
-                waiting.append(bytes, static_cast<std::size_t>(got));
-            } else {
-                at_end = true;
-            }
-        }
-    }
-    const std::size_t end = waiting.find('\n');
-    if (end == std::string::npos) return std::nullopt;
-    std::string line = waiting.substr(0, end);
-    waiting.erase(0, end + 1);
-    return line;
-}
 
 /// What people read goes to stdout, or beside the JSON document to stderr; at once.
 class ServeSession {
@@ -67,12 +42,11 @@ class ServeSession {
     }
 
     Outcome run(const Progress& progress) {
-        std::string waiting;
-        bool at_end = false;
+        TypedLines lines;
         say(next_step());
         for (bool over = false; !over;) {
             progress.check_stop();
-            const auto line = typed_line(waiting, at_end);
+            const auto line = lines.next();
             look();
             if (!line) continue;
             if (*line == "q") {

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "evaluation/report/figure_words.h"
+
 namespace livery {
 
 namespace {
@@ -89,13 +91,6 @@ Json verdict_of(const VoteStatistics& statistics) {
     return json;
 }
 
-/// "2.37", "0.034", "over 9999"
-std::string odds_text(double odds) {
-    if (odds > 9999.0) return "over 9999";
-    if (odds < 0.001) return "under 0.001";
-    return fmt::format("{:.{}f}", odds, odds < 0.1 ? 3 : 2);
-}
-
 std::string design_table(const VoteStatistics& statistics, const std::vector<std::string>& names) {
     std::size_t width = 6;
     for (const std::string& name : names) width = std::max(width, name.size());
@@ -126,10 +121,6 @@ std::string design_table(const VoteStatistics& statistics, const std::vector<std
                         statistics.share_best[i].high);
     }
     return text;
-}
-
-std::string method_text(Method method, std::int64_t cases) {
-    return method == Method::exact ? "exact" : fmt::format("{} draws", cases);
 }
 
 std::string test_lines(const VoteStatistics& statistics) {

@@ -29,16 +29,6 @@ std::string number_word(int number) {
                : std::to_string(number);
 }
 
-/// "(b)", "(b) and (c)", "(b), (c) and (d)"
-std::string listed(const std::vector<std::string>& items) {
-    std::string text;
-    for (std::size_t k = 0; k < items.size(); ++k) {
-        if (k > 0) text += k + 1 == items.size() ? " and " : ", ";
-        text += items[k];
-    }
-    return text;
-}
-
 /// "about 38 more evaluators, in a fresh round, would tell"
 std::string what_would_tell(const std::optional<int>& needed) {
     constexpr int beyond = 1000;
@@ -147,6 +137,15 @@ class VerdictWords {
 };
 
 }  // namespace
+
+std::string listed(const std::vector<std::string>& items) {
+    std::string text;
+    for (std::size_t k = 0; k < items.size(); ++k) {
+        if (k > 0) text += k + 1 == items.size() ? " and " : ", ";
+        text += items[k];
+    }
+    return text;
+}
 
 std::string words_of(const VoteStatistics& statistics, const std::vector<std::string>& names) {
     return VerdictWords(statistics, names).text();

@@ -67,6 +67,9 @@ VoteStatistics vote_statistics(const VoteCounts& counts,
 /// "(a)", "(b)", ... as the paper calls them.
 std::vector<std::string> default_names(int designs);
 
+/// "(b)", "(b) and (c)", "(b), (c) and (d)"
+std::string listed(const std::vector<std::string>& items);
+
 /// The verdict of `statistics`, whose `words` are not yet made.
 std::string words_of(const VoteStatistics& statistics, const std::vector<std::string>& names);
 

@@ -1,0 +1,37 @@
+// Where a command takes a round of votes from: counts that are typed in, a file of ballots, or the
+// sample that comes with the program.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "evaluation/report/round_record.h"
+#include "evaluation/statistics/vote_statistics.h"
+
+namespace livery {
+
+struct VoteSourceArguments {
+    std::string best, second, least, names, ballots;
+    int round = 0;
+    bool sample = false;
+};
+
+/// --best, --second, --least, --names, --ballots, --round and --sample.
+std::vector<Option> vote_source_options(VoteSourceArguments& arguments);
+
+struct VoteSource {
+    std::vector<std::string> names;
+    VoteStatistics statistics;
+    std::optional<RoundRecord> record;  ///< nothing: typed counts
+    /// Where what is known beside the ballots may stand; empty for typed counts.
+    std::filesystem::path details;
+};
+
+/// Throws std::invalid_argument for options that do not go together or counts that cannot be, and
+/// as read_round_record().
+VoteSource read_vote_source(const VoteSourceArguments& arguments, std::uint64_t seed);
+
+}  // namespace livery

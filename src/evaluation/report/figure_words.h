@@ -1,0 +1,20 @@
+// Figures of a vote as people read them, the same on a terminal and in a report.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "evaluation/statistics/rank_sums.h"
+
+namespace livery {
+
+/// "2.37", "0.034", "over 9999"
+std::string odds_text(double odds);
+/// "exact", "1000000 draws"
+std::string method_text(Method method, std::int64_t cases);
+/// "0.0059", "0.15", "under 0.0001"
+std::string p_text(double p);
+/// "7.2%", "93%", "under 0.1%"; "0%" and "100%" are just that
+std::string percent_text(double share);
+
+}  // namespace livery

@@ -1,0 +1,143 @@
+#include <algorithm>
+#include <system_error>
+
+#include "core/error.h"
+#include "core/json.h"
+#include "core/paths.h"
+#include "core/utf8.h"
+#include "evaluation/report/round_details.h"
+
+namespace livery {
+
+namespace {
+
+constexpr std::size_t kMostBytes = 4u << 20u;
+constexpr int kMostSeat = 1'000'000;
+
+/// One line, of what people read.
+std::string line_of(const JsonReader& object, const char* key) {
+    if (!object.has(key)) return "";
+    const std::string text = object[key].text();
+    if (text != printable(text, 2000)) {
+        object[key].fail("\"" + printable(text, 40) + "\"", "one line of at most 2000 characters");
+    }
+    return text;
+}
+
+int code_of(const JsonReader& value, const std::vector<int>& codes) {
+    const int code = value.integer(100, 999);
+    if (std::find(codes.begin(), codes.end(), code) == codes.end()) {
+        std::vector<std::string> all;
+        for (const int known : codes) all.push_back(std::to_string(known));
+        value.fail(std::to_string(code), "one of the round's codes " + list_of(all));
+    }
+    return code;
+}
+
+std::optional<double> optional_number(const JsonReader& object,
+                                      const char* key,
+                                      double low,
+                                      double high) {
+    if (!object.has(key)) return std::nullopt;
+    return object[key].number_between(low, high);
+}
+
+LookReachability reachability_of(const JsonReader& object) {
+    object.allow_only({"reachable_fraction", "de00_median", "de00_p95"});
+    constexpr double most_difference = 1000.0;
+    return {optional_number(object, "reachable_fraction", 0.0, 1.0),
+            optional_number(object, "de00_median", 0.0, most_difference),
+            optional_number(object, "de00_p95", 0.0, most_difference)};
+}
+
+std::string picture_of(const JsonReader& object) {
+    if (!object.has("picture")) return "";
+    const std::string name = object["picture"].text();
+    // A file in the same folder and nothing else: such a folder is handed from one to another.
+    if (name.empty() || name.starts_with('.') || name.find('/') != std::string::npos ||
+        name != printable(name, 255)) {
+        object["picture"].fail("\"" + printable(name, 40) + "\"",
+                               "the name of a picture in the same folder");
+    }
+    return name;
+}
+
+LookDetails look_of(const JsonReader& object, const std::vector<int>& codes) {
+    object.allow_only({"code", "picture", "reachability"});
+    LookDetails look{code_of(object["code"], codes), picture_of(object)};
+    if (object.has("reachability")) look.reachability = reachability_of(object["reachability"]);
+    return look;
+}
+
+LookShowing showing_of(const JsonReader& object, const std::vector<int>& codes) {
+    object.allow_only({"at", "seats", "codes"});
+    LookShowing showing;
+    showing.at = line_of(object, "at");
+    if (object.has("seats")) {
+        const JsonReader seats = object["seats"];
+        for (std::size_t k = 0; k < seats.size(); ++k) {
+            showing.seats.push_back(seats.at(k).integer(1, kMostSeat));
+        }
+    }
+    const JsonReader order = object["codes"];
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        showing.codes.push_back(code_of(order.at(k), codes));
+    }
+    return showing;
+}
+
+}  // namespace
+
+RoundDetails parse_round_details(const std::string& text,
+                                 const std::filesystem::path& file,
+                                 int round,
+                                 const std::vector<int>& codes) {
+    const Json json = parse_json(text, file);
+    const JsonReader object(file, json);
+    object.require_format_version(1);
+    object.allow_only(
+        {"format_version", "kind", "round", "title", "question", "note", "looks", "showings"});
+    object["kind"].one_of({"round-details"});
+    if (object["round"].integer(1, 1'000'000'000) != round) {
+        object["round"].fail(object["round"].found(), "round " + std::to_string(round));
+    }
+    RoundDetails details;
+    details.folder = file.parent_path();
+    details.title = line_of(object, "title");
+    details.question = line_of(object, "question");
+    details.note = line_of(object, "note");
+    if (object.has("looks")) {
+        const JsonReader looks = object["looks"];
+        for (std::size_t k = 0; k < looks.size(); ++k) {
+            LookDetails look = look_of(looks.at(k), codes);
+            const bool twice = std::any_of(
+                details.looks.begin(), details.looks.end(), [&](const LookDetails& other) {
+                    return other.code == look.code;
+                });
+            if (twice) looks.at(k)["code"].fail(std::to_string(look.code), "each look once");
+            details.looks.push_back(std::move(look));
+        }
+    }
+    if (object.has("showings")) {
+        const JsonReader showings = object["showings"];
+        for (std::size_t k = 0; k < showings.size(); ++k) {
+            details.showings.push_back(showing_of(showings.at(k), codes));
+        }
+    }
+    return details;
+}
+
+std::filesystem::path round_details_file(const std::filesystem::path& ballots, int round) {
+    return ballots.parent_path() / (ballots.stem().string() + "-round-" + std::to_string(round)) /
+           "round.json";
+}
+
+RoundDetails read_round_details(const std::filesystem::path& file,
+                                int round,
+                                const std::vector<int>& codes) {
+    std::error_code error;
+    if (!std::filesystem::exists(file, error)) return {};
+    return parse_round_details(read_text_file(file, kMostBytes), file, round, codes);
+}
+
+}  // namespace livery

@@ -1,0 +1,42 @@
+// The report of a round: everything that is said of it, as a document.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "evaluation/report/report_document.h"
+#include "evaluation/report/round_details.h"
+#include "evaluation/report/round_record.h"
+#include "evaluation/report/vote_charts.h"
+#include "evaluation/statistics/vote_statistics.h"
+
+namespace livery {
+
+struct RoundReportSource {
+    std::vector<std::string> names;  ///< of the designs
+    VoteStatistics statistics;
+    std::optional<RoundRecord> record = {};  ///< nothing: counts that were typed in
+    RoundDetails details = {};
+    /// Figures of the calibration that the round was shown under, as read from its folder.
+    std::vector<std::pair<std::string, std::string>> calibration = {};
+    std::string program;  ///< "livery 0.1.0"
+    std::string made_at;  ///< ISO 8601, UTC
+};
+
+/// Reads the pictures that `details` names. Throws FileError of those.
+ReportDocument round_report(const RoundReportSource& source);
+
+/// Rows in the order of rank sums, designs lettered A, B, ... as the window does; one that is
+/// called by a letter alone, "(a)", keeps it.
+ChartRows chart_rows(const VoteStatistics& statistics, const std::vector<std::string>& names);
+
+inline constexpr std::size_t kCurveRounds = 1000;
+
+/// Rising numbers of evaluators up to where 80% are told, this round's, twice and four times as
+/// many among them; none with less than two evaluators. Between those `rounds` are drawn for each.
+std::vector<VoteStatistics::Power> power_curve(const VoteStatistics& statistics,
+                                               std::size_t rounds = kCurveRounds);
+
+}  // namespace livery

@@ -1,0 +1,24 @@
+// The tables of a round's report: every figure of `livery evaluate tally`.
+#pragma once
+
+#include "evaluation/report/round_report.h"
+
+namespace livery {
+
+ReportTable votes_table(const VoteStatistics& statistics, const ChartRows& rows);
+ReportTable worths_table(const VoteStatistics& statistics, const ChartRows& rows);
+ReportTable tests_table(const VoteStatistics& statistics, const ChartRows& rows);
+ReportTable pairs_table(const VoteStatistics& statistics, const ChartRows& rows);
+ReportTable power_table(const VoteStatistics& statistics,
+                        const std::vector<VoteStatistics::Power>& curve);
+/// Code, name and how much of each could be shown.
+ReportTable designs_table(const RoundReportSource& source, const ChartRows& rows);
+/// Who saw which order when; no rows where it was not recorded.
+ReportTable showings_table(const RoundReportSource& source);
+/// Which round it is, of which file, with its seeds and the hash of its log.
+ReportTable record_table(const RoundReportSource& source);
+
+/// What stands where a figure was never recorded.
+inline constexpr const char* kNotRecorded = "not recorded";
+
+}  // namespace livery
