@@ -97,7 +97,7 @@ void draw_looks_to_choose(Studio& studio) {
     for (const SessionLook& look : studio.session.document().looks) {
         bool& chosen = state.chosen_looks.try_emplace(look.id, true).first->second;
         ImGui::PushID(look.id);
-        const ImVec2 size = thumbnail_size(0.6f);
+        const ImVec2 size = thumbnail_size(0.45f);
         const ImVec2 corner = ImGui::GetCursorScreenPos();
         draw_look_thumbnail(studio, look.look.name, corner, size);
         ImGui::Dummy(size);
@@ -156,8 +156,9 @@ void draw_start(Studio& studio) {
         warning_text("No calibration is in use: people would judge colours that are not right.");
     }
     draw_presentation_setup(studio, ids);
+    ImGui::SameLine();
     begin_disabled(names.size() < 2);
-    if (ImGui::Button("Vote at once, in this window", {-FLT_MIN, 0.0f})) {
+    if (ImGui::Button("Vote at once", {-FLT_MIN, big_height()})) {
         const std::string calibration = studio.setup && studio.setup->calibration
                                             ? studio.setup->calibration->id
                                             : std::string();
@@ -168,7 +169,7 @@ void draw_start(Studio& studio) {
     }
     name_last_item("ballot:start");
     end_disabled();
-    tooltip("Without a presentation: looks are shown by whoever votes, and stay open to changes.");
+    tooltip("In this window, without a presentation: whoever votes looks at what they like.");
     draw_phones(studio);
     ImGui::Spacing();
     draw_earlier_rounds(studio);

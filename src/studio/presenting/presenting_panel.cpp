@@ -22,10 +22,8 @@ namespace livery {
 
 namespace {
 
-void seconds_row(
-    Studio& studio, const char* label, const char* name, double& value, const char* help) {
-    row_label(label);
-    ImGui::SetNextItemWidth(-1.0f);
+void seconds_field(Studio& studio, const char* name, double& value, float width, const char* help) {
+    ImGui::SetNextItemWidth(width);
     ImGui::PushID(name);
     double typed = value;
     ImGui::InputDouble("##s", &typed, 0.0, 0.0, "%.4g s");
@@ -36,6 +34,25 @@ void seconds_row(
     ImGui::PopID();
     name_last_item(name);
     tooltip(help);
+}
+
+void times_row(Studio& studio, PresentationTimes& times) {
+    row_label("White, look, grey");
+    const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
+    const float width = std::floor((ImGui::GetContentRegionAvail().x - 2.0f * gap) / 3.0f);
+    seconds_field(studio,
+                  "present:adapt",
+                  times.adapt_s,
+                  width,
+                  "Neutral white first: eyes get used to it in two minutes.");
+    ImGui::SameLine(0.0f, gap);
+    seconds_field(studio, "present:look", times.look_s, width, "How long each look is shown.");
+    ImGui::SameLine(0.0f, gap);
+    seconds_field(studio,
+                  "present:grey",
+                  times.grey_s,
+                  width,
+                  "Between two looks, as bright as they are in the mean; at least 4 s.");
 }
 
 void count_row(Studio& studio,
@@ -83,7 +100,7 @@ std::string plan_in_words(const PresentingSettings& settings, int designs) {
 void draw_qr_picture(const std::string& text) {
     const QrCode code = qr_code(text);
     const int modules = code.size + 2 * kQrQuietZone;
-    const float room = std::min(ImGui::GetContentRegionAvail().x, em(15.0f));
+    const float room = std::min(ImGui::GetContentRegionAvail().x, em(11.0f));
     const float scale = std::max(1.0f, std::floor(room / static_cast<float>(modules)));
     const float side = scale * static_cast<float>(modules);
     const ImVec2 corner = ImGui::GetCursorScreenPos();
@@ -182,25 +199,15 @@ void draw_presentation_setup(Studio& studio, const std::vector<int>& looks) {
                   52,
                   "How many orders everybody sees, one after the other.");
     }
-    seconds_row(studio,
-                "Adaptation",
-                "present:adapt",
-                settings.times.adapt_s,
-                "Neutral white first: eyes get used to it in two minutes.");
-    seconds_row(
-        studio, "Look", "present:look", settings.times.look_s, "How long each look is shown.");
-    seconds_row(studio,
-                "Grey",
-                "present:grey",
-                settings.times.grey_s,
-                "Between two looks, as bright as they are in the mean; at least 4 s.");
+    times_row(studio, settings.times);
     const std::string words = plan_in_words(settings, static_cast<int>(looks.size()));
     if (!words.empty()) dim_text(words);
     if (looks.size() > static_cast<std::size_t>(kMostDesigns)) {
         warning_text(fmt::format("At most {} looks can be presented.", kMostDesigns));
     }
     begin_disabled(words.empty());
-    if (ImGui::Button("Present", {-FLT_MIN, em(2.4f)})) {
+    if (ImGui::Button("Present",
+                      {std::floor(0.58f * ImGui::GetContentRegionAvail().x), em(2.4f)})) {
         presenting(studio).begin_wanted = true;
         presenting(studio).wanted_looks = looks;
     }
@@ -273,16 +280,19 @@ void draw_phones(Studio& studio) {
             } catch (const std::exception& error) {
                 warning_text(error.what());
             }
+            ImGui::SameLine();
+            ImGui::BeginGroup();
             const std::string& code = state.invitation->code;
+            const std::size_t half = code.size() / 2;
             ImGui::PushFont(large_font());
-            ImGui::Text("%s %s",
-                        code.substr(0, 3).c_str(),
-                        code.substr(std::min<std::size_t>(3, code.size())).c_str());
+            ImGui::TextUnformatted((code.substr(0, half) + " " + code.substr(half)).c_str());
             ImGui::PopFont();
             name_last_item("phones:code");
-            dim_text("at " + url_of(place));
-            ImGui::Checkbox("Project the QR code beside the mock-up", &state.qr_projected);
+            dim_text(url_of(place));
+            ImGui::Checkbox("Project it", &state.qr_projected);
             name_last_item("phones:project-qr");
+            tooltip("Shows the QR code beside the mock-up, which is grey meanwhile.");
+            ImGui::EndGroup();
         } else if (!joins) {
             dim_text(
                 "Joining is closed while a round is open: who came now would not have seen every "
