@@ -16,6 +16,7 @@
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
 #include "studio/kit/widgets.h"
+#include "studio/kit/words.h"
 #include "studio/presenting/presenting.h"
 
 namespace livery {
@@ -379,7 +380,7 @@ void draw_verdict(Studio& studio, const Round& round) {
     }
     if (state.verdict.empty()) return;
     ImGui::PushFont(heading_font());
-    ImGui::TextWrapped("%s", state.verdict.c_str());
+    ImGui::TextWrapped("%s", sentence(state.verdict).c_str());
     ImGui::PopFont();
     name_last_item("ballot:verdict");
 }
