@@ -159,6 +159,7 @@ class Photographer {
         program().move_away();
         settle();
         take("vote-voting");
+        program().click("phones:stop");
         program().click("vote:lock");
         program().click("vote:confirm");
         program().item("ballot:verdict");
@@ -166,7 +167,6 @@ class Photographer {
         settle();
         take("vote-locked");
         program().click("vote:done");
-        program().click("phones:stop");
         program().click("ballot:close-panel");
         wait_for_rest();
     }
