@@ -12,8 +12,9 @@ namespace livery {
 
 namespace {
 
-constexpr std::array<std::string_view, 8> kNames = {
-    "session", "seat", "open", "design", "voting", "vote", "close", "migrated"};
+constexpr std::array<std::string_view, 10> kNames = {
+    "session", "seat", "open", "design", "voting", "vote", "close", "migrated", "plan", "shown"};
+constexpr std::size_t kNamesOfFormat2 = 8;
 
 std::string_view name_of(LogEntry::What what) { return kNames[static_cast<std::size_t>(what)]; }
 
@@ -62,10 +63,10 @@ std::string as_text(const Database& database, const DatabaseValue& value) {
     return *text;
 }
 
-std::vector<std::string> log_schema() {
+std::vector<std::string> log_schema(int format) {
     std::string names;
-    for (const std::string_view name : kNames) {
-        names += (names.empty() ? "'" : ", '") + std::string(name) + "'";
+    for (std::size_t k = 0; k < (format < 3 ? kNamesOfFormat2 : kNames.size()); ++k) {
+        names += (names.empty() ? "'" : ", '") + std::string(kNames[k]) + "'";
     }
     std::vector<std::string> statements = {
         "CREATE TABLE log ("

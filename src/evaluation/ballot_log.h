@@ -20,6 +20,9 @@ struct LogEntry {
         vote,      ///< indices of designs; `least` is -1 where none is named
         close,     ///< the round is locked
         migrated,  ///< `text` is the last hash of the log of an older file
+        plan,      ///< how the round is presented: `text` as text_of(PresentationPlan)
+        shown,     ///< what the audience sees from now on: `text` as text_of(PresentationState),
+                   ///< `best` the design or -1, `second` its place, `seat` the sitting
     };
     What what = What::open;
     int session = 0, round = 0, seat = 0;
@@ -30,8 +33,8 @@ struct LogEntry {
     std::string hash = {};  ///< the same
 };
 
-/// The statements that make its table and keep it as it is.
-std::vector<std::string> log_schema();
+/// The statements that make its table and keep it as it is; format 2 knew no presentations.
+std::vector<std::string> log_schema(int format = 3);
 
 /// Appends, within the caller's transaction, and fills in `id` and `hash`.
 void append_to_log(Database& database, LogEntry& entry);

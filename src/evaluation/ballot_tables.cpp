@@ -65,6 +65,8 @@ void apply(Books& books, const LogEntry& entry) {
             books.rounds[entry.round].closed = entry.at;
             return;
         case What::migrated:
+        case What::plan:
+        case What::shown:
             return;
     }
 }
@@ -224,6 +226,8 @@ void record(Database& database, LogEntry entry) {
             database.run("UPDATE rounds SET closed = ?2 WHERE id = ?1", {round, entry.at});
             return;
         case What::migrated:
+        case What::plan:
+        case What::shown:
             return;
     }
 }

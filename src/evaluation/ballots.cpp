@@ -8,6 +8,7 @@
 #include "evaluation/ballot_log.h"
 #include "evaluation/ballot_tables.h"
 #include "evaluation/ballots_v1.h"
+#include "evaluation/ballots_v2.h"
 #include "evaluation/design_codes.h"
 #include "evaluation/evaluator_name.h"
 
@@ -16,7 +17,7 @@ namespace livery {
 namespace {
 
 constexpr std::int32_t kApplicationId = 0x4c765642;  // "LvVB"
-constexpr int kVersion = 2;
+constexpr int kVersion = 3;
 constexpr std::size_t kReceiptDigits = 8;
 
 using What = LogEntry::What;
@@ -163,6 +164,10 @@ void check_setup(const RoundSetup& setup) {
         check_argument(names.insert(name).second,
                        "open_round: found \"" + name + "\" twice, expected different names");
     }
+    if (setup.plan) {
+        check_plan(*setup.plan, static_cast<int>(setup.designs.size()));
+        check_argument(setup.presenting, "open_round: found a plan for a round that votes at once");
+    }
     if (setup.codes.empty()) return;
     check_argument(setup.codes.size() == setup.designs.size(),
                    "open_round: found " + std::to_string(setup.codes.size()) + " codes for " +
@@ -181,6 +186,7 @@ const std::vector<std::string>& ballots_schema() {
     static const std::vector<std::string> statements = [] {
         std::vector<std::string> all = ballot_tables_schema();
         for (std::string& statement : ballots_v1_schema()) all.push_back(std::move(statement));
+        for (std::string& statement : log_schema(2)) all.push_back(std::move(statement));
         return all;
     }();
     return statements;
@@ -193,6 +199,8 @@ BallotStore::BallotStore(const std::filesystem::path& file)
     if (database_.version() != kVersion) {
         if (database_.version() == 1) {
             migrate_ballots_v1(database_);
+        } else if (database_.version() == 2) {
+            migrate_ballots_v2(database_);
         } else {
             for (const std::string& statement : ballot_tables_schema()) database_.run(statement);
         }
@@ -313,6 +321,12 @@ int BallotStore::open_round(const RoundSetup& setup) {
         LogEntry voting = base;
         voting.what = What::voting;
         record(database_, voting);
+    }
+    if (setup.plan) {
+        LogEntry plan = base;
+        plan.what = What::plan;
+        plan.text = text_of(*setup.plan);
+        record(database_, plan);
     }
     transaction.commit();
     return round;

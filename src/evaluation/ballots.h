@@ -10,6 +10,7 @@
 
 #include "core/database.h"
 #include "evaluation/ballot_log.h"
+#include "evaluation/presenting/presentation.h"
 #include "evaluation/tally.h"
 
 namespace livery {
@@ -35,6 +36,9 @@ struct RoundSetup {
     int seed = 1;
     bool asks_least = false;
     bool presenting = false;  ///< votes count from start_voting() on; else at once
+    /// How it is presented: by this program, which records each step (record_step()). Of all
+    /// designs; with `presenting`.
+    std::optional<PresentationPlan> plan = {};
 };
 
 struct Round {
@@ -79,8 +83,8 @@ const std::vector<std::string>& ballots_schema();
 /// twice, bad name); Refused, with the fix, for what the round's state forbids.
 class BallotStore {
   public:
-    /// Opens the file or makes it; reads the whole log and checks it. A file of format 1 becomes
-    /// one of format 2, in one transaction.
+    /// Opens the file or makes it; reads the whole log and checks it. A file of an older format
+    /// becomes one of format 3, in one transaction.
     explicit BallotStore(const std::filesystem::path& file);
 
     /// A new audience: phones join anew. Refused while a round is open.
@@ -113,6 +117,22 @@ class BallotStore {
     CastBallot vote(int round, int seat, const Choices& choices);
     /// For good. Refused when it is closed already.
     void close_round(int round);
+
+    /// What the audience sees from now on, and what led there. Voting begins and ends with it: a
+    /// state that votes starts the voting, one that is locked or `abort` closes the round. Refused
+    /// for a round without a plan.
+    void record_step(int round, const PresentationState& state, PresentationEvent event);
+    /// Nothing for a round that was opened without one.
+    std::optional<PresentationPlan> plan_of(int round) const;
+    /// All steps of a round with their times: the order in which its looks were shown.
+    std::vector<PresentationStep> steps_of(int round) const;
+    /// The newest round with a plan whose presentation has not ended, and where it stands.
+    struct Presented {
+        Round round;
+        PresentationPlan plan;
+        PresentationStep step;
+    };
+    std::optional<Presented> presented() const;
 
     std::vector<Round> rounds() const;
     std::optional<Round> open_round() const;

@@ -15,7 +15,8 @@ namespace {
 Round find_round(const BallotStore& store, std::optional<int> id) {
     const std::vector<Round> rounds = store.rounds();
     const auto found = std::find_if(rounds.rbegin(), rounds.rend(), [&](const Round& round) {
-        return id ? round.id == *id : round.closed;
+        // One that was broken off before people could vote says nothing.
+        return id ? round.id == *id : round.closed && round.voting;
     });
     if (found != rounds.rend()) return *found;
     if (id) {

@@ -19,13 +19,12 @@ constexpr auto kBetweenLooks = std::chrono::milliseconds(2);
 constexpr auto kUnusuallyLong = std::chrono::milliseconds(1500);
 constexpr auto kTwoRefreshes = std::chrono::milliseconds(34);
 
-/// Above all frames' numbers, and no two alike.
-std::uint64_t next_number() {
+}  // namespace
+
+std::uint64_t next_picture_number() {
     static std::atomic<std::uint64_t> number{std::uint64_t{1} << 48u};
     return ++number;
 }
-
-}  // namespace
 
 std::shared_ptr<const ProjectorPicture> projector_picture(const Image8& rgb, std::uint64_t number) {
     Image8 rgba(rgb.width, rgb.height, 4, 255);
@@ -45,7 +44,7 @@ std::shared_ptr<const ProjectorPicture> projector_picture(const Image8& rgb, std
 ShowPicture show_on(ProjectorAccess projector, const Progress& progress, TellWait on_wait) {
     return [projector = std::move(projector), progress, on_wait = std::move(on_wait)](
                const Image8& drive) {
-        const auto picture = projector_picture(drive, next_number());
+        const auto picture = projector_picture(drive, next_picture_number());
         projector.present(picture);
         const auto start = Clock::now();
         bool told = false;

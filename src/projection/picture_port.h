@@ -1,6 +1,7 @@
 // Pictures of a calibration onto the projector, each waited for.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 
@@ -13,6 +14,10 @@ namespace livery {
 
 /// Device values, RGB, as a picture for the projector: uploaded in the current context.
 std::shared_ptr<const ProjectorPicture> projector_picture(const Image8& rgb, std::uint64_t number);
+
+/// Above all frames' numbers, and no two alike: for pictures that are shown instead of frames. Any
+/// thread.
+std::uint64_t next_picture_number();
 
 /// How a capture reaches the projector; all of it from any thread.
 struct ProjectorAccess {

@@ -21,6 +21,7 @@
 #include "studio/kit/widgets.h"
 #include "studio/kit/words.h"
 #include "studio/look_thumbnails.h"
+#include "studio/presenting/presenting.h"
 #include "studio/studio.h"
 
 namespace livery {
@@ -96,7 +97,7 @@ void draw_looks_to_choose(Studio& studio) {
     for (const SessionLook& look : studio.session.document().looks) {
         bool& chosen = state.chosen_looks.try_emplace(look.id, true).first->second;
         ImGui::PushID(look.id);
-        const ImVec2 size = thumbnail_size(0.6f);
+        const ImVec2 size = thumbnail_size(0.45f);
         const ImVec2 corner = ImGui::GetCursorScreenPos();
         draw_look_thumbnail(studio, look.look.name, corner, size);
         ImGui::Dummy(size);
@@ -108,15 +109,15 @@ void draw_looks_to_choose(Studio& studio) {
     }
 }
 
-std::vector<std::string> chosen_names(const Studio& studio) {
-    std::vector<std::string> names;
+std::vector<const SessionLook*> chosen_looks(const Studio& studio) {
+    std::vector<const SessionLook*> looks;
     for (const SessionLook& look : studio.session.document().looks) {
         const auto chosen = studio.panels.ballot->chosen_looks.find(look.id);
         if (chosen != studio.panels.ballot->chosen_looks.end() && chosen->second) {
-            names.push_back(look.look.name);
+            looks.push_back(&look);
         }
     }
-    return names;
+    return looks;
 }
 
 void draw_earlier_rounds(Studio& studio) {
@@ -144,13 +145,20 @@ void draw_start(Studio& studio) {
     BallotPanelState& state = *studio.panels.ballot;
     heading("Looks under vote");
     draw_looks_to_choose(studio);
-    const auto names = chosen_names(studio);
+    std::vector<std::string> names;
+    std::vector<int> ids;
+    for (const SessionLook* look : chosen_looks(studio)) {
+        names.push_back(look->look.name);
+        ids.push_back(look->id);
+    }
     if (names.size() < 2) dim_text("A vote needs at least two looks.");
     if (!studio.setup || !studio.setup->table) {
         warning_text("No calibration is in use: people would judge colours that are not right.");
     }
+    draw_presentation_setup(studio, ids);
+    ImGui::SameLine();
     begin_disabled(names.size() < 2);
-    if (ImGui::Button("Start the round", {-FLT_MIN, big_height()})) {
+    if (ImGui::Button("Vote at once", {-FLT_MIN, big_height()})) {
         const std::string calibration = studio.setup && studio.setup->calibration
                                             ? studio.setup->calibration->id
                                             : std::string();
@@ -161,6 +169,8 @@ void draw_start(Studio& studio) {
     }
     name_last_item("ballot:start");
     end_disabled();
+    tooltip("In this window, without a presentation: whoever votes looks at what they like.");
+    draw_phones(studio);
     ImGui::Spacing();
     draw_earlier_rounds(studio);
 }
@@ -214,10 +224,11 @@ void draw_picture(Studio& studio, const std::string& name, std::size_t design) {
     const bool hovered = ImGui::IsItemHovered();
     draw_look_thumbnail(studio, name, corner, size);
     const SessionLook* look = look_named(studio.session.document(), name);
-    const bool shown = look && look->id == studio.shown_look;
-    tooltip(!look   ? "The session has no look of this name any more."
-            : shown ? "On the mock-up now."
-                    : "Click to show it on the mock-up.");
+    const bool shown = look && look->id == studio.shown_look && !is_presenting(studio);
+    tooltip(is_presenting(studio) ? "The projector is the presentation's."
+            : !look               ? "The session has no look of this name any more."
+            : shown               ? "On the mock-up now."
+                                  : "Click to show it on the mock-up.");
     if (shown || (look && hovered)) {
         ImGui::GetWindowDrawList()->AddRect(
             corner,
@@ -227,7 +238,7 @@ void draw_picture(Studio& studio, const std::string& name, std::size_t design) {
             0,
             std::max(1.5f, em(0.12f)));
     }
-    if (clicked && look) {
+    if (clicked && look && !is_presenting(studio)) {
         stop_trying(studio);
         show_look(studio, look->id);
     }
@@ -263,7 +274,9 @@ void draw_designs(Studio& studio, const Round& round) {
         ImGui::SameLine();
         ImGui::BeginGroup();
         const float width = ImGui::GetContentRegionAvail().x;
-        draw_title(round.designs[i], i, width);
+        // Who votes on what was presented knows codes.
+        draw_title(
+            is_presenting(studio) ? fmt::format("{}", round.codes[i]) : round.designs[i], i, width);
         const float half = std::floor(0.5f * (width - gap));
         const bool room = half >= button_width("Second best");
         draw_choice(state.best, state.second, i, "Best", "best", half);
@@ -277,6 +290,12 @@ void draw_designs(Studio& studio, const Round& round) {
 
 void draw_closing(Studio& studio, const Round& round) {
     BallotPanelState& state = *studio.panels.ballot;
+    // What is presented is locked where it is presented, in the bar.
+    if (is_presenting(studio)) {
+        if (ImGui::Button("Who has voted")) go_to(state, Page::start);
+        name_last_item("ballot:overview");
+        return;
+    }
     if (!state.asking_to_close) {
         if (ImGui::Button("Close the round…")) state.asking_to_close = true;
         name_last_item("ballot:close");
@@ -327,9 +346,11 @@ void draw_vote(Studio& studio, const Round& round) {
     follow_letter_keys(state, round.designs.size());
     dim_text(
         fmt::format("Keys A to {} choose the best, then the second best; Backspace takes "
-                    "back. 1, 2, 3 … show looks on the mock-up; black is Ctrl+B, freeze "
-                    "Ctrl+F.",
-                    design_letter(std::min(round.designs.size(), kLetters) - 1)));
+                    "back.{}",
+                    design_letter(std::min(round.designs.size(), kLetters) - 1),
+                    is_presenting(studio) ? ""
+                                          : " 1, 2, 3 … show looks on the mock-up; black is "
+                                            "Ctrl+B, freeze Ctrl+F."));
 
     const bool named = state.evaluator.find_first_not_of(' ') != std::string::npos;
     const bool complete = named && state.best && state.second;
@@ -387,13 +408,46 @@ void draw_result(Studio& studio, const Round& round) {
                              : "shown under calibration " + round.calibration_id.substr(0, 8)));
     Tally tally;
     if (!attempted(state, [&] { tally = studio.ballots->tally(round.id); })) return;
-    draw_tally(tally);
+    draw_verdict(studio, round);
+    draw_tally(tally, round.codes);
     ImGui::Spacing();
     if (ImGui::Button("Export as CSV…")) ask_where_to_export(studio, tally, round.id);
     name_last_item("ballot:export");
+    if (is_presenting(studio)) return;  // Back to editing, in the bar
     ImGui::SameLine();
     if (ImGui::Button("All rounds")) go_to(state, open_round(state) ? Page::vote : Page::start);
     name_last_item("ballot:rounds");
+}
+
+/// While the bar above leads through a round.
+void draw_presented_page(Studio& studio) {
+    BallotPanelState& state = *studio.panels.ballot;
+    const auto& presented = presenting(studio).presented;
+    const PresentationPhase phase = phase_of(studio);
+    if (presented && phase == PresentationPhase::locked) {
+        return draw_result(studio, Round(presented->round));
+    }
+    if (presented && phase == PresentationPhase::voting) {
+        if (state.page == Page::vote) return draw_vote(studio, Round(presented->round));
+        if (state.page == Page::thanks) return draw_thanks(studio, Round(presented->round));
+    }
+    draw_presented_round(studio);
+    if (phase == PresentationPhase::voting) {
+        ImGui::Spacing();
+        if (ImGui::Button("Type in a ballot", {-FLT_MIN, 0.0f})) go_to(state, Page::vote);
+        name_last_item("ballot:type-in");
+        tooltip("From paper, or for somebody without a phone.");
+    }
+    draw_phones(studio);
+}
+
+/// What another panel, the bar or time have done to the rounds.
+void follow_presentation(Studio& studio) {
+    BallotPanelState& state = *studio.panels.ballot;
+    const int phase = is_presenting(studio) ? 1 + static_cast<int>(phase_of(studio)) : 0;
+    if (std::exchange(state.presented_phase, phase) == phase) return;
+    read_rounds(studio);
+    go_to(state, Page::start);
 }
 
 void draw_page(Studio& studio) {
@@ -445,14 +499,21 @@ void draw_ballot_panel(Studio& studio, bool& open) {
     const float side = ImGui::GetFrameHeight();
     heading("Ballot");
     ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - side);
+    begin_disabled(is_presenting(studio));
     if (ImGui::Button("×##close-ballot", {side, 0.0f})) open = false;
+    end_disabled();
     name_last_item("ballot:close-panel");
     tooltip("Back to the paints. An open round stays open.");
     if (!studio.ballots) {
         warning_text("Ballots cannot be kept: the ballot file could not be opened.");
     } else {
         follow_others(studio);
-        draw_page(studio);
+        follow_presentation(studio);
+        if (is_presenting(studio)) {
+            draw_presented_page(studio);
+        } else {
+            draw_page(studio);
+        }
     }
     if (!state.problem.empty()) {
         warning_text(state.problem);

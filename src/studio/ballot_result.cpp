@@ -20,7 +20,7 @@ std::string design_letter(std::size_t design) {
                              : fmt::format("{}", design + 1);
 }
 
-void draw_tally(const Tally& tally) {
+void draw_tally(const Tally& tally, const std::vector<int>& codes) {
     // As many columns as fit share the width; more are scrolled to.
     constexpr std::size_t shared = 10, most = 62;
     const std::size_t designs = std::min(tally.designs.size(), most);
@@ -49,7 +49,9 @@ void draw_tally(const Tally& tally) {
     row("Second best", [&](std::size_t i) { return fmt::format("{}", tally.second[i]); });
     ImGui::EndTable();
     for (std::size_t i = 0; i < tally.designs.size(); ++i) {
-        ImGui::TextWrapped("%s %s", design_letter(i).c_str(), tally.designs[i].c_str());
+        const std::string code = i < codes.size() ? fmt::format("  {}", codes[i]) : "";
+        ImGui::TextWrapped(
+            "%s%s  %s", design_letter(i).c_str(), code.c_str(), tally.designs[i].c_str());
     }
 }
 

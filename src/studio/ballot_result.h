@@ -14,8 +14,8 @@ constexpr std::size_t kLetters = 26;  ///< designs beyond are numbered
 /// "A", "B", ..., "Z", "27": what a design is called, and the key that chooses it.
 std::string design_letter(std::size_t design);
 
-/// Votes by design, then which look each letter is.
-void draw_tally(const Tally& tally);
+/// Votes by design, then which look each letter and code is.
+void draw_tally(const Tally& tally, const std::vector<int>& codes);
 /// As CSV; the window tells how it went.
 void ask_where_to_export(Studio& studio, const Tally& tally, int round);
 

@@ -10,6 +10,7 @@
 #include "studio/paint/library_panel.h"
 #include "studio/paint/paint_panel.h"
 #include "studio/plan_panel.h"
+#include "studio/presenting/presenting.h"
 
 namespace livery {
 
@@ -23,7 +24,8 @@ PanelStates::PanelStates()
       ballot(std::make_unique<BallotPanelState>()),
       capture(std::make_unique<CapturePanelState>()),
       thumbnails(std::make_unique<LookThumbnailState>()),
-      nudge(std::make_unique<NudgePanelState>()) {}
+      nudge(std::make_unique<NudgePanelState>()),
+      presenting(std::make_unique<PresentingState>()) {}
 
 PanelStates::~PanelStates() = default;
 PanelStates::PanelStates(PanelStates&&) noexcept = default;

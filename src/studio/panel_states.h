@@ -16,6 +16,7 @@ struct BallotPanelState;
 struct CapturePanelState;
 struct LookThumbnailState;
 struct NudgePanelState;
+struct PresentingState;
 
 /// Always there. Owns textures: destroy it with the window's context current.
 struct PanelStates {
@@ -34,6 +35,7 @@ struct PanelStates {
     std::unique_ptr<CapturePanelState> capture;
     std::unique_ptr<LookThumbnailState> thumbnails;
     std::unique_ptr<NudgePanelState> nudge;
+    std::unique_ptr<PresentingState> presenting;
 };
 
 }  // namespace livery

@@ -7,6 +7,7 @@
 #include "studio/kit/theme.h"
 #include "studio/kit/widgets.h"
 #include "studio/plan_panel.h"
+#include "studio/presenting/presenting.h"
 #include "studio/projector_control.h"
 #include "studio/window/actions.h"
 #include "studio/window/shell.h"
@@ -134,8 +135,9 @@ void draw_projector_bar(Shell& shell) {
     draw_warnings(shell, keys);
     ImGui::SameLine(keys);
     ImGui::SetCursorPosY(top);
-    // A voter's letters are not the projector's.
-    const bool letters = ballot_letters(shell.studio) > 0;
+    // A voter's letters are not the projector's, nor are the keys of a presentation.
+    const bool presents = is_presenting(shell.studio);
+    const bool letters = ballot_letters(shell.studio) > 0 || presents;
     draw_state_button(shell,
                       "black",
                       shell.black ? "BLACK"
@@ -148,8 +150,10 @@ void draw_projector_bar(Shell& shell) {
                         : "Makes the projector dark at once (B, and Ctrl+B while typing).");
     ImGui::SameLine();
     ImGui::SetCursorPosY(top);
+    begin_disabled(presents);
     draw_state_button(
         shell, "freeze", shell.frozen ? "FROZEN" : "Freeze  F", shell.frozen, width, height);
+    end_disabled();
     tooltip(shell.frozen
                 ? "The projector keeps its picture. F shows the newest again."
                 : "Keeps the projector's picture while you work on (F, and Ctrl+F while typing).");

@@ -5,6 +5,7 @@
 #include "core/log.h"
 #include "projection/picture_port.h"
 #include "studio/nudge/nudge_panel.h"
+#include "studio/presenting/presenting.h"
 #include "studio/results.h"
 #include "studio/window/shell.h"
 #include "studio/window/shell_state.h"
@@ -134,6 +135,8 @@ ProjectorFacts projector_facts(const Shell& shell) {
     facts.monitor_numbers = shell.monitor_numbers != nullptr;
     facts.signal_test = shell.signal_test_open;
     facts.nudge = shell.nudge_open;
+    facts.freezing = presenting(shell.studio).freezing.has_value();
+    facts.voting = presenting(shell.studio).presented.has_value();
     facts.wanted = shell.frame_number;
     facts.shown = screen.shown().number;
     facts.waited_s = shell.studio.now_s - shell.frame_asked_s;

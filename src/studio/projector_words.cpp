@@ -22,6 +22,8 @@ ProjectorWords projector_words(const ProjectorFacts& facts) {
     if (facts.signal_test) {
         return {"showing the test picture", warning, "Projector > Test picture ends it."};
     }
+    if (facts.freezing) return {"keeps its picture while looks are frozen", quiet, ""};
+    if (facts.voting) return {"showing the frozen frames of the vote", good, ""};
     if (facts.nudge) return {"showing the mock-up's lines", warning, "Esc ends it."};
     const bool behind = facts.shown != facts.wanted;
     if (facts.frozen) {

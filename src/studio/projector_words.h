@@ -14,10 +14,11 @@ struct ProjectorFacts {
     bool only_screen = false;  ///< the chosen one, which therefore stays dark
     bool black = false, frozen = false;
     bool monitor_numbers = false, signal_test = false, nudge = false;  ///< shown instead
-    std::uint64_t wanted = 0;  ///< the newest frame that was asked for
-    std::uint64_t shown = 0;   ///< the frame on the projector
-    double waited_s = 0.0;     ///< since the wanted one was asked for
-    std::string not_drawn;     ///< why there is no such frame
+    bool freezing = false, voting = false;  ///< looks for a vote; frozen frames are shown instead
+    std::uint64_t wanted = 0;               ///< the newest frame that was asked for
+    std::uint64_t shown = 0;                ///< the frame on the projector
+    double waited_s = 0.0;                  ///< since the wanted one was asked for
+    std::string not_drawn;                  ///< why there is no such frame
 };
 
 struct ProjectorWords {

@@ -9,6 +9,7 @@
 #include "core/log.h"
 #include "studio/kit/theme.h"
 #include "studio/paint/library_panel.h"
+#include "studio/presenting/presenting.h"
 
 namespace livery {
 
@@ -41,6 +42,7 @@ bool was_led_to(unsigned item) {
 }  // namespace
 
 void commit(Studio& studio, const SessionCommand& command) {
+    if (refuse_editing(studio)) return;
     const std::string label = label_of(studio.session.document(), command);
     try {
         studio.session.execute(command);
@@ -63,6 +65,7 @@ void try_out(Studio& studio, const SessionCommand& command, bool by_arrow) {
 }
 
 void try_held(Studio& studio, const SessionCommand& command) {
+    if (is_presenting(studio)) return;
     const unsigned item = ImGui::GetItemID();
     if (studio.untried_item == item) {
         studio.untried_item_still_there = true;
@@ -118,6 +121,7 @@ Document shown_document(const Studio& studio) {
 
 void show_look(Studio& studio, int look) {
     if (look == studio.shown_look || !find_look(studio.session.document(), look)) return;
+    if (refuse_editing(studio)) return;
     if (!studio.chose_compared_look) studio.compared_look = studio.shown_look;
     studio.shown_look = look;
     keep_shown_looks_valid(studio);

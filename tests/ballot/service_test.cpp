@@ -239,7 +239,7 @@ TEST_F(BallotServiceTest, SaysWhenAVoteCouldNotBeKept) {
     const std::string secret = join();
     open();
     {
-        Database other(file_, Database::Mode::existing, 0x4c765642, 2, ballots_schema());
+        Database other(file_, Database::Mode::existing, 0x4c765642, 3, ballots_schema());
         other.run(
             "CREATE TRIGGER ballot_lost BEFORE INSERT ON ballots "
             "BEGIN SELECT RAISE(ABORT, 'disk on fire'); END");

@@ -1,6 +1,7 @@
 // Photographs every part of the operator's window, for the documentation and for looking at it:
-//     desktop_screenshots FOLDER
-// writes NAME-1280.png at 1280x800 and NAME-3840.png at 3840x2160.
+//     desktop_screenshots FOLDER [vote]
+// writes NAME-1280.png at 1280x800 and NAME-3840.png at 3840x2160; with "vote" those of a presented
+// vote alone, at 1280x800.
 
 #include <cctype>
 #include <cstdio>
@@ -101,6 +102,7 @@ class Photographer {
         program().click("file-dialog:cancel");
         take_new_session();
         take_ballot();
+        take_vote();
         take_calibrating();
         take_nudge();
         take_capture();
@@ -115,8 +117,68 @@ class Photographer {
         take("unplugged");
     }
 
+    /// From the looks that are ticked to the lock.
+    void take_vote() {
+        if (program().state("projector") != "showing") {
+            program().click("projector-monitor");
+            program().click("monitor:2");
+            program().move_away();
+            wait_for_rest();
+        }
+        program().click("menu:File");
+        program().click("menu:ballot");
+        program().double_click("present:passes");
+        desktop_.type("1");
+        desktop_.press_key("Tab");
+        program().click("phones:start");
+        settle();
+        program().move_away();
+        take("vote-edit");
+        program().click("ballot:present");
+        wait_for_vote("vote_loaded", true);
+        settle();
+        take("vote-adapting");
+        program().press_key("Next");
+        sleep_ms(2000);
+        program().move_away();
+        take("vote-presenting");
+        write_png(folder_ / fmt::format("projector-vote-{}.png", size_px_.x),
+                  desktop_.read(desktop_.projector_area()));
+        program().press_key("space");
+        while (program().state("vote") == "presenting") program().press_key("Next");
+        for (int seat = 0; seat < 3; ++seat) {
+            program().click("ballot:type-in");
+            program().click("ballot:name");
+            desktop_.type(fmt::format("Seat {}", seat + 1));
+            program().click(fmt::format("ballot:best:{}", seat == 2 ? 3 : 1));
+            program().click(fmt::format("ballot:second:{}", seat == 0 ? 3 : 2));
+            if (seat == 1) take("vote-typed");
+            program().click("ballot:confirm");
+            program().click("ballot:overview");
+        }
+        program().move_away();
+        settle();
+        take("vote-voting");
+        program().click("phones:stop");
+        program().click("vote:lock");
+        program().click("vote:confirm");
+        program().item("ballot:verdict");
+        program().move_away();
+        settle();
+        take("vote-locked");
+        program().click("vote:done");
+        program().click("ballot:close-panel");
+        wait_for_rest();
+    }
+
   private:
     StudioProgram& program() { return *program_; }
+
+    void wait_for_vote(const std::string& name, const nlohmann::json& value) {
+        if (!wait_until([&] { return program().state(name) == value; }, 120s)) {
+            throw std::runtime_error("the vote does not come to " + name);
+        }
+    }
 
     void take_new_session() {
         desktop_.press_key("ctrl+n");
@@ -257,13 +319,18 @@ class Photographer {
 }  // namespace livery
 
 int main(int argc, char** argv) {
-    if (argc != 2) {
-        std::fputs("desktop_screenshots FOLDER\n", stderr);
+    const bool only_vote = argc == 3 && argv[2] == std::string("vote");
+    if (argc != 2 && !only_vote) {
+        std::fputs("desktop_screenshots FOLDER [vote]\n", stderr);
         return 2;
     }
     try {
         const std::filesystem::path folder = argv[1];
         std::filesystem::create_directories(folder);
+        if (only_vote) {
+            livery::Photographer(folder, {1280, 800}, 1.0).take_vote();
+            return 0;
+        }
         livery::Photographer(folder, {1280, 800}, 1.0).take_all();
         livery::Photographer(folder, {3840, 2160}, 2.0).take_all();
         return 0;

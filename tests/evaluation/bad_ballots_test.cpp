@@ -59,8 +59,8 @@ TEST(BadBallots, NotAFileOfOurs) {
 TEST(BadBallots, OfANewerVersion) {
     const TemporaryFolder folder;
     const auto file = some_ballots(folder);
-    raw_ballots(file).set_version(3);
-    EXPECT_TRUE(opening_fails(file, {"votes", "3 (written by a newer Livery)", "at most 2"}));
+    raw_ballots(file).set_version(4);
+    EXPECT_TRUE(opening_fails(file, {"votes", "4 (written by a newer Livery)", "at most 3"}));
 }
 
 TEST(BadBallots, Truncated) {

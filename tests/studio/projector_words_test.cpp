@@ -33,6 +33,7 @@ TEST(ProjectorWords, SayShowingOnlyOfWhatIsShown) {
     EXPECT_FALSE(says_showing(with([](auto& f) { f.monitor_numbers = true; })));
     EXPECT_FALSE(says_showing(with([](auto& f) { f.signal_test = true; })));
     EXPECT_FALSE(says_showing(with([](auto& f) { f.nudge = true; })));
+    EXPECT_FALSE(says_showing(with([](auto& f) { f.freezing = true; })));
     EXPECT_FALSE(says_showing(with([](auto& f) { f.not_drawn = "a file is gone"; })));
     EXPECT_FALSE(says_showing(with([](auto& f) { f.state = State::off; })));
     EXPECT_FALSE(says_showing(with([](auto& f) { f.state = State::waiting_for_monitor; })));

@@ -12,6 +12,7 @@
 #include "studio/look_files.h"
 #include "studio/nudge/nudge_panel.h"
 #include "studio/paint/library_panel.h"
+#include "studio/presenting/presenting.h"
 #include "studio/product/new_session.h"
 #include "studio/product/open_session.h"
 #include "studio/projector_control.h"
@@ -320,10 +321,13 @@ void add_help_actions(std::vector<Action>& list) {
 }
 
 /// While people vote, keys show looks and do nothing to them: whoever votes sits at the keyboard.
+/// While frozen looks are presented and voted on, nothing else is shown either.
 void allow_in_votes(std::vector<Action>& list) {
     for (Action& one : list) {
         const bool shows = one.id.starts_with("look-") || one.id == "next-look" ||
                            one.id == "previous-look" || one.id == "hold-b" || one.id == "wipe";
+        one.in_presentations = one.menu == "View" || one.menu == "Help" || one.id == "black" ||
+                               one.id == "give-up" || one.id == "quit";
         one.in_votes = shows || one.in_dialogs || one.menu == "View" || one.menu == "Projector" ||
                        one.menu == "Help" || one.id == "give-up";
     }
@@ -385,10 +389,12 @@ const Action& action_named(const std::string& id) {
 }
 
 bool is_enabled(const Action& action, const Shell& shell) {
+    if (!action.in_presentations && is_presenting(shell.studio)) return false;
     return !action.enabled || action.enabled(shell);
 }
 
 bool run_action(const Action& action, Shell& shell) {
+    if (!action.in_presentations && refuse_editing(shell.studio)) return false;
     if (!is_enabled(action, shell)) return false;
     action.run(shell);
     return true;

@@ -25,6 +25,8 @@
 #include "studio/paint/library_panel.h"
 #include "studio/paint/users_library.h"
 #include "studio/plan_panel.h"
+#include "studio/presenting/presenting.h"
+#include "studio/presenting/vote_mode.h"
 #include "studio/product/new_session.h"
 #include "studio/product/open_session.h"
 #include "studio/projector_control.h"
@@ -119,6 +121,7 @@ std::optional<double> next_change_s(const Shell& shell) {
                  0.02);
     }
     if (shell.save_again_at_s > 0.0) consider(shell.save_again_at_s);
+    consider(next_vote_change_s(shell));
     if (shell.studio.opening) consider(shell.studio.now_s + kOnItsWayToTheScreen_s);
     if (shell.preview_waits_until_s > 0.0) consider(shell.preview_waits_until_s);
     const double spoken_of_s = shell.frame_asked_s + kUnspokenWait_s;
@@ -205,6 +208,8 @@ class Desktop {
         keep_shown_looks_valid(studio);
         contexts_ = start_threads(shell_, *window_, options_.shading);
         if (shell_.black) set_black(shell_, true);
+        find_presented_round(studio);
+        step_vote_mode(shell_);
         tell_product_notes(studio);
         tell_drawing_problems(studio);
         tell_unsaved(shell_);
@@ -269,7 +274,8 @@ class Desktop {
             frames_to_draw_ = kFramesAfterInput;
         }
         if (!dropped_files.empty()) {
-            take_dropped_files(shell_, std::exchange(dropped_files, {}));
+            auto files = std::exchange(dropped_files, {});
+            if (!refuse_editing(shell_.studio)) take_dropped_files(shell_, std::move(files));
             frames_to_draw_ = kFramesAfterInput;
         }
     }

@@ -16,6 +16,8 @@
 #include "studio/nudge/nudge_panel.h"
 #include "studio/paint/library_panel.h"
 #include "studio/paint/swatch_textures.h"
+#include "studio/presenting/presenting.h"
+#include "studio/presenting/vote_mode.h"
 #include "studio/product/open_session.h"
 #include "studio/window/actions.h"
 #include "studio/window/shell.h"
@@ -171,7 +173,9 @@ void draw_columns(Shell& shell, float height, ImVec2 spacing) {
                  ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoScrollbar);
     ImGui::PopStyleVar();
     with_spacing(spacing, [&] {
-        if (shell.capture_open) {
+        if (is_presenting(shell.studio)) {
+            draw_vote_stage(shell);
+        } else if (shell.capture_open) {
             draw_capture_stage(shell);
         } else {
             draw_stage(shell);
@@ -228,6 +232,13 @@ void draw_layout(Shell& shell) {
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0.0f, 0.0f});
     const float gap = std::max(2.0f, em(0.18f));
     const float bar = em(3.5f), status = em(1.75f);
+    if (has_vote_bar(shell)) {
+        ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.0f, 0.0f});
+        begin_region("vote-bar", {0.0f, em(4.0f)}, true, ImGuiWindowFlags_NoScrollbar);
+        ImGui::PopStyleVar();
+        with_spacing(spacing, [&] { draw_vote_bar(shell); });
+        ImGui::EndChild();
+    }
     const float columns = ImGui::GetContentRegionAvail().y - bar - status - gap;
     draw_columns(shell, columns, spacing);
     ImGui::Dummy({0.0f, gap});

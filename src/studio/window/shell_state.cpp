@@ -12,6 +12,7 @@
 #include "studio/capture/capture_panel.h"
 #include "studio/kit/tab_order.h"
 #include "studio/nudge/nudge_panel.h"
+#include "studio/presenting/presenting.h"
 #include "studio/projector_control.h"
 #include "studio/window/shell.h"
 
@@ -230,6 +231,19 @@ MapState state_of_shell(const Shell& shell) {
     state["capture_reposed"] = quoted(capture.reposed ? capture.reposed->string() : "");
     state["capture_times"] = fmt::format(
         "[{:.3f}, {:.3f}, {:.3f}]", capture.capture_s, capture.camera_s, capture.projector_s);
+    const PresentingState& vote = presenting(studio);
+    state["vote"] = quoted(vote.freezing ? "freezing" : to_string(phase_of(studio)));
+    state["vote_code"] = text(code_on_show(studio));
+    if (vote.presented) {
+        const PresentedRound& presented = *vote.presented;
+        state["vote_frame"] = quoted(frame_of(presented.plan, presented.state));
+        state["vote_paused"] = text(presented.state.paused);
+        state["vote_blank"] = text(presented.state.blank);
+        state["vote_place"] = std::to_string(presented.state.place);
+        state["vote_round"] = std::to_string(presented.round.id);
+        state["vote_loaded"] = text(!presented.frames.empty());
+    }
+    state["phones"] = quoted(vote.phones ? url_of(vote.phones->place()) : "");
     state["scale"] = fmt::format("{:.3f}", studio.ui_scale);
     Json notices = Json::array();
     for (const Notice& notice : studio.notices) notices.push_back(notice.what);

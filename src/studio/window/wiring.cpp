@@ -15,6 +15,8 @@
 #include "studio/kit/words.h"
 #include "studio/nudge/nudge_panel.h"
 #include "studio/paint/users_library.h"
+#include "studio/presenting/presenting.h"
+#include "studio/presenting/vote_mode.h"
 #include "studio/results.h"
 #include "studio/window/shell.h"
 
@@ -141,6 +143,24 @@ std::set<std::filesystem::path> unread_files(const Description& description) {
     return files;
 }
 
+/// With what all frames of the document share; its number.
+std::uint64_t show_frame(Shell& shell,
+                         const Document& document,
+                         FrameDescription description,
+                         const std::string& tried) {
+    Studio& studio = shell.studio;
+    const std::uint64_t number = ++shell.frame_number;
+    description.number = number;
+    description.quality = document.quality;
+    description.levels = document.levels;
+    description.setup = studio.setup;
+    description.library = document.library;
+    description.asked_at = shell.input_at;
+    shell.trace->write("frame-asked", number, tried);
+    studio.frames->show(std::move(description));
+    return number;
+}
+
 void ask_for_frame(Shell& shell) {
     Studio& studio = shell.studio;
     if (!studio.setup || preview_goes_first(shell)) return;
@@ -175,16 +195,9 @@ void ask_for_frame(Shell& shell) {
     shell.not_drawn.clear();
     shell.asked_frame = key;
     shell.frame_asked_s = studio.now_s;
-    description.number = ++shell.frame_number;
     description.wipe_at = key.wipe_at;
     description.glowing_part = key.glowing_part;
-    description.quality = document.quality;
-    description.levels = document.levels;
-    description.setup = studio.setup;
-    description.library = document.library;
-    description.asked_at = shell.input_at;
-    shell.trace->write("frame-asked", description.number, key.tried);
-    studio.frames->show(std::move(description));
+    show_frame(shell, document, std::move(description), key.tried);
 }
 
 void ask_for_preview(Shell& shell) {
@@ -415,6 +428,7 @@ void stop_threads(Shell& shell) {
     studio.previews.reset();
     studio.bench.reset();
     if (shell.results) shell.results->use(nullptr);
+    presenting(studio).picture.reset();
     studio.projector.reset();
     studio.frame.reset();
     studio.preview.reset();
@@ -432,6 +446,7 @@ void take_results(Shell& shell) {
     take_calibration(shell);
     take_capture(shell);
     take_nudge(shell);
+    step_vote_mode(shell);
     if (studio.glowing_part && studio.now_s >= studio.glowing_until_s) studio.glowing_part.reset();
     const auto newest = shell.results->newest_frame();
     if (newest && !newest->problem.empty() && newest->number > shell.problem_number) {
@@ -444,8 +459,23 @@ void take_results(Shell& shell) {
     }
 }
 
+std::optional<std::uint64_t> ask_for_look(Shell& shell, int look) {
+    Studio& studio = shell.studio;
+    const Document& document = studio.session.document();
+    FrameDescription description;
+    description.scene = scene_for(shell, document, look);
+    if (const auto unread = unread_files(description); !unread.empty()) {
+        refresh_library(studio, unread);
+        return std::nullopt;
+    }
+    shell.frame_asked_s = studio.now_s;
+    return show_frame(shell, document, std::move(description), "");
+}
+
 void ask_for_changes(Shell& shell) {
     ask_for_setup(shell);
+    // Frozen looks alone are to be seen.
+    if (is_presenting(shell.studio)) return;
     // The program was started with a mesh: what stands behind its page may never be wanted.
     if (shell.new_session && !shell.asked_frame) {
         shell.frame_asked_s = shell.studio.now_s;

@@ -1,7 +1,9 @@
 // Session and stage in, results out: what runs between the window and the threads behind it.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "gl/window.h"
@@ -28,6 +30,10 @@ bool is_frame_under_way(const Shell& shell);
 
 /// At the start of each frame of the window: takes over what is new.
 void take_results(Shell& shell);
+/// Asks for a look of the document as it is, whatever is being tried or compared: its frame's
+/// number. Nothing while files that its paints need are being read: ask again. Throws what makes it
+/// impossible to draw.
+std::optional<std::uint64_t> ask_for_look(Shell& shell, int look);
 /// At its end: asks for what the changes call for. True when something was asked for.
 void ask_for_changes(Shell& shell);
 

@@ -1,0 +1,295 @@
+#include "studio/presenting/presenting.h"
+
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/log.h"
+#include "evaluation/presenting/sittings.h"
+#include "studio/presenting/surround.h"
+
+namespace livery {
+
+namespace {
+
+using Phase = PresentationPhase;
+
+constexpr double kBetweenReadings_s = 0.5;
+
+template <typename Number>
+void restore(
+    const UserSettings& settings, const char* name, Number& value, Number low, Number high) {
+    const std::string text = setting(settings, name);
+    Number read{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), read);
+    if (error == std::errc() && read >= low && read <= high) value = read;
+}
+
+std::filesystem::path folder_of(const Studio& studio, const PresentationPlan& plan) {
+    return studio.ballots->file().parent_path() / plan.folder;
+}
+
+}  // namespace
+
+PresentingState& presenting(Studio& studio) { return *studio.panels.presenting; }
+const PresentingState& presenting(const Studio& studio) { return *studio.panels.presenting; }
+
+std::string session_name(const Studio& studio) {
+    const auto file = studio.session.file();
+    if (!file) return "";
+    std::error_code error;
+    const auto whole = std::filesystem::weakly_canonical(*file, error);
+    return (error ? *file : whole).string();
+}
+
+std::vector<std::vector<int>> sittings_of(const PresentingSettings& settings,
+                                          int designs,
+                                          int seed) {
+    const auto number = static_cast<std::uint64_t>(seed);
+    return settings.waves ? wave_sittings(designs, settings.evaluators, settings.wave_size, number)
+                          : pass_sitting(designs, settings.passes, number);
+}
+
+PresentingSettings& presenting_settings(Studio& studio) {
+    PresentingState& state = presenting(studio);
+    PresentingSettings& settings = state.settings;
+    if (std::exchange(state.settings_read, true)) return settings;
+    const UserSettings& kept = studio.settings;
+    restore(kept, "presenting-adapt-s", settings.times.adapt_s, 0.2, 3600.0);
+    restore(kept, "presenting-look-s", settings.times.look_s, 0.2, 3600.0);
+    restore(kept, "presenting-grey-s", settings.times.grey_s, 0.2, 3600.0);
+    restore(kept, "presenting-passes", settings.passes, 0, 52);
+    restore(kept, "presenting-evaluators", settings.evaluators, 1, 1000);
+    restore(kept, "presenting-wave-size", settings.wave_size, 1, 1000);
+    restore(kept, "phones-port", settings.port, 0, 65535);
+    settings.waves = setting(kept, "presenting-waves") == "yes";
+    int seed = -1;
+    restore(kept, "presenting-seed", seed, 0, 1 << 30);
+    if (seed >= 0) settings.seed = seed;
+    if (const std::string network = setting(kept, "phones-network"); !network.empty()) {
+        settings.network = network;
+    }
+    return settings;
+}
+
+void keep_presenting_settings(Studio& studio) {
+    const PresentingSettings& settings = presenting_settings(studio);
+    const auto keep = [&](const char* name, const std::string& value) {
+        if (setting(studio.settings, name) != value) keep_setting(studio.settings, name, value);
+    };
+    keep("presenting-adapt-s", fmt::format("{:g}", settings.times.adapt_s));
+    keep("presenting-look-s", fmt::format("{:g}", settings.times.look_s));
+    keep("presenting-grey-s", fmt::format("{:g}", settings.times.grey_s));
+    keep("presenting-passes", fmt::format("{}", settings.passes));
+    keep("presenting-evaluators", fmt::format("{}", settings.evaluators));
+    keep("presenting-wave-size", fmt::format("{}", settings.wave_size));
+    keep("presenting-waves", settings.waves ? "yes" : "no");
+    keep("phones-network", settings.network);
+}
+
+bool is_presenting(const Studio& studio) {
+    const PresentingState& state = presenting(studio);
+    return state.freezing || state.presented;
+}
+
+std::string why_no_editing(const Studio& studio) {
+    const PresentingState& state = presenting(studio);
+    if (state.freezing) return "The looks are being frozen for a vote.";
+    if (!state.presented) return "";
+    const int round = state.presented->round.id;
+    return state.presented->state.phase == Phase::locked
+               ? fmt::format("Round {} is locked, and its result is on show.", round)
+               : fmt::format("Round {} is being presented and voted on: people judge frozen looks.",
+                             round);
+}
+
+bool refuse_editing(Studio& studio) {
+    const std::string why = why_no_editing(studio);
+    if (why.empty()) return false;
+    const bool locked = phase_of(studio) == Phase::locked;
+    notify(studio,
+           {Notice::Level::warning,
+            "Nothing can be changed now.",
+            why,
+            locked ? "Go back to editing in the bar at the top."
+                   : "Lock the round, or abort it, in the bar at the top.",
+            studio.now_s + 8.0});
+    return true;
+}
+
+PresentationPhase phase_of(const Studio& studio) {
+    const PresentingState& state = presenting(studio);
+    return state.presented ? state.presented->state.phase : Phase::edit;
+}
+
+std::optional<int> code_on_show(const Studio& studio) {
+    const PresentingState& state = presenting(studio);
+    if (!state.presented) return {};
+    const int design = design_of(state.presented->plan, state.presented->state);
+    if (design < 0) return {};
+    return state.presented->round.codes.at(static_cast<std::size_t>(design));
+}
+
+void send(Studio& studio, PresentationEvent event) {
+    PresentingState& state = presenting(studio);
+    if (!state.presented || !studio.ballots) return;
+    PresentedRound& presented = *state.presented;
+    // Without its frames nothing is shown, so no time goes by either.
+    const bool needs_frames = event == PresentationEvent::pause && presented.state.paused;
+    if (needs_frames && presented.frames.empty()) return;
+    const PresentationState next = after(presented.plan, presented.state, event, studio.now_s);
+    if (next == presented.state) return;
+    try {
+        studio.ballots->record_step(presented.round.id, next, event);
+    } catch (const std::exception& error) {
+        notify(studio,
+               {Notice::Level::error,
+                "The presentation stands still.",
+                std::string(error.what()),
+                "Make it possible to write the ballots' file, then go on."});
+        // Asked again by the operator, not sixty times a second.
+        if (event == PresentationEvent::tick) presented.state.paused = true;
+        return;
+    }
+    log_line(LogLevel::info, fmt::format("round {}: {}", presented.round.id, text_of(next, event)));
+    presented.state = next;
+    state.asking_to_abort = state.asking_to_lock = false;
+    for (const Round& round : studio.ballots->rounds()) {
+        if (round.id == presented.round.id) presented.round = round;
+    }
+    read_seats(studio, true);
+    if (next.phase == Phase::edit) state.presented.reset();
+}
+
+void take_round(Studio& studio, Round round, PresentationPlan plan, PresentationState state) {
+    PresentingState& presenting_state = presenting(studio);
+    presenting_state.problem.clear();
+    PresentedRound& presented = presenting_state.presented.emplace();
+    presented.round = std::move(round);
+    presented.plan = std::move(plan);
+    presented.state = state;
+    const int id = presented.round.id;
+    read_seats(studio, true);
+    if (!studio.background) return;
+    studio.background->run(
+        [&studio, id, folder = folder_of(studio, presented.plan), hashes = presented.plan.frames](
+            const Progress&) -> Background::Then {
+            auto frames = std::make_shared<VoteFrames>(read_vote_frames(folder, hashes));
+            auto lit = std::make_shared<Image8>();
+            for (const auto& [name, frame] : *frames) add_lit_pixels(*frame, *lit);
+            return [&studio, id, frames, lit] {
+                auto& shown = presenting(studio).presented;
+                if (!shown || shown->round.id != id) return;
+                shown->frames = std::move(*frames);
+                shown->lit = std::move(*lit);
+                shown->place = free_place(shown->lit, kNumberPlaceAspect);
+                // Its time begins now that it can be seen.
+                shown->state.at_s = studio.now_s;
+            };
+        },
+        [&studio](std::exception_ptr why) {
+            try {
+                std::rethrow_exception(why);
+            } catch (const std::exception& error) {
+                presenting(studio).problem = error.what();
+            }
+            notify_failure(studio, "The frozen frames cannot be shown.", why);
+        });
+}
+
+void find_presented_round(Studio& studio) {
+    if (!studio.ballots) return;
+    try {
+        auto found = studio.ballots->presented();
+        if (!found || found->plan.session != session_name(studio)) return;
+        const PresentationState state =
+            after(found->plan, found->step.state, PresentationEvent::resume, studio.now_s);
+        const int id = found->round.id;
+        studio.ballots->record_step(id, state, PresentationEvent::resume);
+        log_line(LogLevel::info, fmt::format("round {} goes on: {}", id, to_string(state.phase)));
+        take_round(studio, std::move(found->round), std::move(found->plan), state);
+        notify(studio,
+               {Notice::Level::info,
+                fmt::format("Round {} goes on where it was.", id),
+                state.paused ? "It is paused: Go on, or the space bar, goes on." : "",
+                "",
+                studio.now_s + 20.0});
+    } catch (const std::exception&) {
+        notify_failure(
+            studio, "The round that was under way cannot go on.", std::current_exception());
+    }
+}
+
+void read_seats(Studio& studio, bool now) {
+    PresentingState& state = presenting(studio);
+    const bool due =
+        now || state.seats_read_s < 0.0 || studio.now_s - state.seats_read_s >= kBetweenReadings_s;
+    if (!studio.ballots || !due) return;
+    state.seats_read_s = studio.now_s;
+    try {
+        const auto session = studio.ballots->session();
+        state.seats = session ? studio.ballots->seats(*session) : std::vector<Seat>();
+        state.invitation = session ? studio.ballots->invitation(*session) : std::nullopt;
+        state.voted =
+            state.presented ? studio.ballots->voted(state.presented->round.id) : std::vector<int>();
+        if (!state.presented || state.presented->state.phase != Phase::voting) return;
+        // Another program may have locked it.
+        if (!studio.ballots->open_round()) {
+            state.presented->state.phase = Phase::locked;
+            state.presented->round.closed = true;
+        }
+    } catch (const std::exception& error) {
+        state.problem = error.what();
+    }
+}
+
+void serve_phones(Studio& studio, bool on) {
+    PresentingState& state = presenting(studio);
+    state.phones_problem.clear();
+    if (!on) {
+        state.phones.reset();
+        state.qr_projected = false;
+        log_line(LogLevel::info, "phones: off");
+        return;
+    }
+    try {
+        BallotProcessOptions options;
+        options.ballots = studio.ballots->file();
+        options.interface = presenting_settings(studio).network;
+        // Started anew it is where it was: the QR code on the wall stays good.
+        options.port = presenting_settings(studio).port;
+        if (state.phones) options.port = state.phones->place().port;
+        state.phones.reset();
+        state.phones = std::make_unique<BallotProcess>(options);
+        log_line(LogLevel::info, "phones: " + url_of(state.phones->place()));
+        keep_presenting_settings(studio);
+    } catch (const std::exception& error) {
+        state.phones_problem = error.what();
+        state.qr_projected = false;
+    }
+    read_seats(studio, true);
+}
+
+void watch_phones(Studio& studio) {
+    PresentingState& state = presenting(studio);
+    if (!state.phones || state.phones->running()) return;
+    serve_phones(studio, true);
+    if (!state.phones) return;
+    notify(studio,
+           {Notice::Level::warning,
+            "The phones' server had ended; it was started again.",
+            "No vote is lost.",
+            "",
+            studio.now_s + 15.0});
+}
+
+std::string time_in_words(double seconds) {
+    const int whole = static_cast<int>(std::ceil(seconds - 1e-6));
+    return whole < 60 ? fmt::format("{} s", whole)
+                      : fmt::format("{}:{:02}", whole / 60, whole % 60);
+}
+
+}  // namespace livery

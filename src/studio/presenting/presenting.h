@@ -1,0 +1,140 @@
+// A vote as the operator runs it: looks are frozen, shown by the presentation's state machine,
+// voted on and locked. What is remembered between frames, and what needs no projector.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "evaluation/ballot_process.h"
+#include "evaluation/ballots.h"
+#include "live/projector_setup.h"
+#include "projection/projector_screen.h"
+#include "studio/presenting/frames_folder.h"
+#include "studio/studio.h"
+
+namespace livery {
+
+/// How the next round is presented; kept with the user's settings.
+struct PresentingSettings {
+    PresentationTimes times;
+    bool waves = false;       ///< else successive passes
+    int passes = 0;           ///< rows of the Williams square; 0: all
+    int evaluators = 10;      ///< in waves
+    int wave_size = 3;        ///< the most at once
+    std::optional<int> seed;  ///< none: drawn anew for each round
+    std::string network = "lo";
+    int port = kBallotPort;  ///< 0: any that is free
+    bool operator==(const PresentingSettings&) const = default;
+};
+
+/// The order in which the looks of a round would be shown.
+std::vector<std::vector<int>> sittings_of(const PresentingSettings& settings,
+                                          int designs,
+                                          int seed);
+
+/// Looks that are being rendered for a round, one after the other.
+struct Freezing {
+    std::vector<int> looks;
+    RoundSetup setup;
+    std::shared_ptr<const ProjectorSetup> projector;
+    std::uint64_t asked = 0;  ///< the frame of the look under way; 0: not asked for yet
+    VoteFrames frames;
+    std::vector<double> luminances;      ///< of the looks, as wanted
+    std::shared_ptr<const ImageF> last;  ///< what of the picture is covered
+    bool kept_frozen = false;            ///< the projector was frozen before
+    bool writing = false;
+};
+
+/// The round that is presented, voted on or locked.
+struct PresentedRound {
+    Round round;
+    PresentationPlan plan;
+    PresentationState state;
+    VoteFrames frames;                    ///< empty: still being loaded, or not what was frozen
+    Image8 lit;                           ///< pixels that any of them lights
+    std::optional<PixelRectangle> place;  ///< for code and time; none: no room
+};
+
+struct PresentingState {
+    bool settings_read = false;
+    PresentingSettings settings;
+    bool begin_wanted = false;  ///< the panel's button was pressed
+    std::vector<int> wanted_looks;
+    bool give_up_wanted = false;  ///< freezing
+    std::optional<Freezing> freezing;
+    std::optional<PresentedRound> presented;
+    std::string problem;  ///< why what should be seen is not
+    bool asking_to_abort = false, asking_to_lock = false;
+
+    // Who has joined and voted, never for what.
+    std::vector<Seat> seats;
+    std::vector<int> voted;
+    std::optional<Invitation> invitation;
+    double seats_read_s = -1.0;
+
+    // The phones' server.
+    std::unique_ptr<BallotProcess> phones;
+    std::string phones_problem;
+    bool qr_projected = false;
+
+    // On the projector and on the stage.
+    std::shared_ptr<const ProjectorPicture> picture;
+    std::string picture_key;  ///< what it shows; empty: frames as usual
+
+    // What a locked round says, by the statistics.
+    int verdict_round = 0;
+    std::string verdict;
+};
+
+PresentingState& presenting(Studio& studio);
+const PresentingState& presenting(const Studio& studio);
+
+/// Read once from the user's settings.
+PresentingSettings& presenting_settings(Studio& studio);
+void keep_presenting_settings(Studio& studio);
+
+/// Which session a round's looks are of; empty: one that is not saved.
+std::string session_name(const Studio& studio);
+
+/// A round is frozen, presented, voted on or locked.
+bool is_presenting(const Studio& studio);
+/// Why nothing may be edited now, in a sentence; empty: it may.
+std::string why_no_editing(const Studio& studio);
+/// Tells so; true when nothing may be edited.
+bool refuse_editing(Studio& studio);
+
+/// The phase of the bar.
+PresentationPhase phase_of(const Studio& studio);
+/// Nothing while no look is shown under its code.
+std::optional<int> code_on_show(const Studio& studio);
+
+/// Sends an event to the state machine: what changes is in the ballots' log before it is to be
+/// seen. What the store refuses is told, and nothing changes then.
+void send(Studio& studio, PresentationEvent event);
+
+/// After the program has come back: a round of this session that was under way goes on, paused.
+void find_presented_round(Studio& studio);
+/// Takes a round over: its frames are read and checked on the background thread.
+void take_round(Studio& studio, Round round, PresentationPlan plan, PresentationState state);
+
+/// What phones and other programs did meanwhile; reads at most twice a second.
+void read_seats(Studio& studio, bool now = false);
+
+/// Starts the phones' server, or ends it; told in `phones_problem`.
+void serve_phones(Studio& studio, bool on);
+/// Restarts a server that has ended by itself.
+void watch_phones(Studio& studio);
+
+/// "2:05", "9 s".
+std::string time_in_words(double seconds);
+
+// Drawing; only with a window.
+void draw_presentation_setup(Studio& studio, const std::vector<int>& looks);
+void draw_presented_round(Studio& studio);
+void draw_phones(Studio& studio);
+void draw_seats(Studio& studio);
+void draw_verdict(Studio& studio, const Round& round);
+
+}  // namespace livery

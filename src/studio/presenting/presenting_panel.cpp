@@ -1,0 +1,388 @@
+// The ballot panel's parts of a presented vote: how it will be shown, who has voted, the phones.
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "core/error.h"
+#include "evaluation/network_interfaces.h"
+#include "evaluation/presentation_order.h"
+#include "evaluation/qr_code.h"
+#include "evaluation/statistics/vote_counts.h"
+#include "evaluation/statistics/vote_statistics.h"
+#include "studio/kit/theme.h"
+#include "studio/kit/ui_map.h"
+#include "studio/kit/widgets.h"
+#include "studio/kit/words.h"
+#include "studio/presenting/presenting.h"
+
+namespace livery {
+
+namespace {
+
+void seconds_field(Studio& studio, const char* name, double& value, float width, const char* help) {
+    ImGui::SetNextItemWidth(width);
+    ImGui::PushID(name);
+    double typed = value;
+    ImGui::InputDouble("##s", &typed, 0.0, 0.0, "%.4g s");
+    if (ImGui::IsItemDeactivatedAfterEdit()) {
+        value = std::clamp(typed, 0.2, 3600.0);
+        keep_presenting_settings(studio);
+    }
+    ImGui::PopID();
+    name_last_item(name);
+    tooltip(help);
+}
+
+void times_row(Studio& studio, PresentationTimes& times) {
+    row_label("White, look, grey");
+    const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
+    const float width = std::floor((ImGui::GetContentRegionAvail().x - 2.0f * gap) / 3.0f);
+    seconds_field(studio,
+                  "present:adapt",
+                  times.adapt_s,
+                  width,
+                  "Neutral white first: eyes get used to it in two minutes.");
+    ImGui::SameLine(0.0f, gap);
+    seconds_field(studio, "present:look", times.look_s, width, "How long each look is shown.");
+    ImGui::SameLine(0.0f, gap);
+    seconds_field(studio,
+                  "present:grey",
+                  times.grey_s,
+                  width,
+                  "Between two looks, as bright as they are in the mean; at least 4 s.");
+}
+
+void count_row(Studio& studio,
+               const char* label,
+               const char* name,
+               int& value,
+               int low,
+               int high,
+               const char* help) {
+    row_label(label);
+    ImGui::SetNextItemWidth(-1.0f);
+    ImGui::PushID(name);
+    int typed = value;
+    if (ImGui::InputInt("##n", &typed)) {
+        value = std::clamp(typed, low, high);
+        keep_presenting_settings(studio);
+    }
+    ImGui::PopID();
+    name_last_item(name);
+    tooltip(help);
+}
+
+/// How the looks would be shown, in words; empty where they could not.
+std::string plan_in_words(const PresentingSettings& settings, int designs) {
+    if (designs < 2 || designs > kMostDesigns) return "";
+    PresentationPlan plan;
+    plan.sittings = sittings_of(settings, designs, settings.seed.value_or(1));
+    plan.times = settings.times;
+    std::size_t shown = 0;
+    for (const auto& sitting : plan.sittings) shown += sitting.size();
+    const auto rows = williams_rows(designs).size();
+    const auto passes = shown / static_cast<std::size_t>(designs);
+    const std::string fair = passes % rows == 0
+                                 ? "each look as often in each place and after each other one"
+                                 : fmt::format("a multiple of {} would be balanced", rows);
+    return fmt::format(
+        "{} looks shown, {} {}, {}: {}.",
+        shown,
+        passes,
+        settings.waves ? (passes == 1 ? "wave" : "waves") : (passes == 1 ? "pass" : "passes"),
+        time_in_words(duration_s(plan)),
+        fair);
+}
+
+void draw_qr_picture(const std::string& text) {
+    const QrCode code = qr_code(text);
+    const int modules = code.size + 2 * kQrQuietZone;
+    const float room = std::min(ImGui::GetContentRegionAvail().x, em(11.0f));
+    const float scale = std::max(1.0f, std::floor(room / static_cast<float>(modules)));
+    const float side = scale * static_cast<float>(modules);
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const ImVec2 low(std::floor(corner.x), std::floor(corner.y));
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddRectFilled(low, {low.x + side, low.y + side}, IM_COL32(235, 235, 235, 255));
+    for (int y = 0; y < code.size; ++y) {
+        for (int x = 0; x < code.size; ++x) {
+            if (!code.at(x, y)) continue;
+            const ImVec2 from(low.x + scale * static_cast<float>(x + kQrQuietZone),
+                              low.y + scale * static_cast<float>(y + kQrQuietZone));
+            list.AddRectFilled(from, {from.x + scale, from.y + scale}, IM_COL32(0, 0, 0, 255));
+        }
+    }
+    ImGui::Dummy({side, side});
+    name_last_item("phones:qr");
+}
+
+void draw_network_choice(Studio& studio) {
+    PresentingSettings& settings = presenting_settings(studio);
+    row_label("Network", 0.3f);
+    ImGui::SetNextItemWidth(-1.0f);
+    const bool open = ImGui::BeginCombo("##network", settings.network.c_str());
+    name_last_item("phones:network");
+    tooltip("Where phones reach the ballots; lo is this machine alone.");
+    if (!open) return;
+    std::vector<NetworkInterface> networks;
+    try {
+        networks = network_interfaces();
+    } catch (const std::exception& error) {
+        presenting(studio).phones_problem = error.what();
+    }
+    for (const NetworkInterface& network : networks) {
+        const std::string label =
+            fmt::format("{}   {}{}",
+                        network.name,
+                        network.address,
+                        network.name == "lo" ? "   (this machine alone)" : "");
+        if (ImGui::Selectable(label.c_str(), network.name == settings.network)) {
+            settings.network = network.name;
+            keep_presenting_settings(studio);
+        }
+        name_last_item("phones:network:" + network.name);
+    }
+    ImGui::EndCombo();
+}
+
+/// Where it listens and who can see votes, as the window's user can change it.
+std::string words_of(const BallotServerPlace& place) {
+    const std::string where = "It listens on " + place.interface + " (" + place.address + ").";
+    if (place.address.starts_with("127.")) {
+        return where + " Only this machine reaches it: choose a network for phones.";
+    }
+    return where + (place.tls ? " What is sent is encrypted."
+                              : " This is plain HTTP: whoever can listen to that network can see "
+                                "votes and take seats.");
+}
+
+}  // namespace
+
+void draw_presentation_setup(Studio& studio, const std::vector<int>& looks) {
+    PresentingSettings& settings = presenting_settings(studio);
+    heading("Presentation");
+    const int mode = settings.waves ? 1 : 0;
+    row_label("Order");
+    ImGui::SetNextItemWidth(-1.0f);
+    int chosen = mode;
+    ImGui::Combo("##order", &chosen, "all see every pass\0waves of people\0");
+    name_last_item("present:order");
+    tooltip("One projector shows everyone one order: fair orders come one after the other.");
+    if (chosen != mode) {
+        settings.waves = chosen == 1;
+        keep_presenting_settings(studio);
+    }
+    if (settings.waves) {
+        count_row(studio,
+                  "Evaluators",
+                  "present:evaluators",
+                  settings.evaluators,
+                  1,
+                  kMostEvaluators,
+                  "All that will come.");
+        count_row(studio,
+                  "At once",
+                  "present:wave",
+                  settings.wave_size,
+                  1,
+                  kMostEvaluators,
+                  "The most that sit before the mock-up together: two or three.");
+    } else {
+        count_row(studio,
+                  "Passes (0: all)",
+                  "present:passes",
+                  settings.passes,
+                  0,
+                  52,
+                  "How many orders everybody sees, one after the other.");
+    }
+    times_row(studio, settings.times);
+    const std::string words = plan_in_words(settings, static_cast<int>(looks.size()));
+    if (!words.empty()) dim_text(words);
+    if (looks.size() > static_cast<std::size_t>(kMostDesigns)) {
+        warning_text(fmt::format("At most {} looks can be presented.", kMostDesigns));
+    }
+    begin_disabled(words.empty());
+    if (ImGui::Button("Present",
+                      {std::floor(0.58f * ImGui::GetContentRegionAvail().x), em(2.4f)})) {
+        presenting(studio).begin_wanted = true;
+        presenting(studio).wanted_looks = looks;
+    }
+    name_last_item("ballot:present");
+    end_disabled();
+    tooltip(
+        "Freezes the looks, then shows them under their codes. Nothing can be changed until the "
+        "round is locked or aborted.");
+}
+
+void draw_seats(Studio& studio) {
+    const PresentingState& state = presenting(studio);
+    const bool votes = state.presented &&
+                       state.presented->state.phase != PresentationPhase::adapting &&
+                       state.presented->state.phase != PresentationPhase::presenting;
+    if (state.seats.empty()) return dim_text("Nobody has joined yet.");
+    ImGui::Text("%s",
+                (votes ? fmt::format("{} of {} have voted", state.voted.size(), state.seats.size())
+                       : fmt::format("{} have joined", state.seats.size()))
+                    .c_str());
+    name_last_item("vote:seats");
+    const float side = em(2.2f), gap = em(0.25f);
+    const float right = ImGui::GetCursorScreenPos().x + ImGui::GetContentRegionAvail().x;
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    ImVec2 at = ImGui::GetCursorScreenPos();
+    const float left = at.x;
+    for (const Seat& seat : state.seats) {
+        if (at.x + side > right) at = {left, at.y + side + gap};
+        const bool voted =
+            std::find(state.voted.begin(), state.voted.end(), seat.number) != state.voted.end();
+        const ImVec2 high(at.x + side, at.y + side);
+        list.AddRectFilled(
+            at, high, ImGui::GetColorU32(voted ? colours::good : colours::raised), em(0.2f));
+        const std::string number = fmt::format("{}", seat.number);
+        const ImVec2 size = ImGui::CalcTextSize(number.c_str());
+        list.AddText(
+            {std::round(0.5f * (at.x + high.x - size.x)),
+             std::round(0.5f * (at.y + high.y - size.y))},
+            ImGui::GetColorU32(voted ? ImVec4(0.05f, 0.05f, 0.05f, 1.0f) : colours::dim_text),
+            number.c_str());
+        ImGui::SetCursorScreenPos(at);
+        ImGui::Dummy({side, side});
+        name_last_item(fmt::format("vote:seat:{}", seat.number));
+        tooltip((seat.name.empty() ? fmt::format("Seat {}, a phone", seat.number) : seat.name) +
+                (voted   ? ": has voted."
+                 : votes ? ": has not voted yet."
+                         : "."));
+        at.x += side + gap;
+    }
+    ImGui::SetCursorScreenPos({left, at.y + side + gap});
+    ImGui::Dummy({0.0f, 0.0f});
+}
+
+void draw_phones(Studio& studio) {
+    PresentingState& state = presenting(studio);
+    heading("Phones");
+    if (!state.phones) {
+        draw_network_choice(studio);
+        if (ImGui::Button("Let phones vote", {-FLT_MIN, 0.0f})) serve_phones(studio, true);
+        name_last_item("phones:start");
+        tooltip("Starts the phones' page on that network. Off until it is pressed.");
+    } else {
+        const BallotServerPlace& place = state.phones->place();
+        dim_text(words_of(place));
+        name_last_item("phones:words");
+        const bool joins = !state.presented;
+        if (state.invitation && joins) {
+            try {
+                draw_qr_picture(join_url(place, state.invitation->token));
+            } catch (const std::exception& error) {
+                warning_text(error.what());
+            }
+            ImGui::SameLine();
+            ImGui::BeginGroup();
+            const std::string& code = state.invitation->code;
+            const std::size_t half = code.size() / 2;
+            ImGui::PushFont(large_font());
+            ImGui::TextUnformatted((code.substr(0, half) + " " + code.substr(half)).c_str());
+            ImGui::PopFont();
+            name_last_item("phones:code");
+            dim_text(url_of(place));
+            ImGui::Checkbox("Project it", &state.qr_projected);
+            name_last_item("phones:project-qr");
+            tooltip("Shows the QR code beside the mock-up, which is grey meanwhile.");
+            ImGui::EndGroup();
+        } else if (!joins) {
+            dim_text(
+                "Joining is closed while a round is open: who came now would not have seen every "
+                "look.");
+        }
+        if (ImGui::Button("Stop", {-FLT_MIN, 0.0f})) serve_phones(studio, false);
+        name_last_item("phones:stop");
+        tooltip("Phones no longer reach the ballots; votes that were confirmed stay.");
+    }
+    if (!state.phones_problem.empty()) {
+        warning_text(state.phones_problem);
+        name_last_item("phones:problem");
+    }
+}
+
+void draw_presented_round(Studio& studio) {
+    const PresentingState& state = presenting(studio);
+    if (state.freezing) {
+        heading("Freezing the looks");
+        return dim_text(
+            "Each is rendered once and kept with its hash; these pictures and no others are "
+            "shown.");
+    }
+    if (!state.presented) return;
+    const PresentedRound& presented = *state.presented;
+    heading(fmt::format("Round {}", presented.round.id).c_str());
+    dim_text(fmt::format("Seed {}. Frames in {}.", presented.round.seed, presented.plan.folder));
+    if (!state.problem.empty()) {
+        warning_text(state.problem);
+        name_last_item("vote:problem");
+    }
+    if (!presented.round.closed) {
+        std::string order;
+        const auto& sitting =
+            presented.plan.sittings[static_cast<std::size_t>(presented.state.sitting)];
+        for (const int design : sitting) {
+            order += fmt::format("{}{}",
+                                 order.empty() ? "" : "  ",
+                                 presented.round.codes[static_cast<std::size_t>(design)]);
+        }
+        heading("Order");
+        ImGui::TextWrapped("%s", order.c_str());
+        name_last_item("vote:order");
+    }
+    heading("Evaluators");
+    draw_seats(studio);
+}
+
+void draw_verdict(Studio& studio, const Round& round) {
+    PresentingState& state = presenting(studio);
+    if (state.verdict_round != round.id) {
+        state.verdict_round = round.id;
+        state.verdict.clear();
+        if (!studio.background || !studio.ballots) return;
+        try {
+            const auto ballots = std::make_shared<std::vector<RankedBallot>>();
+            bool least = round.designs.size() > 2 && round.asks_least;
+            for (const CastBallot& cast : studio.ballots->ballots(round.id)) {
+                ballots->push_back(
+                    {cast.choices.best, cast.choices.second, cast.choices.least.value_or(-1)});
+                least = least && cast.choices.least.has_value();
+            }
+            studio.background->run(
+                [&studio, ballots, least, round](const Progress&) -> Background::Then {
+                    const VoteCounts counts = counts_of(*ballots,
+                                                        static_cast<int>(round.designs.size()),
+                                                        least && !ballots->empty());
+                    const auto words = vote_statistics(counts,
+                                                       round.designs,
+                                                       static_cast<std::uint64_t>(round.seed),
+                                                       ballots.get())
+                                           .words;
+                    return [&studio, words, id = round.id] {
+                        if (presenting(studio).verdict_round == id)
+                            presenting(studio).verdict = words;
+                    };
+                },
+                [&studio](std::exception_ptr why) {
+                    notify_failure(studio, "The verdict could not be found.", why);
+                });
+        } catch (const std::exception& error) {
+            state.verdict = error.what();
+        }
+    }
+    if (state.verdict.empty()) return;
+    ImGui::PushFont(heading_font());
+    ImGui::TextWrapped("%s", sentence(state.verdict).c_str());
+    ImGui::PopFont();
+    name_last_item("ballot:verdict");
+}
+
+}  // namespace livery

@@ -1,0 +1,368 @@
+#include "studio/presenting/vote_mode.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <utility>
+
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/log.h"
+#include "core/utc.h"
+#include "evaluation/qr_code.h"
+#include "live/frame_pictures.h"
+#include "live/vote_frames.h"
+#include "projection/picture_port.h"
+#include "studio/presenting/presenting.h"
+#include "studio/presenting/surround.h"
+#include "studio/projector_control.h"
+#include "studio/results.h"
+#include "studio/window/actions.h"
+#include "studio/window/shell.h"
+#include "studio/window/wiring.h"
+
+namespace livery {
+
+namespace {
+
+using Phase = PresentationPhase;
+using Event = PresentationEvent;
+
+constexpr double kBarStep_s = 0.25, kLook_s = 0.5;
+constexpr int kBarSteps = 40;
+
+int drawn_seed() {
+    std::random_device device;
+    return static_cast<int>(device() & 0x3fffffffu);
+}
+
+void show_what_is_due(Shell& shell);
+
+// --- freezing ---
+
+void begin_freezing(Shell& shell) {
+    Studio& studio = shell.studio;
+    PresentingState& state = presenting(studio);
+    const PresentingSettings& settings = presenting_settings(studio);
+    if (!studio.ballots || is_presenting(studio)) return;
+    if (const auto open = studio.ballots->open_round()) {
+        throw Refused(fmt::format("round {} is still open", open->id),
+                      "close it before the next one is presented");
+    }
+    if (!studio.setup)
+        throw Refused("there is no projector to draw for", "wait for it, or pick one");
+    Freezing freezing;
+    freezing.looks = state.wanted_looks;
+    RoundSetup& setup = freezing.setup;
+    for (const int id : freezing.looks) {
+        const SessionLook* look = find_look(studio.session.document(), id);
+        if (look) setup.designs.push_back(look->look.name);
+    }
+    setup.presenting = true;
+    setup.seed = settings.seed.value_or(drawn_seed());
+    setup.calibration_id = studio.setup->calibration ? studio.setup->calibration->id : "";
+    PresentationPlan& plan = setup.plan.emplace();
+    plan.sittings = sittings_of(settings, static_cast<int>(setup.designs.size()), setup.seed);
+    plan.times = settings.times;
+    plan.session = session_name(studio);
+    check_plan(plan, static_cast<int>(setup.designs.size()));
+    freezing.projector = studio.setup;
+    freezing.kept_frozen = is_frozen(shell);
+    keep_presenting_settings(studio);
+
+    // The audience sees nothing of it.
+    show_signal_test(shell, false);
+    stop_trying(studio);
+    studio.wiping = studio.showing_b = false;
+    studio.glowing_part.reset();
+    set_frozen(shell, true);
+    state.qr_projected = false;
+    state.problem.clear();
+    state.freezing = std::move(freezing);
+    log_line(LogLevel::info, fmt::format("freezing {} looks", state.wanted_looks.size()));
+}
+
+void end_freezing(Shell& shell) {
+    PresentingState& state = presenting(shell.studio);
+    if (!state.freezing) return;
+    set_frozen(shell, state.freezing->kept_frozen);
+    state.freezing.reset();
+    shell.asked_frame.reset();
+}
+
+void give_up_freezing(Shell& shell, std::exception_ptr why) {
+    end_freezing(shell);
+    notify_failure(shell.studio, "The looks could not be frozen; nothing is presented.", why);
+}
+
+/// White, the grey of all looks, and one for each two that follow one another: each as bright as
+/// the mean of what its looks want.
+VoteFrames with_greys(const Freezing& freezing) {
+    VoteFrames frames = freezing.frames;
+    const auto neutral = [&](double luminance) {
+        return std::make_shared<const Image8>(
+            neutral_drive(*freezing.last, luminance, *freezing.projector));
+    };
+    const auto& luminances = freezing.luminances;
+    const double sum = std::accumulate(luminances.begin(), luminances.end(), 0.0);
+    frames[kWhiteFrame] = neutral(1.0);
+    frames[kRestFrame] = neutral(sum / static_cast<double>(luminances.size()));
+    for (const auto& sitting : freezing.setup.plan->sittings) {
+        for (std::size_t k = 1; k < sitting.size(); ++k) {
+            const std::string name = frame_of_grey(sitting[k - 1], sitting[k]);
+            if (frames.contains(name)) continue;
+            frames[name] = neutral(0.5 * (luminances[static_cast<std::size_t>(sitting[k - 1])] +
+                                          luminances[static_cast<std::size_t>(sitting[k])]));
+        }
+    }
+    return frames;
+}
+
+std::string folder_name(const RoundSetup& setup) {
+    std::string name = utc_now_ms();
+    std::replace(name.begin(), name.end(), ':', '-');
+    return fmt::format("frames/{}-{:08x}", name, static_cast<unsigned>(setup.seed));
+}
+
+/// Everything is rendered: to the disk, and then the round begins.
+void write_and_begin(Shell& shell) {
+    Studio& studio = shell.studio;
+    const auto freezing = std::make_shared<Freezing>(*presenting(studio).freezing);
+    presenting(studio).freezing->writing = true;
+    freezing->setup.plan->folder = folder_name(freezing->setup);
+    const auto folder = studio.ballots->file().parent_path() / freezing->setup.plan->folder;
+    studio.background->run(
+        [&shell, freezing, folder](const Progress&) -> Background::Then {
+            const VoteFrames frames = with_greys(*freezing);
+            write_vote_frames(folder, frames);
+            for (const auto& [name, frame] : frames) {
+                freezing->setup.plan->frames[name] = hash_of(*frame);
+            }
+            return [&shell, freezing] {
+                Studio& there = shell.studio;
+                if (!presenting(there).freezing) return;  // broken off meanwhile
+                try {
+                    const RoundSetup& setup = freezing->setup;
+                    const int id = there.ballots->open_round(setup);
+                    const auto state = after(*setup.plan, {}, Event::present, there.now_s);
+                    there.ballots->record_step(id, state, Event::present);
+                    presenting(there).freezing.reset();
+                    take_round(there, there.ballots->open_round().value(), *setup.plan, state);
+                    // Dark until its frames are there; the newest look is nobody's business.
+                    show_what_is_due(shell);
+                    set_frozen(shell, false);
+                    if (is_black(shell)) set_black(shell, false);
+                } catch (const std::exception&) {
+                    give_up_freezing(shell, std::current_exception());
+                }
+            };
+        },
+        [&shell](std::exception_ptr why) { give_up_freezing(shell, why); });
+}
+
+void go_on_freezing(Shell& shell) {
+    Studio& studio = shell.studio;
+    Freezing& freezing = *presenting(studio).freezing;
+    if (freezing.writing) return;
+    const std::size_t done = freezing.frames.size();
+    if (freezing.asked == 0) {
+        // Files of its paints may have to be read first.
+        freezing.asked = ask_for_look(shell, freezing.looks[done]).value_or(0);
+        return;
+    }
+    if (const auto newest = shell.results->newest_frame();
+        newest && newest->number == freezing.asked && !newest->problem.empty()) {
+        throw std::runtime_error(newest->problem);
+    }
+    const auto& frame = studio.frame;
+    const bool all_there =
+        frame && frame->number == freezing.asked && frame->unfinished.empty() && frame->pictures;
+    if (!all_there) return;
+    auto wanted = radiance_of(*frame->pictures);
+    freezing.luminances.push_back(mean_luminance(*wanted));
+    freezing.frames[frame_of_look(static_cast<int>(done))] = drive_of(*frame->pictures);
+    freezing.last = std::move(wanted);
+    freezing.asked = 0;
+    if (done + 1 == freezing.looks.size()) write_and_begin(shell);
+}
+
+// --- what is to be seen ---
+
+Image8 with_surround(const PresentedRound& presented, Image8 frame, double now_s) {
+    const PresentationState& state = presented.state;
+    if (!presented.place || state.blank) return frame;
+    std::optional<int> number;
+    std::optional<double> fraction;
+    const double step = step_s(presented.plan, state);
+    const double left = left_s(state, now_s);
+    if (const int design = design_of(presented.plan, state); design >= 0) {
+        number = presented.round.codes.at(static_cast<std::size_t>(design));
+    } else if (state.phase == Phase::adapting) {
+        number = static_cast<int>(std::ceil(left - 1e-6));
+    }
+    if (step < kWaits && step > 0.0) fraction = std::round(kBarSteps * left / step) / kBarSteps;
+    draw_surround(frame, *presented.place, number, fraction);
+    return frame;
+}
+
+/// All that a picture depends on.
+std::string key_of(const PresentedRound& presented, const std::string& frame, double now_s) {
+    const PresentationState& state = presented.state;
+    const double step = step_s(presented.plan, state), left = left_s(state, now_s);
+    const double bar = step < kWaits && step > 0.0 ? std::round(kBarSteps * left / step) : -1.0;
+    const double seconds = state.phase == Phase::adapting ? std::ceil(left - 1e-6) : 0.0;
+    return fmt::format("{} {} {} {} {} {}",
+                       presented.round.id,
+                       frame,
+                       design_of(presented.plan, state),
+                       state.blank,
+                       bar,
+                       seconds);
+}
+
+/// Dark until the frames are loaded: never a look that was not frozen.
+Image8 nothing(const Shell& shell) {
+    const auto& setup = shell.studio.setup;
+    return setup ? Image8(setup->view.width, setup->view.height, 3) : Image8(1280, 800, 3);
+}
+
+void show(Shell& shell, const std::string& key, const Image8& picture) {
+    PresentingState& state = presenting(shell.studio);
+    state.picture = projector_picture(picture, next_picture_number());
+    state.picture_key = key;
+    shell.results->show_instead(state.picture);
+}
+
+void show_frames_again(Shell& shell) {
+    PresentingState& state = presenting(shell.studio);
+    if (state.picture_key.empty()) return;
+    state.picture_key.clear();
+    state.picture.reset();
+    shell.results->show_instead(nullptr);
+    shell.asked_frame.reset();
+}
+
+/// For people to join, before a round: neutral grey on the mock-up, the code beside it.
+void show_qr_code(Shell& shell) {
+    Studio& studio = shell.studio;
+    PresentingState& state = presenting(studio);
+    if (!state.invitation || !studio.frame || !studio.frame->pictures || !studio.setup) return;
+    const std::string key = "qr " + state.invitation->token;
+    if (state.picture_key == key) return;
+    const auto wanted = radiance_of(*studio.frame->pictures);
+    Image8 picture = neutral_drive(*wanted, mean_luminance(*wanted), *studio.setup);
+    Image8 lit;
+    add_lit_pixels(picture, lit);
+    const auto place = free_place(lit, 1.0);
+    try {
+        if (!place) throw Refused("there is no room for it beside the mock-up", "");
+        draw_qr_code(
+            picture, *place, qr_code(join_url(state.phones->place(), state.invitation->token)));
+        show(shell, key, picture);
+    } catch (const std::exception& error) {
+        state.qr_projected = false;
+        notify(studio,
+               {Notice::Level::warning,
+                "The QR code is not projected.",
+                error.what(),
+                "It is in the panel; show it on another screen."});
+    }
+}
+
+void show_what_is_due(Shell& shell) {
+    Studio& studio = shell.studio;
+    PresentingState& state = presenting(studio);
+    if (!state.presented) {
+        if (state.freezing) return;
+        if (state.qr_projected && state.phones) return show_qr_code(shell);
+        return show_frames_again(shell);
+    }
+    const PresentedRound& presented = *state.presented;
+    const std::string frame = frame_of(presented.plan, presented.state);
+    const auto found = presented.frames.find(frame);
+    const std::string key = found == presented.frames.end()
+                                ? std::string("dark")
+                                : key_of(presented, frame, studio.now_s);
+    if (state.picture_key == key) return;
+    show(shell,
+         key,
+         found == presented.frames.end() ? nothing(shell)
+                                         : with_surround(presented, *found->second, studio.now_s));
+}
+
+/// People must not be shown what no projector shows.
+void pause_without_projector(Shell& shell) {
+    Studio& studio = shell.studio;
+    const PresentingState& state = presenting(studio);
+    if (!studio.projector || !state.presented || !is_running(state.presented->state)) return;
+    if (studio.projector->state() != ProjectorScreen::State::waiting_for_monitor) return;
+    send(studio, Event::pause);
+    notify(studio,
+           {Notice::Level::warning,
+            "The presentation is paused: the projector is gone.",
+            studio.projector->why_waiting(),
+            "Plug it in; Repeat shows this look anew."});
+}
+
+}  // namespace
+
+void step_vote_mode(Shell& shell) {
+    Studio& studio = shell.studio;
+    PresentingState& state = presenting(studio);
+    if (is_presenting(studio)) shell.ballots_open = true;
+    try {
+        if (std::exchange(state.begin_wanted, false)) begin_freezing(shell);
+        if (std::exchange(state.give_up_wanted, false)) end_freezing(shell);
+        if (state.freezing) go_on_freezing(shell);
+    } catch (const std::exception&) {
+        give_up_freezing(shell, std::current_exception());
+    }
+    watch_phones(studio);
+    if (state.phones || state.presented) read_seats(studio);
+    pause_without_projector(shell);
+    if (state.presented) {
+        PresentationState& clock = state.presented->state;
+        // Until it can be seen no time goes by.
+        if (state.presented->frames.empty()) clock.at_s = studio.now_s;
+        send(studio, Event::tick);
+    }
+    show_what_is_due(shell);
+}
+
+bool vote_mode_key(Shell& shell, const KeyChord& chord, bool repeated) {
+    static constexpr std::pair<int, Event> keys[] = {{GLFW_KEY_RIGHT, Event::next},
+                                                     {GLFW_KEY_DOWN, Event::next},
+                                                     {GLFW_KEY_PAGE_DOWN, Event::next},
+                                                     {GLFW_KEY_LEFT, Event::back},
+                                                     {GLFW_KEY_UP, Event::back},
+                                                     {GLFW_KEY_PAGE_UP, Event::back},
+                                                     {GLFW_KEY_SPACE, Event::pause},
+                                                     {GLFW_KEY_R, Event::repeat},
+                                                     {GLFW_KEY_B, Event::blank},
+                                                     {GLFW_KEY_PERIOD, Event::blank}};
+    const Phase phase = phase_of(shell.studio);
+    const bool shows = phase == Phase::adapting || phase == Phase::presenting;
+    if (chord.ctrl || chord.shift || !shows) return false;
+    for (const auto& [key, event] : keys) {
+        if (key != chord.key) continue;
+        if (!repeated) send(shell.studio, event);
+        return true;
+    }
+    return false;
+}
+
+double next_vote_change_s(const Shell& shell) {
+    const PresentingState& state = presenting(shell.studio);
+    const double now_s = shell.studio.now_s;
+    if (state.freezing) return now_s + 0.05;
+    if (state.presented && is_running(state.presented->state)) {
+        const PresentationState& step = state.presented->state;
+        return std::min(step.at_s + step.left_s + 0.001, now_s + kBarStep_s);
+    }
+    return state.presented || state.phones ? now_s + kLook_s : 0.0;
+}
+
+}  // namespace livery
