@@ -72,7 +72,8 @@ struct SpectralWeight {
 struct Refracted {
     glm::dvec3 travel{0.0};  ///< along which it goes inside
     double distance = 0.0;
-    double flux = 0.0;  ///< per unit irradiance outside, before the medium takes its share
+    double flux = 0.0;       ///< per unit irradiance outside, before the medium takes its share
+    glm::dvec3 normal{0.0};  ///< of the boundary where it enters
 };
 
 std::optional<Refracted> refracted_to(const glm::dvec3& point,
@@ -80,11 +81,15 @@ std::optional<Refracted> refracted_to(const glm::dvec3& point,
                                       const WalkMedium& medium,
                                       const Boundary& boundary,
                                       const WalkLights& lights,
+                                      const glm::dvec3& guess,
                                       double farthest) {
     constexpr int kSteps = 8;
     constexpr double kNear = 1e-4;
-    // As if it met the boundary head on, then with the normal that was found, and so on
+    // As if it met the boundary where the last one did, then with the normal that was found, ...
     glm::dvec3 travel = -light.direction;
+    if (glm::dot(light.direction, guess) > 0.0) {
+        travel = refracted(-light.direction, guess, medium.eta).value_or(travel);
+    }
     for (int step = 0; step < kSteps; ++step) {
         const auto at = boundary.first(point, -travel, farthest);
         if (!at || !at->lets_out) return std::nullopt;
@@ -112,8 +117,10 @@ std::optional<Refracted> refracted_to(const glm::dvec3& point,
         const double lit = kSide_mm * kSide_mm * glm::dot(light.direction, at->geometric_normal);
         constexpr double kMostFocused = 50.0;
         const double passes = 1.0 - dielectric_reflectance(cosine, medium.eta);
-        return Refracted{
-            travel, at->distance, passes * std::min(lit / std::max(covers, 1e-300), kMostFocused)};
+        return Refracted{travel,
+                         at->distance,
+                         passes * std::min(lit / std::max(covers, 1e-300), kMostFocused),
+                         at->normal};
     }
     return std::nullopt;
 }
@@ -169,9 +176,10 @@ WalkResult walk_inside(const WalkMedium& medium,
                        const std::function<void(const glm::dvec3&, const glm::dvec3&)>& add,
                        Random& random) {
     constexpr double kEverywhere = 1e30;
-    // Of what is farther the medium leaves less than 1e-7
-    constexpr double kDark = 16.0;
+    // Of what is farther the medium leaves less than 1e-4
+    constexpr double kDark = 9.5;
     SpectralWeight weight;
+    glm::dvec3 last_normal = -direction;
     const double sigma = medium.sigma_t[static_cast<int>(random.below(3))];
     const double least = std::min({medium.sigma_t.x, medium.sigma_t.y, medium.sigma_t.z});
     const double seen = least > 0.0 ? kDark / least : kEverywhere;
@@ -205,8 +213,10 @@ WalkResult walk_inside(const WalkMedium& medium,
         origin += free * direction;
         if (lights) {
             lights->each(random, [&](const ArrivingLight& light) {
-                const auto found = refracted_to(origin, light, medium, boundary, *lights, seen);
+                const auto found =
+                    refracted_to(origin, light, medium, boundary, *lights, last_normal, seen);
                 if (!found) return;
+                last_normal = found->normal;
                 const double turned = phase(medium.g, glm::dot(found->travel, -direction));
                 add(weight.carried * glm::exp(-found->distance * medium.sigma_t) *
                         (found->flux * turned),
