@@ -364,7 +364,7 @@ const ModelInfo& translucent_info() {
                                    "Translucent",
                                    "A medium that light enters, and leaves somewhere else.",
                                    "a translucent material",
-                                   "no part is translucent",
+                                   "no part is drawn as translucent",
                                    {"microfacet.glsl", "layers.glsl", "ggx.glsl"},
                                    {"alpha"},
                                    Lobe::half_alpha,
@@ -373,7 +373,7 @@ const ModelInfo& translucent_info() {
                                    kReciprocal,
                                    kConserving,
                                    LIVERY_BSDF(ggx, PARAMETERS),
-                                   LIVERY_NUMBERS(GgxPrepared, ggx)};
+                                   LIVERY_NUMBERS(GgxPrepared, ggx_exit)};
     return info;
 }
 
