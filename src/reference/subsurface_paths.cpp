@@ -8,7 +8,7 @@
 #include "appearance/gloss_optics.h"
 #include "appearance/subsurface/translucent_paint.h"
 #include "core/colour.h"
-#include "mesh/closed_part.h"
+#include "reference/closed_part.h"
 #include "reference/part_boundary.h"
 
 namespace livery {

@@ -8,7 +8,7 @@
 #include "appearance/subsurface/translucent_paint.h"
 #include "core/colour.h"
 #include "core/parallel.h"
-#include "mesh/closed_part.h"
+#include "reference/closed_part.h"
 #include "reference/part_boundary.h"
 #include "reference/scenes.h"
 #include "reference/subsurface_walk.h"

@@ -1,4 +1,4 @@
-#include "mesh/closed_part.h"
+#include "reference/closed_part.h"
 
 #include <algorithm>
 
