@@ -71,6 +71,15 @@ FN GgxPrepared ggx_prepare(IN(BsdfParameters) p) {
     return q;
 }
 
+// Over a medium whose light leaves beside where it entered: what the sky's layer holds is what
+// leaves, and lamps see the interface alone.
+FN GgxPrepared ggx_exit_prepare(IN(BsdfParameters) p) {
+    GgxPrepared q = ggx_interface(p);
+    q.diffuse = VEC3(R(0.0));
+    q.sky_diffuse = VEC3(R(1.0)) / (VEC3(R(1.0)) - ggx_interface_average(q));
+    return q;
+}
+
 FN Passage passage_of(IN(GgxPrepared) q, REAL mu) {
     Passage to;
     to.base = ggx_interface_transmission(q, mu);

@@ -9,6 +9,7 @@
 
 #include "appearance/measured/measured_grid.h"
 #include "appearance/model_table.h"
+#include "appearance/subsurface/translucent_paint.h"
 #include "core/colour.h"
 #include "core/paths.h"
 
@@ -71,6 +72,9 @@ To converted(From from, FromOf from_of, ToOf to_of) {
 }  // namespace
 
 f64::BsdfParameters parameters_of_f64(const Material& material) {
+    if (material.model == ReflectanceModel::translucent) {
+        return parameters_of_f64(albedo_paint(material));
+    }
     f64::BsdfParameters p{};
     for (const ParameterInfo& parameter : parameter_table()) {
         glm::dvec3 value = value_of(parameter, material);

@@ -27,10 +27,12 @@ enum class ReflectanceModel {
     ashikhmin_shirley,
     clearcoat,
     car_paint,
-    measured
+    measured,
+    translucent
 };
 
 struct MeasuredPaint;
+struct TranslucentMaterial;
 
 /// Parameters of every model; a model reads its own (parameter_table.h, docs/materials.md). Colours
 /// are linear Rec.709 under D65 and may be signed.
@@ -57,6 +59,9 @@ struct Material {
     /// ReflectanceModel::measured: shared, for materials are copied as values between documents and
     /// threads, and this is a megabyte that nobody changes.
     std::shared_ptr<const MeasuredPaint> measured;
+    /// ReflectanceModel::translucent: what the part is made of, per millimetre of the product. Its
+    /// surface has `alpha`; `diffuse` and `f0` follow from it (albedo_paint()).
+    std::shared_ptr<const TranslucentMaterial> medium;
 
     std::string provenance;
     std::filesystem::path file;
@@ -71,8 +76,8 @@ std::string glint_scale_text(const Material& material);
 /// (MeasuredPaint::problem). One that is not stands in for itself, black, until it is.
 bool is_read(const Material& material);
 
-/// One material file, with what it was measured in. Throws FileError (unknown model or parameter,
-/// out of range).
+/// One material file, or one of a translucent material, with what it was measured in. Throws
+/// FileError (unknown model or parameter, out of range).
 Material read_material_file(const std::filesystem::path& file);
 /// The same of its text; a measured paint is not read yet.
 Material parse_material(const std::string& text, const std::filesystem::path& file);

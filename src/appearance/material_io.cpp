@@ -6,8 +6,10 @@
 #include "appearance/material_json.h"
 #include "appearance/measured/measured_paint.h"
 #include "appearance/model_table.h"
+#include "appearance/subsurface/translucent_paint.h"
 #include "core/error.h"
 #include "core/json.h"
+#include "core/json_ranges.h"
 #include "core/paths.h"
 
 namespace livery {
@@ -71,6 +73,59 @@ void read_measured(const JsonReader& reader, Material& material) {
     material.measured = unread_measured_paint(reader.file().parent_path() / named);
 }
 
+/// Beyond, Fresnel's term of the reflectance models is not an interface's (microfacet.glsl).
+constexpr double kLeastEta = 1.0, kLargestEta = 2.5;
+
+/// One number for all channels, or three.
+glm::dvec3 read_coefficients(const JsonReader& value) {
+    constexpr double kLargest = 1e6;
+    if (value.is_number()) return glm::dvec3(value.number_between(0.0, kLargest));
+    const auto three = numbers_between(value, 3, 0.0, kLargest);
+    return {three[0], three[1], three[2]};
+}
+
+void read_medium(const JsonReader& reader, Material& material) {
+    if (!reader.is_object()) reader.fail(reader.found(), "an object");
+    reader.allow_only({"sigma_a_per_mm", "sigma_s_per_mm", "g", "eta", "alpha"});
+    TranslucentMaterial medium;
+    medium.name = material.name;
+    medium.provenance = material.provenance;
+    medium.sigma_a_per_mm = read_coefficients(reader["sigma_a_per_mm"]);
+    if (reader.has("g")) medium.g = reader["g"].number_between(-0.9999, 0.9999);
+    medium.sigma_s_prime_per_mm = read_coefficients(reader["sigma_s_per_mm"]) * (1.0 - medium.g);
+    medium.eta = reader["eta"].number_between(kLeastEta, kLargestEta);
+    double alpha = kSmoothAlpha;
+    if (reader.has("alpha")) {
+        const ParameterInfo& info = parameter_info("alpha");
+        alpha = reader["alpha"].number_between(info.low, info.high);
+    }
+    const std::string family = material.family;
+    material = translucent_paint(medium, alpha);
+    if (!family.empty()) material.family = family;
+}
+
+Json json_of_medium(const Material& material) {
+    const TranslucentMaterial& medium = *material.medium;
+    return {{"sigma_a_per_mm", json_from(medium.sigma_a_per_mm)},
+            {"sigma_s_per_mm", json_from(medium.sigma_s_prime_per_mm / (1.0 - medium.g))},
+            {"g", medium.g},
+            {"eta", medium.eta}};
+}
+
+/// A file of a medium alone (translucent_material.h) is a paint with a smooth surface.
+Material paint_of_medium(const std::string& text, const std::filesystem::path& file) {
+    const TranslucentMaterial medium = parse_translucent_material(text, file);
+    if (!(medium.eta >= kLeastEta && medium.eta <= kLargestEta)) {
+        throw FileError(file,
+                        "eta",
+                        fmt::format("{:.4g}", medium.eta),
+                        fmt::format("{} to {} for a paint", kLeastEta, kLargestEta));
+    }
+    Material material = translucent_paint(medium);
+    material.file = file;
+    return material;
+}
+
 /// A model's parameters, no others, and all that are not optional.
 void read_parameters(const JsonReader& reader, const ModelInfo& model, Material& material) {
     if (!reader.is_object()) reader.fail(reader.found(), "an object");
@@ -104,6 +159,10 @@ Material read_material(const JsonReader& reader) {
         read_measured(parameters, material);
         return material;
     }
+    if (model.model == ReflectanceModel::translucent) {
+        read_medium(parameters, material);
+        return material;
+    }
     read_parameters(parameters, model, material);
     try {
         parameters_of_f64(material);
@@ -123,6 +182,7 @@ Json json_of(const Material& material) {
                        "json_of: paint '" + material.name + "' is measured, but by no file");
         parameters["file"] = material.measured->file.string();
     }
+    if (material.model == ReflectanceModel::translucent) parameters = json_of_medium(material);
     for (const char* key : model.parameters) {
         const ParameterInfo& parameter = parameter_info(key);
         const bool as_always = value_of(parameter, material) == value_of(parameter, Material{});
@@ -157,6 +217,7 @@ Material read_paint_file(const std::filesystem::path& file) {
 Material parse_material(const std::string& text, const std::filesystem::path& file) {
     const Json json = parse_json(text, file);
     const JsonReader reader(file, json);
+    if (reader.is_object() && reader.has("kind")) return paint_of_medium(text, file);
     reader.require_format_version(kFormatVersion);
     reader.allow_only({"format_version", "name", "family", "model", "parameters", "provenance"});
     Material material = read_material(reader);

@@ -155,7 +155,9 @@ struct Reading {
 bool is_current(const PaintLibrary& library, const std::set<std::filesystem::path>& wanted) {
     std::error_code error;
     std::set<std::filesystem::path> files;
-    for (auto& file : material_files(shipped_path("materials"), error)) files.insert(file);
+    for (const char* folder : {"materials", "materials/translucent"}) {
+        for (auto& file : material_files(shipped_path(folder), error)) files.insert(file);
+    }
     for (auto& file : user_files()) files.insert(file);
     for (const auto& [file, paint] : library.files) files.insert(file);
     for (const auto& [file, paint] : library.measured) files.insert(file);
@@ -211,7 +213,7 @@ bool same_paint_name(const std::string& a, const std::string& b) {
 }
 
 const Material* PaintLibrary::find(const std::string& name) const {
-    for (const auto* paints : {&shipped, &users, &unread}) {
+    for (const auto* paints : {&shipped, &media, &users, &unread}) {
         if (const Material* material = find_in(*paints, name)) return material;
     }
     return nullptr;
@@ -219,7 +221,7 @@ const Material* PaintLibrary::find(const std::string& name) const {
 
 std::vector<std::string> PaintLibrary::nearest(const std::string& name, std::size_t count) const {
     std::vector<std::pair<std::size_t, std::string>> ranked;
-    for (const auto* paints : {&shipped, &users, &unread}) {
+    for (const auto* paints : {&shipped, &media, &users, &unread}) {
         for (const Material& material : *paints) {
             ranked.emplace_back(
                 edit_distance(plain_paint_name(name), plain_paint_name(material.name)),
@@ -300,8 +302,9 @@ std::shared_ptr<const PaintLibrary> read_paint_library(
     std::stable_sort(library.shipped.begin(),
                      library.shipped.end(),
                      [&](const Material& a, const Material& b) { return place(a) < place(b); });
-    for (const Material& paint : library.shipped) {
-        library.stamps[paint.file] = stamp_of(paint.file);
+    library.media = read_paint_folder(shipped_path("materials/translucent"));
+    for (const auto* paints : {&library.shipped, &library.media}) {
+        for (const Material& paint : *paints) library.stamps[paint.file] = stamp_of(paint.file);
     }
     if (before) {
         for (const auto& [file, paint] : before->measured) reading.read_measured(file);

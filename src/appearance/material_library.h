@@ -37,6 +37,7 @@ struct PaintFile {
 /// read; until somebody asks for that (read_paint_library) the paint is there unread (is_read()).
 struct PaintLibrary {
     std::vector<Material> shipped;  ///< by family, in a family by file name
+    std::vector<Material> media;    ///< the shipped translucent ones, by file name
     std::vector<Material> users;    ///< by file name, all read
     std::vector<Material> unread;   ///< the user's that are not
     /// One line for each of the user's files that was left out (unreadable, or a name that another

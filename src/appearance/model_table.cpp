@@ -356,6 +356,27 @@ const ModelInfo& measured_info() {
     return info;
 }
 
+/// What leaves it beside where it entered is the renderers'; its functions are those of what leaves
+/// at once, by the albedo (albedo_paint()).
+const ModelInfo& translucent_info() {
+    static const ModelInfo info = {ReflectanceModel::translucent,
+                                   "translucent",
+                                   "Translucent",
+                                   "A medium that light enters, and leaves somewhere else.",
+                                   "a translucent material",
+                                   "no part is drawn as translucent",
+                                   {"microfacet.glsl", "layers.glsl", "ggx.glsl"},
+                                   {"alpha"},
+                                   Lobe::half_alpha,
+                                   kIsotropic,
+                                   kByDirection,
+                                   kReciprocal,
+                                   kConserving,
+                                   LIVERY_BSDF(ggx, PARAMETERS),
+                                   LIVERY_NUMBERS(GgxPrepared, ggx_exit)};
+    return info;
+}
+
 }  // namespace
 
 #undef LIVERY_BSDF
@@ -366,6 +387,7 @@ const ModelInfo& measured_info() {
 
 const ModelInfo& model_info(ReflectanceModel model) {
     if (model == ReflectanceModel::measured) return measured_info();
+    if (model == ReflectanceModel::translucent) return translucent_info();
     const auto& table = model_table();
     const auto index = static_cast<std::size_t>(model);
     if (index >= table.size()) {
@@ -379,6 +401,7 @@ const ModelInfo* find_model(const std::string& name) {
     const auto found = std::find_if(
         table.begin(), table.end(), [&](const ModelInfo& info) { return info.name == name; });
     if (found != table.end()) return &*found;
+    if (name == translucent_info().name) return &translucent_info();
     return name == measured_info().name ? &measured_info() : nullptr;
 }
 
@@ -386,6 +409,7 @@ std::string model_names() {
     std::vector<const char*> names;
     for (const ModelInfo& info : model_table()) names.push_back(info.name);
     names.push_back(measured_info().name);
+    names.push_back(translucent_info().name);
     return fmt::format("{}", fmt::join(names, ", "));
 }
 

@@ -65,7 +65,8 @@ struct ModelInfo {
 };
 
 /// The formulas, indexed by ReflectanceModel. What is measured follows no formula: it has a
-/// description (model_info), but is evaluated by paint_bsdf.h alone.
+/// description (model_info), but is evaluated by paint_bsdf.h alone. What is translucent follows
+/// ggx where its light leaves at once; its numbers for shading are of light that does not.
 const std::vector<ModelInfo>& model_table();
 const ModelInfo& model_info(ReflectanceModel model);
 /// By its name in files; null: none.

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "appearance/measured/measured_paint.h"
+#include "appearance/subsurface/translucent_material.h"
 
 namespace livery {
 
@@ -281,6 +282,15 @@ std::vector<double> reflectance_numbers(const Material& material) {
             numbers.push_back(
                 static_cast<double>(std::stoul(material.measured->id.substr(k, 8), nullptr, 16)));
         }
+    }
+    if (material.model == ReflectanceModel::translucent && material.medium) {
+        const TranslucentMaterial& medium = *material.medium;
+        for (int c = 0; c < 3; ++c) {
+            numbers.push_back(medium.sigma_a_per_mm[c]);
+            numbers.push_back(medium.sigma_s_prime_per_mm[c]);
+        }
+        numbers.push_back(medium.g);
+        numbers.push_back(medium.eta);
     }
     return numbers;
 }

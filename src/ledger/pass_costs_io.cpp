@@ -49,7 +49,14 @@ std::optional<int> level_of(const PassId& pass, const std::string& name) {
 
 }  // namespace
 
-PassId cost_key(const PassId& pass) { return {pass.kind, "", pass.model, pass.glints}; }
+PassId cost_key(const PassId& pass) {
+    // A translucent part is shaded by the same lines.
+    const bool translucent = pass.model == ReflectanceModel::translucent;
+    return {pass.kind,
+            "",
+            translucent ? std::optional(ReflectanceModel::ggx) : pass.model,
+            pass.glints};
+}
 
 int cost_level(const PassId& pass, const EffectLevels& levels) {
     const auto effect = effect_of(pass);

@@ -14,6 +14,7 @@
 #include "appearance/material_library.h"
 #include "appearance/measured/measured_paint.h"
 #include "appearance/model_table.h"
+#include "appearance/subsurface/translucent_paint.h"
 #include "core/error.h"
 #include "jobs/picture.h"
 
@@ -92,6 +93,7 @@ Material plain_paint(const ProgramOf& program) {
     Material paint;
     paint.model = program.model;
     if (program.model == ReflectanceModel::measured) paint.measured = blank_measured_paint();
+    if (program.model == ReflectanceModel::translucent) paint = translucent_paint({});
     if (program.glints) paint.glint_density_per_mm2 = 1000.0;
     return paint;
 }

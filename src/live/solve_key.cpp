@@ -5,7 +5,10 @@
 #include <glm/common.hpp>
 
 #include "appearance/paint_bsdf.h"
+#include "appearance/parameter_table.h"
+#include "appearance/subsurface/translucent_paint.h"
 #include "core/error.h"
+#include "scene/subsurface_reach.h"
 
 namespace livery {
 
@@ -25,6 +28,21 @@ std::vector<glm::ivec3> sends_on(const Scene& scene, const EffectLevels& levels)
         steps.emplace_back(glm::round(kSteps * albedo));
     }
     return steps;
+}
+
+std::vector<std::vector<double>> media_of(const Scene& scene, const EffectLevels& levels) {
+    if (levels[Effect::subsurface] == 0) return {};
+    std::vector<std::vector<double>> media;
+    for (std::size_t p = 0; p < scene.part_materials.size(); ++p) {
+        const Material& paint = scene.part_materials[p];
+        if (!light_spreads(paint, scene.product->product_scale)) continue;
+        // The surface's gloss is no part of it
+        Material smooth = paint;
+        smooth.alpha = glm::dvec2(kSmoothAlpha);
+        media.push_back(reflectance_numbers(smooth));
+        media.back().push_back(static_cast<double>(p));
+    }
+    return media;
 }
 
 std::string difference(const SolveKey& solved, const SolveKey& wanted) {
@@ -56,7 +74,8 @@ SolveKeys keys_of(const FrameDescription& description) {
                         scene.eye_in_world_mm,
                         levels,
                         scene.relief,
-                        sends_on(scene, levels)};
+                        sends_on(scene, levels),
+                        media_of(scene, levels)};
     };
     SolveKeys keys{key_of(description.scene), std::nullopt};
     if (description.wipe_to) {
@@ -72,6 +91,7 @@ SolveKeys with_levels(SolveKeys keys, const EffectLevels& levels) {
         if (!key) continue;
         key->levels = levels;
         if (levels[Effect::interreflection] == 0) key->sends_on.clear();
+        if (levels[Effect::subsurface] == 0) key->media.clear();
     }
     return keys;
 }
@@ -103,6 +123,7 @@ std::string missing_of(const SolveKeys& solved, const SolveKeys& wanted) {
         if (!missing.empty()) return missing;
         const bool shared = side == 1 && !solved[1];
         if (!shared && nearest.sends_on != wanted[side]->sends_on) return "light between parts";
+        if (!shared && nearest.media != wanted[side]->media) return "light in translucent parts";
     }
     return "";
 }

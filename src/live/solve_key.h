@@ -23,6 +23,8 @@ struct SolveKey {
     /// What each part sends on of its light, in steps that nobody sees; empty: no light between
     /// parts is asked for.
     std::vector<glm::ivec3> sends_on{};
+    /// The paint of each part in which light spreads, as numbers; empty: none that is asked for.
+    std::vector<std::vector<double>> media{};
 };
 /// Of the scene left of a wipe's line (or of all) and of the one right of it. What is solved has a
 /// right one only where its light differs from the left one's.
@@ -34,7 +36,7 @@ SolveKeys keys_of(const FrameDescription& description);
 SolveKeys with_levels(SolveKeys keys, const EffectLevels& levels);
 
 bool same_pose(const SolveKey& a, const SolveKey& b);  ///< product and projector
-/// All but levels and what parts send on.
+/// All but levels, what parts send on and what they are made of.
 bool same_light(const SolveKey& a, const SolveKey& b);
 
 /// Which of `solved` to draw a side of `wanted` with: its own light if that is there, else the
@@ -42,10 +44,10 @@ bool same_light(const SolveKey& a, const SolveKey& b);
 std::size_t nearest_of(const SolveKeys& solved, const SolveKeys& wanted, std::size_t side);
 
 /// What is solved otherwise than it is wanted: "light", "environment", "eye", "normal quality",
-/// "levels", "light between parts", ... Empty when nothing is. Sides of a wipe that share their
-/// light share the left one's light between parts.
+/// "levels", "light between parts", "light in translucent parts", ... Empty when nothing is. Sides
+/// of a wipe that share their light share the left one's light between parts.
 std::string missing_of(const SolveKeys& solved, const SolveKeys& wanted);
-/// The same, levels and light between parts aside.
+/// The same, levels and light between and in parts aside.
 bool covers_light(const SolveKeys& solved, const SolveKeys& wanted);
 
 }  // namespace livery

@@ -8,6 +8,7 @@
 
 #include "appearance/model_table.h"
 #include "appearance/paint_bsdf.h"
+#include "appearance/subsurface/translucent_paint.h"
 #include "core/colour.h"
 
 namespace livery {
@@ -35,6 +36,11 @@ GltfWords words_of_measured(const Material& paint) {
 
 GltfWords words_of(const Material& paint) {
     if (paint.model == ReflectanceModel::measured) return words_of_measured(paint);
+    if (paint.model == ReflectanceModel::translucent) {
+        GltfWords words = words_of(albedo_paint(paint));
+        words.whole = false;
+        return words;
+    }
     const ModelInfo& model = model_info(paint.model);
     GltfWords words;
     // What mirrors under a coat, and how rough it is.

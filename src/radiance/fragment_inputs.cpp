@@ -11,6 +11,8 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "appearance/gloss_optics.h"
+#include "appearance/subsurface/translucent_paint.h"
 #include "core/colour.h"
 #include "core/mutation.h"
 #include "core/parallel.h"
@@ -54,10 +56,12 @@ FragmentRays rays_of(const EffectLevels& levels) {
     const auto at = [&](const auto& table, Effect effect) {
         return table.at(static_cast<std::size_t>(levels[effect]));
     };
+    const std::array<TransportDetail, 3> subsurface{{{}, {200, false}, {600, true}}};
     return {at(kLight, Effect::shadows),
             at(kSky, Effect::occlusion),
             at(kMirror, Effect::mirrored_environment),
-            at(kBounces, Effect::interreflection)};
+            at(kBounces, Effect::interreflection),
+            at(subsurface, Effect::subsurface)};
 }
 
 double StageClock::now_ms() {
@@ -68,6 +72,7 @@ double StageClock::now_ms() {
 FragmentInputs::FragmentInputs(const Mesh& mesh,
                                const Tracer& tracer,
                                std::shared_ptr<SharedExchange> exchange,
+                               std::shared_ptr<SharedTransports> transports,
                                const View& view,
                                const SurfaceMap& map,
                                const PackedLayout& layout,
@@ -81,7 +86,8 @@ FragmentInputs::FragmentInputs(const Mesh& mesh,
       layout_(layout),
       device_(device),
       keep_better_(keep_better),
-      mirror_(mesh, tracer, map, layout) {}
+      mirror_(mesh, tracer, map, layout),
+      subsurface_(mesh, tracer, std::move(transports)) {}
 
 void FragmentInputs::use(const SurfaceMap& map) {
     map_ = &map;
@@ -89,6 +95,7 @@ void FragmentInputs::use(const SurfaceMap& map) {
     sky_visibility_.reset();
     sky_made_ = {};
     mirror_.use(map);
+    subsurface_.clear();
     drop_exchange();
     runs_.reset();
     eye_.reset();
@@ -103,6 +110,7 @@ void FragmentInputs::solve(const Scene& scene,
     solve_lights(scene, plan, clock, progress);
     solve_sky(scene, plan, clock, progress);
     solve_exchange(scene, plan, clock, progress, keep_exchange);
+    solve_subsurface(scene, plan, clock, progress, keep_exchange);
     solve_mirror(scene, plan, clock, progress, keep_exchange);
 }
 
@@ -134,10 +142,12 @@ void FragmentInputs::solve_lights(const Scene& scene,
         });
         lights_.insert(lights_.begin() + static_cast<std::ptrdiff_t>(planned++), std::move(next));
         if (changed) directions_stale_ = diffuse_light_stale_ = true;
+        if (changed && !subsurface_.empty()) sky_stale_ = true;
     }
     if (planned == lights_.size()) return;
     lights_.resize(planned);
     directions_stale_ = diffuse_light_stale_ = true;
+    if (!subsurface_.empty()) sky_stale_ = true;
 }
 
 void FragmentInputs::solve_sky(const Scene& scene,
@@ -228,6 +238,43 @@ void FragmentInputs::solve_exchange(const Scene& scene,
         made.bounces = bounces;
         ++made.version;
         sky_stale_ = diffuse_light_stale_ = true;
+    });
+}
+
+void FragmentInputs::solve_subsurface(const Scene& scene,
+                                      const FramePlan& plan,
+                                      StageClock& clock,
+                                      const Progress& progress,
+                                      bool keep) {
+    if (!find_pass(plan, PassKind::subsurface)) {
+        if (subsurface_.clear()) sky_stale_ = true;
+        return;
+    }
+    SubsurfaceInputs::Wanted wanted;
+    wanted.detail = rays_of(plan.levels).subsurface;
+    wanted.lights = scene.lights;
+    if (find_pass(plan, PassKind::environment_irradiance)) wanted.environment = scene.environment;
+    wanted.exchange_version = exchanged_.version;
+    for (const Material& paint : scene.part_materials) {
+        const bool translucent = paint.model == ReflectanceModel::translucent;
+        wanted.media.push_back(
+            translucent ? std::optional(on_mock_up(*paint.medium, scene.product->product_scale))
+                        : std::nullopt);
+    }
+    if (keep) {
+        // Who cannot wait for light that spreads has it leave where it enters meanwhile
+        if (subsurface_.use_what_stands(wanted)) sky_stale_ = true;
+        clock.run(PassKind::subsurface, false, [] {});
+        return;
+    }
+    clock.run(PassKind::subsurface, !subsurface_.stands(wanted), [&] {
+        subsurface_.solve(wanted,
+                          *map_,
+                          filtered_,
+                          exchanged_.at_nodes.on_diffuser.empty() ? nullptr : exchanged_.nodes,
+                          exchanged_.at_nodes.on_diffuser,
+                          progress);
+        sky_stale_ = true;
     });
 }
 
@@ -389,17 +436,40 @@ void FragmentInputs::upload_lights() {
 
 void FragmentInputs::upload_sky() {
     const std::vector<glm::vec3>& between = exchanged_.on_diffuser;
-    if (sky_.empty() && between.empty()) {
+    if (sky_.empty() && between.empty() && subsurface_.empty()) {
         shading_.sky = InputLayers();
         return;
     }
     make(shading_.sky, 0, InputLayers::Precision::half);
     const auto light_on = [&](std::size_t i) {
-        const glm::vec3 sum = (sky_.empty() ? glm::vec3(0.0f) : sky_[i]) +
-                              (between.empty() ? glm::vec3(0.0f) : between[i]);
+        glm::vec3 sum = (sky_.empty() ? glm::vec3(0.0f) : sky_[i]) +
+                        (between.empty() ? glm::vec3(0.0f) : between[i]);
+        if (!subsurface_.empty()) {
+            // Of a translucent part: what leaves it
+            const std::size_t part = map_->fragments[i].part;
+            if (const SubsurfaceInputs::Part* leaving = subsurface_.part(part)) {
+                sum = leaving->spread
+                          ? leaving->at_fragments[i]
+                          : leaving->total * (entering_share(leaving->medium.eta) * sum +
+                                              entering_at(i, leaving->medium.eta));
+            }
+        }
         return glm::vec4(glm::min(sum, glm::vec3(kHalfLargest)), 1.0f);
     };
     upload_packed(shading_.sky, 0, light_on);
+}
+
+glm::vec3 FragmentInputs::entering_at(std::size_t fragment, double eta) const {
+    glm::vec3 sum(0.0f);
+    for (const Light& light : lights_) {
+        const float cosine =
+            glm::dot(map_->fragments[fragment].normal, light.at[fragment].direction);
+        if (cosine <= 0.0f) continue;
+        const double enters = 1.0 - dielectric_reflectance(static_cast<double>(cosine), eta);
+        sum += radiance_working(light.light) *
+               (light.at[fragment].visibility * cosine * static_cast<float>(enters));
+    }
+    return sum;
 }
 
 void FragmentInputs::upload_diffuse_light() {

@@ -17,6 +17,7 @@
 #include "radiance/packed_fragments.h"
 #include "radiance/shading.h"
 #include "radiance/smooth_runs.h"
+#include "radiance/subsurface_inputs.h"
 #include "scene/frame_plan.h"
 #include "scene/scene.h"
 
@@ -28,6 +29,7 @@ struct FragmentRays {
     SkyRays sky;      ///< toward the environment; 0: nothing is hidden
     int mirror = 16;  ///< nodes a ring of half vectors' slopes (mirror_rings), or kNoNodes
     int bounces = 1;  ///< of light between parts
+    TransportDetail subsurface{};
 };
 FragmentRays rays_of(const EffectLevels& levels);
 
@@ -78,6 +80,7 @@ class FragmentInputs {
     FragmentInputs(const Mesh& mesh,
                    const Tracer& tracer,
                    std::shared_ptr<SharedExchange> exchange,
+                   std::shared_ptr<SharedTransports> transports,
                    const View& view,
                    const SurfaceMap& map,
                    const PackedLayout& layout,
@@ -118,6 +121,7 @@ class FragmentInputs {
     void solve_lights(const Scene&, const FramePlan&, StageClock&, const Progress&);
     void solve_sky(const Scene&, const FramePlan&, StageClock&, const Progress&);
     void solve_exchange(const Scene&, const FramePlan&, StageClock&, const Progress&, bool keep);
+    void solve_subsurface(const Scene&, const FramePlan&, StageClock&, const Progress&, bool keep);
     void solve_mirror(
         const Scene&, const FramePlan&, StageClock&, const Progress&, bool keep_exchange);
     bool mirror_filtered(const Scene&, int nodes) const;
@@ -128,6 +132,8 @@ class FragmentInputs {
     void upload_eye(const Scene&);
     void upload_lights();
     void upload_sky();
+    /// What enters a medium of that index at a fragment of what lamps send a white diffuser.
+    glm::vec3 entering_at(std::size_t fragment, double eta) const;
     void upload_diffuse_light();
     void upload_places();
     bool enough(int rays, int wanted) const {
@@ -170,6 +176,7 @@ class FragmentInputs {
         int version = 0;                     ///< of both
     };
     Exchanged exchanged_;
+    SubsurfaceInputs subsurface_;
 
     /// What sky_ was made of. No rays: unoccluded.
     struct Made {

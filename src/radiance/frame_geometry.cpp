@@ -25,13 +25,18 @@ FrameGeometry::FrameGeometry(std::shared_ptr<const Product> its_product,
     const double begin_ms = StageClock::now_ms();
     tracer = std::make_shared<const Tracer>(product->mesh);
     exchange = std::make_shared<SharedExchange>();
+    transports = std::make_shared<SharedTransports>();
     tracer_ms = StageClock::now_ms() - begin_ms;
     map = build_surface_map(product->mesh, *tracer, view, sub_samples, progress);
     ms = StageClock::now_ms() - begin_ms;
 }
 
 FrameGeometry::FrameGeometry(const FrameGeometry& other, int sub_samples, const Progress& progress)
-    : product(other.product), view(other.view), tracer(other.tracer), exchange(other.exchange) {
+    : product(other.product),
+      view(other.view),
+      tracer(other.tracer),
+      exchange(other.exchange),
+      transports(other.transports) {
     const double begin_ms = StageClock::now_ms();
     map = build_surface_map(product->mesh, *tracer, view, sub_samples, progress);
     ms = StageClock::now_ms() - begin_ms;

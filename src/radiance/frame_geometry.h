@@ -5,6 +5,7 @@
 
 #include "core/progress.h"
 #include "radiance/light/interreflection.h"
+#include "radiance/light/subsurface_transport.h"
 #include "radiance/surface_map.h"
 #include "scene/effects.h"
 #include "scene/product.h"
@@ -31,9 +32,10 @@ struct FrameGeometry {
     View view;
     std::shared_ptr<const Tracer> tracer;  ///< shared with maps of other numbers of sub-samples
     SurfaceMap map;
-    std::shared_ptr<SharedExchange> exchange;  ///< the same
-    double ms = 0.0;                           ///< that making it took
-    double tracer_ms = 0.0;                    ///< of it: the tree of the product's triangles
+    std::shared_ptr<SharedExchange> exchange;      ///< the same
+    std::shared_ptr<SharedTransports> transports;  ///< the same
+    double ms = 0.0;                               ///< that making it took
+    double tracer_ms = 0.0;                        ///< of it: the tree of the product's triangles
 };
 
 }  // namespace livery

@@ -9,6 +9,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "appearance/subsurface/translucent_paint.h"
 #include "core/colour.h"
 #include "core/error.h"
 #include "gl/draw.h"
@@ -176,7 +177,7 @@ struct RasterPreview::State {
     void upload_layers(const FilteredEnvironment& filtered);
     void find_samples(const View& new_view);
     void shade_part(const Scene& scene, std::size_t part);
-    Program& ready(const Scene& scene, const Material& material, std::size_t part, bool over);
+    Program& ready(const Scene& scene, const Material& paint, std::size_t part, bool over);
     void shade_artwork(const Scene& scene, const PartArtwork& artwork);
     void downsample(const Texture2D& from, const Framebuffer& to);
     void set_view(Program& program) const;
@@ -315,9 +316,11 @@ void RasterPreview::State::find_samples(const View& new_view) {
 
 /// The program for a part in a paint, with everything but an artwork bound.
 Program& RasterPreview::State::ready(const Scene& scene,
-                                     const Material& material,
+                                     const Material& paint,
                                      std::size_t part,
                                      bool over) {
+    // Vertices are too far apart for light that spreads
+    const Material material = albedo_paint(paint);
     const std::vector<DirectionalLight>& lights =
         is_solved_for(*light, scene.lights, light->environment.get()) ? scene.lights
                                                                       : light->lights;

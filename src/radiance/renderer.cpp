@@ -115,6 +115,7 @@ struct RadianceRenderer::State {
           inputs(geometry->product->mesh,
                  *geometry->tracer,
                  geometry->exchange,
+                 geometry->transports,
                  geometry->view,
                  map,
                  layout,

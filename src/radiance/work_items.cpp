@@ -31,6 +31,13 @@ void count_work(const Scene& whole, const FrameCounts& counts, FramePlan& plan) 
     set(PassKind::environment_irradiance, fragments);
     set(PassKind::ambient_occlusion, fragments * rays.sky.first);
     set(PassKind::interreflection, fragments);
+    double translucent = 0.0;
+    for (std::size_t p = 0; p < scene.part_materials.size(); ++p) {
+        if (scene.part_materials[p].model == ReflectanceModel::translucent) {
+            translucent += of_part[p];
+        }
+    }
+    set(PassKind::subsurface, translucent);
     set(PassKind::environment_filter, static_cast<double>(kFilterTexels));
     double mirroring = 0.0;
     const std::vector<MirrorLayers> mirrored = mirror_layers_of(scene);

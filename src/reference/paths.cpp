@@ -37,6 +37,7 @@ struct PathScene::Vertex {
     glm::mat3 world_from_local;
     glm::vec3 wo;  ///< local
     const PaintBsdf& bsdf;
+    float chance = 1.0f;  ///< that a direction is sampled of what is reflected
 
     Vertex(const PaintBsdf& its_bsdf, const SurfacePoint& point, const glm::vec3& toward_eye)
         : position(point.position_mm), geometric_normal(point.geometric_normal), bsdf(its_bsdf) {
@@ -73,8 +74,10 @@ PathScene::PathScene(const Scene& scene, const ReferenceOptions& options)
                    fmt::format("the scene has {} materials for {} parts",
                                scene.part_materials.size(),
                                mesh_.parts.size()));
-    for (const Material& material : scene.part_materials) {
-        bsdfs_.push_back(bsdf_of(material));
+    for (std::size_t p = 0; p < mesh_.parts.size(); ++p) {
+        const Material& material = scene.part_materials[p];
+        translucent_.push_back(translucent_part(*scene.product, material, p));
+        bsdfs_.push_back(bsdf_of(translucent_[p] ? boundary_alone(material) : material));
     }
     for (std::size_t p = 0; p < mesh_.parts.size(); ++p) {
         const PartArtwork* relief = relief_of(scene, p);
@@ -143,7 +146,7 @@ glm::vec3 PathScene::light_on(const Vertex& vertex,
         if (value == glm::vec3(0.0f) || !open(vertex, light.direction)) return;
         float weight = 1.0f;
         if (options_.sampling == ReferenceSampling::combined) {
-            weight = balance(light.pdf, pdf(vertex.bsdf, wi, vertex.wo));
+            weight = balance(light.pdf, vertex.chance * pdf(vertex.bsdf, wi, vertex.wo));
         }
         sum += value * light.radiance * (weight / light.pdf);
     };
@@ -177,6 +180,31 @@ glm::vec3 PathScene::light_along(const glm::vec3& direction, float reflectance_p
     return sum;
 }
 
+bool PathScene::pass_through(const TranslucentPart& part,
+                             const Vertex& vertex,
+                             Random random,
+                             glm::vec3& throughput,
+                             glm::vec3& sum,
+                             TraceRay& out) const {
+    SurfaceEntry entry;
+    entry.position = glm::dvec3(vertex.position);
+    entry.geometric_normal = glm::dvec3(vertex.geometric_normal);
+    entry.normal = glm::dvec3(vertex.world_from_local[2]);
+    entry.toward_eye = glm::dvec3(vertex.world_from_local * vertex.wo);
+    const WalkedLight walked = walk_through(part, mesh_, tracer_, lights_, entry, random);
+    sum += throughput * glm::vec3(walked.of_lamps);
+    if (!walked.left) return false;
+    throughput *= glm::vec3(walked.weight);
+    out.origin = walked.origin;
+    out.direction = walked.direction;
+    return true;
+}
+
+glm::vec3 PathScene::surroundings_along(const glm::vec3& direction) const {
+    // Lamps were asked for at every scattering
+    return environment_.empty() ? glm::vec3(0.0f) : environment_.along(direction).radiance;
+}
+
 glm::vec3 PathScene::radiance(SurfacePoint point,
                               const glm::vec3& ray_direction,
                               glm::vec3 wo,
@@ -191,23 +219,40 @@ glm::vec3 PathScene::radiance(SurfacePoint point,
         const auto b = static_cast<std::uint32_t>(bounce);
         const SobolPoint at = numbers.at(b);
         PaintBsdf made;
-        const Vertex vertex(bsdf_at(point, at[PathNumbers::paint], made), point, wo);
+        Vertex vertex(bsdf_at(point, at[PathNumbers::paint], made), point, wo);
+        const TranslucentPart* inside =
+            &vertex.bsdf == &bsdfs_[point.part] && translucent_[point.part]
+                ? &*translucent_[point.part]
+                : nullptr;
+        if (inside) vertex.chance = chance_of_mirroring(*inside, vertex.wo.z);
         sum += throughput * light_on(vertex, numbers, at, b);
 
-        const glm::vec3 u(at.pair(PathNumbers::direction), at[PathNumbers::lobe]);
-        const glm::vec3 wi = sample(vertex.bsdf, vertex.wo, u);
-        if (!(wi.z > 0.0f)) return sum;
-        const glm::vec3 direction = glm::normalize(vertex.world_from_local * wi);
-        const float density = pdf(vertex.bsdf, wi, vertex.wo);
-        if (!(density > 0.0f) || !vertex.above(direction)) return sum;
-        throughput *= LIVERY_MUTATED(reference_throughput,
-                                     evaluate(vertex.bsdf, wi, vertex.wo) * (wi.z / density));
-
+        glm::vec3 u(at.pair(PathNumbers::direction), at[PathNumbers::lobe]);
         TraceRay ray;
-        ray.origin = offset_origin(vertex.position, vertex.geometric_normal);
-        ray.direction = direction;
+        float density = 0.0f;
+        const bool enters = inside && !(u.z < vertex.chance);
+        if (enters) {
+            throughput *= 1.0f / (1.0f - vertex.chance);
+            if (!pass_through(*inside, vertex, numbers.independent(b), throughput, sum, ray)) {
+                return sum;
+            }
+        } else {
+            u.z = std::min(u.z / vertex.chance, kBelowOne);
+            const glm::vec3 wi = sample(vertex.bsdf, vertex.wo, u);
+            if (!(wi.z > 0.0f)) return sum;
+            ray.direction = glm::normalize(vertex.world_from_local * wi);
+            density = vertex.chance * pdf(vertex.bsdf, wi, vertex.wo);
+            if (!(density > 0.0f) || !vertex.above(ray.direction)) return sum;
+            throughput *= LIVERY_MUTATED(reference_throughput,
+                                         evaluate(vertex.bsdf, wi, vertex.wo) * (wi.z / density));
+            ray.origin = offset_origin(vertex.position, vertex.geometric_normal);
+        }
+        const glm::vec3 direction = ray.direction;
         const Hit hit = tracer_.closest(ray);
-        if (!hit.valid()) return sum + throughput * light_along(direction, density);
+        if (!hit.valid()) {
+            return sum + throughput * (enters ? surroundings_along(direction)
+                                              : light_along(direction, density));
+        }
         if (bounce == options_.bounces) return sum;
         if (bounce + 1 >= kFirstRoulette) {
             const float survival =

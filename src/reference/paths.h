@@ -10,6 +10,7 @@
 #include "reference/light_sampling.h"
 #include "reference/path_tracer.h"
 #include "reference/sobol.h"
+#include "reference/subsurface_paths.h"
 #include "tracing/tracer.h"
 
 namespace livery {
@@ -38,6 +39,16 @@ class PathScene {
                        std::uint32_t bounce) const;
     /// What an escaping direction sampled from the reflectance meets.
     glm::vec3 light_along(const glm::vec3& direction, float reflectance_pdf) const;
+    /// What a direction out of a translucent part meets.
+    glm::vec3 surroundings_along(const glm::vec3& direction) const;
+    /// Into a translucent part and out of it again: false where nothing comes out. `sum` gets what
+    /// lamps send through it, times `throughput`.
+    bool pass_through(const TranslucentPart& part,
+                      const Vertex& vertex,
+                      Random random,
+                      glm::vec3& throughput,
+                      glm::vec3& sum,
+                      TraceRay& out) const;
     /// The paint at a point: artwork's, as often as it covers by a number in [0, 1), else the
     /// part's. `made` keeps one that is only this point's.
     const PaintBsdf& bsdf_at(const SurfacePoint& point, float chance, PaintBsdf& made) const;
@@ -47,6 +58,7 @@ class PathScene {
     ReferenceOptions options_;
     Tracer tracer_;
     std::vector<PaintBsdf> bsdfs_;
+    std::vector<std::optional<TranslucentPart>> translucent_;  ///< one a part; bsdfs_ mirror alone
     std::vector<PartArtwork> artwork_;
     std::vector<std::optional<PartArtwork>> reliefs_;  ///< one a part
     std::vector<PaintBsdf> artwork_bsdfs_;

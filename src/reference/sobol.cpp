@@ -117,4 +117,8 @@ glm::vec2 PathNumbers::on_light(const SobolPoint& at, std::uint32_t vertex, std:
     return SobolPoint(k_, hash_3d(pixel_seed_, vertex, l)).pair(0);
 }
 
+Random PathNumbers::independent(std::uint32_t vertex) const {
+    return Random(hash_3d(pixel_seed_, vertex, k_), k_);
+}
+
 }  // namespace livery

@@ -5,6 +5,8 @@
 
 #include <glm/vec2.hpp>
 
+#include "core/random.h"
+
 namespace livery {
 
 /// A point of an Owen-scrambled Sobol sequence, its numbers worked out one by one (direction
@@ -48,6 +50,8 @@ class PathNumbers {
     SobolPoint at(std::uint32_t vertex) const;
     /// On the l-th light's disc.
     glm::vec2 on_light(const SobolPoint& at, std::uint32_t vertex, std::uint32_t l) const;
+    /// For a walk inside from a vertex, which asks for more numbers than a sequence has.
+    Random independent(std::uint32_t vertex) const;
 
   private:
     std::uint32_t pixel_seed_, k_;

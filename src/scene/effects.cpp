@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 
 #include "appearance/model_table.h"
+#include "appearance/subsurface/translucent_paint.h"
 #include "core/error.h"
+#include "scene/subsurface_reach.h"
 
 namespace livery {
 
@@ -91,6 +93,12 @@ const std::vector<EffectInfo>& effect_table() {
          "pictures of normals",
          {{"none", "the surface as the mesh has it"},
           {"tilted", "fragments tilted by the relief"}}},
+        {Effect::subsurface,
+         "subsurface",
+         "light goes through translucent parts",
+         {{"none", "light leaves translucent parts where it entered"},
+          {"gather", "light leaves around where it entered, from coarse nodes"},
+          {"transport", "the same from fine nodes, where no air lies between"}}},
     };
     return table;
 }
@@ -125,11 +133,11 @@ std::string to_string(Quality quality) {
 EffectLevels levels_of(Quality quality) {
     switch (quality) {
         case Quality::draft:
-            return {{0, 1, 1, 1, 0, 0, 0, 1, 1, 1}};
+            return {{0, 1, 1, 1, 0, 0, 0, 1, 1, 1, 0}};
         case Quality::normal:
-            return {{1, 2, 1, 2, 2, 1, 0, 1, 1, 1}};
+            return {{1, 2, 1, 2, 2, 1, 0, 1, 1, 1, 1}};
         case Quality::high:
-            return {{1, 3, 1, 3, 3, 1, 1, 1, 1, 1}};
+            return {{1, 3, 1, 3, 3, 1, 1, 1, 1, 1, 2}};
         case Quality::reference:
             break;
     }
@@ -225,6 +233,8 @@ bool calls_for(const Scene& scene, Effect effect) {
             return any_paint(scene, has_film);
         case Effect::relief:
             return !scene.relief.empty();
+        case Effect::subsurface:
+            return (is_lit(scene) || has_environment(scene)) && spreading_part(scene).has_value();
     }
     throw std::invalid_argument(fmt::format("effect {}", static_cast<int>(effect)));
 }
@@ -237,8 +247,17 @@ Scene at_levels(const Scene& scene, const EffectLevels& levels) {
         if (levels[Effect::glints] == 0) material.glint_density_per_mm2 = 0.0;
         if (levels[Effect::film] == 0) material.film_nm = 0.0;
     };
-    for (Material& material : result.part_materials) change(material);
-    for (PartArtwork& artwork : result.artwork) change(artwork.material);
+    const double scale = scene.product ? scene.product->product_scale : 1.0;
+    for (Material& material : result.part_materials) {
+        change(material);
+        const bool spread = levels[Effect::subsurface] > 0 && light_spreads(material, scale);
+        if (!spread) material = albedo_paint(std::move(material));
+    }
+    for (PartArtwork& artwork : result.artwork) {
+        change(artwork.material);
+        // As thin as paint: its light comes out where it went in
+        artwork.material = albedo_paint(std::move(artwork.material));
+    }
     return result;
 }
 

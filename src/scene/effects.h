@@ -22,8 +22,9 @@ enum class Effect {
     glints,                ///< single flakes
     film,                  ///< thin films on flakes
     relief,                ///< pictures of normals
+    subsurface,            ///< light that leaves translucent parts beside where it entered
 };
-inline constexpr std::size_t kEffects = 10;
+inline constexpr std::size_t kEffects = 11;
 
 struct EffectLevel {
     const char* name;      ///< in tables, "16 rays"
@@ -75,7 +76,8 @@ std::string to_string(const EffectLevels& levels);
 /// Whether a scene has anything for the effect to act on.
 bool calls_for(const Scene& scene, Effect effect);
 
-/// The scene without what its levels leave out of it: environment, glints, films, relief.
+/// The scene without what its levels leave out of it: environment, glints, films, relief, and how
+/// far light goes in translucent parts, which wear their albedo then (albedo_paint()).
 Scene at_levels(const Scene& scene, const EffectLevels& levels);
 
 }  // namespace livery

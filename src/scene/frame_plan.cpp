@@ -14,6 +14,7 @@
 #include "appearance/paint_bsdf.h"
 #include "core/colour.h"
 #include "core/error.h"
+#include "scene/subsurface_reach.h"
 
 namespace livery {
 namespace {
@@ -176,6 +177,31 @@ void plan_interreflection(const Scene& scene, const Needs& needs, FramePlan& pla
     }
 }
 
+void plan_subsurface(const Scene& scene, const Scene& whole, FramePlan& plan) {
+    const auto is_translucent = [](const Material& material) {
+        return material.model == ReflectanceModel::translucent;
+    };
+    const auto skip = [&](std::string why) {
+        plan.skipped.push_back({PassKind::subsurface, std::move(why)});
+    };
+    if (std::none_of(whole.part_materials.begin(), whole.part_materials.end(), is_translucent)) {
+        return skip("no part is translucent");
+    }
+    const auto part = spreading_part(whole);
+    if (!part) {
+        return skip(fmt::format(
+            "nine tenths of the light leaves translucent parts within {} mm of where it entered",
+            kUnseenReach_mm));
+    }
+    const std::string reach =
+        fmt::format("nine tenths of the light that enters part {} leaves it within {:.2g} mm",
+                    scene.product->mesh.parts[*part].name,
+                    subsurface_reach_mm(whole.part_materials[*part], whole.product->product_scale));
+    if (plan.levels[Effect::subsurface] == 0) return skip(reach + "; left out");
+    if (!calls_for(scene, Effect::subsurface)) return skip("no light enters any part");
+    plan_pass(plan, PassKind::subsurface, reach);
+}
+
 void plan_glints(const Scene& scene, const char* why_not, FramePlan& plan) {
     if (!any_paint(scene, has_glints)) {
         plan.skipped.push_back({PassKind::glint_places, why_not});
@@ -257,8 +283,10 @@ void plan_shading(const Scene& scene,
         if (needs.models.contains(model.model)) continue;
         plan.skipped.push_back({PassId(PassKind::shade, "*", model.model), model.unused});
     }
-    if (const ModelInfo& model = model_info(ReflectanceModel::measured);
-        !needs.models.contains(model.model)) {
+    for (const ReflectanceModel other :
+         {ReflectanceModel::measured, ReflectanceModel::translucent}) {
+        const ModelInfo& model = model_info(other);
+        if (needs.models.contains(other)) continue;
         plan.skipped.push_back({PassId(PassKind::shade, "*", model.model), model.unused});
     }
 }
@@ -356,6 +384,8 @@ std::optional<Effect> effect_of(const PassId& pass) {
             return Effect::reflected_occlusion;
         case PassKind::interreflection:
             return Effect::interreflection;
+        case PassKind::subsurface:
+            return Effect::subsurface;
         case PassKind::glint_places:
             return Effect::glints;
         case PassKind::relief:
@@ -433,6 +463,7 @@ FramePlan plan_frame(const Scene& whole, const EffectLevels& levels, FrameStage 
                                                    : "no environment in the look",
                      plan);
     plan_interreflection(scene, needs, plan);
+    plan_subsurface(scene, whole, plan);
     plan_shading(scene,
                  needs,
                  left_out(Effect::glints) ? "flakes are drawn as a smooth lobe"

@@ -26,6 +26,8 @@ const char* name_of(PassKind kind) {
             return "ambient-occlusion";
         case PassKind::interreflection:
             return "interreflection";
+        case PassKind::subsurface:
+            return "subsurface";
         case PassKind::environment_filter:
             return "environment-filter";
         case PassKind::reflection_occlusion:

@@ -20,6 +20,7 @@ enum class PassKind {
     environment_irradiance,
     ambient_occlusion,
     interreflection,
+    subsurface,
     environment_filter,
     reflection_occlusion,
     mirrored_environment,

@@ -25,6 +25,10 @@ TEST(SolveKey, SaysWhatIsMissing) {
     EXPECT_EQ(missing([](SolveKey& key) { key.environment = sky(1.0); }), "environment");
     EXPECT_EQ(missing([](SolveKey& key) { key.view.focal_px.x += 1.0; }), "projector");
     EXPECT_EQ(missing([](SolveKey& key) { key.product = nullptr; }), "product");
+    EXPECT_EQ(missing([](SolveKey& key) {
+                  key.media = {{1.0, 2.0}};
+              }),
+              "light in translucent parts");
     const EffectLevels draft = levels_of(Quality::draft);
     EXPECT_EQ(missing([&](SolveKey& key) { key.levels = draft; }), "normal quality");
     EXPECT_TRUE(covers_light(with_levels(wanted, draft), wanted));

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "appearance/measured/measured_paint.h"
+#include "appearance/subsurface/translucent_paint.h"
 #include "core/image_io.h"
 #include "radiance/renderer_fixture.h"
 #include "scene/artwork_coats.h"
@@ -69,8 +70,11 @@ Scene everything(const PartArtwork& relief) {
     Material wheels;
     wheels.model = ReflectanceModel::measured;
     wheels.measured = blank_measured_paint();
-    Scene scene = scene_of(two_spheres(), body);
+    Mesh mesh = two_spheres();
+    append(mesh, make_sphere({-34, 40, 30}, 10.0, 48, "lens"), "");
+    Scene scene = scene_of(std::move(mesh), body);
     scene.part_materials[1] = wheels;
+    scene.part_materials[2] = translucent_paint(read_translucent_material("marble"));
     scene.lights = {light_from({0.5, 0.8, 0.6}, 0.05), light_from({-0.5, 0.8, 0.6}, 0.05, 0.4)};
     scene.environment = studio();
     PartArtwork artwork;
@@ -148,6 +152,13 @@ std::vector<UncalledEffect> effects() {
          Quality::normal,
          UncalledEffect::Counted::nowhere},
         {"relief", no_relief, no_relief, {relief}},
+        {"subsurface",
+         [](Scene& scene) { scene.part_materials[2].model = ReflectanceModel::ggx; },
+         [](Scene& scene) {
+             scene.part_materials[2].model = ReflectanceModel::ggx;
+             scene.part_materials[2].medium.reset();
+         },
+         {subsurface}},
         {"artwork", no_artwork, no_artwork, {artwork}},
         {"measured paints",
          [](Scene& scene) {

@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include "appearance/material_library.h"
 #include "appearance/parameter_table.h"
 #include "scene/frame_plan.h"
+#include "scene/subsurface_reach.h"
 
 namespace livery {
 namespace {
@@ -180,6 +182,66 @@ TEST(Interreflection, IsCalledForByWhatFacesEachOtherAndIsBright) {
     ball.lights.emplace_back();
     EXPECT_EQ(skipped(plan_frame(ball, Quality::high, FrameStage::radiance)).why,
               "no part faces another, or itself");
+}
+
+/// Why the plan lists the pass, or does not.
+std::string told(const FramePlan& plan, const PassId& id) {
+    if (const PlannedPass* pass = find_pass(plan, id)) return "runs: " + pass->why;
+    for (const SkippedPass& pass : plan.skipped) {
+        if (pass.id == id) return "skipped: " + pass.why;
+    }
+    return "neither";
+}
+
+TEST(Subsurface, IsCalledForWhereLightGoesFarEnough) {
+    Scene scene = sphere_scene();
+    scene.lights.emplace_back();
+    const auto at = [&](EffectLevels levels) {
+        return told(plan_frame(scene, levels, FrameStage::radiance), PassKind::subsurface);
+    };
+    EffectLevels levels = levels_of(Quality::high);
+    EXPECT_EQ(at(levels), "skipped: no part is translucent");
+    EXPECT_FALSE(calls_for(scene, Effect::subsurface));
+
+    scene.part_materials[0] = find_material("marble");
+    EXPECT_TRUE(calls_for(scene, Effect::subsurface));
+    const double reach = subsurface_reach_mm(scene.part_materials[0], 1.0);
+    EXPECT_GT(reach, 5.0);  // red light goes farthest
+    EXPECT_LT(reach, 10.0);
+    EXPECT_EQ(at(levels),
+              "runs: nine tenths of the light that enters part body leaves it within 7.1 mm");
+    EXPECT_TRUE(at_levels(scene, levels).part_materials[0].medium);
+    levels[Effect::subsurface] = 0;
+    EXPECT_EQ(at(levels),
+              "skipped: nine tenths of the light that enters part body leaves it within 7.1 mm; "
+              "left out");
+    EXPECT_EQ(at_levels(scene, levels).part_materials[0].model, ReflectanceModel::ggx);
+
+    levels = levels_of(Quality::high);
+    scene.lights.clear();
+    EXPECT_EQ(at(levels), "skipped: no light enters any part");
+    // A mock-up of 1:100
+    scene.lights.emplace_back();
+    Product small = *scene.product;
+    small.product_scale = 100.0;
+    scene.product = std::make_shared<const Product>(small);
+    EXPECT_EQ(at(levels),
+              "skipped: nine tenths of the light leaves translucent parts within 0.3 mm of where "
+              "it entered");
+    EXPECT_EQ(at_levels(scene, levels).part_materials[0].model, ReflectanceModel::ggx);
+    EXPECT_NEAR(subsurface_reach_mm(scene.part_materials[0], 100.0), reach / 100.0, 1e-9);
+}
+
+TEST(Subsurface, IsNotOfArtwork) {
+    Scene scene = sphere_scene();
+    scene.lights.emplace_back();
+    PartArtwork artwork;
+    artwork.material = find_material("marble");
+    scene.artwork = {artwork};
+    EXPECT_EQ(told(plan_frame(scene, Quality::high, FrameStage::radiance), PassKind::subsurface),
+              "skipped: no part is translucent");
+    EXPECT_EQ(at_levels(scene, levels_of(Quality::high)).artwork[0].material.model,
+              ReflectanceModel::ggx);
 }
 
 }  // namespace

@@ -159,6 +159,10 @@ Recoloured with_colour(const Material& finish, glm::dvec3 lab10) {
                    fmt::format("'{}' is measured reflectance: it has no colour to change; fit a "
                                "model to it, and change that",
                                finish.name));
+    check_argument(finish.model != ReflectanceModel::translucent,
+                   fmt::format("'{}' is translucent: its colour follows from its medium; change "
+                               "sigma_a_per_mm in its file",
+                               finish.name));
     const Tinted paint(finish);
     const glm::dvec3 wanted = working_from_xyz() * xyz_from_xyz10(xyz10_from_lab10(lab10));
     Recoloured result;

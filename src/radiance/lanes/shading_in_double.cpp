@@ -203,6 +203,8 @@ std::vector<glm::dvec3> shaded_in_double(const Material& material,
                           fragments.size());
         case ReflectanceModel::ggx:
             return prepared(source.ggx_prepare(paint));
+        case ReflectanceModel::translucent:
+            return prepared(source.ggx_exit_prepare(paint));
         case ReflectanceModel::clearcoat:
             return prepared(source.clearcoat_prepare(paint));
         case ReflectanceModel::car_paint:

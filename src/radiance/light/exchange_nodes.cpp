@@ -237,7 +237,10 @@ void find_nearby(const NodeCells& cells, ExchangeNodes& nodes) {
 
 ExchangeNodes exchange_nodes(const Mesh& mesh) {
     const Bounds bounds = bounds_of(mesh);
-    double apart_mm = kOfDiagonal * glm::distance(bounds.low, bounds.high);
+    return exchange_nodes(mesh, kOfDiagonal * glm::distance(bounds.low, bounds.high));
+}
+
+ExchangeNodes exchange_nodes(const Mesh& mesh, double apart_mm) {
     ExchangeNodes nodes;
     nodes.points = points_on(mesh, apart_mm);
     nodes.points.apart_mm = static_cast<float>(apart_mm);
@@ -245,6 +248,38 @@ ExchangeNodes exchange_nodes(const Mesh& mesh) {
     cluster(cells, nodes);
     find_nearby(cells, nodes);
     return nodes;
+}
+
+std::vector<float> node_areas_mm2(const Mesh& mesh, const ExchangeNodes& nodes) {
+    std::vector<double> areas(nodes.size(), 0.0);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const glm::uvec3 c = mesh.triangles[t];
+        const glm::dvec3 a(mesh.positions_mm[c.x]);
+        const double whole = 0.5 * glm::length(glm::cross(glm::dvec3(mesh.positions_mm[c.y]) - a,
+                                                          glm::dvec3(mesh.positions_mm[c.z]) - a));
+        const int n = nodes.points.steps[t];
+        const double third = whole / (3.0 * n * n);
+        const auto add = [&](std::uint32_t point) { areas[nodes.node_of[point]] += third; };
+        if (n == 1) {
+            for (int k = 0; k < 3; ++k) add(c[k]);
+            continue;
+        }
+        const auto point = [&](int i, int j) {
+            return nodes.points.grid[t] + place_in_grid(n, i, j);
+        };
+        for (int j = 0; j < n; ++j) {
+            for (int i = 0; i + j < n; ++i) {
+                for (const std::uint32_t p : {point(i, j), point(i + 1, j), point(i, j + 1)})
+                    add(p);
+                if (i + j + 2 > n) continue;
+                for (const std::uint32_t p :
+                     {point(i + 1, j), point(i + 1, j + 1), point(i, j + 1)}) {
+                    add(p);
+                }
+            }
+        }
+    }
+    return {areas.begin(), areas.end()};
 }
 
 glm::vec3 ExchangeNodes::ray_origin_mm(const Mesh& mesh, std::size_t node) const {

@@ -65,5 +65,10 @@ struct ExchangeNodes {
 /// Nodes are a hundredth of the mesh's diagonal apart, or farther where that would make too many
 /// points.
 ExchangeNodes exchange_nodes(const Mesh& mesh);
+/// As far apart as that, or farther in the same case.
+ExchangeNodes exchange_nodes(const Mesh& mesh, double apart_mm);
+
+/// Of each node, the area of the surface that is nearest to its points: all add up to the mesh's.
+std::vector<float> node_areas_mm2(const Mesh& mesh, const ExchangeNodes& nodes);
 
 }  // namespace livery

@@ -9,8 +9,11 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "appearance/gloss_optics.h"
 #include "appearance/paint_bsdf.h"
+#include "appearance/subsurface/fresnel_moments.h"
 #include "core/colour.h"
+#include "core/error.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "radiance/light/light_visibility.h"
@@ -121,6 +124,39 @@ NodeExchange solve_node_exchange(const Mesh& mesh, const Tracer& tracer, const P
     return exchange;
 }
 
+NodeExchange blocked_directions(const Mesh& mesh,
+                                const Tracer& tracer,
+                                ExchangeNodes nodes,
+                                int rays,
+                                const Progress& progress) {
+    check_argument(rays >= 1 && rays <= kMostRays, "blocked_directions: 1 to 64 rays a node");
+    NodeExchange exchange;
+    exchange.nodes = std::move(nodes);
+    exchange.rays = rays;
+    exchange.blocked.assign(exchange.nodes.size(), 0);
+    const auto spiral = cosine_directions(rays);
+    parallel_for(exchange.nodes.size(), 256, [&](std::size_t begin, std::size_t end) {
+        progress.check_stop();
+        std::vector<glm::vec3> directions(spiral.size());
+        for (std::size_t i = begin; i < end; ++i) {
+            const glm::vec3 n = exchange.nodes.normal(i);
+            turn_around(spiral, n, basis_around(n), turn_of(i), directions);
+            TraceRay ray;
+            ray.origin = exchange.nodes.ray_origin_mm(mesh, i);
+            for (std::size_t k = 0; k < directions.size(); ++k) {
+                ray.direction = directions[k];
+                if (tracer.occluded(ray)) exchange.blocked[i] |= std::uint64_t{1} << k;
+            }
+        }
+    });
+    return exchange;
+}
+
+float entering_share(double eta) {
+    // What passes inward from everywhere passes outward from everywhere, over the index squared
+    return static_cast<float>(2.0 * eta * eta * fresnel_moments(eta).passed[0]);
+}
+
 std::shared_ptr<const NodeExchange> SharedExchange::of(const Mesh& mesh,
                                                        const Tracer& tracer,
                                                        const Progress& progress) {
@@ -137,7 +173,8 @@ std::vector<glm::vec3> direct_at_nodes(const Mesh& mesh,
                                        const std::vector<DirectionalLight>& lights,
                                        const Environment* environment,
                                        const FilteredEnvironment& filtered,
-                                       const Progress& progress) {
+                                       const Progress& progress,
+                                       double eta) {
     const ExchangeNodes& nodes = exchange.nodes;
     struct Lamp {
         glm::vec3 direction, radiance;
@@ -151,6 +188,7 @@ std::vector<glm::vec3> direct_at_nodes(const Mesh& mesh,
     std::optional<SpherePlaces> places;
     SphereStack diffuse, around;
     float scale = 0.0f;
+    const float of_sky = entering_share(eta);
     if (environment) {
         places.emplace(*environment);
         diffuse = SphereStack({&filtered.diffuse, 1});
@@ -168,10 +206,13 @@ std::vector<glm::vec3> direct_at_nodes(const Mesh& mesh,
                 if (cosine <= 0.0f || lamps[l].radiance == glm::vec3(0.0f)) continue;
                 const float open = disc_openness(
                     tracer, nodes.ray_origin_mm(mesh, i), n, lights[l], kRaysALight, i);
-                direct[i] += cosine * open * lamps[l].radiance;
+                const double enters =
+                    eta == 1.0 ? 1.0
+                               : 1.0 - dielectric_reflectance(static_cast<double>(cosine), eta);
+                direct[i] += cosine * open * static_cast<float>(enters) * lamps[l].radiance;
             }
             if (!environment) continue;
-            glm::vec3 sky = scale * rgb_of(diffuse.at(places->of(n)).in(0));
+            glm::vec3 sky = scale * of_sky * rgb_of(diffuse.at(places->of(n)).in(0));
             if (exchange.blocked[i] != 0) {
                 // The same directions estimate the whole: the ratio is kinder to bright lamps
                 turn_around(spiral, n, basis_around(n), turn_of(i), directions);
@@ -238,7 +279,8 @@ ExchangedLight exchanged_at_nodes(const NodeExchange& exchange,
 std::vector<glm::vec3> at_fragments(const Mesh& mesh,
                                     const SurfaceMap& map,
                                     const ExchangeNodes& nodes,
-                                    const std::vector<glm::vec3>& at_nodes) {
+                                    const std::vector<glm::vec3>& at_nodes,
+                                    std::span<const std::uint32_t> place_of) {
     const ExchangePoints& points = nodes.points;
     const std::vector<glm::vec3> at_points = nodes.at_points(at_nodes);
     std::vector<glm::vec3> result(map.fragments.size(), glm::vec3(0.0f));
@@ -248,7 +290,10 @@ std::vector<glm::vec3> at_fragments(const Mesh& mesh,
             float weight = 0.0f;
             for (std::size_t s = 0; s < kSamplesAFragment; ++s) {
                 const SurfaceSample& sample = map.samples[i * kSamplesAFragment + s];
-                for (const auto& share : points.around(mesh, sample.triangle, sample.barycentric)) {
+                const std::uint32_t triangle =
+                    place_of.empty() ? sample.triangle : place_of[sample.triangle];
+                if (triangle == kNoTriangle) continue;
+                for (const auto& share : points.around(mesh, triangle, sample.barycentric)) {
                     if (glm::dot(points.normals[share.index], normal) <= 0.0f) continue;
                     result[i] += share.weight * at_points[share.index];
                     weight += share.weight;

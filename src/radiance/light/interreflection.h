@@ -45,15 +45,27 @@ class SharedExchange {
     std::shared_ptr<const NodeExchange> made_;
 };
 
+/// Which of that many cosine-weighted directions of each node meet the product.
+NodeExchange blocked_directions(const Mesh& mesh,
+                                const Tracer& tracer,
+                                ExchangeNodes nodes,
+                                int rays,
+                                const Progress& progress = {});
+
 /// What a white diffuser at each node sends under the lights and the environment (null: none), as
-/// far as the product does not hide them. Working space, exposure not included.
+/// far as the product does not hide them. Working space, exposure not included. With an `eta` other
+/// than 1 a diffuser under a smooth boundary of that index, which is all that matters: what enters.
 std::vector<glm::vec3> direct_at_nodes(const Mesh& mesh,
                                        const Tracer& tracer,
                                        const NodeExchange& exchange,
                                        const std::vector<DirectionalLight>& lights,
                                        const Environment* environment,
                                        const FilteredEnvironment& filtered,
-                                       const Progress& progress = {});
+                                       const Progress& progress = {},
+                                       double eta = 1.0);
+
+/// The share of even light from all around that enters a medium of index `eta`.
+float entering_share(double eta);
 
 /// What each node returns of light: its part's hemispherical albedo, under artwork that of both.
 std::vector<glm::vec3> albedo_at_nodes(const Scene& scene, const ExchangeNodes& nodes);
@@ -69,10 +81,14 @@ ExchangedLight exchanged_at_nodes(const NodeExchange& exchange,
                                   std::span<const glm::vec3> albedo,
                                   int bounces);
 
-/// A value of each node at the fragments, of the side that is seen.
+/// A value of each node at the fragments, of the side that is seen. Where the nodes' mesh is a part
+/// of the fragments', `place_of` says which of its triangles each of theirs is, and kNoTriangle of
+/// the rest, where the value is 0.
+inline constexpr std::uint32_t kNoTriangle = 0xffffffffu;
 std::vector<glm::vec3> at_fragments(const Mesh& mesh,
                                     const SurfaceMap& map,
                                     const ExchangeNodes& nodes,
-                                    const std::vector<glm::vec3>& at_nodes);
+                                    const std::vector<glm::vec3>& at_nodes,
+                                    std::span<const std::uint32_t> place_of = {});
 
 }  // namespace livery

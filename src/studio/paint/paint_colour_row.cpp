@@ -161,6 +161,7 @@ void draw_chips(Studio& studio, const Material& paint) {
 
 void draw_paint_colour_row(Studio& studio, const Material& paint) {
     if (paint.model == ReflectanceModel::measured) return;
+    if (paint.model == ReflectanceModel::translucent) return;  // its colour is its medium's
     draw_typed(studio, paint);
     if (!studio.panels.paint->colour.typing) draw_asked_for(paint);
     draw_chips(studio, paint);

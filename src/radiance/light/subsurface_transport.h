@@ -1,0 +1,84 @@
+// Light that enters a translucent part at one place of its surface and leaves it at another: a
+// sparse matrix between nodes, weighed by a profile at their distance in space.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "core/progress.h"
+#include "radiance/light/interreflection.h"
+#include "radiance/light/subsurface_kernel.h"
+#include "tracing/tracer.h"
+
+namespace livery {
+
+/// What a level of Effect::subsurface means here.
+struct TransportDetail {
+    int neighbours = 600;      ///< of a node, about: sets how far nodes are apart
+    bool rejects_air = false;  ///< whether rays say what lies between two nodes
+    bool operator==(const TransportDetail&) const = default;
+};
+
+/// Which nodes of a part are near one another: of the mesh and a reach alone, so that a change of
+/// light or of the paint's colour keeps it.
+struct SubsurfaceTransport {
+    std::size_t part = 0;
+    Mesh mesh;                            ///< the part's triangles by themselves
+    std::vector<std::uint32_t> place_of;  ///< of each triangle of the product, there; kNoTriangle
+    NodeExchange exchange;                ///< nodes, and what of the sky they do not see
+    std::vector<float> area_mm2;          ///< of each node
+    /// Mean curvature of the surface around each node, over its reach, nearer places more: 1 over
+    /// the radius of a ball, negative in a hollow.
+    std::vector<float> curvature_per_mm;
+    float reach_mm = 0.0f;
+    /// Others within reach of each node, from `first` on, and how far they are (distance_code).
+    std::vector<std::uint32_t> first, other;
+    std::vector<std::uint16_t> code;
+};
+SubsurfaceTransport solve_transport(const Mesh& product,
+                                    const Tracer& tracer,
+                                    std::size_t part,
+                                    float reach_mm,
+                                    const TransportDetail& detail,
+                                    const Progress& progress = {});
+
+/// What leaves at each node of what enters at all, per area both. Every node gives back what a
+/// body as bent there does (total_at()): its own disc by the profile's integral, the others by the
+/// profile at their distance, all scaled to that.
+std::vector<glm::vec3> leaving_at_nodes(const SubsurfaceTransport& transport,
+                                        const SubsurfaceKernel& kernel,
+                                        std::span<const glm::vec3> entering,
+                                        const Progress& progress = {});
+
+/// What one mesh's nodes have, at the nodes of a part of it.
+std::vector<glm::vec3> at_part_nodes(const Mesh& product,
+                                     const ExchangeNodes& nodes,
+                                     const std::vector<glm::vec3>& at_nodes,
+                                     const SubsurfaceTransport& transport);
+
+/// Solved by whoever asks first, for all who draw the same mesh; the last few are kept.
+class SharedTransports {
+  public:
+    std::shared_ptr<const SubsurfaceTransport> of(const Mesh& product,
+                                                  const Tracer& tracer,
+                                                  std::size_t part,
+                                                  float reach_mm,
+                                                  const TransportDetail& detail,
+                                                  const Progress& progress);
+
+  private:
+    struct Made {
+        TransportDetail detail;
+        std::shared_ptr<const SubsurfaceTransport> transport;
+    };
+    std::mutex mutex_;
+    std::map<std::size_t, Made> of_part_;
+};
+
+}  // namespace livery

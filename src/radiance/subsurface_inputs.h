@@ -1,0 +1,74 @@
+// What leaves the translucent parts of a scene at each fragment: solved when a light, a medium or
+// the level changes; which nodes lie near one another is kept.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "appearance/subsurface/translucent_material.h"
+#include "radiance/light/subsurface_transport.h"
+#include "radiance/surface_map.h"
+#include "scene/look.h"
+
+namespace livery {
+
+class SubsurfaceInputs {
+  public:
+    SubsurfaceInputs(const Mesh& mesh,
+                     const Tracer& tracer,
+                     std::shared_ptr<SharedTransports> transports)
+        : mesh_(mesh), tracer_(tracer), transports_(std::move(transports)) {}
+
+    /// What a solution depends on.
+    struct Wanted {
+        std::vector<std::optional<TranslucentMaterial>> media;  ///< of each part, on the mock-up
+        std::vector<DirectionalLight> lights;
+        std::shared_ptr<const Environment> environment;
+        int exchange_version = 0;  ///< of light between parts
+        TransportDetail detail;
+    };
+    bool stands(const Wanted& wanted) const;
+    /// `between`: light between parts on a white diffuser at nodes of the whole mesh, if there is
+    /// any. A stop leaves what stood before.
+    void solve(const Wanted& wanted,
+               const SurfaceMap& map,
+               const FilteredEnvironment& filtered,
+               const std::shared_ptr<const NodeExchange>& exchange,
+               const std::vector<glm::vec3>& between,
+               const Progress& progress);
+    /// Without solving: a part whose medium and light are as solved keeps its solution; of the
+    /// others light leaves where it enters. Whether anything changed by that.
+    bool use_what_stands(const Wanted& wanted);
+    /// Forgets all; whether there was anything.
+    bool clear();
+
+    struct Part {
+        TranslucentMaterial medium;
+        glm::vec3 total{0.0f};                ///< of what enters
+        bool spread = false;                  ///< otherwise light leaves where it enters
+        std::vector<glm::vec3> at_fragments;  ///< of the whole map; over pi it is radiance
+    };
+    bool empty() const { return parts_.empty(); }
+    /// Null for parts that are not translucent.
+    const Part* part(std::size_t part) const {
+        return part < parts_.size() && parts_[part] ? &*parts_[part] : nullptr;
+    }
+
+  private:
+    struct KernelOf {
+        TranslucentMaterial medium;
+        SubsurfaceKernel kernel;
+    };
+    const Mesh& mesh_;
+    const Tracer& tracer_;
+    const std::shared_ptr<SharedTransports> transports_;
+    std::optional<Wanted> solved_;
+    std::vector<std::optional<KernelOf>> kernels_;
+    std::vector<std::optional<Part>> parts_;
+};
+
+}  // namespace livery

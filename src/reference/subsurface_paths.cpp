@@ -1,0 +1,135 @@
+#include "reference/subsurface_paths.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "appearance/gloss_optics.h"
+#include "appearance/subsurface/translucent_paint.h"
+#include "core/colour.h"
+#include "reference/closed_part.h"
+#include "reference/part_boundary.h"
+
+namespace livery {
+
+namespace {
+
+ArrivingLight arriving(const DiscLight& light, Random& random) {
+    if (light.is_point()) return {glm::dvec3(light.direction()), glm::dvec3(light.irradiance())};
+    const glm::vec2 u(random.uniform_float(), random.uniform_float());
+    const LightSample sample = light.sample(u);
+    return {glm::dvec3(sample.direction), glm::dvec3(sample.radiance / sample.pdf)};
+}
+
+/// On the surface over a point of the plane that an open part is taken for.
+BoundaryPoint onto_surface(BoundaryPoint at,
+                           const TranslucentPart& part,
+                           const Mesh& mesh,
+                           const Tracer& tracer,
+                           const SurfaceEntry& entry) {
+    const double height = glm::distance(at.position, entry.position);
+    TraceRay ray;
+    ray.origin = glm::vec3(at.position + height * entry.geometric_normal);
+    ray.direction = -glm::vec3(entry.geometric_normal);
+    ray.t_max = static_cast<float>(2.0 * height);
+    const Hit hit = height > 0.0 ? tracer.closest(ray) : Hit{};
+    at.position = entry.position;
+    if (!hit.valid()) return at;
+    const SurfacePoint point = surface_point(mesh, hit);
+    const bool faces = glm::dot(point.geometric_normal, ray.direction) < 0.0f;
+    if (point.part != part.part || !faces) return at;
+    at.position = glm::dvec3(point.position_mm);
+    at.geometric_normal = glm::dvec3(point.geometric_normal);
+    return at;
+}
+
+}  // namespace
+
+std::optional<TranslucentPart> translucent_part(const Product& product,
+                                                const Material& material,
+                                                std::size_t part) {
+    if (material.model != ReflectanceModel::translucent || !material.medium) return std::nullopt;
+    return TranslucentPart{walk_medium(on_mock_up(*material.medium, product.product_scale)),
+                           static_cast<std::uint16_t>(part),
+                           is_closed(product.mesh, part)};
+}
+
+Material boundary_alone(const Material& translucent) {
+    Material mirror = albedo_paint(translucent);
+    mirror.diffuse = glm::dvec3(0.0);
+    return mirror;
+}
+
+float chance_of_mirroring(const TranslucentPart& part, float cosine) {
+    const double mirrored = dielectric_reflectance(
+        static_cast<double>(std::clamp(cosine, 0.0f, 1.0f)), part.medium.eta);
+    if (!(mirrored > 0.0)) return 0.0f;
+    // Of walks one learns more
+    return static_cast<float>(std::clamp(mirrored, 0.1, 0.9));
+}
+
+WalkedLight walk_through(const TranslucentPart& part,
+                         const Mesh& mesh,
+                         const Tracer& tracer,
+                         const std::vector<DiscLight>& lights,
+                         const SurfaceEntry& entry,
+                         Random& random) {
+    WalkedLight light;
+    const double eta = part.medium.eta;
+    const double cosine = std::clamp(glm::dot(entry.toward_eye, entry.normal), 0.0, 1.0);
+    const auto inward = refracted(-entry.toward_eye, entry.normal, eta);
+    if (!inward) return light;
+    const double entering = 1.0 - dielectric_reflectance(cosine, eta);
+    // The radiance of a beam that leaves is that inside over the index squared (Veach 1997)
+    const double narrowed = entering / (eta * eta);
+
+    const PartBoundary closed(mesh, tracer, part.part);
+    const PlaneBoundary open(entry.position, entry.geometric_normal);
+    const Boundary& boundary = part.closed ? static_cast<const Boundary&>(closed) : open;
+    const auto on_surface = [&](const BoundaryPoint& at) {
+        return part.closed ? at : onto_surface(at, part, mesh, tracer, entry);
+    };
+    WalkLights lamps;
+    lamps.each = [&](Random& numbers, const std::function<void(const ArrivingLight&)>& use) {
+        for (const DiscLight& one : lights) {
+            if (one.irradiance() != glm::vec3(0.0f)) use(arriving(one, numbers));
+        }
+    };
+    lamps.reaches = [&](const BoundaryPoint& at, const glm::dvec3& direction) {
+        const BoundaryPoint place = on_surface(at);
+        if (!(glm::dot(place.geometric_normal, direction) > 0.0)) return false;
+        TraceRay ray;
+        ray.origin = offset_origin(glm::vec3(place.position), glm::vec3(place.geometric_normal));
+        ray.direction = glm::vec3(direction);
+        return !tracer.occluded(ray);
+    };
+    const glm::dmat3& working = working_from_rec709();
+    BoundaryPoint start;
+    start.position = entry.position;
+    start.geometric_normal = entry.geometric_normal;
+    glm::dvec3 direction = *inward;
+    // A shading normal may send it out of the surface
+    if (!(glm::dot(direction, entry.geometric_normal) < 0.0)) {
+        direction -= 2.0 * glm::dot(direction, entry.geometric_normal) * entry.geometric_normal;
+    }
+    const WalkResult walked = walk_inside(
+        part.medium,
+        boundary,
+        boundary.inside_of(start),
+        direction,
+        lights.empty() ? nullptr : &lamps,
+        [&](const glm::dvec3& weight, const glm::dvec3& irradiance) {
+            light.of_lamps += narrowed * (working * weight) * irradiance;
+        },
+        random);
+    if (!walked.left) return light;
+    const BoundaryPoint out = on_surface(walked.at);
+    light.left = true;
+    light.origin = offset_origin(glm::vec3(out.position), glm::vec3(out.geometric_normal));
+    light.direction = glm::vec3(walked.direction);
+    light.weight = entering * (working * walked.weight);
+    return light;
+}
+
+}  // namespace livery
