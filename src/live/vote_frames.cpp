@@ -50,4 +50,12 @@ Image8 neutral_drive(const ImageF& wanted, double luminance, const ProjectorSetu
     return setup.table ? compensate(*setup.table, grey) : srgb_from_working(grey);
 }
 
+std::optional<PictureReach> reach_of(const ImageF& wanted,
+                                     const Image8& drive,
+                                     const ProjectorSetup& setup) {
+    if (!setup.table) return std::nullopt;
+    const PictureReach reach = reach_of(*setup.table, wanted, drive);
+    return reach.pixels > 0 ? std::optional(reach) : std::nullopt;
+}
+
 }  // namespace livery

@@ -413,6 +413,10 @@ void draw_result(Studio& studio, const Round& round) {
     ImGui::Spacing();
     if (ImGui::Button("Export as CSV…")) ask_where_to_export(studio, tally, round.id);
     name_last_item("ballot:export");
+    ImGui::SameLine();
+    if (ImGui::Button("Write the report")) write_round_report(studio, round);
+    name_last_item("ballot:report");
+    tooltip("Verdict, charts, looks and log as PDF and HTML, beside the ballots.");
     if (is_presenting(studio)) return;  // Back to editing, in the bar
     ImGui::SameLine();
     if (ImGui::Button("All rounds")) go_to(state, open_round(state) ? Page::vote : Page::start);

@@ -15,6 +15,7 @@
 #include "evaluation/report/html_report.h"
 #include "evaluation/report/pdf_report.h"
 #include "evaluation/report/round_report.h"
+#include "jobs/calibrate/calibration_figures.h"
 #include "scene/colour_calibration.h"
 
 namespace livery {
@@ -51,8 +52,8 @@ std::string stem_of(const VoteSource& source, bool sample) {
 }
 
 /// What a calibration says of itself, of the round's own calibration.
-std::vector<std::pair<std::string, std::string>> calibration_figures(const fs::path& folder,
-                                                                     const std::string& id) {
+std::vector<std::pair<std::string, std::string>> figures_of_calibration(const fs::path& folder,
+                                                                        const std::string& id) {
     const fs::path file = folder / "calibration.json";
     const ColourCalibration c = parse_calibration(read_text_file(file), file);
     if (c.id != id) {
@@ -62,19 +63,7 @@ std::vector<std::pair<std::string, std::string>> calibration_figures(const fs::p
                         id.empty() ? "none: the round was shown uncorrected"
                                    : id + ", under which the round was shown");
     }
-    const auto percent = [](double fraction) { return fmt::format("{:.1f}%", 100.0 * fraction); };
-    std::vector<std::pair<std::string, std::string>> figures = {
-        {"Made", c.created},
-        {"With", c.made_with},
-        {"Mode", c.mode},
-        {"Camera to XYZ", c.xyz_origin},
-        {"Additivity error", percent(c.additivity_error)},
-        {"Condition of the mixing, 99th percentile", fmt::format("{:.2f}", c.condition_p99)},
-        {"Measured, of the lit pixels", percent(c.valid_fraction)},
-        {"Predicted, of the valid pixels", percent(c.predicted_fraction)},
-        {"Ambient over white", percent(c.ambient_fraction)}};
-    for (const std::string& warning : c.warnings) figures.emplace_back("Warning", warning);
-    return figures;
+    return calibration_figures(c);
 }
 
 RoundReportSource report_source(const ReportArguments& arguments, VoteSource source) {
@@ -92,7 +81,7 @@ RoundReportSource report_source(const ReportArguments& arguments, VoteSource sou
         }
         if (!arguments.calibration.empty()) {
             report.calibration =
-                calibration_figures(arguments.calibration, source.record->round.calibration_id);
+                figures_of_calibration(arguments.calibration, source.record->round.calibration_id);
         }
     }
     if (!arguments.title.empty()) report.details.title = printable(arguments.title, 200);

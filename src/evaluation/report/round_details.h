@@ -47,6 +47,10 @@ RoundDetails parse_round_details(const std::string& text,
 /// "ballots-round-3/round.json" beside "ballots.sqlite".
 std::filesystem::path round_details_file(const std::filesystem::path& ballots, int round);
 
+/// What parse_round_details() reads, into a folder that is made. Pictures are written by whoever
+/// has them. Throws FileError.
+void write_round_details(const std::filesystem::path& file, int round, const RoundDetails& details);
+
 /// Nothing known where there is no such file. Throws as parse_round_details().
 RoundDetails read_round_details(const std::filesystem::path& file,
                                 int round,

@@ -127,6 +127,38 @@ RoundDetails parse_round_details(const std::string& text,
     return details;
 }
 
+void write_round_details(const std::filesystem::path& file,
+                         int round,
+                         const RoundDetails& details) {
+    Json json = {{"format_version", 1}, {"kind", "round-details"}, {"round", round}};
+    for (const auto& [key, text] : {std::pair{"title", &details.title},
+                                    {"question", &details.question},
+                                    {"note", &details.note}}) {
+        if (!text->empty()) json[key] = *text;
+    }
+    for (const LookDetails& look : details.looks) {
+        Json entry = {{"code", look.code}};
+        if (!look.picture.empty()) entry["picture"] = look.picture;
+        if (look.reachability) {
+            Json& reach = entry["reachability"] = Json::object();
+            const auto put = [&](const char* key, const std::optional<double>& value) {
+                if (value) reach[key] = *value;
+            };
+            put("reachable_fraction", look.reachability->reachable_fraction);
+            put("de00_median", look.reachability->de00_median);
+            put("de00_p95", look.reachability->de00_p95);
+        }
+        json["looks"].push_back(std::move(entry));
+    }
+    for (const LookShowing& showing : details.showings) {
+        Json entry = {{"at", showing.at}, {"codes", showing.codes}};
+        if (!showing.seats.empty()) entry["seats"] = showing.seats;
+        json["showings"].push_back(std::move(entry));
+    }
+    make_output_folder(file.parent_path());
+    write_json_file(file, json);
+}
+
 std::filesystem::path round_details_file(const std::filesystem::path& ballots, int round) {
     return ballots.parent_path() / (ballots.stem().string() + "-round-" + std::to_string(round)) /
            "round.json";

@@ -6,6 +6,33 @@
 
 namespace livery {
 
+namespace {
+
+std::vector<LookShowing> showings_of(const PresentationPlan& plan,
+                                     const std::vector<PresentationStep>& steps,
+                                     const std::vector<int>& codes) {
+    std::vector<LookShowing> showings;
+    int sitting = -1, shown = -1;
+    for (const PresentationStep& step : steps) {
+        const int design = design_of(plan, step.state);
+        if (design < 0) {
+            shown = -1;  // grey, white: the next look is shown anew
+            continue;
+        }
+        if (step.state.sitting != sitting) showings.push_back({step.at, {}, {}});
+        sitting = step.state.sitting;
+        const bool again = step.event == PresentationEvent::repeat;
+        const int place = step.state.place;
+        if (place != shown || again) {
+            showings.back().codes.push_back(codes.at(static_cast<std::size_t>(design)));
+        }
+        shown = place;
+    }
+    return showings;
+}
+
+}  // namespace
+
 RoundRecord read_round_record(const std::filesystem::path& file,
                               std::optional<int> id,
                               std::uint64_t seed) {
@@ -19,6 +46,9 @@ RoundRecord read_round_record(const std::filesystem::path& file,
         record.codes_seed = round.seed;
         record.asks_least = round.asks_least;
         record.session = round.session;
+    }
+    if (const auto plan = store.plan_of(record.round.id)) {
+        record.showings = showings_of(*plan, store.steps_of(record.round.id), record.codes);
     }
     record.seats = static_cast<int>(store.seats(record.session).size());
     for (const LogEntry& entry : store.log()) {

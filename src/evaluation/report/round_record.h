@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "evaluation/closed_round.h"
+#include "evaluation/report/round_details.h"
 
 namespace livery {
 
@@ -22,6 +23,9 @@ struct RoundRecord {
     std::string voting_at, locked_at;  ///< ISO 8601, UTC
     int log_entry = 0;                 ///< that locked the round
     std::string log_hash;              ///< of that entry: over it and all before it
+    /// Of a round that was presented, by its log: what each sitting was really shown, repeats and
+    /// what was gone back to included.
+    std::vector<LookShowing> showings;
 };
 
 /// As read_closed_round(), and throws as it does.

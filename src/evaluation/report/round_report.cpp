@@ -266,6 +266,24 @@ std::vector<VoteStatistics::Power> power_curve(const VoteStatistics& statistics,
     return curve;
 }
 
+RoundReportSource round_report_source(const std::filesystem::path& ballots,
+                                      std::optional<int> id,
+                                      std::uint64_t seed) {
+    RoundRecord record = read_round_record(ballots, id, seed);
+    const ClosedRound& round = record.round;
+    RoundReportSource source;
+    source.names = round.designs;
+    source.statistics = vote_statistics(
+        counts_of(round.ballots, static_cast<int>(round.designs.size()), round.all_name_least),
+        round.designs,
+        seed,
+        &round.ballots);
+    source.details =
+        read_round_details(round_details_file(ballots, round.id), round.id, record.codes);
+    source.record = std::move(record);
+    return source;
+}
+
 ReportDocument round_report(const RoundReportSource& source) {
     return ReportBuilder(source).made();
 }

@@ -1,6 +1,8 @@
 // The report of a round: everything that is said of it, as a document.
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -24,6 +26,12 @@ struct RoundReportSource {
     std::string program;  ///< "livery 0.1.0"
     std::string made_at;  ///< ISO 8601, UTC
 };
+
+/// Of a round that is closed, with what stands beside its ballots; who it is for adds the rest.
+/// Throws as read_round_record() and read_round_details().
+RoundReportSource round_report_source(const std::filesystem::path& ballots,
+                                      std::optional<int> round,
+                                      std::uint64_t seed);
 
 /// Reads the pictures that `details` names. Throws FileError of those.
 ReportDocument round_report(const RoundReportSource& source);

@@ -233,7 +233,8 @@ ReportTable showings_table(const RoundReportSource& source) {
     ReportTable table{"Who saw which order, and when",
                       {{"When", false}, {"Seats", false}, {"Codes in the order shown", false}},
                       {}};
-    for (const LookShowing& showing : source.details.showings) {
+    const bool by_log = source.details.showings.empty() && source.record;
+    for (const LookShowing& showing : by_log ? source.record->showings : source.details.showings) {
         table.rows.push_back({recorded(showing.at),
                               showing.seats.empty()
                                   ? kNotRecorded

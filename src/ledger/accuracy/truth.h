@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/image.h"
+#include "core/pictures/colour_differences.h"
 #include "core/progress.h"
 #include "jobs/comparison.h"
 #include "ledger/accuracy/scenes.h"
@@ -35,9 +36,5 @@ std::string truth_hash(const AccuracyScene& scene, const TruthOptions& options);
 
 /// 32 hexadecimal digits over mesh, paints, artwork, lights, environment, eye, view and exposure.
 std::string hash_of(const AccuracyScene& scene);
-
-/// CIEDE2000 at the design white, D65 with Y = 1, of the pixels that both pictures cover by half or
-/// more; what is no number is infinite.
-std::vector<float> colour_differences(const ImageF& drawn_working, const ImageF& truth_working);
 
 }  // namespace livery

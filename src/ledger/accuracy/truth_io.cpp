@@ -125,29 +125,6 @@ std::string hash_of(const AccuracyScene& scene) {
     return hasher.hex();
 }
 
-std::vector<float> colour_differences(const ImageF& drawn, const ImageF& truth) {
-    check_argument(drawn.width == truth.width && drawn.height == truth.height &&
-                       drawn.channels == 4 && truth.channels == 4,
-                   "colour_differences: two pictures of one size with coverage are needed");
-    constexpr float kHalf = 0.5f;
-    const glm::dmat3 to_xyz = xyz_from_working();
-    const glm::dvec3 white = to_xyz * glm::dvec3(1.0);
-    std::vector<float> all(truth.pixel_count(), -1.0f);
-    parallel_for(all.size(), 1024, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const float* a = drawn.values.data() + 4 * i;
-            const float* b = truth.values.data() + 4 * i;
-            if (a[3] < kHalf || b[3] < kHalf) continue;
-            const auto lab = [&](const float* v) {
-                return lab_from_xyz(to_xyz * glm::dvec3(v[0], v[1], v[2]), white);
-            };
-            all[i] = worst_if_nan(static_cast<float>(ciede2000(lab(a), lab(b))));
-        }
-    });
-    std::erase_if(all, [](float difference) { return difference < 0.0f; });
-    return all;
-}
-
 std::string truth_hash(const AccuracyScene& scene, const TruthOptions& options) {
     Hasher hasher;
     hasher.add(hash_of(scene));

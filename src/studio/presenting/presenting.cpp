@@ -15,6 +15,18 @@ namespace livery {
 
 namespace {
 
+/// A presentation does not wait for what only its report needs.
+RoundDetails known_details(const std::filesystem::path& file,
+                           int round,
+                           const std::vector<int>& codes) {
+    try {
+        return read_round_details(file, round, codes);
+    } catch (const std::exception& error) {
+        log_line(LogLevel::warning, error.what());
+        return {};
+    }
+}
+
 using Phase = PresentationPhase;
 
 constexpr double kBetweenReadings_s = 0.5;
@@ -175,14 +187,21 @@ void take_round(Studio& studio, Round round, PresentationPlan plan, Presentation
     read_seats(studio, true);
     if (!studio.background) return;
     studio.background->run(
-        [&studio, id, folder = folder_of(studio, presented.plan), hashes = presented.plan.frames](
-            const Progress&) -> Background::Then {
+        [&studio,
+         id,
+         folder = folder_of(studio, presented.plan),
+         hashes = presented.plan.frames,
+         codes = presented.round.codes,
+         details_file =
+             round_details_file(studio.ballots->file(), id)](const Progress&) -> Background::Then {
+            const auto details = known_details(details_file, id, codes);
             auto frames = std::make_shared<VoteFrames>(read_vote_frames(folder, hashes));
             auto lit = std::make_shared<Image8>();
             for (const auto& [name, frame] : *frames) add_lit_pixels(*frame, *lit);
-            return [&studio, id, frames, lit] {
+            return [&studio, id, frames, lit, details] {
                 auto& shown = presenting(studio).presented;
                 if (!shown || shown->round.id != id) return;
+                shown->details = details;
                 shown->frames = std::move(*frames);
                 shown->lit = std::move(*lit);
                 shown->place = free_place(shown->lit, kNumberPlaceAspect);

@@ -12,6 +12,7 @@
 #include "live/projector_setup.h"
 #include "projection/projector_screen.h"
 #include "studio/presenting/frames_folder.h"
+#include "studio/presenting/round_files.h"
 #include "studio/studio.h"
 
 namespace livery {
@@ -41,9 +42,9 @@ struct Freezing {
     std::shared_ptr<const ProjectorSetup> projector;
     std::uint64_t asked = 0;  ///< the frame of the look under way; 0: not asked for yet
     VoteFrames frames;
-    std::vector<double> luminances;      ///< of the looks, as wanted
-    std::shared_ptr<const ImageF> last;  ///< what of the picture is covered
-    bool kept_frozen = false;            ///< the projector was frozen before
+    std::vector<double> luminances;  ///< of the looks, as wanted
+    std::vector<FrozenLook> frozen;
+    bool kept_frozen = false;  ///< the projector was frozen before
     bool writing = false;
 };
 
@@ -53,6 +54,7 @@ struct PresentedRound {
     PresentationPlan plan;
     PresentationState state;
     VoteFrames frames;                    ///< empty: still being loaded, or not what was frozen
+    RoundDetails details;                 ///< how much of each look can be shown; empty: not known
     Image8 lit;                           ///< pixels that any of them lights
     std::optional<PixelRectangle> place;  ///< for code and time; none: no room
 };

@@ -338,6 +338,15 @@ void draw_presented_round(Studio& studio) {
         ImGui::TextWrapped("%s", order.c_str());
         name_last_item("vote:order");
     }
+    if (!presented.details.looks.empty()) {
+        heading("What can be shown");
+        for (const LookDetails& look : presented.details.looks) {
+            const bool fair = !look.reachability || is_fair(*look.reachability);
+            const std::string words = reach_in_words(look);
+            fair ? dim_text(words) : warning_text(words);
+        }
+        name_last_item("vote:reach");
+    }
     heading("Evaluators");
     draw_seats(studio);
 }

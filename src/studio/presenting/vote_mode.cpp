@@ -104,7 +104,7 @@ VoteFrames with_greys(const Freezing& freezing) {
     VoteFrames frames = freezing.frames;
     const auto neutral = [&](double luminance) {
         return std::make_shared<const Image8>(
-            neutral_drive(*freezing.last, luminance, *freezing.projector));
+            neutral_drive(*freezing.frozen.back().wanted_working, luminance, *freezing.projector));
     };
     const auto& luminances = freezing.luminances;
     const double sum = std::accumulate(luminances.begin(), luminances.end(), 0.0);
@@ -125,6 +125,36 @@ std::string folder_name(const RoundSetup& setup) {
     std::string name = utc_now_ms();
     std::replace(name.begin(), name.end(), ':', '-');
     return fmt::format("frames/{}-{:08x}", name, static_cast<unsigned>(setup.seed));
+}
+
+/// For its report; and what cannot be shown fairly is named before anybody judges it.
+void keep_frozen_looks(Studio& studio, const Freezing& freezing, int id) {
+    const Round round = studio.ballots->open_round().value();
+    studio.background->run(
+        [&studio,
+         id,
+         round,
+         ballots = studio.ballots->file(),
+         looks = freezing.frozen,
+         setup = freezing.projector](const Progress&) -> Background::Then {
+            const RoundDetails details = write_frozen_looks(ballots, round, looks, *setup);
+            return [&studio, id, details] {
+                auto& presented = presenting(studio).presented;
+                if (!presented || presented->round.id != id) return;
+                presented->details = details;
+                const std::vector<int> unfair = unfair_looks(details);
+                if (unfair.empty()) return;
+                notify(studio,
+                       {Notice::Level::warning,
+                        fmt::format("This projector cannot show {} as wanted.",
+                                    fmt::join(unfair, ", ")),
+                        "Whoever judges it judges something else; the panel says how far off.",
+                        "Abort the round and lower the exposure, or darken the room."});
+            };
+        },
+        [&studio](std::exception_ptr why) {
+            notify_failure(studio, "Pictures for the round's report were not kept.", why);
+        });
 }
 
 /// Everything is rendered: to the disk, and then the round begins.
@@ -150,6 +180,7 @@ void write_and_begin(Shell& shell) {
                     const auto state = after(*setup.plan, {}, Event::present, there.now_s);
                     there.ballots->record_step(id, state, Event::present);
                     presenting(there).freezing.reset();
+                    keep_frozen_looks(there, *freezing, id);
                     take_round(there, there.ballots->open_round().value(), *setup.plan, state);
                     // Dark until its frames are there; the newest look is nobody's business.
                     show_what_is_due(shell);
@@ -183,8 +214,9 @@ void go_on_freezing(Shell& shell) {
     if (!all_there) return;
     auto wanted = radiance_of(*frame->pictures);
     freezing.luminances.push_back(mean_luminance(*wanted));
-    freezing.frames[frame_of_look(static_cast<int>(done))] = drive_of(*frame->pictures);
-    freezing.last = std::move(wanted);
+    const auto drive = drive_of(*frame->pictures);
+    freezing.frames[frame_of_look(static_cast<int>(done))] = drive;
+    freezing.frozen.push_back({std::move(wanted), drive});
     freezing.asked = 0;
     if (done + 1 == freezing.looks.size()) write_and_begin(shell);
 }

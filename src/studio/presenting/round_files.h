@@ -1,0 +1,43 @@
+// What a round leaves beside its ballots: pictures and reach of its looks, and its report.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/image.h"
+#include "evaluation/ballots.h"
+#include "evaluation/report/round_details.h"
+#include "live/projector_setup.h"
+#include "studio/studio.h"
+
+namespace livery {
+
+/// A look as it was frozen.
+struct FrozenLook {
+    std::shared_ptr<const ImageF> wanted_working;  ///< R, G, B, coverage
+    std::shared_ptr<const Image8> drive;
+};
+
+/// What a look loses that cannot be judged any more: the paper calls differences under 3 hard to
+/// see, and a fifth of a look is no detail.
+inline constexpr double kFairDe00 = 3.0, kFairFraction = 0.8;
+bool is_fair(const LookReachability& reach);
+
+/// "374: 93% of it as wanted, the rest up to 4.1 off (CIEDE2000, 95%)".
+std::string reach_in_words(const LookDetails& look);
+/// Codes of looks that cannot be shown fairly, by their details.
+std::vector<int> unfair_looks(const RoundDetails& details);
+
+/// For a thread that may wait: what each look wants as sRGB, how much of it this projector shows,
+/// by its calibration (nothing is said without one), in the round's folder beside the ballots.
+/// Throws FileError.
+RoundDetails write_frozen_looks(const std::filesystem::path& ballots,
+                                const Round& round,
+                                const std::vector<FrozenLook>& looks,
+                                const ProjectorSetup& setup);
+
+/// On the background thread: HTML and PDF in that folder; the notice says where.
+void write_round_report(Studio& studio, const Round& round);
+
+}  // namespace livery
