@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/paths.h"
 #include "evaluation/report/round_details.h"
+#include "evaluation/report/round_report.h"
 
 namespace livery {
 
@@ -63,11 +64,7 @@ VoteSource source_of_record(RoundRecord record, std::uint64_t seed) {
     VoteSource source;
     const ClosedRound& round = record.round;
     source.names = round.designs;
-    source.statistics = vote_statistics(
-        counts_of(round.ballots, static_cast<int>(round.designs.size()), round.all_name_least),
-        round.designs,
-        seed,
-        &round.ballots);
+    source.statistics = round_statistics(round, seed);
     source.record = std::move(record);
     return source;
 }

@@ -266,6 +266,14 @@ std::vector<VoteStatistics::Power> power_curve(const VoteStatistics& statistics,
     return curve;
 }
 
+VoteStatistics round_statistics(const ClosedRound& round, std::uint64_t seed) {
+    return vote_statistics(
+        counts_of(round.ballots, static_cast<int>(round.designs.size()), round.all_name_least),
+        round.designs,
+        seed,
+        &round.ballots);
+}
+
 RoundReportSource round_report_source(const std::filesystem::path& ballots,
                                       std::optional<int> id,
                                       std::uint64_t seed) {
@@ -273,11 +281,7 @@ RoundReportSource round_report_source(const std::filesystem::path& ballots,
     const ClosedRound& round = record.round;
     RoundReportSource source;
     source.names = round.designs;
-    source.statistics = vote_statistics(
-        counts_of(round.ballots, static_cast<int>(round.designs.size()), round.all_name_least),
-        round.designs,
-        seed,
-        &round.ballots);
+    source.statistics = round_statistics(round, seed);
     source.details =
         read_round_details(round_details_file(ballots, round.id), round.id, record.codes);
     source.record = std::move(record);

@@ -27,6 +27,9 @@ struct RoundReportSource {
     std::string made_at;  ///< ISO 8601, UTC
 };
 
+/// What its ballots say; of those that name a least one only where all do.
+VoteStatistics round_statistics(const ClosedRound& round, std::uint64_t seed);
+
 /// Of a round that is closed, with what stands beside its ballots; who it is for adds the rest.
 /// Throws as read_round_record() and read_round_details().
 RoundReportSource round_report_source(const std::filesystem::path& ballots,
