@@ -18,7 +18,7 @@ constexpr rlim_t kData_bytes = 64u << 20u;
 constexpr rlim_t kFile_bytes = 256u << 20u;
 constexpr rlim_t kFiles = 640;  ///< 512 connections, the database's, and some
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(LIVERY_SANITIZED)
 constexpr bool kSanitized = true;  // whose shadow is larger than any limit
 #else
 constexpr bool kSanitized = false;
