@@ -108,10 +108,10 @@ void close(void* opaque) try {
 
 }  // namespace livery
 
-extern "C" __attribute__((visibility("default"))) const livery::VideoTable& livery_video_table();
+extern "C" __attribute__((visibility("default"))) const livery::VideoTable* livery_video_table();
 
-const livery::VideoTable& livery_video_table() {
+const livery::VideoTable* livery_video_table() {
     static constexpr livery::VideoTable table{
         livery::open, livery::read, livery::get, livery::set, livery::close};
-    return table;
+    return &table;
 }

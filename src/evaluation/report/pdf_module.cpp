@@ -269,9 +269,9 @@ void close(void* handle) { delete static_cast<Pdf*>(handle); }
 
 }  // namespace
 
-extern "C" __attribute__((visibility("default"))) const livery::PdfTable& livery_pdf_table();
+extern "C" __attribute__((visibility("default"))) const livery::PdfTable* livery_pdf_table();
 
-const livery::PdfTable& livery_pdf_table() {
+const livery::PdfTable* livery_pdf_table() {
     static constexpr PdfTable table{open,
                                     measure,
                                     draw_text,
@@ -284,5 +284,5 @@ const livery::PdfTable& livery_pdf_table() {
                                     end_page,
                                     finish,
                                     close};
-    return table;
+    return &table;
 }
