@@ -212,7 +212,7 @@ TEST(BadScan, AnyDamageIsReadOrRefused) {
             for (int k = 0; k < 1 + round % 5 && !damaged.empty(); ++k) {
                 const auto at = static_cast<std::size_t>(random.uniform() *
                                                          static_cast<double>(damaged.size()));
-                damaged[at] = static_cast<char>(random.uniform() * 256.0);
+                damaged[at] = static_cast<char>(random.below(256));
             }
             try {
                 const Mesh mesh = load_mesh(folder.write(name, damaged));
