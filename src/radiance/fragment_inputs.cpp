@@ -3,34 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cmath>
-#include <numbers>
 #include <stdexcept>
 #include <utility>
 
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
-
-#include "appearance/gloss_optics.h"
 #include "appearance/subsurface/translucent_paint.h"
-#include "core/colour.h"
-#include "core/mutation.h"
-#include "core/parallel.h"
 
 namespace livery {
 namespace {
 
-constexpr float kHalfLargest = 65000.0f;
-
 bool same_disc(const DirectionalLight& a, const DirectionalLight& b) {
     return a.direction == b.direction && a.angle_rad == b.angle_rad;
-}
-
-/// Into the fragment's own frame: tangent, across, mean normal.
-glm::vec3 to_local(const Fragment& f, const glm::vec3& direction) {
-    const glm::vec3 s(f.tangent);
-    const glm::vec3 t = f.tangent.w * glm::cross(f.normal, s);
-    return {glm::dot(direction, s), glm::dot(direction, t), glm::dot(direction, f.normal)};
 }
 
 /// Whether what was filtered of one serves the other: filters know neither rotation nor scale.
@@ -39,10 +21,6 @@ bool same_map(const std::shared_ptr<const Environment>& a,
     if (a == b) return true;
     return a && b && a->radiance_working.width == b->radiance_working.width &&
            a->radiance_working.values == b->radiance_working.values;
-}
-
-glm::vec3 radiance_working(const DirectionalLight& light) {
-    return glm::vec3(working_from_rec709() * light.radiance_rec709);
 }
 
 }  // namespace
@@ -363,144 +341,6 @@ std::vector<MirrorLayers> FragmentInputs::mirrored() const {
     const std::vector<MirrorLayers> missing = mirror_.missing(mirror_.light(), layers, false);
     for (std::size_t p = 0; p < layers.size(); ++p) layers[p] &= ~missing[p];
     return layers;
-}
-
-FragmentInputs::Changed FragmentInputs::upload(const Scene& scene, StageClock& clock) {
-    if (mirror_.has_uploads()) {
-        clock.add(PassKind::mirrored_environment, [&] {
-            const MirrorInputs::Uploaded done = mirror_.upload(device_, shading_);
-            if (done.other_light) changed_.glossy = true;
-            if (done.more_room) ++layers_made_;
-        });
-    }
-    const bool other_eye = eye_ != scene.eye_in_world_mm;
-    clock.run(PassKind::directions, directions_stale_ || other_eye, [&] {
-        if (other_eye) upload_eye(scene);
-        if (directions_stale_) upload_lights();
-        eye_ = scene.eye_in_world_mm;
-        directions_stale_ = false;
-        changed_.glossy = true;
-    });
-    if (sky_stale_) {
-        upload_sky();
-        sky_stale_ = false;
-        changed_.glossy = true;
-    }
-    clock.run(PassKind::diffuse_light, diffuse_light_stale_, [&] {
-        upload_diffuse_light();
-        diffuse_light_stale_ = false;
-        changed_.diffuse = true;
-    });
-    clock.run(PassKind::glint_places, places_stale_, [&] {
-        upload_places();
-        places_stale_ = false;
-    });
-    shading_.product_scale = scene.product->product_scale;
-    return std::exchange(changed_, {});
-}
-
-template <typename Value>
-void FragmentInputs::upload_packed(InputLayers& input, int layer, const Value& value) {
-    pack(layout_, value, packed_);
-    input.upload(packed_, layer);
-}
-
-void FragmentInputs::upload_eye(const Scene& scene) {
-    const auto fragment = [&](std::size_t i) -> const Fragment& { return map_->fragments[i]; };
-    make(shading_.eye, 0, InputLayers::Precision::full);
-    upload_packed(shading_.eye, 0, [&](std::size_t i) {
-        const glm::vec3 wo = toward_eye(fragment(i), scene.eye_in_world_mm);
-        return glm::vec4(to_local(fragment(i), wo), fragment(i).normal_variance);
-    });
-}
-
-void FragmentInputs::upload_lights() {
-    const auto fragment = [&](std::size_t i) -> const Fragment& { return map_->fragments[i]; };
-    shading_.light_irradiance.clear();
-    shading_.light_radius2.clear();
-    if (!lights_.empty()) {
-        make(shading_.lights, lights_.size(), InputLayers::Precision::full);
-    }
-    for (std::size_t k = 0; k < lights_.size(); ++k) {
-        const Light& light = lights_[k];
-        shading_.light_irradiance.push_back(
-            LIVERY_MUTATED(lamp_irradiance, std::numbers::pi_v<float>) *
-            radiance_working(light.light));
-        shading_.light_radius2.push_back(
-            static_cast<float>(0.25 * light.light.angle_rad * light.light.angle_rad));
-        upload_packed(shading_.lights, static_cast<int>(k), [&](std::size_t i) {
-            return glm::vec4(to_local(fragment(i), light.at[i].direction), light.at[i].visibility);
-        });
-    }
-}
-
-void FragmentInputs::upload_sky() {
-    const std::vector<glm::vec3>& between = exchanged_.on_diffuser;
-    if (sky_.empty() && between.empty() && subsurface_.empty()) {
-        shading_.sky = InputLayers();
-        return;
-    }
-    make(shading_.sky, 0, InputLayers::Precision::half);
-    const auto light_on = [&](std::size_t i) {
-        glm::vec3 sum = (sky_.empty() ? glm::vec3(0.0f) : sky_[i]) +
-                        (between.empty() ? glm::vec3(0.0f) : between[i]);
-        if (!subsurface_.empty()) {
-            // Of a translucent part: what leaves it
-            const std::size_t part = map_->fragments[i].part;
-            if (const SubsurfaceInputs::Part* leaving = subsurface_.part(part)) {
-                sum = leaving->spread
-                          ? leaving->at_fragments[i]
-                          : leaving->total * (entering_share(leaving->medium.eta) * sum +
-                                              entering_at(i, leaving->medium.eta));
-            }
-        }
-        return glm::vec4(glm::min(sum, glm::vec3(kHalfLargest)), 1.0f);
-    };
-    upload_packed(shading_.sky, 0, light_on);
-}
-
-glm::vec3 FragmentInputs::entering_at(std::size_t fragment, double eta) const {
-    glm::vec3 sum(0.0f);
-    for (const Light& light : lights_) {
-        const float cosine =
-            glm::dot(map_->fragments[fragment].normal, light.at[fragment].direction);
-        if (cosine <= 0.0f) continue;
-        const double enters = 1.0 - dielectric_reflectance(static_cast<double>(cosine), eta);
-        sum += radiance_working(light.light) *
-               (light.at[fragment].visibility * cosine * static_cast<float>(enters));
-    }
-    return sum;
-}
-
-void FragmentInputs::upload_diffuse_light() {
-    make(shading_.lit, 0, InputLayers::Precision::half);
-    const auto light_on = [&](std::size_t i) {
-        glm::vec3 sum = sky_.empty() ? glm::vec3(0.0f) : sky_[i];
-        const std::vector<glm::vec3>& between = exchanged_.on_diffuser;
-        if (!between.empty()) sum += between[i];
-        for (const Light& light : lights_) {
-            const float cosine = glm::dot(map_->fragments[i].normal, light.at[i].direction);
-            sum +=
-                radiance_working(light.light) * (light.at[i].visibility * std::max(cosine, 0.0f));
-        }
-        return glm::vec4(glm::min(sum, glm::vec3(kHalfLargest)), 1.0f);
-    };
-    upload_packed(shading_.lit, 0, light_on);
-}
-
-void FragmentInputs::upload_places() {
-    make(shading_.places, 0, InputLayers::Precision::full);
-    const auto place_of = [&](std::size_t i) {
-        const Fragment& f = map_->fragments[i];
-        return glm::vec4(f.position_mm, pixel_side_mm(pixels_, f.position_mm, f.normal));
-    };
-    upload_packed(shading_.places, 0, place_of);
-}
-
-void FragmentInputs::make(InputLayers& input,
-                          std::size_t layers,
-                          InputLayers::Precision precision) {
-    if (input.make(device_, layout_.rows, static_cast<int>(layers), precision)) ++layers_made_;
 }
 
 }  // namespace livery

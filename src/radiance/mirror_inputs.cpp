@@ -281,8 +281,10 @@ MirrorInputs::Uploaded MirrorInputs::upload(ShadingDevice device, ShadingInputs&
         shading.mirror.upload(
             texels.values, static_cast<int>(texels.layer), layout_.row_begin[texels.part]);
     }
-    // Memory that is new costs as much to touch as a draft to solve
-    spare_texels_ = std::move(solved_texels_);
+    // Memory that is new costs as much to touch as a draft to solve; what is not dragged gives it
+    // back
+    spare_texels_.clear();
+    if (light_.nodes == kNoNodes) spare_texels_ = std::move(solved_texels_);
     solved_texels_.clear();
     shading.mirror_unit = unit_;
     return done;

@@ -138,7 +138,7 @@ class MirrorInputs {
     std::optional<MirrorHits> hits_;  ///< of what visibility_ has traced; none: not asked for yet
     float unit_ = 1.0f;
     std::vector<Texels> solved_texels_;  ///< not yet uploaded
-    std::vector<Texels> spare_texels_;   ///< uploaded: rows for the next of the same size
+    std::vector<Texels> spare_texels_;   ///< uploaded look-ups: rows for the next of the same size
     /// While light between parts is solved, so that other paints change no more than that; by part.
     std::vector<KeptSums> kept_;
     bool other_light_ = false;  ///< since the last upload

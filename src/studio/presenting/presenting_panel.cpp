@@ -3,6 +3,7 @@
 #include <cfloat>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -98,10 +99,20 @@ std::string plan_in_words(const PresentingSettings& settings, int designs) {
         fair);
 }
 
+void draw_stop_phones(Studio& studio) {
+    if (ImGui::Button("Stop", {-FLT_MIN, 0.0f})) serve_phones(studio, false);
+    name_last_item("phones:stop");
+    tooltip("Phones no longer reach the ballots; votes that were confirmed stay.");
+}
+
 void draw_qr_picture(const std::string& text) {
     const QrCode code = qr_code(text);
     const int modules = code.size + 2 * kQrQuietZone;
-    const float room = std::min(ImGui::GetContentRegionAvail().x, em(11.0f));
+    // As large as the panel shows without scrolling, and never too small for a phone
+    const float below =
+        ImGui::GetWindowHeight() - ImGui::GetCursorPosY() - ImGui::GetStyle().WindowPadding.y;
+    const float room =
+        std::min({ImGui::GetContentRegionAvail().x, em(11.0f), std::max(below, em(9.0f))});
     const float scale = std::max(1.0f, std::floor(room / static_cast<float>(modules)));
     const float side = scale * static_cast<float>(modules);
     const ImVec2 corner = ImGui::GetCursorScreenPos();
@@ -293,15 +304,14 @@ void draw_phones(Studio& studio) {
             ImGui::Checkbox("Project it", &state.qr_projected);
             name_last_item("phones:project-qr");
             tooltip("Shows the QR code beside the mock-up, which is grey meanwhile.");
+            draw_stop_phones(studio);
             ImGui::EndGroup();
         } else if (!joins) {
             dim_text(
                 "Joining is closed while a round is open: who came now would not have seen every "
                 "look.");
         }
-        if (ImGui::Button("Stop", {-FLT_MIN, 0.0f})) serve_phones(studio, false);
-        name_last_item("phones:stop");
-        tooltip("Phones no longer reach the ballots; votes that were confirmed stay.");
+        if (!state.invitation || !joins) draw_stop_phones(studio);
     }
     if (!state.phones_problem.empty()) {
         warning_text(state.phones_problem);
@@ -340,7 +350,12 @@ void draw_presented_round(Studio& studio) {
     }
     if (!presented.details.looks.empty()) {
         heading("What can be shown");
-        for (const LookDetails& look : presented.details.looks) {
+        // By code: in the order of the designs they would say which is whose
+        std::vector<LookDetails> looks = presented.details.looks;
+        std::sort(looks.begin(), looks.end(), [](const LookDetails& a, const LookDetails& b) {
+            return a.code < b.code;
+        });
+        for (const LookDetails& look : looks) {
             const bool fair = !look.reachability || is_fair(*look.reachability);
             const std::string words = reach_in_words(look);
             fair ? dim_text(words) : warning_text(words);

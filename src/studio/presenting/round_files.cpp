@@ -26,7 +26,7 @@ std::string reach_in_words(const LookDetails& look) {
     if (!look.reachability || !look.reachability->reachable_fraction) {
         return fmt::format("{}: not known without a calibration", look.code);
     }
-    return fmt::format("{}: {:.0f}% of it as wanted; 95% of it within {:.1f}",
+    return fmt::format("{}: {:.0f}% of it as wanted, 95% within {:.1f} (CIEDE2000)",
                        look.code,
                        100.0 * *look.reachability->reachable_fraction,
                        look.reachability->de00_p95.value_or(0.0));

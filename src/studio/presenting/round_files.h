@@ -24,7 +24,7 @@ struct FrozenLook {
 inline constexpr double kFairDe00 = 3.0, kFairFraction = 0.8;
 bool is_fair(const LookReachability& reach);
 
-/// "374: 93% of it as wanted, the rest up to 4.1 off (CIEDE2000, 95%)".
+/// "374: 93% of it as wanted, 95% within 4.1 (CIEDE2000)".
 std::string reach_in_words(const LookDetails& look);
 /// Codes of looks that cannot be shown fairly, by their details.
 std::vector<int> unfair_looks(const RoundDetails& details);
