@@ -26,6 +26,12 @@
 
 namespace livery {
 
+const Round* open_round(const BallotPanelState& state) {
+    const auto found = std::find_if(
+        state.rounds.begin(), state.rounds.end(), [](const Round& round) { return !round.closed; });
+    return found == state.rounds.end() ? nullptr : &*found;
+}
+
 namespace {
 
 using Page = BallotPanelState::Page;
@@ -67,12 +73,6 @@ void follow_others(Studio& studio) {
     } catch (const FileError& error) {
         state.problem = error.what();
     }
-}
-
-const Round* open_round(const BallotPanelState& state) {
-    const auto found = std::find_if(
-        state.rounds.begin(), state.rounds.end(), [](const Round& round) { return !round.closed; });
-    return found == state.rounds.end() ? nullptr : &*found;
 }
 
 void go_to(BallotPanelState& state, Page page) {

@@ -27,4 +27,7 @@ struct BallotPanelState {
     int presented_phase = 0;  ///< in the frame before; 0: nothing was presented
 };
 
+/// The one that is open; null: none is.
+const Round* open_round(const BallotPanelState& state);
+
 }  // namespace livery

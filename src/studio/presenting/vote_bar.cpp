@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "studio/ballot_panel.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
 #include "studio/kit/widgets.h"
@@ -121,7 +122,12 @@ std::string details(const Studio& studio) {
                                                      state.freezing->frames.size() + 1,
                                                      state.freezing->looks.size());
     }
-    if (!state.presented) return "Choose looks in the panel, then Present.";
+    if (!state.presented) {
+        const Round* open = open_round(*studio.panels.ballot);
+        return open ? fmt::format("Round {} takes votes, unpresented: close it in the panel.",
+                                  open->id)
+                    : "Choose looks in the panel, then Present.";
+    }
     const PresentedRound& presented = *state.presented;
     const PresentationState& step = presented.state;
     if (!state.problem.empty()) return state.problem;
