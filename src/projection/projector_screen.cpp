@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/log.h"
+#include "gl/picture_fade.h"
 #include "gl/window_blit.h"
 #include "projection/window_keeper.h"
 
@@ -20,9 +21,12 @@ namespace livery {
 namespace {
 
 using Picture = std::shared_ptr<const ProjectorPicture>;
+using Clock = std::chrono::steady_clock;
 
 /// How long an unfinished picture may keep a newer picture or the end of the program waiting.
 constexpr double kPatience_s = 0.004;
+/// Between two steps of a picture that fades in, at least: where nothing waits for the projector.
+constexpr auto kFadeStep = std::chrono::milliseconds(16);
 
 /// Where a picture goes in the window: pixel for pixel, or as large as fits when the shape is the
 /// window's, else in the middle.
@@ -160,7 +164,17 @@ struct ProjectorScreen::Implementation {
     struct Canvas {
         WindowBlit blit;
         Picture drawn;
-        Fence read;  ///< reached when the device has read `drawn`
+        Fence read;  ///< reached when the device has read `drawn` and `coming`
+
+        PictureFade fade;
+        Picture coming;  ///< takes the place of `drawn` little by little; none: it is alone
+        Clock::time_point began{}, stepped{};
+
+        /// Whether a picture should fade in over the one that is there.
+        bool fades_to(const Picture& next) const {
+            return next && drawn && next != drawn && next->fade_s > 0.0 &&
+                   next->size_px == drawn->size_px;
+        }
     };
 
     void draw_until_quit() {
@@ -188,11 +202,19 @@ struct ProjectorScreen::Implementation {
             std::vector<Picture>
                 finished_with;  // dropped after the lock: a driver may take a while
             std::unique_lock lock(mutex);
+            // What fades in is seen to its end, unless something else than a better picture comes
             const auto must_draw = [&] {
-                return size_px && !black && (exposed || canvas.drawn != wanted);
+                if (!size_px || black) return false;
+                if (exposed || (canvas.coming && !canvas.fades_to(wanted))) return true;
+                return canvas.coming ? Clock::now() >= canvas.stepped + kFadeStep
+                                     : canvas.drawn != wanted;
             };
-            changed.wait(lock,
-                         [&] { return quit || !let_go.empty() || black_since || must_draw(); });
+            const auto woken = [&] { return quit || !let_go.empty() || black_since || must_draw(); };
+            if (canvas.coming && size_px && !black) {
+                changed.wait_until(lock, canvas.stepped + kFadeStep, woken);
+            } else {
+                changed.wait(lock, woken);
+            }
             if (quit) return std::nullopt;
             finished_with.swap(let_go);
             if (const auto since = std::exchange(black_since, std::nullopt)) {
@@ -212,8 +234,41 @@ struct ProjectorScreen::Implementation {
         if (on_shown) on_shown(now);
     }
 
+    /// What is due of a fade: true while it goes on, with the mix of both drawn.
+    bool draw_fade(const Work& work, Canvas& canvas) {
+        const auto now = Clock::now();
+        if (!canvas.coming) {
+            if (!canvas.fades_to(work.picture)) return false;
+            if (!work.picture->ready || work.picture->ready->wait_for(kPatience_s)) {
+                canvas.coming = work.picture;
+                canvas.began = now;
+            } else if (!work.exposed) {
+                return true;
+            }
+        }
+        if (!canvas.coming || !canvas.fades_to(work.picture)) {
+            canvas.coming.reset();
+            return false;
+        }
+        canvas.stepped = now;
+        const double share =
+            std::chrono::duration<double>(now - canvas.began).count() / canvas.coming->fade_s;
+        if (share >= 1.0) return false;
+        const glm::ivec2 picture_px = canvas.coming->size_px;
+        const unsigned mixed = canvas.fade.between(
+            canvas.drawn->texture, canvas.coming->texture, static_cast<float>(share), picture_px);
+        canvas.blit.show(mixed, picture_px, placed(picture_px, work.window_px), work.window_px);
+        window->swap();
+        canvas.read.wait_for(1.0);
+        canvas.read = Fence::after_everything_so_far();
+        const std::lock_guard lock(mutex);
+        ++shown.frames;
+        return true;
+    }
+
     void draw(const Work& work, Canvas& canvas) {
-        Picture next = work.picture;
+        if (draw_fade(work, canvas)) return;
+        Picture next = canvas.coming ? std::exchange(canvas.coming, nullptr) : work.picture;
         if (next && next != canvas.drawn && next->ready && !next->ready->wait_for(kPatience_s)) {
             if (!work.exposed) return;
             next = canvas.drawn;
@@ -227,7 +282,7 @@ struct ProjectorScreen::Implementation {
             canvas.blit.black(work.window_px);
         }
         window->swap();
-        const auto at = std::chrono::steady_clock::now();
+        const auto at = Clock::now();
         // Whoever made the old picture may draw into it again once it is let go.
         canvas.read.wait_for(1.0);
         canvas.read = Fence::after_everything_so_far();

@@ -117,6 +117,56 @@ TEST_P(ProjectorScreenTest, FrozenKeepsAndThawedShowsTheNewest) {
     EXPECT_TRUE(wait_until([&] { return screen.shown().number == 3; }));
 }
 
+std::shared_ptr<const ProjectorPicture> fading(const std::shared_ptr<const ProjectorPicture>& whole,
+                                               double fade_s) {
+    auto picture = std::make_shared<ProjectorPicture>(*whole);
+    picture->fade_s = fade_s;
+    return picture;
+}
+
+TEST_P(ProjectorScreenTest, FadesInWhatOnlyGotBetter) {
+    ProjectorScreen screen(stage.share);
+    screen.use_monitor(projector);
+    screen.present(fading(stage.plain(1, kMagenta), 30.0));  // over nothing: at once
+    ASSERT_TRUE(stage.projector_becomes(kMagenta));
+    screen.present(fading(stage.plain(2, kGreen), 0.5));
+    Rgb before = kMagenta;
+    int between = 0;
+    ASSERT_TRUE(wait_until([&] {
+        const Rgb now = stage.on_projector();
+        // Each channel goes one way, and no further than its end
+        EXPECT_TRUE(now.r <= before.r && now.r >= kGreen.r) << now.r << " after " << before.r;
+        EXPECT_TRUE(now.g >= before.g && now.g <= kGreen.g) << now.g << " after " << before.g;
+        EXPECT_TRUE(now.b <= before.b && now.b >= kGreen.b) << now.b << " after " << before.b;
+        if (now != before && now != kGreen) ++between;
+        before = now;
+        return now == kGreen;
+    }));
+    EXPECT_GT(between, 0);
+    EXPECT_TRUE(wait_until([&] { return screen.shown().number == 2; }));
+    const auto frames = screen.shown().frames;
+    sleep_ms(100);
+    EXPECT_EQ(screen.shown().frames, frames) << "it goes on drawing when all is there";
+}
+
+TEST_P(ProjectorScreenTest, CutsAFadeShortForWhatIsNew) {
+    ProjectorScreen screen(stage.share);
+    screen.use_monitor(projector);
+    screen.present(stage.plain(1, kMagenta));
+    ASSERT_TRUE(stage.projector_becomes(kMagenta));
+    screen.present(fading(stage.plain(2, kGreen), 3600.0));
+    ASSERT_TRUE(wait_until([&] { return screen.shown().frames >= 5; }));
+    screen.present(stage.plain(3, kBlue));
+    EXPECT_TRUE(stage.projector_becomes(kBlue));
+    EXPECT_TRUE(wait_until([&] { return screen.shown().number == 3; }));
+    screen.present(fading(stage.plain(4, kGreen), 3600.0));
+    screen.set_black(true);
+    EXPECT_TRUE(stage.projector_becomes(kBlack));
+    screen.set_black(false);
+    screen.present(fading(stage.plain(5, kMagenta, {640, 400}), 3600.0));
+    EXPECT_TRUE(wait_until([&] { return screen.shown().number == 5; })) << "sizes do not mix";
+}
+
 TEST_P(ProjectorScreenTest, DrawsNothingWhileNothingChanges) {
     std::atomic<std::uint64_t> told{0};
     ProjectorScreen screen(stage.share, [&](const ShownPicture& shown) { told = shown.frames; });
