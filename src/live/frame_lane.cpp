@@ -340,6 +340,7 @@ std::shared_ptr<FinishedFrame> FrameLane::draw_picture(const FrameDescription& d
     frame->drive_texture = slot->texture.name();
     frame->size_px = {slot->texture.width(), slot->texture.height()};
     frame->ready = {slot, &slot->ready};
+    frame->fade_s = description.fade_s;
     frame->pictures = composed_.pictures;
     frame->compensation = sides_[0].compensation;
     frame->asked_at = description.asked_at;

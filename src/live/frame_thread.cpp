@@ -97,7 +97,7 @@ std::optional<FrameJobs::Task> FrameJobs::next_task() const {
     const bool solved_already =
         own.shows_light(*newest, *wanted) && missing_of(own.solved, *wanted).empty();
     if (all_shown && ahead.prepared) {
-        if (solved_already && own.prepared) return std::nullopt;
+        if (newest->refined || (solved_already && own.prepared)) return std::nullopt;
         return Task{newest, *wanted, false, true};
     }
     if (!light_shown && !solved_already) {

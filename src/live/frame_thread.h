@@ -31,6 +31,10 @@ struct FrameDescription {
     std::optional<int> glowing_part;  ///< clicked in the preview: glows on the mock-up
     Quality quality = Quality::normal;
     std::optional<EffectLevels> levels;  ///< chosen one by one; none: the quality's
+    /// At finer levels than a next light will be asked for: only what is shown is solved, not the
+    /// lane behind it.
+    bool refined = false;
+    double fade_s = 0.0;  ///< how long each picture of it takes to come
     std::shared_ptr<const ProjectorSetup> setup;
     std::shared_ptr<const PaintLibrary> library;       ///< what is likely to be next; null: nothing
     std::chrono::steady_clock::time_point asked_at{};  ///< of the input that caused it
@@ -44,6 +48,7 @@ struct FinishedFrame {
     unsigned drive_texture = 0;  ///< RGBA8 projector input; 0 before the first good frame
     glm::ivec2 size_px{0};
     std::shared_ptr<const Fence> ready;
+    double fade_s = 0.0;                            ///< as described
     std::shared_ptr<const FramePictures> pictures;  ///< for the bench and for files
     Scene scene;                                    ///< drawn, left of a wipe
     FramePlan plan;  ///< measured milliseconds, and "prepare:..." passes that ran ahead

@@ -209,7 +209,9 @@ struct ProjectorScreen::Implementation {
                 return canvas.coming ? Clock::now() >= canvas.stepped + kFadeStep
                                      : canvas.drawn != wanted;
             };
-            const auto woken = [&] { return quit || !let_go.empty() || black_since || must_draw(); };
+            const auto woken = [&] {
+                return quit || !let_go.empty() || black_since || must_draw();
+            };
             if (canvas.coming && size_px && !black) {
                 changed.wait_until(lock, canvas.stepped + kFadeStep, woken);
             } else {

@@ -26,8 +26,8 @@ struct ProjectorPicture {
     glm::ivec2 size_px{0};
     std::shared_ptr<const Fence> ready;
     std::shared_ptr<const void> owner;
-    /// It shows the same as the one before it, only better: takes its place little by little, for so
-    /// long, or at once where the two have different sizes.
+    /// It shows the same as the one before it, only better: takes its place little by little, for
+    /// so long, or at once where the two have different sizes.
     double fade_s = 0.0;
 };
 

@@ -14,6 +14,7 @@ std::shared_ptr<const ProjectorPicture> picture_of(
     picture->size_px = frame->size_px;
     picture->ready = frame->ready;
     picture->owner = frame;
+    picture->fade_s = frame->fade_s;
     return picture;
 }
 

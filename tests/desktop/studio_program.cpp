@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "core/paths.h"
+
 namespace livery {
 namespace {
 
@@ -22,9 +24,23 @@ std::string text_of(const std::filesystem::path& file) {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+/// In the settings that the program will read.
+void keep_refining(const StudioStart& start) {
+    const auto home = start.environment.find("LIVERY_HOME");
+    const std::filesystem::path file =
+        (home == start.environment.end() ? user_folder() : std::filesystem::path(home->second)) /
+        "desktop.json";
+    Json json = {{"format_version", 1}, {"settings", Json::object()}};
+    if (std::filesystem::exists(file)) json = Json::parse(text_of(file));
+    json["settings"]["refine-while-still"] = start.refines ? "yes" : "no";
+    make_output_folder(file.parent_path());
+    write_text_file(file, json.dump());
+}
+
 }  // namespace
 
 StudioProgram::StudioProgram(Desktop& desktop, const StudioStart& start) : desktop_(desktop) {
+    keep_refining(start);
     ChildOptions options;
     options.arguments = {LIVERY_PROGRAM,
                          "desktop",

@@ -32,6 +32,8 @@ struct StudioStart {
     double ui_scale = 1.0;
     std::vector<std::string> more_arguments = {};
     std::map<std::string, std::string> environment = {};  ///< on top of the test's own
+    /// The mock-up's picture gets finer by itself; else it stays as the document has its levels.
+    bool refines = false;
 };
 
 /// Everything that waits throws std::runtime_error after its timeout, with what there was instead.

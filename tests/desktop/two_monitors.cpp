@@ -67,6 +67,7 @@ void TwoMonitors::start_program(const std::vector<std::string>& arguments) {
     StudioStart how;
     how.more_arguments = arguments;
     how.session = studio->session_file();
+    how.refines = refines;
     studio->program = std::make_unique<StudioProgram>(*desktop, how);
     program = studio->program.get();
 }

@@ -69,6 +69,7 @@ class TwoMonitors : public testing::Test {
         return expected_drive(document, look_at_place(place));
     }
 
+    bool refines = false;  ///< as StudioStart has it, from the next start on
     std::shared_ptr<RunningStudio> studio;
     // Shorthands for the studio's.
     Document document;

@@ -11,6 +11,7 @@
 #include "scene/look.h"
 #include "scene/product.h"
 #include "studio/kit/held.h"
+#include "studio/light/reference_tracing.h"
 
 namespace livery {
 
@@ -30,6 +31,7 @@ struct LightingPanelState {
     bool listed = false;
     double budget_s = 0.0;       ///< 0: not moved yet
     std::string budget_problem;  ///< why no levels fit it
+    ReferenceTracing reference;
 };
 
 }  // namespace livery

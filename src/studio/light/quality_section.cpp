@@ -13,9 +13,11 @@
 #include "studio/kit/widgets.h"
 #include "studio/kit/words.h"
 #include "studio/light/lighting_panel.h"
+#include "studio/light/reference_tracing.h"
 #include "studio/plan_panel.h"
 #include "studio/quality_costs.h"
 #include "studio/studio.h"
+#include "studio/window/refinement.h"
 
 namespace livery {
 
@@ -39,6 +41,16 @@ void draw_qualities(Studio& studio) {
         tooltip(quality_text(studio, quality));
     }
     if (!document.levels) dim_text(quality_text(studio, document.quality));
+    if (!refined_levels(document)) return;
+    bool refines = refines_while_still(studio.settings);
+    if (ImGui::Checkbox("Finer while nothing changes", &refines)) {
+        set_refines_while_still(studio.settings, refines);
+    }
+    name_last_item("refine");
+    tooltip(
+        "Two seconds after the last change the mock-up's picture is solved at the levels of high, "
+        "beside everything else, and fades in. Another paint keeps them; a new light begins with "
+        "the levels above.");
 }
 
 /// As a quality where one has them.
@@ -159,6 +171,7 @@ const PricedFrame* priced_frame(Studio& studio) {
 void draw_quality_section(Studio& studio) {
     heading("Quality");
     draw_qualities(studio);
+    draw_reference_row(studio);
     const PricedFrame* frame = priced_frame(studio);
     if (!frame) return;
     draw_budget(studio, *frame);

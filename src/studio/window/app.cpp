@@ -22,6 +22,7 @@
 #include "studio/kit/tab_order.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
+#include "studio/light/reference_tracing.h"
 #include "studio/paint/library_panel.h"
 #include "studio/paint/users_library.h"
 #include "studio/plan_panel.h"
@@ -122,6 +123,7 @@ std::optional<double> next_change_s(const Shell& shell) {
     }
     if (shell.save_again_at_s > 0.0) consider(shell.save_again_at_s);
     consider(next_vote_change_s(shell));
+    consider(next_refinement_s(shell));
     if (shell.studio.opening) consider(shell.studio.now_s + kOnItsWayToTheScreen_s);
     if (shell.preview_waits_until_s > 0.0) consider(shell.preview_waits_until_s);
     const double spoken_of_s = shell.frame_asked_s + kUnspokenWait_s;
@@ -130,7 +132,7 @@ std::optional<double> next_change_s(const Shell& shell) {
     if (ImGui::GetIO().WantTextInput) consider(shell.studio.now_s + 0.4);
     // Progress is read, not told.
     if (shell.studio.frames->solving() || shell.studio.bench->calibrating().running ||
-        shell.capture_open) {
+        shell.capture_open || is_tracing(shell.studio)) {
         consider(shell.studio.now_s + 0.25);
     }
     return next;

@@ -18,6 +18,7 @@
 #include "studio/kit/question.h"
 #include "studio/product/new_session.h"
 #include "studio/studio.h"
+#include "studio/window/refinement.h"
 #include "studio/window/trace.h"
 
 namespace livery {
@@ -88,6 +89,7 @@ struct Shell {
     std::optional<PreviewKey> asked_preview;
     std::optional<SetupKey> asked_setup;
     std::uint64_t frame_number = 0, preview_number = 0;
+    Refinement refinement;
     std::shared_ptr<const FramePictures> photographed;  ///< the newest that the bench was to show
     glm::dvec3 photographed_from_mm{0.0};
     bool draws_in_software = false;

@@ -190,6 +190,7 @@ MapState state_of_shell(const Shell& shell) {
     state["saved"] = text(!session.save_problem() && session.file());
     state["asked_number"] = std::to_string(shell.frame_number);
     state["finished_number"] = std::to_string(studio.frame ? studio.frame->number : 0);
+    state["quality"] = quoted(studio.frame ? to_string(studio.frame->plan.quality) : "");
     state["unfinished"] = quoted(studio.frame ? studio.frame->unfinished : "");
     state["shown_number"] = std::to_string(shown.number);
     state["shown_frames"] = std::to_string(shown.frames);

@@ -13,11 +13,14 @@
 #include "studio/calibration_panel.h"
 #include "studio/capture/capture_panel.h"
 #include "studio/kit/words.h"
+#include "studio/light/lighting_panel.h"
+#include "studio/light/reference_tracing.h"
 #include "studio/nudge/nudge_panel.h"
 #include "studio/paint/users_library.h"
 #include "studio/presenting/presenting.h"
 #include "studio/presenting/vote_mode.h"
 #include "studio/results.h"
+#include "studio/window/refinement.h"
 #include "studio/window/shell.h"
 
 namespace livery {
@@ -25,6 +28,7 @@ namespace livery {
 namespace {
 
 constexpr double kPreviewPatience_s = 0.3;
+constexpr double kRefinementFade_s = 0.6;
 constexpr double kPreviewFirst_s = 20.0;  // nobody looks at the mock-up yet
 constexpr const char* kCalibrating = "Calibrating the simulated bench.";
 constexpr const char* kCalibratedKey = "calibrated-once";
@@ -150,9 +154,8 @@ std::uint64_t show_frame(Shell& shell,
                          const std::string& tried) {
     Studio& studio = shell.studio;
     const std::uint64_t number = ++shell.frame_number;
+    stop_tracing(studio);
     description.number = number;
-    description.quality = document.quality;
-    description.levels = document.levels;
     description.setup = studio.setup;
     description.library = document.library;
     description.asked_at = shell.input_at;
@@ -172,7 +175,8 @@ void ask_for_frame(Shell& shell) {
     if (key.wipe_to) key.wipe_at = studio.wipe_at;
     key.glowing_part = studio.glowing_part;
     key.setup = studio.setup;
-    if (shell.asked_frame == key) return;
+    const bool asked = shell.asked_frame == key && stands_refined(shell);
+    if (asked && !refinement_is_due(shell)) return;
     const Document document = shown_document(studio);
     FrameDescription description;
     try {
@@ -197,6 +201,19 @@ void ask_for_frame(Shell& shell) {
     shell.frame_asked_s = studio.now_s;
     description.wipe_at = key.wipe_at;
     description.glowing_part = key.glowing_part;
+    description.setup = studio.setup;
+    description.quality = document.quality;
+    description.levels = document.levels;
+    if (asked) {
+        shell.refinement.on = true;
+        description.fade_s = kRefinementFade_s;
+    } else {
+        begin_anew(shell, description);
+    }
+    if (shell.refinement.on) {
+        if (const auto finer = refined_levels(document)) description.levels = finer;
+        description.refined = true;
+    }
     show_frame(shell, document, std::move(description), key.tried);
 }
 
@@ -423,6 +440,7 @@ Contexts start_threads(Shell& shell, const Window& window, ShadingDevice shading
 void stop_threads(Shell& shell) {
     Studio& studio = shell.studio;
     studio.background.reset();
+    studio.panels.lighting->reference.thread.reset();
     studio.capture.reset();
     studio.frames.reset();
     studio.previews.reset();
@@ -434,6 +452,7 @@ void stop_threads(Shell& shell) {
     studio.preview.reset();
     studio.photograph.reset();
     if (shell.results) shell.results->clear();
+    studio.panels.lighting->reference = {};
 }
 
 void take_results(Shell& shell) {
@@ -446,6 +465,7 @@ void take_results(Shell& shell) {
     take_calibration(shell);
     take_capture(shell);
     take_nudge(shell);
+    take_traced(shell);
     step_vote_mode(shell);
     if (studio.glowing_part && studio.now_s >= studio.glowing_until_s) studio.glowing_part.reset();
     const auto newest = shell.results->newest_frame();
@@ -469,6 +489,8 @@ std::optional<std::uint64_t> ask_for_look(Shell& shell, int look) {
         return std::nullopt;
     }
     shell.frame_asked_s = studio.now_s;
+    description.quality = document.quality;
+    description.levels = document.levels;
     return show_frame(shell, document, std::move(description), "");
 }
 

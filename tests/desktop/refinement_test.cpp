@@ -1,0 +1,59 @@
+// The mock-up's picture gets finer while nobody changes anything, by the pixels of the projector.
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "desktop/two_monitors.h"
+#include "support/screen_watch.h"
+
+namespace livery {
+namespace {
+
+using RefinementTest = TwoMonitors;
+
+/// Whether no channel of any pixel lies beyond both of the others, but for rounding.
+bool lies_between(const Image8& picture, const Image8& one, const Image8& other) {
+    for (std::size_t k = 0; k < picture.values.size(); ++k) {
+        const auto [low, high] = std::minmax(one.values[k], other.values[k]);
+        if (picture.values[k] + 1 < low || picture.values[k] > high + 1) return false;
+    }
+    return true;
+}
+
+TEST_F(RefinementTest, FadesInTheLevelsOfHighAndTakesThemBack) {
+    refines = true;
+    start();
+    const Image8 draft = drive_of_place(0);
+    Document finer = document;
+    finer.quality = Quality::high;
+    const Image8 high = expected_drive(finer, look_at_place(0));
+    ASSERT_NE(draft.values, high.values);
+
+    pick_projector();
+    ASSERT_TRUE(projector_shows(draft));
+    ScreenWatch watch(*desktop, desktop->projector_area(), [&](const Image8& seen) {
+        return !lies_between(seen, draft, high);
+    });
+    EXPECT_TRUE(projector_shows(high));
+    const auto seen = watch.stop();
+    EXPECT_GT(seen.looks, 3);
+    EXPECT_EQ(seen.wrong, 0) << "a step on the way was brighter or darker than both ends";
+    program->wait_for_state("quality", "high");
+
+    // Another paint keeps the levels
+    program->click("part:body");
+    program->click("paint:solid blue");
+    program->move_away();
+    EXPECT_TRUE(operator_sees("blue"));
+    EXPECT_EQ(program->state("quality"), "high");
+
+    // No longer wanted: what the document says
+    program->press_key("ctrl+z");
+    program->click("tab:Light");
+    program->click("refine");
+    EXPECT_TRUE(projector_shows(draft));
+    EXPECT_EQ(program->state("quality"), "draft");
+}
+
+}  // namespace
+}  // namespace livery
