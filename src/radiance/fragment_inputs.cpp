@@ -80,6 +80,11 @@ void FragmentInputs::use(const SurfaceMap& map) {
     directions_stale_ = sky_stale_ = diffuse_light_stale_ = places_stale_ = true;
 }
 
+const SmoothRuns& FragmentInputs::runs() {
+    if (!runs_) runs_.emplace(*map_);
+    return *runs_;
+}
+
 void FragmentInputs::solve(const Scene& scene,
                            const FramePlan& plan,
                            StageClock& clock,
@@ -116,7 +121,7 @@ void FragmentInputs::solve_lights(const Scene& scene,
         }
         if (stale && rays == 0) next.at = unhidden_light(*map_, light);
         clock.run(pass, stale, [&] {
-            next.at = light_at_fragments(mesh_, tracer_, *map_, light, rays, progress);
+            next.at = light_at_fragments(mesh_, tracer_, *map_, runs(), light, rays, progress);
         });
         lights_.insert(lights_.begin() + static_cast<std::ptrdiff_t>(planned++), std::move(next));
         if (changed) directions_stale_ = diffuse_light_stale_ = true;
@@ -147,7 +152,7 @@ void FragmentInputs::solve_sky(const Scene& scene,
     const bool visible =
         !occluded || stands || (sky_visibility_ && enough(sky_visibility_->rays.first, rays));
     clock.run(PassKind::ambient_occlusion, !visible, [&] {
-        sky_visibility_ = solve_sky_visibility(mesh_, tracer_, *map_, sky_rays, progress);
+        sky_visibility_ = solve_sky_visibility(mesh_, tracer_, *map_, runs(), sky_rays, progress);
     });
     clock.run(PassKind::environment_irradiance, !stands, [&] {
         if (!same_map(diffused_, scene.environment)) {
@@ -158,13 +163,12 @@ void FragmentInputs::solve_sky(const Scene& scene,
             filtered_.hardly_blurred = std::move(filtered.hardly_blurred);
         }
         diffused_ = scene.environment;
-        if (!runs_) runs_.emplace(*map_);
         sky_ = sky_at_fragments(mesh_,
                                 *map_,
                                 *scene.environment,
                                 filtered_,
                                 occluded ? &*sky_visibility_ : nullptr,
-                                *runs_);
+                                runs());
         sky_made_ = {scene.environment, occluded ? sky_visibility_->rays.first : 0};
         sky_stale_ = diffuse_light_stale_ = true;
     });
@@ -299,12 +303,10 @@ void FragmentInputs::solve_mirror(const Scene& scene,
     }
     const auto solve_layers = [&](const MirrorInputs::LayersOfParts& layers) {
         const SkyVisibility* joints = sky_visibility_ ? &*sky_visibility_ : nullptr;
-        if (!runs_) runs_.emplace(*map_);
-        const SmoothRuns& runs = *runs_;
         if (light.nodes == kNoNodes) {
-            mirror_.look_up(light, layers, *mirror_look_up_, runs, joints, progress);
+            mirror_.look_up(light, layers, *mirror_look_up_, runs(), joints, progress);
         } else {
-            mirror_.solve(light, layers, filtered_, runs, joints, progress);
+            mirror_.solve(light, layers, filtered_, runs(), joints, progress);
         }
     };
     const auto any = [](const MirrorInputs::LayersOfParts& layers) {
@@ -321,7 +323,7 @@ void FragmentInputs::solve_mirror(const Scene& scene,
         filter_for_mirror(scene, light.nodes, progress);
     });
     clock.run(PassKind::reflection_occlusion, mirror_.lacks_visibility(light, worn), [&] {
-        mirror_.trace(light, worn, progress);
+        mirror_.trace(light, worn, runs(), progress);
     });
     clock.run(PassKind::mirrored_environment, any(worn), [&] { solve_layers(worn); });
     if (!ahead) return;
@@ -331,7 +333,7 @@ void FragmentInputs::solve_mirror(const Scene& scene,
         false);
     clock.run(mirrored_ahead_pass(), any(others), [&] {
         if (!mirror_filtered(scene, light.nodes)) filter_for_mirror(scene, light.nodes, progress);
-        if (mirror_.lacks_visibility(light, others)) mirror_.trace(light, others, progress);
+        if (mirror_.lacks_visibility(light, others)) mirror_.trace(light, others, runs(), progress);
         solve_layers(others);
     });
 }

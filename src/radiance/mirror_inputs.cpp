@@ -1,6 +1,8 @@
 #include "radiance/mirror_inputs.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/parallel.h"
@@ -12,6 +14,8 @@ namespace {
 constexpr float kHalfLargest = 65000.0f;
 /// Numbers that are kept of a part: a quarter of a gigabyte.
 constexpr std::size_t kMostKept = std::size_t{1} << 26u;
+/// Less than anybody sees between two pixels; what is drawn while it is dragged takes what comes.
+constexpr float kEven = 0.04f, kAnything = std::numeric_limits<float>::infinity();
 
 /// Parts of which some layer is named.
 std::vector<bool> parts_of(const MirrorInputs::LayersOfParts& layers) {
@@ -93,6 +97,7 @@ bool MirrorInputs::lacks_visibility(const Light& light, const LayersOfParts& lay
 
 void MirrorInputs::trace(const Light& light,
                          const LayersOfParts& layers,
+                         const SmoothRuns& runs,
                          const Progress& progress) {
     if (other_rays(light)) {
         visibility_.emplace(*map_, layers.size(), light.nodes);
@@ -100,7 +105,7 @@ void MirrorInputs::trace(const Light& light,
     }
     hits_.reset();
     add_mirror_visibility(
-        mesh_, tracer_, *map_, light.eye_mm, parts_of(layers), progress, *visibility_);
+        mesh_, tracer_, *map_, runs, light.eye_mm, parts_of(layers), progress, *visibility_);
     if (!product_nodes_) return;
     hits_ = find_mirror_hits(
         mesh_, tracer_, *map_, light.eye_mm, *visibility_, product_nodes_->nodes, progress);
@@ -130,43 +135,56 @@ std::vector<MirrorInputs::Texels> MirrorInputs::texels_for(const LayersOfParts& 
 }
 
 template <typename MirroredBy>
-void MirrorInputs::solve_part(std::size_t part,
+void MirrorInputs::solve_part(const PartSolve& how,
                               std::span<Texels> texels,
-                              const SmoothRuns* runs,
-                              const SkyVisibility* joints,
-                              float unit,
                               const MirroredBy& mirrored_by,
                               const Progress& progress) const {
-    const std::size_t first = layout_.part_begin[part], count = layout_.fragments(part);
-    parallel_for(count, 1024, [&](std::size_t begin, std::size_t end) {
+    const std::size_t first = layout_.part_begin[how.part], count = layout_.fragments(how.part);
+    const auto solve = [&](const auto& each) {
         progress.check_stop();
         auto mirrored_at = mirrored_by();
-        for (std::size_t k = begin; k < end; ++k) {
-            const std::size_t i = first + k;
-            if (runs && !runs->is_end(i)) continue;
+        each([&](std::size_t i) {
+            const std::size_t k = i - first;
             const MirroredLight mirrored = mirrored_at(i, k);
             // Who does not ask which lobes are hidden dims those of a joint like its diffuse light
-            const bool joint = runs && joints && map_->fragments[i].coverage < 1.0f;
-            const float scale = (joint ? joints->openness(i) : 1.0f) * unit;
+            const bool joint = how.joints && map_->fragments[i].coverage < 1.0f;
+            const float scale = (joint ? how.joints->openness(i) : 1.0f) * how.unit;
             for (Texels& to : texels) {
                 const float share = to.layer < kMirrorAlphas.size() ? scale : 1.0f;
                 for (int c = 0; c < 3; ++c) {
                     to.values[4 * k + static_cast<std::size_t>(c)] = share * mirrored[to.layer][c];
                 }
             }
-        }
+        });
+    };
+    const auto differ = [&](std::size_t left, std::size_t right) {
+        return std::any_of(texels.begin(), texels.end(), [&](const Texels& to) {
+            const float* a = &to.values[4 * (left - first)];
+            const float* b = &to.values[4 * (right - first)];
+            for (int c = 0; c < 3; ++c) {
+                if (std::abs(a[c] - b[c]) > how.tolerance * std::max(a[c], b[c])) return true;
+            }
+            return false;
+        });
+    };
+    parallel_for(count, 1024, [&](std::size_t begin, std::size_t end) {
+        solve([&](const auto& ask) { how.runs.ends(first + begin, first + end, ask); });
     });
-    if (!runs) return;
     parallel_for(count, 4096, [&](std::size_t begin, std::size_t end) {
-        const auto from = [&](std::size_t i, std::size_t left, std::size_t right, float share) {
+        const auto from = [&](const auto& ask, std::size_t i, const SmoothRuns::Between& at) {
+            if (how.tolerance < kAnything && differ(at.left, at.right)) return ask(i);
             for (Texels& to : texels) {
-                const float* a = &to.values[4 * (left - first)];
-                const float* b = &to.values[4 * (right - first)];
-                float* at = &to.values[4 * (i - first)];
-                for (int c = 0; c < 3; ++c) at[c] = a[c] + share * (b[c] - a[c]);
+                const float* a = &to.values[4 * (at.left - first)];
+                const float* b = &to.values[4 * (at.right - first)];
+                float* value = &to.values[4 * (i - first)];
+                for (int c = 0; c < 3; ++c) value[c] = a[c] + at.share * (b[c] - a[c]);
             }
         };
-        runs->between(first + begin, first + end, from);
+        solve([&](const auto& ask) {
+            how.runs.between(first + begin, first + end, [&](std::size_t i, const auto& at) {
+                from(ask, i, at);
+            });
+        });
     });
 }
 
@@ -201,18 +219,27 @@ void MirrorInputs::solve(const Light& light,
         const bool known = kept.layers == layers[part] && kept.values.size() == sums;
         if (!known) {
             kept = {};
-            if (product_nodes_ && hides && sums <= kMostKept) kept.values.resize(sums);
+            if (product_nodes_ && hides && sums <= kMostKept) {
+                kept.values.resize(sums);
+                kept.known.resize(layout_.fragments(part));
+            }
         }
         const std::span<float> values(kept.values);
         const auto mirrored_by = [&] {
             return [&, scratch = MirroredEnvironment::Scratch()](std::size_t i,
                                                                  std::size_t k) mutable {
-                const auto own = values.empty() ? values : values.subspan(k * sums_each, sums_each);
-                return environment.at_fragment(i, lobes, scratch, own, known);
+                if (values.empty()) return environment.at_fragment(i, lobes, scratch, {}, false);
+                return environment.at_fragment(i,
+                                               lobes,
+                                               scratch,
+                                               values.subspan(k * sums_each, sums_each),
+                                               std::exchange(kept.known[k], 1) != 0);
             };
         };
-        solve_part(
-            part, texels, hides ? nullptr : &runs, joints, 1.0f / unit, mirrored_by, progress);
+        solve_part({part, runs, hides ? kEven : kAnything, hides ? nullptr : joints, 1.0f / unit},
+                   texels,
+                   mirrored_by,
+                   progress);
         // Not before: a stop leaves them half done
         if (!kept.values.empty()) kept.layers = layers[part];
     }
@@ -238,7 +265,7 @@ void MirrorInputs::look_up(const Light& light,
                 return in.at_fragment(map_->fragments[i], lobes);
             };
         };
-        solve_part(part, texels, &runs, joints, 1.0f / unit, mirrored_by, progress);
+        solve_part({part, runs, kAnything, joints, 1.0f / unit}, texels, mirrored_by, progress);
     }
     take(light, layers, unit, std::move(all));
 }

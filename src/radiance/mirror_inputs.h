@@ -61,7 +61,10 @@ class MirrorInputs {
                           bool and_old = true) const;
     /// Whether rays to find out what hides those layers' light are yet to be traced.
     bool lacks_visibility(const Light& light, const LayersOfParts& layers) const;
-    void trace(const Light& light, const LayersOfParts& layers, const Progress& progress);
+    void trace(const Light& light,
+               const LayersOfParts& layers,
+               const SmoothRuns& runs,
+               const Progress& progress);
     /// `layers` are missing(). Without nodes, fragments that share their pixel are darkened as
     /// `joints` says, if there.
     void solve(const Light& light,
@@ -103,18 +106,25 @@ class MirrorInputs {
     struct KeptSums {
         MirrorLayers layers;
         std::vector<float> values;
+        std::vector<std::uint8_t> known;  ///< of each fragment: others lay between two
     };
     /// Rows for the layers asked for, of parts in the picture, with what others left in them.
     std::vector<Texels> texels_for(const LayersOfParts& layers);
-    /// `mirrored_by(begin, end)` gives what is asked for each fragment of a stretch, by its index
-    /// and its place in the part. Where nothing is known to be hidden there are `runs`, at whose
-    /// ends alone it is asked, and what is hidden is guessed from `joints`.
+    /// How a part's texels are worked out.
+    struct PartSolve {
+        std::size_t part = 0;
+        const SmoothRuns& runs;
+        /// Between two ends of a run that differ by more than this share of what they mirror,
+        /// fragments are asked for their own.
+        float tolerance = 0.0f;
+        const SkyVisibility* joints = nullptr;  ///< guesses what is hidden; null: it is known
+        float unit = 1.0f;
+    };
+    /// `mirrored_by()` gives what is asked for each fragment of a stretch, by its index and its
+    /// place in the part.
     template <typename MirroredBy>
-    void solve_part(std::size_t part,
+    void solve_part(const PartSolve& how,
                     std::span<Texels> texels,
-                    const SmoothRuns* runs,
-                    const SkyVisibility* joints,
-                    float unit,
                     const MirroredBy& mirrored_by,
                     const Progress& progress) const;
     void take(const Light& light,

@@ -19,15 +19,27 @@ class SmoothRuns {
 
     /// Whether its value is its own.
     bool is_end(std::size_t fragment) const { return runs_[fragment].before == 0; }
-    /// `from(fragment, left, right, share)` for each fragment from `begin` to `end` that lies
-    /// between two: those, and the share of the right one.
+    /// The two that a fragment lies between, and the share of the right one.
+    struct Between {
+        std::size_t left = 0, right = 0;
+        float share = 0.0f;
+    };
+    /// `from(fragment, between)` for each one from `begin` to `end` that is not an end.
     template <typename From>
     void between(std::size_t begin, std::size_t end, const From& from) const {
         for (std::size_t i = begin; i < end; ++i) {
             const Run run = runs_[i];
             if (run.before == 0) continue;
             const float length = static_cast<float>(run.before + run.after);
-            from(i, i - run.before, i + run.after, static_cast<float>(run.before) / length);
+            from(i,
+                 Between{i - run.before, i + run.after, static_cast<float>(run.before) / length});
+        }
+    }
+    /// Those of a stretch whose values are their own, in their order; then the others.
+    template <typename Own>
+    void ends(std::size_t begin, std::size_t end, const Own& own) const {
+        for (std::size_t i = begin; i < end; ++i) {
+            if (is_end(i)) own(i);
         }
     }
 

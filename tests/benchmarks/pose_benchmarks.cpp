@@ -30,9 +30,10 @@ void LightVisibility(benchmark::State& state) {
     const Threads threads(state);
     const FrameGeometry& geometry = *geometry_of_width(static_cast<int>(state.range(0)));
     const DirectionalLight& light = car().looks.front().lights.front();
+    const SmoothRuns runs(geometry.map);
     for (auto _ : state) {
-        benchmark::DoNotOptimize(
-            light_at_fragments(car().product->mesh, *geometry.tracer, geometry.map, light, 16));
+        benchmark::DoNotOptimize(light_at_fragments(
+            car().product->mesh, *geometry.tracer, geometry.map, runs, light, 16));
     }
     count_items(state, geometry.map.fragments.size() * 16);
 }
@@ -41,9 +42,10 @@ BENCHMARK(LightVisibility)->Apply(sizes_and_threads);
 void SkyVisibilityOfThePose(benchmark::State& state) {
     const Threads threads(state);
     const FrameGeometry& geometry = *geometry_of_width(static_cast<int>(state.range(0)));
+    const SmoothRuns runs(geometry.map);
     for (auto _ : state) {
         benchmark::DoNotOptimize(solve_sky_visibility(
-            car().product->mesh, *geometry.tracer, geometry.map, SkyRays{16, 128, false}));
+            car().product->mesh, *geometry.tracer, geometry.map, runs, SkyRays{16, 128, false}));
     }
     count_items(state, geometry.map.fragments.size() * 16);
 }
@@ -52,12 +54,14 @@ BENCHMARK(SkyVisibilityOfThePose)->Apply(sizes_and_threads);
 void MirrorVisibilityOfThePose(benchmark::State& state) {
     const Threads threads(state);
     const FrameGeometry& geometry = *geometry_of_width(static_cast<int>(state.range(0)));
+    const SmoothRuns runs(geometry.map);
     for (auto _ : state) {
         const Mesh& mesh = car().product->mesh;
         MirrorVisibility visibility(geometry.map, mesh.parts.size(), 16);
         add_mirror_visibility(mesh,
                               *geometry.tracer,
                               geometry.map,
+                              runs,
                               car().looks.front().eye_in_world_mm,
                               std::vector<bool>(mesh.parts.size(), true),
                               {},

@@ -117,6 +117,7 @@ void ray_origins(const Mesh& mesh,
 std::vector<LightAtFragment> light_at_fragments(const Mesh& mesh,
                                                 const Tracer& tracer,
                                                 const SurfaceMap& map,
+                                                const SmoothRuns& runs,
                                                 const DirectionalLight& light,
                                                 int rays_per_fragment,
                                                 const Progress& progress) {
@@ -134,7 +135,8 @@ std::vector<LightAtFragment> light_at_fragments(const Mesh& mesh,
     constexpr std::size_t kAtATime = 512;
     const std::size_t together = std::max<std::size_t>(kAtATime / ray_count, 1);
     std::vector<LightAtFragment> result(map.fragments.size());
-    parallel_for(result.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    // Of the fragments that `each` hands on
+    const auto trace = [&](const auto& each) {
         progress.check_stop();
         std::vector<glm::vec3> directions(together * ray_count, centre);
         std::vector<TraceRay> rays(directions.size());
@@ -153,9 +155,9 @@ std::vector<LightAtFragment> light_at_fragments(const Mesh& mesh,
             }
             waiting.clear();
         };
-        for (std::size_t i = begin; i < end; ++i) {
+        each([&](std::size_t i) {
             result[i].direction = centre;
-            if (glm::dot(map.fragments[i].normal, centre) <= lowest) continue;
+            if (glm::dot(map.fragments[i].normal, centre) <= lowest) return;
             const std::size_t at = waiting.size() * ray_count;
             if (!point) disc.turned(turn_of(i), std::span(directions).subspan(at, ray_count));
             const std::size_t own = std::min(ray_count, kSamplesAFragment);
@@ -166,8 +168,21 @@ std::vector<LightAtFragment> light_at_fragments(const Mesh& mesh,
             }
             waiting.push_back(i);
             if (waiting.size() == together) answer();
-        }
+        });
         answer();
+    };
+    parallel_for(result.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        trace([&](const auto& ask) { runs.ends(begin, end, ask); });
+    });
+    parallel_for(result.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        trace([&](const auto& ask) {
+            runs.between(begin, end, [&](std::size_t i, const SmoothRuns::Between& at) {
+                const float left = result[at.left].visibility;
+                const bool whole = left == 0.0f || left == 1.0f;
+                if (!whole || result[at.right].visibility != left) return ask(i);
+                result[i] = {centre, left};
+            });
+        });
     });
     return result;
 }

@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 
 #include "core/progress.h"
+#include "radiance/smooth_runs.h"
 #include "radiance/surface_map.h"
 #include "scene/look.h"
 #include "tracing/tracer.h"
@@ -21,10 +22,12 @@ struct LightAtFragment {
 
 /// Shadow rays, at most `rays_per_fragment`, from the fragment's own sub-samples toward hashed,
 /// stratified points of the light's disc; those under the horizon of the mean normal do not count.
-/// A point at infinity takes one ray a sub-sample, so that shadow edges stay antialiased.
+/// A point at infinity takes one ray a sub-sample, so that shadow edges stay antialiased. Between
+/// two ends of the map's `runs` that see all of the light, or none, nobody asks again.
 std::vector<LightAtFragment> light_at_fragments(const Mesh& mesh,
                                                 const Tracer& tracer,
                                                 const SurfaceMap& map,
+                                                const SmoothRuns& runs,
                                                 const DirectionalLight& light,
                                                 int rays_per_fragment,
                                                 const Progress& progress = {});

@@ -118,6 +118,7 @@ MirrorVisibility::MirrorVisibility(const SurfaceMap& map, std::size_t part_count
 void add_mirror_visibility(const Mesh& mesh,
                            const Tracer& tracer,
                            const SurfaceMap& map,
+                           const SmoothRuns& runs,
                            glm::dvec3 eye_mm,
                            const std::vector<bool>& parts,
                            const Progress& progress,
@@ -126,14 +127,31 @@ void add_mirror_visibility(const Mesh& mesh,
     for (std::size_t p = 0; p < parts.size(); ++p) missing[p] = parts[p] && !visibility.parts[p];
     const Indices fragments = fragments_of(map, missing);
     const MirrorQuadrature& quadrature = visibility.quadrature;
-    parallel_for(fragments.size(), 512, [&](std::size_t begin, std::size_t end) {
+    const auto trace = [&](const auto& each) {
         progress.check_stop();
         NodeRays rays(mesh, tracer, map, eye_mm, quadrature);
-        for (std::size_t k = begin; k < end; ++k) {
-            const std::size_t turn = neighbour_turn(map, fragments[k]);
-            rays.trace(fragments[k], {&turn, 1}, {&visibility.blocked[fragments[k]], 1});
-        }
-    });
+        each([&](std::size_t i) {
+            const std::size_t turn = neighbour_turn(map, i);
+            rays.trace(i, {&turn, 1}, {&visibility.blocked[i], 1});
+        });
+    };
+    for (std::size_t p = 0; p < missing.size(); ++p) {
+        if (!missing[p]) continue;
+        const std::size_t first = map.part_begin[p], count = map.part_begin[p + 1] - first;
+        parallel_for(count, 512, [&](std::size_t begin, std::size_t end) {
+            trace([&](const auto& ask) { runs.ends(first + begin, first + end, ask); });
+        });
+        parallel_for(count, 512, [&](std::size_t begin, std::size_t end) {
+            trace([&](const auto& ask) {
+                runs.between(
+                    first + begin, first + end, [&](std::size_t i, const SmoothRuns::Between& at) {
+                        const bool open =
+                            (visibility.blocked[at.left] | visibility.blocked[at.right]) == 0;
+                        if (!open) ask(i);
+                    });
+            });
+        });
+    }
 
     // Of their own part alone do fragments learn
     std::vector<MirrorVisibility::Alone> alone;

@@ -8,6 +8,7 @@
 
 #include "core/progress.h"
 #include "radiance/light/mirror_quadrature.h"
+#include "radiance/smooth_runs.h"
 #include "radiance/surface_map.h"
 #include "tracing/tracer.h"
 
@@ -30,9 +31,11 @@ struct MirrorVisibility {
 };
 
 /// Traces the fragments of these parts, where they were not. After a stop nothing has changed.
+/// Between two ends of the map's `runs` from which nothing is hidden, nobody looks.
 void add_mirror_visibility(const Mesh& mesh,
                            const Tracer& tracer,
                            const SurfaceMap& map,
+                           const SmoothRuns& runs,
                            glm::dvec3 eye_mm,
                            const std::vector<bool>& parts,
                            const Progress& progress,

@@ -141,6 +141,7 @@ float SkyVisibility::openness(std::size_t fragment) const {
 SkyVisibility solve_sky_visibility(const Mesh& mesh,
                                    const Tracer& tracer,
                                    const SurfaceMap& map,
+                                   const SmoothRuns& runs,
                                    const SkyRays& sky_rays,
                                    const Progress& progress) {
     check_argument(
@@ -152,15 +153,15 @@ SkyVisibility solve_sky_visibility(const Mesh& mesh,
     result.rays = sky_rays;
     result.blocked.assign(map.fragments.size(), 0);
     const SkyDirections sky(sky_rays.first);
-    parallel_for(map.fragments.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    const auto look = [&](const auto& each) {
         progress.check_stop();
         const std::size_t count = sky.count();
         std::vector<glm::vec3> toward(count);
         std::vector<TraceRay> rays(count);
         std::vector<std::uint8_t> blocked(count);
         std::array<glm::vec3, kSamplesAFragment> origins;
-        for (std::size_t i = begin; i < end; ++i) {
-            if (sky_rays.joints_only && map.fragments[i].coverage >= 1.0f) continue;
+        each([&](std::size_t i) {
+            if (sky_rays.joints_only && map.fragments[i].coverage >= 1.0f) return;
             sky.around(map.fragments[i].normal, turn_of(i, 5u), toward);
             ray_origins(mesh, map, i, origins);
             for (std::size_t k = 0; k < count; ++k) {
@@ -171,7 +172,18 @@ SkyVisibility solve_sky_visibility(const Mesh& mesh,
             for (std::size_t k = 0; k < count; ++k) {
                 if (blocked[k]) result.blocked[i] |= std::uint64_t{1} << k;
             }
-        }
+        });
+    };
+    parallel_for(map.fragments.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        look([&](const auto& ask) { runs.ends(begin, end, ask); });
+    });
+    parallel_for(map.fragments.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        look([&](const auto& ask) {
+            runs.between(begin, end, [&](std::size_t i, const SmoothRuns::Between& at) {
+                // Taken over from those that see less, their noise would show as dashes
+                if ((result.blocked[at.left] | result.blocked[at.right]) != 0) ask(i);
+            });
+        });
     });
     if (sky_rays.more > 0) look_again(mesh, tracer, map, progress, result);
     return result;
@@ -209,16 +221,16 @@ std::vector<glm::vec3> sky_at_fragments(const Mesh& mesh,
     const SkyDirections more(visibility ? visibility->rays.more : 0);
     std::vector<glm::vec3> result(map.fragments.size());
     parallel_for(result.size(), 1024, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            if (runs.is_end(i)) result[i] = open_sky(map.fragments[i].normal);
-        }
+        runs.ends(
+            begin, end, [&](std::size_t i) { result[i] = open_sky(map.fragments[i].normal); });
     });
     parallel_for(result.size(), 1024, [&](std::size_t begin, std::size_t end) {
-        runs.between(begin, end, [&](std::size_t i, std::size_t left, std::size_t right, float s) {
-            result[i] = (1.0f - s) * result[left] + s * result[right];
+        runs.between(begin, end, [&](std::size_t i, const SmoothRuns::Between& at) {
+            result[i] = (1.0f - at.share) * result[at.left] + at.share * result[at.right];
         });
     });
-    parallel_for(visibility ? result.size() : 0, 1024, [&](std::size_t begin, std::size_t end) {
+    if (!visibility) return result;
+    parallel_for(result.size(), 1024, [&](std::size_t begin, std::size_t end) {
         std::vector<glm::vec3> directions(sky.count());
         for (std::size_t i = begin; i < end; ++i) {
             if (visibility->blocked[i] == 0) continue;
@@ -226,7 +238,6 @@ std::vector<glm::vec3> sky_at_fragments(const Mesh& mesh,
             result[i] *= share_seen(around_few, directions, &visibility->blocked[i]);
         }
     });
-    if (more.count() == 0) return result;
     // Who looked again knows better
     parallel_for(visibility->again.size(), 256, [&](std::size_t begin, std::size_t end) {
         std::vector<glm::vec3> directions(more.count());

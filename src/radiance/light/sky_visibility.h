@@ -28,7 +28,9 @@ struct SkyRays {
 /// the environment: solved once for a pose.
 struct SkyVisibility {
     SkyRays rays;
-    std::vector<std::uint64_t> blocked;  ///< bit k: direction k meets the product
+    /// Bit k: direction k meets the product. Between two ends of a run that see everything nobody
+    /// looks.
+    std::vector<std::uint64_t> blocked;
     /// Fragments that looked again, in their order, each direction around the normal of the
     /// sub-sample that it starts from; and rays.more / 64 words of each, bits as in `blocked`.
     std::vector<std::uint32_t> again;
@@ -40,12 +42,13 @@ struct SkyVisibility {
 SkyVisibility solve_sky_visibility(const Mesh& mesh,
                                    const Tracer& tracer,
                                    const SurfaceMap& map,
+                                   const SmoothRuns& runs,
                                    const SkyRays& rays,
                                    const Progress& progress = {});
 
 /// What a white diffuser at each fragment sends under the environment: the exact unoccluded value
 /// less the mean over the blocked directions. Without `visibility`, unoccluded. `runs` are the
-/// map's: what is unoccluded is looked up at their ends.
+/// map's.
 std::vector<glm::vec3> sky_at_fragments(const Mesh& mesh,
                                         const SurfaceMap& map,
                                         const Environment& environment,
