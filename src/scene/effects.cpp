@@ -66,9 +66,9 @@ const std::vector<EffectInfo>& effect_table() {
          "mirrored-environment",
          "what glossy parts mirror of the environment",
          {{"look-up", "the environment blurred for each lobe, looked up once"},
-          {"48 nodes", "12 rings of 4 nodes, one normal a pixel"},
-          {"272 nodes", "17 rings of 16 nodes around four normals a pixel"},
-          {"624 nodes", "26 rings of 24 nodes around four normals a pixel"}}},
+          {"56 nodes", "14 rings of 4 nodes, one normal a pixel"},
+          {"320 nodes", "20 rings of 16 nodes around four normals a pixel"},
+          {"744 nodes", "31 rings of 24 nodes around four normals a pixel"}}},
         {Effect::reflected_occlusion,
          "reflected-occlusion",
          "parts hide the environment that others mirror",
@@ -135,7 +135,7 @@ EffectLevels levels_of(Quality quality) {
         case Quality::draft:
             return {{0, 1, 1, 1, 0, 0, 0, 1, 1, 1, 0}};
         case Quality::normal:
-            return {{1, 2, 1, 2, 2, 1, 0, 1, 1, 1, 1}};
+            return {{1, 2, 1, 2, 2, 1, 1, 1, 1, 1, 1}};
         case Quality::high:
             return {{1, 3, 1, 3, 3, 1, 1, 1, 1, 1, 2}};
         case Quality::reference:

@@ -110,7 +110,7 @@ TEST_P(MirrorInputs, OnlyWhatIsReadIsSolved) {
     renderer.render(scene, its_plan);
     EXPECT_TRUE(renderer.mirrored()[0].none());
     // Lobes of .12 to .34; what grazes of .17 and of .24
-    EXPECT_EQ(renderer.mirrored()[1].to_string(), "0110001111000000");
+    EXPECT_EQ(renderer.mirrored()[1].to_string(), "011000111100000000");
     const auto& begin = renderer.surface_map().part_begin;
     EXPECT_EQ(find_pass(its_plan, PassKind::reflection_occlusion)->work_items,
               mirror_rays(16) * static_cast<double>(begin[2] - begin[1]));

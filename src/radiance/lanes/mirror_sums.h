@@ -14,8 +14,8 @@ inline constexpr std::size_t kNodeBlock = 8;
 /// variance of their Gaussians, Fresnel's weight under the half angle and under the angle of
 /// incidence, then their share in each lobe.
 inline constexpr std::size_t kHalfVectorX = 0, kHalfVectorY = 1, kHalfVectorZ = 2, kVariance = 3,
-                             kHalfAngleWeight = 4, kEntryWeight = 5, kFirstLobe = 6, kLastLobe = 17,
-                             kRowLists = 18;
+                             kHalfAngleWeight = 4, kEntryWeight = 5, kFirstLobe = 6, kLastLobe = 19,
+                             kRowLists = 20;
 
 /// What is summed over nodes: R, G, B, then R + G + B times Fresnel's weight under the half angle
 /// and under the angle of incidence.

@@ -12,8 +12,20 @@
 namespace livery {
 
 /// Slope parameters for which each fragment keeps what it mirrors; paints in between interpolate.
-inline constexpr std::array<float, 12> kMirrorAlphas{
-    0.01f, 0.02f, 0.03f, 0.042f, 0.06f, 0.085f, 0.12f, 0.17f, 0.24f, 0.34f, 0.5f, 1.0f};
+inline constexpr std::array<float, 14> kMirrorAlphas{0.003f,
+                                                     0.0055f,
+                                                     0.01f,
+                                                     0.02f,
+                                                     0.03f,
+                                                     0.042f,
+                                                     0.06f,
+                                                     0.085f,
+                                                     0.12f,
+                                                     0.17f,
+                                                     0.24f,
+                                                     0.34f,
+                                                     0.5f,
+                                                     1.0f};
 
 /// Fresnel's term rises where light grazes, and a lobe at a slant takes light from grazing and from
 /// steep directions: how bright each is decides what is reflected. Some lobes (of kMirrorAlphas)
@@ -21,8 +33,8 @@ inline constexpr std::array<float, 12> kMirrorAlphas{
 /// Fresnel term, under the half angle, and for that of a coat above, under the angle of incidence.
 /// The former have more, since they make up for the errors of ggx_albedo_fit() as well.
 using GrazingLobes = std::array<std::size_t, 3>;
-inline constexpr std::array<GrazingLobes, 3> kHalfAngleLobes{{{1, 3, 4}, {5, 6, 7}, {8, 10, 11}}};
-inline constexpr GrazingLobes kEntryLobes{4, 7, 10};
+inline constexpr std::array<GrazingLobes, 3> kHalfAngleLobes{{{3, 5, 6}, {7, 8, 9}, {10, 12, 13}}};
+inline constexpr GrazingLobes kEntryLobes{6, 9, 12};
 /// Layers of what is mirrored: the lobes, then how much of it grazes, three lobes a layer.
 inline constexpr std::size_t kGrazingLayers = kHalfAngleLobes.size() + 1;
 inline constexpr std::size_t kMirrorLayers = kMirrorAlphas.size() + kGrazingLayers;

@@ -17,9 +17,10 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Slopes of the innermost ring, within the sharpest layer's width, and of the last, past which
-/// even alpha 1 has 3% of its normals, nearly all of them masked.
-constexpr double kFirstRing = 0.0075, kLastRing = 5.9;
+/// Slopes of a ring that every size has, of the innermost at most, within the sharpest lobe's
+/// width, and of the last, past which even alpha 1 has 3% of its normals, nearly all of them
+/// masked.
+constexpr double kCommonRing = 0.0075, kInnermostRing = 0.0024, kLastRing = 5.9;
 /// Rays within this slope of the mirror direction, 3 degrees of the reflection, say the same.
 constexpr double kStraightSlope = 0.03;
 /// A Gaussian's width may be this share of its height over the surface's horizon: nothing is
@@ -175,17 +176,27 @@ Node node_at(double x, double y, const Cells& cells) {
     return node;
 }
 
+/// Rings inside of the common one.
+std::size_t inner_rings_of(const MirrorRings& size) {
+    return static_cast<std::size_t>(std::ceil(std::log(kCommonRing / kInnermostRing) / size.step));
+}
+
 std::size_t rings_of(const MirrorRings& size) {
-    return static_cast<std::size_t>(std::ceil(std::log(kLastRing / kFirstRing) / size.step));
+    return inner_rings_of(size) +
+           static_cast<std::size_t>(std::ceil(std::log(kLastRing / kCommonRing) / size.step));
 }
 
 double slope_of(const MirrorRings& size, std::size_t ring) {
-    return kFirstRing * std::exp(size.step * static_cast<double>(ring));
+    const double from_common =
+        static_cast<double>(ring) - static_cast<double>(inner_rings_of(size));
+    return kCommonRing * std::exp(size.step * from_common);
 }
 
 /// How far a ring's nodes are turned, in nodes: half of one from that below, and by another facet,
 /// so that each looks all around.
-double first_of(std::size_t ring) { return 1.5 * static_cast<double>(ring % 8); }
+double first_of(const MirrorRings& size, std::size_t ring) {
+    return 1.5 * static_cast<double>((ring + 8 - inner_rings_of(size) % 8) % 8);
+}
 
 std::vector<Node> nodes_under(double mu, const MirrorRings& size, const Shares& returned) {
     const glm::dvec3 wo(std::sqrt(1.0 - mu * mu), 0.0, mu);
@@ -193,7 +204,7 @@ std::vector<Node> nodes_under(double mu, const MirrorRings& size, const Shares& 
     // Half way between slopes and directions, cells are stretched by little in either.
     const double across = std::pow(std::max(mu, 0.02), -0.4);
     const double turn = 2.0 * kPi / size.nodes;
-    const double inner = kFirstRing * std::exp(-0.5 * size.step);
+    const double inner = slope_of(size, 0) * std::exp(-0.5 * size.step);
     const Cells middle{wo, across, 0.0, kPi * inner * inner, size.overlap};
     const Cells around{wo, across, std::sinh(size.step) * turn, 0.0, size.overlap};
     std::vector<Node> nodes;
@@ -206,7 +217,7 @@ std::vector<Node> nodes_under(double mu, const MirrorRings& size, const Shares& 
     for (std::size_t ring = 0; ring < rings_of(size); ++ring) {
         const double slope = slope_of(size, ring);
         for (int k = 0; k < size.nodes; ++k) {
-            const double phi = turn * (k + first_of(ring));
+            const double phi = turn * (k + first_of(size, ring));
             nodes.push_back(node_at(slope * std::cos(phi), slope * std::sin(phi) * across, around));
         }
     }
@@ -299,7 +310,7 @@ MirrorQuadrature::MirrorQuadrature(const MirrorRings& size) : nodes_(size.nodes)
             fill_row(row, nodes_under(cosine_of(row), size, its_own));
         }
     });
-    find_beside(rings_of(size));
+    find_beside(size);
     share_out_rays(rings_of(size), size);
 }
 
@@ -316,7 +327,8 @@ void MirrorQuadrature::fill_row(std::size_t row, std::span<const Node> nodes) {
     }
 }
 
-void MirrorQuadrature::find_beside(std::size_t rings) {
+void MirrorQuadrature::find_beside(const MirrorRings& size) {
+    const std::size_t rings = rings_of(size);
     beside_.resize(count_ * kBeside);
     const auto nodes = static_cast<std::size_t>(nodes_);
     for (std::size_t k = 0; k < kFacets; ++k) {
@@ -331,7 +343,8 @@ void MirrorQuadrature::find_beside(std::size_t rings) {
         for (std::size_t k = 0; k < nodes; ++k) {
             // Nodes of a ring, by how far they are turned from its own
             const auto node = [&](std::size_t of, double turned) {
-                const double at = static_cast<double>(k + nodes) + first_of(ring) - first_of(of);
+                const double at =
+                    static_cast<double>(k + nodes) + first_of(size, ring) - first_of(size, of);
                 const auto place =
                     static_cast<std::size_t>(std::lround(at + turned + static_cast<double>(nodes)));
                 return static_cast<std::uint16_t>(kFacets + of * nodes + place % nodes);

@@ -114,7 +114,7 @@ class MirrorQuadrature {
     static constexpr std::size_t kBeside = 6;
 
     void fill_row(std::size_t row, std::span<const Node> nodes);
-    void find_beside(std::size_t rings);
+    void find_beside(const MirrorRings& size);
     void share_out_rays(std::size_t rings, const MirrorRings& size);
 
     int nodes_ = 0;
