@@ -125,6 +125,15 @@ class FrameThreadTest : public testing::Test {
         thread_->show(description_);
         return description_.number++;
     }
+    EffectLevels levels() const {
+        return description_.levels.value_or(levels_of(description_.quality));
+    }
+    /// What a paint sends to other parts follows it on the back lane: not for tests of what comes
+    /// with the paint itself.
+    void leave_out_light_between_parts() {
+        description_.levels = levels();
+        (*description_.levels)[Effect::interreflection] = 0;
+    }
     void paint(Scene& scene, std::size_t part, ReflectanceModel model, glm::dvec3 diffuse) {
         scene.part_materials[part] = paint_of(model, 0.1);
         scene.part_materials[part].diffuse = diffuse;
@@ -135,6 +144,7 @@ class FrameThreadTest : public testing::Test {
         request.scene = scene;
         request.view = description_.setup->view;
         request.quality = description_.quality;
+        request.levels = description_.levels;
         request.gl_device = GlDevice::software;
         if (description_.setup->table) {
             request.stage = FrameStage::projector;
@@ -147,14 +157,12 @@ class FrameThreadTest : public testing::Test {
     RenderedFrame from_scratch_in_gl(const Scene& scene) const {
         const HeadlessContext context(GlDevice::software);
         RadianceRenderer renderer(
-            std::make_shared<const FrameGeometry>(scene.product,
-                                                  description_.setup->view,
-                                                  Progress{},
-                                                  sub_samples_of(description_.quality)),
+            std::make_shared<const FrameGeometry>(
+                scene.product, description_.setup->view, Progress{}, sub_samples_of(levels())),
             false,
             ShadingDevice::gl);
         RenderedFrame frame;
-        frame.plan = plan_frame(scene, description_.quality, FrameStage::projector);
+        frame.plan = plan_frame(scene, levels(), FrameStage::projector);
         renderer.render(scene, frame.plan);
         frame.radiance_working = renderer.read_back();
         if (const auto& table = description_.setup->table) {
