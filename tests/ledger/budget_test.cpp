@@ -164,7 +164,8 @@ TEST(Budget, NeverDropsGlintsForWhichThereIsNoTruth) {
 TEST(PricedFrames, AddUpAndSayWhatTheNextLevelBuys) {
     const Scene scene = matt_box();
     const PriceList list = list_of(scene);
-    const EffectLevels levels = levels_of(Quality::normal);
+    EffectLevels levels = levels_of(Quality::normal);
+    levels[Effect::interreflection] = 0;  // one that is left out, and bounded
     const PricedFrame frame = priced(list, levels);
     ASSERT_EQ(frame.effects.size(), kEffects);
     EXPECT_TRUE(frame.time.complete);
