@@ -77,7 +77,8 @@ void draw_device(const PlanFrame& plan,
                  const glm::dvec2& middle_mm,
                  ImU32 colour,
                  ImU32 shape,
-                 const char* name) {
+                 const char* name,
+                 bool above) {
     const glm::dvec2 from_mm = in_plan(centre_in_world(view));
     const double reach_mm = 1.25 * glm::distance(from_mm, middle_mm);
     ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -90,7 +91,8 @@ void draw_device(const PlanFrame& plan,
     }
     const float half = em(0.4f);
     list.AddRectFilled({from.x - half, from.y - half}, {from.x + half, from.y + half}, colour);
-    label(plan, {from.x, from.y + 1.4f * half}, colour, name);
+    const float down = above ? -1.4f * half - small_font()->FontSize : 1.4f * half;
+    label(plan, {from.x, from.y + down}, colour, name);
 }
 
 void draw_scale_bar(const PlanFrame& plan) {
@@ -113,11 +115,11 @@ void draw_scale_bar(const PlanFrame& plan) {
                  length_in_words(mm).c_str());
 }
 
-struct Look {
+struct DiscState {
     bool chosen = false, lit = false, in_use = false, counts = true, unfair = false;
 };
 
-void draw_disc(const ImVec2& at, float radius, int number, const Look& look) {
+void draw_disc(const ImVec2& at, float radius, int number, const DiscState& look) {
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImVec4 fill = look.unfair ? colours::warning
                         : look.lit  ? ImVec4(1.0f, 1.0f, 1.0f, 1.0f)
@@ -323,9 +325,10 @@ void draw_room_plan(Studio& studio, std::vector<EyeSeat>& seats, float width) {
                         middle_mm,
                         kCamera,
                         kCameraShape,
-                        "camera");
+                        "camera",
+                        true);
         }
-        draw_device(plan, studio.setup->view, middle_mm, kLight, kLightShape, "projector");
+        draw_device(plan, studio.setup->view, middle_mm, kLight, kLightShape, "projector", false);
     }
     draw_mockup(plan, state.outline_mm);
     draw_scale_bar(plan);

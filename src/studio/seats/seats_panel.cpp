@@ -204,6 +204,12 @@ void draw_what_they_miss(Studio& studio) {
         dim_text("There are no seats: everybody is taken to look from the eye.");
         return;
     }
+    if (toggle_button(
+            "Show it on the stage", state.map_on_stage, ImGui::GetContentRegionAvail().x)) {
+        show_seat_map(studio, !state.map_on_stage);
+    }
+    name_last_item("seats:map");
+    tooltip("The chosen seat's differences over the mock-up, in the projector's pixels.");
     if (const auto progress = seat_errors_progress(studio)) {
         progress_bar(*progress, "Shading the look for each seat…");
         name_last_item("seats:progress");
@@ -235,12 +241,6 @@ void draw_what_they_miss(Studio& studio) {
         is_fair(worst->error) ? dim_text(words) : warning_text(words);
         name_last_item("seats:worst");
     }
-    if (toggle_button(
-            "Show it on the stage", state.map_on_stage, ImGui::GetContentRegionAvail().x)) {
-        show_seat_map(studio, !state.map_on_stage);
-    }
-    name_last_item("seats:map");
-    tooltip("The chosen seat's differences over the mock-up, in the projector's pixels.");
 }
 
 void close(Studio& studio, bool& open) {

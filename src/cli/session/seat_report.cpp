@@ -1,4 +1,4 @@
-#include "cli/seat_report.h"
+#include "cli/session/seat_report.h"
 
 #include <charconv>
 

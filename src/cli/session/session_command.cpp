@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "cli/command.h"
-#include "cli/seat_report.h"
+#include "cli/session/seat_report.h"
 #include "core/error.h"
 #include "jobs/export_product.h"
 #include "jobs/render.h"
