@@ -90,7 +90,7 @@ struct RadianceRenderer::State {
     std::vector<PartArtwork> relief;
     FragmentInputs inputs;
     ArtworkInputs artwork;
-    ShadingPrograms programs;
+    std::optional<ShadingPrograms> programs;  ///< none on the processor, which needs no OpenGL
     std::optional<ResolvePass> resolve;
     Texture2D shaded, target;
     Framebuffer shaded_framebuffer, target_framebuffer;
@@ -122,7 +122,9 @@ struct RadianceRenderer::State {
                  device,
                  keep_better),
           artwork(geometry->product->mesh, geometry->view, map, layout, device),
-          parts(geometry->product->mesh.parts.size()) {}
+          parts(geometry->product->mesh.parts.size()) {
+        if (device == ShadingDevice::gl) programs.emplace();
+    }
 
     void solve(const Scene& scene,
                FramePlan& plan,
@@ -268,7 +270,7 @@ void RadianceRenderer::State::shade_part(FramePlan& plan, const Scene& scene, st
         *find_pass(plan, shade_pass(scene, part)),
         layout.fragments(part),
         [&] { processor->shade(material, shading, exposure_ev, part); },
-        [&] { programs.shade(material, shading, exposure_ev, rectangle, shaded_framebuffer); });
+        [&] { programs->shade(material, shading, exposure_ev, rectangle, shaded_framebuffer); });
     for (std::size_t k = 0; k < scene.artwork.size(); ++k) {
         if (scene.artwork[k].part != part || artwork.covered(k) == 0) continue;
         const InputLayers& means = artwork.layers(k);
@@ -283,7 +285,7 @@ void RadianceRenderer::State::shade_part(FramePlan& plan, const Scene& scene, st
             },
             [&] {
                 for (const ArtworkCoat& coat : coats) {
-                    programs.shade(
+                    programs->shade(
                         coat, means, shading, exposure_ev, rectangle, shaded_framebuffer);
                 }
             });
@@ -359,12 +361,12 @@ void RadianceRenderer::prepare(const Scene& whole,
     if (s.device == ShadingDevice::processor) return;
     for (const Material& material : scene.part_materials) {
         progress.check_stop();
-        s.programs.compile(material, s.inputs.shading());
-        if (!scene.artwork.empty()) s.programs.compile(material, s.inputs.shading(), true);
+        s.programs->compile(material, s.inputs.shading());
+        if (!scene.artwork.empty()) s.programs->compile(material, s.inputs.shading(), true);
     }
     for (const PartArtwork& artwork : scene.artwork) {
         progress.check_stop();
-        s.programs.compile(artwork.material, s.inputs.shading(), true);
+        s.programs->compile(artwork.material, s.inputs.shading(), true);
     }
 }
 

@@ -23,9 +23,9 @@ namespace livery {
 /// the paints before, so that a new one need not wait for the light that it sends on.
 enum class LightBetweenParts { solved, kept };
 
-/// Draws one product from one view; needs a current OpenGL context, the same for its whole life.
-/// What does not change between frames (surface map, visibility, filtered environment, programs)
-/// is kept and made only when the plan asks for it.
+/// Draws one product from one view; needs a current OpenGL context, the same for its whole life
+/// (the processor for texture() alone). What does not change between frames (surface map,
+/// visibility, environment, programs) is kept and made only when the plan asks for it.
 class RadianceRenderer {
   public:
     RadianceRenderer(std::shared_ptr<const Product> product,

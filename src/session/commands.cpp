@@ -241,8 +241,52 @@ void apply(Document& document, const ShareLighting& command) {
 }
 
 void apply(Document& document, const SetEye& command) {
-    for (int c = 0; c < 3; ++c) check_between(command.eye_mm[c], -1e6, 1e6, "the eye");
+    for (int c = 0; c < 3; ++c) {
+        check_between(command.eye_mm[c], -kFarthestEye_mm, kFarthestEye_mm, "the eye");
+    }
     document.eye_mm = command.eye_mm;
+    document.eye_choice = {};
+}
+
+/// Seats in the order of their numbers. An eye that these seats do not have any more stays where
+/// it was.
+void take_seats(Document& document, std::vector<EyeSeat> seats) {
+    if (const auto problem = seats_problem(seats)) throw std::invalid_argument(*problem);
+    std::sort(seats.begin(), seats.end(), [](const EyeSeat& a, const EyeSeat& b) {
+        return a.number < b.number;
+    });
+    if (choice_problem(seats, document.eye_choice)) {
+        document.eye_mm = eye_in_use_mm(document);
+        document.eye_choice = {};
+    }
+    document.seats = std::move(seats);
+}
+
+void apply(Document& document, const SetSeat& command) {
+    std::vector<EyeSeat> seats = document.seats;
+    std::erase_if(seats, [&](const EyeSeat& seat) { return seat.number == command.seat; });
+    seats.push_back({command.seat, command.eye_mm, command.counts});
+    take_seats(document, std::move(seats));
+}
+
+void apply(Document& document, const RemoveSeat& command) {
+    if (!find_seat(document.seats, command.seat)) {
+        refuse("there is no seat {}; there are {}", command.seat, document.seats.size());
+    }
+    std::vector<EyeSeat> seats = document.seats;
+    std::erase_if(seats, [&](const EyeSeat& seat) { return seat.number == command.seat; });
+    take_seats(document, std::move(seats));
+}
+
+void apply(Document& document, const SetSeats& command) { take_seats(document, command.seats); }
+
+void apply(Document& document, const UseEye& command) {
+    EyeChoice choice = command.choice;
+    if (choice.source != EyeSource::seat) choice.seat = 0;
+    if (const auto problem = choice_problem(document.seats, choice)) {
+        throw std::invalid_argument(*problem);
+    }
+    document.eye_choice = choice;
 }
 
 void apply(Document& document, const SetExposure& command) {

@@ -68,8 +68,26 @@ struct SetEnvironment {
 struct ShareLighting {
     int look = 0;
 };
+/// By hand: the seats stay where they are.
 struct SetEye {
     glm::dvec3 eye_mm{0.0};
+};
+/// A new seat, or another place for one.
+struct SetSeat {
+    int seat = 0;
+    glm::dvec3 eye_mm{0.0};
+    bool counts = true;  ///< in the mean of all seats
+};
+/// Where the eye was of this seat, it stays there, by hand.
+struct RemoveSeat {
+    int seat = 0;
+};
+/// All seats as a whole.
+struct SetSeats {
+    std::vector<EyeSeat> seats;
+};
+struct UseEye {
+    EyeChoice choice;
 };
 struct SetExposure {
     double ev = 0.0;
@@ -111,7 +129,11 @@ using SessionCommand = std::variant<SetPaint,
                                     SetCalibration,
                                     SetBench,
                                     SetDesignWhite,
-                                    SetGamutMapping>;
+                                    SetGamutMapping,
+                                    SetSeat,
+                                    RemoveSeat,
+                                    SetSeats,
+                                    UseEye>;
 
 /// Files that the command calls a paint by, or that its paint was measured in, and that the
 /// document's library has not read: the library is to have them before the command is applied.
@@ -119,8 +141,8 @@ std::set<std::filesystem::path> unread_files(const Document& document,
                                              const SessionCommand& command);
 
 /// The document after the command; a pure function. Throws std::invalid_argument with the values
-/// (no such look, part, paint; a paint's file that is not read; empty name; not finite; the last
-/// look deleted).
+/// (no such look, part, paint, seat; a paint's file that is not read; empty name; not finite; the
+/// last look deleted).
 Document applied(const Document& document, const SessionCommand& command);
 
 /// A look read from a file as it can stand in a session: what it names beside that file by its

@@ -10,6 +10,7 @@
 #include "scene/look_json.h"
 #include "session/choices_json.h"
 #include "session/commands.h"
+#include "session/seats_json.h"
 
 namespace livery {
 
@@ -122,6 +123,27 @@ void read(const JsonReader& fields, SetEye& c) {
     c.eye_mm = place_mm(fields["eye_mm"]);
 }
 
+Json fields_of(const SetSeat& c) { return json_of(EyeSeat{c.seat, c.eye_mm, c.counts}); }
+void read(const JsonReader& fields, SetSeat& c) {
+    const EyeSeat seat = read_seat(fields);
+    c = {seat.number, seat.eye_mm, seat.counts};
+}
+
+Json fields_of(const RemoveSeat& c) { return {{"seat", c.seat}}; }
+void read(const JsonReader& fields, RemoveSeat& c) {
+    fields.allow_only({"seat"});
+    c.seat = fields["seat"].integer(1, kLargestSeatNumber);
+}
+
+Json fields_of(const SetSeats& c) { return {{"seats", json_of(c.seats)}}; }
+void read(const JsonReader& fields, SetSeats& c) {
+    fields.allow_only({"seats"});
+    c.seats = read_seats(fields["seats"]);
+}
+
+Json fields_of(const UseEye& c) { return json_of(c.choice); }
+void read(const JsonReader& fields, UseEye& c) { c.choice = read_eye_choice(fields); }
+
 Json fields_of(const SetExposure& c) { return {{"ev", c.ev}}; }
 void read(const JsonReader& fields, SetExposure& c) {
     fields.allow_only({"ev"});
@@ -168,7 +190,8 @@ constexpr std::array<const char*, std::variant_size_v<SessionCommand>> kNames = 
     "set-paint",   "paint-product",   "edit-paint",     "rename-paint",     "set-artwork",
     "add-look",    "duplicate-look",  "rename-look",    "delete-look",      "move-look",
     "set-lights",  "set-environment", "share-lighting", "set-eye",          "set-exposure",
-    "set-quality", "set-calibration", "set-bench",      "set-design-white", "set-gamut-mapping"};
+    "set-quality", "set-calibration", "set-bench",      "set-design-white", "set-gamut-mapping",
+    "set-seat",    "remove-seat",     "set-seats",      "use-eye"};
 
 template <std::size_t K = 0>
 SessionCommand read_kind(const std::string& name, const JsonReader& root) {

@@ -69,6 +69,26 @@ std::string label(const Document& before, const ShareLighting& command) {
     return fmt::format("Light all looks as {}", name_of(before, command.look));
 }
 std::string label(const Document&, const SetEye&) { return "Move eye point"; }
+std::string label(const Document& before, const SetSeat& command) {
+    const EyeSeat* seat = find_seat(before.seats, command.seat);
+    if (!seat) return fmt::format("Add seat {}", command.seat);
+    if (seat->eye_mm != command.eye_mm || seat->counts == command.counts) {
+        return fmt::format("Move seat {}", command.seat);
+    }
+    return command.counts ? fmt::format("Count seat {}", command.seat)
+                          : fmt::format("Leave seat {} out", command.seat);
+}
+std::string label(const Document&, const RemoveSeat& command) {
+    return fmt::format("Remove seat {}", command.seat);
+}
+std::string label(const Document&, const SetSeats& command) {
+    const std::size_t count = command.seats.size();
+    return count == 0 ? "Remove all seats"
+                      : fmt::format("Place {} {}", count, count == 1 ? "seat" : "seats");
+}
+std::string label(const Document& before, const UseEye& command) {
+    return "Draw for the eye " + in_words(before.seats, command.choice);
+}
 std::string label(const Document&, const SetExposure& command) {
     return fmt::format("Set exposure to {:.4g} EV", command.ev);
 }

@@ -87,6 +87,10 @@ Document with_paints_read(Document document) {
     return in_library(std::move(document), std::move(library));
 }
 
+glm::dvec3 eye_in_use_mm(const Document& document) {
+    return eye_in_use_mm(document.eye_mm, document.seats, document.eye_choice);
+}
+
 NamedPaint look_up(const Document& document, const std::string& name) {
     for (const Material& paint : document.paints) {
         if (!same_paint_name(paint.name, name)) continue;
@@ -144,7 +148,7 @@ Scene scene_of(const Document& document,
     const auto find = [&](const std::string& name) { return look_up(document, name).material; };
     if (environment_problem(look.environment)) look.environment = {};
     return make_scene(
-        std::move(product), look, find, document.eye_mm, loaded, Unwearable::left_out);
+        std::move(product), look, find, eye_in_use_mm(document), loaded, Unwearable::left_out);
 }
 
 std::vector<std::string> drawing_problems(const Document& document, const SessionLook& look) {

@@ -15,6 +15,7 @@
 #include "scene/gamut_mapping.h"
 #include "scene/look.h"
 #include "scene/scene.h"
+#include "scene/seats.h"
 
 namespace livery {
 
@@ -30,7 +31,9 @@ struct Document {
     std::vector<SessionLook> looks;
     int next_look_id = 1;
     std::vector<Material> paints;  ///< the session's own; they come before the library's by name
-    glm::dvec3 eye_mm{0.0};
+    glm::dvec3 eye_mm{0.0};        ///< as set by hand; what counts is eye_in_use_mm()
+    std::vector<EyeSeat> seats;    ///< of the room, by number
+    EyeChoice eye_choice;
     double exposure_ev = 0.0;  ///< the same for all looks
     Quality quality = Quality::normal;
     std::optional<EffectLevels> levels;  ///< of effects one by one; none: the quality's
@@ -60,6 +63,9 @@ Document in_library(Document document, std::shared_ptr<const PaintLibrary> libra
 /// For a program that runs once: in the library as it is now, with all that the document's paints
 /// were measured in and the files that its looks name. Throws FileError.
 Document with_paints_read(Document document);
+
+/// The point that looks are shaded for: set by hand, a seat's, or the mean of those that count.
+glm::dvec3 eye_in_use_mm(const Document& document);
 
 /// The session's own paint, else the library's.
 NamedPaint look_up(const Document& document, const std::string& name);

@@ -11,12 +11,14 @@
 #include "session/document.h"
 #include "session/naming.h"
 #include "session/paint_edit.h"
+#include "session/seats_json.h"
 
 namespace livery {
 
 namespace {
 
-constexpr int kFormatVersion = 1;
+// 2 has seats. What has none is written as before, for programs from before there were any.
+constexpr int kFormatVersion = 2, kWithoutSeats = 1;
 constexpr int kLargestId = std::numeric_limits<int>::max() - 1;
 
 /// A text that can be shown; a mistake is told of its field.
@@ -81,7 +83,8 @@ void read_paints(const JsonReader& list, Document& document) {
 
 Json json_of(const Document& document) {
     Json json = Json::object();
-    json["format_version"] = kFormatVersion;
+    const bool seats = !document.seats.empty() || document.eye_choice != EyeChoice{};
+    json["format_version"] = seats ? kFormatVersion : kWithoutSeats;
     json["product"] = document.product;
     if (document.product_unit) json["product_unit"] = to_string(*document.product_unit);
     json["looks"] = Json::array();
@@ -90,6 +93,10 @@ Json json_of(const Document& document) {
     json["paints"] = Json::array();
     for (const Material& paint : document.paints) json["paints"].push_back(json_of(paint));
     json["eye_mm"] = json_from(document.eye_mm);
+    if (seats) {
+        json["seats"] = json_of(document.seats);
+        json["eye_of"] = json_of(document.eye_choice);
+    }
     json["exposure_ev"] = document.exposure_ev;
     json["quality"] = to_string(document.quality);
     if (document.levels) json["levels"] = to_string(*document.levels);
@@ -109,6 +116,8 @@ Document read_document(const JsonReader& root) {
                      "next_look_id",
                      "paints",
                      "eye_mm",
+                     "seats",
+                     "eye_of",
                      "exposure_ev",
                      "quality",
                      "levels",
@@ -134,6 +143,10 @@ Document read_document(const JsonReader& root) {
     }
     read_paints(root["paints"], document);
     document.eye_mm = place_mm(root["eye_mm"]);
+    if (root.has("seats")) document.seats = read_seats(root["seats"]);
+    if (root.has("eye_of")) {
+        document.eye_choice = read_eye_choice(root["eye_of"], document.seats);
+    }
     document.exposure_ev = root["exposure_ev"].number_between(-30.0, 30.0);
     document.quality = read_quality(root["quality"]);
     if (root.has("levels")) document.levels = read_levels(root["levels"]);

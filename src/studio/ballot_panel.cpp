@@ -22,6 +22,7 @@
 #include "studio/kit/words.h"
 #include "studio/look_thumbnails.h"
 #include "studio/presenting/presenting.h"
+#include "studio/seats/seat_maps.h"
 #include "studio/studio.h"
 
 namespace livery {
@@ -155,6 +156,7 @@ void draw_start(Studio& studio) {
     if (!studio.setup || !studio.setup->table) {
         warning_text("No calibration is in use: people would judge colours that are not right.");
     }
+    draw_seats_before_vote(studio);
     draw_presentation_setup(studio, ids);
     ImGui::SameLine();
     begin_disabled(names.size() < 2);

@@ -57,8 +57,10 @@ void ask_for(Studio& studio, const SessionLook& look, const glm::ivec2& size_px)
     asked = key;
     const auto scene = scene_of_paints(studio, look);
     if (!scene) return;
-    const View view = eye_view(
-        studio.session.document().eye_mm, bounds_of(studio.product->mesh), size_px.x, size_px.y);
+    const View view = eye_view(eye_in_use_mm(studio.session.document()),
+                               bounds_of(studio.product->mesh),
+                               size_px.x,
+                               size_px.y);
     studio.previews->request_thumbnail(
         *scene, view, [inbox = state.inbox, name = look.look.name](const Image8& rgba) {
             {

@@ -11,6 +11,7 @@
 #include "studio/paint/paint_panel.h"
 #include "studio/plan_panel.h"
 #include "studio/presenting/presenting.h"
+#include "studio/seats/seats_panel.h"
 
 namespace livery {
 
@@ -25,7 +26,8 @@ PanelStates::PanelStates()
       capture(std::make_unique<CapturePanelState>()),
       thumbnails(std::make_unique<LookThumbnailState>()),
       nudge(std::make_unique<NudgePanelState>()),
-      presenting(std::make_unique<PresentingState>()) {}
+      presenting(std::make_unique<PresentingState>()),
+      seats(std::make_unique<SeatsPanelState>()) {}
 
 PanelStates::~PanelStates() = default;
 PanelStates::PanelStates(PanelStates&&) noexcept = default;

@@ -17,6 +17,7 @@ struct CapturePanelState;
 struct LookThumbnailState;
 struct NudgePanelState;
 struct PresentingState;
+struct SeatsPanelState;
 
 /// Always there. Owns textures: destroy it with the window's context current.
 struct PanelStates {
@@ -36,6 +37,7 @@ struct PanelStates {
     std::unique_ptr<LookThumbnailState> thumbnails;
     std::unique_ptr<NudgePanelState> nudge;
     std::unique_ptr<PresentingState> presenting;
+    std::unique_ptr<SeatsPanelState> seats;
 };
 
 }  // namespace livery

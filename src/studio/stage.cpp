@@ -13,6 +13,7 @@
 #include "studio/kit/ui_map.h"
 #include "studio/kit/widgets.h"
 #include "studio/nudge/nudge_panel.h"
+#include "studio/seats/seat_maps.h"
 #include "studio/stage_words.h"
 #include "studio/window/shell.h"
 
@@ -49,9 +50,11 @@ void draw_view_buttons(Shell& shell) {
          "A photograph of the mock-up on the simulated bench, taken from the audience's eye: what "
          "they would see."}};
     for (const Choice& choice : choices) {
-        if (toggle_button(choice.label, shell.studio.view == choice.view)) {
+        const bool on = shell.studio.view == choice.view && !shows_seat_map(shell.studio);
+        if (toggle_button(choice.label, on)) {
             shell.studio.view = choice.view;
             shell.clicked_a_view = true;
+            show_seat_map(shell.studio, false);
         }
         name_last_item(choice.name);
         tooltip(choice.help);
@@ -178,7 +181,7 @@ void handle_picture(PictureZoom& zoom, const StageFrame& picture, const Pointer&
 
 void choose_part_at_pointer(Shell& shell, const StageFrame& stage) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
-    const View view = stage_view(shell, shell.studio.session.document().eye_mm);
+    const View view = stage_view(shell, eye_in_use_mm(shell.studio.session.document()));
     const auto part = shell.studio.picker->part_at(
         view, {static_cast<double>(mouse.x - stage.x), static_cast<double>(mouse.y - stage.y)});
     if (part) {
@@ -195,7 +198,8 @@ bool handle_placing(Shell& shell, const Pointer& pointer, const glm::dvec2& at) 
     const bool turning = pointer.held && shell.stage.dragged;
     std::optional<PickedPoint> point;
     if (pointer.hovered && !turning) {
-        point = studio.picker->point_at(stage_view(shell, studio.session.document().eye_mm), at);
+        point = studio.picker->point_at(stage_view(shell, eye_in_use_mm(studio.session.document())),
+                                        at);
     }
     if (point) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
     if (pointer.hovered) try_placing(studio, point);
@@ -449,6 +453,14 @@ void draw_stage(Shell& shell) {
                           ImGui::IsItemActivated(),
                           ImGui::IsItemActive(),
                           ImGui::IsItemDeactivated()};
+    if (shows_seat_map(shell.studio)) {
+        const glm::ivec2 size = seat_map_size(shell.studio);
+        const StageFrame picture =
+            size.x > 0 ? place_picture(stage, size.x, size.y, shell.stage.projector) : stage;
+        handle_picture(shell.stage.projector, picture, pointer);
+        draw_seat_map(shell.studio, picture, stage);
+        return ImGui::PopClipRect();
+    }
     const StageView view = shell.studio.view;
     if (!handle_wipe(shell, stage, pointer)) {
         if (view == StageView::projector) {

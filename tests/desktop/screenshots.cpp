@@ -105,6 +105,7 @@ class Photographer {
         take_vote();
         take_calibrating();
         take_nudge();
+        take_seats();
         take_capture();
         program().click("show-numbers");
         settle();
@@ -237,6 +238,31 @@ class Photographer {
         program().click("cancel-calibration");
         wait_for_rest();
         program().click("tab:Paints");
+    }
+
+    /// Five in an arc, looked at by the last one.
+    void take_seats() {
+        program().click("menu:Projector");
+        program().click("menu:seats");
+        program().click("seats:arc");
+        program().click("seats:eye");
+        program().click("seats:eye:mean");
+        program().click("plan:seat:5");
+        if (!wait_until([&] { return program().state("seat_errors") == true; }, 300s)) {
+            throw std::runtime_error("what seats miss is not found");
+        }
+        program().move_away();
+        settle();
+        take("seats");
+        program().click("seats:map");
+        program().wait_for_state("seat_map", true);
+        program().move_away();
+        settle();
+        take("seats-map");
+        program().click("view:preview");
+        program().click("seats:close");
+        for (int k = 0; k < 2; ++k) program().press_key("ctrl+z");
+        wait_for_rest();
     }
 
     void take_nudge() {

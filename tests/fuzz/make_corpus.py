@@ -44,6 +44,13 @@ put("round_details", "all", {
     "looks": [{"code": 376, "picture": "a.png", "reachability": {"reachable_fraction": .9, "de00_median": 1, "de00_p95": 2}}],
     "showings": [{"at": "2026-11-20T09:00:00Z", "seats": [1, 2], "codes": [912, 376, 481]}]})
 
+put("round_details", "eye", {
+    "format_version": 2, "kind": "round-details", "round": 1,
+    "looks": [{"code": 376}],
+    "eye": {"of": "the mean of 2 seats", "eye_mm": [1, 2, 3], "seats": [
+        {"seat": 1, "eye_mm": [1, 2, 3], "looks": [{"code": 376, "de00_median": 1, "de00_p95": 2, "share_over_3": 0.1}]},
+        {"seat": 4, "eye_mm": [4, 2, 3], "counts": False}]}})
+
 # Meshes.
 POINTS = [(0, 0, 0), (90, 0, 0), (0, 90, 0), (0, 0, 90)]
 FACES = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
@@ -291,6 +298,12 @@ put("document", "one.json",
      "next_look_id": 2, "paints": [PAINT], "eye_mm": [1, 2, 3], "exposure_ev": -0.5,
      "quality": "high", "bench": "default", "calibration": "", "design_white_percentile": 20,
      "gamut_mapping": "preserve"})
+put("document", "seats.json",
+    {"format_version": 2, "product": "car", "looks": [{"id": 1, "name": "a", "parts": {"body": "solid red"}, "lights": []}],
+     "next_look_id": 2, "paints": [], "eye_mm": [1, 2, 3],
+     "seats": [{"seat": 1, "eye_mm": [-400, 480, 900]}, {"seat": 4, "eye_mm": [400, 480, 900], "counts": False}],
+     "eye_of": {"of": "seat", "seat": 4}, "exposure_ev": 0, "quality": "draft", "bench": "default",
+     "calibration": "", "design_white_percentile": 20, "gamut_mapping": "strict"})
 for name, fields in {
         "set-paint": {"look": 1, "part": "body", "paint": "solid red"},
         "edit-paint": {"look": 1, "part": "body", "material": PAINT},
@@ -303,7 +316,11 @@ for name, fields in {
         "set-exposure": {"ev": 1}, "set-quality": {"quality": "draft"},
         "set-calibration": {"folder": "c"}, "set-bench": {"bench": "hard"},
         "set-design-white": {"percentile": 30},
-        "set-gamut-mapping": {"mapping": "preserve"}}.items():
+        "set-gamut-mapping": {"mapping": "preserve"},
+        "set-seat": {"seat": 3, "eye_mm": [1, 2, 3], "counts": False},
+        "remove-seat": {"seat": 3},
+        "set-seats": {"seats": [{"seat": 1, "eye_mm": [1, 2, 3]}, {"seat": 2, "eye_mm": [900, 2, 3]}]},
+        "use-eye": {"of": "seat", "seat": 3}}.items():
     put("commands", name + ".json", {name: fields})
 for name, text in {"size": "1280x800", "eye": "10,-20.5,3e2", "unit": "cm"}.items():
     put("command_line", name, text)

@@ -127,8 +127,8 @@ TEST(SessionFile, DocumentThatIsNoneIsRefusedByItsField) {
                         {"step 2, document, line 1, column 1: found text that is not JSON"}));
     EXPECT_TRUE(refused(spoilt(folder, set + "'{}' WHERE number = 2"),
                         {"step 2, document, format_version: found nothing"}));
-    EXPECT_TRUE(refused(with("{\"format_version\":1", "{\"format_version\":2"),
-                        {"step 2, document, format_version: found 2 (written by a newer Livery)"}));
+    EXPECT_TRUE(refused(with("{\"format_version\":1", "{\"format_version\":3"),
+                        {"step 2, document, format_version: found 3 (written by a newer Livery)"}));
     EXPECT_TRUE(refused(with(exposure, "\"exposure_ev\":NaN"), {"not JSON"}));
     EXPECT_TRUE(refused(with(exposure, "\"exposure_ev\":1e999"), {"step 2, document", "1e999"}));
     EXPECT_TRUE(refused(with(exposure, "\"exposure_ev\":1e300"),

@@ -42,11 +42,13 @@ inline Artwork some_artwork() {
     return artwork;
 }
 
-/// The car's document with a paint of its own and one look without lights.
+/// The car's document with a paint of its own, one look without lights, and two seats.
 inline Document car_with_own_paint() {
     Material own = some_paint();
     own.name = "own paint";
-    return applied(applied(car(), SetLights{3, {}}), EditPaint{4, "rims", own});
+    const Document seated =
+        applied(car(), SetSeats{{{1, {-400.0, 480.0, 900.0}}, {7, {0.5, 480.0, 1000.0}, false}}});
+    return applied(applied(seated, SetLights{3, {}}), EditPaint{4, "rims", own});
 }
 
 /// One of each kind, all of which car_with_own_paint() takes.
@@ -75,7 +77,13 @@ inline std::vector<SessionCommand> one_of_each(const std::string& calibration_fo
             SetCalibration{calibration_folder},
             SetBench{"hard"},
             SetDesignWhite{35.5},
-            SetGamutMapping{GamutMapping::preserve}};
+            SetGamutMapping{GamutMapping::preserve},
+            SetSeat{7, {1.0 / 3.0, 481.0, -1e-3}},
+            SetSeat{12, {900.0, 480.0, 0.0}, false},
+            RemoveSeat{7},
+            SetSeats{{{1, {500.0, 2.0, 3.0}, false}, {3, {1.0, 2.0, 3.0}}}},
+            UseEye{{EyeSource::mean, 0}},
+            UseEye{{EyeSource::seat, 7}}};
 }
 
 template <typename Value>

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "evaluation/report/round_eye.h"
+
 namespace livery {
 
 /// How much of a look the projector could show, as it was shown; what is not recorded is nothing.
@@ -34,6 +36,7 @@ struct RoundDetails {
     std::string note = {};  ///< what a reader must know, such as that the round is a made-up sample
     std::vector<LookDetails> looks = {};
     std::vector<LookShowing> showings = {};
+    std::optional<RoundEye> eye = {};   ///< nothing: from before it was recorded
     std::filesystem::path folder = {};  ///< where the pictures are
 };
 

@@ -6,11 +6,14 @@
 #include "core/paths.h"
 #include "core/utf8.h"
 #include "evaluation/report/round_details.h"
+#include "evaluation/report/round_eye_json.h"
 
 namespace livery {
 
 namespace {
 
+// 2 may have the eye; details without are written as before there was one.
+constexpr int kFormatVersion = 2, kWithoutEye = 1;
 constexpr std::size_t kMostBytes = 4u << 20u;
 constexpr int kMostSeat = 1'000'000;
 
@@ -94,9 +97,16 @@ RoundDetails parse_round_details(const std::string& text,
                                  const std::vector<int>& codes) {
     const Json json = parse_json(text, file);
     const JsonReader object(file, json);
-    object.require_format_version(1);
-    object.allow_only(
-        {"format_version", "kind", "round", "title", "question", "note", "looks", "showings"});
+    object.require_format_version(kFormatVersion);
+    object.allow_only({"format_version",
+                       "kind",
+                       "round",
+                       "title",
+                       "question",
+                       "note",
+                       "looks",
+                       "showings",
+                       "eye"});
     object["kind"].one_of({"round-details"});
     if (object["round"].integer(1, 1'000'000'000) != round) {
         object["round"].fail(object["round"].found(), "round " + std::to_string(round));
@@ -124,13 +134,15 @@ RoundDetails parse_round_details(const std::string& text,
             details.showings.push_back(showing_of(showings.at(k), codes));
         }
     }
+    if (object.has("eye")) details.eye = read_round_eye(object["eye"], codes);
     return details;
 }
 
 void write_round_details(const std::filesystem::path& file,
                          int round,
                          const RoundDetails& details) {
-    Json json = {{"format_version", 1}, {"kind", "round-details"}, {"round", round}};
+    const int version = details.eye ? kFormatVersion : kWithoutEye;
+    Json json = {{"format_version", version}, {"kind", "round-details"}, {"round", round}};
     for (const auto& [key, text] : {std::pair{"title", &details.title},
                                     {"question", &details.question},
                                     {"note", &details.note}}) {
@@ -155,6 +167,7 @@ void write_round_details(const std::filesystem::path& file,
         if (!showing.seats.empty()) entry["seats"] = showing.seats;
         json["showings"].push_back(std::move(entry));
     }
+    if (details.eye) json["eye"] = json_of(*details.eye);
     make_output_folder(file.parent_path());
     write_json_file(file, json);
 }

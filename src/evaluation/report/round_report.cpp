@@ -178,12 +178,27 @@ class ReportBuilder {
             table.rows.push_back({"Its figures", kNotRecorded});
         }
         add(std::move(table));
+        add_eye();
         ReportTable showings = showings_table(source_);
         if (showings.rows.empty()) {
             say(std::string("Who saw which order, and when: ") + kNotRecorded + ".");
         } else {
             add(std::move(showings));
         }
+    }
+
+    void add_eye() {
+        const auto& eye = source_.details.eye;
+        if (!eye)
+            return say(std::string("Whose eye highlights were drawn for: ") + kNotRecorded + ".");
+        say(
+            fmt::format("Highlights were drawn for one eye, {}, at x {:.0f}, y {:.0f}, z {:.0f} mm "
+                        "of the mock-up's frame (y is up).",
+                        eye->of,
+                        eye->eye_mm.x,
+                        eye->eye_mm.y,
+                        eye->eye_mm.z));
+        if (!eye->seats.empty()) add(seats_table(source_, rows_));
     }
 
     void add_record() {

@@ -244,6 +244,47 @@ ReportTable showings_table(const RoundReportSource& source) {
     return table;
 }
 
+ReportTable seats_table(const RoundReportSource& source, const ChartRows& rows) {
+    ReportTable table{"What each seat missed",
+                      {{"Seat", false},
+                       {"Eye, mm", false},
+                       {"Design", false},
+                       {"Median"},
+                       {"95% within"},
+                       {"Over 3"}},
+                      {}};
+    for (const RoundSeat& seat : source.details.eye->seats) {
+        const std::string name =
+            fmt::format("{}{}", seat.seat, seat.counts ? "" : ", does not count");
+        const glm::dvec3& eye_mm = seat.eye_mm;
+        const std::string where =
+            fmt::format("{:.0f}, {:.0f}, {:.0f}", eye_mm.x, eye_mm.y, eye_mm.z);
+        if (seat.looks.empty()) {
+            table.rows.push_back({name, where, kNotRecorded, "", "", ""});
+            continue;
+        }
+        for (const int design : rows.order) {
+            const auto k = static_cast<std::size_t>(design);
+            const int code =
+                source.record && k < source.record->codes.size() ? source.record->codes[k] : 0;
+            const auto miss = std::find_if(seat.looks.begin(),
+                                           seat.looks.end(),
+                                           [&](const SeatMiss& one) { return one.code == code; });
+            if (miss == seat.looks.end()) continue;
+            table.rows.push_back({name,
+                                  where,
+                                  rows.labels[k],
+                                  fmt::format("{:.1f}", miss->de00_median),
+                                  fmt::format("{:.1f}", miss->de00_p95),
+                                  percent_text(miss->share_over_3)});
+        }
+    }
+    table.note =
+        "CIEDE2000 of what was projected to what this seat should have seen, at design white; over "
+        "3 differences become hard to overlook.";
+    return table;
+}
+
 ReportTable record_table(const RoundReportSource& source) {
     ReportTable table{"What proves it", {{"What", false}, {"Record", false}}, {}};
     const auto add = [&](const std::string& what, const std::string& value) {

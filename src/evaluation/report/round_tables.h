@@ -15,6 +15,8 @@ ReportTable power_table(const VoteStatistics& statistics,
 ReportTable designs_table(const RoundReportSource& source, const ChartRows& rows);
 /// Who saw which order when; no rows where it was not recorded.
 ReportTable showings_table(const RoundReportSource& source);
+/// What each seat missed of each look; rows with what is not known, too.
+ReportTable seats_table(const RoundReportSource& source, const ChartRows& rows);
 /// Which round it is, of which file, with its seeds and the hash of its log.
 ReportTable record_table(const RoundReportSource& source);
 

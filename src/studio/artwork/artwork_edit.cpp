@@ -168,7 +168,7 @@ Artwork artwork_to_add(Studio& studio, ArtworkShape shape, const std::filesystem
     Artwork artwork = new_artwork(shape,
                                   part,
                                   bounds_of_part(mesh, part),
-                                  studio.session.document().eye_mm,
+                                  eye_in_use_mm(studio.session.document()),
                                   shown_artwork(studio),
                                   aspect);
     if (shape == ArtworkShape::picture) {

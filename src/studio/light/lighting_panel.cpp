@@ -22,6 +22,7 @@
 #include "studio/light/light_values.h"
 #include "studio/light/quality_section.h"
 #include "studio/quality_costs.h"
+#include "studio/seats/seats_panel.h"
 #include "studio/studio.h"
 #include "twin/description.h"
 
@@ -160,7 +161,7 @@ void draw_light(Studio& studio, Look& edited, const Look& before, std::size_t i)
 
 void draw_lights(Studio& studio, Look& edited, const Look& before) {
     heading("Lights");
-    const glm::dvec3 toward_eye = studio.session.document().eye_mm - product_centre(studio);
+    const glm::dvec3 toward_eye = eye_in_use_mm(studio.session.document()) - product_centre(studio);
     const float side = std::min(em(9.5f), ImGui::GetContentRegionAvail().x);
     light_pad(edited.lights, toward_eye, side, [&] {
         studio.panels.lighting->held.after_item();
@@ -253,7 +254,7 @@ std::optional<glm::dvec3> observer_mm(Studio& studio) {
 
 void draw_eye_at_observer(Studio& studio) {
     const auto observer = observer_mm(studio);
-    const bool there = observer && *observer == studio.session.document().eye_mm;
+    const bool there = observer && *observer == eye_in_use_mm(studio.session.document());
     begin_disabled(!observer || there);
     if (ImGui::Button("Eye at the bench's observer") && observer) {
         commit(studio, SetEye{*observer});
@@ -272,10 +273,19 @@ void draw_eye(Studio& studio) {
         "Where the audience looks from: highlights sit where this eye sees them, and the "
         "photograph is taken from here.");
     ImGui::PushID("eye");
-    glm::dvec3& eye_mm = state.held_eye_mm.start(studio.session.document().eye_mm);
+    glm::dvec3& eye_mm = state.held_eye_mm.start(eye_in_use_mm(studio.session.document()));
     draw_eye_angles(studio, eye_mm);
     state.held_eye_mm.finish();
     draw_eye_at_observer(studio);
+    if (ImGui::Button("Seats in the room…")) studio.panels.seats->wanted = true;
+    name_last_item("open-seats");
+    tooltip("Where people sit in a plan of the room, whose eye this is, and what others miss.");
+    const Document& document = studio.session.document();
+    if (document.eye_choice.source != EyeSource::by_hand) {
+        dim_text(fmt::format("It is {}; moving it here sets it by hand.",
+                             in_words(document.seats, document.eye_choice)));
+        name_last_item("eye:of");
+    }
     ImGui::PopID();
 }
 

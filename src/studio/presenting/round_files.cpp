@@ -43,9 +43,11 @@ std::vector<int> unfair_looks(const RoundDetails& details) {
 RoundDetails write_frozen_looks(const std::filesystem::path& ballots,
                                 const Round& round,
                                 const std::vector<FrozenLook>& looks,
-                                const ProjectorSetup& setup) {
+                                const ProjectorSetup& setup,
+                                const std::optional<RoundEye>& eye) {
     const auto file = round_details_file(ballots, round.id);
     RoundDetails details;
+    details.eye = eye;
     details.folder = file.parent_path();
     make_output_folder(details.folder);
     for (std::size_t k = 0; k < looks.size(); ++k) {

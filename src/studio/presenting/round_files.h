@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,12 +31,13 @@ std::string reach_in_words(const LookDetails& look);
 std::vector<int> unfair_looks(const RoundDetails& details);
 
 /// For a thread that may wait: what each look wants as sRGB, how much of it this projector shows,
-/// by its calibration (nothing is said without one), in the round's folder beside the ballots.
-/// Throws FileError.
+/// by its calibration (nothing is said without one), in the round's folder beside the ballots, with
+/// the eye that they were shaded for. Throws FileError.
 RoundDetails write_frozen_looks(const std::filesystem::path& ballots,
                                 const Round& round,
                                 const std::vector<FrozenLook>& looks,
-                                const ProjectorSetup& setup);
+                                const ProjectorSetup& setup,
+                                const std::optional<RoundEye>& eye = {});
 
 /// On the background thread: HTML and PDF in that folder; the notice says where.
 void write_round_report(Studio& studio, const Round& round);

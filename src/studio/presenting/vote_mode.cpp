@@ -20,6 +20,7 @@
 #include "studio/presenting/surround.h"
 #include "studio/projector_control.h"
 #include "studio/results.h"
+#include "studio/seats/round_eye.h"
 #include "studio/window/actions.h"
 #include "studio/window/shell.h"
 #include "studio/window/wiring.h"
@@ -136,8 +137,9 @@ void keep_frozen_looks(Studio& studio, const Freezing& freezing, int id) {
          round,
          ballots = studio.ballots->file(),
          looks = freezing.frozen,
-         setup = freezing.projector](const Progress&) -> Background::Then {
-            const RoundDetails details = write_frozen_looks(ballots, round, looks, *setup);
+         setup = freezing.projector,
+         eye = eye_of_round(studio.session.document())](const Progress&) -> Background::Then {
+            const RoundDetails details = write_frozen_looks(ballots, round, looks, *setup, eye);
             return [&studio, id, details] {
                 auto& presented = presenting(studio).presented;
                 if (!presented || presented->round.id != id) return;

@@ -17,6 +17,8 @@
 #include "studio/product/open_session.h"
 #include "studio/projector_control.h"
 #include "studio/save_picture.h"
+#include "studio/seats/seat_maps.h"
+#include "studio/seats/seats_panel.h"
 #include "studio/window/shell.h"
 
 namespace livery {
@@ -79,6 +81,7 @@ void use_scale(Shell& shell, double scale) {
 void show_view(Shell& shell, StageView view) {
     shell.studio.view = view;
     shell.clicked_a_view = true;
+    show_seat_map(shell.studio, false);
 }
 
 /// One thing at a time, the topmost first.
@@ -93,6 +96,8 @@ void give_up(Shell& shell) {
         stop_trying(studio);
     } else if (shell.nudge_open) {
         show_nudge(shell, false);
+    } else if (shell.seats_open) {
+        show_seats(shell, false);
     } else if (studio.renaming_look) {
         studio.renaming_look.reset();
     } else if (!studio.notices.empty()) {
@@ -148,6 +153,10 @@ void add_file_actions(std::vector<Action>& list) {
     }));
     list.back().enabled = [](const Shell& s) { return !s.capture_open; };
     list.back().checked = [](const Shell& s) { return s.nudge_open; };
+    list.push_back(action("seats", "Projector", "Seats in the room…", {}, [](Shell& s) {
+        show_seats(s, !s.seats_open);
+    }));
+    list.back().checked = [](const Shell& s) { return s.seats_open; };
     list.push_back(
         action("ballot", "File", "Ballot", {}, [](Shell& s) { s.ballots_open = !s.ballots_open; }));
     list.back().checked = [](const Shell& s) { return s.ballots_open; };

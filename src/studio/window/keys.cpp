@@ -9,7 +9,9 @@
 #include "studio/nudge/nudge_panel.h"
 #include "studio/paint/library_panel.h"
 #include "studio/paint/users_library.h"
+#include "studio/presenting/presenting.h"
 #include "studio/presenting/vote_mode.h"
+#include "studio/seats/seats_panel.h"
 #include "studio/window/actions.h"
 #include "studio/window/shell.h"
 
@@ -63,6 +65,8 @@ bool handle_key(Shell& shell, const InputEvent& event) {
     const bool writes =
         owner.text_field || owner.dialog || ImGui::GetCurrentContext()->OpenPopupStack.Size > 0;
     if (shell.nudge_open && !writes && nudge_key(shell, chord)) return true;
+    const bool seats = shell.seats_open && !is_presenting(shell.studio);
+    if (seats && !writes && seats_key(shell, chord)) return true;
     if (!writes && vote_mode_key(shell, chord, event.repeated)) return true;
     const Action* action = action_for(chord, owner);
     // Dear ImGui has a meaning of its own for Tab and would use it for its list of windows.

@@ -19,6 +19,7 @@
 #include "studio/presenting/presenting.h"
 #include "studio/presenting/vote_mode.h"
 #include "studio/product/open_session.h"
+#include "studio/seats/seats_panel.h"
 #include "studio/window/actions.h"
 #include "studio/window/shell.h"
 
@@ -118,6 +119,11 @@ void draw_right_column(Shell& shell) {
     if (shell.nudge_open) {
         shell.studio.panels.library->owns_arrows = false;
         return draw_nudge_panel(shell);
+    }
+    if (std::exchange(shell.studio.panels.seats->wanted, false)) show_seats(shell, true);
+    if (shell.seats_open && !is_presenting(shell.studio)) {
+        shell.studio.panels.library->owns_arrows = false;
+        return draw_seats_panel(shell.studio, shell.seats_open);
     }
     if (shell.ballots_open) {
         shell.studio.panels.library->owns_arrows = false;

@@ -128,7 +128,7 @@ struct Shell {
     int tab_step = 0;  ///< Tab was pressed: 1, with Shift: -1
     bool help_open = false, about_open = false, ballots_open = false;
     bool signal_test_open = false;
-    bool capture_open = false, nudge_open = false;
+    bool capture_open = false, nudge_open = false, seats_open = false;
     std::unique_ptr<NewSession> new_session;      ///< its page; none: closed
     std::unique_ptr<NewSession> closed_page;      ///< its picture may be in this frame's drawing
     std::uint64_t new_sessions = 0;               ///< pages opened so far

@@ -14,6 +14,8 @@
 #include "studio/nudge/nudge_panel.h"
 #include "studio/presenting/presenting.h"
 #include "studio/projector_control.h"
+#include "studio/seats/seat_maps.h"
+#include "studio/seats/seats_panel.h"
 #include "studio/window/shell.h"
 
 namespace livery {
@@ -215,6 +217,11 @@ MapState state_of_shell(const Shell& shell) {
     state["nudge"] = quoted(shell.nudge_open ? in_words(nudged_so_far(shell)) : "closed");
     state["nudge_drawn"] = text(studio.panels.nudge->drawn &&
                                 *studio.panels.nudge->drawn == studio.panels.nudge->view);
+    state["seats"] = text_of(SetSeats{session.document().seats});
+    state["eye_of"] = text_of(UseEye{session.document().eye_choice});
+    state["selected_seat"] = std::to_string(studio.panels.seats->selected);
+    state["seat_errors"] = text(seat_errors_found(studio));
+    state["seat_map"] = text(seat_map_size(studio).x > 0 && shows_seat_map(studio));
     state["capture_paused"] = studio.panels.capture->view.paused ? "true" : "false";
     state["capture_says"] = quoted(words_of(*studio.panels.capture));
     Json preflight = Json::object();

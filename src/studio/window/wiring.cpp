@@ -20,6 +20,7 @@
 #include "studio/presenting/presenting.h"
 #include "studio/presenting/vote_mode.h"
 #include "studio/results.h"
+#include "studio/seats/seat_maps.h"
 #include "studio/window/refinement.h"
 #include "studio/window/shell.h"
 
@@ -35,17 +36,6 @@ constexpr const char* kCalibratedKey = "calibrated-once";
 
 std::string text_of_trial(const Studio& studio) {
     return studio.tried ? text_of(*studio.tried) : std::string();
-}
-
-/// Keeps maps that were read; a scene that names one of them shares it.
-Scene scene_for(Shell& shell, const Document& document, int look) {
-    const auto& reference = find_look(document, look)->look.environment;
-    auto& kept = shell.environments[{reference.file, reference.rotation_rad, reference.scale}];
-    Scene scene = scene_of(document, look, shell.studio.product, kept);
-    kept = scene.environment;
-    constexpr std::size_t most_kept = 16;
-    if (shell.environments.size() > most_kept) shell.environments.clear();
-    return scene;
 }
 
 int look_on_show(const Studio& studio) {
@@ -265,7 +255,7 @@ void ask_for_preview(Shell& shell) {
     if (!unread_files(description).empty()) return;
     shell.asked_preview = key;
     description.number = ++shell.preview_number;
-    description.view = stage_view(shell, document.eye_mm);
+    description.view = stage_view(shell, eye_in_use_mm(document));
     if (studio.setup) description.projector = studio.setup->view;
     description.highlighted_part = key.highlighted_part;
     description.wipe_at = key.wipe_at;
@@ -275,7 +265,7 @@ void ask_for_preview(Shell& shell) {
 void ask_for_photograph(Shell& shell) {
     const Studio& studio = shell.studio;
     if (studio.view != StageView::photograph || !studio.frame || !studio.setup) return;
-    const glm::dvec3 eye_mm = shown_document(studio).eye_mm;
+    const glm::dvec3 eye_mm = eye_in_use_mm(shown_document(studio));
     if (shell.nudge_open) {
         NudgePanelState& nudge = *studio.panels.nudge;
         if (!nudge.lines || nudge.photographed == nudge.lines) return;
@@ -439,6 +429,7 @@ Contexts start_threads(Shell& shell, const Window& window, ShadingDevice shading
 
 void stop_threads(Shell& shell) {
     Studio& studio = shell.studio;
+    stop_seat_errors(studio);
     studio.background.reset();
     studio.panels.lighting->reference.thread.reset();
     studio.capture.reset();
@@ -479,6 +470,16 @@ void take_results(Shell& shell) {
     }
 }
 
+Scene scene_for(Shell& shell, const Document& document, int look) {
+    const auto& reference = find_look(document, look)->look.environment;
+    auto& kept = shell.environments[{reference.file, reference.rotation_rad, reference.scale}];
+    Scene scene = scene_of(document, look, shell.studio.product, kept);
+    kept = scene.environment;
+    constexpr std::size_t most_kept = 16;
+    if (shell.environments.size() > most_kept) shell.environments.clear();
+    return scene;
+}
+
 std::optional<std::uint64_t> ask_for_look(Shell& shell, int look) {
     Studio& studio = shell.studio;
     const Document& document = studio.session.document();
@@ -496,6 +497,7 @@ std::optional<std::uint64_t> ask_for_look(Shell& shell, int look) {
 
 void ask_for_changes(Shell& shell) {
     ask_for_setup(shell);
+    step_seat_errors(shell);
     // Frozen looks alone are to be seen.
     if (is_presenting(shell.studio)) return;
     // The program was started with a mesh: what stands behind its page may never be wanted.

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "gl/window.h"
+#include "scene/scene.h"
+#include "session/document.h"
 
 namespace livery {
 
@@ -34,6 +36,8 @@ void take_results(Shell& shell);
 /// number. Nothing while files that its paints need are being read: ask again. Throws what makes it
 /// impossible to draw.
 std::optional<std::uint64_t> ask_for_look(Shell& shell, int look);
+/// What to draw for a look of the document; shares environments that were read. Throws FileError.
+Scene scene_for(Shell& shell, const Document& document, int look);
 /// At its end: asks for what the changes call for. True when something was asked for.
 void ask_for_changes(Shell& shell);
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "cli/command.h"
+#include "cli/session/seat_report.h"
 #include "core/error.h"
 #include "jobs/export_product.h"
 #include "jobs/render.h"
@@ -123,7 +124,8 @@ void step(Session& session, int steps, bool back) {
 struct SessionArguments {
     std::string file, product = "car", unit, out, look_file, stage = "radiance";
     std::vector<std::string> commands;
-    int steps = 1, look = 0;
+    std::string eye, looks, maps;  ///< of seats
+    int steps = 1, look = 0, arc = 0;
 };
 using SharedArguments = std::shared_ptr<SessionArguments>;
 
@@ -293,6 +295,63 @@ std::shared_ptr<const ProjectorSetup> setup_of(const Document& document, const P
                                                      document.gamut_mapping);
 }
 
+/// Places seats and says whose eye counts, where that is asked for.
+std::vector<SessionCommand> seat_changes(const SessionArguments& arguments,
+                                         const Document& document) {
+    std::vector<SessionCommand> changes;
+    if (arguments.arc != 0) {
+        if (arguments.arc < 1 || arguments.arc > static_cast<int>(kMostSeats)) {
+            throw std::invalid_argument(
+                fmt::format("--arc: found {}, expected 1 to {}", arguments.arc, kMostSeats));
+        }
+        const auto product = find_product(document.product, document.product_unit);
+        changes.emplace_back(SetSeats{
+            seats_in_an_arc(bounds_of(product->mesh), eye_in_use_mm(document), arguments.arc)});
+    }
+    if (!arguments.eye.empty()) {
+        changes.emplace_back(UseEye{parse_eye_choice("--eye", arguments.eye)});
+    }
+    return changes;
+}
+
+Command seats_command() {
+    const auto arguments = std::make_shared<SessionArguments>();
+    Command command = session_command(
+        "seats",
+        "where people sit, whose eye looks are drawn for, and what the others miss",
+        "show.livery --arc 5 --eye mean --look all",
+        arguments,
+        {{"--arc", "N", "place N seats anew, in an arc before the eye", &arguments->arc, false, {}},
+         {"--eye",
+          "WHOSE",
+          "draw looks for: hand, mean, or a seat's number",
+          &arguments->eye,
+          false,
+          {}},
+         {"--look",
+          "N|all",
+          "tell what each seat misses of it (CIEDE2000)",
+          &arguments->looks,
+          false,
+          {}},
+         {"--maps", "DIR", "with --look: a picture of each", &arguments->maps, false, {}}});
+    command.run = [arguments](const CommonOptions&, const Progress& progress) {
+        if (!arguments->maps.empty() && arguments->looks.empty()) {
+            throw std::invalid_argument("--maps: found no --look, expected the looks to compare");
+        }
+        const auto changes = seat_changes(*arguments, read_summary(arguments->file).document);
+        if (!changes.empty()) {
+            changed(arguments->file, [&](Session& session) { execute_all(session, changes); });
+        }
+        const Document document = read_summary(arguments->file).document;
+        if (arguments->looks.empty()) return seats_told(document);
+        const auto product = find_product(document.product, document.product_unit);
+        const auto setup = setup_of(document, *product);
+        return seats_told(document, arguments->looks, product, *setup, arguments->maps, progress);
+    };
+    return command;
+}
+
 Command picture_command() {
     const auto arguments = std::make_shared<SessionArguments>();
     Command command = session_command(
@@ -307,13 +366,22 @@ Command picture_command() {
           &arguments->stage,
           false,
           {"radiance", "projector"}},
+         {"--seat",
+          "WHOSE",
+          "draw for another eye: hand, mean, or a seat's number (default the session's)",
+          &arguments->eye,
+          false,
+          {}},
          {"--out", "FILE", "the picture, .png or .exr", &arguments->out, true, {}}});
     command.run = [arguments](const CommonOptions& common, const Progress& progress) {
         RenderRequest request;
         request.stage =
             arguments->stage == "projector" ? FrameStage::projector : FrameStage::radiance;
         check_frame_file(arguments->out, request.stage);
-        const Document document = read_summary(arguments->file).document;
+        Document document = read_summary(arguments->file).document;
+        if (!arguments->eye.empty()) {
+            document = applied(document, UseEye{parse_eye_choice("--seat", arguments->eye)});
+        }
         if (const auto problems = drawing_problems(document); !problems.empty()) {
             throw Refused(problems.front(), "put the file back, or choose another paint");
         }
@@ -353,7 +421,8 @@ std::vector<Command> session_commands() {
             export_command(),
             export_product_command(),
             import_command(),
-            picture_command()};
+            picture_command(),
+            seats_command()};
 }
 
 }  // namespace livery
