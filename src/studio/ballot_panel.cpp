@@ -83,6 +83,7 @@ void go_to(BallotPanelState& state, Page page) {
         state.evaluator.clear();
         state.best.reset();
         state.second.reset();
+        state.least.reset();
     }
 }
 
@@ -162,7 +163,9 @@ void draw_start(Studio& studio) {
         const std::string calibration = studio.setup && studio.setup->calibration
                                             ? studio.setup->calibration->id
                                             : std::string();
-        if (attempted(state, [&] { studio.ballots->open_round(names, calibration); })) {
+        RoundSetup setup{names, calibration};
+        setup.asks_least = presenting_settings(studio).asks_least && names.size() > 2;
+        if (attempted(state, [&] { studio.ballots->open_round(setup); })) {
             read_rounds(studio);
             go_to(state, Page::vote);
         }
@@ -177,8 +180,9 @@ void draw_start(Studio& studio) {
 
 // --- voting ---
 
-/// Keys A, B, ... choose the best, then the second best; Backspace takes back.
-void follow_letter_keys(BallotPanelState& state, std::size_t designs) {
+/// Keys A, B, ... choose the best, then the second best and, where it is asked for, the least
+/// liked; Backspace takes back.
+void follow_letter_keys(BallotPanelState& state, std::size_t designs, bool asks_least) {
     if (ImGui::GetIO().WantTextInput) return;
     for (const ImWchar typed : ImGui::GetIO().InputQueueCharacters) {
         const int lower = typed < 128 ? std::tolower(static_cast<int>(typed)) : 0;
@@ -187,15 +191,19 @@ void follow_letter_keys(BallotPanelState& state, std::size_t designs) {
         if (static_cast<std::size_t>(design) >= designs) continue;
         if (!state.best) {
             state.best = design;
-        } else if (state.best != design) {
+        } else if (state.best != design && (!asks_least || !state.second)) {
             state.second = design;
+        } else if (asks_least && state.best != design && state.second != design) {
+            state.least = design;
         }
     }
-    if (was_pressed(ImGuiKey_Backspace)) (state.second ? state.second : state.best).reset();
+    if (was_pressed(ImGuiKey_Backspace)) {
+        (state.least ? state.least : state.second ? state.second : state.best).reset();
+    }
 }
 
-void draw_choice(std::optional<int>& choice,
-                 std::optional<int>& other,
+void draw_choice(BallotPanelState& state,
+                 std::optional<int>& choice,
                  std::size_t design,
                  const char* label,
                  const char* name,
@@ -207,9 +215,11 @@ void draw_choice(std::optional<int>& choice,
         if (on) {
             choice.reset();
         } else {
+            // One look cannot be two of them.
+            for (std::optional<int>* other : {&state.best, &state.second, &state.least}) {
+                if (*other == index) other->reset();
+            }
             choice = index;
-            // One look cannot be both.
-            if (other == index) other.reset();
         }
     }
     name_last_item(fmt::format("ballot:{}:{}", name, design));
@@ -277,11 +287,16 @@ void draw_designs(Studio& studio, const Round& round) {
         // Who votes on what was presented knows codes.
         draw_title(
             is_presenting(studio) ? fmt::format("{}", round.codes[i]) : round.designs[i], i, width);
-        const float half = std::floor(0.5f * (width - gap));
-        const bool room = half >= button_width("Second best");
-        draw_choice(state.best, state.second, i, "Best", "best", half);
+        const float places = round.asks_least ? 3.0f : 2.0f;
+        const float each = std::floor((width - (places - 1.0f) * gap) / places);
+        const bool room = each >= button_width("Second best");
+        draw_choice(state, state.best, i, "Best", "best", each);
         ImGui::SameLine(0.0f, gap);
-        draw_choice(state.second, state.best, i, room ? "Second best" : "Second", "second", half);
+        draw_choice(state, state.second, i, room ? "Second best" : "Second", "second", each);
+        if (round.asks_least) {
+            ImGui::SameLine(0.0f, gap);
+            draw_choice(state, state.least, i, "Least", "least", each);
+        }
         ImGui::EndGroup();
         ImGui::Dummy({0.0f, em(0.1f)});
         ImGui::PopID();
@@ -323,7 +338,7 @@ void draw_closing(Studio& studio, const Round& round) {
 void confirm(Studio& studio, const Round& round) {
     BallotPanelState& state = *studio.panels.ballot;
     const int id = round.id;
-    const Ballot ballot{state.evaluator, *state.best, *state.second};
+    const Ballot ballot{state.evaluator, *state.best, *state.second, state.least};
     if (!attempted(state, [&] { studio.ballots->vote(id, ballot); })) return;
     read_rounds(studio);
     state.thanked = state.evaluator;
@@ -343,11 +358,12 @@ void draw_vote(Studio& studio, const Round& round) {
     tooltip("One ballot a person: a second one under the same name replaces the first.");
     ImGui::Spacing();
     draw_designs(studio, round);
-    follow_letter_keys(state, round.designs.size());
+    follow_letter_keys(state, round.designs.size(), round.asks_least);
     dim_text(
-        fmt::format("Keys A to {} choose the best, then the second best; Backspace takes "
+        fmt::format("Keys A to {} choose the best, then the second best{}; Backspace takes "
                     "back.{}",
                     design_letter(std::min(round.designs.size(), kLetters) - 1),
+                    round.asks_least ? ", then the least liked, which may be left out" : "",
                     is_presenting(studio) ? ""
                                           : " 1, 2, 3 … show looks on the mock-up; black is "
                                             "Ctrl+B, freeze Ctrl+F."));

@@ -108,14 +108,19 @@ TEST_F(Presenting, ShowsFrozenFramesInTheStoredOrderAlsoAfterAKillUntilTheRoundI
     EXPECT_TRUE(wait_until([&] {
         return program->state("phones").get<std::string>().starts_with("http://127.0.0.1:");
     }));
+    program->click("present:least");
     program->click("ballot:present");
     program->wait_for_state("vote", "adapting");
+    EXPECT_NE(read_text_file(home / "desktop.json").find(R"("presenting-least": "yes")"),
+              std::string::npos)
+        << "the tick is not kept";
     program->press_key("space");
     program->wait_for_state("vote_paused", true);
     program->wait_for_state("vote_loaded", true);
     load_frames();
     const auto& order = presented.plan.sittings.at(0);
     ASSERT_EQ(order.size(), 3u);
+    EXPECT_TRUE(presented.round.asks_least);
 
     // --- white, for the eyes ---
     EXPECT_TRUE(projector_shows_frame(kWhiteFrame));
@@ -185,6 +190,7 @@ TEST_F(Presenting, ShowsFrozenFramesInTheStoredOrderAlsoAfterAKillUntilTheRoundI
     desktop->type("Bo");
     program->click("ballot:best:1");
     program->click("ballot:second:0");
+    program->click("ballot:least:2");
     program->click("ballot:confirm");
     program->click("ballot:overview");
     program->item("vote:seat:1");
@@ -203,6 +209,7 @@ TEST_F(Presenting, ShowsFrozenFramesInTheStoredOrderAlsoAfterAKillUntilTheRoundI
 
     const BallotStore store(home / "ballots.sqlite");
     EXPECT_EQ(store.tally(presented.round.id).best, (std::vector<int>{0, 1, 0}));
+    EXPECT_EQ(store.tally(presented.round.id).least, (std::vector<int>{0, 0, 1}));
     std::vector<int> seen;
     for (const PresentationStep& step : store.steps_of(presented.round.id)) {
         const int design = design_of(presented.plan, step.state);

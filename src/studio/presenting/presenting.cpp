@@ -78,6 +78,7 @@ PresentingSettings& presenting_settings(Studio& studio) {
     restore(kept, "presenting-wave-size", settings.wave_size, 1, 1000);
     restore(kept, "phones-port", settings.port, 0, 65535);
     settings.waves = setting(kept, "presenting-waves") == "yes";
+    settings.asks_least = setting(kept, "presenting-least") == "yes";
     int seed = -1;
     restore(kept, "presenting-seed", seed, 0, 1 << 30);
     if (seed >= 0) settings.seed = seed;
@@ -99,6 +100,7 @@ void keep_presenting_settings(Studio& studio) {
     keep("presenting-evaluators", fmt::format("{}", settings.evaluators));
     keep("presenting-wave-size", fmt::format("{}", settings.wave_size));
     keep("presenting-waves", settings.waves ? "yes" : "no");
+    keep("presenting-least", settings.asks_least ? "yes" : "no");
     keep("phones-network", settings.network);
 }
 

@@ -24,6 +24,7 @@ struct PresentingSettings {
     int passes = 0;           ///< rows of the Williams square; 0: all
     int evaluators = 10;      ///< in waves
     int wave_size = 3;        ///< the most at once
+    bool asks_least = false;  ///< each evaluator may name the least liked look too
     std::optional<int> seed;  ///< none: drawn anew for each round
     std::string network = "lo";
     int port = kBallotPort;  ///< 0: any that is free

@@ -77,6 +77,18 @@ void count_row(Studio& studio,
     tooltip(help);
 }
 
+void least_row(Studio& studio, std::size_t looks) {
+    PresentingSettings& settings = presenting_settings(studio);
+    if (ImGui::Checkbox("Ask for the least liked", &settings.asks_least)) {
+        keep_presenting_settings(studio);
+    }
+    name_last_item("present:least");
+    tooltip(
+        "Each evaluator may name the look that they like least, too. Nobody has to; the "
+        "statistics use it where everybody does.");
+    if (settings.asks_least && looks == 2) dim_text("Of two looks the least liked is not asked.");
+}
+
 /// How the looks would be shown, in words; empty where they could not.
 std::string plan_in_words(const PresentingSettings& settings, int designs) {
     if (designs < 2 || designs > kMostDesigns) return "";
@@ -212,6 +224,7 @@ void draw_presentation_setup(Studio& studio, const std::vector<int>& looks) {
                   "How many orders everybody sees, one after the other.");
     }
     times_row(studio, settings.times);
+    least_row(studio, looks.size());
     const std::string words = plan_in_words(settings, static_cast<int>(looks.size()));
     if (!words.empty()) dim_text(words);
     if (looks.size() > static_cast<std::size_t>(kMostDesigns)) {

@@ -62,6 +62,7 @@ void begin_freezing(Shell& shell) {
         if (look) setup.designs.push_back(look->look.name);
     }
     setup.presenting = true;
+    setup.asks_least = settings.asks_least && setup.designs.size() > 2;
     setup.seed = settings.seed.value_or(drawn_seed());
     setup.calibration_id = studio.setup->calibration ? studio.setup->calibration->id : "";
     PresentationPlan& plan = setup.plan.emplace();

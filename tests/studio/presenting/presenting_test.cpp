@@ -173,12 +173,15 @@ TEST_F(PresentingStudio, ItsSettingsAreKept) {
     settings.times = {30.0, 8.5, 4.0};
     settings.waves = true;
     settings.wave_size = 2;
+    EXPECT_FALSE(settings.asks_least) << "unless it is ticked";
+    settings.asks_least = true;
     keep_presenting_settings(studio());
     PresentingState fresh;
     presenting(studio()) = std::move(fresh);
     studio().settings = read_user_settings();
     EXPECT_EQ(presenting_settings(studio()).times, (PresentationTimes{30.0, 8.5, 4.0}));
     EXPECT_TRUE(presenting_settings(studio()).waves);
+    EXPECT_TRUE(presenting_settings(studio()).asks_least);
     EXPECT_EQ(presenting_settings(studio()).wave_size, 2);
     EXPECT_EQ(sittings_of(presenting_settings(studio()), 4, 3).size(), 5u);
 }
