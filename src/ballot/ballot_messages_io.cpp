@@ -50,6 +50,10 @@ std::string parse_join(const std::string& body) {
 
 std::string text_of(const PageState& state) {
     Json json = {{"state", state.state}, {"seat", state.seat}, {"round", state.round}};
+    if (state.wave > 0) {
+        json["wave"] = state.wave;
+        json["waves"] = state.waves;
+    }
     if (!state.codes.empty()) {
         json["codes"] = state.codes;
         json["least"] = state.asks_least;

@@ -25,9 +25,10 @@ struct PageState {
     /// "join": no seat yet; "shut": no seat, and nobody is let in; "waiting": for a round;
     /// "presenting", "voting", "locked".
     std::string state = "waiting";
-    int seat = 0;            ///< 0: none
-    int round = 0;           ///< 0: none
-    std::vector<int> codes;  ///< while voting, in rising order
+    int seat = 0;             ///< 0: none
+    int round = 0;            ///< 0: none
+    int wave = 0, waves = 0;  ///< the seat's, from 1, where people look in groups; 0: they do not
+    std::vector<int> codes;   ///< while voting, in rising order
     bool asks_least = false;
     std::optional<VoteMessage> ballot;  ///< the seat's own
     std::string receipt;

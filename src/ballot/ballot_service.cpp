@@ -207,8 +207,17 @@ PageState BallotService::state_for(const BallotRequest& request) {
     }
     if (!round) return state;
     state.round = round->id;
-    state.state = round->closed ? "locked" : round->voting ? "voting" : "presenting";
-    if (!round->voting) return state;
+    const Turn turn = store_.turn_of(round->id, state.seat);
+    if (open && turn.waves > 1) {
+        state.wave = turn.wave + 1;
+        state.waves = turn.waves;
+    }
+    const bool votes = round->voting && turn.votes;
+    state.state = round->closed ? "locked"
+                  : votes       ? "voting"
+                  : turn.sits   ? "presenting"
+                                : "waiting";
+    if (!votes) return state;
     if (open) {
         // Their order says nothing: codes are random.
         state.codes = round->codes;

@@ -37,7 +37,8 @@ struct RoundSetup {
     bool asks_least = false;
     bool presenting = false;  ///< votes count from start_voting() on; else at once
     /// How it is presented: by this program, which records each step (record_step()). Of all
-    /// designs; with `presenting`.
+    /// designs; with `presenting`. One of several sittings without seats has the phones that are in
+    /// dealt to them when the round is opened (deal_seats()).
     std::optional<PresentationPlan> plan = {};
 };
 
@@ -59,6 +60,14 @@ struct Round {
 struct Seat {
     int number = 0;
     std::string name;  ///< empty: a phone, of which nothing is known
+};
+
+/// When the people of a seat look and vote; who sits in no wave may do so as soon as any may.
+struct Turn {
+    int wave = 0, waves = 1;
+    bool sits = true;   ///< before the mock-up, or has done so
+    bool votes = true;  ///< as soon as the round takes votes: its looks have been shown to the wave
+    bool operator==(const Turn&) const = default;
 };
 
 /// How phones come in: by the token in the QR code, or by six characters typed in.
@@ -84,7 +93,7 @@ const std::vector<std::string>& ballots_schema();
 class BallotStore {
   public:
     /// Opens the file or makes it; reads the whole log and checks it. A file of an older format
-    /// becomes one of format 3, in one transaction.
+    /// becomes one of format 4, in one transaction.
     explicit BallotStore(const std::filesystem::path& file);
 
     /// A new audience: phones join anew. Refused while a round is open.
@@ -113,7 +122,8 @@ class BallotStore {
     CastBallot vote(int round, const Ballot& ballot);
     /// All of them or, where one throws, none.
     std::vector<CastBallot> vote(int round, const std::vector<Ballot>& ballots);
-    /// The same for a seat. One that is as the seat's ballot is already changes nothing.
+    /// The same for a seat, which is also refused while its turn is to come. One that is as the
+    /// seat's ballot is already changes nothing.
     CastBallot vote(int round, int seat, const Choices& choices);
     /// For good. Refused when it is closed already.
     void close_round(int round);
@@ -124,6 +134,7 @@ class BallotStore {
     void record_step(int round, const PresentationState& state, PresentationEvent event);
     /// Nothing for a round that was opened without one.
     std::optional<PresentationPlan> plan_of(int round) const;
+    Turn turn_of(int round, int seat) const;
     /// All steps of a round with their times: the order in which its looks were shown.
     std::vector<PresentationStep> steps_of(int round) const;
     /// The newest round with a plan whose presentation has not ended, and where it stands.

@@ -26,8 +26,9 @@ void draw_tally(const Tally& tally, const std::vector<int>& codes) {
     const std::size_t designs = std::min(tally.designs.size(), most);
     const bool scrolls = designs > shared;
     const float row_height = ImGui::GetTextLineHeight() + 2.0f * ImGui::GetStyle().CellPadding.y;
-    const float height =
-        scrolls ? (tally.least.empty() ? 3.0f : 4.0f) * row_height + ImGui::GetStyle().ScrollbarSize + em(0.4f) : 0.0f;
+    const float height = scrolls ? (tally.least.empty() ? 3.0f : 4.0f) * row_height +
+                                       ImGui::GetStyle().ScrollbarSize + em(0.4f)
+                                 : 0.0f;
     const ImGuiTableFlags flags =
         ImGuiTableFlags_Borders | ImGuiTableFlags_RowBg |
         (scrolls ? ImGuiTableFlags_ScrollX | ImGuiTableFlags_SizingFixedFit

@@ -257,12 +257,53 @@ def one_phone(browser, server):
         clean(phone, origin)
 
 
-def twelve_phones(browser, server):
+def two_groups(browser, server):
+    """Who sits in the second wave is told so, and votes after the first has."""
     server.operator("session")
+    invitation = new_invitation(server)
+    tabs = [browser.phone() for _ in range(2)]
+    for tab in tabs:
+        tab.go(f"{server.place['url']}join/{invitation['token']}")
+        tab.wait_for_view("waiting")
+    round_ = server.operator("open", "a,b,c,d", "waves=2")
+    server.operator("sitting", round_, 0, "presenting")
+    tabs[0].wait_for_view("presenting")
+    tabs[1].wait_for_view("later")
+    look_at(tabs[1], "later")
+    check("second group" in tabs[1].js("document.querySelector('#group').textContent"), "no word of the group")
+    for sitting in range(2):
+        server.operator("sitting", round_, sitting, "voting")
+        tabs[sitting].wait_for_view("voting")
+        if sitting == 0:
+            time.sleep(1.5)
+            check(tabs[1].view() == "later", "the second group votes with the first")
+        tabs[sitting].taps = 0
+        tabs[sitting].tap("#best label:nth-child(2) input")
+        tabs[sitting].tap("#second label:nth-child(1) input")
+        tabs[sitting].tap("#send")
+        tabs[sitting].wait_for_view("received")
+        check(tabs[sitting].taps == 3, "not three taps")
+        if sitting == 0:
+            server.operator("sitting", round_, 1, "presenting")
+            tabs[1].wait_for_view("presenting")
+            check(tabs[0].view() == "received", "the first group cannot change its ballot")
+    server.operator("lock", round_)
+    for tab in tabs:
+        tab.wait_for_view("locked")
+        clean(tab, server.place["url"])
+
+
+def new_invitation(server):
     deadline = time.monotonic() + 20
     while not (invitation := server.operator("invitation")):  # made within a quarter of a second
         check(time.monotonic() < deadline, "no invitation for the new audience")
         time.sleep(0.1)
+    return invitation
+
+
+def twelve_phones(browser, server):
+    server.operator("session")
+    invitation = new_invitation(server)
     tabs = [browser.phone() for _ in range(SEATS)]
     for tab in tabs:
         tab.go(f"{server.place['url']}join/{invitation['token']}")
@@ -299,6 +340,7 @@ with serving() as server:
     try:
         begin = time.monotonic()
         one_phone(browser, server)
+        two_groups(browser, server)
         twelve_phones(browser, server)
         print(f"page: contrast at least {Figures.contrast:.1f}, targets at least {Figures.target:.0f} px, three taps, "
               f"twelve phones; {time.monotonic() - begin:.1f} s")

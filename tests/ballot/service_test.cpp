@@ -105,6 +105,44 @@ TEST_F(BallotServiceTest, GoesFromTheQrCodeToALockedVote) {
     EXPECT_EQ(operators_.tally(round).best, (std::vector<int>{0, 0, 1, 0}));
 }
 
+TEST_F(BallotServiceTest, ALaterGroupWaitsForItsTurn) {
+    const std::string first = join(), second = join();
+    RoundSetup setup;
+    setup.designs = {"a", "b", "c", "d"};
+    setup.codes = {412, 907, 133, 560};
+    setup.presenting = true;
+    setup.plan = PresentationPlan{{{0, 1, 2, 3}, {3, 2, 1, 0}}, {1.0, 1.0, 1.0}, "", "f", {}};
+    const int round = operators_.open_round(setup);
+    using Phase = PresentationPhase;
+    const auto show = [&](Phase phase, int sitting) {
+        operators_.record_step(round, {phase, sitting}, PresentationEvent::next);
+    };
+    show(Phase::presenting, 0);
+    EXPECT_EQ(state(first)["state"], "presenting");
+    EXPECT_EQ(state(second),
+              (Json{{"state", "waiting"}, {"seat", 2}, {"round", 1}, {"wave", 2}, {"waves", 2}}));
+    show(Phase::voting, 0);
+    const std::string body = R"({"round": 1, "best": 907, "second": 560})";
+    EXPECT_EQ(state(first)["state"], "voting");
+    EXPECT_EQ(vote(first, body).status, 200);
+    EXPECT_EQ(state(second)["state"], "waiting");
+    EXPECT_FALSE(state(second).contains("codes"));
+    EXPECT_EQ(vote(second, body).status, 409);
+    EXPECT_EQ(vote(second, R"({"round": 1, "best": 907, "second": 111})").status, 400);
+    show(Phase::presenting, 1);
+    EXPECT_EQ(state(second)["state"], "presenting");
+    EXPECT_EQ(vote(second, body).status, 409);
+    EXPECT_EQ(vote(first, R"({"round": 1, "best": 133, "second": 560})").status, 200)
+        << "an earlier group may change its ballots";
+    show(Phase::voting, 1);
+    EXPECT_EQ(state(second)["state"], "voting");
+    EXPECT_EQ(vote(second, body).status, 200);
+    operators_.close_round(round);
+    EXPECT_EQ(state(second)["state"], "locked");
+    EXPECT_FALSE(state(second).contains("wave"));
+    EXPECT_EQ(operators_.ballots(round).size(), 2u);
+}
+
 TEST_F(BallotServiceTest, ASeatIsKeptByItsCookieAlone) {
     const std::string secret = join();
     // The same phone scans once more.
@@ -239,7 +277,7 @@ TEST_F(BallotServiceTest, SaysWhenAVoteCouldNotBeKept) {
     const std::string secret = join();
     open();
     {
-        Database other(file_, Database::Mode::existing, 0x4c765642, 3, ballots_schema());
+        Database other(file_, Database::Mode::existing, 0x4c765642, 4, ballots_schema());
         other.run(
             "CREATE TRIGGER ballot_lost BEFORE INSERT ON ballots "
             "BEGIN SELECT RAISE(ABORT, 'disk on fire'); END");

@@ -112,7 +112,19 @@ function showChoices() {
 
 // --- what is on screen ---
 
+const ORDINALS = ["first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth"];
+
+function showGroup(told) {
+    if (!told.wave) return;
+    const ordinal = ORDINALS[told.wave - 1];
+    one("#group").textContent = ordinal ? `You are in the ${ordinal} group` : `You are in group ${told.wave}`;
+    one("#turn").textContent = told.wave === 1 ? `Your turn comes first of ${told.waves} groups.`
+        : told.wave === 2 ? `Your turn comes when the first group has seen the looks. There are ${told.waves} groups.`
+        : `Your turn comes when the groups before you have seen the looks. There are ${told.waves} groups.`;
+}
+
 function viewOf(told) {
+    if (told.state === "waiting" && told.wave) return "later";
     if (told.state === "voting" && told.ballot && !editing && !sending) return "received";
     return told.state;
 }
@@ -153,6 +165,7 @@ function show(told) {
         }
         one("#seat").textContent = told.seat ? "Seat " + told.seat : "";
         showMine(told.ballot, told.receipt);
+        showGroup(told);
     }
     if (told.state === "voting") showChoices();
     showView(viewOf(told));

@@ -19,7 +19,11 @@ std::vector<LookShowing> showings_of(const PresentationPlan& plan,
             shown = -1;  // grey, white: the next look is shown anew
             continue;
         }
-        if (step.state.sitting != sitting) showings.push_back({step.at, {}, {}});
+        if (step.state.sitting != sitting) {
+            const auto at = static_cast<std::size_t>(step.state.sitting);
+            showings.push_back(
+                {step.at, at < plan.seats.size() ? plan.seats[at] : std::vector<int>(), {}});
+        }
         sitting = step.state.sitting;
         const bool again = step.event == PresentationEvent::repeat;
         const int place = step.state.place;

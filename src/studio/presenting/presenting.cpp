@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/error.h"
 #include "core/log.h"
@@ -59,10 +60,33 @@ std::string session_name(const Studio& studio) {
 
 std::vector<std::vector<int>> sittings_of(const PresentingSettings& settings,
                                           int designs,
-                                          int seed) {
+                                          int seed,
+                                          int phones) {
     const auto number = static_cast<std::uint64_t>(seed);
-    return settings.waves ? wave_sittings(designs, settings.evaluators, settings.wave_size, number)
+    const int evaluators = phones > 0 ? phones : settings.evaluators;
+    return settings.waves ? wave_sittings(designs, evaluators, settings.wave_size, number)
                           : pass_sitting(designs, settings.passes, number);
+}
+
+std::vector<int> phones_in(const std::vector<Seat>& seats) {
+    std::vector<int> phones;
+    for (const Seat& seat : seats) {
+        if (seat.name.empty()) phones.push_back(seat.number);
+    }
+    return phones;
+}
+
+std::vector<std::string> waves_in_words(const std::vector<std::vector<int>>& seats) {
+    std::vector<std::string> lines;
+    for (std::size_t wave = 0; seats.size() > 1 && wave < seats.size(); ++wave) {
+        const auto& numbers = seats[wave];
+        lines.push_back(numbers.empty() ? fmt::format("Wave {}: no phones", wave + 1)
+                                        : fmt::format("Wave {}: {} {}",
+                                                      wave + 1,
+                                                      numbers.size() == 1 ? "seat" : "seats",
+                                                      fmt::join(numbers, ", ")));
+    }
+    return lines;
 }
 
 PresentingSettings& presenting_settings(Studio& studio) {

@@ -22,7 +22,7 @@ struct PresentingSettings {
     PresentationTimes times;
     bool waves = false;       ///< else successive passes
     int passes = 0;           ///< rows of the Williams square; 0: all
-    int evaluators = 10;      ///< in waves
+    int evaluators = 10;      ///< in waves, where no phone has joined
     int wave_size = 3;        ///< the most at once
     bool asks_least = false;  ///< each evaluator may name the least liked look too
     std::optional<int> seed;  ///< none: drawn anew for each round
@@ -31,10 +31,16 @@ struct PresentingSettings {
     bool operator==(const PresentingSettings&) const = default;
 };
 
-/// The order in which the looks of a round would be shown.
+/// The order in which the looks of a round would be shown. In waves it is the `phones` that have
+/// joined that sit down or, where none has, as many evaluators as the settings say.
 std::vector<std::vector<int>> sittings_of(const PresentingSettings& settings,
                                           int designs,
-                                          int seed);
+                                          int seed,
+                                          int phones = 0);
+/// The numbers of the seats that are phones.
+std::vector<int> phones_in(const std::vector<Seat>& seats);
+/// "Wave 1: seats 1, 2, 3", a line a wave; nothing where there is one alone, or nobody is dealt.
+std::vector<std::string> waves_in_words(const std::vector<std::vector<int>>& seats);
 
 /// Looks that are being rendered for a round, one after the other.
 struct Freezing {

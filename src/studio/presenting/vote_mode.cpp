@@ -43,6 +43,14 @@ void show_what_is_due(Shell& shell);
 
 // --- freezing ---
 
+/// For those who are in now.
+std::vector<std::vector<int>> sittings_now(Studio& studio, const RoundSetup& setup) {
+    return sittings_of(presenting_settings(studio),
+                       static_cast<int>(setup.designs.size()),
+                       setup.seed,
+                       static_cast<int>(phones_in(presenting(studio).seats).size()));
+}
+
 void begin_freezing(Shell& shell) {
     Studio& studio = shell.studio;
     PresentingState& state = presenting(studio);
@@ -66,7 +74,8 @@ void begin_freezing(Shell& shell) {
     setup.seed = settings.seed.value_or(drawn_seed());
     setup.calibration_id = studio.setup->calibration ? studio.setup->calibration->id : "";
     PresentationPlan& plan = setup.plan.emplace();
-    plan.sittings = sittings_of(settings, static_cast<int>(setup.designs.size()), setup.seed);
+    read_seats(studio, true);
+    plan.sittings = sittings_now(studio, setup);
     plan.times = settings.times;
     plan.session = session_name(studio);
     check_plan(plan, static_cast<int>(setup.designs.size()));
@@ -163,6 +172,9 @@ void write_and_begin(Shell& shell) {
     Studio& studio = shell.studio;
     const auto freezing = std::make_shared<Freezing>(*presenting(studio).freezing);
     presenting(studio).freezing->writing = true;
+    // Who joined while the looks were rendered sits down too.
+    read_seats(studio, true);
+    freezing->setup.plan->sittings = sittings_now(studio, freezing->setup);
     freezing->setup.plan->folder = folder_name(freezing->setup);
     const auto folder = studio.ballots->file().parent_path() / freezing->setup.plan->folder;
     studio.background->run(
@@ -182,7 +194,11 @@ void write_and_begin(Shell& shell) {
                     there.ballots->record_step(id, state, Event::present);
                     presenting(there).freezing.reset();
                     keep_frozen_looks(there, *freezing, id);
-                    take_round(there, there.ballots->open_round().value(), *setup.plan, state);
+                    // With the seats that were dealt
+                    take_round(there,
+                               there.ballots->open_round().value(),
+                               there.ballots->plan_of(id).value(),
+                               state);
                     // Dark until its frames are there; the newest look is nobody's business.
                     show_what_is_due(shell);
                     set_frozen(shell, false);

@@ -165,6 +165,23 @@ TEST_F(PresentingStudio, SeatsTellWhoHasVotedAndALockFromElsewhereIsSeen) {
     EXPECT_FALSE(is_presenting(studio()));
 }
 
+TEST_F(PresentingStudio, WavesFollowFromWhoHasJoined) {
+    PresentingSettings settings;
+    settings.waves = true;
+    settings.evaluators = 10;
+    settings.wave_size = 3;
+    EXPECT_EQ(sittings_of(settings, 4, 3, 0).size(), 4u)
+        << "nobody joined: as many as are expected";
+    EXPECT_EQ(sittings_of(settings, 4, 3, 7).size(), 3u);
+    const std::vector<Seat> seats = {{1, ""}, {2, "Bo"}, {3, ""}};
+    EXPECT_EQ(phones_in(seats), (std::vector<int>{1, 3}));
+    EXPECT_EQ(
+        waves_in_words({{1, 2, 3}, {4}, {}}),
+        (std::vector<std::string>{"Wave 1: seats 1, 2, 3", "Wave 2: seat 4", "Wave 3: no phones"}));
+    EXPECT_TRUE(waves_in_words({{1, 2}}).empty()) << "all at once";
+    EXPECT_TRUE(waves_in_words({}).empty());
+}
+
 TEST_F(PresentingStudio, ItsSettingsAreKept) {
     studio().settings = read_user_settings();
     PresentingSettings& settings = presenting_settings(studio());
