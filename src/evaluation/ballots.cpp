@@ -82,6 +82,9 @@ void check_setup(const RoundSetup& setup) {
         check_plan(*setup.plan, static_cast<int>(setup.designs.size()));
         check_argument(setup.presenting, "open_round: found a plan for a round that votes at once");
     }
+    check_argument(!setup.series || setup.designs.size() == 2,
+                   "open_round: found " + std::to_string(setup.designs.size()) +
+                       " designs in a series of repeats, expected 2");
     if (setup.codes.empty()) return;
     check_argument(setup.codes.size() == setup.designs.size(),
                    "open_round: found " + std::to_string(setup.codes.size()) + " codes for " +
@@ -141,6 +144,7 @@ int BallotStore::open_round(const RoundSetup& setup) {
     }
     auto session = newest_session(database_);
     if (!session) session = make_session(database_);
+    if (setup.series) check_series(setup, *session);
     const int round =
         as_int(database_, database_.run("SELECT coalesce(max(id), 0) FROM rounds")[0][0]) + 1;
     const auto codes = setup.codes.empty() ? draw_codes(static_cast<int>(setup.designs.size()),
@@ -161,6 +165,14 @@ int BallotStore::open_round(const RoundSetup& setup) {
         design.best = static_cast<int>(k);
         design.second = codes[k];
         record(database_, design);
+    }
+    if (setup.series) {
+        LogEntry series = base;
+        series.what = What::series;
+        series.seat = setup.series->series == 0 ? round : setup.series->series;
+        series.best = setup.series->repeats;
+        series.second = setup.series->follows;
+        record(database_, series);
     }
     if (!setup.presenting) {
         LogEntry voting = base;
@@ -316,6 +328,7 @@ std::vector<CastBallot> BallotStore::ballots(int id) const {
         throw Refused(round_name(id) + " is open: votes told now would sway those to come",
                       "close the round, then ask for its ballots");
     }
+    check_told(round);
     std::vector<CastBallot> ballots;
     for (const auto& row :
          database_.run(std::string(kBallotColumns) + "WHERE ballots.session = ?1 AND "
@@ -332,6 +345,7 @@ Tally BallotStore::tally(int id) const {
         throw Refused(round_name(id) + " is open: counts told now would sway the votes to come",
                       "close the round, then ask for its tally");
     }
+    check_told(round);
     Tally tally;
     tally.designs = round.designs;
     tally.best.resize(round.designs.size());

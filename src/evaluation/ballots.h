@@ -29,6 +29,14 @@ struct Ballot {
     std::optional<int> least = {};
 };
 
+/// A round as one of a series of blind repeats: two looks, shown to one audience several times,
+/// each time under other codes.
+struct SeriesPlace {
+    int series = 0;   ///< the first repeat's round; 0: this is the first
+    int repeats = 3;  ///< that are wanted
+    int follows = 0;  ///< the locked round whose leaders these are; 0: none
+};
+
 struct RoundSetup {
     std::vector<std::string> designs;
     std::string calibration_id = {};  ///< that the designs are shown under; empty: uncorrected
@@ -40,6 +48,16 @@ struct RoundSetup {
     /// designs; with `presenting`. One of several sittings without seats has the phones that are in
     /// dealt to them when the round is opened (deal_seats()).
     std::optional<PresentationPlan> plan = {};
+    std::optional<SeriesPlace> series = {};
+};
+
+struct Series {
+    int id = 0;  ///< the first repeat's round
+    int session = 0, repeats = 0, follows = 0;
+    std::vector<std::string> designs;
+    std::vector<int> rounds;  ///< repeats that were voted on and are locked
+    /// All repeats are held, or nobody goes on with it: another round or audience has come.
+    bool over = false;
 };
 
 struct Round {
@@ -145,6 +163,10 @@ class BallotStore {
     };
     std::optional<Presented> presented() const;
 
+    /// Nothing for a round that is no repeat.
+    std::optional<Series> series_of(int round) const;
+    std::optional<Series> series_under_way() const;
+
     std::vector<Round> rounds() const;
     std::optional<Round> open_round() const;
     /// The newest round of a session.
@@ -152,9 +174,9 @@ class BallotStore {
     std::optional<CastBallot> ballot_of(int round, int seat) const;
     /// The seats that have voted, never for what.
     std::vector<int> voted(int round) const;
-    /// In the order of seats. Refused while the round is open.
+    /// In the order of seats. Refused while the round is open, or its series under way.
     std::vector<CastBallot> ballots(int round) const;
-    /// Refused while the round is open.
+    /// Refused while the round is open, or its series under way.
     Tally tally(int round) const;
     const std::filesystem::path& file() const { return database_.file(); }
     /// All that happened, in order.
@@ -165,6 +187,8 @@ class BallotStore {
   private:
     CastBallot vote_by_name(int round, const Ballot& ballot);
     CastBallot vote_within(int round, int seat, const Choices& choices, const std::string& who);
+    void check_series(const RoundSetup& setup, int session) const;
+    void check_told(const Round& round) const;
     mutable Database database_;
 };
 

@@ -413,6 +413,13 @@ void draw_thanks(Studio& studio, const Round& round) {
 
 // --- the result ---
 
+void draw_back_to_rounds(Studio& studio) {
+    BallotPanelState& state = *studio.panels.ballot;
+    if (is_presenting(studio)) return;  // Back to editing, in the bar
+    if (ImGui::Button("All rounds")) go_to(state, open_round(state) ? Page::vote : Page::start);
+    name_last_item("ballot:rounds");
+}
+
 void draw_result(Studio& studio, const Round& round) {
     BallotPanelState& state = *studio.panels.ballot;
     heading(fmt::format("Round {}: {}", round.id, count_of(round.ballots)).c_str());
@@ -422,6 +429,7 @@ void draw_result(Studio& studio, const Round& round) {
                          round.calibration_id.empty()
                              ? std::string("shown uncorrected")
                              : "shown under calibration " + round.calibration_id.substr(0, 8)));
+    if (!draw_duel(studio, round)) return draw_back_to_rounds(studio);
     Tally tally;
     if (!attempted(state, [&] { tally = studio.ballots->tally(round.id); })) return;
     draw_verdict(studio, round);
@@ -433,10 +441,8 @@ void draw_result(Studio& studio, const Round& round) {
     if (ImGui::Button("Write the report")) write_round_report(studio, round);
     name_last_item("ballot:report");
     tooltip("Verdict, charts, looks and log as PDF and HTML, beside the ballots.");
-    if (is_presenting(studio)) return;  // Back to editing, in the bar
-    ImGui::SameLine();
-    if (ImGui::Button("All rounds")) go_to(state, open_round(state) ? Page::vote : Page::start);
-    name_last_item("ballot:rounds");
+    if (!is_presenting(studio)) ImGui::SameLine();
+    draw_back_to_rounds(studio);
 }
 
 /// While the bar above leads through a round.

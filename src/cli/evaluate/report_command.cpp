@@ -145,6 +145,8 @@ Command evaluate_report_command() {
         Outcome outcome;
         outcome.figures = figures_of(source.statistics, source.names);
         if (source.record) outcome.figures["round"] = source.record->round.id;
+        const auto duel = source.record ? source.record->duel : std::nullopt;
+        if (duel) outcome.figures["series"] = figures_of(*duel);
         if (arguments->source.sample) outcome.figures["sample"] = true;
         const ReportDocument document = round_report(report_source(*arguments, std::move(source)));
         const ReportPlaces places = places_of(arguments->out, stem);
@@ -168,6 +170,7 @@ Command evaluate_report_command() {
             }
         }
         outcome.text += "verdict: " + outcome.figures["verdict"].get<std::string>() + "\n";
+        if (duel) outcome.text += "duel: " + duel->words + "\n";
         if (arguments->source.sample) outcome.text += "A made-up sample: nobody voted.\n";
         tell_notes(notes, outcome);
         return outcome;

@@ -54,6 +54,7 @@ RoundRecord read_round_record(const std::filesystem::path& file,
     if (const auto plan = store.plan_of(record.round.id)) {
         record.showings = showings_of(*plan, store.steps_of(record.round.id), record.codes);
     }
+    record.duel = duel_of(store, record.round.id);
     record.seats = static_cast<int>(store.seats(record.session).size());
     for (const LogEntry& entry : store.log()) {
         if (entry.round != record.round.id) continue;

@@ -39,6 +39,7 @@ class ReportBuilder {
         document_.subtitle = subtitle();
         document_.made_by = source_.program;
         document_.made_at = source_.made_at;
+        add_duel();
         add_verdict();
         add_votes();
         if (statistics_.evaluators > 0) add_certainty();
@@ -136,6 +137,21 @@ class ReportBuilder {
         add(tests_table(statistics_, rows_));
         add(worths_table(statistics_, rows_));
         add(pairs_table(statistics_, rows_));
+    }
+
+    void add_duel() {
+        if (!source_.record || !source_.record->duel) return;
+        const DuelRecord& duel = *source_.record->duel;
+        heading("The duel");
+        say(sentence(duel.words), ParagraphRole::lead);
+        say(
+            fmt::format("This round is one of {} blind repeats of the same two looks, each under "
+                        "codes and in an order of its own. They are a test by themselves: the "
+                        "round that it follows{} is no part of its figures.",
+                        duel.series.repeats,
+                        duel.series.follows > 0 ? fmt::format(", {},", duel.series.follows) : ""));
+        add(duel_repeats_table(duel));
+        add(duel_tests_table(duel));
     }
 
     void add_power() {

@@ -244,6 +244,48 @@ ReportTable showings_table(const RoundReportSource& source) {
     return table;
 }
 
+ReportTable duel_repeats_table(const DuelRecord& duel) {
+    ReportTable table{"The repeats", {{"Repeat", false}, {"Round"}}, {}};
+    for (const std::string& design : duel.series.designs) table.columns.push_back({design});
+    for (std::size_t k = 0; k < duel.votes.size(); ++k) {
+        table.rows.push_back({std::to_string(k + 1),
+                              std::to_string(duel.series.rounds[k]),
+                              std::to_string(duel.votes[k][0]),
+                              std::to_string(duel.votes[k][1])});
+    }
+    table.note =
+        "Repeats are not added up: answers of one person are no independent ones. Each evaluator "
+        "counts once, by the majority of the repeats.";
+    return table;
+}
+
+ReportTable duel_tests_table(const DuelRecord& duel) {
+    const DuelStatistics& statistics = duel.statistics;
+    const int counted = statistics.majorities[0] + statistics.majorities[1];
+    const auto ahead = static_cast<std::size_t>(statistics.ahead);
+    ReportTable table{
+        "The duel", {{"What", false}, {"Count"}, {"Share, 95%"}, {"p"}, {"How", false}}, {}};
+    table.rows.push_back({"Evaluators who chose " + duel.series.designs[ahead] + " most often",
+                          fmt::format("{} of {}", statistics.majorities[ahead], counted),
+                          share_text(statistics.majorities[ahead], counted, statistics.share),
+                          p_text(statistics.sign_p),
+                          "sign test, two-sided, exact"});
+    table.rows.push_back(
+        {"The same answer in every repeat",
+         fmt::format("{} of {}", statistics.consistent, statistics.complete),
+         share_text(statistics.consistent, statistics.complete, statistics.consistent_share),
+         p_text(statistics.consistency_p),
+         fmt::format("as many or more by guessing, which gives {}; exact",
+                     percent_text(statistics.consistent_by_guessing))});
+    table.rows.push_back(
+        {"Did not answer every repeat",
+         std::to_string(statistics.incomplete),
+         "",
+         "",
+         fmt::format("{} of them with a majority all the same", statistics.incomplete_counted)});
+    return table;
+}
+
 ReportTable record_table(const RoundReportSource& source) {
     ReportTable table{"What proves it", {{"What", false}, {"Record", false}}, {}};
     const auto add = [&](const std::string& what, const std::string& value) {

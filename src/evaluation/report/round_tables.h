@@ -15,6 +15,9 @@ ReportTable power_table(const VoteStatistics& statistics,
 ReportTable designs_table(const RoundReportSource& source, const ChartRows& rows);
 /// Who saw which order when; no rows where it was not recorded.
 ReportTable showings_table(const RoundReportSource& source);
+/// Each repeat's counts and, of the series, the tests.
+ReportTable duel_repeats_table(const DuelRecord& duel);
+ReportTable duel_tests_table(const DuelRecord& duel);
 /// Which round it is, of which file, with its seeds and the hash of its log.
 ReportTable record_table(const RoundReportSource& source);
 

@@ -12,6 +12,18 @@ double chi_square_tail(double x, int degrees) {
     return std::clamp(Eigen::numext::igammac(0.5 * degrees, 0.5 * x), 0.0, 1.0);
 }
 
+double binomial_tail(int at_least, int of, double probability) {
+    if (at_least <= 0) return 1.0;
+    if (at_least > of || probability <= 0.0) return 0.0;
+    if (probability >= 1.0) return 1.0;
+    double tail = 0.0;
+    for (int k = of; k >= at_least; --k) {
+        tail += std::exp(std::lgamma(of + 1.0) - std::lgamma(k + 1.0) - std::lgamma(of - k + 1.0) +
+                         k * std::log(probability) + (of - k) * std::log1p(-probability));
+    }
+    return std::min(1.0, tail);
+}
+
 Interval wilson_interval(int count, int of) {
     if (of <= 0) return {};
     const double n = of, share = count / n, z2 = kChiSquare95;

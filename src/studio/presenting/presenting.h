@@ -71,7 +71,8 @@ struct PresentingState {
     PresentingSettings settings;
     bool begin_wanted = false;  ///< the panel's button was pressed
     std::vector<int> wanted_looks;
-    bool give_up_wanted = false;  ///< freezing
+    std::optional<int> duel_wanted;  ///< of the leaders of this round, or the next of its repeats
+    bool give_up_wanted = false;     ///< freezing
     std::optional<Freezing> freezing;
     std::optional<PresentedRound> presented;
     std::string problem;  ///< why what should be seen is not
@@ -145,5 +146,7 @@ void draw_presented_round(Studio& studio);
 void draw_phones(Studio& studio);
 void draw_seats(Studio& studio);
 void draw_verdict(Studio& studio, const Round& round);
+/// "Duel of the first two", or the next repeat of one; false: the round's counts are not told yet.
+bool draw_duel(Studio& studio, const Round& round);
 
 }  // namespace livery

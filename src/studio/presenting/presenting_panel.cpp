@@ -14,7 +14,6 @@
 #include "evaluation/presenting/sittings.h"
 #include "evaluation/qr_code.h"
 #include "evaluation/statistics/vote_counts.h"
-#include "evaluation/statistics/vote_statistics.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
 #include "studio/kit/widgets.h"
@@ -407,49 +406,6 @@ void draw_presented_round(Studio& studio) {
     heading("Evaluators");
     draw_seats(studio);
     if (!presented.round.closed) draw_waves(presented.plan.seats);
-}
-
-void draw_verdict(Studio& studio, const Round& round) {
-    PresentingState& state = presenting(studio);
-    if (state.verdict_round != round.id) {
-        state.verdict_round = round.id;
-        state.verdict.clear();
-        if (!studio.background || !studio.ballots) return;
-        try {
-            const auto ballots = std::make_shared<std::vector<RankedBallot>>();
-            bool least = round.designs.size() > 2 && round.asks_least;
-            for (const CastBallot& cast : studio.ballots->ballots(round.id)) {
-                ballots->push_back(
-                    {cast.choices.best, cast.choices.second, cast.choices.least.value_or(-1)});
-                least = least && cast.choices.least.has_value();
-            }
-            studio.background->run(
-                [&studio, ballots, least, round](const Progress&) -> Background::Then {
-                    const VoteCounts counts = counts_of(*ballots,
-                                                        static_cast<int>(round.designs.size()),
-                                                        least && !ballots->empty());
-                    const auto words = vote_statistics(counts,
-                                                       round.designs,
-                                                       static_cast<std::uint64_t>(round.seed),
-                                                       ballots.get())
-                                           .words;
-                    return [&studio, words, id = round.id] {
-                        if (presenting(studio).verdict_round == id)
-                            presenting(studio).verdict = words;
-                    };
-                },
-                [&studio](std::exception_ptr why) {
-                    notify_failure(studio, "The verdict could not be found.", why);
-                });
-        } catch (const std::exception& error) {
-            state.verdict = error.what();
-        }
-    }
-    if (state.verdict.empty()) return;
-    ImGui::PushFont(heading_font());
-    ImGui::TextWrapped("%s", sentence(state.verdict).c_str());
-    ImGui::PopFont();
-    name_last_item("ballot:verdict");
 }
 
 }  // namespace livery
