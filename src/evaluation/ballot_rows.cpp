@@ -30,6 +30,11 @@ Round round_from(Database& database, const std::vector<DatabaseValue>& row) {
         round.designs.push_back(as_text(database, design[0]));
         round.codes.push_back(as_int(database, design[1]));
     }
+    for (const auto& scale :
+         database.run("SELECT low, high FROM scales WHERE round = ?1 ORDER BY position",
+                      {std::int64_t{round.id}})) {
+        round.scales.push_back({as_text(database, scale[0]), as_text(database, scale[1])});
+    }
     return round;
 }
 

@@ -82,6 +82,7 @@ void check_setup(const RoundSetup& setup) {
         check_plan(*setup.plan, static_cast<int>(setup.designs.size()));
         check_argument(setup.presenting, "open_round: found a plan for a round that votes at once");
     }
+    check_scales(setup.scales);
     check_argument(!setup.series || setup.designs.size() == 2,
                    "open_round: found " + std::to_string(setup.designs.size()) +
                        " designs in a series of repeats, expected 2");
@@ -165,6 +166,13 @@ int BallotStore::open_round(const RoundSetup& setup) {
         design.best = static_cast<int>(k);
         design.second = codes[k];
         record(database_, design);
+    }
+    for (std::size_t k = 0; k < setup.scales.size(); ++k) {
+        LogEntry scale = base;
+        scale.what = What::scale;
+        scale.text = setup.scales[k].low + '\t' + setup.scales[k].high;
+        scale.best = static_cast<int>(k);
+        record(database_, scale);
     }
     if (setup.series) {
         LogEntry series = base;

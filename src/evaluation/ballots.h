@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,6 +12,7 @@
 #include "core/database.h"
 #include "evaluation/ballot_log.h"
 #include "evaluation/presenting/presentation.h"
+#include "evaluation/semantic_scale.h"
 #include "evaluation/tally.h"
 
 namespace livery {
@@ -49,6 +51,7 @@ struct RoundSetup {
     /// dealt to them when the round is opened (deal_seats()).
     std::optional<PresentationPlan> plan = {};
     std::optional<SeriesPlace> series = {};
+    std::vector<SemanticScale> scales = {};  ///< on which each look may be placed; at most 5
 };
 
 struct Series {
@@ -71,6 +74,7 @@ struct Round {
     std::vector<int> codes;
     int seed = 1;
     bool asks_least = false;
+    std::vector<SemanticScale> scales = {};
     bool voting =
         false;  ///< the looks have been presented; true of closed rounds that were voted on
 };
@@ -92,6 +96,16 @@ struct Turn {
 struct Invitation {
     std::string token, code;
     std::int64_t code_until_s = 0;  ///< seconds since 1970
+};
+
+/// Where one seat places one look on the round's scales: 1 (next to the low word) to 7, a step a
+/// scale; nothing where it is left open.
+using ScaleSteps = std::vector<std::optional<int>>;
+
+/// All that a seat has answered.
+struct CastRatings {
+    int seat = 0;
+    std::map<int, ScaleSteps> steps;  ///< by design, of those with an answer
 };
 
 struct CastBallot {
@@ -143,6 +157,13 @@ class BallotStore {
     /// The same for a seat, which is also refused while its turn is to come. One that is as the
     /// seat's ballot is already changes nothing.
     CastBallot vote(int round, int seat, const Choices& choices);
+    /// Places a look on the round's scales; a step that is left open takes an earlier one back. One
+    /// that is as it was changes nothing. Refused as vote() is, and before the seat has voted.
+    void rate(int round, int seat, int design, const ScaleSteps& steps);
+    /// The seat's own.
+    CastRatings ratings_of(int round, int seat) const;
+    /// Of all seats that have any, in their order. Refused while the round is open.
+    std::vector<CastRatings> ratings(int round) const;
     /// For good. Refused when it is closed already.
     void close_round(int round);
 

@@ -1,7 +1,9 @@
 // The operator's side of a ballots file, for tests in other languages: one command, JSON on stdout.
 //
 //   ballot_operator FILE open NAMES [present] [least]   a round, names with commas; its number
-//                                                       `waves=2`: in as many waves of seats
+//                                                       `waves=2`: in as many waves of seats;
+//                                                       `scale=cheap,precious`: asked after it
+//   ballot_operator FILE ratings ROUND                  of a locked round: {"seat": {"code": []}}
 //   ballot_operator FILE voting|lock ROUND
 //   ballot_operator FILE sitting ROUND NUMBER PHASE     a presented round's step (from 0; "voting")
 //   ballot_operator FILE invitation                     {"token", "code"}, or null
@@ -89,6 +91,8 @@ Json done(BallotStore& store, const std::vector<std::string>& words) {
         for (std::size_t k = 2; k < words.size(); ++k) {
             setup.presenting = setup.presenting || words[k] == "present";
             setup.asks_least = setup.asks_least || words[k] == "least";
+            if (words[k].starts_with("scale="))
+                setup.scales.push_back(parse_scale(words[k].substr(6)));
             if (words[k].starts_with("waves=")) {
                 std::vector<int> row(setup.designs.size());
                 std::iota(row.begin(), row.end(), 0);
@@ -115,6 +119,22 @@ Json done(BallotStore& store, const std::vector<std::string>& words) {
         const auto invitation = store.invitation(store.session().value());
         if (!invitation) return nullptr;
         return {{"token", invitation->token}, {"code", invitation->code}};
+    }
+    if (what == "ratings") {
+        const int id = std::stoi(words.at(1));
+        std::vector<int> codes;
+        for (const Round& round : store.rounds()) {
+            if (round.id == id) codes = round.codes;
+        }
+        Json ratings = Json::object();
+        for (const CastRatings& cast : store.ratings(id)) {
+            for (const auto& [design, steps] : cast.steps) {
+                const auto code = codes.at(static_cast<std::size_t>(design));
+                Json& placed = ratings[std::to_string(cast.seat)][std::to_string(code)];
+                for (const auto& step : steps) placed.push_back(step ? Json(*step) : Json(nullptr));
+            }
+        }
+        return ratings;
     }
     if (what == "ballots") {
         Json ballots = Json::object();

@@ -22,7 +22,7 @@ DESIGNS = "red,silver,ivory,blue"
 class Serving(Server):
     """As Server, started by the command."""
 
-    def __init__(self, program, operator, folder, what=("--designs", DESIGNS)):
+    def __init__(self, program, operator, folder, what=("--designs", DESIGNS, "--scale", "cheap,precious")):
         self.said, self.token, self.what = [], None, what
         super().__init__(program, operator, folder)
 
@@ -84,6 +84,8 @@ def whole(server):
     server.wait_for("lock the round")
     voted(phones[0], 1, codes["red"], codes["blue"])
     server.wait_for("1 of 3 have voted")
+    status, _, answer = phones[0].ask("PUT", "/scales", {"round": 1, "look": codes["red"], "steps": [6]})
+    check(status == 200 and answer["ratings"] == {str(codes["red"]): [6]}, f"{status} {answer}")
 
     # The server is killed: it comes back where it was.
     first = server.children()
@@ -165,12 +167,15 @@ def tally_of_the_duel(program, file):
                            capture_output=True, text=True, timeout=60)
     told = json.loads(first.stdout)
     check(told["best"] == [2, 1, 0, 0] and "series" not in told, f"{told}")
+    scale = told["scales"][0]
+    check(scale["low_word"] == "cheap" and scale["looks"][0]["mean"] == 6 and scale["complete"] == 0, f"{scale}")
 
 
 def refusals(program, folder):
     for options, part in ((["--designs", "one"], "at least 2"), (["--interface", "none0"], "none0"),
                           (["--port", "70000"], "70000"), (["--seats", "0"], "--seats"),
-                          (["--duel", "--designs", "a,b"], "--duel")):
+                          (["--duel", "--designs", "a,b"], "--duel"), (["--scale", "a,b"], "--designs"),
+                          (["--designs", "a,b", "--scale", "alone"], "--scale")):
         done = subprocess.run([program, "evaluate", "serve", "--ballots", os.path.join(folder, "other.sqlite"), *options],
                               stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60)
         check(done.returncode == 2 and part in done.stderr and done.stderr.count("\n") == 1,

@@ -26,10 +26,23 @@ namespace {
 
 struct ServeArguments {
     std::string ballots, interface = "lo", designs, certificate, key;
-    std::vector<std::string> hosts;
+    std::vector<std::string> hosts, scales;
     int port = kBallotPort, seats = 40;
     bool least = false, duel = false, new_audience = false;
 };
+
+std::vector<SemanticScale> scales_of(const ServeArguments& arguments) {
+    std::vector<SemanticScale> scales;
+    for (const std::string& text : arguments.scales) {
+        try {
+            scales.push_back(parse_scale(text));
+        } catch (const std::invalid_argument& error) {
+            throw std::invalid_argument(std::string("--scale: ") + error.what());
+        }
+    }
+    check_scales(scales);
+    return scales;
+}
 
 /// What people read goes to stdout, or beside the JSON document to stderr; at once.
 class ServeSession {
@@ -180,6 +193,7 @@ class ServeSession {
         setup.designs = parse_names("--designs", arguments_.designs);
         setup.seed = seed_;
         setup.asks_least = arguments_.least;
+        setup.scales = scales_of(arguments_);
         setup.presenting = true;
         return setup;
     }
@@ -260,6 +274,13 @@ Command evaluate_serve_command() {
          false,
          {}},
         {"--least", "", "ask for the least liked look too", &arguments->least, false, {}},
+        {"--scale",
+         "LOW,HIGH",
+         "after the ballot phones ask where each look lies between two words, as cheap,precious; "
+         "up to five times",
+         &arguments->scales,
+         false,
+         {}},
         {"--duel",
          "",
          "instead of --designs: three blind repeats of the first two looks of the last locked "
@@ -291,6 +312,8 @@ Command evaluate_serve_command() {
         {"--seats", "N", "most phones, 1 to 400 (default 40)", &arguments->seats, false, {}},
     };
     command.run = [arguments](const CommonOptions& common, const Progress& progress) {
+        check_argument(scales_of(*arguments).empty() || !arguments->designs.empty(),
+                       "--scale: found it without --designs, expected the looks that are placed");
         check_argument(!arguments->duel || (arguments->designs.empty() && !arguments->least &&
                                             !arguments->new_audience),
                        "--duel: found it with --designs, --least or --new-audience, expected it "

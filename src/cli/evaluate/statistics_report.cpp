@@ -195,6 +195,53 @@ std::string power_lines(const VoteStatistics& statistics, const std::vector<std:
 
 }  // namespace
 
+Json figures_of(const ScaleStatistics& statistics) {
+    Json scales = Json::array();
+    for (const ScaleFigures& figures : statistics.scales) {
+        Json looks = Json::array();
+        for (const LookOnScale& look : figures.looks) {
+            const bool any = look.answers > 0;
+            looks.push_back({{"answers", look.answers},
+                             {"mean", any ? Json(look.mean) : Json(nullptr)},
+                             {"low", look.interval.low},
+                             {"high", look.interval.high}});
+        }
+        scales.push_back({{"low_word", figures.scale.low},
+                          {"high_word", figures.scale.high},
+                          {"looks", looks},
+                          {"complete", figures.complete},
+                          {"friedman_q", figures.friedman_q},
+                          {"friedman_p", figures.friedman_p},
+                          {"holm_p", figures.holm_p},
+                          {"draws", statistics.draws},
+                          {"words", figures.words}});
+    }
+    return scales;
+}
+
+std::string text_of(const ScaleStatistics& statistics, const std::vector<std::string>& names) {
+    if (statistics.scales.empty()) return "";
+    std::string text = fmt::format(
+        "\nscales from 1 (the first word) to 7, {} evaluators answered; 95% by evaluators drawn "
+        "again\n",
+        statistics.evaluators);
+    for (const ScaleFigures& figures : statistics.scales) {
+        text += in_words(figures.scale) + "\n";
+        for (std::size_t k = 0; k < names.size(); ++k) {
+            const LookOnScale& look = figures.looks[k];
+            text += look.answers == 0 ? fmt::format("  {}: no answers\n", names[k])
+                                      : fmt::format("  {}: {:.2f} [{:.2f}, {:.2f}], {} answers\n",
+                                                    names[k],
+                                                    look.mean,
+                                                    look.interval.low,
+                                                    look.interval.high,
+                                                    look.answers);
+        }
+    }
+    for (const ScaleFigures& figures : statistics.scales) text += figures.words + "\n";
+    return text;
+}
+
 Json figures_of(const DuelRecord& duel) {
     const DuelStatistics& statistics = duel.statistics;
     const auto interval = [](const Interval& share) { return Json{share.low, share.high}; };

@@ -44,6 +44,7 @@ class ReportBuilder {
         add_votes();
         if (statistics_.evaluators > 0) add_certainty();
         add_power();
+        add_scales();
         add_designs();
         add_showing();
         add_record();
@@ -164,6 +165,19 @@ class ReportBuilder {
             "ask for a correction that is not made here. A fresh round, planned in its size and "
             "counted by itself, needs none.");
         add(power_table(statistics_, curve));
+    }
+
+    void add_scales() {
+        const ScaleStatistics& scales = source_.scales;
+        if (scales.scales.empty()) return;
+        heading("Where the looks lie between words");
+        say(
+            fmt::format("After the ballot each look could be placed in seven steps between two "
+                        "words, from 1 at the first to 7 at the second; {} did so at least once.",
+                        counted(scales.evaluators, "evaluator", "evaluators")));
+        for (const ScaleFigures& figures : scales.scales) say(sentence(figures.words));
+        add(scale_means_table(scales, rows_));
+        add(scale_tests_table(scales));
     }
 
     void add_designs() {
@@ -298,6 +312,7 @@ RoundReportSource round_report_source(const std::filesystem::path& ballots,
     RoundReportSource source;
     source.names = round.designs;
     source.statistics = round_statistics(round, seed);
+    source.scales = scale_statistics(round.answers, round.scales, round.designs, seed);
     source.details =
         read_round_details(round_details_file(ballots, round.id), round.id, record.codes);
     source.record = std::move(record);

@@ -244,6 +244,53 @@ ReportTable showings_table(const RoundReportSource& source) {
     return table;
 }
 
+ReportTable scale_means_table(const ScaleStatistics& statistics, const ChartRows& rows) {
+    ReportTable table{"Mean steps, with 95% intervals", {{"Design", false}}, {}};
+    for (const ScaleFigures& figures : statistics.scales) {
+        table.columns.push_back({in_words(figures.scale)});
+    }
+    for (const int design : rows.order) {
+        const auto k = static_cast<std::size_t>(design);
+        std::vector<std::string> row = {rows.labels[k]};
+        for (const ScaleFigures& figures : statistics.scales) {
+            const LookOnScale& look = figures.looks[k];
+            row.push_back(look.answers == 0 ? "none"
+                                            : fmt::format("{:.2f} [{:.2f}, {:.2f}] of {}",
+                                                          look.mean,
+                                                          look.interval.low,
+                                                          look.interval.high,
+                                                          look.answers));
+        }
+        table.rows.push_back(std::move(row));
+    }
+    table.note =
+        "Intervals: expanded percentiles of means over evaluators drawn again; of fewer than eight "
+        "they are all of 1 to 7. "
+        "Each holds for one look on one scale, not for differences between looks.";
+    return table;
+}
+
+ReportTable scale_tests_table(const ScaleStatistics& statistics) {
+    ReportTable table{
+        "Whether looks differ",
+        {{"Scale", false}, {"Placed all looks"}, {"Friedman's Q"}, {"p"}, {"p, Holm"}},
+        {}};
+    for (const ScaleFigures& figures : statistics.scales) {
+        const bool tested = figures.complete > 0;
+        table.rows.push_back({in_words(figures.scale),
+                              std::to_string(figures.complete),
+                              tested ? fmt::format("{:.2f}", figures.friedman_q) : "none",
+                              tested ? p_text(figures.friedman_p) : "none",
+                              tested ? p_text(figures.holm_p) : "none"});
+    }
+    table.note = fmt::format(
+        "Friedman's test over the evaluators who placed every look, with ties; p over {} drawn "
+        "orders of each evaluator's steps, seed {}. Holm's correction is over the scales.",
+        statistics.draws,
+        statistics.seed);
+    return table;
+}
+
 ReportTable duel_repeats_table(const DuelRecord& duel) {
     ReportTable table{"The repeats", {{"Repeat", false}, {"Round"}}, {}};
     for (const std::string& design : duel.series.designs) table.columns.push_back({design});

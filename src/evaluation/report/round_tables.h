@@ -15,6 +15,9 @@ ReportTable power_table(const VoteStatistics& statistics,
 ReportTable designs_table(const RoundReportSource& source, const ChartRows& rows);
 /// Who saw which order when; no rows where it was not recorded.
 ReportTable showings_table(const RoundReportSource& source);
+/// Means of each look on each scale; whether the looks differ on a scale.
+ReportTable scale_means_table(const ScaleStatistics& statistics, const ChartRows& rows);
+ReportTable scale_tests_table(const ScaleStatistics& statistics);
 /// Each repeat's counts and, of the series, the tests.
 ReportTable duel_repeats_table(const DuelRecord& duel);
 ReportTable duel_tests_table(const DuelRecord& duel);

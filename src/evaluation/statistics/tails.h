@@ -14,6 +14,9 @@ double chi_square_tail(double x, int degrees);
 /// rounding. 1 where nothing is asked for.
 double binomial_tail(int at_least, int of, double probability);
 
+/// The 97.5% point of Student's t with `degrees` >= 1.
+double student_975(int degrees);
+
 struct Interval {
     double low = 0.0, high = 1.0;
 };

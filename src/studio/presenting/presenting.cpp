@@ -1,7 +1,9 @@
 #include "studio/presenting/presenting.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -41,6 +43,26 @@ void restore(
     if (error == std::errc() && read >= low && read <= high) value = read;
 }
 
+/// ";cheap,precious;cold,warm;" as the settings keep it. What a hand has broken there is left out.
+std::vector<SemanticScale> listed_scales(std::string_view list) {
+    std::vector<SemanticScale> scales;
+    while (!list.empty()) {
+        const std::size_t end = std::min(list.find(';'), list.size());
+        const std::string_view one = list.substr(0, end);
+        list.remove_prefix(std::min(end + 1, list.size()));
+        if (one.empty()) continue;
+        try {
+            auto more = scales;
+            more.push_back(parse_scale(one));
+            check_scales(more);
+            scales = std::move(more);
+        } catch (const std::invalid_argument& error) {
+            log_line(LogLevel::warning, std::string("settings: ") + error.what());
+        }
+    }
+    return scales;
+}
+
 std::filesystem::path folder_of(const Studio& studio, const PresentationPlan& plan) {
     return studio.ballots->file().parent_path() / plan.folder;
 }
@@ -66,6 +88,10 @@ std::vector<std::vector<int>> sittings_of(const PresentingSettings& settings,
     const int evaluators = phones > 0 ? phones : settings.evaluators;
     return settings.waves ? wave_sittings(designs, evaluators, settings.wave_size, number)
                           : pass_sitting(designs, settings.passes, number);
+}
+
+std::vector<SemanticScale> scales_asked(const PresentingSettings& settings) {
+    return settings.asks_scales ? settings.scales : std::vector<SemanticScale>();
 }
 
 std::vector<int> phones_in(const std::vector<Seat>& seats) {
@@ -103,6 +129,10 @@ PresentingSettings& presenting_settings(Studio& studio) {
     restore(kept, "phones-port", settings.port, 0, 65535);
     settings.waves = setting(kept, "presenting-waves") == "yes";
     settings.asks_least = setting(kept, "presenting-least") == "yes";
+    settings.asks_scales = setting(kept, "presenting-asks-scales") == "yes";
+    if (const std::string list = setting(kept, "presenting-scales"); !list.empty()) {
+        settings.scales = listed_scales(list);
+    }
     int seed = -1;
     restore(kept, "presenting-seed", seed, 0, 1 << 30);
     if (seed >= 0) settings.seed = seed;
@@ -125,6 +155,11 @@ void keep_presenting_settings(Studio& studio) {
     keep("presenting-wave-size", fmt::format("{}", settings.wave_size));
     keep("presenting-waves", settings.waves ? "yes" : "no");
     keep("presenting-least", settings.asks_least ? "yes" : "no");
+    keep("presenting-asks-scales", settings.asks_scales ? "yes" : "no");
+    // A list without any is kept too.
+    std::string scales = ";";
+    for (const SemanticScale& scale : settings.scales) scales += text_of(scale) + ";";
+    keep("presenting-scales", scales);
     keep("phones-network", settings.network);
 }
 

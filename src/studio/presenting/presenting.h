@@ -25,12 +25,18 @@ struct PresentingSettings {
     int evaluators = 10;      ///< in waves, where no phone has joined
     int wave_size = 3;        ///< the most at once
     bool asks_least = false;  ///< each evaluator may name the least liked look too
+    bool asks_scales = false;
+    /// Between which words looks may be placed, where that is asked; at most five.
+    std::vector<SemanticScale> scales = {suggested_scales().begin(),
+                                         suggested_scales().begin() + 3};
     std::optional<int> seed;  ///< none: drawn anew for each round
     std::string network = "lo";
     int port = kBallotPort;  ///< 0: any that is free
     bool operator==(const PresentingSettings&) const = default;
 };
 
+/// What a round asks: none where it is not ticked.
+std::vector<SemanticScale> scales_asked(const PresentingSettings& settings);
 /// The order in which the looks of a round would be shown. In waves it is the `phones` that have
 /// joined that sit down or, where none has, as many evaluators as the settings say.
 std::vector<std::vector<int>> sittings_of(const PresentingSettings& settings,
@@ -77,6 +83,7 @@ struct PresentingState {
     std::optional<PresentedRound> presented;
     std::string problem;  ///< why what should be seen is not
     bool asking_to_abort = false, asking_to_lock = false;
+    std::string scale_low, scale_high, scale_problem;  ///< words that are being typed
 
     // Who has joined and voted, never for what.
     std::vector<Seat> seats;
@@ -96,6 +103,7 @@ struct PresentingState {
     // What a locked round says, by the statistics.
     int verdict_round = 0;
     std::string verdict;
+    std::vector<std::string> scale_verdicts;
 };
 
 PresentingState& presenting(Studio& studio);
@@ -142,6 +150,7 @@ std::string time_in_words(double seconds);
 
 // Drawing; only with a window.
 void draw_presentation_setup(Studio& studio, const std::vector<int>& looks);
+void draw_scales_setup(Studio& studio);
 void draw_presented_round(Studio& studio);
 void draw_phones(Studio& studio);
 void draw_seats(Studio& studio);

@@ -77,7 +77,7 @@ void count_row(Studio& studio,
     tooltip(help);
 }
 
-void least_row(Studio& studio, std::size_t looks) {
+void least_tick(Studio& studio) {
     PresentingSettings& settings = presenting_settings(studio);
     if (ImGui::Checkbox("Ask for the least liked", &settings.asks_least)) {
         keep_presenting_settings(studio);
@@ -86,7 +86,6 @@ void least_row(Studio& studio, std::size_t looks) {
     tooltip(
         "Each evaluator may name the look that they like least, too. Nobody has to; the "
         "statistics use it where everybody does.");
-    if (settings.asks_least && looks == 2) dim_text("Of two looks the least liked is not asked.");
 }
 
 /// How the looks would be shown, in words; empty where they could not.
@@ -248,7 +247,11 @@ void draw_presentation_setup(Studio& studio, const std::vector<int>& looks) {
                   "How many orders everybody sees, one after the other.");
     }
     times_row(studio, settings.times);
-    least_row(studio, looks.size());
+    least_tick(studio);
+    draw_scales_setup(studio);
+    if (settings.asks_least && looks.size() == 2) {
+        dim_text("Of two looks the least liked is not asked.");
+    }
     const std::vector<int> phones = phones_in(presenting(studio).seats);
     const std::string words =
         plan_in_words(settings, static_cast<int>(looks.size()), static_cast<int>(phones.size()));

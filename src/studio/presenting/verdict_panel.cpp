@@ -1,5 +1,4 @@
 // What a locked round says, and the duel of those that lead it.
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -7,8 +6,10 @@
 #include <imgui.h>
 
 #include "core/error.h"
+#include "evaluation/closed_round.h"
 #include "evaluation/duel.h"
-#include "evaluation/statistics/vote_counts.h"
+#include "evaluation/report/round_report.h"
+#include "evaluation/statistics/scale_statistics.h"
 #include "evaluation/statistics/vote_statistics.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
@@ -23,32 +24,30 @@ void draw_verdict(Studio& studio, const Round& round) {
     if (state.verdict_round != round.id) {
         state.verdict_round = round.id;
         state.verdict.clear();
+        state.scale_verdicts.clear();
         if (!studio.background || !studio.ballots) return;
         try {
             if (const auto duel = duel_of(*studio.ballots, round.id)) {
                 state.verdict = duel->words;
                 return draw_verdict(studio, round);
             }
-            const auto ballots = std::make_shared<std::vector<RankedBallot>>();
-            bool least = round.designs.size() > 2 && round.asks_least;
-            for (const CastBallot& cast : studio.ballots->ballots(round.id)) {
-                ballots->push_back(
-                    {cast.choices.best, cast.choices.second, cast.choices.least.value_or(-1)});
-                least = least && cast.choices.least.has_value();
-            }
             studio.background->run(
-                [&studio, ballots, least, round](const Progress&) -> Background::Then {
-                    const VoteCounts counts = counts_of(*ballots,
-                                                        static_cast<int>(round.designs.size()),
-                                                        least && !ballots->empty());
-                    const auto words = vote_statistics(counts,
-                                                       round.designs,
-                                                       static_cast<std::uint64_t>(round.seed),
-                                                       ballots.get())
-                                           .words;
-                    return [&studio, words, id = round.id] {
-                        if (presenting(studio).verdict_round == id)
-                            presenting(studio).verdict = words;
+                [&studio, round, file = studio.ballots->file()](
+                    const Progress&) -> Background::Then {
+                    const auto seed = static_cast<std::uint64_t>(round.seed);
+                    const ClosedRound closed = read_closed_round(file, round.id, seed);
+                    const auto words = round_statistics(closed, seed).words;
+                    std::vector<std::string> of_scales;
+                    const auto scales =
+                        scale_statistics(closed.answers, closed.scales, closed.designs, seed);
+                    for (const ScaleFigures& figures : scales.scales) {
+                        of_scales.push_back(figures.words);
+                    }
+                    return [&studio, words, of_scales, id = round.id] {
+                        PresentingState& shown = presenting(studio);
+                        if (shown.verdict_round != id) return;
+                        shown.verdict = words;
+                        shown.scale_verdicts = of_scales;
                     };
                 },
                 [&studio](std::exception_ptr why) {
@@ -63,6 +62,7 @@ void draw_verdict(Studio& studio, const Round& round) {
     ImGui::TextWrapped("%s", sentence(state.verdict).c_str());
     ImGui::PopFont();
     name_last_item("ballot:verdict");
+    for (const std::string& words : state.scale_verdicts) ImGui::TextWrapped("%s", words.c_str());
 }
 
 bool draw_duel(Studio& studio, const Round& round) {

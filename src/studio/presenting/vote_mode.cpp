@@ -17,6 +17,7 @@
 #include "live/frame_pictures.h"
 #include "live/vote_frames.h"
 #include "projection/picture_port.h"
+#include "studio/look_thumbnails.h"
 #include "studio/presenting/presenting.h"
 #include "studio/presenting/surround.h"
 #include "studio/projector_control.h"
@@ -105,6 +106,7 @@ void begin_presentation(Shell& shell) {
     }
     setup.presenting = true;
     setup.asks_least = settings.asks_least && setup.designs.size() > 2;
+    setup.scales = scales_asked(settings);
     setup.seed = settings.seed.value_or(drawn_seed());
     begin_freezing(shell, std::move(freezing));
 }

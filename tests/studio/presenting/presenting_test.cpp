@@ -192,6 +192,11 @@ TEST_F(PresentingStudio, ItsSettingsAreKept) {
     settings.wave_size = 2;
     EXPECT_FALSE(settings.asks_least) << "unless it is ticked";
     settings.asks_least = true;
+    EXPECT_FALSE(settings.asks_scales) << "unless it is ticked";
+    EXPECT_EQ(settings.scales.size(), 3u) << "some are offered";
+    EXPECT_TRUE(scales_asked(settings).empty());
+    settings.asks_scales = true;
+    settings.scales = {{"schlicht", "auffällig"}, {"a b", "<i>"}};
     keep_presenting_settings(studio());
     PresentingState fresh;
     presenting(studio()) = std::move(fresh);
@@ -199,8 +204,19 @@ TEST_F(PresentingStudio, ItsSettingsAreKept) {
     EXPECT_EQ(presenting_settings(studio()).times, (PresentationTimes{30.0, 8.5, 4.0}));
     EXPECT_TRUE(presenting_settings(studio()).waves);
     EXPECT_TRUE(presenting_settings(studio()).asks_least);
+    EXPECT_EQ(scales_asked(presenting_settings(studio())),
+              (std::vector<SemanticScale>{{"schlicht", "auffällig"}, {"a b", "<i>"}}));
     EXPECT_EQ(presenting_settings(studio()).wave_size, 2);
     EXPECT_EQ(sittings_of(presenting_settings(studio()), 4, 3).size(), 5u);
+}
+
+TEST_F(PresentingStudio, AListOfWordsThatAHandHasBrokenIsTakenAsFarAsItGoes) {
+    for (const auto& [kept, count] : std::vector<std::pair<std::string, std::size_t>>{
+             {";", 0}, {"a,b;c;d,e", 2}, {"a,b;a,b", 1}, {"a,b;c,d;e,f;g,h;i,j;k,l", 5}}) {
+        presenting(studio()) = PresentingState();
+        studio().settings.values["presenting-scales"] = kept;
+        EXPECT_EQ(presenting_settings(studio()).scales.size(), count) << kept;
+    }
 }
 
 TEST(PresentingTimes, ReadAsPeopleSayThem) {
