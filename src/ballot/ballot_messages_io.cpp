@@ -41,6 +41,25 @@ VoteMessage parse_vote(const std::string& body) {
     return vote;
 }
 
+RatingMessage parse_rating(const std::string& body) {
+    const Json json = parse_json(body, "answers");
+    const JsonReader reader("answers", json);
+    reader.allow_only({"round", "look", "steps"});
+    RatingMessage rating;
+    rating.round = reader["round"].integer(1, kMostRounds);
+    rating.look = code_in(reader, "look");
+    const JsonReader steps = reader["steps"];
+    const std::size_t count = steps.size();
+    if (count == 0 || count > kMostScales) {
+        steps.fail(std::to_string(count) + " steps", "1 to " + std::to_string(kMostScales));
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+        auto& step = rating.steps.emplace_back();
+        if (!json["steps"][k].is_null()) step = steps.at(k).integer(1, kScaleSteps);
+    }
+    return rating;
+}
+
 std::string parse_join(const std::string& body) {
     const Json json = parse_json(body, "joining");
     const JsonReader reader("joining", json);
@@ -50,9 +69,24 @@ std::string parse_join(const std::string& body) {
 
 std::string text_of(const PageState& state) {
     Json json = {{"state", state.state}, {"seat", state.seat}, {"round", state.round}};
+    if (state.wave > 0) {
+        json["wave"] = state.wave;
+        json["waves"] = state.waves;
+    }
     if (!state.codes.empty()) {
         json["codes"] = state.codes;
         json["least"] = state.asks_least;
+    }
+    if (!state.scales.empty()) {
+        json["scales"] = Json::array();
+        for (const SemanticScale& scale : state.scales) {
+            json["scales"].push_back({scale.low, scale.high});
+        }
+        json["ratings"] = Json::object();
+        for (const auto& [look, steps] : state.ratings) {
+            Json& placed = json["ratings"][std::to_string(look)] = Json::array();
+            for (const auto& step : steps) placed.push_back(step ? Json(*step) : Json(nullptr));
+        }
     }
     if (state.ballot) {
         json["ballot"] = json_of(*state.ballot);

@@ -136,6 +136,11 @@ BallotResponse BallotService::route(const BallotRequest& request, double now_s) 
         if (auto no = refused(request, settings_.names)) return std::move(*no);
         return take_vote(request);
     }
+    if (request.path == "/scales") {
+        if (request.method != "PUT") return wrong_method("PUT");
+        if (auto no = refused(request, settings_.names)) return std::move(*no);
+        return take_rating(request);
+    }
     return problem(404, "nothing is here");
 }
 
@@ -207,13 +212,26 @@ PageState BallotService::state_for(const BallotRequest& request) {
     }
     if (!round) return state;
     state.round = round->id;
-    state.state = round->closed ? "locked" : round->voting ? "voting" : "presenting";
-    if (!round->voting) return state;
+    const Turn turn = store_.turn_of(round->id, state.seat);
+    if (open && turn.waves > 1) {
+        state.wave = turn.wave + 1;
+        state.waves = turn.waves;
+    }
+    const bool votes = round->voting && turn.votes;
+    state.state = round->closed ? "locked"
+                  : votes       ? "voting"
+                  : turn.sits   ? "presenting"
+                                : "waiting";
+    if (!votes) return state;
     if (open) {
         // Their order says nothing: codes are random.
         state.codes = round->codes;
         std::sort(state.codes.begin(), state.codes.end());
         state.asks_least = round->asks_least;
+        state.scales = round->scales;
+        for (const auto& [design, steps] : store_.ratings_of(round->id, state.seat).steps) {
+            state.ratings[round->codes.at(static_cast<std::size_t>(design))] = steps;
+        }
     }
     if (const auto ballot = store_.ballot_of(round->id, state.seat)) {
         state.ballot = message_of(*round, ballot->choices);
@@ -222,19 +240,36 @@ PageState BallotService::state_for(const BallotRequest& request) {
     return state;
 }
 
+Round BallotService::round_under_vote(int session, int id) {
+    const auto round = store_.last_round(session);
+    if (!round || round->id != id) {
+        throw Refused("round " + std::to_string(id) + " is not the one under vote",
+                      "look at the page again");
+    }
+    return *round;
+}
+
+BallotResponse BallotService::take_rating(const BallotRequest& request) {
+    const int session = store_.session().value();
+    const int seat = seat_of(request, session);
+    if (seat == 0) return problem(401, "found no seat, expected to have joined");
+    const RatingMessage rating = message_in(request.body, parse_rating);
+    const Round round = round_under_vote(session, rating.round);
+    store_.rate(round.id, seat, index_of(round, rating.look), rating.steps);
+    BallotResponse response;
+    response.body = text_of(state_for(request));
+    return response;
+}
+
 BallotResponse BallotService::take_vote(const BallotRequest& request) {
     const int session = store_.session().value();
     const int seat = seat_of(request, session);
     if (seat == 0) return problem(401, "found no seat, expected to have joined");
     const VoteMessage vote = message_in(request.body, parse_vote);
-    const auto round = store_.last_round(session);
-    if (!round || round->id != vote.round) {
-        throw Refused("round " + std::to_string(vote.round) + " is not the one under vote",
-                      "look at the page again");
-    }
-    Choices choices{index_of(*round, vote.best), index_of(*round, vote.second)};
-    if (vote.least) choices.least = index_of(*round, *vote.least);
-    store_.vote(round->id, seat, choices);
+    const Round round = round_under_vote(session, vote.round);
+    Choices choices{index_of(round, vote.best), index_of(round, vote.second)};
+    if (vote.least) choices.least = index_of(round, *vote.least);
+    store_.vote(round.id, seat, choices);
     BallotResponse response;
     response.body = text_of(state_for(request));
     return response;

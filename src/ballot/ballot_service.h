@@ -25,6 +25,7 @@ struct BallotServiceSettings {
 ///     POST /join                {"code"}: the same by the six characters
 ///     GET  /state               what the page shows
 ///     PUT  /ballot              {"round", "best", "second", "least"}: as often as one likes
+///     PUT  /scales              {"round", "look", "steps"}: the same, after the ballot
 class BallotService {
   public:
     /// Opens the file as BallotStore does, and makes its first session where there is none.
@@ -45,6 +46,8 @@ class BallotService {
     BallotResponse join_by_code(const BallotRequest& request, double now_s);
     BallotResponse seated(const BallotRequest& request, BallotResponse response);
     BallotResponse take_vote(const BallotRequest& request);
+    BallotResponse take_rating(const BallotRequest& request);
+    Round round_under_vote(int session, int round);
     PageState state_for(const BallotRequest& request);
     int seat_of(const BallotRequest& request, int session);
 

@@ -12,9 +12,21 @@ namespace livery {
 
 namespace {
 
-constexpr std::array<std::string_view, 10> kNames = {
-    "session", "seat", "open", "design", "voting", "vote", "close", "migrated", "plan", "shown"};
-constexpr std::size_t kNamesOfFormat2 = 8;
+constexpr std::array<std::string_view, 13> kNames = {"session",
+                                                     "seat",
+                                                     "open",
+                                                     "design",
+                                                     "voting",
+                                                     "vote",
+                                                     "close",
+                                                     "migrated",
+                                                     "plan",
+                                                     "shown",
+                                                     "series",
+                                                     "scale",
+                                                     "rated"};
+
+std::size_t names_of_format(int format) { return format < 3 ? 8 : format < 4 ? 10 : kNames.size(); }
 
 std::string_view name_of(LogEntry::What what) { return kNames[static_cast<std::size_t>(what)]; }
 
@@ -65,7 +77,7 @@ std::string as_text(const Database& database, const DatabaseValue& value) {
 
 std::vector<std::string> log_schema(int format) {
     std::string names;
-    for (std::size_t k = 0; k < (format < 3 ? kNamesOfFormat2 : kNames.size()); ++k) {
+    for (std::size_t k = 0; k < names_of_format(format); ++k) {
         names += (names.empty() ? "'" : ", '") + std::string(kNames[k]) + "'";
     }
     std::vector<std::string> statements = {

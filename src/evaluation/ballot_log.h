@@ -22,7 +22,14 @@ struct LogEntry {
         migrated,  ///< `text` is the last hash of the log of an older file
         plan,      ///< how the round is presented: `text` as text_of(PresentationPlan)
         shown,     ///< what the audience sees from now on: `text` as text_of(PresentationState),
-                   ///< `best` the design or -1, `second` its place, `seat` the sitting
+                   ///< `best` the design or -1, `second` its place, `seat` the sitting, `least` 1
+                   ///< where the people of that sitting vote
+        series,    ///< the round is one of a series of blind repeats: `seat` is the first one's
+                   ///< round, `best` how many are wanted, `second` the round that it follows or 0
+        scale,     ///< the round asks for it: `text` is the two words with a tab between, `best`
+                   ///< its index
+        rated      ///< an answer on a scale: `best` the design, `second` the scale, `least` the
+                   ///< step from 1, or -1 where an answer is taken back
     };
     What what = What::open;
     int session = 0, round = 0, seat = 0;
@@ -33,8 +40,9 @@ struct LogEntry {
     std::string hash = {};  ///< the same
 };
 
-/// The statements that make its table and keep it as it is; format 2 knew no presentations.
-std::vector<std::string> log_schema(int format = 3);
+/// The statements that make its table and keep it as it is. Format 2 knew no presentations, format
+/// 3 neither series nor scales.
+std::vector<std::string> log_schema(int format = 4);
 
 /// Appends, within the caller's transaction, and fills in `id` and `hash`.
 void append_to_log(Database& database, LogEntry& entry);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "evaluation/evaluator_name.h"
+#include "evaluation/presenting/presentation.h"
 
 namespace livery {
 
@@ -14,11 +15,17 @@ namespace {
 /// Everything that is recorded, from the log or from the tables, to be compared.
 struct Books {
     using Ballot = std::tuple<int, int, int, std::string, int>;  // choices, time, log entry
+    using Rating = std::tuple<int, std::string, int>;            // step, time, log entry
     struct Round {
         int session = 0, asks_least = 0, seed = 0;
         std::string created, calibration_id, voting, closed;
-        std::map<int, std::pair<std::string, int>> designs;  // name and code by index
-        std::map<int, Ballot> ballots;                       // by seat
+        std::map<int, std::pair<std::string, int>> designs;         // name and code by index
+        std::map<int, Ballot> ballots;                              // by seat
+        std::map<int, std::string> waves;                           // since when each votes
+        std::map<int, int> sitters;                                 // their waves, by seat
+        std::tuple<int, int, int> series;                           // as the log's entry has it
+        std::map<int, std::pair<std::string, std::string>> scales;  // words by index
+        std::map<std::tuple<int, int, int>, Rating> ratings;        // by seat, design and scale
         bool operator==(const Round&) const = default;
     };
     using Seat = std::tuple<std::string, std::string, std::string>;  // key, name, time
@@ -31,9 +38,17 @@ std::string key_of(const LogEntry& seat) {
     return seat.best != 0 ? phone_seat_key(seat.text) : named_seat_key(seat.text);
 }
 
+/// The two words of a scale.
+std::pair<std::string, std::string> words_in(const LogEntry& scale) {
+    const std::size_t tab = scale.text.find('\t');
+    if (tab == std::string::npos) return {scale.text, ""};
+    return {scale.text.substr(0, tab), scale.text.substr(tab + 1)};
+}
+
 std::string name_in(const LogEntry& seat) { return seat.best != 0 ? std::string() : seat.text; }
 
-void apply(Books& books, const LogEntry& entry) {
+/// `file` is named where an entry's text cannot be read.
+void apply(Books& books, const LogEntry& entry, const std::string& file) {
     using What = LogEntry::What;
     switch (entry.what) {
         case What::session:
@@ -64,14 +79,63 @@ void apply(Books& books, const LogEntry& entry) {
         case What::close:
             books.rounds[entry.round].closed = entry.at;
             return;
+        case What::plan: {
+            Books::Round& round = books.rounds[entry.round];
+            const auto seats = parse_plan(entry.text, file).seats;
+            for (std::size_t wave = 0; wave < seats.size(); ++wave) {
+                round.waves[static_cast<int>(wave)] = "";
+                for (const int seat : seats[wave]) round.sitters[seat] = static_cast<int>(wave);
+            }
+            return;
+        }
+        case What::shown: {
+            auto& waves = books.rounds[entry.round].waves;
+            const auto wave = waves.find(entry.seat);
+            if (entry.least == 1 && wave != waves.end() && wave->second.empty()) {
+                wave->second = entry.at;
+            }
+            return;
+        }
+        case What::series:
+            books.rounds[entry.round].series = {entry.seat, entry.best, entry.second};
+            return;
+        case What::scale:
+            books.rounds[entry.round].scales[entry.best] = words_in(entry);
+            return;
+        case What::rated:
+            books.rounds[entry.round].ratings[{entry.seat, entry.best, entry.second}] = {
+                entry.least, entry.at, entry.id};
+            return;
         case What::migrated:
-        case What::plan:
-        case What::shown:
             return;
     }
 }
 
-Books books_of_tables(Database& database) {
+/// What formats before the fourth did not have.
+void add_newer_books(Database& database, Books& books) {
+    const auto number = [&](const DatabaseValue& value) { return as_int(database, value); };
+    const auto text = [&](const DatabaseValue& value) { return as_text(database, value); };
+    for (const auto& row : database.run("SELECT round, wave, coalesce(voting, '') FROM waves")) {
+        books.rounds[number(row[0])].waves[number(row[1])] = text(row[2]);
+    }
+    for (const auto& row : database.run("SELECT round, seat, wave FROM sitters")) {
+        books.rounds[number(row[0])].sitters[number(row[1])] = number(row[2]);
+    }
+    for (const auto& row :
+         database.run("SELECT round, series, repeats, coalesce(follows, 0) FROM series")) {
+        books.rounds[number(row[0])].series = {number(row[1]), number(row[2]), number(row[3])};
+    }
+    for (const auto& row : database.run("SELECT round, position, low, high FROM scales")) {
+        books.rounds[number(row[0])].scales[number(row[1])] = {text(row[2]), text(row[3])};
+    }
+    for (const auto& row : database.run("SELECT round, seat, design, scale, coalesce(step, -1), "
+                                        "at, entry FROM ratings")) {
+        books.rounds[number(row[0])].ratings[{number(row[1]), number(row[2]), number(row[3])}] = {
+            number(row[4]), text(row[5]), number(row[6])};
+    }
+}
+
+Books books_of_tables(Database& database, int format) {
     Books books;
     const auto number = [&](const DatabaseValue& value) { return as_int(database, value); };
     const auto text = [&](const DatabaseValue& value) { return as_text(database, value); };
@@ -101,7 +165,21 @@ Books books_of_tables(Database& database) {
         books.rounds[number(row[0])].ballots[number(row[1])] = {
             number(row[2]), number(row[3]), number(row[4]), text(row[5]), number(row[6])};
     }
+    if (format >= 4) add_newer_books(database, books);
     return books;
+}
+
+void record_waves(Database& database, const LogEntry& plan) {
+    const auto seats = parse_plan(plan.text, database.file().string()).seats;
+    const std::int64_t round = plan.round, session = plan.session;
+    for (std::size_t k = 0; k < seats.size(); ++k) {
+        const auto wave = static_cast<std::int64_t>(k);
+        database.run("INSERT INTO waves VALUES (?1, ?2, NULL)", {round, wave});
+        for (const int seat : seats[k]) {
+            database.run("INSERT INTO sitters VALUES (?1, ?2, ?3, ?4)",
+                         {session, round, std::int64_t{seat}, wave});
+        }
+    }
 }
 
 }  // namespace
@@ -163,6 +241,63 @@ std::vector<std::string> ballot_tables_schema() {
         " FOREIGN KEY (round, second) REFERENCES designs (round, position),"
         " FOREIGN KEY (round, least) REFERENCES designs (round, position)"
         ") STRICT, WITHOUT ROWID",
+        // Groups of people who sit before the mock-up one after the other; who is in none votes at
+        // any time.
+        "CREATE TABLE waves ("
+        " round INTEGER NOT NULL REFERENCES rounds (id),"
+        " wave INTEGER NOT NULL CHECK (wave >= 0),"
+        " voting TEXT,"
+        " PRIMARY KEY (round, wave)) STRICT, WITHOUT ROWID",
+        "CREATE TABLE sitters ("
+        " session INTEGER NOT NULL,"
+        " round INTEGER NOT NULL,"
+        " seat INTEGER NOT NULL,"
+        " wave INTEGER NOT NULL,"
+        " PRIMARY KEY (round, seat),"
+        " FOREIGN KEY (session, round) REFERENCES rounds (session, id),"
+        " FOREIGN KEY (session, seat) REFERENCES seats (session, seat),"
+        " FOREIGN KEY (round, wave) REFERENCES waves (round, wave)) STRICT, WITHOUT ROWID",
+        // Blind repeats; the first one gives the series its number.
+        "CREATE TABLE series ("
+        " round INTEGER PRIMARY KEY REFERENCES rounds (id),"
+        " series INTEGER NOT NULL REFERENCES rounds (id) CHECK (series <= round),"
+        " repeats INTEGER NOT NULL CHECK (repeats > 1),"
+        " follows INTEGER REFERENCES rounds (id) CHECK (follows < series)) STRICT",
+        "CREATE TABLE scales ("
+        " round INTEGER NOT NULL REFERENCES rounds (id),"
+        " position INTEGER NOT NULL CHECK (position BETWEEN 0 AND 4),"
+        " low TEXT NOT NULL CHECK (low <> ''),"
+        " high TEXT NOT NULL CHECK (high <> '' AND high <> low),"
+        " PRIMARY KEY (round, position), UNIQUE (round, low, high)) STRICT, WITHOUT ROWID",
+        // Who has not voted has no say on scales either.
+        "CREATE TABLE ratings ("
+        " session INTEGER NOT NULL,"
+        " round INTEGER NOT NULL,"
+        " seat INTEGER NOT NULL,"
+        " design INTEGER NOT NULL,"
+        " scale INTEGER NOT NULL,"
+        " step INTEGER CHECK (step BETWEEN 1 AND 7),"
+        " at TEXT NOT NULL,"
+        " entry INTEGER NOT NULL REFERENCES log (id),"
+        " PRIMARY KEY (session, round, seat, design, scale),"
+        " FOREIGN KEY (session, round, seat) REFERENCES ballots (session, round, seat),"
+        " FOREIGN KEY (round, design) REFERENCES designs (round, position),"
+        " FOREIGN KEY (round, scale) REFERENCES scales (round, position)"
+        ") STRICT, WITHOUT ROWID",
+        "CREATE TRIGGER ballot_in_turn BEFORE INSERT ON ballots"
+        " WHEN EXISTS (SELECT 1 FROM sitters JOIN waves USING (round, wave)"
+        " WHERE round = new.round AND seat = new.seat AND voting IS NULL)"
+        " BEGIN SELECT RAISE(ABORT, 'the turn of this seat is still to come'); END",
+        "CREATE TRIGGER rating_in_time BEFORE INSERT ON ratings"
+        " WHEN (SELECT closed FROM rounds WHERE id = new.round) IS NOT NULL"
+        " BEGIN SELECT RAISE(ABORT, 'the round is closed'); END",
+        "CREATE TRIGGER rating_changed_in_time BEFORE UPDATE ON ratings"
+        " WHEN (SELECT closed FROM rounds WHERE id = old.round) IS NOT NULL"
+        " BEGIN SELECT RAISE(ABORT, 'the round is closed'); END",
+        "CREATE TRIGGER rating_kept BEFORE DELETE ON ratings"
+        " BEGIN SELECT RAISE(ABORT, 'ratings are not deleted'); END",
+        "CREATE TRIGGER sitter_kept BEFORE DELETE ON sitters"
+        " BEGIN SELECT RAISE(ABORT, 'who sits in which wave stays'); END",
         "CREATE TRIGGER ballot_in_time BEFORE INSERT ON ballots"
         " WHEN (SELECT voting IS NULL OR closed IS NOT NULL FROM rounds WHERE id = new.round)"
         " BEGIN SELECT RAISE(ABORT, 'the round is not open for votes'); END",
@@ -225,17 +360,49 @@ void record(Database& database, LogEntry entry) {
         case What::close:
             database.run("UPDATE rounds SET closed = ?2 WHERE id = ?1", {round, entry.at});
             return;
-        case What::migrated:
         case What::plan:
+            record_waves(database, entry);
+            return;
         case What::shown:
+            if (entry.least != 1) return;
+            database.run(
+                "UPDATE waves SET voting = ?3 WHERE round = ?1 AND wave = ?2 AND voting IS NULL",
+                {round, seat, entry.at});
+            return;
+        case What::series:
+            database.run(
+                "INSERT INTO series VALUES (?1, ?2, ?3, ?4)",
+                {round, seat, best, second == 0 ? DatabaseValue() : DatabaseValue(second)});
+            return;
+        case What::scale: {
+            const auto [low, high] = words_in(entry);
+            database.run("INSERT INTO scales VALUES (?1, ?2, ?3, ?4)", {round, best, low, high});
+            return;
+        }
+        case What::rated:
+            database.run(
+                "INSERT INTO ratings VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8) "
+                "ON CONFLICT (session, round, seat, design, scale) DO UPDATE SET "
+                "step = excluded.step, at = excluded.at, entry = excluded.entry",
+                {session,
+                 round,
+                 seat,
+                 best,
+                 second,
+                 entry.least < 0 ? DatabaseValue() : DatabaseValue(std::int64_t{entry.least}),
+                 entry.at,
+                 std::int64_t{entry.id}});
+            return;
+        case What::migrated:
             return;
     }
 }
 
-void check_against_log(Database& database) {
+void check_against_log(Database& database, int format) {
     Books logged;
-    for (const LogEntry& entry : read_log(database)) apply(logged, entry);
-    const Books kept = books_of_tables(database);
+    const std::string file = database.file().string();
+    for (const LogEntry& entry : read_log(database)) apply(logged, entry, file);
+    const Books kept = books_of_tables(database, format);
     for (const auto& [id, round] : logged.rounds) {
         const std::string field = "round " + std::to_string(id);
         const auto found = kept.rounds.find(id);

@@ -17,7 +17,8 @@ std::vector<std::string> ballot_tables_schema();
 void record(Database& database, LogEntry entry);
 
 /// Throws FileError when the log's chain is broken, or when the tables are not what it leads to.
-void check_against_log(Database& database);
+/// `format`: that of the file.
+void check_against_log(Database& database, int format = 4);
 
 /// What makes a seat one: a name in any spelling (name_key), or a phone's secret, hashed.
 std::string named_seat_key(const std::string& name);

@@ -6,109 +6,23 @@
 #include "core/error.h"
 #include "core/utc.h"
 #include "evaluation/ballot_log.h"
+#include "evaluation/ballot_rows.h"
 #include "evaluation/ballot_tables.h"
 #include "evaluation/ballots_v1.h"
-#include "evaluation/ballots_v2.h"
+#include "evaluation/ballots_v3.h"
 #include "evaluation/design_codes.h"
 #include "evaluation/evaluator_name.h"
+#include "evaluation/presenting/sittings.h"
 
 namespace livery {
 
 namespace {
 
 constexpr std::int32_t kApplicationId = 0x4c765642;  // "LvVB"
-constexpr int kVersion = 3;
+constexpr int kVersion = 4;
 constexpr std::size_t kReceiptDigits = 8;
 
 using What = LogEntry::What;
-
-std::string round_name(int round) { return "round " + std::to_string(round); }
-
-Round round_from(Database& database, const std::vector<DatabaseValue>& row) {
-    Round round;
-    round.id = as_int(database, row[0]);
-    round.created = as_text(database, row[1]);
-    round.calibration_id = as_text(database, row[2]);
-    round.closed = as_int(database, row[3]) != 0;
-    round.ballots = as_int(database, row[4]);
-    round.session = as_int(database, row[5]);
-    round.seed = as_int(database, row[6]);
-    round.asks_least = as_int(database, row[7]) != 0;
-    round.voting = as_int(database, row[8]) != 0;
-    // A round's designs never change, so a second look is as good as the first.
-    for (const auto& design :
-         database.run("SELECT name, code FROM designs WHERE round = ?1 ORDER BY position",
-                      {std::int64_t{round.id}})) {
-        round.designs.push_back(as_text(database, design[0]));
-        round.codes.push_back(as_int(database, design[1]));
-    }
-    return round;
-}
-
-std::vector<Round> rounds_where(Database& database,
-                                const std::string& condition,
-                                const std::vector<DatabaseValue>& values) {
-    std::vector<Round> rounds;
-    for (const auto& row :
-         database.run("SELECT id, created, calibration_id, closed IS NOT NULL, "
-                      "(SELECT count(*) FROM ballots WHERE session = rounds.session AND "
-                      "round = rounds.id), session, seed, asks_least, voting IS NOT NULL "
-                      "FROM rounds " +
-                          condition,
-                      values)) {
-        rounds.push_back(round_from(database, row));
-    }
-    return rounds;
-}
-
-/// Throws std::invalid_argument: no such round.
-Round round_of(Database& database, int id) {
-    auto found = rounds_where(database, "WHERE id = ?1", {std::int64_t{id}});
-    if (found.empty()) {
-        const auto counted = database.run("SELECT count(*) FROM rounds");
-        throw std::invalid_argument("found " + round_name(id) + ", expected one of the " +
-                                    std::to_string(as_int(database, counted[0][0])) +
-                                    " rounds in " + database.file().string());
-    }
-    return std::move(found.front());
-}
-
-std::optional<int> newest_session(Database& database) {
-    const auto rows = database.run("SELECT id FROM sessions ORDER BY id DESC LIMIT 1");
-    if (rows.empty()) return std::nullopt;
-    return as_int(database, rows[0][0]);
-}
-
-/// Within the caller's transaction.
-int make_session(Database& database) {
-    const int session = newest_session(database).value_or(0) + 1;
-    record(database, {.what = What::session, .session = session, .at = utc_now()});
-    return session;
-}
-
-std::optional<int> seat_with_key(Database& database, int session, const std::string& key) {
-    const auto rows = database.run("SELECT seat FROM seats WHERE session = ?1 AND key = ?2",
-                                   {std::int64_t{session}, key});
-    if (rows.empty()) return std::nullopt;
-    return as_int(database, rows[0][0]);
-}
-
-/// The next number of the session, within the caller's transaction; `text` as in LogEntry.
-int make_seat(Database& database, int session, const std::string& text, bool phone) {
-    const int seat = as_int(database,
-                            database.run("SELECT coalesce(max(seat), 0) FROM seats "
-                                         "WHERE session = ?1",
-                                         {std::int64_t{session}})[0][0]) +
-                     1;
-    record(database,
-           {.what = What::seat,
-            .session = session,
-            .seat = seat,
-            .at = utc_now(),
-            .text = text,
-            .best = phone ? 1 : 0});
-    return seat;
-}
 
 const char* const kBallotColumns =
     "SELECT ballots.seat, ballots.best, ballots.second, ballots.least, log.hash "
@@ -168,6 +82,10 @@ void check_setup(const RoundSetup& setup) {
         check_plan(*setup.plan, static_cast<int>(setup.designs.size()));
         check_argument(setup.presenting, "open_round: found a plan for a round that votes at once");
     }
+    check_scales(setup.scales);
+    check_argument(!setup.series || setup.designs.size() == 2,
+                   "open_round: found " + std::to_string(setup.designs.size()) +
+                       " designs in a series of repeats, expected 2");
     if (setup.codes.empty()) return;
     check_argument(setup.codes.size() == setup.designs.size(),
                    "open_round: found " + std::to_string(setup.codes.size()) + " codes for " +
@@ -186,7 +104,9 @@ const std::vector<std::string>& ballots_schema() {
     static const std::vector<std::string> statements = [] {
         std::vector<std::string> all = ballot_tables_schema();
         for (std::string& statement : ballots_v1_schema()) all.push_back(std::move(statement));
-        for (std::string& statement : log_schema(2)) all.push_back(std::move(statement));
+        for (const int format : {2, 3}) {
+            for (std::string& statement : log_schema(format)) all.push_back(std::move(statement));
+        }
         return all;
     }();
     return statements;
@@ -199,8 +119,8 @@ BallotStore::BallotStore(const std::filesystem::path& file)
     if (database_.version() != kVersion) {
         if (database_.version() == 1) {
             migrate_ballots_v1(database_);
-        } else if (database_.version() == 2) {
-            migrate_ballots_v2(database_);
+        } else if (database_.version() == 2 || database_.version() == 3) {
+            migrate_ballots_v3(database_, database_.version());
         } else {
             for (const std::string& statement : ballot_tables_schema()) database_.run(statement);
         }
@@ -215,77 +135,6 @@ BallotStore::BallotStore(const std::filesystem::path& file)
     transaction.commit();
 }
 
-// --- sessions and seats ---
-
-int BallotStore::open_session() {
-    Transaction transaction(database_);
-    if (const auto other = open_round()) {
-        throw Refused(round_name(other->id) + " is still open",
-                      "close it before the next audience comes in");
-    }
-    const int session = make_session(database_);
-    transaction.commit();
-    return session;
-}
-
-std::optional<int> BallotStore::session() const { return newest_session(database_); }
-
-std::optional<Invitation> BallotStore::invitation(int session) const {
-    const auto rows =
-        database_.run("SELECT token, code, code_until FROM invitations WHERE session = ?1",
-                      {std::int64_t{session}});
-    if (rows.empty()) return std::nullopt;
-    const auto* until = std::get_if<std::int64_t>(&rows[0][2]);
-    return Invitation{
-        as_text(database_, rows[0][0]), as_text(database_, rows[0][1]), until ? *until : 0};
-}
-
-void BallotStore::invite(int session, const Invitation& invitation) {
-    database_.run(
-        "INSERT INTO invitations VALUES (?1, ?2, ?3, ?4) ON CONFLICT (session) DO "
-        "UPDATE SET token = excluded.token, code = excluded.code, "
-        "code_until = excluded.code_until",
-        {std::int64_t{session}, invitation.token, invitation.code, invitation.code_until_s});
-}
-
-int BallotStore::join(int session, const std::string& secret_hash, int most_seats) {
-    Transaction transaction(database_);
-    if (const auto seat = seat_with_key(database_, session, phone_seat_key(secret_hash))) {
-        return *seat;
-    }
-    if (session != newest_session(database_)) {
-        throw Refused("this session is over", "join the one that is shown now");
-    }
-    if (const auto round = open_round()) {
-        throw Refused(round_name(round->id) + " has begun", "join before the next round");
-    }
-    const int phones =
-        as_int(database_,
-               database_.run("SELECT count(*) FROM seats WHERE session = ?1 AND key LIKE 'phone:%'",
-                             {std::int64_t{session}})[0][0]);
-    if (phones >= most_seats) {
-        throw Refused("all " + std::to_string(most_seats) + " seats are taken",
-                      "ask the operator for more, or for a ballot on paper");
-    }
-    const int seat = make_seat(database_, session, secret_hash, true);
-    transaction.commit();
-    return seat;
-}
-
-std::optional<int> BallotStore::seat_of_phone(int session, const std::string& secret_hash) const {
-    return seat_with_key(database_, session, phone_seat_key(secret_hash));
-}
-
-std::vector<Seat> BallotStore::seats(int session) const {
-    std::vector<Seat> seats;
-    for (const auto& row :
-         database_.run("SELECT seat, name FROM seats WHERE session = ?1 ORDER BY seat",
-                       {std::int64_t{session}})) {
-        seats.push_back({as_int(database_, row[0]), as_text(database_, row[1])});
-    }
-    return seats;
-}
-
 // --- rounds ---
 
 int BallotStore::open_round(const RoundSetup& setup) {
@@ -296,6 +145,7 @@ int BallotStore::open_round(const RoundSetup& setup) {
     }
     auto session = newest_session(database_);
     if (!session) session = make_session(database_);
+    if (setup.series) check_series(setup, *session);
     const int round =
         as_int(database_, database_.run("SELECT coalesce(max(id), 0) FROM rounds")[0][0]) + 1;
     const auto codes = setup.codes.empty() ? draw_codes(static_cast<int>(setup.designs.size()),
@@ -317,6 +167,21 @@ int BallotStore::open_round(const RoundSetup& setup) {
         design.second = codes[k];
         record(database_, design);
     }
+    for (std::size_t k = 0; k < setup.scales.size(); ++k) {
+        LogEntry scale = base;
+        scale.what = What::scale;
+        scale.text = setup.scales[k].low + '\t' + setup.scales[k].high;
+        scale.best = static_cast<int>(k);
+        record(database_, scale);
+    }
+    if (setup.series) {
+        LogEntry series = base;
+        series.what = What::series;
+        series.seat = setup.series->series == 0 ? round : setup.series->series;
+        series.best = setup.series->repeats;
+        series.second = setup.series->follows;
+        record(database_, series);
+    }
     if (!setup.presenting) {
         LogEntry voting = base;
         voting.what = What::voting;
@@ -325,7 +190,12 @@ int BallotStore::open_round(const RoundSetup& setup) {
     if (setup.plan) {
         LogEntry plan = base;
         plan.what = What::plan;
-        plan.text = text_of(*setup.plan);
+        PresentationPlan dealt = *setup.plan;
+        const auto phones = phone_seats(database_, *session);
+        if (dealt.sittings.size() > 1 && dealt.seats.empty() && !phones.empty()) {
+            dealt.seats = deal_seats(phones, static_cast<int>(dealt.sittings.size()));
+        }
+        plan.text = text_of(dealt);
         record(database_, plan);
     }
     transaction.commit();
@@ -424,6 +294,11 @@ CastBallot BallotStore::vote_within(int id,
             round_name(id) + " is still presented, so the ballot of " + who + " is too early",
             "vote when all looks have been shown");
     }
+    if (const Turn turn = turn_of(id, seat); !turn.votes) {
+        throw Refused("the ballot of " + who + " is too early: its turn comes with group " +
+                          std::to_string(turn.wave + 1) + " of " + std::to_string(turn.waves),
+                      "vote when that group has seen all looks");
+    }
     if (const auto present = ballot_at(database_, round, seat);
         present && present->choices == choices) {
         return *present;
@@ -461,6 +336,7 @@ std::vector<CastBallot> BallotStore::ballots(int id) const {
         throw Refused(round_name(id) + " is open: votes told now would sway those to come",
                       "close the round, then ask for its ballots");
     }
+    check_told(round);
     std::vector<CastBallot> ballots;
     for (const auto& row :
          database_.run(std::string(kBallotColumns) + "WHERE ballots.session = ?1 AND "
@@ -477,6 +353,7 @@ Tally BallotStore::tally(int id) const {
         throw Refused(round_name(id) + " is open: counts told now would sway the votes to come",
                       "close the round, then ask for its tally");
     }
+    check_told(round);
     Tally tally;
     tally.designs = round.designs;
     tally.best.resize(round.designs.size());

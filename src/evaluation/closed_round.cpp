@@ -1,7 +1,9 @@
 #include "evaluation/closed_round.h"
 
 #include <algorithm>
+#include <map>
 #include <system_error>
+#include <utility>
 
 #include "core/error.h"
 #include "core/shuffle.h"
@@ -30,6 +32,24 @@ Round find_round(const BallotStore& store, std::optional<int> id) {
                   "close the round, then ask for what it says");
 }
 
+ScaleAnswers no_answers(const Round& round) {
+    return {round.designs.size(), std::vector<int>(round.scales.size(), 0)};
+}
+
+std::map<int, ScaleAnswers> answers_by_seat(const BallotStore& store, const Round& round) {
+    std::map<int, ScaleAnswers> answers;
+    if (round.scales.empty()) return answers;
+    for (const CastRatings& cast : store.ratings(round.id)) {
+        ScaleAnswers& own = answers.try_emplace(cast.seat, no_answers(round)).first->second;
+        for (const auto& [design, steps] : cast.steps) {
+            for (std::size_t scale = 0; scale < steps.size(); ++scale) {
+                own.at(static_cast<std::size_t>(design))[scale] = steps[scale].value_or(0);
+            }
+        }
+    }
+    return answers;
+}
+
 }  // namespace
 
 ClosedRound read_closed_round(const std::filesystem::path& file,
@@ -43,18 +63,32 @@ ClosedRound read_closed_round(const std::filesystem::path& file,
     const BallotStore store(file);
     const Round round = find_round(store, id);
     ClosedRound closed{round.id, round.created, round.calibration_id, round.designs, {}, false};
+    closed.scales = round.scales;
+    struct Evaluator {
+        RankedBallot ballot;
+        ScaleAnswers answers;
+    };
+    std::vector<Evaluator> evaluators;
     // Which refuses an open one
-    for (const CastBallot& cast : store.ballots(round.id)) {
-        closed.ballots.push_back(
-            {cast.choices.best, cast.choices.second, cast.choices.least.value_or(-1)});
+    const auto cast = store.ballots(round.id);
+    const auto ratings = answers_by_seat(store, round);
+    for (const CastBallot& one : cast) {
+        const auto found = ratings.find(one.seat);
+        evaluators.push_back(
+            {{one.choices.best, one.choices.second, one.choices.least.value_or(-1)},
+             found == ratings.end() ? no_answers(round) : found->second});
+    }
+    // In the order of the file neighbours would stay neighbours.
+    constexpr std::uint64_t stream = 3;
+    Random random(seed, stream);
+    shuffle(evaluators, random);
+    for (Evaluator& one : evaluators) {
+        closed.ballots.push_back(one.ballot);
+        if (!round.scales.empty()) closed.answers.push_back(std::move(one.answers));
     }
     const auto names_least = [](const RankedBallot& ballot) { return ballot.least >= 0; };
     closed.all_name_least = closed.designs.size() > 2 && !closed.ballots.empty() &&
                             std::all_of(closed.ballots.begin(), closed.ballots.end(), names_least);
-    // In the order of the file neighbours would stay neighbours.
-    constexpr std::uint64_t stream = 3;
-    Random random(seed, stream);
-    shuffle(closed.ballots, random);
     return closed;
 }
 
@@ -67,13 +101,26 @@ std::string ballots_csv(const ClosedRound& round, std::uint64_t seed) {
         std::any_of(round.ballots.begin(), round.ballots.end(), [](const RankedBallot& ballot) {
             return ballot.least >= 0;
         });
-    text += any_least ? "best,second,least\r\n" : "best,second\r\n";
+    text += any_least ? "best,second,least" : "best,second";
+    for (const std::string& design : round.designs) {
+        for (const SemanticScale& scale : round.scales) {
+            text += ',' + csv_field(design + ": " + scale.low + " - " + scale.high);
+        }
+    }
+    text += "\r\n";
     const auto name = [&](int design) {
         return csv_field(round.designs[static_cast<std::size_t>(design)]);
     };
-    for (const RankedBallot& ballot : round.ballots) {
+    for (std::size_t k = 0; k < round.ballots.size(); ++k) {
+        const RankedBallot& ballot = round.ballots[k];
         text += name(ballot.best) + ',' + name(ballot.second);
         if (any_least) text += ',' + (ballot.least >= 0 ? name(ballot.least) : std::string());
+        for (std::size_t design = 0; k < round.answers.size() && design < round.designs.size();
+             ++design) {
+            for (const int step : round.answers[k][design]) {
+                text += ',' + (step > 0 ? std::to_string(step) : std::string());
+            }
+        }
         text += "\r\n";
     }
     return text;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "evaluation/statistics/scale_statistics.h"
 #include "evaluation/statistics/vote_counts.h"
 
 namespace livery {
@@ -18,6 +19,8 @@ struct ClosedRound {
     std::vector<std::string> designs;
     std::vector<RankedBallot> ballots;  ///< without who cast them, in an order of chance
     bool all_name_least = false;        ///< only then can the statistics take it into account
+    std::vector<SemanticScale> scales = {};
+    std::vector<ScaleAnswers> answers = {};  ///< on scales, of the same evaluator as the ballot
 };
 
 /// One round of a ballots file, the last closed one where no id is given; `seed` is the order's.
@@ -27,7 +30,8 @@ ClosedRound read_closed_round(const std::filesystem::path& file,
                               std::optional<int> id,
                               std::uint64_t seed);
 
-/// "best,second", with "least" where a ballot names one, and a line a ballot, as RFC 4180 quotes,
+/// "best,second", with "least" where a ballot names one, then the steps on each scale of each look
+/// ("red: cheap - precious", empty where there is none), and a line a ballot, as RFC 4180 quotes,
 /// after lines that begin with # and say which round it is and which seed gave the order. UTF-8.
 std::string ballots_csv(const ClosedRound& round, std::uint64_t seed);
 

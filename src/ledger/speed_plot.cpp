@@ -15,7 +15,7 @@ constexpr double kLeft = 78.0, kRight = 742.0, kTop = 96.0, kBottom = 548.0;
 constexpr double kLabelHeight = 40.0, kRefresh_ms = 1000.0 / 60.0;
 constexpr const char* kInk = "#1d2430";
 
-struct Series {
+struct PlottedSeries {
     SwapStage stage;
     int threads;
     const char* colour;
@@ -40,7 +40,7 @@ std::string grid(const LogAxis& x, const LogAxis& y) {
     return svg;
 }
 
-std::string draw(const Series& series,
+std::string draw(const PlottedSeries& series,
                  const std::vector<SweepPoint>& sweep,
                  const LogAxis& x,
                  const LogAxis& y) {
@@ -95,15 +95,15 @@ std::string draw(const Series& series,
 }
 
 /// Labels beside the ends of their lines, none over another.
-void place_labels(std::vector<Series>& all, const LogAxis& y, double pixels) {
-    for (Series& series : all) {
+void place_labels(std::vector<PlottedSeries>& all, const LogAxis& y, double pixels) {
+    for (PlottedSeries& series : all) {
         series.label_px = y.at(series.law.scale * std::pow(pixels, series.law.slope));
     }
-    std::sort(all.begin(), all.end(), [](const Series& a, const Series& b) {
+    std::sort(all.begin(), all.end(), [](const PlottedSeries& a, const PlottedSeries& b) {
         return a.label_px < b.label_px;
     });
     double free_from = kTop + 6.0;
-    for (Series& series : all) {
+    for (PlottedSeries& series : all) {
         series.label_px = std::max(series.label_px, free_from);
         free_from = series.label_px + kLabelHeight;
     }
@@ -121,7 +121,7 @@ std::string sweep_svg(const std::vector<SweepPoint>& sweep) {
                            count,
                            count == 1 ? "thread" : "threads");
     };
-    std::vector<Series> all;
+    std::vector<PlottedSeries> all;
     const auto add = [&](SwapStage stage, int count, const char* colour, bool hollow) {
         all.push_back({stage,
                        count,
@@ -167,7 +167,7 @@ std::string sweep_svg(const std::vector<SweepPoint>& sweep) {
             largest->height,
             sweep.front().repeats));
     svg += grid(x, y);
-    for (const Series& series : all) svg += draw(series, sweep, x, y);
+    for (const PlottedSeries& series : all) svg += draw(series, sweep, x, y);
     return svg + svg_end();
 }
 

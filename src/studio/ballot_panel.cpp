@@ -3,7 +3,6 @@
 #include "studio/ballot_panel.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cfloat>
 #include <cmath>
 #include <optional>
@@ -13,9 +12,9 @@
 
 #include <fmt/format.h>
 #include <imgui.h>
-#include <imgui_stdlib.h>
 
 #include "core/error.h"
+#include "studio/ballot_pages.h"
 #include "studio/ballot_result.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/widgets.h"
@@ -37,35 +36,6 @@ namespace {
 
 using Page = BallotPanelState::Page;
 
-float big_height() { return em(2.4f); }
-
-ImVec2 thumbnail_size(float share = 1.0f) {
-    return {std::floor(share * em(8.0f)), std::floor(share * em(5.0f))};
-}
-
-/// Runs what the store may refuse and keeps the reason for the operator.
-template <typename Work>
-bool attempted(BallotPanelState& state, Work&& work) {
-    state.problem.clear();
-    try {
-        work();
-        return true;
-    } catch (const Refused& refused) {
-        state.problem = fmt::format("{}. {}.", refused.why(), refused.fix());
-    } catch (const std::exception& error) {
-        state.problem = error.what();
-    }
-    return false;
-}
-
-void read_rounds(Studio& studio) {
-    BallotPanelState& state = *studio.panels.ballot;
-    attempted(state, [&] {
-        state.others_changes = studio.ballots->others_changes();
-        state.rounds = studio.ballots->rounds();
-    });
-}
-
 /// What phones and other programs have done to the file meanwhile.
 void follow_others(Studio& studio) {
     BallotPanelState& state = *studio.panels.ballot;
@@ -76,21 +46,6 @@ void follow_others(Studio& studio) {
     }
 }
 
-void go_to(BallotPanelState& state, Page page) {
-    state.page = page;
-    state.problem.clear();
-    state.asking_to_close = false;
-    if (page == Page::vote) {
-        state.evaluator.clear();
-        state.best.reset();
-        state.second.reset();
-    }
-}
-
-std::string count_of(int ballots) {
-    return ballots == 1 ? "1 ballot" : fmt::format("{} ballots", ballots);
-}
-
 // --- starting a round ---
 
 void draw_looks_to_choose(Studio& studio) {
@@ -98,7 +53,7 @@ void draw_looks_to_choose(Studio& studio) {
     for (const SessionLook& look : studio.session.document().looks) {
         bool& chosen = state.chosen_looks.try_emplace(look.id, true).first->second;
         ImGui::PushID(look.id);
-        const ImVec2 size = thumbnail_size(0.45f);
+        const ImVec2 size = ballot_thumbnail_size(0.45f);
         const ImVec2 corner = ImGui::GetCursorScreenPos();
         draw_look_thumbnail(studio, look.look.name, corner, size);
         ImGui::Dummy(size);
@@ -160,11 +115,14 @@ void draw_start(Studio& studio) {
     draw_presentation_setup(studio, ids);
     ImGui::SameLine();
     begin_disabled(names.size() < 2);
-    if (ImGui::Button("Vote at once", {-FLT_MIN, big_height()})) {
+    if (ImGui::Button("Vote at once", {-FLT_MIN, em(2.4f)})) {
         const std::string calibration = studio.setup && studio.setup->calibration
                                             ? studio.setup->calibration->id
                                             : std::string();
-        if (attempted(state, [&] { studio.ballots->open_round(names, calibration); })) {
+        RoundSetup setup{names, calibration};
+        setup.asks_least = presenting_settings(studio).asks_least && names.size() > 2;
+        setup.scales = scales_asked(presenting_settings(studio));
+        if (attempted(state, [&] { studio.ballots->open_round(setup); })) {
             read_rounds(studio);
             go_to(state, Page::vote);
         }
@@ -177,227 +135,14 @@ void draw_start(Studio& studio) {
     draw_earlier_rounds(studio);
 }
 
-// --- voting ---
-
-/// Keys A, B, ... choose the best, then the second best; Backspace takes back.
-void follow_letter_keys(BallotPanelState& state, std::size_t designs) {
-    if (ImGui::GetIO().WantTextInput) return;
-    for (const ImWchar typed : ImGui::GetIO().InputQueueCharacters) {
-        const int lower = typed < 128 ? std::tolower(static_cast<int>(typed)) : 0;
-        if (lower < 'a' || lower > 'z') continue;
-        const int design = lower - 'a';
-        if (static_cast<std::size_t>(design) >= designs) continue;
-        if (!state.best) {
-            state.best = design;
-        } else if (state.best != design) {
-            state.second = design;
-        }
-    }
-    if (was_pressed(ImGuiKey_Backspace)) (state.second ? state.second : state.best).reset();
-}
-
-void draw_choice(std::optional<int>& choice,
-                 std::optional<int>& other,
-                 std::size_t design,
-                 const char* label,
-                 const char* name,
-                 float width) {
-    const int index = static_cast<int>(design);
-    const bool on = choice == index;
-    ImGui::PushID(name);
-    if (toggle_button(label, on, width)) {
-        if (on) {
-            choice.reset();
-        } else {
-            choice = index;
-            // One look cannot be both.
-            if (other == index) other.reset();
-        }
-    }
-    name_last_item(fmt::format("ballot:{}:{}", name, design));
-    ImGui::PopID();
-}
-
-/// The picture of a design; a click shows the look on the mock-up.
-void draw_picture(Studio& studio, const std::string& name, std::size_t design) {
-    const ImVec2 size = thumbnail_size(), corner = ImGui::GetCursorScreenPos();
-    const bool clicked = ImGui::InvisibleButton("picture", size);
-    name_last_item(fmt::format("ballot:picture:{}", design));
-    const bool hovered = ImGui::IsItemHovered();
-    draw_look_thumbnail(studio, name, corner, size);
-    const SessionLook* look = look_named(studio.session.document(), name);
-    const bool shown = look && look->id == studio.shown_look && !is_presenting(studio);
-    tooltip(is_presenting(studio) ? "The projector is the presentation's."
-            : !look               ? "The session has no look of this name any more."
-            : shown               ? "On the mock-up now."
-                                  : "Click to show it on the mock-up.");
-    if (shown || (look && hovered)) {
-        ImGui::GetWindowDrawList()->AddRect(
-            corner,
-            {corner.x + size.x, corner.y + size.y},
-            ImGui::GetColorU32(shown ? colours::text : colours::dim_text),
-            em(0.2f),
-            0,
-            std::max(1.5f, em(0.12f)));
-    }
-    if (clicked && look && !is_presenting(studio)) {
-        stop_trying(studio);
-        show_look(studio, look->id);
-    }
-}
-
-/// Its letter, large, and its name.
-void draw_title(const std::string& name, std::size_t design, float width) {
-    const ImVec2 corner = ImGui::GetCursorScreenPos();
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    ImFont& font = *large_font();
-    const std::string mark = design_letter(design);
-    const float indent = std::max(
-        em(1.7f), font.CalcTextSizeA(font.FontSize, FLT_MAX, 0.0f, mark.c_str()).x + em(0.5f));
-    const float height = 2.0f * ImGui::GetTextLineHeight() + em(0.3f);
-    const ImU32 colour = ImGui::GetColorU32(colours::text);
-    list.AddText(&font, font.FontSize, corner, colour, mark.c_str());
-    const auto lines = fitted_lines(name, width - indent, 2);
-    float y = corner.y + (lines.size() < 2 ? 0.5f * (font.FontSize - ImGui::GetFontSize()) : 0.0f);
-    for (const std::string& line : lines) {
-        list.AddText({corner.x + indent, y}, colour, line.c_str());
-        y += ImGui::GetTextLineHeight() + em(0.1f);
-    }
-    ImGui::Dummy({width, height});
-    tooltip(name);
-}
-
-void draw_designs(Studio& studio, const Round& round) {
-    BallotPanelState& state = *studio.panels.ballot;
-    const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
-    for (std::size_t i = 0; i < round.designs.size(); ++i) {
-        ImGui::PushID(static_cast<int>(i));
-        draw_picture(studio, round.designs[i], i);
-        ImGui::SameLine();
-        ImGui::BeginGroup();
-        const float width = ImGui::GetContentRegionAvail().x;
-        // Who votes on what was presented knows codes.
-        draw_title(
-            is_presenting(studio) ? fmt::format("{}", round.codes[i]) : round.designs[i], i, width);
-        const float half = std::floor(0.5f * (width - gap));
-        const bool room = half >= button_width("Second best");
-        draw_choice(state.best, state.second, i, "Best", "best", half);
-        ImGui::SameLine(0.0f, gap);
-        draw_choice(state.second, state.best, i, room ? "Second best" : "Second", "second", half);
-        ImGui::EndGroup();
-        ImGui::Dummy({0.0f, em(0.1f)});
-        ImGui::PopID();
-    }
-}
-
-void draw_closing(Studio& studio, const Round& round) {
-    BallotPanelState& state = *studio.panels.ballot;
-    // What is presented is locked where it is presented, in the bar.
-    if (is_presenting(studio)) {
-        if (ImGui::Button("Who has voted")) go_to(state, Page::start);
-        name_last_item("ballot:overview");
-        return;
-    }
-    if (!state.asking_to_close) {
-        if (ImGui::Button("Close the round…")) state.asking_to_close = true;
-        name_last_item("ballot:close");
-        tooltip("Ends the vote and shows the result.");
-        return;
-    }
-    warning_text(
-        fmt::format("Close round {} for good? Nobody can vote in it afterwards; then the "
-                    "result shows.",
-                    round.id));
-    const int id = round.id;
-    if (ImGui::Button("Close the round")) {
-        if (attempted(state, [&] { studio.ballots->close_round(id); })) {
-            read_rounds(studio);
-            go_to(state, Page::result);
-            state.shown_round = id;
-        }
-    }
-    name_last_item("ballot:close-confirmed");
-    ImGui::SameLine();
-    if (ImGui::Button("Keep it open")) state.asking_to_close = false;
-    name_last_item("ballot:keep-open");
-}
-
-void confirm(Studio& studio, const Round& round) {
-    BallotPanelState& state = *studio.panels.ballot;
-    const int id = round.id;
-    const Ballot ballot{state.evaluator, *state.best, *state.second};
-    if (!attempted(state, [&] { studio.ballots->vote(id, ballot); })) return;
-    read_rounds(studio);
-    state.thanked = state.evaluator;
-    go_to(state, Page::thanks);
-}
-
-void draw_vote(Studio& studio, const Round& round) {
-    BallotPanelState& state = *studio.panels.ballot;
-    heading(fmt::format("Round {}: your ballot", round.id).c_str());
-    row_label("Your name", 0.25f);
-    if (std::exchange(state.focus_name, false)) ImGui::SetKeyboardFocusHere();
-    ImGui::SetNextItemWidth(-1.0f);
-    ImGui::InputTextWithHint("##name", "Enter to type it", &state.evaluator);
-    name_last_item("ballot:name");
-    // Enter leaves the field, which is no confirmation yet.
-    const bool was_typing = ImGui::IsItemActive() || ImGui::IsItemDeactivated();
-    tooltip("One ballot a person: a second one under the same name replaces the first.");
-    ImGui::Spacing();
-    draw_designs(studio, round);
-    follow_letter_keys(state, round.designs.size());
-    dim_text(
-        fmt::format("Keys A to {} choose the best, then the second best; Backspace takes "
-                    "back.{}",
-                    design_letter(std::min(round.designs.size(), kLetters) - 1),
-                    is_presenting(studio) ? ""
-                                          : " 1, 2, 3 … show looks on the mock-up; black is "
-                                            "Ctrl+B, freeze Ctrl+F."));
-
-    const bool named = state.evaluator.find_first_not_of(' ') != std::string::npos;
-    const bool complete = named && state.best && state.second;
-    begin_disabled(!complete);
-    const bool pressed = ImGui::Button("Confirm the ballot", {-FLT_MIN, big_height()});
-    name_last_item("ballot:confirm");
-    end_disabled();
-    if (!complete) {
-        dim_text(!named          ? "Missing: your name."
-                 : !state.best   ? "Missing: the best look."
-                 : !state.second ? "Missing: the second best look."
-                                 : "");
-    }
-    ImGui::Spacing();
-    ImGui::Separator();
-    // Nothing is drawn from `round` after these: both read the rounds anew.
-    const bool enter = was_pressed(ImGuiKey_Enter) && !was_typing && !ImGui::GetIO().NavVisible;
-    if (enter && !named) state.focus_name = true;
-    if (complete && (pressed || enter)) {
-        confirm(studio, round);
-    } else {
-        draw_closing(studio, round);
-    }
-}
-
-void draw_thanks(Studio& studio, const Round& round) {
-    BallotPanelState& state = *studio.panels.ballot;
-    ImGui::PushFont(large_font());
-    ImGui::TextWrapped("Thank you, %s.", state.thanked.c_str());
-    ImGui::PopFont();
-    name_last_item("ballot:thanks");
-    ImGui::Text("%s in round %d.", count_of(round.ballots).c_str(), round.id);
-    ImGui::Spacing();
-    const bool next = ImGui::Button("Next ballot", {-FLT_MIN, big_height()});
-    name_last_item("ballot:next");
-    if (next || was_pressed(ImGuiKey_Enter)) {
-        go_to(state, Page::vote);
-        return;
-    }
-    ImGui::Spacing();
-    ImGui::Separator();
-    draw_closing(studio, round);
-}
-
 // --- the result ---
+
+void draw_back_to_rounds(Studio& studio) {
+    BallotPanelState& state = *studio.panels.ballot;
+    if (is_presenting(studio)) return;  // Back to editing, in the bar
+    if (ImGui::Button("All rounds")) go_to(state, open_round(state) ? Page::vote : Page::start);
+    name_last_item("ballot:rounds");
+}
 
 void draw_result(Studio& studio, const Round& round) {
     BallotPanelState& state = *studio.panels.ballot;
@@ -408,6 +153,7 @@ void draw_result(Studio& studio, const Round& round) {
                          round.calibration_id.empty()
                              ? std::string("shown uncorrected")
                              : "shown under calibration " + round.calibration_id.substr(0, 8)));
+    if (!draw_duel(studio, round)) return draw_back_to_rounds(studio);
     Tally tally;
     if (!attempted(state, [&] { tally = studio.ballots->tally(round.id); })) return;
     draw_verdict(studio, round);
@@ -419,10 +165,8 @@ void draw_result(Studio& studio, const Round& round) {
     if (ImGui::Button("Write the report")) write_round_report(studio, round);
     name_last_item("ballot:report");
     tooltip("Verdict, charts, looks and log as PDF and HTML, beside the ballots.");
-    if (is_presenting(studio)) return;  // Back to editing, in the bar
-    ImGui::SameLine();
-    if (ImGui::Button("All rounds")) go_to(state, open_round(state) ? Page::vote : Page::start);
-    name_last_item("ballot:rounds");
+    if (!is_presenting(studio)) ImGui::SameLine();
+    draw_back_to_rounds(studio);
 }
 
 /// While the bar above leads through a round.

@@ -26,8 +26,9 @@ void draw_tally(const Tally& tally, const std::vector<int>& codes) {
     const std::size_t designs = std::min(tally.designs.size(), most);
     const bool scrolls = designs > shared;
     const float row_height = ImGui::GetTextLineHeight() + 2.0f * ImGui::GetStyle().CellPadding.y;
-    const float height =
-        scrolls ? 3.0f * row_height + ImGui::GetStyle().ScrollbarSize + em(0.4f) : 0.0f;
+    const float height = scrolls ? (tally.least.empty() ? 3.0f : 4.0f) * row_height +
+                                       ImGui::GetStyle().ScrollbarSize + em(0.4f)
+                                 : 0.0f;
     const ImGuiTableFlags flags =
         ImGuiTableFlags_Borders | ImGuiTableFlags_RowBg |
         (scrolls ? ImGuiTableFlags_ScrollX | ImGuiTableFlags_SizingFixedFit
@@ -47,6 +48,9 @@ void draw_tally(const Tally& tally, const std::vector<int>& codes) {
     row("", [](std::size_t i) { return design_letter(i); });
     row("Best", [&](std::size_t i) { return fmt::format("{}", tally.best[i]); });
     row("Second best", [&](std::size_t i) { return fmt::format("{}", tally.second[i]); });
+    if (!tally.least.empty()) {
+        row("Least liked", [&](std::size_t i) { return fmt::format("{}", tally.least[i]); });
+    }
     ImGui::EndTable();
     for (std::size_t i = 0; i < tally.designs.size(); ++i) {
         const std::string code = i < codes.size() ? fmt::format("  {}", codes[i]) : "";

@@ -117,6 +117,9 @@ def forged(port, end, codes, stolen):
             good = {"round": 1, "best": codes[0], "second": codes[1]}
             for name in ("round", "best", "second", "least", "seat", text):
                 check(phone.ask("PUT", "/ballot", {**good, name: text})[0] in (400, 401, 413), f"{name}: {text}")
+            for name in ("round", "look", "steps", "seat", text):
+                check(phone.ask("PUT", "/scales", {"round": 1, "look": codes[0], "steps": [1], name: text})[0] in
+                      (400, 401, 413), f"{name}: {text}")
             for headers in ({"Host": "evil.example"}, {"Host": f"127.0.0.1:{port}.evil.example"}):
                 check(phone.ask("PUT", "/ballot", good, headers)[0] == 421, f"{headers}")
             for origin in ("http://evil.example", "null", f"http://127.0.0.1:{port + 1}"):
@@ -139,7 +142,7 @@ def forged(port, end, codes, stolen):
     print(f"forged: {guesses} rounds of forged requests, all refused")
 
 
-def honest(phone, round_, codes, end, waits, last):
+def honest(phone, round_, codes, end, waits, last, steps):
     """Polls about once a second and votes now and then, as the page does."""
     chance = random.Random(phone.seat)
     while time.monotonic() < end:
@@ -153,6 +156,10 @@ def honest(phone, round_, codes, end, waits, last):
             waits.append(time.monotonic() - begin)
             check(status == 200, f"an honest vote: {status} {answer}")
             last[phone.seat] = (*choice, answer["receipt"])
+            step = chance.randint(1, 7)
+            status, _, answer = phone.ask("PUT", "/scales", {"round": round_, "look": codes[0], "steps": [step]})
+            check(status == 200, f"an honest answer: {status} {answer}")
+            steps[phone.seat] = step
         time.sleep(chance.uniform(0.1, 0.5))
 
 
@@ -161,7 +168,7 @@ with serving() as server:
     phones = [Phone(server, "127.0.0.30") for _ in range(SEATS)]
     for phone in phones:
         phone.join(token)
-    round_ = server.operator("open", "a,b,c,d")
+    round_ = server.operator("open", "a,b,c,d", "scale=cheap,precious")
     codes = server.operator("show")["rounds"][-1]["codes"]
     quiet_kb = server.memory_kb()
 
@@ -171,7 +178,7 @@ with serving() as server:
                  multiprocessing.Process(target=forged, args=(server.port, end, codes, phones[0].cookie))]
     for attacker in attackers:
         attacker.start()
-    waits, last, open_files = [], {}, []
+    waits, last, steps, open_files = [], {}, {}, []
 
     def count_connections():
         while time.monotonic() < end:
@@ -179,7 +186,7 @@ with serving() as server:
             time.sleep(0.2)
 
     at_once([count_connections,
-             *(lambda phone=phone: honest(phone, round_, codes, end, waits, last) for phone in phones)])
+             *(lambda phone=phone: honest(phone, round_, codes, end, waits, last, steps) for phone in phones)])
     for attacker in attackers:
         attacker.join()
         check(attacker.exitcode == 0, "an attacker got what it should not")
@@ -191,6 +198,8 @@ with serving() as server:
     kept = {int(seat): (codes[best], codes[second], receipt)
             for seat, (best, second, receipt) in server.operator("ballots", round_).items()}
     check(kept == last, f"kept {kept}, confirmed {last}")
+    answered = {int(seat): placed[str(codes[0])][0] for seat, placed in server.operator("ratings", round_).items()}
+    check(answered == steps, f"answers kept {answered}, confirmed {steps}")
     check(server.operator("show")["seats"] == SEATS, "seats that nobody honest took")
     check(max(open_files) > CLIENTS, f"only {max(open_files)} connections: that was no attack")
     waits.sort()

@@ -1,7 +1,11 @@
 // The operator's side of a ballots file, for tests in other languages: one command, JSON on stdout.
 //
 //   ballot_operator FILE open NAMES [present] [least]   a round, names with commas; its number
+//                                                       `waves=2`: in as many waves of seats;
+//                                                       `scale=cheap,precious`: asked after it
+//   ballot_operator FILE ratings ROUND                  of a locked round: {"seat": {"code": []}}
 //   ballot_operator FILE voting|lock ROUND
+//   ballot_operator FILE sitting ROUND NUMBER PHASE     a presented round's step (from 0; "voting")
 //   ballot_operator FILE invitation                     {"token", "code"}, or null
 //   ballot_operator FILE show                           checks the log; rounds, seats, who has
 //   voted ballot_operator FILE ballots ROUND                  of a locked round: {"seat": [best,
@@ -11,6 +15,7 @@
 #include <ctime>
 #include <exception>
 #include <filesystem>
+#include <numeric>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -86,11 +91,27 @@ Json done(BallotStore& store, const std::vector<std::string>& words) {
         for (std::size_t k = 2; k < words.size(); ++k) {
             setup.presenting = setup.presenting || words[k] == "present";
             setup.asks_least = setup.asks_least || words[k] == "least";
+            if (words[k].starts_with("scale="))
+                setup.scales.push_back(parse_scale(words[k].substr(6)));
+            if (words[k].starts_with("waves=")) {
+                std::vector<int> row(setup.designs.size());
+                std::iota(row.begin(), row.end(), 0);
+                PresentationPlan& plan = setup.plan.emplace();
+                plan.sittings.assign(std::stoul(words[k].substr(6)), row);
+                setup.presenting = true;
+            }
         }
         return store.open_round(setup);
     }
     if (what == "voting") store.start_voting(std::stoi(words.at(1)));
     if (what == "lock") store.close_round(std::stoi(words.at(1)));
+    if (what == "sitting") {
+        PresentationState state;
+        state.sitting = std::stoi(words.at(2));
+        state.phase =
+            words.at(3) == "voting" ? PresentationPhase::voting : PresentationPhase::presenting;
+        store.record_step(std::stoi(words.at(1)), state, PresentationEvent::next);
+    }
     if (what == "session") return store.open_session();
     if (what == "certificate") make_certificate(words.at(1));
     if (what == "show") return shown(store);
@@ -98,6 +119,22 @@ Json done(BallotStore& store, const std::vector<std::string>& words) {
         const auto invitation = store.invitation(store.session().value());
         if (!invitation) return nullptr;
         return {{"token", invitation->token}, {"code", invitation->code}};
+    }
+    if (what == "ratings") {
+        const int id = std::stoi(words.at(1));
+        std::vector<int> codes;
+        for (const Round& round : store.rounds()) {
+            if (round.id == id) codes = round.codes;
+        }
+        Json ratings = Json::object();
+        for (const CastRatings& cast : store.ratings(id)) {
+            for (const auto& [design, steps] : cast.steps) {
+                const auto code = codes.at(static_cast<std::size_t>(design));
+                Json& placed = ratings[std::to_string(cast.seat)][std::to_string(code)];
+                for (const auto& step : steps) placed.push_back(step ? Json(*step) : Json(nullptr));
+            }
+        }
+        return ratings;
     }
     if (what == "ballots") {
         Json ballots = Json::object();

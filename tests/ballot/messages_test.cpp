@@ -44,6 +44,47 @@ TEST(BallotMessages, NameWhatIsWrong) {
     }
 }
 
+TEST(BallotMessages, ALookIsPlacedOnScales) {
+    const RatingMessage rating =
+        parse_rating(R"({"round": 3, "look": 412, "steps": [4, null, 7]})");
+    EXPECT_EQ(rating.round, 3);
+    EXPECT_EQ(rating.look, 412);
+    EXPECT_EQ(rating.steps, (std::vector<std::optional<int>>{4, std::nullopt, 7}));
+    // The longest there is stays far below a kilobyte.
+    EXPECT_LT(
+        std::string(R"({"round": 1000000, "look": 412, "steps": [null, null, null, null, null]})")
+            .size(),
+        200u);
+    for (const auto& [body, part] : std::vector<std::pair<std::string, std::string>>{
+             {"", "answers"},
+             {R"({"round": 3, "look": 412})", "steps"},
+             {R"({"round": 3, "look": 412, "steps": []})", "steps"},
+             {R"({"round": 3, "look": 412, "steps": [1, 2, 3, 4, 5, 6]})", "steps"},
+             {R"({"round": 3, "look": 412, "steps": [0]})", "steps[0]"},
+             {R"({"round": 3, "look": 412, "steps": [4, 8]})", "steps[1]"},
+             {R"({"round": 3, "look": 412, "steps": ["4"]})", "steps[0]"},
+             {R"({"round": 3, "look": 412, "steps": [4.5]})", "steps[0]"},
+             {R"({"round": 3, "look": 412, "steps": {"0": 4}})", "steps"},
+             {R"({"round": 3, "look": 42, "steps": [4]})", "look"},
+             {R"({"round": 3, "look": 412, "steps": [4], "seat": 2})", "seat"}}) {
+        EXPECT_TRUE(fails_with([&] { parse_rating(body); }, {part})) << body;
+    }
+}
+
+TEST(BallotMessages, WordsAreTextWhateverTheySay) {
+    PageState state;
+    state.state = "voting";
+    state.seat = 1;
+    state.round = 1;
+    state.codes = {133, 412};
+    state.scales = {{"</script><b>", "\"};alert(1)//"}, {"cheap", "precious"}};
+    state.ratings[412] = {std::nullopt, 7};
+    const auto told = nlohmann::json::parse(text_of(state));
+    EXPECT_EQ(told["scales"][0][0], "</script><b>");
+    EXPECT_EQ(told["scales"][0][1], "\"};alert(1)//");
+    EXPECT_EQ(told["ratings"]["412"], (nlohmann::json{nullptr, 7}));
+}
+
 TEST(BallotMessages, TellTheStateAndNoMore) {
     PageState state;
     state.state = "join";

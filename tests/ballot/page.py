@@ -13,7 +13,7 @@ from server import check, serving
 
 PICTURES = os.environ.get("LIVERY_BALLOT_PICTURES")
 SEATS = 12
-IN_DOCUMENTS = ("join", "chosen", "received", "locked")
+IN_DOCUMENTS = ("join", "chosen", "received", "scales", "later", "locked")
 
 # What is on screen with text: colours as [r, g, b], the ground that shows through, and what it says.
 TEXTS = """(() => {
@@ -63,7 +63,7 @@ def look_at(tab, name):
         Figures.contrast = min(Figures.contrast, ratio)
     targets = tab.js(TARGETS)
     for target in targets:
-        check(min(target["width"], target["height"]) >= 48, f"{name}: target {target}")
+        check(min(target["width"], target["height"]) >= 56, f"{name}: target {target}")
         check(target["x"] >= 0 and target["x"] + target["width"] <= 390, f"{name}: beyond the screen: {target}")
         Figures.target = min(Figures.target, target["width"], target["height"])
     for k, one in enumerate(targets):
@@ -257,12 +257,136 @@ def one_phone(browser, server):
         clean(phone, origin)
 
 
-def twelve_phones(browser, server):
+def two_groups(browser, server):
+    """Who sits in the second wave is told so, and votes after the first has."""
     server.operator("session")
+    invitation = new_invitation(server)
+    tabs = [browser.phone() for _ in range(2)]
+    for tab in tabs:
+        tab.go(f"{server.place['url']}join/{invitation['token']}")
+        tab.wait_for_view("waiting")
+    round_ = server.operator("open", "a,b,c,d", "waves=2")
+    server.operator("sitting", round_, 0, "presenting")
+    tabs[0].wait_for_view("presenting")
+    tabs[1].wait_for_view("later")
+    look_at(tabs[1], "later")
+    check("second group" in tabs[1].js("document.querySelector('#group').textContent"), "no word of the group")
+    for sitting in range(2):
+        server.operator("sitting", round_, sitting, "voting")
+        tabs[sitting].wait_for_view("voting")
+        if sitting == 0:
+            time.sleep(1.5)
+            check(tabs[1].view() == "later", "the second group votes with the first")
+        tabs[sitting].taps = 0
+        tabs[sitting].tap("#best label:nth-child(2) input")
+        tabs[sitting].tap("#second label:nth-child(1) input")
+        tabs[sitting].tap("#send")
+        tabs[sitting].wait_for_view("received")
+        check(tabs[sitting].taps == 3, "not three taps")
+        if sitting == 0:
+            server.operator("sitting", round_, 1, "presenting")
+            tabs[1].wait_for_view("presenting")
+            check(tabs[0].view() == "received", "the first group cannot change its ballot")
+    server.operator("lock", round_)
+    for tab in tabs:
+        tab.wait_for_view("locked")
+        clean(tab, server.place["url"])
+
+
+def scales(browser, server):
+    """After the ballot each look may be placed between two words, whatever the words are; answers may change."""
+    server.operator("session")
+    tab = browser.phone()
+    tab.go(f"{server.place['url']}join/{new_invitation(server)['token']}")
+    tab.wait_for_view("waiting")
+    wide = "W" * 24
+    round_ = server.operator("open", "a,b,c", "scale=cheap,precious", "scale=<b>bold</b>,\"><img src=x>",
+                             f"scale={wide},{'m' * 24}")
+    tab.wait_for_view("voting")
+    codes = tab.js("[...document.querySelectorAll('#best input')].map((e) => Number(e.value))")
+    tab.taps = 0
+    tab.tap("#best label:nth-child(2) input")
+    tab.tap("#second label:nth-child(1) input")
+    tab.tap("#send")
+    tab.wait_for_view("received")
+    check(tab.taps == 3, "a ballot takes more than three taps")
+    look_at(tab, "received-scales")
+    check("0 of 9" in tab.js("document.querySelector('#answered').textContent"), "nobody says how many there are")
+    tab.tap("#describe")
+    tab.wait_for_view("scales")
+    look_at(tab, "scales")
+    heights = tab.js("[...document.querySelectorAll('.step')].map((e) => e.getBoundingClientRect().height)")
+    check(len(heights) == 7 and min(heights) >= 56, f"seven large targets: {heights}")
+    check(tab.js("document.querySelector('#look').textContent") == f"Look {codes[0]}", "not the lowest code first")
+
+    def question():
+        return tab.js("document.querySelector('#progress').textContent")
+
+    def answer(step, then):
+        tab.tap(f".step[value='{step}']")
+        tab.wait(f"document.querySelector('#progress').textContent.startsWith('Question {then} ')", f"question {then}")
+
+    answer(2, 2)
+    check("<b>bold</b> or" in tab.js("document.querySelector('#words').textContent"), "the words are not text")
+    look_at(tab, "scales-markup")
+    check(tab.js("document.querySelectorAll('b, img').length") == 0, "words became elements")
+    answer(7, 3)
+    look_at(tab, "scales-long")
+    tab.tap("#after")  # skipped
+    check(question().startswith("Question 4 "), f"{question()}")
+    check(tab.js("document.querySelector('#look').textContent") == f"Look {codes[1]}", "not the next code")
+    answer(4, 5)
+    # Back, changed, and taken back; a reload keeps what was answered.
+    tab.tap("#before")
+    look_at(tab, "scales-answered")
+    check(tab.js("document.querySelector('.step[aria-pressed=true]').value") == "4", "the answer is gone")
+    answer(5, 5)
+    for _ in range(3):
+        tab.tap("#before")
+    tab.tap("#take-back")
+    tab.wait("document.querySelector('#take-back').hidden", "the answer to be taken back")
+    tab.call("Page.reload")
+    tab.wait_for_view("received")
+    check("2 of 9" in tab.js("document.querySelector('#answered').textContent"), "answers are gone")
+    tab.tap("#describe")
+    tab.wait_for_view("scales")
+    check(question().startswith("Question 2 "), f"not where the first is missing: {question()}")
+    # The server is killed in between.
+    server.kill()
+    tab.tap(".step[value='1']")
+    tab.wait("document.querySelector('#connection').textContent.includes('rying again')", "word of the lost connection")
+    server.start()
+    tab.wait("document.querySelector('#progress').textContent.startsWith('Question 3 ')", "the next question")
+    tab.tap("#enough")
+    tab.wait_for_view("received")
+    # The ballot itself may still change, and keeps them.
+    tab.tap("#change")
+    tab.wait_for_view("voting")
+    tab.tap("#best label:nth-child(3) input")
+    tab.tap("#send")
+    tab.wait_for_view("received")
+    check("3 of 9" in tab.js("document.querySelector('#answered').textContent"), "answers went with the ballot")
+    # Locked while it is answered.
+    tab.tap("#describe")
+    tab.wait_for_view("scales")
+    server.operator("lock", round_)
+    tab.wait_for_view("locked")
+    kept = server.operator("ratings", round_)["1"]
+    check(kept == {str(codes[0]): [2, 1, None], str(codes[1]): [5, None, None]}, f"kept {kept}")
+    clean(tab, server.place["url"])
+
+
+def new_invitation(server):
     deadline = time.monotonic() + 20
     while not (invitation := server.operator("invitation")):  # made within a quarter of a second
         check(time.monotonic() < deadline, "no invitation for the new audience")
         time.sleep(0.1)
+    return invitation
+
+
+def twelve_phones(browser, server):
+    server.operator("session")
+    invitation = new_invitation(server)
     tabs = [browser.phone() for _ in range(SEATS)]
     for tab in tabs:
         tab.go(f"{server.place['url']}join/{invitation['token']}")
@@ -299,6 +423,8 @@ with serving() as server:
     try:
         begin = time.monotonic()
         one_phone(browser, server)
+        two_groups(browser, server)
+        scales(browser, server)
         twelve_phones(browser, server)
         print(f"page: contrast at least {Figures.contrast:.1f}, targets at least {Figures.target:.0f} px, three taps, "
               f"twelve phones; {time.monotonic() - begin:.1f} s")

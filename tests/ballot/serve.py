@@ -22,14 +22,14 @@ DESIGNS = "red,silver,ivory,blue"
 class Serving(Server):
     """As Server, started by the command."""
 
-    def __init__(self, program, operator, folder):
-        self.said, self.token = [], None
+    def __init__(self, program, operator, folder, what=("--designs", DESIGNS, "--scale", "cheap,precious")):
+        self.said, self.token, self.what = [], None, what
         super().__init__(program, operator, folder)
 
     def start(self):
         self.process = subprocess.Popen(
             [self.program, "evaluate", "serve", "--ballots", str(self.file), "--port", str(self.port),
-             "--designs", DESIGNS, "--seed", "7", "--json"],
+             *self.what, "--seed", "7", "--json"],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         found = self.wait_for(r"The ballots are at http://127\.0\.0\.1:(\d+)/")
         self.port = int(found[1])
@@ -84,6 +84,8 @@ def whole(server):
     server.wait_for("lock the round")
     voted(phones[0], 1, codes["red"], codes["blue"])
     server.wait_for("1 of 3 have voted")
+    status, _, answer = phones[0].ask("PUT", "/scales", {"round": 1, "look": codes["red"], "steps": [6]})
+    check(status == 200 and answer["ratings"] == {str(codes["red"]): [6]}, f"{status} {answer}")
 
     # The server is killed: it comes back where it was.
     first = server.children()
@@ -119,11 +121,61 @@ def whole(server):
     round_ = told["rounds"][0]
     check(round_["best"] == [2, 1, 0, 0] and round_["second"] == [1, 1, 0, 1], f"{round_}")
     check(round_["codes"] == list(codes.values()), f"{round_} {codes}")
+    return phones
+
+
+def duel(server, phones):
+    """Three repeats of the first two, of which nothing is told before the last, also when it is killed in between."""
+    seen = set()
+    for repeat in range(3):
+        server.wait_for(f"present the two looks, repeat {repeat + 1} of 3")
+        server.enter()
+        server.wait_for(f"round {repeat + 2}, seed {7 + repeat}")
+        codes = {name: int(server.wait_for(rf"^(\d{{3}})  {name}$")[1]) for name in ("red", "silver")}
+        seen.update(codes.values())
+        server.enter()
+        server.wait_for("lock the round")
+        for phone in phones:
+            phone.hang_up()
+            phone.server = server
+            voted(phone, repeat + 2, codes["red"], codes["silver"])
+        server.wait_for("3 of 3 have voted")
+        server.enter()
+        if repeat < 2:
+            server.wait_for("counts are told with those of the last repeat")
+        if repeat == 0:
+            server.kill()
+            server.process.stderr.close()
+            server.start()
+    check(len(seen) >= 5, f"codes of repeats: {seen}")
+    server.wait_for("3 evaluators with a majority are too few to show a preference between red and silver in a duel")
+    server.wait_for("The duel is over")
+    server.enter("q")
+    out, err = server.process.communicate(timeout=20)
+    check(server.process.returncode == 0, f"exit status {server.process.returncode}: {err}")
+    series = json.loads(out)["series"]
+    check(series["rounds"] == [2, 3, 4] and series["follows"] == 1, f"{series}")
+    check(series["majorities"] == [3, 0] and series["consistent"] == 3, f"{series}")
+
+
+def tally_of_the_duel(program, file):
+    done = subprocess.run([program, "evaluate", "tally", "--ballots", str(file), "--json"], capture_output=True, text=True,
+                          timeout=60)
+    told = json.loads(done.stdout)
+    check(told["series"]["majorities"] == [3, 0], f"{told}")
+    first = subprocess.run([program, "evaluate", "tally", "--ballots", str(file), "--round", "1", "--json"],
+                           capture_output=True, text=True, timeout=60)
+    told = json.loads(first.stdout)
+    check(told["best"] == [2, 1, 0, 0] and "series" not in told, f"{told}")
+    scale = told["scales"][0]
+    check(scale["low_word"] == "cheap" and scale["looks"][0]["mean"] == 6 and scale["complete"] == 0, f"{scale}")
 
 
 def refusals(program, folder):
     for options, part in ((["--designs", "one"], "at least 2"), (["--interface", "none0"], "none0"),
-                          (["--port", "70000"], "70000"), (["--seats", "0"], "--seats")):
+                          (["--port", "70000"], "70000"), (["--seats", "0"], "--seats"),
+                          (["--duel", "--designs", "a,b"], "--duel"), (["--scale", "a,b"], "--designs"),
+                          (["--designs", "a,b", "--scale", "alone"], "--scale")):
         done = subprocess.run([program, "evaluate", "serve", "--ballots", os.path.join(folder, "other.sqlite"), *options],
                               stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60)
         check(done.returncode == 2 and part in done.stderr and done.stderr.count("\n") == 1,
@@ -133,9 +185,13 @@ def refusals(program, folder):
 folder = tempfile.mkdtemp(prefix="livery ballots ")
 server = Serving(sys.argv[1], sys.argv[2], folder)
 try:
-    whole(server)
+    phones = whole(server)
+    server.process.stderr.close()
+    server = Serving(sys.argv[1], sys.argv[2], folder, ("--duel",))
+    duel(server, phones)
+    tally_of_the_duel(sys.argv[1], server.file)
     refusals(sys.argv[1], folder)
-    print("serve: joined, presented, voted, killed twice, locked")
+    print("serve: joined, presented, voted, killed twice, locked; a duel in three repeats")
 finally:
     if server.process.poll() is None:
         server.process.kill()

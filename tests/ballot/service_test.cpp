@@ -105,6 +105,94 @@ TEST_F(BallotServiceTest, GoesFromTheQrCodeToALockedVote) {
     EXPECT_EQ(operators_.tally(round).best, (std::vector<int>{0, 0, 1, 0}));
 }
 
+TEST_F(BallotServiceTest, ALaterGroupWaitsForItsTurn) {
+    const std::string first = join(), second = join();
+    RoundSetup setup;
+    setup.designs = {"a", "b", "c", "d"};
+    setup.codes = {412, 907, 133, 560};
+    setup.presenting = true;
+    setup.plan = PresentationPlan{{{0, 1, 2, 3}, {3, 2, 1, 0}}, {1.0, 1.0, 1.0}, "", "f", {}};
+    const int round = operators_.open_round(setup);
+    using Phase = PresentationPhase;
+    const auto show = [&](Phase phase, int sitting) {
+        operators_.record_step(round, {phase, sitting}, PresentationEvent::next);
+    };
+    show(Phase::presenting, 0);
+    EXPECT_EQ(state(first)["state"], "presenting");
+    EXPECT_EQ(state(second),
+              (Json{{"state", "waiting"}, {"seat", 2}, {"round", 1}, {"wave", 2}, {"waves", 2}}));
+    show(Phase::voting, 0);
+    const std::string body = R"({"round": 1, "best": 907, "second": 560})";
+    EXPECT_EQ(state(first)["state"], "voting");
+    EXPECT_EQ(vote(first, body).status, 200);
+    EXPECT_EQ(state(second)["state"], "waiting");
+    EXPECT_FALSE(state(second).contains("codes"));
+    EXPECT_EQ(vote(second, body).status, 409);
+    EXPECT_EQ(vote(second, R"({"round": 1, "best": 907, "second": 111})").status, 400);
+    show(Phase::presenting, 1);
+    EXPECT_EQ(state(second)["state"], "presenting");
+    EXPECT_EQ(vote(second, body).status, 409);
+    EXPECT_EQ(vote(first, R"({"round": 1, "best": 133, "second": 560})").status, 200)
+        << "an earlier group may change its ballots";
+    show(Phase::voting, 1);
+    EXPECT_EQ(state(second)["state"], "voting");
+    EXPECT_EQ(vote(second, body).status, 200);
+    operators_.close_round(round);
+    EXPECT_EQ(state(second)["state"], "locked");
+    EXPECT_FALSE(state(second).contains("wave"));
+    EXPECT_EQ(operators_.ballots(round).size(), 2u);
+}
+
+TEST_F(BallotServiceTest, LooksArePlacedOnScalesAfterTheBallot) {
+    const std::string secret = join(), other = join();
+    RoundSetup setup;
+    setup.designs = {"a", "b"};
+    setup.codes = {412, 133};
+    setup.scales = {{"cheap", "precious"}, {"cold", "warm"}};
+    const int round = operators_.open_round(setup);
+    const auto rate = [&](const std::string& seat, const std::string& body) {
+        return ask(request("PUT", "/scales", seat, body));
+    };
+    const std::string body = R"({"round": 1, "look": 412, "steps": [2, null]})";
+    EXPECT_EQ(state(secret)["scales"],
+              (Json::parse(R"([["cheap", "precious"], ["cold", "warm"]])")));
+    EXPECT_EQ(rate(secret, body).status, 409) << "before the ballot";
+    EXPECT_EQ(rate("", body).status, 401);
+    ASSERT_EQ(vote(secret, R"({"round": 1, "best": 412, "second": 133})").status, 200);
+    const Json receipt = state(secret)["receipt"];
+    const auto answer = rate(secret, body);
+    ASSERT_EQ(answer.status, 200) << answer.body;
+    EXPECT_EQ(Json::parse(answer.body)["ratings"], (Json{{"412", {2, nullptr}}}));
+    EXPECT_EQ(rate(secret, body).body, answer.body) << "sent twice";
+    EXPECT_EQ(rate(secret, R"({"round": 1, "look": 133, "steps": [null, 6]})").status, 200);
+    EXPECT_EQ(rate(secret, R"({"round": 1, "look": 412, "steps": [7, 1]})").status, 200);
+    EXPECT_EQ(rate(secret, R"({"round": 1, "look": 133, "steps": [null, null]})").status, 200);
+    EXPECT_EQ(state(secret)["ratings"], (Json{{"412", {7, 1}}}));
+    EXPECT_EQ(state(secret)["receipt"], receipt) << "the ballot's";
+    EXPECT_EQ(state(other)["ratings"], Json::object()) << "nobody sees another's";
+    for (const auto& [bad, status] : std::vector<std::pair<std::string, int>>{
+             {R"({"round": 1, "look": 412, "steps": [7]})", 400},
+             {R"({"round": 1, "look": 412, "steps": [7, 8]})", 400},
+             {R"({"round": 1, "look": 500, "steps": [7, 1]})", 400},
+             {R"({"round": 2, "look": 412, "steps": [7, 1]})", 409}}) {
+        EXPECT_EQ(rate(secret, bad).status, status) << bad;
+    }
+    auto foreign = request("PUT", "/scales", secret, body);
+    foreign.origin = "http://evil.example";
+    EXPECT_EQ(ask(foreign).status, 403);
+    EXPECT_EQ(ask(request("GET", "/scales", secret)).status, 405);
+    operators_.close_round(round);
+    EXPECT_EQ(rate(secret, body).status, 409) << "too late";
+    EXPECT_FALSE(state(secret).contains("scales"));
+    const auto kept = operators_.ratings(round);
+    ASSERT_EQ(kept.size(), 1u);
+    EXPECT_EQ(kept[0].steps.at(0), (ScaleSteps{7, 1}));
+    // A round that asks nothing of the kind
+    open();
+    ASSERT_EQ(vote(secret, R"({"round": 2, "best": 412, "second": 133})").status, 200);
+    EXPECT_EQ(rate(secret, R"({"round": 2, "look": 412, "steps": [4]})").status, 400);
+}
+
 TEST_F(BallotServiceTest, ASeatIsKeptByItsCookieAlone) {
     const std::string secret = join();
     // The same phone scans once more.
@@ -239,7 +327,7 @@ TEST_F(BallotServiceTest, SaysWhenAVoteCouldNotBeKept) {
     const std::string secret = join();
     open();
     {
-        Database other(file_, Database::Mode::existing, 0x4c765642, 3, ballots_schema());
+        Database other(file_, Database::Mode::existing, 0x4c765642, 4, ballots_schema());
         other.run(
             "CREATE TRIGGER ballot_lost BEFORE INSERT ON ballots "
             "BEGIN SELECT RAISE(ABORT, 'disk on fire'); END");

@@ -108,14 +108,24 @@ TEST_F(Presenting, ShowsFrozenFramesInTheStoredOrderAlsoAfterAKillUntilTheRoundI
     EXPECT_TRUE(wait_until([&] {
         return program->state("phones").get<std::string>().starts_with("http://127.0.0.1:");
     }));
+    program->click("present:least");
+    program->click("present:scales");
+    program->click("scales:remove:2");
     program->click("ballot:present");
     program->wait_for_state("vote", "adapting");
+    EXPECT_NE(read_text_file(home / "desktop.json").find(R"("presenting-least": "yes")"),
+              std::string::npos)
+        << "the tick is not kept";
     program->press_key("space");
     program->wait_for_state("vote_paused", true);
     program->wait_for_state("vote_loaded", true);
     load_frames();
     const auto& order = presented.plan.sittings.at(0);
     ASSERT_EQ(order.size(), 3u);
+    EXPECT_TRUE(presented.round.asks_least);
+    EXPECT_EQ(
+        presented.round.scales,
+        (std::vector<SemanticScale>(suggested_scales().begin(), suggested_scales().begin() + 2)));
 
     // --- white, for the eyes ---
     EXPECT_TRUE(projector_shows_frame(kWhiteFrame));
@@ -185,6 +195,7 @@ TEST_F(Presenting, ShowsFrozenFramesInTheStoredOrderAlsoAfterAKillUntilTheRoundI
     desktop->type("Bo");
     program->click("ballot:best:1");
     program->click("ballot:second:0");
+    program->click("ballot:least:2");
     program->click("ballot:confirm");
     program->click("ballot:overview");
     program->item("vote:seat:1");
@@ -195,6 +206,34 @@ TEST_F(Presenting, ShowsFrozenFramesInTheStoredOrderAlsoAfterAKillUntilTheRoundI
     program->wait_for_state("vote", "locked");
     program->item("ballot:result");
     program->item("ballot:verdict");
+
+    // --- a duel of the first two: its first repeat says nothing yet ---
+    const BallotStore::Presented first = presented;
+    program->click("duel:begin");
+    program->wait_for_state("vote", "adapting");
+    program->press_key("space");
+    program->wait_for_state("vote_loaded", true);
+    load_frames();
+    EXPECT_EQ(presented.round.designs,
+              (std::vector<std::string>{first.round.designs[1], first.round.designs[0]}));
+    EXPECT_EQ(presented.round.seed, 7);
+    EXPECT_EQ(presented.plan.sittings.at(0).size(), 2u);
+    EXPECT_FALSE(presented.round.asks_least);
+    for (int click = 0; click < 5; ++click) program->click("vote:next");
+    program->wait_for_state("vote", "voting");
+    program->click("ballot:type-in");
+    program->click("ballot:name");
+    desktop->type("Bo");
+    program->click("ballot:best:1");
+    program->click("ballot:second:0");
+    program->click("ballot:confirm");
+    program->click("vote:lock");
+    program->click("vote:confirm");
+    program->wait_for_state("vote", "locked");
+    program->item("duel:words");
+    program->item("duel:next");
+    EXPECT_FALSE(program->has_item("ballot:verdict")) << "it would sway the repeats to come";
+    presented = first;
     program->click("vote:done");
     program->wait_for_state("vote", "edit");
     program->click("ballot:close-panel");
@@ -202,7 +241,11 @@ TEST_F(Presenting, ShowsFrozenFramesInTheStoredOrderAlsoAfterAKillUntilTheRoundI
     EXPECT_TRUE(projector_shows(drive_of_place(0)));
 
     const BallotStore store(home / "ballots.sqlite");
+    ASSERT_TRUE(store.series_under_way());
+    EXPECT_EQ(store.series_under_way()->follows, presented.round.id);
+    EXPECT_EQ(store.series_under_way()->rounds.size(), 1u);
     EXPECT_EQ(store.tally(presented.round.id).best, (std::vector<int>{0, 1, 0}));
+    EXPECT_EQ(store.tally(presented.round.id).least, (std::vector<int>{0, 0, 1}));
     std::vector<int> seen;
     for (const PresentationStep& step : store.steps_of(presented.round.id)) {
         const int design = design_of(presented.plan, step.state);

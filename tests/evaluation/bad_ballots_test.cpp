@@ -59,8 +59,8 @@ TEST(BadBallots, NotAFileOfOurs) {
 TEST(BadBallots, OfANewerVersion) {
     const TemporaryFolder folder;
     const auto file = some_ballots(folder);
-    raw_ballots(file).set_version(4);
-    EXPECT_TRUE(opening_fails(file, {"votes", "4 (written by a newer Livery)", "at most 3"}));
+    raw_ballots(file).set_version(5);
+    EXPECT_TRUE(opening_fails(file, {"votes", "5 (written by a newer Livery)", "at most 4"}));
 }
 
 TEST(BadBallots, Truncated) {

@@ -11,7 +11,7 @@ namespace livery {
 constexpr std::int32_t kBallotsId = 0x4c765642;
 
 inline Database raw_ballots(const std::filesystem::path& file) {
-    return {file, Database::Mode::existing, kBallotsId, 3, ballots_schema()};
+    return {file, Database::Mode::existing, kBallotsId, 4, ballots_schema()};
 }
 
 }  // namespace livery

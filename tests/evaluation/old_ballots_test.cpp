@@ -67,7 +67,7 @@ TEST(OldBallots, BecomeOnesWithSeatsAndCodes) {
     }
     look(BallotStore(file));
     auto raw = raw_ballots(file);
-    EXPECT_EQ(raw.version(), 3);
+    EXPECT_EQ(raw.version(), 4);
     EXPECT_EQ(raw.run("SELECT text FROM log WHERE what = 'migrated'"),
               (std::vector<std::vector<DatabaseValue>>{{"cc03d3b63d3020fabd89947e6ac56c22"}}));
     // The replaced ballot is in the new log too.

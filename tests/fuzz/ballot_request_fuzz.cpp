@@ -38,11 +38,28 @@ LIVERY_FUZZ(text) {
         parse_join(rest);
     } catch (const FileError&) {
     }
+    PageState state;
+    try {
+        const RatingMessage rating = parse_rating(rest);
+        fuzz::require(!rating.steps.empty() && rating.steps.size() <= kMostScales,
+                      "a step a scale");
+        for (const auto& step : rating.steps) {
+            fuzz::require(!step || (*step >= 1 && *step <= kScaleSteps), "a step is 1 to 7");
+        }
+        state.ratings[rating.look] = rating.steps;
+    } catch (const FileError&) {
+    }
+    // Whatever the words are, the page gets them as they are, as text of JSON.
+    state.scales = {{first.substr(0, 40), "b"}};
+    try {
+        parse_json(text_of(state), "answer");
+    } catch (const FileError&) {
+        fuzz::require(false, "an answer is JSON, whatever the words are");
+    }
     const VoteMessage vote = parse_vote(rest);
     for (const int code : {vote.best, vote.second, vote.least.value_or(100)}) {
         fuzz::require(code >= 100 && code <= 999, "a code has three digits");
     }
-    PageState state;
     state.ballot = vote;
     fuzz::require(!text_of(state).empty(), "a vote can be told");
 }

@@ -32,6 +32,11 @@ def shipped(target, *files):
 SEAT = "livery-seat=0123456789abcdef0123456789abcdef"
 put("ballot_request", "vote", SEAT + '\n{"round":3,"best":412,"second":907,"least":133}')
 put("ballot_request", "two", "a=b; " + SEAT + "; c\n{\"round\":3,\"best\":412,\"second\":907,\"least\":null}")
+put("ballot_request", "steps", SEAT + '\n{"round":3,"look":412,"steps":[4,null,7]}')
+put("scales", "pair", "cheap, precious")
+put("scales", "letters", "schlicht,auffällig")
+put("plan", "waves", '{"sittings":[[0,1],[1,0]],"adapt_s":120,"look_s":9,"grey_s":4.5,"session":"","folder":"f",'
+    '"frames":{"rest":"00"},"seats":[[1,2],[3]]}')
 put("ballot_request", "join", '127.0.0.1:8470\n{"code":"K7M 2PQ"}')
 put("ballot_request", "origin", "127.0.0.1:8470\n127.0.0.1:8470")
 

@@ -39,7 +39,7 @@ dictionary_of() {
 longest_of() {
     case $1 in
         gltf | ply | obj | png | measured_*) echo 65536 ;;
-        ballot_request | command_line | directions | names | photograph_names | picked_points | radial_profile | window_place) echo 4096 ;;
+        ballot_request | command_line | directions | names | photograph_names | picked_points | radial_profile | scales | window_place) echo 4096 ;;
         *) echo 16384 ;;
     esac
 }

@@ -14,6 +14,8 @@ let state = null;      // as the server told it last
 let choices = {};      // of the round on screen
 let editing = false;   // a vote that was received is being changed
 let sending = false;
+let describing = false;  // placing looks on scales
+let place = 0;           // of the question on screen: look by look, scale by scale
 let shownRound = 0;
 let shownView = "loading";
 let timer = 0;
@@ -110,10 +112,121 @@ function showChoices() {
     one("#send").textContent = sending ? "Sending…" : "Send";
 }
 
+// --- scales: after the ballot, as far as one likes ---
+
+const STEPS = ["very", "quite", "slightly", "", "slightly", "quite", "very"];
+
+function stepName(step, words) {
+    if (step === 4) return "neither, or both";
+    return `${STEPS[step - 1]} ${words[step < 4 ? 0 : 1]}`;
+}
+
+const questions = (told) => told.codes.length * told.scales.length;
+const lookAt = (told) => told.codes[Math.floor(place / told.scales.length)];
+const scaleAt = (told) => place % told.scales.length;
+const stepsOf = (told, look) => told.ratings[look] || told.scales.map(() => null);
+
+let askedOf = "";
+function showScales(told) {
+    one("#more").hidden = !told.scales;
+    if (!told.scales || !told.codes) return;
+    const answers = told.codes.flatMap((look) => stepsOf(told, look)).filter((step) => step !== null).length;
+    one("#answered").textContent = `${answers} of ${questions(told)} answered. You may change them until the round is locked.`;
+    one("#describe").textContent = answers ? "Go on describing" : "Describe the looks";
+    const look = lookAt(told), words = told.scales[scaleAt(told)];
+    const step = stepsOf(told, look)[scaleAt(told)];
+    one("#look").textContent = "Look " + look;
+    one("#progress").textContent = `Question ${place + 1} of ${questions(told)}`;
+    one("#words").textContent = `${words[0]} or ${words[1]}?`;
+    const asked = JSON.stringify([told.round, place, words]);
+    if (asked !== askedOf) {
+        askedOf = asked;
+        const list = one(".steps");
+        list.replaceChildren();
+        for (let number = 1; number <= 7; ++number) {
+            // Buttons: the arrow keys of a group of radios would answer on their way.
+            const button = document.createElement("button");
+            button.type = "button";
+            button.className = "quiet step";
+            button.value = number;
+            button.addEventListener("click", () => answer(number));
+            button.textContent = stepName(number, words);
+            list.append(button);
+        }
+    }
+    for (const button of all(".step")) {
+        button.setAttribute("aria-pressed", String(Number(button.value) === step));
+    }
+    one("#before").setAttribute("aria-disabled", String(place === 0));
+    one("#after").textContent = step === null ? "Skip" : "Next";
+    one("#take-back").hidden = step === null;
+}
+
+function goTo(next) {
+    one("#scale-problem").textContent = "";
+    if (next < 0) return;
+    place = next;
+    if (place >= questions(state)) {
+        place = 0;
+        describing = false;
+    }
+    showScales(state);
+    showView(viewOf(state));
+    scrollTo(0, 0);
+}
+
+let answering = false;
+async function answer(step) {
+    if (answering || state.state !== "voting") return;
+    answering = true;
+    const round = state.round, look = lookAt(state), from = place;
+    const steps = [...stepsOf(state, look)];
+    steps[scaleAt(state)] = step;
+    try {
+        while (state.state === "voting" && state.round === round) {
+            let told = null;
+            try {
+                told = await send("PUT", "/scales", { round, look, steps });
+            } catch (problem) {
+                say("Not received yet. Trying again…");
+            }
+            if (told && told.status === 200) {
+                say("");
+                show(told.json);
+                if (step !== null && describing && place === from) goTo(place + 1);
+                return;
+            }
+            if (told && told.status !== 503) {
+                one("#scale-problem").textContent = told.json.problem || "Not received.";
+                return;
+            }
+            if (told) say(told.json.problem);
+            await new Promise((done) => setTimeout(done, 1500));
+        }
+    } finally {
+        answering = false;
+        if (state.scales) showScales(state);
+    }
+}
+
 // --- what is on screen ---
 
+const ORDINALS = ["first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth"];
+
+function showGroup(told) {
+    if (!told.wave) return;
+    const ordinal = ORDINALS[told.wave - 1];
+    one("#group").textContent = ordinal ? `You are in the ${ordinal} group` : `You are in group ${told.wave}`;
+    one("#turn").textContent = told.wave === 1 ? `Your turn comes first of ${told.waves} groups.`
+        : told.wave === 2 ? `Your turn comes when the first group has seen the looks. There are ${told.waves} groups.`
+        : `Your turn comes when the groups before you have seen the looks. There are ${told.waves} groups.`;
+}
+
 function viewOf(told) {
-    if (told.state === "voting" && told.ballot && !editing && !sending) return "received";
+    if (told.state === "waiting" && told.wave) return "later";
+    if (told.state === "voting" && told.ballot && !editing && !sending) {
+        return describing && told.scales ? "scales" : "received";
+    }
     return told.state;
 }
 
@@ -141,8 +254,9 @@ function show(told) {
     state = told;
     if (told.round !== shownRound || (seatBefore && told.seat !== seatBefore)) {
         shownRound = told.round;
-        editing = false;
+        editing = describing = false;
         choices = {};
+        place = 0;
     }
     if (told.state === "voting" && !all("#best input").length ||
         before !== JSON.stringify(told)) {
@@ -153,6 +267,8 @@ function show(told) {
         }
         one("#seat").textContent = told.seat ? "Seat " + told.seat : "";
         showMine(told.ballot, told.receipt);
+        showGroup(told);
+        showScales(told);
     }
     if (told.state === "voting") showChoices();
     showView(viewOf(told));
@@ -245,6 +361,17 @@ one("#vote").addEventListener("submit", (event) => {
     event.preventDefault();
     submitVote();
 });
+
+one("#describe").addEventListener("click", () => {
+    // Where the first answer is missing.
+    const open = state.codes.flatMap((look) => stepsOf(state, look)).indexOf(null);
+    describing = true;
+    goTo(Math.max(0, open));
+});
+one("#before").addEventListener("click", () => goTo(place - 1));
+one("#after").addEventListener("click", () => goTo(place + 1));
+one("#take-back").addEventListener("click", () => answer(null));
+one("#enough").addEventListener("click", () => goTo(questions(state)));
 
 one("#change").addEventListener("click", () => {
     editing = true;

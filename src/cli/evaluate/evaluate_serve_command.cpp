@@ -1,5 +1,6 @@
 // livery evaluate serve
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -11,10 +12,12 @@
 
 #include "cli/command.h"
 #include "cli/evaluate/commands.h"
+#include "cli/evaluate/statistics_report.h"
 #include "cli/evaluate/typed_lines.h"
 #include "core/error.h"
 #include "evaluation/ballot_process.h"
 #include "evaluation/ballots.h"
+#include "evaluation/duel.h"
 #include "evaluation/qr_code.h"
 
 namespace livery {
@@ -23,10 +26,23 @@ namespace {
 
 struct ServeArguments {
     std::string ballots, interface = "lo", designs, certificate, key;
-    std::vector<std::string> hosts;
+    std::vector<std::string> hosts, scales;
     int port = kBallotPort, seats = 40;
-    bool least = false, new_audience = false;
+    bool least = false, duel = false, new_audience = false;
 };
+
+std::vector<SemanticScale> scales_of(const ServeArguments& arguments) {
+    std::vector<SemanticScale> scales;
+    for (const std::string& text : arguments.scales) {
+        try {
+            scales.push_back(parse_scale(text));
+        } catch (const std::invalid_argument& error) {
+            throw std::invalid_argument(std::string("--scale: ") + error.what());
+        }
+    }
+    check_scales(scales);
+    return scales;
+}
 
 /// What people read goes to stdout, or beside the JSON document to stderr; at once.
 class ServeSession {
@@ -36,6 +52,8 @@ class ServeSession {
           seed_(common.seed),
           out_(common.json ? stderr : stdout),
           store_(arguments.ballots) {
+        // What cannot be begun is said before anybody joins.
+        if (arguments.duel) next_repeat(store_, duelled_round(), seed_);
         if (arguments.new_audience && store_.session()) store_.open_session();
         start();
         say(words_for(server_->place()));
@@ -110,8 +128,36 @@ class ServeSession {
         say("join at " + url + "\n");
     }
 
+    bool leads() const { return arguments_.duel || !arguments_.designs.empty(); }
+
+    /// Whose leaders meet, or a repeat of a duel that is under way.
+    int duelled_round() const {
+        if (const auto series = store_.series_under_way()) return series->id;
+        const auto rounds = store_.rounds();
+        const auto found = std::find_if(rounds.rbegin(), rounds.rend(), [&](const Round& round) {
+            return round.closed && round.voting && !store_.series_of(round.id);
+        });
+        if (found == rounds.rend()) {
+            throw Refused("no round in " + store_.file().string() + " is locked, so no looks lead",
+                          "vote on looks first, with --designs");
+        }
+        return found->id;
+    }
+
+    /// "repeat 2 of 3", of the round that is open or comes next.
+    std::string repeat_in_words() const {
+        const auto series = store_.series_under_way();
+        return fmt::format("repeat {} of {}",
+                           series ? series->rounds.size() + 1 : 1,
+                           series ? series->repeats : kDuelRepeats);
+    }
+
     std::string next_step() const {
-        if (arguments_.designs.empty()) {
+        if (arguments_.duel && !store_.open_round()) {
+            if (duel_told_) return "The duel is over. q and Enter ends.\n";
+            return "Enter: present the two looks, " + repeat_in_words() + ".\n";
+        }
+        if (!leads()) {
             return "Rounds are opened, presented and locked in the window. q and Enter ends.\n";
         }
         const auto round = store_.open_round();
@@ -121,15 +167,10 @@ class ServeSession {
     }
 
     void go_on() {
-        if (arguments_.designs.empty()) return say(next_step());
         const auto round = store_.open_round();
+        if (!leads() || (!round && duel_told_)) return say(next_step());
         if (!round) {
-            RoundSetup setup;
-            setup.designs = parse_names("--designs", arguments_.designs);
-            setup.seed = seed_;
-            setup.asks_least = arguments_.least;
-            setup.presenting = true;
-            store_.open_round(setup);
+            store_.open_round(next_setup());
             const Round opened = store_.open_round().value();
             say(fmt::format("round {}, seed {}\n", opened.id, opened.seed));
             for (std::size_t k = 0; k < opened.designs.size(); ++k) {
@@ -141,9 +182,29 @@ class ServeSession {
             store_.close_round(round->id);
             locked_.insert(round->id);
             say(fmt::format("round {} is locked: {} ballots\n", round->id, round->ballots));
-            say(tally_csv(store_.tally(round->id)));
+            tell(round->id);
         }
         say(next_step());
+    }
+
+    RoundSetup next_setup() const {
+        if (arguments_.duel) return next_repeat(store_, duelled_round(), seed_);
+        RoundSetup setup;
+        setup.designs = parse_names("--designs", arguments_.designs);
+        setup.seed = seed_;
+        setup.asks_least = arguments_.least;
+        setup.scales = scales_of(arguments_);
+        setup.presenting = true;
+        return setup;
+    }
+
+    /// Of repeats nothing is told before the last one.
+    void tell(int round) {
+        const auto series = store_.series_of(round);
+        if (!series) return say(tally_csv(store_.tally(round)));
+        if (!series->over) return say("Its counts are told with those of the last repeat.\n");
+        duel_told_ = duel_of(store_, round);
+        say(text_of(*duel_told_));
     }
 
     Outcome told() {
@@ -158,6 +219,7 @@ class ServeSession {
                            {"rounds", Json::array()}};
         for (const Round& round : store_.rounds()) {
             if (!locked_.contains(round.id)) continue;
+            if (const auto series = store_.series_of(round.id); series && !series->over) continue;
             const Tally tally = store_.tally(round.id);
             Json json = {{"id", round.id},
                          {"seed", round.seed},
@@ -169,6 +231,7 @@ class ServeSession {
             if (round.asks_least) json["least"] = tally.least;
             outcome.figures["rounds"].push_back(json);
         }
+        if (duel_told_) outcome.figures["series"] = figures_of(*duel_told_);
         if (const auto open = store_.open_round()) {
             outcome.text = fmt::format("Round {} stays open.\n", open->id);
         }
@@ -183,6 +246,7 @@ class ServeSession {
     std::string shown_code_, last_words_;
     int shown_session_ = 0;
     std::set<int> locked_;
+    std::optional<DuelRecord> duel_told_;
 };
 
 }  // namespace
@@ -210,6 +274,20 @@ Command evaluate_serve_command() {
          false,
          {}},
         {"--least", "", "ask for the least liked look too", &arguments->least, false, {}},
+        {"--scale",
+         "LOW,HIGH",
+         "after the ballot phones ask where each look lies between two words, as cheap,precious; "
+         "up to five times",
+         &arguments->scales,
+         false,
+         {}},
+        {"--duel",
+         "",
+         "instead of --designs: three blind repeats of the first two looks of the last locked "
+         "round",
+         &arguments->duel,
+         false,
+         {}},
         {"--new-audience",
          "",
          "let phones join anew (default: who was in is in)",
@@ -234,6 +312,12 @@ Command evaluate_serve_command() {
         {"--seats", "N", "most phones, 1 to 400 (default 40)", &arguments->seats, false, {}},
     };
     command.run = [arguments](const CommonOptions& common, const Progress& progress) {
+        check_argument(scales_of(*arguments).empty() || !arguments->designs.empty(),
+                       "--scale: found it without --designs, expected the looks that are placed");
+        check_argument(!arguments->duel || (arguments->designs.empty() && !arguments->least &&
+                                            !arguments->new_audience),
+                       "--duel: found it with --designs, --least or --new-audience, expected it "
+                       "without: it is of two looks that this audience has voted on");
         if (!arguments->designs.empty() &&
             parse_names("--designs", arguments->designs).size() < 2) {
             throw std::invalid_argument(

@@ -20,18 +20,32 @@ struct ExportArguments {
 
 Json json_of(const ClosedRound& round, int seed) {
     Json ballots = Json::array();
-    for (const RankedBallot& ballot : round.ballots) {
+    for (std::size_t k = 0; k < round.ballots.size(); ++k) {
+        const RankedBallot& ballot = round.ballots[k];
         ballots.push_back({{"best", ballot.best}, {"second", ballot.second}});
         if (ballot.least >= 0) ballots.back()["least"] = ballot.least;
+        if (round.scales.empty()) continue;
+        Json& answers = ballots.back()["steps"] = Json::array();
+        for (const auto& steps : round.answers[k]) {
+            Json& placed = answers.emplace_back(Json::array());
+            for (const int step : steps) placed.push_back(step > 0 ? Json(step) : Json(nullptr));
+        }
     }
-    return {{"format_version", 1},
-            {"kind", "ballots"},
-            {"round", round.id},
-            {"created", round.created},
-            {"calibration_id", round.calibration_id},
-            {"designs", round.designs},
-            {"seed", seed},
-            {"ballots", ballots}};
+    Json json = {{"format_version", 1},
+                 {"kind", "ballots"},
+                 {"round", round.id},
+                 {"created", round.created},
+                 {"calibration_id", round.calibration_id},
+                 {"designs", round.designs},
+                 {"seed", seed},
+                 {"ballots", ballots}};
+    if (!round.scales.empty()) {
+        json["scales"] = Json::array();
+        for (const SemanticScale& scale : round.scales) {
+            json["scales"].push_back({scale.low, scale.high});
+        }
+    }
+    return json;
 }
 
 }  // namespace

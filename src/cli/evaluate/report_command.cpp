@@ -70,6 +70,7 @@ RoundReportSource report_source(const ReportArguments& arguments, VoteSource sou
     RoundReportSource report;
     report.names = std::move(source.names);
     report.statistics = std::move(source.statistics);
+    report.scales = std::move(source.scales);
     if (source.record) {
         const int round = source.record->round.id;
         if (!arguments.details.empty()) {
@@ -145,6 +146,9 @@ Command evaluate_report_command() {
         Outcome outcome;
         outcome.figures = figures_of(source.statistics, source.names);
         if (source.record) outcome.figures["round"] = source.record->round.id;
+        const auto duel = source.record ? source.record->duel : std::nullopt;
+        if (duel) outcome.figures["series"] = figures_of(*duel);
+        if (!source.scales.scales.empty()) outcome.figures["scales"] = figures_of(source.scales);
         if (arguments->source.sample) outcome.figures["sample"] = true;
         const ReportDocument document = round_report(report_source(*arguments, std::move(source)));
         const ReportPlaces places = places_of(arguments->out, stem);
@@ -168,6 +172,7 @@ Command evaluate_report_command() {
             }
         }
         outcome.text += "verdict: " + outcome.figures["verdict"].get<std::string>() + "\n";
+        if (duel) outcome.text += "duel: " + duel->words + "\n";
         if (arguments->source.sample) outcome.text += "A made-up sample: nobody voted.\n";
         tell_notes(notes, outcome);
         return outcome;

@@ -195,6 +195,95 @@ std::string power_lines(const VoteStatistics& statistics, const std::vector<std:
 
 }  // namespace
 
+Json figures_of(const ScaleStatistics& statistics) {
+    Json scales = Json::array();
+    for (const ScaleFigures& figures : statistics.scales) {
+        Json looks = Json::array();
+        for (const LookOnScale& look : figures.looks) {
+            const bool any = look.answers > 0;
+            looks.push_back({{"answers", look.answers},
+                             {"mean", any ? Json(look.mean) : Json(nullptr)},
+                             {"low", look.interval.low},
+                             {"high", look.interval.high}});
+        }
+        scales.push_back({{"low_word", figures.scale.low},
+                          {"high_word", figures.scale.high},
+                          {"looks", looks},
+                          {"complete", figures.complete},
+                          {"friedman_q", figures.friedman_q},
+                          {"friedman_p", figures.friedman_p},
+                          {"holm_p", figures.holm_p},
+                          {"draws", statistics.draws},
+                          {"words", figures.words}});
+    }
+    return scales;
+}
+
+std::string text_of(const ScaleStatistics& statistics, const std::vector<std::string>& names) {
+    if (statistics.scales.empty()) return "";
+    std::string text = fmt::format(
+        "\nscales from 1 (the first word) to 7, {} evaluators answered; 95% by evaluators drawn "
+        "again\n",
+        statistics.evaluators);
+    for (const ScaleFigures& figures : statistics.scales) {
+        text += in_words(figures.scale) + "\n";
+        for (std::size_t k = 0; k < names.size(); ++k) {
+            const LookOnScale& look = figures.looks[k];
+            text += look.answers == 0 ? fmt::format("  {}: no answers\n", names[k])
+                                      : fmt::format("  {}: {:.2f} [{:.2f}, {:.2f}], {} answers\n",
+                                                    names[k],
+                                                    look.mean,
+                                                    look.interval.low,
+                                                    look.interval.high,
+                                                    look.answers);
+        }
+    }
+    for (const ScaleFigures& figures : statistics.scales) text += figures.words + "\n";
+    return text;
+}
+
+Json figures_of(const DuelRecord& duel) {
+    const DuelStatistics& statistics = duel.statistics;
+    const auto interval = [](const Interval& share) { return Json{share.low, share.high}; };
+    return {{"rounds", duel.series.rounds},
+            {"repeats", duel.series.repeats},
+            {"follows", duel.series.follows},
+            {"designs", duel.series.designs},
+            {"votes", duel.votes},
+            {"evaluators", statistics.evaluators},
+            {"majorities", statistics.majorities},
+            {"sign_p", statistics.sign_p},
+            {"ahead", statistics.ahead},
+            {"share_interval", interval(statistics.share)},
+            {"complete", statistics.complete},
+            {"consistent", statistics.consistent},
+            {"consistency_p", statistics.consistency_p},
+            {"consistent_interval", interval(statistics.consistent_share)},
+            {"incomplete", statistics.incomplete},
+            {"incomplete_counted", statistics.incomplete_counted},
+            {"verdict_kind", to_string(statistics.kind)},
+            {"verdict", duel.words}};
+}
+
+std::string text_of(const DuelRecord& duel) {
+    std::string text = fmt::format("\nduel of {} and {}, {} of {} blind repeats\n",
+                                   duel.series.designs[0],
+                                   duel.series.designs[1],
+                                   duel.votes.size(),
+                                   duel.series.repeats);
+    for (std::size_t k = 0; k < duel.votes.size(); ++k) {
+        text += fmt::format("repeat {}, round {}: {} to {}\n",
+                            k + 1,
+                            duel.series.rounds[k],
+                            duel.votes[k][0],
+                            duel.votes[k][1]);
+    }
+    text += fmt::format("evaluators by their majorities: {} to {}\n",
+                        duel.statistics.majorities[0],
+                        duel.statistics.majorities[1]);
+    return text + "duel: " + duel.words + "\n";
+}
+
 Json figures_of(const VoteStatistics& statistics, const std::vector<std::string>& names) {
     Json figures = {{"designs", names},
                     {"evaluators", statistics.evaluators},

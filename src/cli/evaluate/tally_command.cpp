@@ -2,6 +2,8 @@
 
 #include <memory>
 
+#include <fmt/format.h>
+
 #include "cli/evaluate/commands.h"
 #include "cli/evaluate/statistics_report.h"
 #include "cli/evaluate/vote_source.h"
@@ -23,6 +25,15 @@ Command evaluate_tally_command() {
         if (source.record) {
             outcome.figures["round"] = source.record->round.id;
             outcome.figures["calibration_id"] = source.record->round.calibration_id;
+            if (!source.scales.scales.empty()) {
+                outcome.figures["scales"] = figures_of(source.scales);
+                outcome.text += text_of(source.scales, source.names);
+            }
+            if (source.record->duel) {
+                outcome.figures["series"] = figures_of(*source.record->duel);
+                outcome.text = fmt::format("round {} by itself:\n", source.record->round.id) +
+                               outcome.text + text_of(*source.record->duel);
+            }
         }
         if (arguments->sample) {
             outcome.figures["sample"] = true;

@@ -65,6 +65,7 @@ VoteSource source_of_record(RoundRecord record, std::uint64_t seed) {
     const ClosedRound& round = record.round;
     source.names = round.designs;
     source.statistics = round_statistics(round, seed);
+    source.scales = scale_statistics(round.answers, round.scales, round.designs, seed);
     source.record = std::move(record);
     return source;
 }

@@ -25,6 +25,7 @@ std::vector<Option> vote_source_options(VoteSourceArguments& arguments);
 struct VoteSource {
     std::vector<std::string> names;
     VoteStatistics statistics;
+    ScaleStatistics scales;             ///< empty where the round asks for none
     std::optional<RoundRecord> record;  ///< nothing: typed counts
     /// Where what is known beside the ballots may stand; empty for typed counts.
     std::filesystem::path details;

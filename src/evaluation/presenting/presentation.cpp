@@ -103,6 +103,18 @@ void check_plan(const PresentationPlan& plan, int designs) {
     check_argument(static_cast<int>(shown.size()) == designs,
                    "a presentation: found " + std::to_string(shown.size()) + " of " +
                        std::to_string(designs) + " designs in it, expected all");
+    if (plan.seats.empty()) return;
+    check_argument(plan.seats.size() == plan.sittings.size(),
+                   "a presentation: found seats of " + std::to_string(plan.seats.size()) +
+                       " sittings, expected " + std::to_string(plan.sittings.size()));
+    std::set<int> seated;
+    for (const auto& wave : plan.seats) {
+        for (const int seat : wave) {
+            check_argument(seat > 0 && seated.insert(seat).second,
+                           "a presentation: found seat " + std::to_string(seat) +
+                               ", expected numbers from 1, none twice");
+        }
+    }
 }
 
 std::string frame_of_look(int design) { return "look-" + std::to_string(design); }

@@ -27,11 +27,15 @@ struct PresentationPlan {
     std::string session = {};  ///< the session's file whose looks these are; empty: none
     std::string folder = {};   ///< of the frames, beside the ballots
     std::map<std::string, std::string> frames = {};  ///< their hashes, by frame_of_look() and such
+    /// Numbers of the seats of each sitting, whose people vote when it has been shown; empty: all
+    /// that vote do so from the first vote on. Filled in when the round is opened.
+    std::vector<std::vector<int>> seats = {};
     bool operator==(const PresentationPlan&) const = default;
 };
 
 /// Throws std::invalid_argument for a plan without sittings, an empty one, a design outside 0 to
-/// designs - 1, one that is never shown, or times out of range.
+/// designs - 1, one that is never shown, times out of range, or seats of another number of sittings
+/// or one of them twice.
 void check_plan(const PresentationPlan& plan, int designs);
 
 /// Names of frames. Greys are the same whichever of the two looks comes first.

@@ -16,16 +16,29 @@ Value value_named(const JsonReader& reader, int count, Name name) {
     reader.fail('"' + text + '"', "a state or an event of a presentation");
 }
 
+std::vector<std::vector<int>> lists_in(const JsonReader& reader) {
+    std::vector<std::vector<int>> lists;
+    for (std::size_t s = 0; s < reader.size(); ++s) {
+        const JsonReader list = reader.at(s);
+        auto& numbers = lists.emplace_back();
+        for (std::size_t k = 0; k < list.size(); ++k) {
+            numbers.push_back(list.at(k).integer(0, kMostSteps));
+        }
+    }
+    return lists;
+}
+
 }  // namespace
 
 std::string text_of(const PresentationPlan& plan) {
-    const Json json = {{"sittings", plan.sittings},
-                       {"adapt_s", plan.times.adapt_s},
-                       {"look_s", plan.times.look_s},
-                       {"grey_s", plan.times.grey_s},
-                       {"session", plan.session},
-                       {"folder", plan.folder},
-                       {"frames", plan.frames}};
+    Json json = {{"sittings", plan.sittings},
+                 {"adapt_s", plan.times.adapt_s},
+                 {"look_s", plan.times.look_s},
+                 {"grey_s", plan.times.grey_s},
+                 {"session", plan.session},
+                 {"folder", plan.folder},
+                 {"frames", plan.frames}};
+    if (!plan.seats.empty()) json["seats"] = plan.seats;
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -33,14 +46,8 @@ PresentationPlan parse_plan(const std::string& text, const std::string& file) {
     const Json json = parse_json(text, file);
     const JsonReader reader(file, json);
     PresentationPlan plan;
-    const JsonReader sittings = reader["sittings"];
-    for (std::size_t s = 0; s < sittings.size(); ++s) {
-        const JsonReader sitting = sittings.at(s);
-        auto& designs = plan.sittings.emplace_back();
-        for (std::size_t k = 0; k < sitting.size(); ++k) {
-            designs.push_back(sitting.at(k).integer(0, kMostSteps));
-        }
-    }
+    plan.sittings = lists_in(reader["sittings"]);
+    if (reader.has("seats")) plan.seats = lists_in(reader["seats"]);
     plan.times = {reader["adapt_s"].number(), reader["look_s"].number(), reader["grey_s"].number()};
     plan.session = reader["session"].text();
     plan.folder = reader["folder"].text();

@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "core/utc.h"
 #include "evaluation/ballot_log.h"
+#include "evaluation/ballot_rows.h"
 #include "evaluation/ballot_tables.h"
 #include "evaluation/ballots.h"
 
@@ -22,14 +23,6 @@ std::string text_of_entry(Database& database, const char* what, int round) {
 
 std::string name_of_file(const Database& database) { return database.file().string(); }
 
-Round round_named(const BallotStore& store, int id) {
-    for (Round& round : store.rounds()) {
-        if (round.id == id) return std::move(round);
-    }
-    throw std::invalid_argument("found round " + std::to_string(id) +
-                                ", expected one of those in " + store.file().string());
-}
-
 bool is_in(const PresentationPlan& plan, const PresentationState& state) {
     return state.sitting < static_cast<int>(plan.sittings.size()) &&
            state.place <
@@ -40,7 +33,7 @@ bool is_in(const PresentationPlan& plan, const PresentationState& state) {
 
 void BallotStore::record_step(int id, const PresentationState& state, PresentationEvent event) {
     Transaction transaction(database_);
-    const Round round = round_named(*this, id);
+    const Round round = round_of(database_, id);
     const auto plan = plan_of(id);
     if (!plan) {
         throw Refused("round " + std::to_string(id) + " was opened without a presentation",
@@ -66,6 +59,8 @@ void BallotStore::record_step(int id, const PresentationState& state, Presentati
     entry.best = design_of(*plan, state);
     entry.second = state.place;
     entry.seat = state.sitting;
+    // The wave of this sitting votes from here on.
+    entry.least = state.phase == PresentationPhase::voting ? 1 : -1;
     record(database_, entry);
     transaction.commit();
 }
@@ -74,6 +69,23 @@ std::optional<PresentationPlan> BallotStore::plan_of(int round) const {
     const std::string text = text_of_entry(database_, "plan", round);
     if (text.empty()) return std::nullopt;
     return parse_plan(text, name_of_file(database_));
+}
+
+Turn BallotStore::turn_of(int round, int seat) const {
+    const std::vector<DatabaseValue> at = {std::int64_t{round}, std::int64_t{seat}};
+    const auto rows = database_.run(
+        "SELECT wave, voting IS NOT NULL, "
+        "(SELECT count(*) FROM waves WHERE round = ?1), "
+        "(SELECT coalesce(max(seat), 0) FROM log WHERE what = 'shown' AND round = ?1) "
+        "FROM sitters JOIN waves USING (round, wave) WHERE round = ?1 AND seat = ?2",
+        at);
+    if (rows.empty()) return {};
+    Turn turn;
+    turn.wave = as_int(database_, rows[0][0]);
+    turn.votes = as_int(database_, rows[0][1]) != 0;
+    turn.waves = as_int(database_, rows[0][2]);
+    turn.sits = turn.votes || as_int(database_, rows[0][3]) >= turn.wave;
+    return turn;
 }
 
 std::vector<PresentationStep> BallotStore::steps_of(int round) const {
@@ -92,7 +104,7 @@ std::optional<BallotStore::Presented> BallotStore::presented() const {
         database_.run("SELECT round FROM log WHERE what = 'plan' ORDER BY id DESC LIMIT 1");
     if (planned.empty()) return std::nullopt;
     Presented found;
-    found.round = round_named(*this, as_int(database_, planned[0][0]));
+    found.round = round_of(database_, as_int(database_, planned[0][0]));
     found.plan = plan_of(found.round.id).value();
     const std::string text = text_of_entry(database_, "shown", found.round.id);
     if (text.empty()) {

@@ -1,5 +1,7 @@
 #include "evaluation/presenting/sittings.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <string>
 
 #include "core/error.h"
@@ -29,6 +31,20 @@ std::vector<std::vector<int>> wave_sittings(int designs,
         sittings.push_back(wave.designs);
     }
     return sittings;
+}
+
+std::vector<std::vector<int>> deal_seats(std::vector<int> seats, int waves) {
+    check_argument(waves >= 1, "waves: found " + std::to_string(waves) + ", expected 1 or more");
+    std::sort(seats.begin(), seats.end());
+    std::vector<std::vector<int>> dealt(static_cast<std::size_t>(waves));
+    const auto each = seats.size() / dealt.size(), more = seats.size() % dealt.size();
+    auto next = seats.begin();
+    for (std::size_t w = 0; w < dealt.size(); ++w) {
+        const auto end = next + static_cast<std::ptrdiff_t>(each + (w < more ? 1 : 0));
+        dealt[w].assign(next, end);
+        next = end;
+    }
+    return dealt;
 }
 
 }  // namespace livery

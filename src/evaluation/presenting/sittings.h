@@ -17,4 +17,9 @@ std::vector<std::vector<int>> wave_sittings(int designs,
                                             int wave_size,
                                             std::uint64_t seed);
 
+/// Seats in rising order of their numbers, shared out among the waves as evenly as they come: the
+/// first waves have one more where they do not come out even. Throws std::invalid_argument without
+/// waves.
+std::vector<std::vector<int>> deal_seats(std::vector<int> seats, int waves);
+
 }  // namespace livery

@@ -19,7 +19,11 @@ std::vector<LookShowing> showings_of(const PresentationPlan& plan,
             shown = -1;  // grey, white: the next look is shown anew
             continue;
         }
-        if (step.state.sitting != sitting) showings.push_back({step.at, {}, {}});
+        if (step.state.sitting != sitting) {
+            const auto at = static_cast<std::size_t>(step.state.sitting);
+            showings.push_back(
+                {step.at, at < plan.seats.size() ? plan.seats[at] : std::vector<int>(), {}});
+        }
         sitting = step.state.sitting;
         const bool again = step.event == PresentationEvent::repeat;
         const int place = step.state.place;
@@ -50,6 +54,7 @@ RoundRecord read_round_record(const std::filesystem::path& file,
     if (const auto plan = store.plan_of(record.round.id)) {
         record.showings = showings_of(*plan, store.steps_of(record.round.id), record.codes);
     }
+    record.duel = duel_of(store, record.round.id);
     record.seats = static_cast<int>(store.seats(record.session).size());
     for (const LogEntry& entry : store.log()) {
         if (entry.round != record.round.id) continue;

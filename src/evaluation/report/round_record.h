@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "evaluation/closed_round.h"
+#include "evaluation/duel.h"
 #include "evaluation/report/round_details.h"
 
 namespace livery {
@@ -26,6 +27,7 @@ struct RoundRecord {
     /// Of a round that was presented, by its log: what each sitting was really shown, repeats and
     /// what was gone back to included.
     std::vector<LookShowing> showings;
+    std::optional<DuelRecord> duel;  ///< where the round is one of its repeats
 };
 
 /// As read_closed_round(), and throws as it does.

@@ -39,10 +39,12 @@ class ReportBuilder {
         document_.subtitle = subtitle();
         document_.made_by = source_.program;
         document_.made_at = source_.made_at;
+        add_duel();
         add_verdict();
         add_votes();
         if (statistics_.evaluators > 0) add_certainty();
         add_power();
+        add_scales();
         add_designs();
         add_showing();
         add_record();
@@ -138,6 +140,21 @@ class ReportBuilder {
         add(pairs_table(statistics_, rows_));
     }
 
+    void add_duel() {
+        if (!source_.record || !source_.record->duel) return;
+        const DuelRecord& duel = *source_.record->duel;
+        heading("The duel");
+        say(sentence(duel.words), ParagraphRole::lead);
+        say(
+            fmt::format("This round is one of {} blind repeats of the same two looks, each under "
+                        "codes and in an order of its own. They are a test by themselves: the "
+                        "round that it follows{} is no part of its figures.",
+                        duel.series.repeats,
+                        duel.series.follows > 0 ? fmt::format(", {},", duel.series.follows) : ""));
+        add(duel_repeats_table(duel));
+        add(duel_tests_table(duel));
+    }
+
     void add_power() {
         const auto curve = power_curve(statistics_);
         if (curve.empty()) return;
@@ -148,6 +165,19 @@ class ReportBuilder {
             "ask for a correction that is not made here. A fresh round, planned in its size and "
             "counted by itself, needs none.");
         add(power_table(statistics_, curve));
+    }
+
+    void add_scales() {
+        const ScaleStatistics& scales = source_.scales;
+        if (scales.scales.empty()) return;
+        heading("Where the looks lie between words");
+        say(
+            fmt::format("After the ballot each look could be placed in seven steps between two "
+                        "words, from 1 at the first to 7 at the second; {} did so at least once.",
+                        counted(scales.evaluators, "evaluator", "evaluators")));
+        for (const ScaleFigures& figures : scales.scales) say(sentence(figures.words));
+        add(scale_means_table(scales, rows_));
+        add(scale_tests_table(scales));
     }
 
     void add_designs() {
@@ -297,6 +327,7 @@ RoundReportSource round_report_source(const std::filesystem::path& ballots,
     RoundReportSource source;
     source.names = round.designs;
     source.statistics = round_statistics(round, seed);
+    source.scales = scale_statistics(round.answers, round.scales, round.designs, seed);
     source.details =
         read_round_details(round_details_file(ballots, round.id), round.id, record.codes);
     source.record = std::move(record);

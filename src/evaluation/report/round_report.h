@@ -12,6 +12,7 @@
 #include "evaluation/report/round_details.h"
 #include "evaluation/report/round_record.h"
 #include "evaluation/report/vote_charts.h"
+#include "evaluation/statistics/scale_statistics.h"
 #include "evaluation/statistics/vote_statistics.h"
 
 namespace livery {
@@ -19,6 +20,7 @@ namespace livery {
 struct RoundReportSource {
     std::vector<std::string> names;  ///< of the designs
     VoteStatistics statistics;
+    ScaleStatistics scales = {};             ///< empty where the round asks for none
     std::optional<RoundRecord> record = {};  ///< nothing: counts that were typed in
     RoundDetails details = {};
     /// Figures of the calibration that the round was shown under, as read from its folder.

@@ -285,6 +285,95 @@ ReportTable seats_table(const RoundReportSource& source, const ChartRows& rows) 
     return table;
 }
 
+ReportTable scale_means_table(const ScaleStatistics& statistics, const ChartRows& rows) {
+    ReportTable table{"Mean steps, with 95% intervals", {{"Design", false}}, {}};
+    for (const ScaleFigures& figures : statistics.scales) {
+        table.columns.push_back({in_words(figures.scale)});
+    }
+    for (const int design : rows.order) {
+        const auto k = static_cast<std::size_t>(design);
+        std::vector<std::string> row = {rows.labels[k]};
+        for (const ScaleFigures& figures : statistics.scales) {
+            const LookOnScale& look = figures.looks[k];
+            row.push_back(look.answers == 0 ? "none"
+                                            : fmt::format("{:.2f} [{:.2f}, {:.2f}] of {}",
+                                                          look.mean,
+                                                          look.interval.low,
+                                                          look.interval.high,
+                                                          look.answers));
+        }
+        table.rows.push_back(std::move(row));
+    }
+    table.note =
+        "Intervals: expanded percentiles of means over evaluators drawn again; of fewer than eight "
+        "they are all of 1 to 7. "
+        "Each holds for one look on one scale, not for differences between looks.";
+    return table;
+}
+
+ReportTable scale_tests_table(const ScaleStatistics& statistics) {
+    ReportTable table{
+        "Whether looks differ",
+        {{"Scale", false}, {"Placed all looks"}, {"Friedman's Q"}, {"p"}, {"p, Holm"}},
+        {}};
+    for (const ScaleFigures& figures : statistics.scales) {
+        const bool tested = figures.complete > 0;
+        table.rows.push_back({in_words(figures.scale),
+                              std::to_string(figures.complete),
+                              tested ? fmt::format("{:.2f}", figures.friedman_q) : "none",
+                              tested ? p_text(figures.friedman_p) : "none",
+                              tested ? p_text(figures.holm_p) : "none"});
+    }
+    table.note = fmt::format(
+        "Friedman's test over the evaluators who placed every look, with ties; p over {} drawn "
+        "orders of each evaluator's steps, seed {}. Holm's correction is over the scales.",
+        statistics.draws,
+        statistics.seed);
+    return table;
+}
+
+ReportTable duel_repeats_table(const DuelRecord& duel) {
+    ReportTable table{"The repeats", {{"Repeat", false}, {"Round"}}, {}};
+    for (const std::string& design : duel.series.designs) table.columns.push_back({design});
+    for (std::size_t k = 0; k < duel.votes.size(); ++k) {
+        table.rows.push_back({std::to_string(k + 1),
+                              std::to_string(duel.series.rounds[k]),
+                              std::to_string(duel.votes[k][0]),
+                              std::to_string(duel.votes[k][1])});
+    }
+    table.note =
+        "Repeats are not added up: answers of one person are no independent ones. Each evaluator "
+        "counts once, by the majority of the repeats.";
+    return table;
+}
+
+ReportTable duel_tests_table(const DuelRecord& duel) {
+    const DuelStatistics& statistics = duel.statistics;
+    const int counted = statistics.majorities[0] + statistics.majorities[1];
+    const auto ahead = static_cast<std::size_t>(statistics.ahead);
+    ReportTable table{
+        "The duel", {{"What", false}, {"Count"}, {"Share, 95%"}, {"p"}, {"How", false}}, {}};
+    table.rows.push_back({"Evaluators who chose " + duel.series.designs[ahead] + " most often",
+                          fmt::format("{} of {}", statistics.majorities[ahead], counted),
+                          share_text(statistics.majorities[ahead], counted, statistics.share),
+                          p_text(statistics.sign_p),
+                          "sign test, two-sided, exact"});
+    table.rows.push_back(
+        {"The same answer in every repeat",
+         fmt::format("{} of {}", statistics.consistent, statistics.complete),
+         share_text(statistics.consistent, statistics.complete, statistics.consistent_share),
+         p_text(statistics.consistency_p),
+         fmt::format("as many or more by guessing, which gives {}; exact",
+                     percent_text(statistics.consistent_by_guessing))});
+    table.rows.push_back(
+        {"Did not answer every repeat",
+         std::to_string(statistics.incomplete),
+         "",
+         "",
+         fmt::format("{} of them with a majority all the same", statistics.incomplete_counted)});
+    return table;
+}
+
 ReportTable record_table(const RoundReportSource& source) {
     ReportTable table{"What proves it", {{"What", false}, {"Record", false}}, {}};
     const auto add = [&](const std::string& what, const std::string& value) {

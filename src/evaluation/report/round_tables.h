@@ -17,6 +17,12 @@ ReportTable designs_table(const RoundReportSource& source, const ChartRows& rows
 ReportTable showings_table(const RoundReportSource& source);
 /// What each seat missed of each look; rows with what is not known, too.
 ReportTable seats_table(const RoundReportSource& source, const ChartRows& rows);
+/// Means of each look on each scale; whether the looks differ on a scale.
+ReportTable scale_means_table(const ScaleStatistics& statistics, const ChartRows& rows);
+ReportTable scale_tests_table(const ScaleStatistics& statistics);
+/// Each repeat's counts and, of the series, the tests.
+ReportTable duel_repeats_table(const DuelRecord& duel);
+ReportTable duel_tests_table(const DuelRecord& duel);
 /// Which round it is, of which file, with its seeds and the hash of its log.
 ReportTable record_table(const RoundReportSource& source);
 

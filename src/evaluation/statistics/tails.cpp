@@ -12,6 +12,30 @@ double chi_square_tail(double x, int degrees) {
     return std::clamp(Eigen::numext::igammac(0.5 * degrees, 0.5 * x), 0.0, 1.0);
 }
 
+double binomial_tail(int at_least, int of, double probability) {
+    if (at_least <= 0) return 1.0;
+    if (at_least > of || probability <= 0.0) return 0.0;
+    if (probability >= 1.0) return 1.0;
+    double tail = 0.0;
+    for (int k = of; k >= at_least; --k) {
+        tail += std::exp(std::lgamma(of + 1.0) - std::lgamma(k + 1.0) - std::lgamma(of - k + 1.0) +
+                         k * std::log(probability) + (of - k) * std::log1p(-probability));
+    }
+    return std::min(1.0, tail);
+}
+
+double student_975(int degrees) {
+    const double half = 0.5 * degrees;
+    // The tail is I(degrees / (degrees + t^2); degrees / 2, 1 / 2) / 2 and falls with t.
+    double low = 0.0, high = 20.0;
+    for (int step = 0; step < 80; ++step) {
+        const double t = 0.5 * (low + high);
+        const double tail = 0.5 * Eigen::numext::betainc(half, 0.5, degrees / (degrees + t * t));
+        (tail > 0.025 ? low : high) = t;
+    }
+    return 0.5 * (low + high);
+}
+
 Interval wilson_interval(int count, int of) {
     if (of <= 0) return {};
     const double n = of, share = count / n, z2 = kChiSquare95;

@@ -1,10 +1,13 @@
 #include "studio/presenting/presenting.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/error.h"
 #include "core/log.h"
@@ -40,6 +43,26 @@ void restore(
     if (error == std::errc() && read >= low && read <= high) value = read;
 }
 
+/// ";cheap,precious;cold,warm;" as the settings keep it. What a hand has broken there is left out.
+std::vector<SemanticScale> listed_scales(std::string_view list) {
+    std::vector<SemanticScale> scales;
+    while (!list.empty()) {
+        const std::size_t end = std::min(list.find(';'), list.size());
+        const std::string_view one = list.substr(0, end);
+        list.remove_prefix(std::min(end + 1, list.size()));
+        if (one.empty()) continue;
+        try {
+            auto more = scales;
+            more.push_back(parse_scale(one));
+            check_scales(more);
+            scales = std::move(more);
+        } catch (const std::invalid_argument& error) {
+            log_line(LogLevel::warning, std::string("settings: ") + error.what());
+        }
+    }
+    return scales;
+}
+
 std::filesystem::path folder_of(const Studio& studio, const PresentationPlan& plan) {
     return studio.ballots->file().parent_path() / plan.folder;
 }
@@ -59,10 +82,37 @@ std::string session_name(const Studio& studio) {
 
 std::vector<std::vector<int>> sittings_of(const PresentingSettings& settings,
                                           int designs,
-                                          int seed) {
+                                          int seed,
+                                          int phones) {
     const auto number = static_cast<std::uint64_t>(seed);
-    return settings.waves ? wave_sittings(designs, settings.evaluators, settings.wave_size, number)
+    const int evaluators = phones > 0 ? phones : settings.evaluators;
+    return settings.waves ? wave_sittings(designs, evaluators, settings.wave_size, number)
                           : pass_sitting(designs, settings.passes, number);
+}
+
+std::vector<SemanticScale> scales_asked(const PresentingSettings& settings) {
+    return settings.asks_scales ? settings.scales : std::vector<SemanticScale>();
+}
+
+std::vector<int> phones_in(const std::vector<Seat>& seats) {
+    std::vector<int> phones;
+    for (const Seat& seat : seats) {
+        if (seat.name.empty()) phones.push_back(seat.number);
+    }
+    return phones;
+}
+
+std::vector<std::string> waves_in_words(const std::vector<std::vector<int>>& seats) {
+    std::vector<std::string> lines;
+    for (std::size_t wave = 0; seats.size() > 1 && wave < seats.size(); ++wave) {
+        const auto& numbers = seats[wave];
+        lines.push_back(numbers.empty() ? fmt::format("Wave {}: no phones", wave + 1)
+                                        : fmt::format("Wave {}: {} {}",
+                                                      wave + 1,
+                                                      numbers.size() == 1 ? "seat" : "seats",
+                                                      fmt::join(numbers, ", ")));
+    }
+    return lines;
 }
 
 PresentingSettings& presenting_settings(Studio& studio) {
@@ -78,6 +128,11 @@ PresentingSettings& presenting_settings(Studio& studio) {
     restore(kept, "presenting-wave-size", settings.wave_size, 1, 1000);
     restore(kept, "phones-port", settings.port, 0, 65535);
     settings.waves = setting(kept, "presenting-waves") == "yes";
+    settings.asks_least = setting(kept, "presenting-least") == "yes";
+    settings.asks_scales = setting(kept, "presenting-asks-scales") == "yes";
+    if (const std::string list = setting(kept, "presenting-scales"); !list.empty()) {
+        settings.scales = listed_scales(list);
+    }
     int seed = -1;
     restore(kept, "presenting-seed", seed, 0, 1 << 30);
     if (seed >= 0) settings.seed = seed;
@@ -99,6 +154,12 @@ void keep_presenting_settings(Studio& studio) {
     keep("presenting-evaluators", fmt::format("{}", settings.evaluators));
     keep("presenting-wave-size", fmt::format("{}", settings.wave_size));
     keep("presenting-waves", settings.waves ? "yes" : "no");
+    keep("presenting-least", settings.asks_least ? "yes" : "no");
+    keep("presenting-asks-scales", settings.asks_scales ? "yes" : "no");
+    // A list without any is kept too.
+    std::string scales = ";";
+    for (const SemanticScale& scale : settings.scales) scales += text_of(scale) + ";";
+    keep("presenting-scales", scales);
     keep("phones-network", settings.network);
 }
 

@@ -22,18 +22,31 @@ struct PresentingSettings {
     PresentationTimes times;
     bool waves = false;       ///< else successive passes
     int passes = 0;           ///< rows of the Williams square; 0: all
-    int evaluators = 10;      ///< in waves
+    int evaluators = 10;      ///< in waves, where no phone has joined
     int wave_size = 3;        ///< the most at once
+    bool asks_least = false;  ///< each evaluator may name the least liked look too
+    bool asks_scales = false;
+    /// Between which words looks may be placed, where that is asked; at most five.
+    std::vector<SemanticScale> scales = {suggested_scales().begin(),
+                                         suggested_scales().begin() + 3};
     std::optional<int> seed;  ///< none: drawn anew for each round
     std::string network = "lo";
     int port = kBallotPort;  ///< 0: any that is free
     bool operator==(const PresentingSettings&) const = default;
 };
 
-/// The order in which the looks of a round would be shown.
+/// What a round asks: none where it is not ticked.
+std::vector<SemanticScale> scales_asked(const PresentingSettings& settings);
+/// The order in which the looks of a round would be shown. In waves it is the `phones` that have
+/// joined that sit down or, where none has, as many evaluators as the settings say.
 std::vector<std::vector<int>> sittings_of(const PresentingSettings& settings,
                                           int designs,
-                                          int seed);
+                                          int seed,
+                                          int phones = 0);
+/// The numbers of the seats that are phones.
+std::vector<int> phones_in(const std::vector<Seat>& seats);
+/// "Wave 1: seats 1, 2, 3", a line a wave; nothing where there is one alone, or nobody is dealt.
+std::vector<std::string> waves_in_words(const std::vector<std::vector<int>>& seats);
 
 /// Looks that are being rendered for a round, one after the other.
 struct Freezing {
@@ -64,11 +77,13 @@ struct PresentingState {
     PresentingSettings settings;
     bool begin_wanted = false;  ///< the panel's button was pressed
     std::vector<int> wanted_looks;
-    bool give_up_wanted = false;  ///< freezing
+    std::optional<int> duel_wanted;  ///< of the leaders of this round, or the next of its repeats
+    bool give_up_wanted = false;     ///< freezing
     std::optional<Freezing> freezing;
     std::optional<PresentedRound> presented;
     std::string problem;  ///< why what should be seen is not
     bool asking_to_abort = false, asking_to_lock = false;
+    std::string scale_low, scale_high, scale_problem;  ///< words that are being typed
 
     // Who has joined and voted, never for what.
     std::vector<Seat> seats;
@@ -88,6 +103,7 @@ struct PresentingState {
     // What a locked round says, by the statistics.
     int verdict_round = 0;
     std::string verdict;
+    std::vector<std::string> scale_verdicts;
 };
 
 PresentingState& presenting(Studio& studio);
@@ -134,9 +150,12 @@ std::string time_in_words(double seconds);
 
 // Drawing; only with a window.
 void draw_presentation_setup(Studio& studio, const std::vector<int>& looks);
+void draw_scales_setup(Studio& studio);
 void draw_presented_round(Studio& studio);
 void draw_phones(Studio& studio);
 void draw_seats(Studio& studio);
 void draw_verdict(Studio& studio, const Round& round);
+/// "Duel of the first two", or the next repeat of one; false: the round's counts are not told yet.
+bool draw_duel(Studio& studio, const Round& round);
 
 }  // namespace livery

@@ -11,9 +11,9 @@
 #include "core/error.h"
 #include "evaluation/network_interfaces.h"
 #include "evaluation/presentation_order.h"
+#include "evaluation/presenting/sittings.h"
 #include "evaluation/qr_code.h"
 #include "evaluation/statistics/vote_counts.h"
-#include "evaluation/statistics/vote_statistics.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
 #include "studio/kit/widgets.h"
@@ -77,11 +77,22 @@ void count_row(Studio& studio,
     tooltip(help);
 }
 
+void least_tick(Studio& studio) {
+    PresentingSettings& settings = presenting_settings(studio);
+    if (ImGui::Checkbox("Ask for the least liked", &settings.asks_least)) {
+        keep_presenting_settings(studio);
+    }
+    name_last_item("present:least");
+    tooltip(
+        "Each evaluator may name the look that they like least, too. Nobody has to; the "
+        "statistics use it where everybody does.");
+}
+
 /// How the looks would be shown, in words; empty where they could not.
-std::string plan_in_words(const PresentingSettings& settings, int designs) {
+std::string plan_in_words(const PresentingSettings& settings, int designs, int phones) {
     if (designs < 2 || designs > kMostDesigns) return "";
     PresentationPlan plan;
-    plan.sittings = sittings_of(settings, designs, settings.seed.value_or(1));
+    plan.sittings = sittings_of(settings, designs, settings.seed.value_or(1), phones);
     plan.times = settings.times;
     std::size_t shown = 0;
     for (const auto& sitting : plan.sittings) shown += sitting.size();
@@ -97,6 +108,18 @@ std::string plan_in_words(const PresentingSettings& settings, int designs) {
         settings.waves ? (passes == 1 ? "wave" : "waves") : (passes == 1 ? "pass" : "passes"),
         time_in_words(duration_s(plan)),
         fair);
+}
+
+void draw_waves(const std::vector<std::vector<int>>& seats) {
+    for (const std::string& line : waves_in_words(seats)) dim_text(line);
+    name_last_item("vote:waves");
+}
+
+/// Who would sit in which wave if nobody else joined.
+void draw_waves_to_come(const PresentingSettings& settings, const std::vector<int>& phones) {
+    if (phones.empty()) return dim_text("No phone has joined; ballots on paper count at any time.");
+    const int size = settings.wave_size, count = static_cast<int>(phones.size());
+    draw_waves(deal_seats(phones, (count + size - 1) / size));
 }
 
 void draw_stop_phones(Studio& studio) {
@@ -171,10 +194,22 @@ std::string words_of(const BallotServerPlace& place) {
                                 "votes and take seats.");
 }
 
+/// Its wave comes after the one that looks or votes now.
+bool sits_later(const PresentingState& state, int seat) {
+    if (!state.presented) return false;
+    const auto& waves = state.presented->plan.seats;
+    for (auto k = static_cast<std::size_t>(state.presented->state.sitting) + 1; k < waves.size();
+         ++k) {
+        if (std::find(waves[k].begin(), waves[k].end(), seat) != waves[k].end()) return true;
+    }
+    return false;
+}
+
 }  // namespace
 
 void draw_presentation_setup(Studio& studio, const std::vector<int>& looks) {
     PresentingSettings& settings = presenting_settings(studio);
+    if (settings.waves) read_seats(studio);
     heading("Presentation");
     const int mode = settings.waves ? 1 : 0;
     row_label("Order");
@@ -194,7 +229,7 @@ void draw_presentation_setup(Studio& studio, const std::vector<int>& looks) {
                   settings.evaluators,
                   1,
                   kMostEvaluators,
-                  "All that will come.");
+                  "All that will come. Once phones have joined, those that are in count instead.");
         count_row(studio,
                   "At once",
                   "present:wave",
@@ -212,8 +247,16 @@ void draw_presentation_setup(Studio& studio, const std::vector<int>& looks) {
                   "How many orders everybody sees, one after the other.");
     }
     times_row(studio, settings.times);
-    const std::string words = plan_in_words(settings, static_cast<int>(looks.size()));
+    least_tick(studio);
+    draw_scales_setup(studio);
+    if (settings.asks_least && looks.size() == 2) {
+        dim_text("Of two looks the least liked is not asked.");
+    }
+    const std::vector<int> phones = phones_in(presenting(studio).seats);
+    const std::string words =
+        plan_in_words(settings, static_cast<int>(looks.size()), static_cast<int>(phones.size()));
     if (!words.empty()) dim_text(words);
+    if (settings.waves && !words.empty()) draw_waves_to_come(settings, phones);
     if (looks.size() > static_cast<std::size_t>(kMostDesigns)) {
         warning_text(fmt::format("At most {} looks can be presented.", kMostDesigns));
     }
@@ -264,9 +307,10 @@ void draw_seats(Studio& studio) {
         ImGui::Dummy({side, side});
         name_last_item(fmt::format("vote:seat:{}", seat.number));
         tooltip((seat.name.empty() ? fmt::format("Seat {}, a phone", seat.number) : seat.name) +
-                (voted   ? ": has voted."
-                 : votes ? ": has not voted yet."
-                         : "."));
+                (voted                            ? ": has voted."
+                 : sits_later(state, seat.number) ? ": its wave is still to come."
+                 : votes                          ? ": has not voted yet."
+                                                  : "."));
         at.x += side + gap;
     }
     ImGui::SetCursorScreenPos({left, at.y + side + gap});
@@ -364,49 +408,7 @@ void draw_presented_round(Studio& studio) {
     }
     heading("Evaluators");
     draw_seats(studio);
-}
-
-void draw_verdict(Studio& studio, const Round& round) {
-    PresentingState& state = presenting(studio);
-    if (state.verdict_round != round.id) {
-        state.verdict_round = round.id;
-        state.verdict.clear();
-        if (!studio.background || !studio.ballots) return;
-        try {
-            const auto ballots = std::make_shared<std::vector<RankedBallot>>();
-            bool least = round.designs.size() > 2 && round.asks_least;
-            for (const CastBallot& cast : studio.ballots->ballots(round.id)) {
-                ballots->push_back(
-                    {cast.choices.best, cast.choices.second, cast.choices.least.value_or(-1)});
-                least = least && cast.choices.least.has_value();
-            }
-            studio.background->run(
-                [&studio, ballots, least, round](const Progress&) -> Background::Then {
-                    const VoteCounts counts = counts_of(*ballots,
-                                                        static_cast<int>(round.designs.size()),
-                                                        least && !ballots->empty());
-                    const auto words = vote_statistics(counts,
-                                                       round.designs,
-                                                       static_cast<std::uint64_t>(round.seed),
-                                                       ballots.get())
-                                           .words;
-                    return [&studio, words, id = round.id] {
-                        if (presenting(studio).verdict_round == id)
-                            presenting(studio).verdict = words;
-                    };
-                },
-                [&studio](std::exception_ptr why) {
-                    notify_failure(studio, "The verdict could not be found.", why);
-                });
-        } catch (const std::exception& error) {
-            state.verdict = error.what();
-        }
-    }
-    if (state.verdict.empty()) return;
-    ImGui::PushFont(heading_font());
-    ImGui::TextWrapped("%s", sentence(state.verdict).c_str());
-    ImGui::PopFont();
-    name_last_item("ballot:verdict");
+    if (!presented.round.closed) draw_waves(presented.plan.seats);
 }
 
 }  // namespace livery

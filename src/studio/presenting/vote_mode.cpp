@@ -12,10 +12,12 @@
 #include "core/error.h"
 #include "core/log.h"
 #include "core/utc.h"
+#include "evaluation/duel.h"
 #include "evaluation/qr_code.h"
 #include "live/frame_pictures.h"
 #include "live/vote_frames.h"
 #include "projection/picture_port.h"
+#include "studio/look_thumbnails.h"
 #include "studio/presenting/presenting.h"
 #include "studio/presenting/surround.h"
 #include "studio/projector_control.h"
@@ -44,29 +46,33 @@ void show_what_is_due(Shell& shell);
 
 // --- freezing ---
 
-void begin_freezing(Shell& shell) {
+/// For those who are in now.
+std::vector<std::vector<int>> sittings_now(Studio& studio, const RoundSetup& setup) {
+    return sittings_of(presenting_settings(studio),
+                       static_cast<int>(setup.designs.size()),
+                       setup.seed,
+                       static_cast<int>(phones_in(presenting(studio).seats).size()));
+}
+
+void check_nothing_open(const Studio& studio) {
+    const auto open = studio.ballots->open_round();
+    if (!open) return;
+    throw Refused(fmt::format("round {} is still open", open->id),
+                  "close it before the next one is presented");
+}
+
+/// With its looks and what the round asks; the order follows from who is in.
+void begin_freezing(Shell& shell, Freezing freezing) {
     Studio& studio = shell.studio;
     PresentingState& state = presenting(studio);
     const PresentingSettings& settings = presenting_settings(studio);
-    if (!studio.ballots || is_presenting(studio)) return;
-    if (const auto open = studio.ballots->open_round()) {
-        throw Refused(fmt::format("round {} is still open", open->id),
-                      "close it before the next one is presented");
-    }
     if (!studio.setup)
         throw Refused("there is no projector to draw for", "wait for it, or pick one");
-    Freezing freezing;
-    freezing.looks = state.wanted_looks;
     RoundSetup& setup = freezing.setup;
-    for (const int id : freezing.looks) {
-        const SessionLook* look = find_look(studio.session.document(), id);
-        if (look) setup.designs.push_back(look->look.name);
-    }
-    setup.presenting = true;
-    setup.seed = settings.seed.value_or(drawn_seed());
     setup.calibration_id = studio.setup->calibration ? studio.setup->calibration->id : "";
     PresentationPlan& plan = setup.plan.emplace();
-    plan.sittings = sittings_of(settings, static_cast<int>(setup.designs.size()), setup.seed);
+    read_seats(studio, true);
+    plan.sittings = sittings_now(studio, setup);
     plan.times = settings.times;
     plan.session = session_name(studio);
     check_plan(plan, static_cast<int>(setup.designs.size()));
@@ -83,7 +89,47 @@ void begin_freezing(Shell& shell) {
     state.qr_projected = false;
     state.problem.clear();
     state.freezing = std::move(freezing);
-    log_line(LogLevel::info, fmt::format("freezing {} looks", state.wanted_looks.size()));
+    log_line(LogLevel::info, fmt::format("freezing {} looks", state.freezing->looks.size()));
+}
+
+void begin_presentation(Shell& shell) {
+    Studio& studio = shell.studio;
+    PresentingState& state = presenting(studio);
+    const PresentingSettings& settings = presenting_settings(studio);
+    if (!studio.ballots || is_presenting(studio)) return;
+    check_nothing_open(studio);
+    Freezing freezing;
+    freezing.looks = state.wanted_looks;
+    RoundSetup& setup = freezing.setup;
+    for (const int id : freezing.looks) {
+        const SessionLook* look = find_look(studio.session.document(), id);
+        if (look) setup.designs.push_back(look->look.name);
+    }
+    setup.presenting = true;
+    setup.asks_least = settings.asks_least && setup.designs.size() > 2;
+    setup.scales = scales_asked(settings);
+    setup.seed = settings.seed.value_or(drawn_seed());
+    begin_freezing(shell, std::move(freezing));
+}
+
+/// The two looks that lead a locked round, or the next repeat of their duel.
+void begin_duel(Shell& shell, int round) {
+    Studio& studio = shell.studio;
+    if (!studio.ballots) return;
+    const int seed = presenting_settings(studio).seed.value_or(drawn_seed());
+    Freezing freezing;
+    freezing.setup = next_repeat(*studio.ballots, round, seed);
+    for (const std::string& name : freezing.setup.designs) {
+        const SessionLook* look = look_named(studio.session.document(), name);
+        if (!look) {
+            throw Refused("the session has no look \"" + name + "\" any more",
+                          "give the look its name back");
+        }
+        freezing.looks.push_back(look->id);
+    }
+    check_nothing_open(studio);
+    if (phase_of(studio) == Phase::locked) send(studio, Event::done);
+    if (!is_presenting(studio)) begin_freezing(shell, std::move(freezing));
 }
 
 void end_freezing(Shell& shell) {
@@ -164,6 +210,9 @@ void write_and_begin(Shell& shell) {
     Studio& studio = shell.studio;
     const auto freezing = std::make_shared<Freezing>(*presenting(studio).freezing);
     presenting(studio).freezing->writing = true;
+    // Who joined while the looks were rendered sits down too.
+    read_seats(studio, true);
+    freezing->setup.plan->sittings = sittings_now(studio, freezing->setup);
     freezing->setup.plan->folder = folder_name(freezing->setup);
     const auto folder = studio.ballots->file().parent_path() / freezing->setup.plan->folder;
     studio.background->run(
@@ -183,7 +232,11 @@ void write_and_begin(Shell& shell) {
                     there.ballots->record_step(id, state, Event::present);
                     presenting(there).freezing.reset();
                     keep_frozen_looks(there, *freezing, id);
-                    take_round(there, there.ballots->open_round().value(), *setup.plan, state);
+                    // With the seats that were dealt
+                    take_round(there,
+                               there.ballots->open_round().value(),
+                               there.ballots->plan_of(id).value(),
+                               state);
                     // Dark until its frames are there; the newest look is nobody's business.
                     show_what_is_due(shell);
                     set_frozen(shell, false);
@@ -348,7 +401,8 @@ void step_vote_mode(Shell& shell) {
     PresentingState& state = presenting(studio);
     if (is_presenting(studio)) shell.ballots_open = true;
     try {
-        if (std::exchange(state.begin_wanted, false)) begin_freezing(shell);
+        if (std::exchange(state.begin_wanted, false)) begin_presentation(shell);
+        if (const auto round = std::exchange(state.duel_wanted, {})) begin_duel(shell, *round);
         if (std::exchange(state.give_up_wanted, false)) end_freezing(shell);
         if (state.freezing) go_on_freezing(shell);
     } catch (const std::exception&) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <numeric>
 #include <set>
 #include <string>
 #include <tuple>
@@ -310,6 +311,27 @@ TEST(Presentation, PlansAreCheckedAndComeBackFromTheirText) {
                              R"({"event": "next", "phase": "presenting", "sitting": -1})"}) {
         EXPECT_THROW(parse_step(text, "log"), FileError) << text;
         EXPECT_THROW(parse_plan(text, "log"), FileError) << text;
+    }
+}
+
+TEST(Sittings, SeatsAreDealtEvenlyInTheirOrder) {
+    using Seats = std::vector<std::vector<int>>;
+    EXPECT_EQ(deal_seats({4, 2, 9, 1, 7}, 2), (Seats{{1, 2, 4}, {7, 9}}));
+    EXPECT_EQ(deal_seats({1, 2, 3, 4, 5, 6, 7}, 3), (Seats{{1, 2, 3}, {4, 5}, {6, 7}}));
+    EXPECT_EQ(deal_seats({3}, 2), (Seats{{3}, {}}));
+    EXPECT_EQ(deal_seats({}, 1), (Seats{{}}));
+    EXPECT_THROW(deal_seats({1}, 0), std::invalid_argument);
+    // As many waves as the sittings have, and none with more than its size
+    for (int evaluators = 1; evaluators <= 30; ++evaluators) {
+        std::vector<int> seats(static_cast<std::size_t>(evaluators));
+        std::iota(seats.begin(), seats.end(), 1);
+        for (int size = 1; size <= 5; ++size) {
+            const auto waves = wave_sittings(4, evaluators, size, 1).size();
+            for (const auto& wave : deal_seats(seats, static_cast<int>(waves))) {
+                EXPECT_LE(wave.size(), static_cast<std::size_t>(size));
+                EXPECT_GE(wave.size(), 1u);
+            }
+        }
     }
 }
 

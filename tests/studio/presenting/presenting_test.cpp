@@ -165,6 +165,23 @@ TEST_F(PresentingStudio, SeatsTellWhoHasVotedAndALockFromElsewhereIsSeen) {
     EXPECT_FALSE(is_presenting(studio()));
 }
 
+TEST_F(PresentingStudio, WavesFollowFromWhoHasJoined) {
+    PresentingSettings settings;
+    settings.waves = true;
+    settings.evaluators = 10;
+    settings.wave_size = 3;
+    EXPECT_EQ(sittings_of(settings, 4, 3, 0).size(), 4u)
+        << "nobody joined: as many as are expected";
+    EXPECT_EQ(sittings_of(settings, 4, 3, 7).size(), 3u);
+    const std::vector<Seat> seats = {{1, ""}, {2, "Bo"}, {3, ""}};
+    EXPECT_EQ(phones_in(seats), (std::vector<int>{1, 3}));
+    EXPECT_EQ(
+        waves_in_words({{1, 2, 3}, {4}, {}}),
+        (std::vector<std::string>{"Wave 1: seats 1, 2, 3", "Wave 2: seat 4", "Wave 3: no phones"}));
+    EXPECT_TRUE(waves_in_words({{1, 2}}).empty()) << "all at once";
+    EXPECT_TRUE(waves_in_words({}).empty());
+}
+
 TEST_F(PresentingStudio, ItsSettingsAreKept) {
     studio().settings = read_user_settings();
     PresentingSettings& settings = presenting_settings(studio());
@@ -173,14 +190,33 @@ TEST_F(PresentingStudio, ItsSettingsAreKept) {
     settings.times = {30.0, 8.5, 4.0};
     settings.waves = true;
     settings.wave_size = 2;
+    EXPECT_FALSE(settings.asks_least) << "unless it is ticked";
+    settings.asks_least = true;
+    EXPECT_FALSE(settings.asks_scales) << "unless it is ticked";
+    EXPECT_EQ(settings.scales.size(), 3u) << "some are offered";
+    EXPECT_TRUE(scales_asked(settings).empty());
+    settings.asks_scales = true;
+    settings.scales = {{"schlicht", "auffällig"}, {"a b", "<i>"}};
     keep_presenting_settings(studio());
     PresentingState fresh;
     presenting(studio()) = std::move(fresh);
     studio().settings = read_user_settings();
     EXPECT_EQ(presenting_settings(studio()).times, (PresentationTimes{30.0, 8.5, 4.0}));
     EXPECT_TRUE(presenting_settings(studio()).waves);
+    EXPECT_TRUE(presenting_settings(studio()).asks_least);
+    EXPECT_EQ(scales_asked(presenting_settings(studio())),
+              (std::vector<SemanticScale>{{"schlicht", "auffällig"}, {"a b", "<i>"}}));
     EXPECT_EQ(presenting_settings(studio()).wave_size, 2);
     EXPECT_EQ(sittings_of(presenting_settings(studio()), 4, 3).size(), 5u);
+}
+
+TEST_F(PresentingStudio, AListOfWordsThatAHandHasBrokenIsTakenAsFarAsItGoes) {
+    for (const auto& [kept, count] : std::vector<std::pair<std::string, std::size_t>>{
+             {";", 0}, {"a,b;c;d,e", 2}, {"a,b;a,b", 1}, {"a,b;c,d;e,f;g,h;i,j;k,l", 5}}) {
+        presenting(studio()) = PresentingState();
+        studio().settings.values["presenting-scales"] = kept;
+        EXPECT_EQ(presenting_settings(studio()).scales.size(), count) << kept;
+    }
 }
 
 TEST(PresentingTimes, ReadAsPeopleSayThem) {

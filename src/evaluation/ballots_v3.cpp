@@ -1,4 +1,4 @@
-#include "evaluation/ballots_v2.h"
+#include "evaluation/ballots_v3.h"
 
 #include <string>
 
@@ -7,8 +7,8 @@
 
 namespace livery {
 
-void migrate_ballots_v2(Database& database) {
-    check_against_log(database);
+void migrate_ballots_v3(Database& database, int format) {
+    check_against_log(database, format);
     const auto entries = read_log(database);
     // No part of the log: who has the QR code on the wall stays welcome.
     const auto invitations =
