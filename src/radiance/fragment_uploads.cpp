@@ -115,8 +115,9 @@ void FragmentInputs::upload_sky() {
             if (const SubsurfaceInputs::Part* leaving = subsurface_.part(part)) {
                 sum = leaving->spread
                           ? leaving->at_fragments[i]
-                          : leaving->total * (entering_share(leaving->medium.eta) * sum +
-                                              entering_at(i, leaving->medium.eta));
+                          : leaving->total * entering_at(i,
+                                                         leaving->medium.eta,
+                                                         entering_share(leaving->medium.eta));
             }
         }
         return glm::vec4(glm::min(sum, glm::vec3(kHalfLargest)), 1.0f);
@@ -124,8 +125,11 @@ void FragmentInputs::upload_sky() {
     upload_packed(shading_.sky, 0, light_on);
 }
 
-glm::vec3 FragmentInputs::entering_at(std::size_t fragment, double eta) const {
-    glm::vec3 sum(0.0f);
+glm::vec3 FragmentInputs::entering_at(std::size_t fragment, double eta, float share) const {
+    const std::vector<glm::vec3>& between = exchanged_.on_diffuser;
+    glm::vec3 sum = (sky_.empty() ? glm::vec3(0.0f) : sky_[fragment]) +
+                    (between.empty() ? glm::vec3(0.0f) : between[fragment]);
+    sum *= share;
     for (const Light& light : lights_) {
         const float cosine =
             glm::dot(map_->fragments[fragment].normal, light.at[fragment].direction);

@@ -4,6 +4,8 @@
 
 #include "appearance/subsurface/translucent_paint.h"
 #include "core/colour.h"
+#include "radiance/light/slab_thickness.h"
+#include "radiance/light/subsurface_near.h"
 
 namespace livery {
 
@@ -40,11 +42,14 @@ SubsurfaceInputs::Part where_it_enters(const TranslucentMaterial& medium) {
 
 bool SubsurfaceInputs::stands(const Wanted& wanted) const {
     return solved_ && same_media(solved_->media, wanted.media) && same_light(*solved_, wanted) &&
-           solved_->exchange_version == wanted.exchange_version && solved_->detail == wanted.detail;
+           solved_->exchange_version == wanted.exchange_version &&
+           solved_->arriving_version == wanted.arriving_version && solved_->detail == wanted.detail;
 }
 
 void SubsurfaceInputs::solve(const Wanted& wanted,
                              const SurfaceMap& map,
+                             const PixelSize& pixels,
+                             const EnteringAt& entering_at,
                              const FilteredEnvironment& filtered,
                              const std::shared_ptr<const NodeExchange>& exchange,
                              const std::vector<glm::vec3>& between,
@@ -55,12 +60,20 @@ void SubsurfaceInputs::solve(const Wanted& wanted,
         if (!wanted.media[p]) continue;
         const TranslucentMaterial& medium = *wanted.media[p];
         if (!kernels_[p] || !same_medium(kernels_[p]->medium, medium)) {
-            kernels_[p] = {medium, subsurface_kernel(medium)};
+            const float deep_mm = kernel_reach_mm(medium);
+            const auto sheet_mm = sheet_thickness_mm(tracer_, mesh_, p, deep_mm);
+            const float reach_mm =
+                sheet_mm ? std::min(deep_mm, kernel_reach_mm(medium, sheet_mm)) : deep_mm;
+            kernels_[p] = {medium, reach_mm, {}};
         }
+        KernelOf& of = *kernels_[p];
         progress.check_stop();
-        const SubsurfaceKernel& kernel = kernels_[p]->kernel;
         const auto transport =
-            transports_->of(mesh_, tracer_, p, kernel.reach_mm, wanted.detail, progress);
+            transports_->of(mesh_, tracer_, p, of.reach_mm, wanted.detail, progress);
+        if (of.kernel.near_mm != std::min(transport->near_mm, of.reach_mm)) {
+            of.kernel =
+                subsurface_kernel(medium, of.reach_mm, transport->near_mm, transport->slabs_mm);
+        }
         std::vector<glm::vec3> entering = direct_at_nodes(transport->mesh,
                                                           tracer_,
                                                           transport->exchange,
@@ -69,16 +82,29 @@ void SubsurfaceInputs::solve(const Wanted& wanted,
                                                           filtered,
                                                           progress,
                                                           medium.eta);
+        const float share = entering_share(medium.eta);
         if (exchange) {
             const auto more = at_part_nodes(mesh_, exchange->nodes, between, *transport);
-            const float share = entering_share(medium.eta);
             for (std::size_t i = 0; i < more.size(); ++i) entering[i] += share * more[i];
         }
-        const auto leaving = leaving_at_nodes(*transport, kernel, entering, progress);
+        const LeavingLight leaving = leaving_at_nodes(*transport, of.kernel, entering, progress);
+        const auto at_fragment = [&](const std::vector<glm::vec3>& at_nodes) {
+            return at_fragments(
+                transport->mesh, map, transport->exchange.nodes, at_nodes, transport->place_of);
+        };
         Part& part = parts[p].emplace(where_it_enters(medium));
         part.spread = true;
-        part.at_fragments = at_fragments(
-            transport->mesh, map, transport->exchange.nodes, leaving, transport->place_of);
+        part.at_fragments = at_fragment(leaving.from_afar);
+        const std::vector<glm::vec3> near_share = at_fragment(leaving.near_share);
+        std::vector<glm::vec3> at_own;
+        for (std::size_t i = map.part_begin[p]; i < map.part_begin[p + 1]; ++i) {
+            at_own.push_back(entering_at(i, medium.eta, share));
+        }
+        progress.check_stop();
+        const std::vector<glm::vec3> nearby = entering_nearby(map, pixels, p, of.kernel, at_own);
+        for (std::size_t i = map.part_begin[p]; i < map.part_begin[p + 1]; ++i) {
+            part.at_fragments[i] += near_share[i] * nearby[i];
+        }
     }
     parts_ = std::move(parts);
     solved_ = wanted;
