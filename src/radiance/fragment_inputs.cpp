@@ -257,7 +257,9 @@ void FragmentInputs::solve_subsurface(const Scene& scene,
             wanted,
             *map_,
             pixels_,
-            [&](std::size_t i, double eta, float share) { return entering_at(i, eta, share); },
+            [&](std::size_t i, const EnteredMedium& medium, float share, float curvature_per_mm) {
+                return entering_at(i, medium, share, curvature_per_mm);
+            },
             filtered_,
             exchanged_.at_nodes.on_diffuser.empty() ? nullptr : exchanged_.nodes,
             exchanged_.at_nodes.on_diffuser,

@@ -38,6 +38,18 @@ SubsurfaceInputs::Part where_it_enters(const TranslucentMaterial& medium) {
     return part;
 }
 
+/// Of each channel; 0 where nothing is met.
+glm::vec3 mean_free_paths_mm(const TranslucentMaterial& medium) {
+    glm::vec3 paths(0.0f);
+    for (int c = 0; c < 3; ++c) {
+        const ScatteringMedium channel = medium_of(medium, c);
+        if (channel.sigma_t_prime() > 0.0) {
+            paths[c] = static_cast<float>(channel.mean_free_path_mm());
+        }
+    }
+    return paths;
+}
+
 }  // namespace
 
 bool SubsurfaceInputs::stands(const Wanted& wanted) const {
@@ -74,6 +86,8 @@ void SubsurfaceInputs::solve(const Wanted& wanted,
             of.kernel =
                 subsurface_kernel(medium, of.reach_mm, transport->near_mm, transport->slabs_mm);
         }
+        const EnteredMedium entered{
+            medium.eta, mean_free_paths_mm(medium), transport->curvature_per_mm};
         std::vector<glm::vec3> entering = direct_at_nodes(transport->mesh,
                                                           tracer_,
                                                           transport->exchange,
@@ -81,7 +95,7 @@ void SubsurfaceInputs::solve(const Wanted& wanted,
                                                           wanted.environment.get(),
                                                           filtered,
                                                           progress,
-                                                          medium.eta);
+                                                          &entered);
         const float share = entering_share(medium.eta);
         if (exchange) {
             const auto more = at_part_nodes(mesh_, exchange->nodes, between, *transport);
@@ -96,9 +110,12 @@ void SubsurfaceInputs::solve(const Wanted& wanted,
         part.spread = true;
         part.at_fragments = at_fragment(leaving.from_afar);
         const std::vector<glm::vec3> near_share = at_fragment(leaving.near_share);
+        std::vector<glm::vec3> bent;
+        for (const float curvature : transport->curvature_per_mm) bent.emplace_back(curvature);
+        const std::vector<glm::vec3> curvature = at_fragment(bent);
         std::vector<glm::vec3> at_own;
         for (std::size_t i = map.part_begin[p]; i < map.part_begin[p + 1]; ++i) {
-            at_own.push_back(entering_at(i, medium.eta, share));
+            at_own.push_back(entering_at(i, entered, share, curvature[i].x));
         }
         progress.check_stop();
         const std::vector<glm::vec3> nearby = entering_nearby(map, pixels, p, of.kernel, at_own);

@@ -35,8 +35,10 @@ class SubsurfaceInputs {
         TransportDetail detail;
     };
     bool stands(const Wanted& wanted) const;
-    /// What of all light enters a medium of that index at a fragment, and of even light that share.
-    using EnteringAt = std::function<glm::vec3(std::size_t fragment, double eta, float share)>;
+    /// What of all light enters a medium at a fragment where the surface is that bent; of even
+    /// light that share does.
+    using EnteringAt = std::function<glm::vec3(
+        std::size_t fragment, const EnteredMedium& medium, float share, float curvature_per_mm)>;
     /// `between`: light between parts on a white diffuser at nodes of the whole mesh, if there is
     /// any. A stop leaves what stood before.
     void solve(const Wanted& wanted,

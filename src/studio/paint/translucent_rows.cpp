@@ -12,7 +12,6 @@
 #include "scene/subsurface_reach.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/widgets.h"
-#include "studio/kit/words.h"
 #include "studio/studio.h"
 
 namespace livery {
@@ -81,14 +80,14 @@ void draw_coefficients(MediumEdit& edit) {
     tooltip("Absorption and scattering of each channel, per millimetre of the product.");
     if (!open) return;
     const auto after = [&] { edit.after_item(""); };
-    vector_row("Absorption",
+    vector_row("Absorption /mm",
                "param:sigma-a",
                edit.medium.sigma_a_per_mm,
                0.001f,
                "%.4g",
                "sigma_a per mm, in red, green and blue: 0 gives all light back.",
                after);
-    vector_row("Scattering",
+    vector_row("Scattering /mm",
                "param:sigma-s",
                edit.medium.sigma_s_prime_per_mm,
                0.01f,
@@ -114,8 +113,8 @@ void draw_coefficients(MediumEdit& edit) {
 std::string reach_in_words(const Material& translucent, double product_scale) {
     const double reach = subsurface_reach_mm(translucent, product_scale);
     if (!(reach > 0.0)) return "Nothing in it scatters: no light comes back.";
-    std::string text = fmt::format("Nine tenths of the light leave within {} mm on the mock-up",
-                                   readable_number(reach));
+    std::string text =
+        fmt::format("Nine tenths of the light leave within {:.2g} mm on the mock-up", reach);
     if (reach <= kUnseenReach_mm) text += ": drawn as an opaque paint of that colour";
     return text + ".";
 }
