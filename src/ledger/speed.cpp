@@ -16,6 +16,7 @@
 #include "ledger/artwork_times.h"
 #include "ledger/desktop_times.h"
 #include "ledger/first_frame_times.h"
+#include "ledger/translucent_times.h"
 #include "radiance/renderer.h"
 #include "scene/library.h"
 #include "twin/description.h"
@@ -153,6 +154,25 @@ void collect_paints(PassTimes& times,
     }
 }
 
+/// No look that is shipped is translucent, and what has no time has no price: the pass as it is for
+/// another colour.
+void add_costs(SpeedLedger& result, const TranslucentTimes& times) {
+    for (std::size_t level = 0; level < times.pass_ms.size(); ++level) {
+        if (times.pass_ms[level].empty()) continue;
+        const LedgerLevel timed =
+            worked_level_of(effect_info(Effect::subsurface).levels[level].name,
+                            times.pass_ms[level],
+                            times.body_fragments);
+        effect(result, "pass " + to_string(PassId(PassKind::subsurface))).levels.push_back(timed);
+        result.pass_costs.push_back({PassKind::subsurface,
+                                     static_cast<int>(level),
+                                     timed.ms,
+                                     0.0,
+                                     times.body_fragments,
+                                     std::nullopt});
+    }
+}
+
 struct TimedScene {
     std::shared_ptr<const Product> product;
     std::vector<Scene> looks;  ///< swapped in turn
@@ -274,6 +294,15 @@ void time_frames(SpeedLedger& result,
                 .levels.push_back(std::move(level));
         }
         // A prediction scales both by the fragments of the parts that wear it.
+        TranslucentTimes translucent =
+            measure_translucent(renderer, scene.looks.front(), levels, progress);
+        for (LedgerLevel& level : translucent.first_frames) {
+            effect(result, "translucent body: first frame").levels.push_back(std::move(level));
+        }
+        for (LedgerLevel& level : translucent.swaps) {
+            effect(result, "translucent body: another colour").levels.push_back(std::move(level));
+        }
+        add_costs(result, translucent);
         passes.ms[PassKind::artwork] = artwork.cover_ms;
         passes.ms[PassKind::relief] = artwork.relief_ms;
         passes.work_items[PassKind::artwork] = passes.work_items[PassKind::relief] =

@@ -14,6 +14,7 @@
 #include "gl/handles.h"
 #include "gl/read_back.h"
 #include "live/preview_picture.h"
+#include "live/translucent_swatch.h"
 #include "radiance/raster_preview.h"
 #include "scene/library.h"
 
@@ -22,7 +23,7 @@ namespace livery {
 namespace {
 
 /// Grows whenever swatches come to look different.
-constexpr int kVersion = 2;
+constexpr int kVersion = 3;
 constexpr double kFov_rad = 0.2;
 
 View swatch_view(const Bounds& bounds, int size_px) {
@@ -72,6 +73,9 @@ Image8 SwatchPainter::paint(const Material& material, int size_px) {
                                size_px,
                                kSmallestSwatch_px,
                                kLargestSwatch_px));
+    if (material.model == ReflectanceModel::translucent && material.medium) {
+        return translucent_swatch(material, size_px);
+    }
     State& s = *state_;
     const View view = swatch_view(bounds_of(s.studio.product->mesh), size_px);
     Scene scene;

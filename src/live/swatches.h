@@ -1,4 +1,5 @@
-// Paint swatches: a paint on a sphere in the studio's light, drawn once and kept as files.
+// Paint swatches: a paint on a sphere in the studio's light, a translucent one as a disc lit from
+// behind; drawn once and kept as files.
 #pragma once
 
 #include <memory>

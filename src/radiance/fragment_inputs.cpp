@@ -125,10 +125,12 @@ void FragmentInputs::solve_lights(const Scene& scene,
         });
         lights_.insert(lights_.begin() + static_cast<std::ptrdiff_t>(planned++), std::move(next));
         if (changed) directions_stale_ = diffuse_light_stale_ = true;
+        if (changed) ++arriving_version_;
         if (changed && !subsurface_.empty()) sky_stale_ = true;
     }
     if (planned == lights_.size()) return;
     lights_.resize(planned);
+    ++arriving_version_;
     directions_stale_ = diffuse_light_stale_ = true;
     if (!subsurface_.empty()) sky_stale_ = true;
 }
@@ -138,7 +140,10 @@ void FragmentInputs::solve_sky(const Scene& scene,
                                StageClock& clock,
                                const Progress& progress) {
     if (!find_pass(plan, PassKind::environment_irradiance)) {
-        if (sky_made_.of) sky_stale_ = diffuse_light_stale_ = true;
+        if (sky_made_.of) {
+            sky_stale_ = diffuse_light_stale_ = true;
+            ++arriving_version_;
+        }
         sky_made_ = {};
         diffused_ = nullptr;
         filtered_.diffuse = filtered_.blurred = filtered_.hardly_blurred = {};
@@ -170,6 +175,7 @@ void FragmentInputs::solve_sky(const Scene& scene,
                                 occluded ? &*sky_visibility_ : nullptr,
                                 runs());
         sky_made_ = {scene.environment, occluded ? sky_visibility_->rays.first : 0};
+        ++arriving_version_;
         sky_stale_ = diffuse_light_stale_ = true;
     });
 }
@@ -237,6 +243,7 @@ void FragmentInputs::solve_subsurface(const Scene& scene,
     wanted.lights = scene.lights;
     if (find_pass(plan, PassKind::environment_irradiance)) wanted.environment = scene.environment;
     wanted.exchange_version = exchanged_.version;
+    wanted.arriving_version = arriving_version_;
     for (const Material& paint : scene.part_materials) {
         const bool translucent = paint.model == ReflectanceModel::translucent;
         wanted.media.push_back(
@@ -250,12 +257,17 @@ void FragmentInputs::solve_subsurface(const Scene& scene,
         return;
     }
     clock.run(PassKind::subsurface, !subsurface_.stands(wanted), [&] {
-        subsurface_.solve(wanted,
-                          *map_,
-                          filtered_,
-                          exchanged_.at_nodes.on_diffuser.empty() ? nullptr : exchanged_.nodes,
-                          exchanged_.at_nodes.on_diffuser,
-                          progress);
+        subsurface_.solve(
+            wanted,
+            *map_,
+            pixels_,
+            [&](std::size_t i, const EnteredMedium& medium, float share, float curvature_per_mm) {
+                return entering_at(i, medium, share, curvature_per_mm);
+            },
+            filtered_,
+            exchanged_.at_nodes.on_diffuser.empty() ? nullptr : exchanged_.nodes,
+            exchanged_.at_nodes.on_diffuser,
+            progress);
         sky_stale_ = true;
     });
 }

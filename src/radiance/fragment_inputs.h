@@ -133,8 +133,12 @@ class FragmentInputs {
     void upload_eye(const Scene&);
     void upload_lights();
     void upload_sky();
-    /// What enters a medium of that index at a fragment of what lamps send a white diffuser.
-    glm::vec3 entering_at(std::size_t fragment, double eta) const;
+    /// What enters a medium at a fragment, in units of what a white diffuser sends.
+    /// `share` is entering_share() of the index.
+    glm::vec3 entering_at(std::size_t fragment,
+                          const EnteredMedium& medium,
+                          float share,
+                          float curvature_per_mm) const;
     void upload_diffuse_light();
     void upload_places();
     bool enough(int rays, int wanted) const {
@@ -177,6 +181,7 @@ class FragmentInputs {
         int version = 0;                     ///< of both
     };
     Exchanged exchanged_;
+    int arriving_version_ = 0;  ///< of lights_ and sky_
     SubsurfaceInputs subsurface_;
 
     /// What sky_ was made of. No rays: unoccluded.

@@ -7,7 +7,6 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "appearance/gloss_optics.h"
 #include "core/colour.h"
 #include "core/mutation.h"
 #include "radiance/fragment_inputs.h"
@@ -115,8 +114,10 @@ void FragmentInputs::upload_sky() {
             if (const SubsurfaceInputs::Part* leaving = subsurface_.part(part)) {
                 sum = leaving->spread
                           ? leaving->at_fragments[i]
-                          : leaving->total * (entering_share(leaving->medium.eta) * sum +
-                                              entering_at(i, leaving->medium.eta));
+                          : leaving->total * entering_at(i,
+                                                         {leaving->medium.eta, glm::vec3(0.0f), {}},
+                                                         entering_share(leaving->medium.eta),
+                                                         0.0f);
             }
         }
         return glm::vec4(glm::min(sum, glm::vec3(kHalfLargest)), 1.0f);
@@ -124,15 +125,22 @@ void FragmentInputs::upload_sky() {
     upload_packed(shading_.sky, 0, light_on);
 }
 
-glm::vec3 FragmentInputs::entering_at(std::size_t fragment, double eta) const {
-    glm::vec3 sum(0.0f);
+glm::vec3 FragmentInputs::entering_at(std::size_t fragment,
+                                      const EnteredMedium& medium,
+                                      float share,
+                                      float curvature_per_mm) const {
+    const std::vector<glm::vec3>& between = exchanged_.on_diffuser;
+    glm::vec3 sum = (sky_.empty() ? glm::vec3(0.0f) : sky_[fragment]) +
+                    (between.empty() ? glm::vec3(0.0f) : between[fragment]);
+    sum *= share;
     for (const Light& light : lights_) {
         const float cosine =
             glm::dot(map_->fragments[fragment].normal, light.at[fragment].direction);
         if (cosine <= 0.0f) continue;
-        const double enters = 1.0 - dielectric_reflectance(static_cast<double>(cosine), eta);
-        sum += radiance_working(light.light) *
-               (light.at[fragment].visibility * cosine * static_cast<float>(enters));
+        const glm::vec3 enters = glm::vec3(light.light.radiance_rec709) *
+                                 entering_of_lamp(medium, cosine, curvature_per_mm);
+        sum +=
+            light.at[fragment].visibility * glm::vec3(working_from_rec709() * glm::dvec3(enters));
     }
     return sum;
 }

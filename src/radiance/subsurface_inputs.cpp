@@ -4,6 +4,8 @@
 
 #include "appearance/subsurface/translucent_paint.h"
 #include "core/colour.h"
+#include "radiance/light/slab_thickness.h"
+#include "radiance/light/subsurface_near.h"
 
 namespace livery {
 
@@ -36,15 +38,30 @@ SubsurfaceInputs::Part where_it_enters(const TranslucentMaterial& medium) {
     return part;
 }
 
+/// Of each channel; 0 where nothing is met.
+glm::vec3 mean_free_paths_mm(const TranslucentMaterial& medium) {
+    glm::vec3 paths(0.0f);
+    for (int c = 0; c < 3; ++c) {
+        const ScatteringMedium channel = medium_of(medium, c);
+        if (channel.sigma_t_prime() > 0.0) {
+            paths[c] = static_cast<float>(channel.mean_free_path_mm());
+        }
+    }
+    return paths;
+}
+
 }  // namespace
 
 bool SubsurfaceInputs::stands(const Wanted& wanted) const {
     return solved_ && same_media(solved_->media, wanted.media) && same_light(*solved_, wanted) &&
-           solved_->exchange_version == wanted.exchange_version && solved_->detail == wanted.detail;
+           solved_->exchange_version == wanted.exchange_version &&
+           solved_->arriving_version == wanted.arriving_version && solved_->detail == wanted.detail;
 }
 
 void SubsurfaceInputs::solve(const Wanted& wanted,
                              const SurfaceMap& map,
+                             const PixelSize& pixels,
+                             const EnteringAt& entering_at,
                              const FilteredEnvironment& filtered,
                              const std::shared_ptr<const NodeExchange>& exchange,
                              const std::vector<glm::vec3>& between,
@@ -55,12 +72,22 @@ void SubsurfaceInputs::solve(const Wanted& wanted,
         if (!wanted.media[p]) continue;
         const TranslucentMaterial& medium = *wanted.media[p];
         if (!kernels_[p] || !same_medium(kernels_[p]->medium, medium)) {
-            kernels_[p] = {medium, subsurface_kernel(medium)};
+            const float deep_mm = kernel_reach_mm(medium);
+            const auto sheet_mm = sheet_thickness_mm(tracer_, mesh_, p, deep_mm);
+            const float reach_mm =
+                sheet_mm ? std::min(deep_mm, kernel_reach_mm(medium, sheet_mm)) : deep_mm;
+            kernels_[p] = {medium, reach_mm, {}};
         }
+        KernelOf& of = *kernels_[p];
         progress.check_stop();
-        const SubsurfaceKernel& kernel = kernels_[p]->kernel;
         const auto transport =
-            transports_->of(mesh_, tracer_, p, kernel.reach_mm, wanted.detail, progress);
+            transports_->of(mesh_, tracer_, p, of.reach_mm, wanted.detail, progress);
+        if (of.kernel.near_mm != std::min(transport->near_mm, of.reach_mm)) {
+            of.kernel =
+                subsurface_kernel(medium, of.reach_mm, transport->near_mm, transport->slabs_mm);
+        }
+        const EnteredMedium entered{
+            medium.eta, mean_free_paths_mm(medium), transport->curvature_per_mm};
         std::vector<glm::vec3> entering = direct_at_nodes(transport->mesh,
                                                           tracer_,
                                                           transport->exchange,
@@ -68,17 +95,33 @@ void SubsurfaceInputs::solve(const Wanted& wanted,
                                                           wanted.environment.get(),
                                                           filtered,
                                                           progress,
-                                                          medium.eta);
+                                                          &entered);
+        const float share = entering_share(medium.eta);
         if (exchange) {
             const auto more = at_part_nodes(mesh_, exchange->nodes, between, *transport);
-            const float share = entering_share(medium.eta);
             for (std::size_t i = 0; i < more.size(); ++i) entering[i] += share * more[i];
         }
-        const auto leaving = leaving_at_nodes(*transport, kernel, entering, progress);
+        const LeavingLight leaving = leaving_at_nodes(*transport, of.kernel, entering, progress);
+        const auto at_fragment = [&](const std::vector<glm::vec3>& at_nodes) {
+            return at_fragments(
+                transport->mesh, map, transport->exchange.nodes, at_nodes, transport->place_of);
+        };
         Part& part = parts[p].emplace(where_it_enters(medium));
         part.spread = true;
-        part.at_fragments = at_fragments(
-            transport->mesh, map, transport->exchange.nodes, leaving, transport->place_of);
+        part.at_fragments = at_fragment(leaving.from_afar);
+        const std::vector<glm::vec3> near_share = at_fragment(leaving.near_share);
+        std::vector<glm::vec3> bent;
+        for (const float curvature : transport->curvature_per_mm) bent.emplace_back(curvature);
+        const std::vector<glm::vec3> curvature = at_fragment(bent);
+        std::vector<glm::vec3> at_own;
+        for (std::size_t i = map.part_begin[p]; i < map.part_begin[p + 1]; ++i) {
+            at_own.push_back(entering_at(i, entered, share, curvature[i].x));
+        }
+        progress.check_stop();
+        const std::vector<glm::vec3> nearby = entering_nearby(map, pixels, p, of.kernel, at_own);
+        for (std::size_t i = map.part_begin[p]; i < map.part_begin[p + 1]; ++i) {
+            part.at_fragments[i] += near_share[i] * nearby[i];
+        }
     }
     parts_ = std::move(parts);
     solved_ = wanted;

@@ -2,6 +2,7 @@
 // the level changes; which nodes lie near one another is kept.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -10,6 +11,7 @@
 #include <glm/vec3.hpp>
 
 #include "appearance/subsurface/translucent_material.h"
+#include "radiance/glints.h"
 #include "radiance/light/subsurface_transport.h"
 #include "radiance/surface_map.h"
 #include "scene/look.h"
@@ -29,13 +31,20 @@ class SubsurfaceInputs {
         std::vector<DirectionalLight> lights;
         std::shared_ptr<const Environment> environment;
         int exchange_version = 0;  ///< of light between parts
+        int arriving_version = 0;  ///< of what arrives at fragments
         TransportDetail detail;
     };
     bool stands(const Wanted& wanted) const;
+    /// What of all light enters a medium at a fragment where the surface is that bent; of even
+    /// light that share does.
+    using EnteringAt = std::function<glm::vec3(
+        std::size_t fragment, const EnteredMedium& medium, float share, float curvature_per_mm)>;
     /// `between`: light between parts on a white diffuser at nodes of the whole mesh, if there is
     /// any. A stop leaves what stood before.
     void solve(const Wanted& wanted,
                const SurfaceMap& map,
+               const PixelSize& pixels,
+               const EnteringAt& entering_at,
                const FilteredEnvironment& filtered,
                const std::shared_ptr<const NodeExchange>& exchange,
                const std::vector<glm::vec3>& between,
@@ -61,6 +70,7 @@ class SubsurfaceInputs {
   private:
     struct KernelOf {
         TranslucentMaterial medium;
+        float reach_mm = 0.0f;
         SubsurfaceKernel kernel;
     };
     const Mesh& mesh_;

@@ -110,5 +110,40 @@ TEST(TranslucentPaint, IsScaledToTheMockUp) {
     EXPECT_EQ(entering_albedo(small), entering_albedo(marble));
 }
 
+TEST(TranslucentPaint, LengthAndColourAreEditedApart) {
+    for (const char* name : {"marble", "skim milk", "ketchup", "skin 1"}) {
+        SCOPED_TRACE(name);
+        TranslucentMaterial medium = read_translucent_material(name);
+        const glm::dvec3 colour = entering_albedo(medium);
+        const TranslucentMaterial longer = with_mean_free_path(medium, 3.0);
+        EXPECT_NEAR(mean_free_path_mm(longer), 3.0, 1e-12);
+        // A total knows no length, but for rounding
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(entering_albedo(longer)[c], colour[c], 1e-9);
+        for (const glm::dvec3& wanted :
+             {glm::dvec3(0.9, 0.5, 0.1), glm::dvec3(0.999, 0.02, 0.7), glm::dvec3(0.3)}) {
+            medium.g = wanted.x == 0.3 ? 0.6 : 0.0;
+            const TranslucentMaterial made = with_entering_albedo(medium, wanted);
+            for (int c = 0; c < 3; ++c) {
+                EXPECT_NEAR(entering_albedo(made)[c], wanted[c], 1e-4) << c;
+                EXPECT_NEAR(made.sigma_a_per_mm[c] + made.sigma_s_prime_per_mm[c],
+                            medium.sigma_a_per_mm[c] + medium.sigma_s_prime_per_mm[c],
+                            1e-12);
+            }
+        }
+    }
+}
+
+TEST(TranslucentPaint, TakesTheNearestColourThereIs) {
+    TranslucentMaterial clear;
+    clear.sigma_a_per_mm = clear.sigma_s_prime_per_mm = glm::dvec3(0.0);
+    const TranslucentMaterial made = with_entering_albedo(clear, {1.5, -0.2, 0.5});
+    EXPECT_EQ(made.sigma_a_per_mm.x, 0.0);
+    EXPECT_EQ(made.sigma_s_prime_per_mm.y, 0.0);
+    EXPECT_NEAR(entering_albedo(made).z, 0.5, 1e-4);
+    EXPECT_EQ(with_mean_free_path(clear, 2.0).sigma_a_per_mm, clear.sigma_a_per_mm);
+    EXPECT_THROW(with_mean_free_path(clear, 0.0), std::invalid_argument);
+    EXPECT_THROW(with_mean_free_path(clear, -1.0), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace livery

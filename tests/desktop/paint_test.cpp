@@ -1,12 +1,16 @@
 // The tab of one paint on two monitors: what it shows, another colour, another paint beside it.
 
+#include <cstdlib>
+
 #include <gtest/gtest.h>
 
 #include "appearance/fit/recolour.h"
 #include "appearance/paint_colour.h"
+#include "appearance/subsurface/translucent_paint.h"
 #include "desktop/prepared.h"
 #include "desktop/two_monitors.h"
 #include "session/commands.h"
+#include "studio/paint/paint_parameters.h"
 
 namespace livery {
 namespace {
@@ -48,6 +52,55 @@ TEST_F(PaintTab, GivesAFinishAnotherColourAndHoldsItAgainstAnother) {
     program->click("paint-compare");
     program->click("compare:nothing");
     EXPECT_TRUE(wait_until([&] { return !program->has_item("paint-difference"); }));
+    program->click("tab:Paints");
+}
+
+TEST_F(PaintTab, EditsATranslucentPaintByItsColourAndLength) {
+    use_shared();
+    const int look = look_at_place(0);
+    const Image8 first = drive_of_place(0), marble = drive_with_body("marble");
+    program->click("paint:marble");
+    ASSERT_TRUE(projector_shows(marble));
+    program->click("tab:Paint");
+    EXPECT_TRUE(wait_until([&] { return program->has_item("param:mean-free-path"); }));
+    EXPECT_TRUE(program->has_item("medium:reach"));
+
+    program->click("param:albedo:hex");
+    desktop->type("#b04020");
+    desktop->press_key("Return");
+    Material paint = find_paint(document, "marble");
+    paint.medium = std::make_shared<const TranslucentMaterial>(
+        with_entering_albedo(*paint.medium, *colour_of_hex("#b04020")));
+    const Image8 tinted =
+        expected_drive(applied(applied(document, SetPaint{look, "body", "marble"}),
+                               EditPaint{look, "body", paint}),
+                       look);
+    EXPECT_TRUE(projector_shows(tinted));
+
+    // Dragged: seen while it is held, and one step to undo
+    const Rectangle green = program->item("param:albedo:g");
+    const int x = green.x + green.width / 2, y = green.y + green.height / 2;
+    desktop->move_pointer(x, y);
+    desktop->press_button();
+    for (int k = 1; k <= 8; ++k) desktop->move_pointer(x + 8 * k, y);
+    EXPECT_TRUE(wait_until([&] { return !projector_shows_now(tinted); }));
+    for (int k = 9; k <= 12; ++k) desktop->move_pointer(x + 8 * k, y);
+    desktop->release_button();
+    desktop->press_key("ctrl+z");
+    EXPECT_TRUE(projector_shows(tinted));
+    desktop->press_key("ctrl+z");
+    EXPECT_TRUE(projector_shows(marble));
+
+    program->click("medium:coefficients");
+    EXPECT_TRUE(wait_until([&] { return program->has_item("param:sigma-a:x"); }));
+    EXPECT_TRUE(program->has_item("param:sigma-s:z"));
+    EXPECT_TRUE(program->has_item("param:g"));
+    if (std::getenv("LIVERY_SAVE_PICTURES")) {
+        saved(desktop->read(desktop->operator_area()), "translucent-paint");
+    }
+    program->click("medium:coefficients");
+    desktop->press_key("ctrl+z");
+    EXPECT_TRUE(projector_shows(first));
     program->click("tab:Paints");
 }
 

@@ -8,10 +8,12 @@
 #include <gtest/gtest.h>
 
 #include "appearance/material_library.h"
+#include "appearance/subsurface/translucent_paint.h"
 #include "core/image_io.h"
 #include "core/paths.h"
 #include "live/contexts.h"
 #include "live/preview_thread.h"
+#include "live/translucent_swatch.h"
 #include "support/temporary_folder.h"
 
 namespace livery {
@@ -73,6 +75,26 @@ TEST_F(Swatches, ShowEachPaintOnASphereTheSameEveryTime) {
     EXPECT_GT(mean_of(red, 0), 2.0 * mean_of(red, 1));
     EXPECT_THROW(painter.paint(library.front(), 7), std::invalid_argument);
     EXPECT_THROW(painter.paint(library.front(), 1025), std::invalid_argument);
+}
+
+TEST_F(Swatches, OfTranslucentPaintsAreDiscsLitFromBehind) {
+    const Material marble = translucent_paint(read_translucent_material("marble"));
+    const Image8 swatch = translucent_swatch(marble, 64);
+    EXPECT_EQ(swatch.at(0, 0, 3), 0);
+    EXPECT_EQ(swatch.at(32, 32, 3), 255);
+    // Brighter where it is thin; where it is thick blue is lost first
+    const std::uint8_t *thin = swatch.pixel(4, 32), *thick = swatch.pixel(59, 32);
+    for (int c = 0; c < 3; ++c) EXPECT_GT(thin[c], thick[c] + 40) << c;
+    EXPECT_GT(thick[0], thick[2] + 5);
+    // Nothing that absorbs and does not scatter comes back, and little gets through
+    Material ink = marble;
+    TranslucentMaterial black = *marble.medium;
+    black.sigma_s_prime_per_mm = glm::dvec3(0.0);
+    black.sigma_a_per_mm = glm::dvec3(10.0);
+    ink.medium = std::make_shared<const TranslucentMaterial>(black);
+    EXPECT_LT(translucent_swatch(ink, 64).at(32, 32, 1), 3);
+    Material opaque;
+    EXPECT_THROW(translucent_swatch(opaque, 64), std::invalid_argument);
 }
 
 TEST_F(Swatches, AreKeptByWhatDecidesHowTheyLook) {

@@ -17,6 +17,18 @@ Material translucent_paint(const TranslucentMaterial& medium, double alpha = kSm
 /// totals for light along the normal (exact_totals.h), worked out once for each medium.
 glm::dvec3 entering_albedo(const TranslucentMaterial& medium);
 
+/// What a person edits of a medium: one length, and a colour. The length is 1 over the mean of
+/// sigma_t' over the channels, in mm; infinite where nothing is met.
+double mean_free_path_mm(const TranslucentMaterial& medium);
+/// All of the medium's lengths by one factor, so that that is `mm`: its colour stays. A clear one
+/// stays as it is. Throws std::invalid_argument for a length that is not above 0.
+TranslucentMaterial with_mean_free_path(TranslucentMaterial medium, double mm);
+/// sigma_a and sigma_s' of each channel anew, their sum as it is (1 over the other channels' mean
+/// path where it was 0), so that entering_albedo() is `albedo` within 1e-4. What no medium reaches
+/// (1 and more, 0 and less) becomes the nearest that one does. Found by secants in the root of what
+/// a scattering loses, in which the exact total is nearly exponential.
+TranslucentMaterial with_entering_albedo(TranslucentMaterial medium, const glm::dvec3& albedo);
+
 /// The reflectance of the boundary along the normal.
 double boundary_f0(double eta);
 

@@ -70,6 +70,26 @@ std::vector<std::pair<const char*, std::function<void(Look&)>>> lights() {
                                        }}};
 }
 
+/// Marble at its own size, where light goes through what is as large as a hand: a ball, and the
+/// shell of the player.
+void add_translucent(std::vector<AccuracyScene>& scenes, const Progress& progress) {
+    for (const std::string name : {"sphere", "player"}) {
+        const auto product = find_product(name);
+        const BenchDescription bench = read_bench_file(*bench_of_shipped_product(name));
+        for (const auto& [light_name, light] : lights()) {
+            progress.check_stop();
+            Look look = find_look_for("solid-red", product->mesh);
+            const std::string part = name == "player" ? "shell" : look.parts.begin()->first;
+            look.parts[part] = "marble";
+            light(look);
+            AccuracyScene& scene = scenes.emplace_back();
+            scene.name = name + ", marble, " + light_name;
+            scene.view = resized(bench.projector.view, kWidth, kHeight);
+            scene.scene = make_scene(product, look, bench.eye_mm, nullptr);
+        }
+    }
+}
+
 }  // namespace
 
 AccuracyScene resized(const AccuracyScene& scene, int width, int height) {
@@ -101,6 +121,7 @@ std::vector<AccuracyScene> accuracy_scenes(bool quick, const Progress& progress)
             }
         }
     }
+    add_translucent(scenes, progress);
     return scenes;
 }
 

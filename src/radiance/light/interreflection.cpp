@@ -152,6 +152,15 @@ NodeExchange blocked_directions(const Mesh& mesh,
     return exchange;
 }
 
+glm::vec3 entering_of_lamp(const EnteredMedium& medium, float cosine, float curvature_per_mm) {
+    const auto enters =
+        static_cast<float>(1.0 - dielectric_reflectance(static_cast<double>(cosine), medium.eta));
+    const glm::vec3 shift = curvature_per_mm / static_cast<float>(medium.eta) * medium.path_mm;
+    return glm::max(
+        cosine * enters * (1.0f - 2.0f * cosine * shift) + (1.0f - cosine * cosine) * shift,
+        glm::vec3(0.0f));
+}
+
 float entering_share(double eta) {
     // What passes inward from everywhere passes outward from everywhere, over the index squared
     return static_cast<float>(2.0 * eta * eta * fresnel_moments(eta).passed[0]);
@@ -174,21 +183,23 @@ std::vector<glm::vec3> direct_at_nodes(const Mesh& mesh,
                                        const Environment* environment,
                                        const FilteredEnvironment& filtered,
                                        const Progress& progress,
-                                       double eta) {
+                                       const EnteredMedium* medium) {
     const ExchangeNodes& nodes = exchange.nodes;
     struct Lamp {
-        glm::vec3 direction, radiance;
+        glm::vec3 direction, radiance, radiance_rec709;
     };
     std::vector<Lamp> lamps;
     for (const DirectionalLight& light : lights) {
         lamps.push_back({glm::vec3(glm::normalize(light.direction)),
-                         glm::vec3(working_from_rec709() * light.radiance_rec709)});
+                         glm::vec3(working_from_rec709() * light.radiance_rec709),
+                         glm::vec3(light.radiance_rec709)});
     }
     const auto spiral = cosine_directions(exchange.rays);
+    const glm::mat3 working(working_from_rec709());
     std::optional<SpherePlaces> places;
     SphereStack diffuse, around;
     float scale = 0.0f;
-    const float of_sky = entering_share(eta);
+    const float of_sky = medium ? entering_share(medium->eta) : 1.0f;
     if (environment) {
         places.emplace(*environment);
         diffuse = SphereStack({&filtered.diffuse, 1});
@@ -206,10 +217,11 @@ std::vector<glm::vec3> direct_at_nodes(const Mesh& mesh,
                 if (cosine <= 0.0f || lamps[l].radiance == glm::vec3(0.0f)) continue;
                 const float open = disc_openness(
                     tracer, nodes.ray_origin_mm(mesh, i), n, lights[l], kRaysALight, i);
-                const double enters =
-                    eta == 1.0 ? 1.0
-                               : 1.0 - dielectric_reflectance(static_cast<double>(cosine), eta);
-                direct[i] += cosine * open * static_cast<float>(enters) * lamps[l].radiance;
+                direct[i] +=
+                    open * (medium ? working * (lamps[l].radiance_rec709 *
+                                                entering_of_lamp(
+                                                    *medium, cosine, medium->curvature_per_mm[i]))
+                                   : cosine * lamps[l].radiance);
             }
             if (!environment) continue;
             glm::vec3 sky = scale * of_sky * rgb_of(diffuse.at(places->of(n)).in(0));

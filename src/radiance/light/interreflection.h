@@ -52,9 +52,23 @@ NodeExchange blocked_directions(const Mesh& mesh,
                                 int rays,
                                 const Progress& progress = {});
 
+/// A medium that light enters: a beam that comes in aslant spreads from a mean free path along its
+/// refracted way, and so from beside where it entered. On a bent surface that thins light where it
+/// falls steeply and gathers it toward the edge of what is lit: with e(t) the cosine t times what
+/// Fresnel lets in,
+///   e(t) (1 - 2 k t l/eta) + (1 - t^2) k l/eta,  k the curvature, l the mean free path,
+/// which is the divergence of the displaced light to first order, and nothing for even light.
+struct EnteredMedium {
+    double eta = 1.0;
+    glm::vec3 path_mm{0.0f};                  ///< linear Rec.709
+    std::span<const float> curvature_per_mm;  ///< of each place
+};
+/// That, in linear Rec.709 channels; not below 0.
+glm::vec3 entering_of_lamp(const EnteredMedium& medium, float cosine, float curvature_per_mm);
+
 /// What a white diffuser at each node sends under the lights and the environment (null: none), as
-/// far as the product does not hide them. Working space, exposure not included. With an `eta` other
-/// than 1 a diffuser under a smooth boundary of that index, which is all that matters: what enters.
+/// far as the product does not hide them. Working space, exposure not included. With a `medium`
+/// what enters it there instead.
 std::vector<glm::vec3> direct_at_nodes(const Mesh& mesh,
                                        const Tracer& tracer,
                                        const NodeExchange& exchange,
@@ -62,7 +76,7 @@ std::vector<glm::vec3> direct_at_nodes(const Mesh& mesh,
                                        const Environment* environment,
                                        const FilteredEnvironment& filtered,
                                        const Progress& progress = {},
-                                       double eta = 1.0);
+                                       const EnteredMedium* medium = nullptr);
 
 /// The share of even light from all around that enters a medium of index `eta`.
 float entering_share(double eta);

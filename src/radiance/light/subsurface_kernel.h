@@ -1,7 +1,9 @@
-// How far light goes in a translucent paint, as a table that transports are weighed with.
+// How far light goes in a translucent paint, as tables that transports are weighed with.
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -14,23 +16,53 @@ namespace livery {
 inline constexpr std::uint32_t kDistanceSteps = 2048;
 std::uint16_t distance_code(float distance_mm, float reach_mm);
 
-/// The best analytic profile (SubsurfaceModel::scaled_beam_diffusion) of each channel, in the
-/// working space: a reflectance at each distance.
+/// Beyond, three thousandths of what leaves the plane do so; or of what leaves a sheet that thick.
+float kernel_reach_mm(const TranslucentMaterial& on_mock_up, std::optional<float> sheet_mm = {});
+
+/// The same model where the body is a slab of that thickness: what goes farther than near_mm on the
+/// side where it entered, and what comes out on the other.
+struct SlabKernel {
+    float thickness_mm = 0.0f;
+    glm::vec3 near_share{0.0f}, far_share{0.0f}, through_share{0.0f};
+    std::vector<glm::vec3> far_per_mm2;      ///< at codes of the kernel's reach_mm
+    std::vector<glm::vec3> through_per_mm2;  ///< at codes of the distance along the slab
+};
+
+/// The best analytic profile (SubsurfaceModel::scaled_beam_diffusion) of each channel in the
+/// working space, a reflectance at each distance, in two parts: what goes no farther than `near_mm`
+/// falls off smoothly to nothing there, the rest begins as smoothly and has no peak at the beam.
 struct SubsurfaceKernel {
-    float reach_mm = 0.0f;  ///< beyond, a hundredth of what leaves does so
+    float reach_mm = 0.0f;
+    float near_mm = 0.0f;
     glm::vec3 total{0.0f};  ///< of what enters, over the whole plane
     /// Linear Rec.709: that total, the decay sqrt(sigma_a/D) of what is far, and how much of the
     /// fluence at a plane goes on into it over what leaves it, 2 A D decay (diffusion theory).
     glm::dvec3 albedo{0.0}, decay_per_mm{0.0}, inward{0.0};
-    std::vector<glm::vec3> per_mm2;  ///< at each code
-    std::vector<glm::vec3> within;   ///< of what enters, within the distance of each code
+
+    std::vector<glm::vec3> near_per_mm2;  ///< at codes of near_mm
+    /// At codes of reach_mm; and what a curvature of 1 per mm adds to it, to first order.
+    std::vector<glm::vec3> far_per_mm2, bent_per_mm2;
+    glm::vec3 near_share{0.0f};  ///< of the total, what is not far
+    glm::vec3 bent_share{0.0f};  ///< of what is added
+    std::vector<SlabKernel> slabs;
 };
 /// Throws std::invalid_argument for a medium out of range.
-SubsurfaceKernel subsurface_kernel(const TranslucentMaterial& on_mock_up);
+SubsurfaceKernel subsurface_kernel(const TranslucentMaterial& on_mock_up,
+                                   float reach_mm,
+                                   float near_mm,
+                                   std::span<const float> slabs_mm = {});
 
 /// The total where the surface has that mean curvature, 1 over the radius of a ball: of what enters
 /// a convex body less is lost in it, for less of it lies behind. Diffusion in a ball takes coth x -
 /// 1/x of what a plane does, x = radius times decay; around a hollow 1 + 1/x.
 glm::vec3 total_at(const SubsurfaceKernel& kernel, float curvature_per_mm);
+
+/// Where light leaves that much bent a surface: the part of its total that comes from near, and how
+/// much of `bent_per_mm2` the far part takes.
+struct BentShares {
+    glm::vec3 near{0.0f}, far{0.0f};
+    float bend_per_mm = 0.0f;
+};
+BentShares shares_at(const SubsurfaceKernel& kernel, float curvature_per_mm);
 
 }  // namespace livery

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <numbers>
 #include <unordered_map>
 
@@ -9,6 +11,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/parallel.h"
+#include "radiance/light/slab_thickness.h"
 
 namespace livery {
 
@@ -19,6 +22,14 @@ constexpr double kMostNodes = 60'000.0;
 /// A surface crosses about that many cells of the nodes' grid per side squared.
 constexpr double kCellsCrossed = 1.5;
 constexpr int kSkyRays = 32;
+/// Of the nodes' grid: sums over nodes of what begins that softly are as good as integrals.
+constexpr double kNearCells = 2.0;
+/// Nodes of sheets, over those of bodies, at most.
+constexpr double kMoreForSlabs = 4.0;
+/// Classes of thickness; those that are thicker than all of them count as deep.
+constexpr std::size_t kMostSlabs = 24;
+/// Of the normals on both sides of a slab, the cosine between them at most.
+constexpr float kOpposite = -0.7f;
 
 double area_of(const Mesh& mesh) {
     double area = 0.0;
@@ -94,7 +105,8 @@ bool through_air(const Tracer& tracer,
                  const ExchangeNodes& nodes,
                  std::size_t i,
                  std::size_t j,
-                 float distance) {
+                 float distance,
+                 float thickness) {
     const glm::vec3 n = nodes.normal(i), m = nodes.normal(j);
     const glm::vec3 way = nodes.position_mm(j) - nodes.position_mm(i);
     constexpr float kFlat = 0.35f, kUnder = 0.25f;
@@ -103,10 +115,51 @@ bool through_air(const Tracer& tracer,
         return false;
     }
     TraceRay ray;
-    ray.origin = nodes.position_mm(i) - kUnder * distance * n;
-    ray.direction = nodes.position_mm(j) - kUnder * distance * m - ray.origin;
+    const float under = std::min(kUnder * distance, kUnder * thickness);
+    ray.origin = nodes.position_mm(i) - under * n;
+    ray.direction = nodes.position_mm(j) - under * m - ray.origin;
     ray.t_max = 1.0f;
     return tracer.occluded(ray);
+}
+
+/// Sorts the nodes' thicknesses into classes a fifth apart.
+void find_slabs(const Tracer& tracer, const Mesh& product, SubsurfaceTransport& transport) {
+    const ExchangeNodes& nodes = transport.exchange.nodes;
+    std::vector<float> thickness(nodes.size());
+    parallel_for(nodes.size(), 256, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            thickness[i] = slab_thickness_mm(tracer,
+                                             product,
+                                             transport.part,
+                                             nodes.position_mm(i),
+                                             nodes.normal(i),
+                                             transport.reach_mm)
+                               .value_or(0.0f);
+        }
+    });
+    constexpr float kClass = 0.2f;  // of the logarithm
+    std::map<int, std::pair<float, int>> classes;
+    const auto class_of = [&](float mm) {
+        return static_cast<int>(std::lround(std::log(mm) / kClass));
+    };
+    for (const float mm : thickness) {
+        if (!(mm > 0.0f)) continue;
+        auto& [sum, count] = classes[class_of(mm)];
+        sum += mm;
+        ++count;
+    }
+    std::map<int, std::uint8_t> place;
+    for (const auto& [key, sums] : classes) {
+        if (transport.slabs_mm.size() == kMostSlabs) break;
+        place[key] = static_cast<std::uint8_t>(transport.slabs_mm.size());
+        transport.slabs_mm.push_back(sums.first / static_cast<float>(sums.second));
+    }
+    transport.slab_of.assign(nodes.size(), SubsurfaceTransport::kDeep);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        if (!(thickness[i] > 0.0f)) continue;
+        const auto found = place.find(class_of(thickness[i]));
+        if (found != place.end()) transport.slab_of[i] = found->second;
+    }
 }
 
 void find_others(const Tracer& tracer,
@@ -116,12 +169,13 @@ void find_others(const Tracer& tracer,
     const ExchangeNodes& nodes = transport.exchange.nodes;
     const ReachCells cells(nodes, transport.reach_mm);
     struct Found {
-        std::vector<std::uint32_t> other;
-        std::vector<std::uint16_t> code;
+        std::vector<std::uint32_t> other, through;
+        std::vector<std::uint16_t> code, through_code;
     };
     constexpr std::size_t kAtATime = 256;
     std::vector<Found> found((nodes.size() + kAtATime - 1) / kAtATime);
     transport.first.assign(nodes.size() + 1, 0);
+    transport.through_first.assign(nodes.size() + 1, 0);
     transport.curvature_per_mm.assign(nodes.size(), 0.0f);
     parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
         progress.check_stop();
@@ -130,36 +184,92 @@ void find_others(const Tracer& tracer,
             const std::size_t past = std::min(nodes.size(), (block + 1) * kAtATime);
             for (std::size_t i = block * kAtATime; i < past; ++i) {
                 const std::size_t before = list.other.size();
+                const std::size_t through_before = list.through.size();
+                const std::uint8_t slab = transport.slab_of[i];
+                const float thickness = slab == SubsurfaceTransport::kDeep
+                                            ? std::numeric_limits<float>::infinity()
+                                            : transport.slabs_mm[slab];
                 float bent = 0.0f, all = 0.0f;
                 cells.around(nodes.position_mm(i), [&](std::uint32_t j) {
                     if (j == i) return;
                     const glm::vec3 way = nodes.position_mm(j) - nodes.position_mm(i);
-                    // The mean of 1/r over a disc is about its value half a radius farther out
-                    const float square = glm::dot(way, way) +
-                                         transport.area_mm2[j] / (8.0f * std::numbers::pi_v<float>);
+                    if (slab != SubsurfaceTransport::kDeep &&
+                        glm::dot(nodes.normal(i), nodes.normal(j)) < kOpposite) {
+                        const float depth = -glm::dot(way, nodes.normal(i));
+                        const float along2 = std::max(glm::dot(way, way) - depth * depth, 0.0f);
+                        const bool across = depth > 0.5f * thickness && depth < 2.0f * thickness;
+                        if (!across || along2 >= transport.reach_mm * transport.reach_mm) return;
+                        list.through.push_back(j);
+                        list.through_code.push_back(
+                            distance_code(std::sqrt(along2), transport.reach_mm));
+                        return;
+                    }
+                    const float square = glm::dot(way, way);
                     if (square >= transport.reach_mm * transport.reach_mm) return;
                     const float distance = std::sqrt(square);
-                    if (detail.rejects_air && through_air(tracer, nodes, i, j, distance)) return;
-                    // A chord of a ball leaves its tangent plane by length^2 / (2 radius)
-                    const float weight = transport.area_mm2[j] / distance;
-                    bent -= weight * 2.0f * glm::dot(nodes.normal(i), way) / square;
-                    all += weight;
+                    if (detail.rejects_air &&
+                        through_air(tracer, nodes, i, j, distance, thickness)) {
+                        return;
+                    }
+                    if (glm::dot(nodes.normal(i), nodes.normal(j)) > 0.0f) {
+                        // A chord of a ball leaves its tangent plane by length^2 / (2 radius)
+                        const float weight = transport.area_mm2[j] / distance;
+                        bent -= weight * 2.0f * glm::dot(nodes.normal(i), way) / square;
+                        all += weight;
+                    }
                     list.other.push_back(j);
                     list.code.push_back(distance_code(distance, transport.reach_mm));
                 });
                 if (all > 0.0f) transport.curvature_per_mm[i] = bent / all;
                 transport.first[i + 1] = static_cast<std::uint32_t>(list.other.size() - before);
+                transport.through_first[i + 1] =
+                    static_cast<std::uint32_t>(list.through.size() - through_before);
             }
         }
     });
-    for (std::size_t i = 0; i < nodes.size(); ++i) transport.first[i + 1] += transport.first[i];
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        transport.first[i + 1] += transport.first[i];
+        transport.through_first[i + 1] += transport.through_first[i];
+    }
     transport.other.reserve(transport.first.back());
     transport.code.reserve(transport.first.back());
     for (Found& list : found) {
         transport.other.insert(transport.other.end(), list.other.begin(), list.other.end());
         transport.code.insert(transport.code.end(), list.code.begin(), list.code.end());
+        transport.through.insert(transport.through.end(), list.through.begin(), list.through.end());
+        transport.through_code.insert(
+            transport.through_code.end(), list.through_code.begin(), list.through_code.end());
         list = {};
     }
+}
+
+/// Of what enters at the nodes on one's own side, and on the other, weighed by a slab's kernel.
+glm::vec3 mean_of(const SubsurfaceTransport& transport,
+                  std::size_t i,
+                  const SlabKernel& slab,
+                  std::span<const glm::vec3> entering) {
+    glm::vec3 sum(0.0f), all(0.0f);
+    for (std::size_t k = transport.first[i]; k < transport.first[i + 1]; ++k) {
+        const std::uint32_t j = transport.other[k];
+        const glm::vec3 weight = transport.area_mm2[j] * slab.far_per_mm2[transport.code[k]];
+        sum += weight * entering[j];
+        all += weight;
+    }
+    return sum / glm::max(all, glm::vec3(1e-20f));
+}
+glm::vec3 mean_through(const SubsurfaceTransport& transport,
+                       std::size_t i,
+                       const SlabKernel& slab,
+                       std::span<const glm::vec3> entering) {
+    glm::vec3 sum(0.0f), all(0.0f);
+    for (std::size_t k = transport.through_first[i]; k < transport.through_first[i + 1]; ++k) {
+        const std::uint32_t j = transport.through[k];
+        const glm::vec3 weight =
+            transport.area_mm2[j] * slab.through_per_mm2[transport.through_code[k]];
+        sum += weight * entering[j];
+        all += weight;
+    }
+    return sum / glm::max(all, glm::vec3(1e-20f));
 }
 
 }  // namespace
@@ -175,39 +285,60 @@ SubsurfaceTransport solve_transport(const Mesh& product,
     transport.reach_mm = reach_mm;
     take_part(product, transport);
     const double within = std::numbers::pi * static_cast<double>(reach_mm * reach_mm);
-    const double cell_mm2 = std::max(kCellsCrossed * within / detail.neighbours,
-                                     kCellsCrossed * area_of(transport.mesh) / kMostNodes);
+    double cell_mm2 = kCellsCrossed * within / detail.neighbours;
+    // What comes through a sheet is as fine as it is thin
+    if (const auto thin = thinnest_slab_mm(tracer, product, part, reach_mm)) {
+        const auto own = static_cast<double>(*thin);
+        cell_mm2 = std::clamp(own * own, cell_mm2 / kMoreForSlabs, cell_mm2);
+    }
+    // What is nearer than nodes is gathered over fragments, which takes long over centimetres
+    constexpr double kCoarsest_mm2 = 16.0, kMoreForWide = 2.0;
+    cell_mm2 = std::max(std::min(cell_mm2, kCoarsest_mm2), cell_mm2 / kMoreForWide);
+    cell_mm2 = std::max(cell_mm2, kCellsCrossed * area_of(transport.mesh) / kMostNodes);
+    transport.near_mm = static_cast<float>(kNearCells * std::sqrt(cell_mm2));
     transport.exchange = blocked_directions(transport.mesh,
                                             tracer,
                                             exchange_nodes(transport.mesh, std::sqrt(cell_mm2)),
                                             kSkyRays,
                                             progress);
     transport.area_mm2 = node_areas_mm2(transport.mesh, transport.exchange.nodes);
+    find_slabs(tracer, product, transport);
     find_others(tracer, detail, transport, progress);
     return transport;
 }
 
-std::vector<glm::vec3> leaving_at_nodes(const SubsurfaceTransport& transport,
-                                        const SubsurfaceKernel& kernel,
-                                        std::span<const glm::vec3> entering,
-                                        const Progress& progress) {
+LeavingLight leaving_at_nodes(const SubsurfaceTransport& transport,
+                              const SubsurfaceKernel& kernel,
+                              std::span<const glm::vec3> entering,
+                              const Progress& progress) {
     std::vector<glm::vec3> power(entering.size());
     for (std::size_t i = 0; i < power.size(); ++i) power[i] = transport.area_mm2[i] * entering[i];
-    std::vector<glm::vec3> leaving(entering.size());
-    parallel_for(leaving.size(), 512, [&](std::size_t begin, std::size_t end) {
+    LeavingLight leaving{std::vector<glm::vec3>(entering.size()),
+                         std::vector<glm::vec3>(entering.size())};
+    parallel_for(entering.size(), 512, [&](std::size_t begin, std::size_t end) {
         progress.check_stop();
         for (std::size_t i = begin; i < end; ++i) {
-            const float own_radius = std::sqrt(transport.area_mm2[i] / std::numbers::pi_v<float>);
-            const glm::vec3 own = kernel.within[distance_code(own_radius, transport.reach_mm)];
-            glm::vec3 sum = own * entering[i], all = own;
+            if (transport.slab_of[i] != SubsurfaceTransport::kDeep) {
+                const SlabKernel& slab = kernel.slabs[transport.slab_of[i]];
+                leaving.near_share[i] = slab.near_share;
+                leaving.from_afar[i] =
+                    slab.far_share * mean_of(transport, i, slab, entering) +
+                    slab.through_share * mean_through(transport, i, slab, entering);
+                continue;
+            }
+            const BentShares shares = shares_at(kernel, transport.curvature_per_mm[i]);
+            glm::vec3 sum(0.0f), all(0.0f);
             for (std::size_t k = transport.first[i]; k < transport.first[i + 1]; ++k) {
-                const glm::vec3& weight = kernel.per_mm2[transport.code[k]];
+                const std::uint16_t code = transport.code[k];
                 const std::uint32_t j = transport.other[k];
+                const glm::vec3 weight = glm::max(
+                    kernel.far_per_mm2[code] + shares.bend_per_mm * kernel.bent_per_mm2[code],
+                    glm::vec3(0.0f));
                 sum += weight * power[j];
                 all += transport.area_mm2[j] * weight;
             }
-            leaving[i] = total_at(kernel, transport.curvature_per_mm[i]) * sum /
-                         glm::max(all, glm::vec3(1e-20f));
+            leaving.from_afar[i] = shares.far * sum / glm::max(all, glm::vec3(1e-20f));
+            leaving.near_share[i] = shares.near;
         }
     });
     return leaving;

@@ -37,9 +37,17 @@ struct SubsurfaceTransport {
     /// the radius of a ball, negative in a hollow.
     std::vector<float> curvature_per_mm;
     float reach_mm = 0.0f;
+    float near_mm = 0.0f;  ///< what lies within is finer than nodes tell (SubsurfaceKernel)
     /// Others within reach of each node, from `first` on, and how far they are (distance_code).
     std::vector<std::uint32_t> first, other;
     std::vector<std::uint16_t> code;
+    /// Where the part is thin and flat: which of the thicknesses each node's place has, or kDeep,
+    /// and the nodes on the other side, with their distance along the slab.
+    static constexpr std::uint8_t kDeep = 0xff;
+    std::vector<float> slabs_mm;
+    std::vector<std::uint8_t> slab_of;
+    std::vector<std::uint32_t> through_first, through;
+    std::vector<std::uint16_t> through_code;
 };
 SubsurfaceTransport solve_transport(const Mesh& product,
                                     const Tracer& tracer,
@@ -48,13 +56,16 @@ SubsurfaceTransport solve_transport(const Mesh& product,
                                     const TransportDetail& detail,
                                     const Progress& progress = {});
 
-/// What leaves at each node of what enters at all, per area both. Every node gives back what a
-/// body as bent there does (total_at()): its own disc by the profile's integral, the others by the
-/// profile at their distance, all scaled to that.
-std::vector<glm::vec3> leaving_at_nodes(const SubsurfaceTransport& transport,
-                                        const SubsurfaceKernel& kernel,
-                                        std::span<const glm::vec3> entering,
-                                        const Progress& progress = {});
+/// At each node, per area: what leaves there of light that entered farther off than near_mm or on
+/// the other side, and the share of what enters nearer. Both together give back of even light what
+/// a body as bent there does (total_at()), or a slab as thin.
+struct LeavingLight {
+    std::vector<glm::vec3> from_afar, near_share;
+};
+LeavingLight leaving_at_nodes(const SubsurfaceTransport& transport,
+                              const SubsurfaceKernel& kernel,
+                              std::span<const glm::vec3> entering,
+                              const Progress& progress = {});
 
 /// What one mesh's nodes have, at the nodes of a part of it.
 std::vector<glm::vec3> at_part_nodes(const Mesh& product,

@@ -438,7 +438,8 @@ void draw_library_panel(Studio& studio) {
     const std::vector<Material>& own = studio.session.document().paints;
     std::vector<Section> sections{{"This session's own", &own, {}},
                                   {"Saved by you", &library.users, {}},
-                                  {"Library", &library.shipped, {}}};
+                                  {"Library", &library.shipped, {}},
+                                  {"Translucent", &library.media, {}}};
     draw_search(state);
     const auto searched = find_in(state, sections);
     const bool found_any = std::any_of(

@@ -39,7 +39,7 @@ void draw_paint_list(Studio& studio,
                      const std::function<void(const Material& paint, bool picked)>& offer) {
     const PaintLibrary& library = current_library(studio);
     for (const auto* paints :
-         {&studio.session.document().paints, &library.users, &library.shipped}) {
+         {&studio.session.document().paints, &library.users, &library.shipped, &library.media}) {
         ImGui::PushID(paints);  // the session's own may have a name of the library's
         for (const std::size_t k : find_paints(*paints, search, "")) {
             // A copy: picking may change the list.

@@ -22,6 +22,7 @@
 #include "studio/paint/paint_colour_row.h"
 #include "studio/paint/paint_parameters.h"
 #include "studio/paint/paint_portrait.h"
+#include "studio/paint/translucent_rows.h"
 #include "studio/paint/users_library.h"
 #include "studio/studio.h"
 
@@ -98,9 +99,12 @@ class ParameterRows {
               fmt::format("{}\n{}: {}. {}", info.meaning, info.name, info.range_text(), how));
     }
     void after_item(const std::string& name) {
-        PaintPanelState& state = *studio_.panels.paint;
         name_last_item("param:" + name);
         tooltip(meaning_);
+        after_named_item();
+    }
+    void after_named_item() {
+        PaintPanelState& state = *studio_.panels.paint;
         state.held.after_item();
         const bool touched = last_item_is_held() || ImGui::IsItemDeactivatedAfterEdit();
         if (!touched) return;
@@ -215,6 +219,15 @@ void draw_parameters(Studio& studio) {
     PaintPanelState& state = *studio.panels.paint;
     Material& edited = state.held.start(*state.material);
     ParameterRows rows(studio, edited);
+    if (edited.model == ReflectanceModel::translucent && edited.medium) {
+        draw_medium_rows(
+            edited,
+            studio.product->product_scale,
+            {[&](const char* text, const std::string& meaning) { rows.label(text, meaning); },
+             [&](const std::string& name) {
+                 name.empty() ? rows.after_named_item() : rows.after_item(name);
+             }});
+    }
     for (const char* name : model_info(edited.model).parameters) {
         const ParameterInfo& parameter = parameter_info(name);
         const Components<double> components = parameter.in_material(edited);
