@@ -1,5 +1,6 @@
 // The mock-up's picture gets finer while nobody changes anything, by the pixels of the projector.
 #include <algorithm>
+#include <chrono>
 
 #include <gtest/gtest.h>
 
@@ -8,6 +9,8 @@
 
 namespace livery {
 namespace {
+
+using namespace std::chrono_literals;
 
 using RefinementTest = TwoMonitors;
 
@@ -34,11 +37,12 @@ TEST_F(RefinementTest, FadesInTheLevelsOfHighAndTakesThemBack) {
     ScreenWatch watch(*desktop, desktop->projector_area(), [&](const Image8& seen) {
         return !lies_between(seen, draft, high);
     });
+    // Solved behind everything else, and a machine may be busy
+    ASSERT_TRUE(wait_until([&] { return program->state("quality") == "high"; }, 10min));
     EXPECT_TRUE(projector_shows(high));
     const auto seen = watch.stop();
     EXPECT_GT(seen.looks, 3);
     EXPECT_EQ(seen.wrong, 0) << "a step on the way was brighter or darker than both ends";
-    program->wait_for_state("quality", "high");
 
     // Another paint keeps the levels
     program->click("part:body");
