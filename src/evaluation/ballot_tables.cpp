@@ -323,6 +323,16 @@ void record(Database& database, LogEntry entry) {
     append_to_log(database, entry);
     const std::int64_t session = entry.session, round = entry.round, seat = entry.seat;
     const std::int64_t best = entry.best, second = entry.second;
+    // Of a ballot, or of a look's place on a scale
+    const std::vector<DatabaseValue> choice{
+        session,
+        round,
+        seat,
+        best,
+        second,
+        entry.least < 0 ? DatabaseValue() : DatabaseValue(std::int64_t{entry.least}),
+        entry.at,
+        std::int64_t{entry.id}};
     switch (entry.what) {
         case What::session:
             database.run("INSERT INTO sessions VALUES (?1, ?2)", {session, entry.at});
@@ -348,14 +358,7 @@ void record(Database& database, LogEntry entry) {
                 "ON CONFLICT (session, round, seat) DO UPDATE SET best = excluded.best, "
                 "second = excluded.second, least = excluded.least, at = excluded.at, "
                 "entry = excluded.entry",
-                {session,
-                 round,
-                 seat,
-                 best,
-                 second,
-                 entry.least < 0 ? DatabaseValue() : DatabaseValue(std::int64_t{entry.least}),
-                 entry.at,
-                 std::int64_t{entry.id}});
+                choice);
             return;
         case What::close:
             database.run("UPDATE rounds SET closed = ?2 WHERE id = ?1", {round, entry.at});
@@ -384,14 +387,7 @@ void record(Database& database, LogEntry entry) {
                 "INSERT INTO ratings VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8) "
                 "ON CONFLICT (session, round, seat, design, scale) DO UPDATE SET "
                 "step = excluded.step, at = excluded.at, entry = excluded.entry",
-                {session,
-                 round,
-                 seat,
-                 best,
-                 second,
-                 entry.least < 0 ? DatabaseValue() : DatabaseValue(std::int64_t{entry.least}),
-                 entry.at,
-                 std::int64_t{entry.id}});
+                choice);
             return;
         case What::migrated:
             return;

@@ -1,28 +1,16 @@
 // `livery session seats`: seats are placed, the eye is chosen, and what seats miss is told.
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
+#include "cli/session_run.h"
 #include "core/image_io.h"
 #include "core/paths.h"
-#include "support/run_program.h"
 
 namespace livery {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 ProgramRun run_seats(const std::filesystem::path& file, std::vector<std::string> more = {}) {
-    std::vector<std::string> words = {"session", "seats", file.string(), "--json"};
-    words.insert(words.end(), more.begin(), more.end());
-    return run_program(LIVERY_PROGRAM, words);
-}
-
-Json answer(const ProgramRun& run) {
-    EXPECT_EQ(run.exit_code, 0) << run.err;
-    const Json json = Json::parse(run.out, nullptr, false);
-    EXPECT_FALSE(json.is_discarded()) << run.out << run.err;
-    return json;
+    return session_run("seats", file, std::move(more));
 }
 
 class SeatsCommand : public ::testing::Test {

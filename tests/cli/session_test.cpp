@@ -7,34 +7,16 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "support/run_program.h"
+#include "cli/session_run.h"
 
 namespace livery {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr const char* kPaint =
     R"({"set-paint": {"look": 1, "part": "body", "paint": "solid-red"}})";
 constexpr const char* kEdit =
     R"({"edit-paint": {"look": 1, "part": "body", "material": {"name": "solid red", "model":
         "lambert", "parameters": {"diffuse": [0.5, 0.25, 0.1]}}}})";
-
-/// `livery session NAME FILE ... --json`.
-ProgramRun session_run(const std::string& name,
-                       const std::filesystem::path& file,
-                       std::vector<std::string> more = {}) {
-    std::vector<std::string> words = {"session", name, file.string(), "--json"};
-    words.insert(words.end(), more.begin(), more.end());
-    return run_program(LIVERY_PROGRAM, words);
-}
-
-Json answer(const ProgramRun& run) {
-    EXPECT_EQ(run.exit_code, 0) << run.err;
-    const Json json = Json::parse(run.out, nullptr, false);
-    EXPECT_FALSE(json.is_discarded()) << run.out << run.err;
-    return json;
-}
 
 TEST(SessionCommand, AppliesUndoesAndRedoes) {
     const TemporaryFolder folder;

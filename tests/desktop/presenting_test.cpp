@@ -25,24 +25,6 @@ constexpr const char* kSettings = R"({"format_version": 1, "settings": {
 
 class Presenting : public TwoMonitors {
   protected:
-    /// A home of its own: ballots are the user's.
-    void start_at_home() {
-        auto running = std::make_shared<RunningStudio>();
-        running->document = prepare_session(running->session_file());
-        home = running->folder / "home";
-        make_output_folder(home);
-        write_text_file(home / "desktop.json", kSettings);
-        running->desktop = std::make_unique<Desktop>();
-        use(running);
-        start_program_at_home();
-    }
-
-    void start_program_at_home() {
-        // What is expected of pictures is made in another one.
-        ::setenv("LIVERY_HOME", home.c_str(), 1);
-        start_program();
-    }
-
     void load_frames() {
         const BallotStore store(home / "ballots.sqlite");
         const auto found = store.presented();
@@ -91,13 +73,12 @@ class Presenting : public TwoMonitors {
         return presented.round.codes.at(static_cast<std::size_t>(design));
     }
 
-    std::filesystem::path home;
     BallotStore::Presented presented;
     VoteFrames frames;
 };
 
 TEST_F(Presenting, ShowsFrozenFramesInTheStoredOrderAlsoAfterAKillUntilTheRoundIsLocked) {
-    start_at_home();
+    start_at_home(kSettings);
     pick_projector();
     program->click("menu:File");
     program->click("menu:ballot");

@@ -72,6 +72,22 @@ void TwoMonitors::start_program(const std::vector<std::string>& arguments) {
     program = studio->program.get();
 }
 
+void TwoMonitors::start_at_home(const std::string& settings) {
+    auto running = std::make_shared<RunningStudio>();
+    running->document = prepare_session(running->session_file());
+    home = running->folder / "home";
+    make_output_folder(home);
+    write_text_file(home / "desktop.json", settings);
+    running->desktop = std::make_unique<Desktop>();
+    use(running);
+    start_program_at_home();
+}
+
+void TwoMonitors::start_program_at_home() {
+    ::setenv("LIVERY_HOME", home.c_str(), 1);
+    start_program();
+}
+
 void TwoMonitors::pick_projector() {
     program->click("projector-monitor");
     program->click("monitor:2");

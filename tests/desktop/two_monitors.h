@@ -36,6 +36,10 @@ class TwoMonitors : public testing::Test {
     /// A program of the test's own; the projector is not picked yet.
     void start(const DesktopOptions& options = {}, const std::vector<std::string>& arguments = {});
     void start_program(const std::vector<std::string>& arguments = {});
+    /// The same in a home of its own with these settings (JSON): ballots are the user's. What is
+    /// expected of pictures is made in another one.
+    void start_at_home(const std::string& settings);
+    void start_program_at_home();
     /// Another desktop and session from here on; its program is not started.
     void use(std::shared_ptr<RunningStudio> running);
     void pick_projector();
@@ -69,7 +73,8 @@ class TwoMonitors : public testing::Test {
         return expected_drive(document, look_at_place(place));
     }
 
-    bool refines = false;  ///< as StudioStart has it, from the next start on
+    std::filesystem::path home;  ///< of start_at_home()
+    bool refines = false;        ///< as StudioStart has it, from the next start on
     std::shared_ptr<RunningStudio> studio;
     // Shorthands for the studio's.
     Document document;

@@ -28,15 +28,7 @@ constexpr const char* kSettings = R"({"format_version": 1, "settings": {
 class VoteOfTen : public TwoMonitors {
   protected:
     void SetUp() override {
-        auto running = std::make_shared<RunningStudio>();
-        running->document = prepare_session(running->session_file());
-        home = running->folder / "home";
-        make_output_folder(home);
-        write_text_file(home / "desktop.json", kSettings);
-        running->desktop = std::make_unique<Desktop>();
-        use(running);
-        ::setenv("LIVERY_HOME", home.c_str(), 1);
-        start_program();
+        start_at_home(kSettings);
         pick_projector();
     }
 
@@ -55,7 +47,6 @@ class VoteOfTen : public TwoMonitors {
         return false;
     }
 
-    std::filesystem::path home;
     int clicks = 0;
 };
 

@@ -38,6 +38,11 @@ inline Document two_looks() {
     return document;
 }
 
+inline void draw_ballot(Studio& studio) {
+    bool open = true;
+    draw_ballot_panel(studio, open);
+}
+
 /// A studio without threads, projector and window, and an ImGui that draws nowhere.
 class Panels : public testing::TestWithParam<float> {
   protected:

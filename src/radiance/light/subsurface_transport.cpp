@@ -243,29 +243,23 @@ void find_others(const Tracer& tracer,
     }
 }
 
-/// Of what enters at the nodes on one's own side, and on the other, weighed by a slab's kernel.
-glm::vec3 mean_of(const SubsurfaceTransport& transport,
+/// One side's lists of a transport: where each node's begin, the others, and their distances.
+struct NodeLists {
+    const std::vector<std::uint32_t>& first;
+    const std::vector<std::uint32_t>& other;
+    const std::vector<std::uint16_t>& code;
+};
+
+/// Of what enters at the nodes in node i's list, weighed by their areas and a kernel.
+glm::vec3 mean_of(const NodeLists& lists,
                   std::size_t i,
-                  const SlabKernel& slab,
+                  std::span<const float> area_mm2,
+                  std::span<const glm::vec3> kernel_per_mm2,
                   std::span<const glm::vec3> entering) {
     glm::vec3 sum(0.0f), all(0.0f);
-    for (std::size_t k = transport.first[i]; k < transport.first[i + 1]; ++k) {
-        const std::uint32_t j = transport.other[k];
-        const glm::vec3 weight = transport.area_mm2[j] * slab.far_per_mm2[transport.code[k]];
-        sum += weight * entering[j];
-        all += weight;
-    }
-    return sum / glm::max(all, glm::vec3(1e-20f));
-}
-glm::vec3 mean_through(const SubsurfaceTransport& transport,
-                       std::size_t i,
-                       const SlabKernel& slab,
-                       std::span<const glm::vec3> entering) {
-    glm::vec3 sum(0.0f), all(0.0f);
-    for (std::size_t k = transport.through_first[i]; k < transport.through_first[i + 1]; ++k) {
-        const std::uint32_t j = transport.through[k];
-        const glm::vec3 weight =
-            transport.area_mm2[j] * slab.through_per_mm2[transport.through_code[k]];
+    for (std::size_t k = lists.first[i]; k < lists.first[i + 1]; ++k) {
+        const std::uint32_t j = lists.other[k];
+        const glm::vec3 weight = area_mm2[j] * kernel_per_mm2[lists.code[k]];
         sum += weight * entering[j];
         all += weight;
     }
@@ -315,6 +309,8 @@ LeavingLight leaving_at_nodes(const SubsurfaceTransport& transport,
     for (std::size_t i = 0; i < power.size(); ++i) power[i] = transport.area_mm2[i] * entering[i];
     LeavingLight leaving{std::vector<glm::vec3>(entering.size()),
                          std::vector<glm::vec3>(entering.size())};
+    const NodeLists own{transport.first, transport.other, transport.code};
+    const NodeLists behind{transport.through_first, transport.through, transport.through_code};
     parallel_for(entering.size(), 512, [&](std::size_t begin, std::size_t end) {
         progress.check_stop();
         for (std::size_t i = begin; i < end; ++i) {
@@ -322,8 +318,10 @@ LeavingLight leaving_at_nodes(const SubsurfaceTransport& transport,
                 const SlabKernel& slab = kernel.slabs[transport.slab_of[i]];
                 leaving.near_share[i] = slab.near_share;
                 leaving.from_afar[i] =
-                    slab.far_share * mean_of(transport, i, slab, entering) +
-                    slab.through_share * mean_through(transport, i, slab, entering);
+                    slab.far_share *
+                        mean_of(own, i, transport.area_mm2, slab.far_per_mm2, entering) +
+                    slab.through_share *
+                        mean_of(behind, i, transport.area_mm2, slab.through_per_mm2, entering);
                 continue;
             }
             const BentShares shares = shares_at(kernel, transport.curvature_per_mm[i]);
