@@ -157,7 +157,7 @@ void FrameLane::solve(const FrameDescription& description,
                       std::optional<Urgency> urgency,
                       const Progress& progress) {
     SolveKeys keys = with_levels(keys_of(description), levels);
-    if (keys[1] && same_light(*keys[0], *keys[1])) keys[1].reset();
+    if (keys[1] && serves_both(*keys[0], *keys[1])) keys[1].reset();
     solved_ = {};
     prepared_ = false;
     sides_ = {};

@@ -105,11 +105,17 @@ bool same_light(const SolveKey& a, const SolveKey& b) {
            a.eye_mm == b.eye_mm && same_relief(a.relief, b.relief);
 }
 
+bool serves_both(const SolveKey& a, const SolveKey& b) {
+    return same_light(a, b) && a.sends_on == b.sends_on && a.media == b.media;
+}
+
 std::size_t nearest_of(const SolveKeys& solved, const SolveKeys& wanted, std::size_t side) {
     const SolveKey& own = *wanted[side];
     if (!solved[1]) return 0;
-    for (const std::size_t candidate : {side, 1 - side}) {
-        if (same_light(*solved[candidate], own)) return candidate;
+    for (const auto serves : {serves_both, same_light}) {
+        for (const std::size_t candidate : {side, 1 - side}) {
+            if (serves(*solved[candidate], own)) return candidate;
+        }
     }
     return side;
 }
@@ -121,9 +127,8 @@ std::string missing_of(const SolveKeys& solved, const SolveKeys& wanted) {
         const SolveKey& nearest = *solved[nearest_of(solved, wanted, side)];
         const std::string missing = difference(nearest, *wanted[side]);
         if (!missing.empty()) return missing;
-        const bool shared = side == 1 && !solved[1];
-        if (!shared && nearest.sends_on != wanted[side]->sends_on) return "light between parts";
-        if (!shared && nearest.media != wanted[side]->media) return "light in translucent parts";
+        if (nearest.sends_on != wanted[side]->sends_on) return "light between parts";
+        if (nearest.media != wanted[side]->media) return "light in translucent parts";
     }
     return "";
 }

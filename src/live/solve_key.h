@@ -38,6 +38,9 @@ SolveKeys with_levels(SolveKeys keys, const EffectLevels& levels);
 bool same_pose(const SolveKey& a, const SolveKey& b);  ///< product and projector
 /// All but levels, what parts send on and what they are made of.
 bool same_light(const SolveKey& a, const SolveKey& b);
+/// Whether what is solved for one is what the other needs: same light, and paints that send on and
+/// scatter as much of it.
+bool serves_both(const SolveKey& a, const SolveKey& b);
 
 /// Which of `solved` to draw a side of `wanted` with: its own light if that is there, else the
 /// nearest thing. `solved` has at least a left one.

@@ -209,7 +209,6 @@ TEST_F(FrameThreadTest, SolvingTellsHowFarItIs) {
 }
 
 TEST_P(FrameThreadOnADevice, WipeShowsEachLookInItsColumns) {
-    leave_out_light_between_parts();
     for (const bool same_light : {true, false}) {
         Scene right = description_.scene;
         paint(right, 0, ReflectanceModel::ggx, {0.1, 0.1, 0.7});
@@ -234,10 +233,29 @@ TEST_P(FrameThreadOnADevice, WipeShowsEachLookInItsColumns) {
         ASSERT_TRUE(painted);
         expect_wiped(*painted, *description_.wipe_to);
     }
+    wait_until_idle();
     description_.wipe_to.reset();
     const auto alone = gallery_.whole(show());
     ASSERT_TRUE(alone);
     EXPECT_EQ(drive(*alone).values, from_scratch(description_.scene).drive.values);
+}
+
+TEST_F(FrameThreadTest, LightBetweenPartsFollowsAPaintOnce) {
+    start();
+    ASSERT_TRUE(gallery_.whole(show()));
+    wait_until_idle();
+    gallery_.clear();
+    paint(description_.scene, 0, ReflectanceModel::clearcoat, {0.9, 0.1, 0.1});
+    const std::uint64_t number = show();
+    const auto frame = gallery_.whole(number);
+    ASSERT_TRUE(frame);
+    EXPECT_EQ(drive(*frame).values, from_scratch(description_.scene).drive.values);
+    wait_until_idle();
+    const auto told = gallery_.all();
+    ASSERT_EQ(told.size(), 2u);
+    EXPECT_EQ(told.front()->number, number) << "the paint waits for nothing";
+    EXPECT_EQ(told.front()->unfinished, "light between parts: solving");
+    EXPECT_EQ(told.back(), frame);
 }
 
 TEST_F(FrameThreadTest, AGlowingPartGlowsAndStops) {
