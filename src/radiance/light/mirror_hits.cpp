@@ -1,6 +1,9 @@
 #include "radiance/light/mirror_hits.h"
 
+#include <array>
 #include <bit>
+#include <optional>
+#include <vector>
 
 #include <glm/geometric.hpp>
 
@@ -25,45 +28,61 @@ std::vector<std::uint32_t> places_of(std::size_t size, std::uint32_t start, cons
     return first;
 }
 
-/// Those of the rays of a fragment that are known to meet the product. For one thread.
+/// Those of the rays of fragments that are known to meet the product, some at a time: few of one
+/// fragment do, and none of a packet's lanes is to stay empty. For one thread.
 class HitRays {
   public:
+    /// What they meet is written from `to` on, in their order.
     HitRays(const Mesh& mesh,
             const Tracer& tracer,
             const SurfaceMap& map,
             const glm::dvec3& eye_mm,
             const MirrorQuadrature& quadrature,
-            const ExchangeNodes& nodes)
+            const ExchangeNodes& nodes,
+            std::uint32_t* to)
         : mesh_(mesh),
           tracer_(tracer),
           map_(map),
           eye_mm_(eye_mm),
           quadrature_(quadrature),
-          nodes_(nodes) {}
+          nodes_(nodes),
+          to_(to) {}
 
     void begin(std::size_t fragment) {
         facets_.emplace(facets_of(mesh_, map_, fragment, eye_mm_, quadrature_));
         ray_origins(mesh_, map_, fragment, origins_);
     }
-    /// Of the set bits of a turn's word.
-    void trace(std::size_t turn, std::uint64_t word, std::uint32_t* to) const {
+    /// The set bits of a turn's word.
+    void add(std::size_t turn, std::uint64_t word) {
         const std::vector<std::size_t>& traced = quadrature_.traced(turn);
         for (; word != 0; word &= word - 1) {
             const std::size_t k = traced[static_cast<std::size_t>(std::countr_zero(word))];
-            TraceRay ray;
+            TraceRay& ray = rays_.emplace_back();
             ray.origin = origins_[k % origins_.size()];
             ray.direction = (*facets_)[k % facets_->size()].mirrored(k);
-            *to++ = node_of(ray);
         }
+        constexpr std::size_t kAtATime = 256;
+        if (rays_.size() >= kAtATime) finish();
+    }
+    /// Those that wait.
+    void finish() {
+        hits_.resize(rays_.size());
+        tracer_.closest(rays_, hits_);
+        for (std::size_t k = 0; k < rays_.size(); ++k) {
+            *to_++ = node_at(hits_[k], rays_[k].direction);
+        }
+        rays_.clear();
     }
 
   private:
-    std::uint32_t node_of(const TraceRay& ray) const {
-        const Hit hit = tracer_.closest(ray);
+    std::uint32_t node_at(const Hit& hit, const glm::vec3& direction) const {
         // Rounded otherwise than when it was traced
         if (!hit.valid()) return MirrorHits::kInside;
-        const glm::vec3 facing = surface_point(mesh_, hit).geometric_normal;
-        if (glm::dot(facing, ray.direction) >= 0.0f) return MirrorHits::kInside;
+        const glm::uvec3 corners = mesh_.triangles[hit.triangle];
+        const glm::vec3 a = mesh_.positions_mm[corners.x];
+        const glm::vec3 outward =
+            glm::cross(mesh_.positions_mm[corners.y] - a, mesh_.positions_mm[corners.z] - a);
+        if (glm::dot(outward, direction) >= 0.0f) return MirrorHits::kInside;
         const auto around = nodes_.points.around(mesh_, hit.triangle, hit.barycentric);
         const ExchangePoints::Share* nearest = &around[0];
         for (const ExchangePoints::Share& share : around) {
@@ -78,8 +97,11 @@ class HitRays {
     const glm::dvec3& eye_mm_;
     const MirrorQuadrature& quadrature_;
     const ExchangeNodes& nodes_;
+    std::uint32_t* to_;
     std::optional<Facets> facets_;
     std::array<glm::vec3, kSamplesAFragment> origins_;
+    std::vector<TraceRay> rays_;
+    std::vector<Hit> hits_;
 };
 
 }  // namespace
@@ -103,33 +125,32 @@ MirrorHits find_mirror_hits(const Mesh& mesh,
         return count;
     });
     hits.nodes.resize(hits.first_alone.back());
-    const auto rays = [&] {
-        return HitRays(mesh, tracer, map, eye_mm, visibility.quadrature, nodes);
+    const auto rays = [&](std::uint32_t first) {
+        return HitRays(
+            mesh, tracer, map, eye_mm, visibility.quadrature, nodes, hits.nodes.data() + first);
     };
     parallel_for(blocked.size(), 2048, [&](std::size_t begin, std::size_t end) {
         progress.check_stop();
-        HitRays own = rays();
+        HitRays own = rays(hits.first[begin]);
         for (std::size_t i = begin; i < end; ++i) {
             if (blocked[i] == 0) continue;
             own.begin(i);
-            own.trace(neighbour_turn(map, i), blocked[i], &hits.nodes[hits.first[i]]);
+            own.add(neighbour_turn(map, i), blocked[i]);
         }
+        own.finish();
     });
     parallel_for(alone.size(), 256, [&](std::size_t begin, std::size_t end) {
         progress.check_stop();
-        HitRays own = rays();
+        HitRays own = rays(hits.first_alone[begin]);
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t fragment = alone[i].fragment;
             own.begin(fragment);
-            std::uint32_t place = hits.first_alone[i];
             for (std::size_t word = 1; word < alone[i].blocked.size(); ++word) {
-                const std::size_t turn =
-                    (neighbour_turn(map, fragment) + 2 * word) % kNeighbourTurns;
-                if (alone[i].blocked[word] == 0) continue;
-                own.trace(turn, alone[i].blocked[word], &hits.nodes[place]);
-                place += count_of(alone[i].blocked[word]);
+                own.add((neighbour_turn(map, fragment) + 2 * word) % kNeighbourTurns,
+                        alone[i].blocked[word]);
             }
         }
+        own.finish();
     });
     return hits;
 }
