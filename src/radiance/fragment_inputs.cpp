@@ -76,13 +76,16 @@ void FragmentInputs::use(const SurfaceMap& map) {
     subsurface_.clear();
     drop_exchange();
     runs_.reset();
+    long_runs_.reset();
     eye_.reset();
     directions_stale_ = sky_stale_ = diffuse_light_stale_ = places_stale_ = true;
 }
 
-const SmoothRuns& FragmentInputs::runs() {
-    if (!runs_) runs_.emplace(*map_);
-    return *runs_;
+const SmoothRuns& FragmentInputs::runs(bool dragged) {
+    constexpr SmoothRuns::Limits kDragged{8, 4.0};
+    std::optional<SmoothRuns>& of = dragged ? long_runs_ : runs_;
+    if (!of) of.emplace(*map_, dragged ? kDragged : SmoothRuns::Limits());
+    return *of;
 }
 
 void FragmentInputs::solve(const Scene& scene,
@@ -121,7 +124,8 @@ void FragmentInputs::solve_lights(const Scene& scene,
         }
         if (stale && rays == 0) next.at = unhidden_light(*map_, light);
         clock.run(pass, stale, [&] {
-            next.at = light_at_fragments(mesh_, tracer_, *map_, runs(), light, rays, progress);
+            next.at =
+                light_at_fragments(mesh_, tracer_, *map_, runs(rays == 1), light, rays, progress);
         });
         lights_.insert(lights_.begin() + static_cast<std::ptrdiff_t>(planned++), std::move(next));
         if (changed) directions_stale_ = diffuse_light_stale_ = true;
@@ -157,7 +161,8 @@ void FragmentInputs::solve_sky(const Scene& scene,
     const bool visible =
         !occluded || stands || (sky_visibility_ && enough(sky_visibility_->rays.first, rays));
     clock.run(PassKind::ambient_occlusion, !visible, [&] {
-        sky_visibility_ = solve_sky_visibility(mesh_, tracer_, *map_, runs(), sky_rays, progress);
+        sky_visibility_ =
+            solve_sky_visibility(mesh_, tracer_, *map_, runs(false), sky_rays, progress);
     });
     clock.run(PassKind::environment_irradiance, !stands, [&] {
         if (!same_map(diffused_, scene.environment)) {
@@ -173,7 +178,7 @@ void FragmentInputs::solve_sky(const Scene& scene,
                                 *scene.environment,
                                 filtered_,
                                 occluded ? &*sky_visibility_ : nullptr,
-                                runs());
+                                runs(true));
         sky_made_ = {scene.environment, occluded ? sky_visibility_->rays.first : 0};
         ++arriving_version_;
         sky_stale_ = diffuse_light_stale_ = true;
@@ -316,9 +321,9 @@ void FragmentInputs::solve_mirror(const Scene& scene,
     const auto solve_layers = [&](const MirrorInputs::LayersOfParts& layers) {
         const SkyVisibility* joints = sky_visibility_ ? &*sky_visibility_ : nullptr;
         if (light.nodes == kNoNodes) {
-            mirror_.look_up(light, layers, *mirror_look_up_, runs(), joints, progress);
+            mirror_.look_up(light, layers, *mirror_look_up_, runs(true), joints, progress);
         } else {
-            mirror_.solve(light, layers, filtered_, runs(), joints, progress);
+            mirror_.solve(light, layers, filtered_, runs(false), joints, progress);
         }
     };
     const auto any = [](const MirrorInputs::LayersOfParts& layers) {
@@ -335,7 +340,7 @@ void FragmentInputs::solve_mirror(const Scene& scene,
         filter_for_mirror(scene, light.nodes, progress);
     });
     clock.run(PassKind::reflection_occlusion, mirror_.lacks_visibility(light, worn), [&] {
-        mirror_.trace(light, worn, runs(), progress);
+        mirror_.trace(light, worn, runs(false), progress);
     });
     clock.run(PassKind::mirrored_environment, any(worn), [&] { solve_layers(worn); });
     if (!ahead) return;
@@ -345,7 +350,8 @@ void FragmentInputs::solve_mirror(const Scene& scene,
         false);
     clock.run(mirrored_ahead_pass(), any(others), [&] {
         if (!mirror_filtered(scene, light.nodes)) filter_for_mirror(scene, light.nodes, progress);
-        if (mirror_.lacks_visibility(light, others)) mirror_.trace(light, others, runs(), progress);
+        if (mirror_.lacks_visibility(light, others))
+            mirror_.trace(light, others, runs(false), progress);
         solve_layers(others);
     });
 }

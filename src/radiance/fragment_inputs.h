@@ -112,7 +112,8 @@ class FragmentInputs {
     int layers_made() const { return layers_made_; }
 
   private:
-    const SmoothRuns& runs();
+    /// Of map_; those for what is looked up while it is dragged have their ends farther apart.
+    const SmoothRuns& runs(bool dragged);
     struct Light {
         std::size_t index = 0;  ///< in the scene
         DirectionalLight light;
@@ -162,7 +163,7 @@ class FragmentInputs {
     std::shared_ptr<const Environment> layered_;   ///< that filtered_.gaussians was made for
     std::optional<MirrorLookUp> mirror_look_up_;
     std::shared_ptr<const Environment> look_up_of_;  ///< that mirror_look_up_ was made for
-    std::optional<SmoothRuns> runs_;                 ///< of map_, when they were asked for
+    std::optional<SmoothRuns> runs_, long_runs_;     ///< of map_, when they were asked for
     std::optional<SkyVisibility> sky_visibility_;
     std::vector<glm::vec3> sky_;
     MirrorInputs mirror_;

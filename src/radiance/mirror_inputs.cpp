@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <cstring>
 #include <utility>
 
 #include "core/parallel.h"
@@ -14,8 +14,8 @@ namespace {
 constexpr float kHalfLargest = 65000.0f;
 /// Numbers that are kept of a part: a quarter of a gigabyte.
 constexpr std::size_t kMostKept = std::size_t{1} << 26u;
-/// Less than anybody sees between two pixels; what is drawn while it is dragged takes what comes.
-constexpr float kEven = 0.04f, kAnything = std::numeric_limits<float>::infinity();
+/// Less than anybody sees between two pixels, or while they are dragged.
+constexpr float kEven = 0.04f, kDragged = 0.2f;
 
 /// Parts of which some layer is named.
 std::vector<bool> parts_of(const MirrorInputs::LayersOfParts& layers) {
@@ -27,6 +27,21 @@ std::vector<bool> parts_of(const MirrorInputs::LayersOfParts& layers) {
 /// Half floats hold the radiance in units in which the brightest texel fits.
 float unit_of(const MirrorInputs::Light& light, float largest) {
     return std::max(1.0f, largest * static_cast<float>(light.environment->scale) / kHalfLargest);
+}
+
+Texel load(const std::vector<float>& texels, std::size_t k) {
+    Texel texel;
+    std::memcpy(&texel, &texels[4 * k], sizeof texel);
+    return texel;
+}
+void store(const Texel& texel, std::vector<float>& texels, std::size_t k) {
+    std::memcpy(&texels[4 * k], &texel, sizeof texel);
+}
+
+/// Of two ends of a run, at a place between them; all by their places among the texels.
+void mix(std::vector<float>& texels, std::size_t k, const SmoothRuns::Between& at) {
+    const Texel left = load(texels, at.left), share{at.share, at.share, at.share, at.share};
+    store(left + share * (load(texels, at.right) - left), texels, k);
 }
 
 /// Those of one part, which lie side by side.
@@ -59,6 +74,7 @@ void MirrorInputs::clear() {
     hits_.reset();
     solved_texels_.clear();
     spare_texels_.clear();
+    even_.clear();
     kept_.clear();
 }
 
@@ -119,14 +135,14 @@ std::vector<MirrorInputs::Texels> MirrorInputs::texels_for(const LayersOfParts& 
         const auto size =
             static_cast<std::size_t>(layout_.rectangle(part).height) * kPackedWidth * 4;
         for (std::size_t k = 0; k < kMirrorLayers; ++k) {
-            if (!layers[part][k]) continue;
+            if (!layers[part][k] || even_[part][k]) continue;
             const auto spare = std::find_if(spare_texels_.begin(),
                                             spare_texels_.end(),
                                             [&](const Texels& one) { return one.part == part; });
             if (spare == spare_texels_.end()) {
-                all.push_back({part, k, std::vector<float>(size, 0.0f)});
+                all.push_back({part, k, std::vector<float>(size, 0.0f), false});
             } else {
-                all.push_back({part, k, std::move(spare->values)});
+                all.push_back({part, k, std::move(spare->values), false});
                 spare_texels_.erase(spare);
             }
         }
@@ -151,9 +167,8 @@ void MirrorInputs::solve_part(const PartSolve& how,
             const float scale = (joint ? how.joints->openness(i) : 1.0f) * how.unit;
             for (Texels& to : texels) {
                 const float share = to.layer < kMirrorAlphas.size() ? scale : 1.0f;
-                for (int c = 0; c < 3; ++c) {
-                    to.values[4 * k + static_cast<std::size_t>(c)] = share * mirrored[to.layer][c];
-                }
+                const glm::vec3 value = share * mirrored[to.layer];
+                store(Texel{value.x, value.y, value.z, 0.0f}, to.values, k);
             }
         });
     };
@@ -172,13 +187,9 @@ void MirrorInputs::solve_part(const PartSolve& how,
     });
     parallel_for(count, 4096, [&](std::size_t begin, std::size_t end) {
         const auto from = [&](const auto& ask, std::size_t i, const SmoothRuns::Between& at) {
-            if (how.tolerance < kAnything && differ(at.left, at.right)) return ask(i);
-            for (Texels& to : texels) {
-                const float* a = &to.values[4 * (at.left - first)];
-                const float* b = &to.values[4 * (at.right - first)];
-                float* value = &to.values[4 * (i - first)];
-                for (int c = 0; c < 3; ++c) value[c] = a[c] + at.share * (b[c] - a[c]);
-            }
+            if (differ(at.left, at.right)) return ask(i);
+            const SmoothRuns::Between in_part{at.left - first, at.right - first, at.share};
+            for (Texels& to : texels) mix(to.values, i - first, in_part);
         };
         solve([&](const auto& ask) {
             how.runs.between(first + begin, first + end, [&](std::size_t i, const auto& at) {
@@ -208,6 +219,8 @@ void MirrorInputs::solve(const Light& light,
         product_nodes_ && hits_ ? MirroredProduct{&*hits_, product_sent_} : MirroredProduct());
     if (light != light_) kept_.clear();
     kept_.resize(layers.size());
+    even_.resize(layers.size());
+    for (std::size_t part = 0; part < layers.size(); ++part) even_[part] &= ~layers[part];
     std::vector<Texels> all = texels_for(layers);
     for (std::size_t part = 0; part < layers.size(); ++part) {
         const std::span<Texels> texels = texels_of(all, part);
@@ -236,7 +249,7 @@ void MirrorInputs::solve(const Light& light,
                                                std::exchange(kept.known[k], 1) != 0);
             };
         };
-        solve_part({part, runs, hides ? kEven : kAnything, hides ? nullptr : joints, 1.0f / unit},
+        solve_part({part, runs, hides ? kEven : kDragged, hides ? nullptr : joints, 1.0f / unit},
                    texels,
                    mirrored_by,
                    progress);
@@ -255,7 +268,9 @@ void MirrorInputs::look_up(const Light& light,
     const float unit = unit_of(light, environment.largest());
     const MirrorLookUp::In in(environment, *light.environment, light.eye_mm);
     kept_.clear();
+    even_.resize(layers.size());
     std::vector<Texels> all = texels_for(layers);
+    for (Texels& to : all) to.even = to.layer >= kMirrorAlphas.size();
     for (std::size_t part = 0; part < layers.size(); ++part) {
         const std::span<Texels> texels = texels_of(all, part);
         if (texels.empty()) continue;
@@ -265,7 +280,7 @@ void MirrorInputs::look_up(const Light& light,
                 return in.at_fragment(map_->fragments[i], lobes);
             };
         };
-        solve_part({part, runs, kAnything, joints, 1.0f / unit}, texels, mirrored_by, progress);
+        solve_part({part, runs, kDragged, joints, 1.0f / unit}, texels, mirrored_by, progress);
     }
     take(light, layers, unit, std::move(all));
 }
@@ -298,6 +313,7 @@ MirrorInputs::Uploaded MirrorInputs::upload(ShadingDevice device, ShadingInputs&
     done.other_light = std::exchange(other_light_, false);
     if (!light_.environment) {
         shading.mirror = InputLayers();
+        even_.clear();
         return done;
     }
     std::vector<bool> layers(kMirrorLayers, false);
@@ -307,6 +323,7 @@ MirrorInputs::Uploaded MirrorInputs::upload(ShadingDevice device, ShadingInputs&
     for (const Texels& texels : solved_texels_) {
         shading.mirror.upload(
             texels.values, static_cast<int>(texels.layer), layout_.row_begin[texels.part]);
+        even_[texels.part].set(texels.layer, texels.even);
     }
     // Memory that is new costs as much to touch as a draft to solve; what is not dragged gives it
     // back

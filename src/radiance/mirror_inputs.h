@@ -101,6 +101,7 @@ class MirrorInputs {
     struct Texels {
         std::size_t part = 0, layer = 0;
         std::vector<float> values;
+        bool even = false;  ///< ones, where light is taken to graze as even light does
     };
     /// Of a part's fragments, what they mirror of the environment beside the product.
     struct KeptSums {
@@ -109,6 +110,7 @@ class MirrorInputs {
         std::vector<std::uint8_t> known;  ///< of each fragment: others lay between two
     };
     /// Rows for the layers asked for, of parts in the picture, with what others left in them.
+    /// A look-up's need none for what is even already.
     std::vector<Texels> texels_for(const LayersOfParts& layers);
     /// How a part's texels are worked out.
     struct PartSolve {
@@ -149,6 +151,7 @@ class MirrorInputs {
     float unit_ = 1.0f;
     std::vector<Texels> solved_texels_;  ///< not yet uploaded
     std::vector<Texels> spare_texels_;   ///< uploaded look-ups: rows for the next of the same size
+    LayersOfParts even_;                 ///< of each part, layers of ones that were uploaded
     /// While light between parts is solved, so that other paints change no more than that; by part.
     std::vector<KeptSums> kept_;
     bool other_light_ = false;  ///< since the last upload

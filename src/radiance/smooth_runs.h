@@ -1,5 +1,5 @@
 // Fragments between two others of an even surface: what changes slowly over it is worked out at a
-// quarter of them, and taken from both ends in between.
+// quarter or an eighth of them, and taken from both ends in between.
 #pragma once
 
 #include <cstddef>
@@ -11,11 +11,16 @@
 namespace livery {
 
 /// Of each fragment, where in its row the two are whose values it lies between. They and all
-/// between them are whole pixels of one part, whose normals turn by less than a degree, so that no
-/// reflection moves by more than two.
+/// between them are whole pixels of one part, whose normals turn by less than some degrees, so that
+/// no reflection moves by more than twice that.
 class SmoothRuns {
   public:
-    explicit SmoothRuns(const SurfaceMap& map);
+    struct Limits {
+        std::uint32_t longest_px = 4;  ///< from end to end, a power of 2 up to 128
+        double turn_deg = 1.0;
+    };
+    explicit SmoothRuns(const SurfaceMap& map) : SmoothRuns(map, Limits()) {}
+    SmoothRuns(const SurfaceMap& map, const Limits& limits);
 
     /// Whether its value is its own.
     bool is_end(std::size_t fragment) const { return runs_[fragment].before == 0; }

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include <glm/geometric.hpp>
 
@@ -74,7 +76,10 @@ float MirrorLookUp::layer_of(float alpha2) {
     constexpr auto kLast = static_cast<float>(kLayerAlphas.size() - 1);
     // The map itself has no width: in between, as the width is
     if (alpha2 < kFirst2) return std::sqrt(alpha2 / kFirst2);
-    return std::min(1.0f + std::log2(alpha2 / kFirst2), kLast);
+    // Variances double from layer to layer: the exponent is the layer, the mantissa the share
+    const auto bits = std::bit_cast<std::uint32_t>(alpha2 / kFirst2);
+    const float share = std::bit_cast<float>((bits & 0x007fffffu) | 0x3f800000u) - 1.0f;
+    return std::min(static_cast<float>((bits >> 23u) - 126u) + share, kLast);
 }
 
 glm::vec3 MirrorLookUp::between(float layer,

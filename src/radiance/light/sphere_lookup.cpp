@@ -9,29 +9,19 @@
 namespace livery {
 namespace {
 
-using Mask = int __attribute__((vector_size(16)));
-
-Texel each(float value) { return Texel{value, value, value, value}; }
-
-Texel absolute(const Texel& v) {
-    constexpr int kAllButSign = 0x7fffffff;
-    return reinterpret_cast<Texel>(reinterpret_cast<Mask>(v) &
-                                   Mask{kAllButSign, kAllButSign, kAllButSign, kAllButSign});
-}
-
 /// Of the quotients of numbers that are not negative; 0 of two zeros. A polynomial on [0, 1],
 /// within 2e-6 rad.
-Texel first_quadrant_angle(const Texel& y, const Texel& x) {
-    const Texel larger = y > x ? y : x, smaller = y > x ? x : y;
-    const Texel t = smaller / (larger > 1e-30f ? larger : each(1e-30f));
-    const Texel t2 = t * t;
-    Texel p = each(-0.01172120f);
+float first_quadrant_angle(float y, float x) {
+    const float larger = std::max(x, y), smaller = std::min(x, y);
+    const float t = smaller / std::max(larger, 1e-30f);
+    const float t2 = t * t;
+    float p = -0.01172120f;
     p = p * t2 + 0.05265332f;
     p = p * t2 - 0.11643287f;
     p = p * t2 + 0.19354346f;
     p = p * t2 - 0.33262347f;
     p = p * t2 + 0.99997726f;
-    const Texel angle = p * t;
+    const float angle = p * t;
     return y > x ? 0.5f * std::numbers::pi_v<float> - angle : angle;
 }
 
@@ -43,26 +33,18 @@ SpherePlaces::SpherePlaces(const Environment& environment)
           return static_cast<float>(turns - std::floor(turns));
       }()) {}
 
-SpherePlaces::Four SpherePlaces::of(const Texel& x, const Texel& y, const Texel& z) const {
+glm::vec2 SpherePlaces::of(const glm::vec3& d) const {
     constexpr float kPi = std::numbers::pi_v<float>;
     constexpr float kTurn = 0.5f * std::numbers::inv_pi_v<float>;
     // Clockwise from -z
-    Texel azimuth = first_quadrant_angle(absolute(x), absolute(z));
-    azimuth = z > 0.0f ? kPi - azimuth : azimuth;
-    Texel u = (x < 0.0f ? -azimuth : azimuth) * kTurn + turns_;
+    float azimuth = first_quadrant_angle(std::abs(d.x), std::abs(d.z));
+    azimuth = d.z > 0.0f ? kPi - azimuth : azimuth;
+    float u = (d.x < 0.0f ? -azimuth : azimuth) * kTurn + turns_;
     u = u >= 1.0f ? u - 1.0f : u;
     u = u < 0.0f ? u + 1.0f : u;
-    const Texel level2 = x * x + z * z;
-    const Texel level{
-        std::sqrt(level2[0]), std::sqrt(level2[1]), std::sqrt(level2[2]), std::sqrt(level2[3])};
-    Texel polar = first_quadrant_angle(level, absolute(y));
-    polar = y < 0.0f ? kPi - polar : polar;
+    float polar = first_quadrant_angle(std::sqrt(d.x * d.x + d.z * d.z), std::abs(d.y));
+    polar = d.y < 0.0f ? kPi - polar : polar;
     return {u, polar * std::numbers::inv_pi_v<float>};
-}
-
-glm::vec2 SpherePlaces::of(const glm::vec3& d) const {
-    const Four four = of(each(d.x), each(d.y), each(d.z));
-    return {four.u[0], four.v[0]};
 }
 
 SphereStack::SphereStack(std::span<const ImageF> pictures)

@@ -29,11 +29,6 @@ class SpherePlaces {
   public:
     explicit SpherePlaces(const Environment& environment);
     glm::vec2 of(const glm::vec3& unit_direction) const;
-    /// Four at a time.
-    struct Four {
-        Texel u, v;
-    };
-    Four of(const Texel& x, const Texel& y, const Texel& z) const;
     /// Of the environment about +y, and half of one.
     float turns() const { return turns_; }
 
