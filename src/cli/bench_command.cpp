@@ -124,8 +124,8 @@ Command bench_command() {
     command.options = {
         {"--out",
          "DIR",
-         "also write bench.json and the plots speed.svg and accuracy.svg there, accuracy.csv, and "
-         "effect-errors.json",
+         "also write bench.json and the plots speed.svg and accuracy.svg there, accuracy.csv, "
+         "accuracy.json, and effect-errors.json",
          &arguments->out,
          false,
          {}},
@@ -197,12 +197,13 @@ Command bench_command() {
         };
         std::string accuracy_plot, accuracy_csv;
         EffectErrors errors;
+        AccuracyLedger accuracy;
         if (wanted("accuracy")) {
             AccuracyOptions options;
             options.device = common.gl_device();
             options.quick = arguments->quick;
             options.folder = arguments->references.empty()
-                                 ? user_folder() / "cache" / "accuracy"
+                                 ? accuracy_folder()
                                  : std::filesystem::path(arguments->references);
             options.seed = seed;
             std::tie(options.shard, options.shards) = parse_shard(arguments->shard);
@@ -212,6 +213,8 @@ Command bench_command() {
             errors = errors_of(ledger.rows);
             // Those of one look would take the place of those of all
             if (!arguments->quick) write_effect_errors(effect_errors_file(), errors);
+            if (ledger.missing == 0) write_accuracy(accuracy_file(), ledger);
+            accuracy = ledger;
             accuracy_csv = csv_of(ledger);
         }
         if (wanted("stability")) {
@@ -232,6 +235,7 @@ Command bench_command() {
                 write_text_file(out / "accuracy.svg", accuracy_plot);
                 write_text_file(out / "accuracy.csv", accuracy_csv);
                 write_effect_errors(out / "effect-errors.json", errors);
+                write_accuracy(out / "accuracy.json", accuracy);
             }
         }
         if (!arguments->markdown.empty())

@@ -25,6 +25,19 @@ double LogAxis::at(double value) const {
     return begin_px + (end_px - begin_px) * std::log(value / low) / std::log(high / low);
 }
 
+std::vector<LogTick> ticks_of(const LogAxis& axis) {
+    std::vector<LogTick> ticks;
+    for (double decade = std::pow(10.0, std::floor(std::log10(axis.low))); decade <= axis.high;
+         decade *= 10.0) {
+        for (const double digit : {1.0, 2.0, 5.0}) {
+            const double value = decade * digit;
+            if (value < 0.999 * axis.low || value > 1.001 * axis.high) continue;
+            ticks.push_back({value, digit == 1.0});
+        }
+    }
+    return ticks;
+}
+
 std::string svg_text(double x, double y, std::string_view words, std::string_view attributes) {
     return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" {}>{}</text>\n", x, y, attributes, words);
 }
@@ -61,32 +74,21 @@ std::string svg_grid(const LogAxis& x,
                      std::string_view x_name,
                      std::string_view y_name) {
     std::string svg;
-    const auto each = [](const LogAxis& axis, const auto& draw) {
-        for (double decade = std::pow(10.0, std::floor(std::log10(axis.low))); decade <= axis.high;
-             decade *= 10.0) {
-            for (const double digit : {1.0, 2.0, 5.0}) {
-                const double value = decade * digit;
-                if (value >= 0.999 * axis.low && value <= 1.001 * axis.high) {
-                    draw(value, digit == 1.0);
-                }
-            }
-        }
-    };
     const double left = x.begin_px, right = x.end_px, bottom = y.begin_px, top = y.end_px;
-    each(x, [&](double value, bool decade) {
+    for (const auto& [value, decade] : ticks_of(x)) {
         const double at = x.at(value);
         svg += svg_line(at, top, at, bottom, decade ? "class=\"major\"" : "class=\"minor\"");
         svg += svg_text(
             at, bottom + 22.0, short_number(value), "class=\"tick\" text-anchor=\"middle\"");
-    });
-    each(y, [&](double value, bool decade) {
+    }
+    for (const auto& [value, decade] : ticks_of(y)) {
         const double at = y.at(value);
         svg += svg_line(left, at, right, at, decade ? "class=\"major\"" : "class=\"minor\"");
         svg += svg_text(left - 10.0,
                         at + 4.5,
                         fmt::format("{:g}", value),
                         "class=\"tick\" text-anchor=\"end\"");
-    });
+    }
     svg += svg_text(
         0.5 * (left + right), bottom + 50.0, x_name, "class=\"name\" text-anchor=\"middle\"");
     return svg + svg_text(kTitleLeft, top - 14.0, y_name, "class=\"name\"");

@@ -286,6 +286,13 @@ put("pass_costs", "two.json",
         {"pass": "surface-map", "level": "64", "ms": 1.5, "fixed_ms": 1, "work_items": 1000,
          "fragments_per_pixel": 1.2},
         {"pass": "dither", "level": "", "ms": 2, "fixed_ms": 0, "work_items": 0}]})
+ACCURACY_ROW = {
+    "format_version": 1, "scene": "car", "effect": "shadows", "level": "sharp", "own_ms": 29, "solve_ms": 7183, "swap_ms": 3.8,
+    "fragments": 1e5, "pixels": 90000, "median": 0.25, "p95": 1.9, "p99": 8.1, "mean": 0.6, "worst": 30,
+    "floor_median": 0.2, "floor_p95": 1.2, "floor_p99": 4}
+put("accuracy", "one.json", {
+    "format_version": 1, "unit": "CIEDE2000", "renderer": "a card", "threads": 2, "samples_per_pixel": 64,
+    "rows": [ACCURACY_ROW, dict(ACCURACY_ROW, effect="quality", level="draft"), dict(ACCURACY_ROW, level="of old")]})
 put("effect_errors", "one.json",
     {"format_version": 1, "unit": "CIEDE2000", "scenes": [
         {"scene": "car", "dearest": 3.05, "effects": {

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "core/paths.h"
 #include "support/temporary_folder.h"
 
 namespace livery {
@@ -163,6 +164,75 @@ TEST(Ladders, Rise) {
             below = found;
         }
     }
+}
+
+AccuracyRow a_row(const std::string& effect, const std::string& level, double ms, double p95) {
+    AccuracyRow row;
+    row.scene = "ball";
+    row.effect = effect;
+    row.level = level;
+    row.solve_ms = ms;
+    row.error.pixels = 7;
+    row.error.median = 0.25;
+    row.error.p95 = p95;
+    row.p99 = 2.0 * p95;
+    return row;
+}
+
+TEST(AccuracyFile, ComesBackAsItWasWritten) {
+    const TemporaryFolder folder;
+    AccuracyLedger ledger;
+    ledger.renderer = "a card";
+    ledger.threads = 3;
+    ledger.samples_per_pixel = 64;
+    ledger.rows = {a_row(kQualityRows, "normal", 900.0, 2.0),
+                   a_row("shadows", "sharp", 800.0, std::numeric_limits<double>::infinity()),
+                   a_row("shadows", "none", 700.0, 3.0),
+                   a_row("shadows", "of another version", 1.0, 1.0)};
+    ledger.rows[2].called_for = false;
+    const auto file = folder.path() / "accuracy.json";
+    write_accuracy(file, ledger);
+    const AccuracyLedger again = parse_accuracy(read_text_file(file), file);
+    EXPECT_EQ(again.renderer, "a card");
+    EXPECT_EQ(again.threads, 3);
+    EXPECT_EQ(again.samples_per_pixel, 64);
+    // Neither what no scene calls for nor a level that is no more
+    ASSERT_EQ(again.rows.size(), 2u);
+    EXPECT_EQ(again.rows[0].effect, kQualityRows);
+    EXPECT_EQ(again.rows[0].index, 1);
+    EXPECT_EQ(again.rows[0].solve_ms, 900.0);
+    EXPECT_EQ(again.rows[0].error.p95, 2.0);
+    EXPECT_EQ(again.rows[0].error.pixels, 7u);
+    EXPECT_EQ(again.rows[1].index, 1);
+    EXPECT_EQ(again.rows[1].error.p95, 1e12) << "infinitely wrong";
+}
+
+TEST(AccuracyFile, OfSomethingElseIsRefusedByItsField) {
+    const auto problem = [](const std::string& text) -> std::string {
+        try {
+            parse_accuracy(text, "accuracy.json");
+        } catch (const FileError& error) {
+            return error.what();
+        }
+        return "none";
+    };
+    const std::string head =
+        R"({"format_version": 1, "renderer": "a", "threads": 2, "samples_per_pixel": 64, "rows": )";
+    EXPECT_EQ(problem(head + "[]}"), "none");
+    EXPECT_NE(problem("{\"format_version\": 2}").find("format_version"), std::string::npos);
+    EXPECT_NE(problem(head + "7}").find("rows"), std::string::npos);
+    EXPECT_NE(problem(head + "[{\"scene\": 1}]}").find("rows[0].scene"), std::string::npos);
+    EXPECT_NE(problem(head).find("accuracy.json"), std::string::npos);
+}
+
+TEST(AccuracyFront, IsWhatNothingBeatsInBoth) {
+    std::vector<AccuracyLevel> levels(5);
+    const double ms[] = {1.0, 2.0, 2.0, 3.0, 3.0}, p95[] = {9.0, 5.0, 6.0, 5.0, 1.0};
+    for (std::size_t k = 0; k < levels.size(); ++k) {
+        levels[k].solve_ms = ms[k];
+        levels[k].p95 = p95[k];
+    }
+    EXPECT_EQ(front_of(levels), (std::vector<bool>{true, true, false, false, true}));
 }
 
 }  // namespace

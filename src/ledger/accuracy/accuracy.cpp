@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/paths.h"
 #include "core/statistics.h"
 #include "core/worst_error.h"
 
@@ -28,6 +30,8 @@ std::vector<const AccuracyRow*> of_level(const AccuracyLedger& ledger, const Acc
 
 }  // namespace
 
+std::filesystem::path accuracy_folder() { return user_folder() / "cache" / "accuracy"; }
+
 AccuracyLedger measure_accuracy(const AccuracyOptions& options, const Progress& progress) {
     check_argument(options.shards >= 1 && options.shard >= 1 && options.shard <= options.shards,
                    fmt::format("shard {} of {}", options.shard, options.shards));
@@ -44,6 +48,10 @@ AccuracyLedger measure_accuracy(const AccuracyOptions& options, const Progress& 
     const std::vector<AccuracyRow> wanted = rows_to_measure(scenes);
     const HeadlessContext context(options.device);
     ledger.renderer = context.renderer();
+    const auto keep = [&](AccuracyRow row) {
+        ledger.rows.push_back(std::move(row));
+        if (options.on_row) options.on_row(ledger);
+    };
     for (std::size_t k = 0; k < scenes.size(); ++k) {
         const AccuracyScene& scene = scenes[k];
         const double begin = static_cast<double>(k) / static_cast<double>(scenes.size());
@@ -70,7 +78,7 @@ AccuracyLedger measure_accuracy(const AccuracyOptions& options, const Progress& 
                 AccuracyRow whole = *known;
                 whole.index = row.index;
                 whole.levels = row.levels;
-                ledger.rows.push_back(std::move(whole));
+                keep(std::move(whole));
                 continue;
             }
             if (!own) {
@@ -87,7 +95,7 @@ AccuracyLedger measure_accuracy(const AccuracyOptions& options, const Progress& 
                         row.effect + " " + row.level + ": " + scene.name);
             row = measurement->measured(row, Progress{{}, progress.stop});
             write_row(kept, row_hash, row);
-            ledger.rows.push_back(std::move(row));
+            keep(std::move(row));
         }
     }
     return ledger;
@@ -129,6 +137,18 @@ std::vector<AccuracyLevel> levels_of(const AccuracyLedger& ledger) {
         level.resolved = level.median > level.floor_median;
     }
     return levels;
+}
+
+std::vector<bool> front_of(const std::vector<AccuracyLevel>& levels) {
+    std::vector<bool> on_front;
+    for (const AccuracyLevel& level : levels) {
+        on_front.push_back(
+            std::none_of(levels.begin(), levels.end(), [&](const AccuracyLevel& other) {
+                return other.solve_ms <= level.solve_ms && other.p95 <= level.p95 &&
+                       (other.solve_ms < level.solve_ms || other.p95 < level.p95);
+            }));
+    }
+    return on_front;
 }
 
 }  // namespace livery

@@ -22,21 +22,14 @@ std::vector<Mark> marks_of(const std::vector<AccuracyLevel>& levels,
                            const LogAxis& x,
                            const LogAxis& y) {
     std::vector<Mark> marks;
-    for (const AccuracyLevel& level : levels) {
-        marks.push_back({&level, x.at(level.solve_ms), y.at(level.p95), true});
-    }
-    for (Mark& mark : marks) {
-        for (const AccuracyLevel& other : levels) {
-            const bool beaten =
-                other.solve_ms <= mark.level->solve_ms && other.p95 <= mark.level->p95 &&
-                (other.solve_ms < mark.level->solve_ms || other.p95 < mark.level->p95);
-            mark.on_front = mark.on_front && !beaten;
-        }
+    const std::vector<bool> on_front = front_of(levels);
+    for (std::size_t k = 0; k < levels.size(); ++k) {
+        marks.push_back({&levels[k], x.at(levels[k].solve_ms), y.at(levels[k].p95), on_front[k]});
     }
     return marks;
 }
 
-std::string front_of(std::vector<Mark> marks) {
+std::string front_line(std::vector<Mark> marks) {
     std::erase_if(marks, [](const Mark& mark) { return !mark.on_front; });
     std::sort(marks.begin(), marks.end(), [](const Mark& a, const Mark& b) { return a.x < b.x; });
     std::string path;
@@ -47,7 +40,7 @@ std::string front_of(std::vector<Mark> marks) {
            "\" fill=\"none\" stroke=\"#1f6f5c\" stroke-width=\"2\" stroke-linejoin=\"round\"/>\n";
 }
 
-bool is_quality(const AccuracyLevel& level) { return level.effect == "quality"; }
+bool is_quality(const AccuracyLevel& level) { return level.effect == kQualityRows; }
 
 std::string label_of(const AccuracyLevel& level) {
     return is_quality(level) ? level.level : level.effect + ": " + level.level;
@@ -106,7 +99,7 @@ std::string plot_of(const AccuracyLedger& ledger) {
     svg += svg_grid(
         x, y, "milliseconds that a new light takes", "CIEDE2000, worst 95th percentile of a scene");
     std::vector<Mark> marks = marks_of(levels, x, y);
-    svg += front_of(marks);
+    svg += front_line(marks);
     for (const Mark& mark : marks) svg += dot_of(mark);
     // Labels of the front, of qualities and of what is left out altogether
     std::erase_if(marks, [](const Mark& mark) {

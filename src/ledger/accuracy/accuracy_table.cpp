@@ -33,7 +33,7 @@ std::string table_of(const std::vector<AccuracyLevel>& levels, bool qualities) {
         qualities ? "" : "effect",
         qualities ? "" : "its passes, ms");
     for (const AccuracyLevel& level : levels) {
-        if ((level.effect == "quality") != qualities) continue;
+        if ((level.effect == kQualityRows) != qualities) continue;
         text += fmt::format("| {} | {} | {} | {} | {:.0f} | {:.1f} | {} | {:.2f} | {:.2f} |\n",
                             level.index == 0 || qualities ? level.effect : "",
                             level.level,
@@ -75,7 +75,7 @@ std::vector<LedgerEffect> effects_of(const AccuracyLedger& ledger) {
         }
         LedgerLevel& row = effects.back().levels.emplace_back();
         row.name = level.level;
-        row.ms = row.fastest_ms = level.effect == "quality" ? level.solve_ms : level.own_ms;
+        row.ms = row.fastest_ms = level.effect == kQualityRows ? level.solve_ms : level.own_ms;
         row.repeats = level.scenes;
         row.error = level.median;
         row.error_p95 = level.p95;

@@ -22,7 +22,7 @@ std::vector<AccuracyRow> rows_to_measure(const std::vector<AccuracyScene>& scene
         for (const Quality quality : {Quality::draft, Quality::normal, Quality::high}) {
             AccuracyRow& row = rows.emplace_back();
             row.scene = scene.name;
-            row.effect = "quality";
+            row.effect = kQualityRows;
             row.level = to_string(quality);
             row.index = static_cast<int>(quality);
             row.levels = levels_of(quality);

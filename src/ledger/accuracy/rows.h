@@ -15,9 +15,12 @@
 
 namespace livery {
 
+/// What rows of a named quality have in the place of an effect.
+inline constexpr const char* kQualityRows = "quality";
+
 struct AccuracyRow {
     std::string scene;
-    std::string effect;  ///< of effect_table(), or "quality"
+    std::string effect;  ///< of effect_table(), or kQualityRows
     std::string level;
     int index = 0;  ///< of the level, rising in cost
     EffectLevels levels;

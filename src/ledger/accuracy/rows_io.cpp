@@ -1,8 +1,10 @@
+#include <algorithm>
+#include <array>
+
 #include "core/error.h"
 #include "core/hash.h"
-#include "core/json.h"
 #include "core/paths.h"
-#include "ledger/accuracy/rows.h"
+#include "ledger/accuracy/rows_json.h"
 
 namespace livery {
 
@@ -19,7 +21,31 @@ const std::string& program_hash() {
     return hash;
 }
 
+/// JSON knows no infinity.
+constexpr double kMost = 1e12;
+
+/// -1: not of this version.
+int index_of(const AccuracyRow& row) {
+    const auto place_in = [&](const auto& names, const auto& name_of) {
+        const auto found = std::find_if(
+            names.begin(), names.end(), [&](const auto& one) { return name_of(one) == row.level; });
+        return found == names.end() ? -1 : static_cast<int>(found - names.begin());
+    };
+    if (row.effect == kQualityRows) {
+        constexpr std::array kDrawn{Quality::draft, Quality::normal, Quality::high};
+        return place_in(kDrawn, [](Quality one) { return to_string(one); });
+    }
+    for (const EffectInfo& info : effect_table()) {
+        if (info.name != row.effect) continue;
+        return place_in(info.levels, [](const EffectLevel& one) { return std::string(one.name); });
+    }
+    return -1;
+}
+
+}  // namespace
+
 Json json_of(const AccuracyRow& row) {
+    const auto finite = [](double error) { return std::min(error, kMost); };
     return {{"format_version", 1},
             {"scene", row.scene},
             {"effect", row.effect},
@@ -29,17 +55,38 @@ Json json_of(const AccuracyRow& row) {
             {"swap_ms", row.swap_ms},
             {"fragments", row.fragments},
             {"pixels", row.error.pixels},
-            {"median", row.error.median},
-            {"p95", row.error.p95},
-            {"p99", row.p99},
-            {"mean", row.error.mean},
-            {"worst", row.error.worst},
-            {"floor_median", row.floor_median},
-            {"floor_p95", row.floor_p95},
-            {"floor_p99", row.floor_p99}};
+            {"median", finite(row.error.median)},
+            {"p95", finite(row.error.p95)},
+            {"p99", finite(row.p99)},
+            {"mean", finite(row.error.mean)},
+            {"worst", finite(row.error.worst)},
+            {"floor_median", finite(row.floor_median)},
+            {"floor_p95", finite(row.floor_p95)},
+            {"floor_p99", finite(row.floor_p99)}};
 }
 
-}  // namespace
+AccuracyRow read_row(const JsonReader& read) {
+    const auto number = [&](const char* name) { return read[name].number_between(0.0, kMost); };
+    AccuracyRow row;
+    row.scene = read["scene"].text();
+    row.effect = read["effect"].text();
+    row.level = read["level"].text();
+    row.index = index_of(row);
+    row.own_ms = number("own_ms");
+    row.solve_ms = number("solve_ms");
+    row.swap_ms = number("swap_ms");
+    row.fragments = number("fragments");
+    row.error.pixels = static_cast<std::size_t>(number("pixels"));
+    row.error.median = number("median");
+    row.error.p95 = number("p95");
+    row.p99 = number("p99");
+    row.error.mean = number("mean");
+    row.error.worst = number("worst");
+    row.floor_median = number("floor_median");
+    row.floor_p95 = number("floor_p95");
+    row.floor_p99 = number("floor_p99");
+    return row;
+}
 
 std::string hash_of(const AccuracyRow& row, const std::string& truth_hash) {
     Hasher hasher;
@@ -58,25 +105,7 @@ std::optional<AccuracyRow> read_row(const std::filesystem::path& folder, const s
     const Json json = read_json_file(file);
     const JsonReader read(file, json);
     read.require_format_version(1);
-    const auto number = [&](const char* name) { return read[name].number_between(0.0, 1e12); };
-    AccuracyRow row;
-    row.scene = read["scene"].text();
-    row.effect = read["effect"].text();
-    row.level = read["level"].text();
-    row.own_ms = number("own_ms");
-    row.solve_ms = number("solve_ms");
-    row.swap_ms = number("swap_ms");
-    row.fragments = number("fragments");
-    row.error.pixels = static_cast<std::size_t>(number("pixels"));
-    row.error.median = number("median");
-    row.error.p95 = number("p95");
-    row.p99 = number("p99");
-    row.error.mean = number("mean");
-    row.error.worst = number("worst");
-    row.floor_median = number("floor_median");
-    row.floor_p95 = number("floor_p95");
-    row.floor_p99 = number("floor_p99");
-    return row;
+    return read_row(read);
 }
 
 void write_row(const std::filesystem::path& folder,

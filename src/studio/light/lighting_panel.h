@@ -11,6 +11,7 @@
 #include "scene/look.h"
 #include "scene/product.h"
 #include "studio/kit/held.h"
+#include "studio/light/accuracy_page.h"
 #include "studio/light/reference_tracing.h"
 
 namespace livery {
@@ -32,6 +33,7 @@ struct LightingPanelState {
     double budget_s = 0.0;       ///< 0: not moved yet
     std::string budget_problem;  ///< why no levels fit it
     ReferenceTracing reference;
+    AccuracyPage accuracy;
 };
 
 }  // namespace livery

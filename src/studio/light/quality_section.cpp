@@ -175,6 +175,8 @@ void draw_quality_section(Studio& studio) {
     const PricedFrame* frame = priced_frame(studio);
     if (!frame) return;
     draw_budget(studio, *frame);
+    if (ImGui::Button("What accuracy costs…")) show_accuracy_page(studio, true);
+    name_last_item("accuracy");
     const bool open = section_header("Effects, their price and what they leave###effects");
     name_last_item("effects");
     if (!open) return;

@@ -9,6 +9,7 @@
 #include "core/log.h"
 #include "studio/artwork/artwork_edit.h"
 #include "studio/capture/capture_panel.h"
+#include "studio/light/lighting_panel.h"
 #include "studio/look_files.h"
 #include "studio/nudge/nudge_panel.h"
 #include "studio/paint/library_panel.h"
@@ -89,6 +90,8 @@ void give_up(Shell& shell) {
     Studio& studio = shell.studio;
     if (shell.help_open || shell.about_open) {
         shell.help_open = shell.about_open = false;
+    } else if (studio.panels.lighting->accuracy.open) {
+        show_accuracy_page(studio, false);
     } else if (is_placing(studio)) {
         stop_placing(studio);
         stop_trying(studio);
@@ -279,6 +282,11 @@ void add_view_actions(std::vector<Action>& list) {
                           "Previous tab",
                           {ctrl_shift(GLFW_KEY_TAB), ctrl(GLFW_KEY_PAGE_UP)},
                           turn_tabs(-1)));
+    list.push_back(action("accuracy-page", "View", "What accuracy costs", {}, [](Shell& s) {
+        show_accuracy_page(s.studio, !s.studio.panels.lighting->accuracy.open);
+    }));
+    list.back().checked = [](const Shell& s) { return s.studio.panels.lighting->accuracy.open; };
+    list.back().starts_group = true;
     list.push_back(action("larger",
                           "View",
                           "Larger",

@@ -22,6 +22,7 @@
 #include "studio/kit/tab_order.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
+#include "studio/light/accuracy_page.h"
 #include "studio/light/reference_tracing.h"
 #include "studio/paint/library_panel.h"
 #include "studio/paint/users_library.h"
@@ -132,7 +133,7 @@ std::optional<double> next_change_s(const Shell& shell) {
     if (ImGui::GetIO().WantTextInput) consider(shell.studio.now_s + 0.4);
     // Progress is read, not told.
     if (shell.studio.frames->solving() || shell.studio.bench->calibrating().running ||
-        shell.capture_open || is_tracing(shell.studio)) {
+        shell.capture_open || is_tracing(shell.studio) || is_measuring_accuracy(shell.studio)) {
         consider(shell.studio.now_s + 0.25);
     }
     return next;
@@ -381,6 +382,7 @@ class Desktop {
         draw_layout(shell_);
         draw_notices(shell_);
         draw_help(shell_);
+        draw_accuracy_page(shell_.studio);
         draw_new_session(shell_);
         shell_.studio.file_dialog->draw();
         if (!shell_.studio.file_dialog->is_open()) draw_question(shell_.question);

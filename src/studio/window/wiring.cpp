@@ -345,6 +345,7 @@ void stop_threads(Shell& shell) {
     stop_seat_errors(studio);
     studio.background.reset();
     studio.panels.lighting->reference.thread.reset();
+    studio.panels.lighting->accuracy.thread.reset();
     studio.capture.reset();
     studio.frames.reset();
     studio.previews.reset();
