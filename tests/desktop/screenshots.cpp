@@ -100,6 +100,13 @@ class Photographer {
         settle();
         take("import-look");
         program().click("file-dialog:cancel");
+        program().click("menu:View");
+        program().click("menu:accuracy-page");
+        settle();
+        program().hover("accuracy:interreflection:none");
+        settle();
+        take("accuracy");
+        desktop_.press_key("Escape");
         take_new_session();
         take_ballot();
         take_vote();
