@@ -103,7 +103,7 @@ class Photographer {
         program().click("menu:View");
         program().click("menu:accuracy-page");
         settle();
-        program().hover("accuracy:interreflection:none");
+        program().hover("accuracy:quality:normal");
         settle();
         take("accuracy");
         desktop_.press_key("Escape");

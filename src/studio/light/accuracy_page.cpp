@@ -111,7 +111,8 @@ void draw_table(Studio& studio, int pointed_in_chart) {
                                        ImGuiTableFlags_RowBg | ImGuiTableFlags_PadOuterX;
     if (!ImGui::BeginTable("levels", 7, kFlags, ImGui::GetContentRegionAvail())) return;
     ImGui::TableSetupScrollFreeze(0, 1);
-    for (const char* name : {"Effect", "Level", "New light", "A paint", "Median", "95%", "99%"}) {
+    for (const char* name :
+         {"Effect", "Level", "New light", "Paint swap", "Median", "95%", "99%"}) {
         ImGui::TableSetupColumn(name);
     }
     ImGui::TableHeadersRow();
@@ -119,7 +120,7 @@ void draw_table(Studio& studio, int pointed_in_chart) {
     for (std::size_t k = 0; k < page.levels.size(); ++k) {
         const AccuracyLevel& level = page.levels[k];
         const bool drawn = is_drawn_at(studio, level);
-        const ImVec4& colour = drawn ? colours::accent : colours::text;
+        const ImVec4& colour = drawn ? colours::good : colours::text;
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
         const bool first = k == 0 || page.levels[k - 1].effect != level.effect;
@@ -151,7 +152,7 @@ void draw_inside(Studio& studio) {
     dim_text(
         "How far the mock-up's picture is from the path tracer's, and how long it takes: one "
         "effect at one of its levels, all others at their dearest; and the qualities as they are. "
-        "The line joins what nothing else beats in both.");
+        "The line joins what nothing else beats in both; green is how the mock-up is drawn now.");
     draw_measuring(studio, now);
     if (!now.problem.empty()) warning_text(sentence(now.problem));
     if (!page.problem.empty()) warning_text(page.problem);
