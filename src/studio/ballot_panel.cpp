@@ -59,8 +59,12 @@ void draw_looks_to_choose(Studio& studio) {
         ImGui::Dummy(size);
         ImGui::SameLine();
         ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 0.5f * (size.y - ImGui::GetFrameHeight()));
-        ImGui::Checkbox(look.look.name.c_str(), &chosen);
+        const float room = ImGui::GetContentRegionAvail().x - ImGui::GetFrameHeight() -
+                           ImGui::GetStyle().ItemInnerSpacing.x;
+        const auto lines = fitted_lines(look.look.name, room, 1);
+        ImGui::Checkbox(((lines.empty() ? "" : lines[0]) + "###chosen").c_str(), &chosen);
         name_last_item(fmt::format("ballot:look:{}", look.id));
+        tooltip(look.look.name);
         ImGui::PopID();
     }
 }

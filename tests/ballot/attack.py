@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Attacks the server from eight loopback addresses while twelve honest phones vote from another: memory stays
+"""Attacks the server from nine loopback addresses while twelve honest phones vote from another: memory stays
 bounded, every honest request is answered, and nothing of the attackers' is stored.
 
     tests/ballot/attack.py build/release/bin/livery-ballots build/release/bin/ballot_operator
-    LIVERY_BALLOT_ATTACK_S=60 tests/ballot/attack.py ...       longer (default 8 s)
+    LIVERY_BALLOT_ATTACK_S=60 tests/ballot/attack.py ...       longer (default 8 s; 60 s with LIVERY_THOROUGH)
 
 Prints how long honest phones waited; the machine's other work is in it."""
 import multiprocessing
@@ -16,7 +16,8 @@ from server import Phone, at_once, check, seed_of, serving
 
 SEATS, CLIENTS, MOST_KB = 12, 64, 64 * 1024
 ATTACKERS = [f"127.0.0.{k}" for k in range(2, 10)]
-seconds = float(os.environ.get("LIVERY_BALLOT_ATTACK_S", "8"))
+STRANGER = "127.0.0.10"
+seconds = float(os.environ.get("LIVERY_BALLOT_ATTACK_S", "60" if "LIVERY_THOROUGH" in os.environ else "8"))
 seed = seed_of(20261125)
 
 
@@ -142,6 +143,44 @@ def forged(port, end, codes, stolen):
     print(f"forged: {guesses} rounds of forged requests, all refused")
 
 
+def mutated(port, end, codes):
+    """Requests as a phone sends them, with bytes changed, taken out, put in and repeated at random."""
+    chance = random.Random(seed + 1)
+    ballot = b'{"round":1,"best":%d,"second":%d}' % (codes[0], codes[1])
+    scales = b'{"round":1,"look":%d,"steps":[4]}' % codes[0]
+    length = "Content-Length: {}\r\nCookie: livery-seat=" + "0" * 32 + "\r\nConnection: close\r\n\r\n"
+    whole = [head(port, headers=length.format(len(ballot))) + ballot,
+             head(port, "PUT", "/scales", length.format(len(scales))) + scales,
+             head(port, "POST", "/join", length.format(17)) + b'{"code":"222222"}',
+             head(port, "GET", "/join/" + "0" * 32, length.format(0)),
+             head(port, "GET", "/state", length.format(0))]
+    sent, answers = 0, {}
+    while time.monotonic() < end:
+        data = bytearray(chance.choice(whole))
+        for _ in range(chance.randint(1, 8)):
+            at, size, kind = chance.randrange(len(data) + 1), chance.randint(1, 40), chance.randrange(4)
+            if kind == 0:
+                data[at:at + 1] = chance.randbytes(1)
+            elif kind == 1:
+                del data[at:at + size]
+            else:
+                data[at:at] = chance.randbytes(size) if kind == 2 else data[at:at + size]
+        sent += 1
+        try:
+            with socket.create_connection(("127.0.0.1", port), 5, (STRANGER, 0)) as connection:
+                connection.sendall(data)
+                connection.shutdown(socket.SHUT_WR)
+                answer = connection.recv(64)
+        except OSError:
+            continue
+        if answer:
+            status = answer.split(b" ", 2)[1].decode("ascii", "replace")
+            answers[status] = answers.get(status, 0) + 1
+    check(not {"500", "502", "503", "504"} & answers.keys(), f"mutated: {answers}")
+    check(len(answers) > 2, f"mutated: only {answers}")
+    print(f"mutated: {sent} requests, answered {dict(sorted(answers.items()))}")
+
+
 def honest(phone, round_, codes, end, waits, last, steps):
     """Polls about once a second and votes now and then, as the page does."""
     chance = random.Random(phone.seat)
@@ -175,7 +214,8 @@ with serving() as server:
     end = time.monotonic() + seconds
     attackers = [multiprocessing.Process(target=slow_drip, args=(server.port, end)),
                  multiprocessing.Process(target=endless, args=(server.port, end)),
-                 multiprocessing.Process(target=forged, args=(server.port, end, codes, phones[0].cookie))]
+                 multiprocessing.Process(target=forged, args=(server.port, end, codes, phones[0].cookie)),
+                 multiprocessing.Process(target=mutated, args=(server.port, end, codes))]
     for attacker in attackers:
         attacker.start()
     waits, last, steps, open_files = [], {}, {}, []

@@ -3,7 +3,8 @@
 lost, none counts twice.
 
     tests/ballot/killed.py build/release/bin/livery-ballots build/release/bin/ballot_operator
-    LIVERY_BALLOT_KILLS=100 tests/ballot/killed.py ...     rounds (default 6), two kills each"""
+    LIVERY_BALLOT_KILLS=100 tests/ballot/killed.py ...     rounds (default 6; 100 with LIVERY_THOROUGH),
+                                                            two kills each"""
 import http.client
 import os
 import random
@@ -15,7 +16,7 @@ from server import Phone, at_once, check, seed_of, serving
 
 SEATS = 12
 chance = random.Random(seed_of(20261125))
-rounds = int(os.environ.get("LIVERY_BALLOT_KILLS", "6"))
+rounds = int(os.environ.get("LIVERY_BALLOT_KILLS", "100" if "LIVERY_THOROUGH" in os.environ else "6"))
 
 
 def vote_until(phone, round_, codes, over, sent, confirmed):

@@ -9,10 +9,12 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include "core/colour.h"
 #include "core/hash.h"
 #include "core/image_io.h"
 #include "core/paths.h"
 #include "live/projector_setup.h"
+#include "live/vote_frames.h"
 #include "scene/frame_plan.h"
 #include "session/commands.h"
 #include "session/look_exchange.h"
@@ -98,7 +100,13 @@ Document prepare_session(const fs::path& file, Quality quality) {
     return session.document();
 }
 
-Image8 expected_drive(const Document& document, int look_id) {
+namespace {
+
+/// What the command line draws of a look, kept with the build; the picture's file.
+fs::path rendered(const Document& document,
+                  int look_id,
+                  const std::string& stage,
+                  const std::string& suffix) {
     const TemporaryFolder folder;
     const fs::path look_file = folder / "look.json";
     const auto files = export_look(document, look_id, look_file);
@@ -113,24 +121,43 @@ Image8 expected_drive(const Document& document, int look_id) {
         fmt::format("{}", document.design_white_percentile),
         "--gamut",
         to_string(document.gamut_mapping)};
-    std::string key;
+    std::string key = stage;
     for (const auto& file : files) key += read_text_file(file);
     for (const auto& option : options) key += option;
     const CacheLock lock;
-    const fs::path picture = cache_folder() / (hash_of(key) + ".png");
+    const fs::path picture = cache_folder() / (hash_of(key) + suffix);
     if (!fs::exists(picture)) {
-        std::vector<std::string> arguments = {"render",
-                                              "--stage",
-                                              "projector",
-                                              "--look",
-                                              look_file.string(),
-                                              "--out",
-                                              picture.string()};
+        std::vector<std::string> arguments = {
+            "render", "--stage", stage, "--look", look_file.string(), "--out", picture.string()};
         arguments.insert(arguments.end(), options.begin(), options.end());
         const ProgramRun run = run_program(LIVERY_PROGRAM, arguments);
         if (run.exit_code != 0) throw std::runtime_error("livery render: " + run.err);
     }
-    return read_png(picture);
+    return picture;
+}
+
+}  // namespace
+
+Image8 expected_drive(const Document& document, int look_id) {
+    return read_png(rendered(document, look_id, "projector", ".png"));
+}
+
+Image8 expected_grey(const Document& document, int look_id) {
+    ImageF wanted = read_image(rendered(document, look_id, "radiance", ".exr")).image;
+    // The file has Rec.709 over black.
+    for (std::size_t i = 0; i < wanted.pixel_count(); ++i) {
+        float* v = &wanted.values[4 * i];
+        if (v[3] <= 0.0f) continue;
+        const glm::dvec3 working =
+            working_from_rec709() * (glm::dvec3(v[0], v[1], v[2]) / static_cast<double>(v[3]));
+        for (int c = 0; c < 3; ++c) v[c] = static_cast<float>(working[c]);
+    }
+    const Product product = load_product(shipped_path("assets/car.json"));
+    const auto setup = load_setup(document.calibration,
+                                  document.design_white_percentile,
+                                  product.mesh,
+                                  document.gamut_mapping);
+    return neutral_drive(wanted, mean_luminance(wanted), *setup);
 }
 
 Image8 expected_drive(Document document,

@@ -21,7 +21,9 @@ Image8 read_png(const std::filesystem::path& file);
 /// The projector's input for a look, by `livery render`: another program run, another OpenGL
 /// context, the CPU's compensation. 3 channels, device values.
 Image8 expected_drive(const Document& document, int look_id);
-/// The same with another paint on one part.
+/// The neutral grey that is as bright as this look in the mean, where the mock-up is.
+Image8 expected_grey(const Document& document, int look_id);
+/// expected_drive() with another paint on one part.
 Image8 expected_drive(Document document,
                       int look_id,
                       const std::string& part,

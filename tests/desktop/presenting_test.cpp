@@ -1,16 +1,11 @@
 // A vote as its operator runs it, with mouse and keys on two monitors: the projector shows the
 // frozen frames and nothing else, in the order that was stored, also after a kill.
-#include <algorithm>
 #include <csignal>
-#include <cstdlib>
-#include <iostream>
 
 #include <gtest/gtest.h>
 
 #include "core/paths.h"
-#include "desktop/two_monitors.h"
-#include "evaluation/ballots.h"
-#include "studio/presenting/frames_folder.h"
+#include "desktop/presented_vote.h"
 
 namespace livery {
 namespace {
@@ -23,84 +18,18 @@ constexpr const char* kSettings = R"({"format_version": 1, "settings": {
   "presenting-passes": "1", "presenting-seed": "7", "phones-port": "0"
 }})";
 
-class Presenting : public TwoMonitors {
-  protected:
-    void load_frames() {
-        const BallotStore store(home / "ballots.sqlite");
-        const auto found = store.presented();
-        ASSERT_TRUE(found);
-        presented = *found;
-        frames = read_vote_frames(home / presented.plan.folder, presented.plan.frames);
-    }
-
-    /// Waits until every pixel that the frame lights is on the projector, by its hash; what stands
-    /// beside it has no colour.
-    testing::AssertionResult projector_shows_frame(const std::string& name) {
-        const Image8& frame = *frames.at(name);
-        std::string why;
-        const bool shown = wait_until(
-            [&] {
-                Image8 seen = projector_picture();
-                int coloured = 0;
-                for (std::size_t i = 0; i < seen.pixel_count(); ++i) {
-                    std::uint8_t* at = &seen.values[3 * i];
-                    const std::uint8_t* of = &frame.values[3 * i];
-                    if (of[0] != 0 || of[1] != 0 || of[2] != 0) continue;
-                    if (at[0] != at[1] || at[1] != at[2]) ++coloured;
-                    at[0] = at[1] = at[2] = 0;
-                }
-                why = coloured > 0 ? std::to_string(coloured) + " coloured pixels beside it" : "";
-                return coloured == 0 && hash_of(seen) == presented.plan.frames.at(name);
-            },
-            20s);
-        if (shown) return testing::AssertionSuccess();
-        return testing::AssertionFailure()
-               << name << " is not shown. " << why << " state: " << program->state("vote") << " "
-               << program->state("vote_frame") << " seen: " << saved(projector_picture(), "seen");
-    }
-
-    /// Of the lit pixels, all channels.
-    double brightness(const std::string& name) const {
-        double sum = 0.0, lit = 0.0;
-        for (const std::uint8_t value : frames.at(name)->values) {
-            sum += value;
-            lit += value > 0 ? 1.0 : 0.0;
-        }
-        return sum / std::max(lit, 1.0);
-    }
-
-    int code_of(int design) const {
-        return presented.round.codes.at(static_cast<std::size_t>(design));
-    }
-
-    BallotStore::Presented presented;
-    VoteFrames frames;
-};
+using Presenting = PresentedVote;
 
 TEST_F(Presenting, ShowsFrozenFramesInTheStoredOrderAlsoAfterAKillUntilTheRoundIsLocked) {
-    start_at_home(kSettings);
-    pick_projector();
-    program->click("menu:File");
-    program->click("menu:ballot");
-    for (std::size_t place = 3; place < document.looks.size(); ++place) {
-        program->click("ballot:look:" + std::to_string(look_at_place(place)));
-    }
-    program->click("phones:start");
-    EXPECT_TRUE(wait_until([&] {
-        return program->state("phones").get<std::string>().starts_with("http://127.0.0.1:");
-    }));
+    start_vote(kSettings, 3);
+    let_phones_vote();
     program->click("present:least");
     program->click("present:scales");
     program->click("scales:remove:2");
-    program->click("ballot:present");
-    program->wait_for_state("vote", "adapting");
+    present_paused();
     EXPECT_NE(read_text_file(home / "desktop.json").find(R"("presenting-least": "yes")"),
               std::string::npos)
         << "the tick is not kept";
-    program->press_key("space");
-    program->wait_for_state("vote_paused", true);
-    program->wait_for_state("vote_loaded", true);
-    load_frames();
     const auto& order = presented.plan.sittings.at(0);
     ASSERT_EQ(order.size(), 3u);
     EXPECT_TRUE(presented.round.asks_least);

@@ -1,56 +1,15 @@
 #include "evaluation/qr_code.h"
 
-#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include <dlfcn.h>
 #include <gtest/gtest.h>
 
 #include "evaluation/ballot_place.h"
+#include "support/zbar.h"
 
 namespace livery {
 namespace {
-
-/// A reader by others, loaded where it is installed; nothing of it is needed to build.
-class ZBar {
-  public:
-    ZBar() : library_(::dlopen("libzbar.so.0", RTLD_NOW)) {}
-    ~ZBar() {
-        if (library_) ::dlclose(library_);
-    }
-    ZBar(const ZBar&) = delete;
-    ZBar& operator=(const ZBar&) = delete;
-    bool is_there() const { return library_ != nullptr; }
-
-    /// What it reads from 8-bit grey pixels; empty for none.
-    std::string read(const std::vector<unsigned char>& grey, unsigned side) const {
-        const auto scanner = function<void*()>("zbar_image_scanner_create")();
-        const auto image = function<void*()>("zbar_image_create")();
-        function<void(void*, unsigned long)>("zbar_image_set_format")(image, 0x30303859);  // Y800
-        function<void(void*, unsigned, unsigned)>("zbar_image_set_size")(image, side, side);
-        function<void(void*, const void*, unsigned long, void*)>("zbar_image_set_data")(
-            image, grey.data(), grey.size(), nullptr);
-        std::string text;
-        if (function<int(void*, void*)>("zbar_scan_image")(scanner, image) == 1) {
-            const void* symbol =
-                function<const void*(const void*)>("zbar_image_first_symbol")(image);
-            text = function<const char*(const void*)>("zbar_symbol_get_data")(symbol);
-        }
-        function<void(void*)>("zbar_image_destroy")(image);
-        function<void(void*)>("zbar_image_scanner_destroy")(scanner);
-        return text;
-    }
-
-  private:
-    template <typename Signature>
-    Signature* function(const char* name) const {
-        void* found = ::dlsym(library_, name);
-        if (!found) throw std::runtime_error(std::string("libzbar has no ") + name);
-        return reinterpret_cast<Signature*>(found);
-    }
-    void* library_;
-};
 
 /// Drawn with its quiet zone, six pixels a module.
 std::string read_back(const ZBar& reader, const QrCode& code) {
@@ -63,7 +22,7 @@ std::string read_back(const ZBar& reader, const QrCode& code) {
             grey.push_back(dark ? 0 : 255);
         }
     }
-    return reader.read(grey, static_cast<unsigned>(side));
+    return reader.read(grey, side, side);
 }
 
 TEST(QrCodes, AreReadByOthers) {

@@ -115,6 +115,44 @@ std::vector<std::string> waves_in_words(const std::vector<std::vector<int>>& sea
     return lines;
 }
 
+bool sits_later(const PresentingState& state, int seat) {
+    if (!state.presented) return false;
+    const auto& waves = state.presented->plan.seats;
+    for (auto k = static_cast<std::size_t>(state.presented->state.sitting) + 1; k < waves.size();
+         ++k) {
+        if (std::find(waves[k].begin(), waves[k].end(), seat) != waves[k].end()) return true;
+    }
+    return false;
+}
+
+VotesSoFar votes_so_far(const PresentingState& state) {
+    VotesSoFar so_far;
+    so_far.voted = state.voted.size();
+    for (const Seat& seat : state.seats) {
+        ++(sits_later(state, seat.number) ? so_far.later : so_far.awaited);
+    }
+    return so_far;
+}
+
+std::string question_in_words(const PresentingState& state) {
+    if (state.asking_to_abort) return "Abort it? Nobody votes on this round.";
+    if (!state.asking_to_lock || !state.presented) return "";
+    const VotesSoFar so_far = votes_so_far(state);
+    const std::size_t open =
+        so_far.awaited > so_far.voted ? so_far.awaited - so_far.voted : std::size_t{0};
+    const auto waves = static_cast<int>(state.presented->plan.sittings.size());
+    const int unseen = waves - 1 - state.presented->state.sitting;
+    std::string words = "Lock it for good?";
+    if (open > 0) {
+        words += fmt::format(" {} {} not voted yet.", open, open == 1 ? "seat has" : "seats have");
+    }
+    if (unseen > 0) {
+        words += fmt::format(
+            " {} {} not seen the looks.", unseen, unseen == 1 ? "wave has" : "waves have");
+    }
+    return words;
+}
+
 PresentingSettings& presenting_settings(Studio& studio) {
     PresentingState& state = presenting(studio);
     PresentingSettings& settings = state.settings;

@@ -106,6 +106,17 @@ struct PresentingState {
     std::vector<std::string> scale_verdicts;
 };
 
+/// Its wave comes after the one that looks or votes now.
+bool sits_later(const PresentingState& state, int seat);
+/// How many have voted of those whose turn has come, and whose turn is still to come.
+struct VotesSoFar {
+    std::size_t voted = 0, awaited = 0, later = 0;
+    bool operator==(const VotesSoFar&) const = default;
+};
+VotesSoFar votes_so_far(const PresentingState& state);
+/// What is asked before a round is locked or aborted, with what would be cut off; empty: nothing.
+std::string question_in_words(const PresentingState& state);
+
 PresentingState& presenting(Studio& studio);
 const PresentingState& presenting(const Studio& studio);
 

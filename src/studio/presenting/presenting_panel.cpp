@@ -1,5 +1,6 @@
 // The ballot panel's parts of a presented vote: how it will be shown, who has voted, the phones.
 #include <algorithm>
+#include <array>
 #include <cfloat>
 #include <cmath>
 #include <string>
@@ -36,6 +37,30 @@ void seconds_field(Studio& studio, const char* name, double& value, float width,
     ImGui::PopID();
     name_last_item(name);
     tooltip(help);
+}
+
+void draw_order_choice(Studio& studio) {
+    PresentingSettings& settings = presenting_settings(studio);
+    struct Order {
+        const char *label, *name;
+        bool waves;
+    };
+    static constexpr std::array<Order, 2> kOrders = {
+        {{"all see every pass", "passes", false}, {"waves of people", "waves", true}}};
+    row_label("Order");
+    ImGui::SetNextItemWidth(-1.0f);
+    const bool open = ImGui::BeginCombo("##order", kOrders[settings.waves ? 1 : 0].label);
+    name_last_item("present:order");
+    tooltip("One projector shows everyone one order: fair orders come one after the other.");
+    if (!open) return;
+    for (const Order& order : kOrders) {
+        if (ImGui::Selectable(order.label, order.waves == settings.waves)) {
+            settings.waves = order.waves;
+            keep_presenting_settings(studio);
+        }
+        name_last_item(std::string("present:order:") + order.name);
+    }
+    ImGui::EndCombo();
 }
 
 void times_row(Studio& studio, PresentationTimes& times) {
@@ -194,34 +219,13 @@ std::string words_of(const BallotServerPlace& place) {
                                 "votes and take seats.");
 }
 
-/// Its wave comes after the one that looks or votes now.
-bool sits_later(const PresentingState& state, int seat) {
-    if (!state.presented) return false;
-    const auto& waves = state.presented->plan.seats;
-    for (auto k = static_cast<std::size_t>(state.presented->state.sitting) + 1; k < waves.size();
-         ++k) {
-        if (std::find(waves[k].begin(), waves[k].end(), seat) != waves[k].end()) return true;
-    }
-    return false;
-}
-
 }  // namespace
 
 void draw_presentation_setup(Studio& studio, const std::vector<int>& looks) {
     PresentingSettings& settings = presenting_settings(studio);
     if (settings.waves) read_seats(studio);
     heading("Presentation");
-    const int mode = settings.waves ? 1 : 0;
-    row_label("Order");
-    ImGui::SetNextItemWidth(-1.0f);
-    int chosen = mode;
-    ImGui::Combo("##order", &chosen, "all see every pass\0waves of people\0");
-    name_last_item("present:order");
-    tooltip("One projector shows everyone one order: fair orders come one after the other.");
-    if (chosen != mode) {
-        settings.waves = chosen == 1;
-        keep_presenting_settings(studio);
-    }
+    draw_order_choice(studio);
     if (settings.waves) {
         count_row(studio,
                   "Evaluators",
@@ -279,10 +283,11 @@ void draw_seats(Studio& studio) {
                        state.presented->state.phase != PresentationPhase::adapting &&
                        state.presented->state.phase != PresentationPhase::presenting;
     if (state.seats.empty()) return dim_text("Nobody has joined yet.");
-    ImGui::Text("%s",
-                (votes ? fmt::format("{} of {} have voted", state.voted.size(), state.seats.size())
-                       : fmt::format("{} have joined", state.seats.size()))
-                    .c_str());
+    const VotesSoFar so_far = votes_so_far(state);
+    std::string words = fmt::format("{} have joined", state.seats.size());
+    if (votes) words = fmt::format("{} of {} have voted", so_far.voted, so_far.awaited);
+    if (votes && so_far.later > 0) words += fmt::format("; {} sit later", so_far.later);
+    ImGui::TextUnformatted(words.c_str());
     name_last_item("vote:seats");
     const float side = em(2.2f), gap = em(0.25f);
     const float right = ImGui::GetCursorScreenPos().x + ImGui::GetContentRegionAvail().x;

@@ -107,8 +107,10 @@ std::string headline(const Studio& studio) {
             return "white";
         case Phase::presenting:
             return "grey";
-        case Phase::voting:
-            return fmt::format("{} of {}", state.voted.size(), state.seats.size());
+        case Phase::voting: {
+            const VotesSoFar so_far = votes_so_far(state);
+            return fmt::format("{} of {}", so_far.voted, so_far.awaited);
+        }
         default:
             return "";
     }
@@ -131,6 +133,7 @@ std::string details(const Studio& studio) {
     const PresentedRound& presented = *state.presented;
     const PresentationState& step = presented.state;
     if (!state.problem.empty()) return state.problem;
+    if (const std::string question = question_in_words(state); !question.empty()) return question;
     if (presented.frames.empty() && step.phase != Phase::locked) return "reading the frozen frames";
     const double left = left_s(step, studio.now_s);
     const std::string time = left < kWaits ? ", " + time_in_words(left) : std::string();

@@ -182,6 +182,32 @@ TEST_F(PresentingStudio, WavesFollowFromWhoHasJoined) {
     EXPECT_TRUE(waves_in_words({}).empty());
 }
 
+TEST_F(PresentingStudio, WhoSitsLaterIsNotWaitedFor) {
+    present();
+    PresentingState& now = presenting(studio());
+    now.seats = {{1, ""}, {2, ""}, {3, ""}, {4, "Bo"}};
+    now.voted = {1, 4};
+    EXPECT_EQ(votes_so_far(now), (VotesSoFar{2, 4, 0})) << "all look at once";
+    now.presented->plan.sittings = {{0, 1}, {1, 0}};
+    now.presented->plan.seats = {{1, 2}, {3}};
+    EXPECT_EQ(votes_so_far(now), (VotesSoFar{2, 3, 1}));
+    EXPECT_TRUE(sits_later(now, 3));
+    EXPECT_EQ(question_in_words(now), "") << "nothing is asked";
+    now.asking_to_lock = true;
+    EXPECT_EQ(question_in_words(now),
+              "Lock it for good? 1 seat has not voted yet. 1 wave has not seen the looks.");
+    now.voted = {1, 2, 4};
+    EXPECT_EQ(question_in_words(now), "Lock it for good? 1 wave has not seen the looks.");
+    now.presented->state.sitting = 1;
+    now.voted = {1, 2, 3, 4};
+    EXPECT_EQ(votes_so_far(now), (VotesSoFar{4, 4, 0}));
+    EXPECT_FALSE(sits_later(now, 3));
+    EXPECT_EQ(question_in_words(now), "Lock it for good?");
+    now.asking_to_lock = false;
+    now.asking_to_abort = true;
+    EXPECT_EQ(question_in_words(now), "Abort it? Nobody votes on this round.");
+}
+
 TEST_F(PresentingStudio, ItsSettingsAreKept) {
     studio().settings = read_user_settings();
     PresentingSettings& settings = presenting_settings(studio());
