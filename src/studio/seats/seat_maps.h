@@ -40,7 +40,7 @@ struct SeatSees {
 std::vector<SeatSees> worst_looks(const SeatErrorResults& results,
                                   const std::vector<EyeSeat>& seats,
                                   const std::vector<int>& looks);
-/// "Seat 4 sees highlights up to 11.2 away from where they belong (95%)."
+/// "Seat 4 sees highlights where none should be: 95% within CIEDE2000 11.2."
 std::string in_words(const SeatSees& sees);
 /// "Seats 1 and 4 see other looks than are judged: ..." of those that miss too much; empty: none.
 std::string unfair_in_words(const std::vector<SeatSees>& all);

@@ -43,7 +43,7 @@ std::string in_words(const SeatSees& sees) {
         return fmt::format(
             "Seat {} sees what it should: 95% within {:.1f}.", sees.seat, error.de00_p95);
     }
-    return fmt::format("Seat {} sees highlights up to {:.1f} away from where they belong (95%).",
+    return fmt::format("Seat {} sees highlights where none should be: 95% within CIEDE2000 {:.1f}.",
                        sees.seat,
                        error.de00_p95);
 }

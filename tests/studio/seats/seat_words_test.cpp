@@ -26,7 +26,7 @@ TEST(SeatWords, ASeatIsToldByTheLookWhereItMissesMost) {
     EXPECT_EQ(in_words(all[0]), "Seat 1 sees what it should: 95% within 2.9.");
     EXPECT_EQ(all[1].look, 7);
     EXPECT_EQ(in_words(all[1]),
-              "Seat 4 sees highlights up to 11.2 away from where they belong (95%).");
+              "Seat 4 sees highlights where none should be: 95% within CIEDE2000 11.2.");
 }
 
 TEST(SeatWords, MoreThanAFifthOverThreeIsNamed) {
