@@ -1,7 +1,7 @@
 // Photographs every part of the operator's window, for the documentation and for looking at it:
-//     desktop_screenshots FOLDER [vote]
+//     desktop_screenshots FOLDER [vote|seats]
 // writes NAME-1280.png at 1280x800 and NAME-3840.png at 3840x2160; with "vote" those of a presented
-// vote alone, at 1280x800.
+// vote alone, with "seats" those of the room, at 1280x800.
 
 #include <cctype>
 #include <cstdio>
@@ -179,6 +179,31 @@ class Photographer {
         wait_for_rest();
     }
 
+    /// Five in an arc, looked at by the last one.
+    void take_seats() {
+        program().click("menu:Projector");
+        program().click("menu:seats");
+        program().click("seats:arc");
+        program().click("seats:eye");
+        program().click("seats:eye:mean");
+        program().click("plan:seat:5");
+        if (!wait_until([&] { return program().state("seat_errors") == true; }, 300s)) {
+            throw std::runtime_error("what seats miss is not found");
+        }
+        program().move_away();
+        settle();
+        take("seats");
+        program().click("seats:map");
+        program().wait_for_state("seat_map", true);
+        program().move_away();
+        settle();
+        take("seats-map");
+        program().click("view:preview");
+        program().click("seats:close");
+        for (int k = 0; k < 2; ++k) program().press_key("ctrl+z");
+        wait_for_rest();
+    }
+
   private:
     StudioProgram& program() { return *program_; }
 
@@ -247,31 +272,6 @@ class Photographer {
         program().click("tab:Paints");
     }
 
-    /// Five in an arc, looked at by the last one.
-    void take_seats() {
-        program().click("menu:Projector");
-        program().click("menu:seats");
-        program().click("seats:arc");
-        program().click("seats:eye");
-        program().click("seats:eye:mean");
-        program().click("plan:seat:5");
-        if (!wait_until([&] { return program().state("seat_errors") == true; }, 300s)) {
-            throw std::runtime_error("what seats miss is not found");
-        }
-        program().move_away();
-        settle();
-        take("seats");
-        program().click("seats:map");
-        program().wait_for_state("seat_map", true);
-        program().move_away();
-        settle();
-        take("seats-map");
-        program().click("view:preview");
-        program().click("seats:close");
-        for (int k = 0; k < 2; ++k) program().press_key("ctrl+z");
-        wait_for_rest();
-    }
-
     void take_nudge() {
         program().click("menu:Projector");
         program().click("menu:nudge");
@@ -319,8 +319,13 @@ class Photographer {
                        program().state("unfinished") == "" && program().state("solving") == false &&
                        program().state("busy") == false;
             },
-            120s);
-        if (!rested) throw std::runtime_error("the program does not come to rest");
+            600s);
+        if (!rested) {
+            throw std::runtime_error("the program does not come to rest: it " +
+                                     program().state("unfinished").dump() + ", frame " +
+                                     program().state("finished_number").dump() + " of " +
+                                     program().state("asked_number").dump());
+        }
         sleep_ms(1500);
     }
 
@@ -352,20 +357,23 @@ class Photographer {
 }  // namespace livery
 
 int main(int argc, char** argv) {
-    const bool only_vote = argc == 3 && argv[2] == std::string("vote");
-    if (argc != 2 && !only_vote) {
-        std::fputs("desktop_screenshots FOLDER [vote]\n", stderr);
+    const std::string only = argc == 3 ? argv[2] : "";
+    if (argc < 2 || argc > 3 || (argc == 3 && only != "vote" && only != "seats")) {
+        std::fputs("desktop_screenshots FOLDER [vote|seats]\n", stderr);
         return 2;
     }
     try {
         const std::filesystem::path folder = argv[1];
         std::filesystem::create_directories(folder);
-        if (only_vote) {
-            livery::Photographer(folder, {1280, 800}, 1.0).take_vote();
-            return 0;
+        const auto at_1280 = [&] { return livery::Photographer(folder, {1280, 800}, 1.0); };
+        if (only == "vote") {
+            at_1280().take_vote();
+        } else if (only == "seats") {
+            at_1280().take_seats();
+        } else {
+            at_1280().take_all();
+            livery::Photographer(folder, {3840, 2160}, 2.0).take_all();
         }
-        livery::Photographer(folder, {1280, 800}, 1.0).take_all();
-        livery::Photographer(folder, {3840, 2160}, 2.0).take_all();
         return 0;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "%s\n", error.what());

@@ -95,6 +95,7 @@ struct PresentingState {
     std::unique_ptr<BallotProcess> phones;
     std::string phones_problem;
     bool qr_projected = false;
+    bool qr_sought = false;  ///< it has come to the panel and may be out of sight
 
     // On the projector and on the stage.
     std::shared_ptr<const ProjectorPicture> picture;

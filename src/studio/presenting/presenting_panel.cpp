@@ -4,6 +4,7 @@
 #include <cfloat>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -327,7 +328,10 @@ void draw_phones(Studio& studio) {
     heading("Phones");
     if (!state.phones) {
         draw_network_choice(studio);
-        if (ImGui::Button("Let phones vote", {-FLT_MIN, 0.0f})) serve_phones(studio, true);
+        if (ImGui::Button("Let phones vote", {-FLT_MIN, 0.0f})) {
+            serve_phones(studio, true);
+            state.qr_sought = !state.presented;
+        }
         name_last_item("phones:start");
         tooltip("Starts the phones' page on that network. Off until it is pressed.");
     } else {
@@ -355,6 +359,8 @@ void draw_phones(Studio& studio) {
             tooltip("Shows the QR code beside the mock-up, which is grey meanwhile.");
             draw_stop_phones(studio);
             ImGui::EndGroup();
+            // Half of a code is none: below the looks there may be no room for it
+            if (std::exchange(state.qr_sought, false)) ImGui::SetScrollHereY(1.0f);
         } else if (!joins) {
             dim_text(
                 "Joining is closed while a round is open: who came now would not have seen every "
