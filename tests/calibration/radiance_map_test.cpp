@@ -193,6 +193,16 @@ TEST(UnseenDirections, StayBetweenTheirSurroundings) {
         ASSERT_LE(map.radiance.values[3 * k], 10.0f);
         ASSERT_NEAR(map.radiance.values[3 * k + 1], 1.0f, 1e-4f);
     }
+    // A lamp at the edge ends there.
+    const auto lamp = [](const glm::dvec3& d) {
+        return glm::dvec3(glm::dot(d, glm::normalize(glm::dvec3(0.3, 0.0, 1.0))) > 0.99 ? 100.0
+                                                                                        : 1.0);
+    };
+    RadianceMap lit = seen_map(64, lamp);
+    hide({0.0, 0.0, 1.0}, 17.0 * kDegree, lit);
+    fill_unseen(lit);
+    EXPECT_LE(lit.radiance.at(0, 16, 0), 3.0f);
+    EXPECT_GE(lit.radiance.at(0, 16, 0), 1.0f);
     RadianceMap whole = seen_map(16, [](const glm::dvec3&) { return glm::dvec3(1.0); });
     EXPECT_EQ(fill_unseen(whole), 0.0);
     RadianceMap nothing = empty(16);

@@ -110,7 +110,7 @@ class BallBench {
         request.stand = usual_mirror_ball_stand(noisy_ball_camera(), size_px, cameras);
         request.light_from = light_from;
         request.out = captures();
-        request.samples_a_side = 4;
+        request.samples_a_side = 3;
         if (change) change(request);
         stand = request.stand;
         photograph_ball(request);

@@ -61,7 +61,9 @@ TEST_F(EnvironmentProblems, ABallHalfOutOfThePicture) {
         write_png(file, out);
     }
     const EnvironmentMeasurement report = bench_.measure(128);
-    EXPECT_NEAR(report.filled, 0.5, 0.05);
+    // The ball's middle is 2.3 px of 72 beyond the cut, and what no picture shows is behind the
+    // ball.
+    EXPECT_NEAR(report.filled, 0.53, 0.04);
     EXPECT_NE(report.notes.back().find("% of all directions are filled"), std::string::npos);
     // The half that is seen is right: from the camera's left, -x.
     const ImageF map = bench_.map();

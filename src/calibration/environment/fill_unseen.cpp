@@ -5,6 +5,7 @@
 
 #include "calibration/environment/radiance_map.h"
 #include "core/error.h"
+#include "core/statistics.h"
 
 namespace livery {
 
@@ -14,6 +15,9 @@ constexpr double kPi = std::numbers::pi;
 constexpr float kKnown = 0.5f;
 constexpr double kResidual = 1e-6;  ///< of the equation, relative to where it began
 constexpr int kMostSteps = 20'000;
+/// A lamp at a hole's edge is not continued into it: what is brighter than so many times the median
+/// of the edge counts as that.
+constexpr double kBrightestEdge = 3.0;
 
 /// Texels to solve for, with what each exchanges with its four neighbours.
 class Laplace {
@@ -74,6 +78,31 @@ class Laplace {
     std::vector<std::size_t> texels_;
 };
 
+/// Which hole each unknown texel belongs to, from 0 on.
+std::vector<std::size_t> holes_of(const Laplace& laplace, std::size_t& count) {
+    constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+    std::vector<std::size_t> hole(laplace.size(), kNone);
+    count = 0;
+    for (std::size_t start = 0; start < hole.size(); ++start) {
+        if (hole[start] != kNone) continue;
+        std::vector<std::size_t> open{start};
+        hole[start] = count;
+        while (!open.empty()) {
+            const std::size_t texel = laplace.texel(open.back());
+            open.pop_back();
+            laplace.around(texel, [&](std::size_t other, double) {
+                if (!laplace.is_unknown(other)) return;
+                const std::size_t k = laplace.unknown(other);
+                if (hole[k] != kNone) return;
+                hole[k] = count;
+                open.push_back(k);
+            });
+        }
+        ++count;
+    }
+    return hole;
+}
+
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
     double sum = 0.0;
     for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
@@ -120,28 +149,36 @@ double fill_unseen(RadianceMap& map) {
         const auto row = laplace.texel(k) / static_cast<std::size_t>(map.seen.width);
         filled += texel_sr(map.seen, static_cast<int>(row)) / (4.0 * kPi);
     }
+    std::size_t holes = 0;
+    const std::vector<std::size_t> hole = holes_of(laplace, holes);
     for (std::size_t c = 0; c < 3 && laplace.size() > 0; ++c) {
         const auto value = [&](std::size_t texel) {
             return static_cast<double>(map.radiance.values[3 * texel + c]);
         };
-        std::vector<double> right(laplace.size(), 0.0);
-        double border = 0.0, borders = 0.0, low = 1e300, high = -1e300;
+        std::vector<std::vector<double>> edges(holes);
         for (std::size_t k = 0; k < laplace.size(); ++k) {
-            laplace.around(laplace.texel(k), [&](std::size_t other, double weight) {
-                if (laplace.is_unknown(other)) return;
-                right[k] += weight * value(other);
-                border += value(other);
-                borders += 1.0;
-                low = std::min(low, value(other));
-                high = std::max(high, value(other));
+            laplace.around(laplace.texel(k), [&](std::size_t other, double) {
+                if (!laplace.is_unknown(other)) edges[hole[k]].push_back(value(other));
             });
         }
-        std::vector<double> x(laplace.size(), border / borders);
+        std::vector<double> middle, low;
+        for (const std::vector<double>& edge : edges) {
+            middle.push_back(median(edge));
+            low.push_back(*std::min_element(edge.begin(), edge.end()));
+        }
+        std::vector<double> right(laplace.size(), 0.0), x(laplace.size());
+        for (std::size_t k = 0; k < laplace.size(); ++k) {
+            x[k] = middle[hole[k]];
+            laplace.around(laplace.texel(k), [&](std::size_t other, double weight) {
+                if (laplace.is_unknown(other)) return;
+                right[k] += weight * std::min(value(other), kBrightestEdge * middle[hole[k]]);
+            });
+        }
         solve(laplace, right, x);
         for (std::size_t k = 0; k < laplace.size(); ++k) {
             // What the solver leaves unsolved must not break what a harmonic function promises.
-            map.radiance.values[3 * laplace.texel(k) + c] =
-                static_cast<float>(std::clamp(x[k], low, high));
+            map.radiance.values[3 * laplace.texel(k) + c] = static_cast<float>(std::clamp(
+                x[k], low[hole[k]], std::max(low[hole[k]], kBrightestEdge * middle[hole[k]])));
         }
     }
     return filled;

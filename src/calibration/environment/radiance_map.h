@@ -42,8 +42,9 @@ double texel_sr(const ImageF& map, int y);
 
 /// Fills texels of which less than half is seen with the smoothest continuation of what surrounds
 /// them: the harmonic function on the sphere (Laplace's equation in finite volumes, conjugate
-/// gradients), which is never brighter or darker than its surroundings. Gives the share of all
-/// directions that was filled. Throws Refused when nothing is seen.
+/// gradients), which is never brighter or darker than its surroundings. A lamp at a hole's edge is
+/// not continued: there 3 times the edge's median, channel by channel, is the most. Gives the share
+/// of all directions that was filled. Throws Refused when nothing is seen.
 double fill_unseen(RadianceMap& map);
 
 }  // namespace livery
