@@ -3,6 +3,7 @@
 #include <glm/geometric.hpp>
 
 #include "capture/manifest_io.h"
+#include "capture/sphere_fields.h"
 #include "capture/sphere_folder.h"
 #include "core/error.h"
 #include "core/paths.h"
@@ -13,53 +14,12 @@ namespace {
 
 constexpr int kNewestVersion = 1;
 constexpr std::size_t kMostCaptures = 10'000;
-constexpr double kFarthest_mm = 1e6;
-
-glm::dvec3 read_position(const JsonReader& field) {
-    const auto numbers = field.numbers(3);
-    for (std::size_t k = 0; k < 3; ++k) field.at(k).number_between(-kFarthest_mm, kFarthest_mm);
-    return {numbers[0], numbers[1], numbers[2]};
-}
-
-SpherePlace read_sphere(const JsonReader& sphere) {
-    sphere.allow_only({"centre_mm", "diameter_mm"});
-    return {read_position(sphere["centre_mm"]),
-            sphere["diameter_mm"].number_between(0.1, kFarthest_mm)};
-}
-
-/// A camera file's fields, or its name.
-void read_camera(const JsonReader& root, const Json& json, SphereFolder& result) {
-    const auto camera = root["camera"];
-    if (camera.is_text()) {
-        const auto file = result.manifest.parent_path() / camera.text();
-        result.camera = read_text_file(file);
-        result.camera_origin = file.string();
-        return;
-    }
-    if (!camera.is_object()) {
-        camera.fail(camera.found(), "a camera file's fields or its name (docs/files.md)");
-    }
-    result.camera = json["camera"].dump();
-    result.camera_origin = result.manifest.string() + ": camera";
-}
-
-glm::dvec3 read_reflectance(const JsonReader& reflectance) {
-    constexpr double kLowest = 0.05;  // darker is no white
-    if (reflectance.is_number()) return glm::dvec3(reflectance.number_between(kLowest, 1.0));
-    if (!reflectance.is_array() || reflectance.size() != 3) {
-        reflectance.fail(reflectance.found(), "a share of the light, or [R, G, B]");
-    }
-    glm::dvec3 result;
-    for (int c = 0; c < 3; ++c) {
-        result[c] = reflectance.at(static_cast<std::size_t>(c)).number_between(kLowest, 1.0);
-    }
-    return result;
-}
+constexpr double kDarkestWhite = 0.05;  ///< darker is no white
 
 std::optional<glm::dvec3> read_light(const JsonReader& entry, const SpherePlace& sphere) {
     if (!entry.has("light_position_mm")) return std::nullopt;
     const auto field = entry["light_position_mm"];
-    const glm::dvec3 light = read_position(field);
+    const glm::dvec3 light = read_place_mm(field);
     if (2.0 * glm::distance(light, sphere.centre_mm) <= sphere.diameter_mm) {
         field.fail(field.found() + " inside the sphere", "a place outside of the sphere");
     }
@@ -114,8 +74,8 @@ void read_white_reference(const JsonReader& root, const Json& json, SphereFolder
                       "black_level",
                       "saturates_at",
                       "light_position_mm"});
-    result.white_reflectance = read_reflectance(white["reflectance"]);
-    if (white.has("sphere")) result.white_sphere = read_sphere(white["sphere"]);
+    result.white_reflectance = read_share(white["reflectance"], kDarkestWhite);
+    if (white.has("sphere")) result.white_sphere = read_sphere_place(white["sphere"]);
     if (white.has("file") == white.has("captures")) {
         white.fail(white.has("file") ? "file and captures" : "neither file nor captures",
                    "one of them: photographs of the white sphere");
@@ -148,14 +108,7 @@ bool is_sphere_manifest(const std::filesystem::path& manifest) {
 }
 
 SphereFolder read_sphere_folder(const std::filesystem::path& folder) {
-    std::error_code error;
-    if (!std::filesystem::is_directory(folder, error)) {
-        throw FileError(folder,
-                        "",
-                        std::filesystem::exists(folder, error) ? "a file" : "no such folder",
-                        "a folder of photographs with manifest.json");
-    }
-    const auto manifest = folder / "manifest.json";
+    const auto manifest = manifest_in(folder);
     return parse_sphere_manifest(read_text_file(manifest), manifest);
 }
 
@@ -182,8 +135,10 @@ SphereFolder parse_sphere_manifest(const std::string& text, const std::filesyste
         captures.fail(std::to_string(captures.size()) + " captures",
                       "at most " + std::to_string(kMostCaptures));
     }
-    result.sphere = read_sphere(root["sphere"]);
-    read_camera(root, json, result);
+    result.sphere = read_sphere_place(root["sphere"]);
+    const CameraText camera = read_camera_text(root, json, manifest);
+    result.camera = camera.text;
+    result.camera_origin = camera.origin;
     read_white_reference(root, json, result);
     for (std::size_t k = 0; k < captures.size(); ++k) {
         const auto entry = captures.at(k);

@@ -75,6 +75,7 @@ int run(const std::vector<std::string>& arguments) {
                                      calibrate_repose_command(),
                                      calibrate_scan_command(),
                                      measure_brdf_command(),
+                                     measure_environment_command(),
                                      fit_brdf_command(),
                                      fit_bssrdf_command(),
                                      compensate_command(),

@@ -6,6 +6,7 @@
 
 #include "appearance/material_library.h"
 #include "cli/command.h"
+#include "jobs/simulated_ball.h"
 #include "jobs/simulated_captures.h"
 #include "jobs/simulated_sphere.h"
 
@@ -14,8 +15,9 @@ namespace livery {
 namespace {
 
 struct PhotographArguments {
-    std::string bench = "default", patterns, sphere, out, size;
+    std::string bench = "default", patterns, sphere, ball, out, size;
     double exposure_s = 0.0;
+    int views = 0;
 };
 
 Outcome photograph_patterns(const PhotographArguments& arguments,
@@ -84,13 +86,78 @@ Outcome photograph_sphere(const PhotographArguments& arguments,
     return outcome;
 }
 
+Outcome photograph_ball(const PhotographArguments& arguments,
+                        const CommonOptions& common,
+                        const Progress& progress) {
+    constexpr int kMostViews = 3;
+    if (arguments.exposure_s != 0.0) {
+        throw std::invalid_argument(
+            "--exposure-s: found with --ball, whose photographs are bracketed; leave it out");
+    }
+    const int views = arguments.views == 0 ? 2 : arguments.views;
+    if (views < 1 || views > kMostViews) {
+        throw std::invalid_argument(
+            fmt::format("--views: found {}, expected 1 to {}", views, kMostViews));
+    }
+    const glm::ivec2 size =
+        parse_size("--size", arguments.size.empty() ? "1024x1024" : arguments.size);
+    if (size.x != size.y) {
+        throw std::invalid_argument("--size: found \"" + arguments.size +
+                                    "\", expected a square with --ball");
+    }
+    const Environment environment = load_environment({arguments.ball, 0.0, 1.0}, ".");
+    SimulatedBallRequest request;
+    request.stand = usual_mirror_ball_stand(read_bench_file(arguments.bench).camera, size.x, views);
+    request.light_from = light_of(environment);
+    request.out = arguments.out;
+    request.seed = static_cast<std::uint64_t>(common.seed);
+    const SimulatedBall taken = photograph_ball(request, progress);
+    Outcome outcome;
+    outcome.figures = {{"photographs", taken.photographs},
+                       {"cameras", taken.cameras},
+                       {"environment", environment.file.string()},
+                       {"folder", arguments.out},
+                       {"simulated", true}};
+    outcome.text = fmt::format("{} simulated photographs of a mirror ball from {} places in {}\n",
+                               taken.photographs,
+                               taken.cameras,
+                               arguments.out);
+    return outcome;
+}
+
+using PhotographAction = Outcome (*)(const PhotographArguments&,
+                                     const CommonOptions&,
+                                     const Progress&);
+
+/// By what was named to be photographed.
+PhotographAction chosen(const PhotographArguments& arguments) {
+    const int named = (arguments.patterns.empty() ? 0 : 1) + (arguments.sphere.empty() ? 0 : 1) +
+                      (arguments.ball.empty() ? 0 : 1);
+    if (named == 0) {
+        throw std::invalid_argument(
+            "photograph: found none of --patterns, --sphere and --ball, expected one of them");
+    }
+    if (named > 1) {
+        throw std::invalid_argument(
+            "photograph: found more than one of --patterns, --sphere and --ball, expected one of "
+            "them");
+    }
+    if (arguments.views != 0 && arguments.ball.empty()) {
+        throw std::invalid_argument("--views: found without --ball; leave it out");
+    }
+    if (!arguments.ball.empty()) return &photograph_ball;
+    if (!arguments.sphere.empty()) return &photograph_sphere;
+    return &photograph_patterns;
+}
+
 }  // namespace
 
 Command photograph_command() {
     const auto arguments = std::make_shared<PhotographArguments>();
     Command command;
     command.name = "photograph";
-    command.summary = "photograph a patterns folder, or a painted sphere, on the simulated bench";
+    command.summary =
+        "photograph a patterns folder, a painted sphere or a mirror ball on the simulated bench";
     command.example = "livery photograph --patterns patterns --out captures";
     command.options = {
         {"--bench",
@@ -106,11 +173,24 @@ Command photograph_command() {
          &arguments->sphere,
          false,
          {}},
+        {"--ball",
+         "FILE|NAME",
+         "instead of patterns: a mirror ball in that environment, as livery measure environment "
+         "takes it",
+         &arguments->ball,
+         false,
+         {}},
+        {"--views",
+         "N",
+         "with --ball: from so many sides, 1 to 3 (default: 2)",
+         &arguments->views,
+         false,
+         {}},
         {"--out", "DIR", "captures folder", &arguments->out, true, {}},
         {"--size",
          "WxH",
-         "projector resolution (default: as the bench file says); with --sphere the picture's "
-         "(default: 512x512)",
+         "projector resolution (default: as the bench file says); with --sphere and --ball the "
+         "picture's (default: 512x512, 1024x1024)",
          &arguments->size,
          false,
          {}},
@@ -122,15 +202,7 @@ Command photograph_command() {
          {}},
     };
     command.run = [arguments](const CommonOptions& common, const Progress& progress) {
-        if (arguments->patterns.empty() == arguments->sphere.empty()) {
-            throw std::invalid_argument(arguments->patterns.empty()
-                                            ? "photograph: found neither --patterns nor --sphere, "
-                                              "expected one of them"
-                                            : "photograph: found --patterns and --sphere, expected "
-                                              "one of them");
-        }
-        return arguments->sphere.empty() ? photograph_patterns(*arguments, common, progress)
-                                         : photograph_sphere(*arguments, common, progress);
+        return chosen(*arguments)(*arguments, common, progress);
     };
     return command;
 }

@@ -5,6 +5,7 @@
 #include <glm/matrix.hpp>
 
 #include "core/colour.h"
+#include "core/error.h"
 #include "core/json.h"
 #include "core/paths.h"
 
@@ -67,6 +68,17 @@ CameraToXyz assumed_rec709() {
     result.xyz_from_camera = xyz_from_rec709();
     result.origin = "assumed Rec.709";
     return result;
+}
+
+CameraToXyz camera_matrix(const std::filesystem::path& file) {
+    CameraToXyz camera = file.empty() ? assumed_rec709() : read_camera_to_xyz(file);
+    if (camera.has_primaries) {
+        throw FileError(file,
+                        "primaries_xyz",
+                        "a projector's primaries",
+                        "matrix: linear camera RGB to XYZ, for the lamp's light");
+    }
+    return camera;
 }
 
 }  // namespace livery

@@ -15,4 +15,8 @@ CameraToXyz parse_camera_to_xyz(const std::string& text, const std::filesystem::
 /// What is taken when no file was given: camera RGB as linear Rec.709, and labelled so.
 CameraToXyz assumed_rec709();
 
+/// What photographs without a projector are read with: a file's matrix; of no file,
+/// assumed_rec709(). Throws FileError, also for a projector's primaries.
+CameraToXyz camera_matrix(const std::filesystem::path& file);
+
 }  // namespace livery

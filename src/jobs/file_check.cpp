@@ -14,6 +14,7 @@
 #include "appearance/subsurface/translucent_material.h"
 #include "calibration/registration/picked_points.h"
 #include "capture/captures_folder.h"
+#include "capture/environment_folder.h"
 #include "capture/patterns_folder.h"
 #include "capture/sphere_folder.h"
 #include "core/csv.h"
@@ -136,6 +137,27 @@ void read_picture(const Path& file, FileCheck& check) {
     }
 }
 
+/// Photographs of a mirror ball or a panorama.
+void read_environment(const Path& manifest, FileCheck& check, const Progress& progress) {
+    const EnvironmentFolder folder = read_environment_folder(manifest.parent_path());
+    if (!folder.camera_to_xyz.empty()) read_camera_to_xyz(folder.camera_to_xyz);
+    FilesElsewhere elsewhere(manifest.parent_path());
+    elsewhere.add(folder.camera_to_xyz);
+    std::vector<Path> masks{folder.panorama.mask};
+    for (const BallView& view : folder.views) {
+        parse_camera(view.camera, view.camera_origin);
+        if (!view.camera_origin.starts_with(manifest.string())) elsewhere.add(view.camera_origin);
+        masks.push_back(view.mask);
+    }
+    for (const Path& mask : masks) {
+        if (mask.empty()) continue;
+        elsewhere.add(mask);
+        read_picture(mask, check);
+    }
+    tell(elsewhere, check);
+    check_photographs(photographs_of(folder), manifest.parent_path(), check, progress);
+}
+
 /// A map from projector to camera pixels says "unknown" with NaN: that is no problem.
 void read_map(const Path& file, FileCheck& check) {
     const ImageFile map = read_image(file);
@@ -201,6 +223,11 @@ FileKind kind_of_manifest(const Path& manifest, const Progress& progress) {
     if (is_unphotographed(read_json_file(manifest))) {
         return {"patterns",
                 [manifest](const Path&, FileCheck& check) { read_patterns(manifest, check); }};
+    }
+    if (is_environment_manifest(manifest)) {
+        return {"environment captures", [manifest, progress](const Path&, FileCheck& check) {
+                    read_environment(manifest, check, progress);
+                }};
     }
     if (is_sphere_manifest(manifest)) {
         return {"sphere captures", [manifest, progress](const Path&, FileCheck& check) {

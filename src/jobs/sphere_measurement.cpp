@@ -15,80 +15,15 @@
 #include "core/paths.h"
 #include "core/worst_error.h"
 #include "jobs/camera_to_xyz_file.h"
+#include "jobs/sphere_window.h"
 
 namespace livery {
 
 namespace {
 
-constexpr double kMargin = 0.45;        ///< around the sphere's box, of its size
 constexpr double kMostAcross_px = 800;  ///< a larger sphere's pixels are averaged in blocks
-constexpr double kFewestAcross_px = 40;
 constexpr double kSameLamp_mm = 0.01;
 constexpr double kMatteRms = 0.1, kNotedResidual = 0.1, kNotedCorrection = 0.02;
-
-/// The part of a photograph that the sphere fills, and how the camera sees it.
-struct SphereWindow {
-    PictureWindow pixels;
-    View view;
-};
-
-SphereWindow window_around(const View& camera, const Sphere& sphere, const SphereFolder& folder) {
-    const auto box = outline_box(camera, sphere);
-    const double width = camera.width, height = camera.height;
-    if (!box || box->right < 0.0 || box->bottom < 0.0 || box->left > width || box->top > height) {
-        throw FileError(folder.manifest,
-                        "sphere.centre_mm",
-                        box ? fmt::format("a sphere at pixel {:.0f},{:.0f}, outside of the picture",
-                                          0.5 * (box->left + box->right),
-                                          0.5 * (box->top + box->bottom))
-                            : "a sphere that is not before the camera",
-                        "one that the camera sees");
-    }
-    const double across = std::max(box->right - box->left, box->bottom - box->top);
-    if (across < kFewestAcross_px) {
-        throw FileError(folder.manifest,
-                        "sphere.diameter_mm",
-                        fmt::format("a sphere of {:.0f} px in the picture", across),
-                        fmt::format("{:.0f} px or more", kFewestAcross_px));
-    }
-    SphereWindow window;
-    PictureWindow& pixels = window.pixels;
-    pixels.block = static_cast<int>(std::ceil(across / kMostAcross_px));
-    const double margin = kMargin * across;
-    const auto low = [&](double edge) {
-        return static_cast<int>(std::max(std::floor(edge - margin), 0.0));
-    };
-    const auto blocks = [&](double edge, double limit, int first) {
-        return (static_cast<int>(std::min(std::ceil(edge + margin), limit)) - first) / pixels.block;
-    };
-    pixels.left = low(box->left);
-    pixels.top = low(box->top);
-    pixels.width = blocks(box->right, width, pixels.left);
-    pixels.height = blocks(box->bottom, height, pixels.top);
-    window.view = resized(cropped(camera,
-                                  pixels.left,
-                                  pixels.top,
-                                  pixels.block * pixels.width,
-                                  pixels.block * pixels.height),
-                          pixels.width,
-                          pixels.height);
-    return window;
-}
-
-void add_photograph(const Capture& capture,
-                    const View& camera,
-                    const SphereWindow& window,
-                    MergedPhotographs& merged) {
-    const Photograph photograph = load_photograph(capture);
-    const ImageF& image = photograph.image;
-    if (image.width != camera.width || image.height != camera.height) {
-        throw FileError(capture.file,
-                        "size",
-                        fmt::format("{}x{}", image.width, image.height),
-                        fmt::format("the camera's {}x{}", camera.width, camera.height));
-    }
-    add(windowed(photograph, window.pixels), merged);
-}
 
 /// Of the lamp at that place; made when there is none yet.
 LitSphere& of_lamp(std::vector<LitSphere>& lit, const glm::dvec3& light_mm) {
@@ -109,8 +44,8 @@ std::vector<LitSphere> load_lit(const SphereFolder& folder,
         progress.update(done / static_cast<double>(folder.captures.size()),
                         "reading " + capture.photograph.file.filename().string());
         done += 1.0;
-        add_photograph(
-            capture.photograph, camera, window, of_lamp(lit, *capture.light_position_mm).picture);
+        add(windowed(load_photograph_of(capture.photograph, camera), window.pixels),
+            of_lamp(lit, *capture.light_position_mm).picture);
     }
     return lit;
 }
@@ -148,19 +83,17 @@ std::vector<WhiteLamp> white_lamps(const SphereFolder& folder,
     const Sphere sphere = folder.white_sphere ? Sphere{folder.white_sphere->centre_mm,
                                                        folder.white_sphere->diameter_mm}
                                               : painted;
-    const SphereWindow window = window_around(camera, sphere, folder);
+    const SphereWindow window = window_around(camera, sphere, kMostAcross_px, folder.manifest);
     std::vector<LitSphere> known;
     std::vector<WhiteLamp> result;
     for (const SphereCapture& capture : folder.white) {
         if (capture.light_position_mm) {
-            add_photograph(capture.photograph,
-                           camera,
-                           window,
-                           of_lamp(known, *capture.light_position_mm).picture);
+            add(windowed(load_photograph_of(capture.photograph, camera), window.pixels),
+                of_lamp(known, *capture.light_position_mm).picture);
             continue;
         }
         MergedPhotographs picture;
-        add_photograph(capture.photograph, camera, window, picture);
+        add(windowed(load_photograph_of(capture.photograph, camera), window.pixels), picture);
         result.push_back(recognised(window, sphere, picture, folder.white_reflectance, lamps));
     }
     for (const LitSphere& white : known) {
@@ -197,13 +130,7 @@ std::vector<LampResponse> responses_of(std::span<const LitSphere> lit,
 
 /// Rec.709 of the camera's colours, on whose scale a perfect white is 1, 1, 1.
 glm::dmat3 rec709_from_balanced(const std::filesystem::path& file, SphereMeasurement& report) {
-    const CameraToXyz camera = file.empty() ? assumed_rec709() : read_camera_to_xyz(file);
-    if (camera.has_primaries) {
-        throw FileError(file,
-                        "primaries_xyz",
-                        "a projector's primaries",
-                        "matrix: linear camera RGB to XYZ, for the lamp's light");
-    }
+    const CameraToXyz camera = camera_matrix(file);
     report.camera_colours = camera.origin;
     const glm::dvec3 white = glm::inverse(camera.xyz_from_camera) * d65_xyz();
     if (!(white.x > 0.0 && white.y > 0.0 && white.z > 0.0)) {
@@ -262,7 +189,7 @@ SphereMeasurement measure_sphere(const SphereMeasurementRequest& request,
         request.camera_to_xyz.empty() ? folder.camera_to_xyz : request.camera_to_xyz, report);
 
     const Sphere given{folder.sphere.centre_mm, folder.sphere.diameter_mm};
-    const SphereWindow window = window_around(camera, given, folder);
+    const SphereWindow window = window_around(camera, given, kMostAcross_px, folder.manifest);
     const std::vector<LitSphere> lit = load_lit(folder, camera, window, progress);
     check_lit(window.view, given, lit);
     progress.update(0.0, "finding the outline");

@@ -1,9 +1,10 @@
+#include "capture/environment_folder.h"
 #include "capture/manifest_io.h"
 #include "capture/sphere_folder.h"
 #include "fuzz/fuzz.h"
 
-// The same text as a manifest of photographs, as one of patterns, as one of a sphere, and as a
-// camera's response.
+// The same text as a manifest of photographs, as one of patterns, as one of a sphere, as one of the
+// light all around, and as a camera's response.
 LIVERY_FUZZ(text) {
     using namespace livery;
     const auto parse = [](const auto& one) {
@@ -15,5 +16,6 @@ LIVERY_FUZZ(text) {
     parse([&] { parse_captures_manifest(text, "/no folder/manifest.json"); });
     parse([&] { parse_patterns_manifest(text, "/no folder/manifest.json"); });
     parse([&] { parse_sphere_manifest(text, "/no folder/manifest.json"); });
+    parse([&] { parse_environment_manifest(text, "/no folder/manifest.json"); });
     parse_response(text, "response.json");
 }

@@ -262,6 +262,17 @@ put("captures", "sphere.json",
      "white_reference": {"reflectance": [0.9, 0.9, 0.8], "sphere": {"centre_mm": [80, 0, 900], "diameter_mm": 55},
                          "captures": [{"file": ".", "exposure_s": 0.5, "light_position_mm": [0, 90, 300]}]},
      "captures": [{"file": "0.png", "exposure_s": 0.1, "black_level": 3, "light_position_mm": [40, 0, 300]}]})
+put("captures", "ball.json",
+    {"format_version": 1, "environment": "ball", "sphere": {"centre_mm": [0, 0, 900], "diameter_mm": 60},
+     "reflectance": [0.6, 0.6, 0.5], "fresnel": True, "exposure_s": 0.5, "views": [
+         {"camera": {"width": 4, "height": 3}, "outline_px": [[0, 1], [1, 2], [3, 4], [5, 5], [2, 9]],
+          "fit_outline": False, "camera_deg": 4, "captures": [{"file": "0.png", "exposure_s": 0.1}]},
+         {"camera": {"width": 4}, "sphere": {"diameter_mm": 60}, "mask": "0.png",
+          "captures": [{"file": ".", "black_level": 3}]}]})
+put("captures", "panorama.json",
+    {"environment": "panorama", "transfer": "srgb", "camera_to_xyz": "colours.json",
+     "marks": [{"pixel": [10, 20], "direction": [0, 0, -1]}, {"pixel": [700, 260], "direction": [1, 0, 0]}],
+     "captures": [{"file": "0.png", "exposure_s": 0.1}, {"file": "1.png", "exposure_s": 0.8, "raw_half": False}]})
 put("captures", "response.json",
     {"format_version": 1, "linear_from_file": [0, 0.02, 0.07, 0.16, 0.29, 0.46, 0.69, 1]})
 put("recording", "two.json",

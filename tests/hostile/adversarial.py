@@ -25,6 +25,8 @@ JSONS = {
     "captures/response.json": (files.RESPONSE, ["check", "{in}/captures"]),
     "sphere/manifest.json": (files.SPHERE, ["measure", "brdf", "--captures", "{in}/sphere",
                                             "--out", "{place}/out/a.csv"]),
+    "ball/manifest.json": (files.BALL, ["measure", "environment", "--captures", "{in}/ball",
+                                        "--out", "{place}/out/a.exr"]),
     "mesh.gltf": (files.GLTF, ["check", "{in}/mesh.gltf"]),
 }
 
@@ -99,6 +101,9 @@ FIELDS = {
     "sphere/manifest.json": (files.SPHERE, [("camera",), ("camera_to_xyz",), ("captures", 0, "file"),
                                             ("white_reference", "file")],
                              [["measure", "brdf", "--captures", "{in}/sphere", "--out", "{place}/out/a.csv"]]),
+    "ball/manifest.json": (files.BALL, [("views", 0, "camera"), ("camera_to_xyz",), ("views", 0, "mask"),
+                                        ("views", 0, "captures", 0, "file")],
+                           [["measure", "environment", "--captures", "{in}/ball", "--out", "{place}/out/a.exr"]]),
     "look.json": (files.LOOK, [("parts", "*"), ("environment", "file"), ("artwork", 0, "paint")], [DRAW]),
     "picture-look.json": (files.PICTURE_LOOK, [("artwork", 0, "picture")], [["check", "{in}/picture-look.json"]]),
     "measured-material.json": (files.MEASURED_MATERIAL, [("parameters", "file")],

@@ -47,6 +47,8 @@ USES = {
     "captures/response.json": [["check", "{in}/captures"]],
     "sphere/manifest.json": [["check", "{in}/sphere"],
                              ["measure", "brdf", "--captures", "{in}/sphere", "--out", "{out}.csv"]],
+    "ball/manifest.json": [["check", "{in}/ball"],
+                           ["measure", "environment", "--captures", "{in}/ball", "--out", "{out}.exr"]],
     "show.livery": [["check", "{in}/show.livery"], ["session", "show", "{in}/show.livery"],
                     ["session", "export", "{in}/show.livery", "--look", "1", "--out", "{out}.json"]],
 }

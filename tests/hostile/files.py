@@ -102,6 +102,10 @@ SPHERE = {"format_version": 1, "transfer": "srgb", "camera": "camera.json", "cam
           "white_reference": {"reflectance": [0.9, 0.9, 0.8], "file": "001.png", "exposure_s": 0.5,
                               "light_position_mm": [0, 90, 300]},
           "captures": [{"file": "000.png", "exposure_s": 0.1, "black_level": 3, "light_position_mm": [40, 0, 300]}]}
+BALL = {"format_version": 1, "environment": "ball", "transfer": "srgb", "camera_to_xyz": "xyz.json",
+        "sphere": {"centre_mm": [0, 0, 0], "diameter_mm": 60}, "reflectance": [0.6, 0.6, 0.5], "views": [
+            {"camera": "camera.json", "mask": "001.png", "outline_px": [[0, 1], [1, 2], [3, 4], [5, 5], [2, 9]],
+             "fit_outline": False, "captures": [{"file": "000.png", "exposure_s": 0.1, "black_level": 3}]}]}
 XYZ = {"format_version": 1, "matrix": [0.4, 0.3, 0.2, 0.2, 0.7, 0.1, 0, 0.1, 0.9]}
 PRIMARIES = {"format_version": 1, "measured_at_px": [10, 20], "primaries_xyz": {
     "red": [4, 2, 0], "green": [3, 7, 1], "blue": [2, 1, 9], "black": [0.1, 0.1, 0.1]}}
@@ -194,7 +198,7 @@ def good_files():
         "tetra.obj": TETRA_OBJ, "tetra.ply": PLY, "dirs.csv": DIRECTIONS, "nine.csv": NINE}.items()}
     made |= {"triangle.bin": TRIANGLE, "000.png": png(), "001.png": png(grey=0), "dot.png": png(8, 8), "sky.hdr": hdr(),
              "sky.exr": exr(), "mesh.glb": glb({**GLTF, "buffers": [{"byteLength": 42}]}), "map.exr": exr(("X", "Y"))}
-    for folder, manifest in {"patterns": PATTERNS, "captures": CAPTURES, "sphere": SPHERE}.items():
+    for folder, manifest in {"patterns": PATTERNS, "captures": CAPTURES, "sphere": SPHERE, "ball": BALL}.items():
         made[folder + "/manifest.json"] = dump(manifest).encode()
         for name in ("000.png", "001.png", "response.json", "camera.json", "xyz.json"):
             made[folder + "/" + name] = made[name]
@@ -202,7 +206,7 @@ def good_files():
 
 
 def good_folder(folder):
-    for part in ("patterns", "captures", "sphere"):
+    for part in ("patterns", "captures", "sphere", "ball"):
         (folder / part).mkdir(parents=True)
     for name, data in good_files().items():
         with open(folder / name, "wb") as file:

@@ -59,6 +59,11 @@ Photograph windowed(const Photograph& photograph, const PictureWindow& window) {
     return result;
 }
 
+double clipped_light(const Photograph& photograph) {
+    return (static_cast<double>(largest_linear(photograph)) - photograph.black_level) /
+           photograph.exposure_s;
+}
+
 void add(const Photograph& photograph, MergedPhotographs& merged) {
     const ImageF& image = photograph.image;
     check_argument(image.channels == 3 && photograph.exposure_s > 0.0,

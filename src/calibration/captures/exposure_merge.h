@@ -26,6 +26,9 @@ struct MergedPhotographs {
     ImageF seconds;  ///< RGB, their time; 0 where all saturated
 };
 
+/// The least light, file units a second, of a pixel that counts as saturated there.
+double clipped_light(const Photograph& photograph);
+
 /// Throws std::invalid_argument for another size.
 void add(const Photograph& photograph, MergedPhotographs& merged);
 

@@ -26,38 +26,6 @@ constexpr std::array<double, 4> kFineReaches_px{12.0, 6.0, 6.0, 6.0};
 constexpr double kLargestRms_px = 1.0;
 constexpr double kFewestSeen = 0.6;
 
-/// The cone of tangents from the eye: its axis and half its opening angle.
-struct Cone {
-    glm::dvec3 axis, right, down;  ///< unit, orthogonal
-    double distance_mm = 0.0;
-    double angle_rad = 0.0;
-};
-
-Cone cone_of(const View& view, const Sphere& sphere) {
-    const glm::dvec3 to_centre = sphere.centre_mm - centre_in_world(view);
-    Cone cone;
-    cone.distance_mm = glm::length(to_centre);
-    check_argument(
-        2.0 * cone.distance_mm > sphere.diameter_mm && sphere.diameter_mm > 0.0,
-        fmt::format(
-            "a sphere of {} mm at {} mm from the camera", sphere.diameter_mm, cone.distance_mm));
-    cone.axis = to_centre / cone.distance_mm;
-    const glm::dvec3 rows_down = glm::transpose(view.view_from_world.rotation)[1];
-    cone.right = glm::normalize(glm::cross(rows_down, cone.axis));
-    cone.down = glm::cross(cone.axis, cone.right);
-    cone.angle_rad = std::asin(0.5 * sphere.diameter_mm / cone.distance_mm);
-    return cone;
-}
-
-Sphere sphere_of(const View& view, const Cone& cone) {
-    return {centre_in_world(view) + cone.distance_mm * cone.axis,
-            2.0 * cone.distance_mm * std::sin(cone.angle_rad)};
-}
-
-glm::dvec3 around(const Cone& cone, double turn_rad) {
-    return std::cos(turn_rad) * cone.right + std::sin(turn_rad) * cone.down;
-}
-
 /// A pixel as the cone sees it.
 struct PixelPlace {
     std::size_t pixel = 0;
@@ -65,16 +33,15 @@ struct PixelPlace {
 };
 using Sectors = std::array<std::vector<PixelPlace>, kSectors>;
 
-Sectors pixels_near(const std::vector<glm::dvec3>& rays, const Cone& cone, double reach_rad) {
+Sectors pixels_near(const std::vector<glm::dvec3>& rays,
+                    const TangentCone& cone,
+                    double reach_rad) {
     Sectors sectors;
     for (std::size_t k = 0; k < rays.size(); ++k) {
-        const double x = glm::dot(rays[k], cone.right), y = glm::dot(rays[k], cone.down);
-        const double angle = std::atan2(std::hypot(x, y), glm::dot(rays[k], cone.axis));
-        if (std::abs(angle - cone.angle_rad) > reach_rad) continue;
-        double turn = std::atan2(y, x);
-        if (turn < 0.0) turn += kTurn;
-        const int sector = std::min(static_cast<int>(turn / kTurn * kSectors), kSectors - 1);
-        sectors[static_cast<std::size_t>(sector)].push_back({k, angle});
+        const ConeEdge at = edge_of(cone, rays[k]);
+        if (std::abs(at.angle_rad - cone.angle_rad) > reach_rad) continue;
+        const int sector = std::min(static_cast<int>(at.turn_rad / kTurn * kSectors), kSectors - 1);
+        sectors[static_cast<std::size_t>(sector)].push_back({k, at.angle_rad});
     }
     return sectors;
 }
@@ -98,7 +65,7 @@ using Brightness = std::vector<std::optional<float>>;
 /// pixels, from far away.
 std::optional<double> coarse_edge(const std::vector<PixelPlace>& places,
                                   const Brightness& light,
-                                  const Cone& cone,
+                                  const TangentCone& cone,
                                   double reach_rad,
                                   double pixel_rad) {
     const double step = 2.0 * pixel_rad;
@@ -160,7 +127,7 @@ struct Edge {
 /// the place is the one that explains the pixels best.
 std::optional<Edge> fine_edge(const std::vector<PixelPlace>& places,
                               const Brightness& light,
-                              const Cone& cone,
+                              const TangentCone& cone,
                               double reach_px,
                               double pixel_rad) {
     std::vector<std::array<double, 2>> samples;  // depth, brightness
@@ -210,7 +177,7 @@ std::optional<Edge> fine_edge(const std::vector<PixelPlace>& places,
 }
 
 /// The lights that meet the outline least aslant there, best first.
-std::vector<std::size_t> best_lights(const Cone& cone,
+std::vector<std::size_t> best_lights(const TangentCone& cone,
                                      const View& view,
                                      double turn_rad,
                                      std::span<const LitSphere> lit) {
@@ -233,38 +200,13 @@ std::vector<std::size_t> best_lights(const Cone& cone,
 
 using Edges = std::array<std::optional<double>, kSectors>;
 
-/// Turns the axis and opens the cone until it passes through the edges, those that lie off counting
-/// less (Huber). Gives their root mean square afterwards, radians.
-double move_cone(const Edges& edges, double outlier_rad, Cone& cone) {
-    glm::dvec3 change(0.0);
-    double rms = 0.0;
-    for (int round = 0; round < 20; ++round) {
-        glm::dmat3 normal(0.0);
-        glm::dvec3 right(0.0);
-        double squares = 0.0, weights = 0.0;
-        for (int k = 0; k < kSectors; ++k) {
-            const auto& edge = edges[static_cast<std::size_t>(k)];
-            if (!edge) continue;
-            const double turn = kTurn * (k + 0.5) / kSectors;
-            const glm::dvec3 row(std::cos(turn), std::sin(turn), 1.0);
-            const double off = *edge - cone.angle_rad - glm::dot(row, change);
-            const double weight = std::min(1.0, outlier_rad / std::max(std::abs(off), 1e-12));
-            normal += weight * glm::outerProduct(row, row);
-            right += weight * off * row;
-            squares += weight * off * off;
-            weights += weight;
-        }
-        if (!(std::abs(glm::determinant(normal)) > 1e-6)) break;
-        change += glm::inverse(normal) * right;
-        rms = std::sqrt(squares / weights);
+std::vector<ConeEdge> found_of(const Edges& edges) {
+    std::vector<ConeEdge> found;
+    for (std::size_t k = 0; k < edges.size(); ++k) {
+        if (edges[k])
+            found.push_back({kTurn * (static_cast<double>(k) + 0.5) / kSectors, *edges[k]});
     }
-    const double distance = cone.distance_mm;
-    const double angle = cone.angle_rad + change.z;
-    const glm::dvec3 axis =
-        glm::normalize(cone.axis + change.x * cone.right + change.y * cone.down);
-    const glm::dvec3 rows_right = glm::normalize(cone.right - glm::dot(cone.right, axis) * axis);
-    cone = {axis, rows_right, glm::cross(axis, rows_right), distance, angle};
-    return rms;
+    return found;
 }
 
 double share_of(const Edges& edges) {
@@ -284,7 +226,7 @@ double share_of(const Edges& edges) {
 std::optional<OutlineBox> outline_box(const View& view, const Sphere& sphere) {
     const glm::dvec3 in_view = view.view_from_world * sphere.centre_mm;
     if (in_view.z <= 0.5 * sphere.diameter_mm) return std::nullopt;
-    const Cone cone = cone_of(view, sphere);
+    const TangentCone cone = cone_of(view, sphere);
     OutlineBox box{1e30, 1e30, -1e30, -1e30};
     for (int k = 0; k < kSectors; ++k) {
         const glm::dvec3 direction = std::cos(cone.angle_rad) * cone.axis +
@@ -316,7 +258,7 @@ OutlineFit fit_outline(const View& view, const Sphere& start, std::span<const Li
             "fit_outline: a picture of another size than the view's");
         light.push_back(brightness(one.picture));
     }
-    Cone cone = cone_of(view, start);
+    TangentCone cone = cone_of(view, start);
     const double pixel_rad = 1.0 / std::min(view.focal_px.x, view.focal_px.y);
 
     const auto edges_at = [&](double reach_rad, const auto& find) {
@@ -345,7 +287,7 @@ OutlineFit fit_outline(const View& view, const Sphere& start, std::span<const Li
                             100.0 * share_of(edges),
                             100.0 * kFewestSeen));
         }
-        move_cone(edges, 2.0 * pixel_rad, cone);
+        move_cone(found_of(edges), 2.0 * pixel_rad, cone);
     }
     OutlineFit fit;
     for (const double reach_px : kFineReaches_px) {
@@ -362,7 +304,7 @@ OutlineFit fit_outline(const View& view, const Sphere& start, std::span<const Li
                             100.0 * fit.seen_fraction,
                             100.0 * kFewestSeen));
         }
-        fit.rms_px = move_cone(edges, 0.3 * pixel_rad, cone) / pixel_rad;
+        fit.rms_px = move_cone(found_of(edges), 0.3 * pixel_rad, cone) / pixel_rad;
     }
     if (fit.rms_px > kLargestRms_px) {
         refuse_outline(fmt::format("the edges lie {:.1f} px from a sphere's", fit.rms_px));

@@ -7,14 +7,10 @@
 #include <glm/vec3.hpp>
 
 #include "calibration/captures/exposure_merge.h"
+#include "calibration/sphere/tangent_cone.h"
 #include "scene/view.h"
 
 namespace livery {
-
-struct Sphere {
-    glm::dvec3 centre_mm{0.0};
-    double diameter_mm = 0.0;
-};
 
 /// A sphere in the light of one lamp.
 struct LitSphere {

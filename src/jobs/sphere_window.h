@@ -1,0 +1,28 @@
+// The part of a photograph that a sphere fills.
+#pragma once
+
+#include <filesystem>
+
+#include "calibration/sphere/sphere_outline.h"
+#include "capture/captures_folder.h"
+
+namespace livery {
+
+/// The part of a photograph that the sphere fills, with a margin, and how the camera sees it.
+struct SphereWindow {
+    PictureWindow pixels;
+    View view;
+};
+
+/// Pixels are averaged in blocks where the sphere is more than `most_across_px` wide. Throws
+/// FileError that names `manifest` for a sphere that the camera does not see, or of less than 40
+/// pixels.
+SphereWindow window_around(const View& camera,
+                           const Sphere& sphere,
+                           double most_across_px,
+                           const std::filesystem::path& manifest);
+
+/// Throws FileError, also for a photograph of another size than the camera's.
+Photograph load_photograph_of(const Capture& capture, const View& camera);
+
+}  // namespace livery
