@@ -311,7 +311,8 @@ TEST(Panorama, KeepsItsPixelsInAMapOfItsSize) {
     picture.left_out.at(5, 40) = 1;
     picture.saturated.at(90, 10) = 1;
     const RadianceMap map = gather(picture, seen_in_panorama(glm::dmat3(1.0), 128, 64), true, 128);
-    for (int y = 1; y < 63; ++y) {
+    // Toward the poles the middle of a row's solid angle moves away from them.
+    for (int y = 2; y < 62; ++y) {
         for (int x = 0; x < 128; ++x) {
             if (std::abs(x - 5) <= 1 && std::abs(y - 40) <= 1) continue;
             ASSERT_EQ(map.seen.at(x, y), 1.0f);

@@ -80,8 +80,8 @@ TEST_F(EnvironmentFolderTest, ABallFromTwoSides) {
 
 TEST_F(EnvironmentFolderTest, OneCameraNeedsNoList) {
     Json json = ball_;
-    json.update(json["views"][0]);
     json.erase("views");
+    json.update(ball_["views"][0]);
     const EnvironmentFolder read = this->read(json);
     ASSERT_EQ(read.views.size(), 1u);
     EXPECT_EQ(read.views[0].field, "");
