@@ -47,6 +47,8 @@ std::string PresentedVote::let_phones_vote() {
         },
         20s);
     EXPECT_TRUE(url.starts_with("http://127.0.0.1:")) << url;
+    // The panel scrolls to the code when it comes: what is clicked next has moved.
+    if (program->state("vote") == "edit") program->item("phones:qr");
     return url + "join/" + store.invitation(store.session().value()).value().token;
 }
 
