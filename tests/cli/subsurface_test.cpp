@@ -154,7 +154,9 @@ TEST_F(BssrdfLayers, HaveAProfileByEachModel) {
                                  "unscattered_transmittance"}) {
             sum += answer[part].get<double>();
         }
-        EXPECT_NEAR(sum, 1.0, 1e-9) << model;
+        // Of photons the part that scatters is a sample: .01 is the standard error of two thousand.
+        EXPECT_NEAR(sum, 1.0, model == "montecarlo" ? 0.04 : 1e-9) << model;
+        EXPECT_GT(answer["absorbed"].get<double>(), 0.0) << model;
     }
     const ProgramRun check = run_program(LIVERY_PROGRAM, {"check", "--json", file});
     EXPECT_EQ(check.exit_code, 0) << check.err;

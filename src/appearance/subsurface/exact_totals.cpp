@@ -201,9 +201,9 @@ DiffuseTotals exact_totals(const ScatteringStack& given, int points) {
     if (stack.layers.size() == 1) return exact_totals(stack.layers.front(), points);
     if (!stack.scatters()) return {};
     const ScatteringMedium& last = stack.layers.back();
-    const bool lossless = std::all_of(stack.layers.begin(), stack.layers.end(), [](const auto& one) {
-        return one.sigma_a_per_mm == 0.0;
-    });
+    const bool lossless = std::all_of(stack.layers.begin(),
+                                      stack.layers.end(),
+                                      [](const auto& one) { return one.sigma_a_per_mm == 0.0; });
     const bool open_below = !stack.is_slab() && !(last.sigma_t() > 0.0);
     if (lossless && !stack.is_slab() && !open_below) return {1.0, 0.0};
 
@@ -214,8 +214,7 @@ DiffuseTotals exact_totals(const ScatteringStack& given, int points) {
     for (const ScatteringMedium& layer : stack.layers) {
         if (&layer == &last && open_below) continue;
         const Layer next = homogeneous_layer(cosines, layer, points);
-        whole = added(
-            whole, {next.reflected, next.transmitted, next.reflected, next.transmitted});
+        whole = added(whole, {next.reflected, next.transmitted, next.reflected, next.transmitted});
     }
     // By reciprocity what a beam along the normal makes leave at the top, and the bottom, is what
     // even light from above, and from below, shows along the normal at the top.
@@ -224,8 +223,7 @@ DiffuseTotals exact_totals(const ScatteringStack& given, int points) {
     const Vector entering = Vector::Ones(count) - mirrored;
     Matrix system(2 * count, 2 * count);
     system << one - whole.reflected_down * mirrored.asDiagonal(),
-        -whole.transmitted_up * below.asDiagonal(),
-        -whole.transmitted_down * mirrored.asDiagonal(),
+        -whole.transmitted_up * below.asDiagonal(), -whole.transmitted_down * mirrored.asDiagonal(),
         one - whole.reflected_up * below.asDiagonal();
     Matrix light(2 * count, 2);
     light << whole.reflected_down * entering, whole.transmitted_up * entering,

@@ -56,9 +56,8 @@ LayeredDiffusion::Spectrum LayeredDiffusion::at(double per_mm) const {
             Spectrum::through(layers[k - 1], layers[k - 1].above, *layers[k - 1].thickness_mm);
     }
     Spectrum::Layer& last = layers.back();
-    last.below = last.thickness_mm
-                     ? boundary(last, bottom_)
-                     : Spectrum::Side{last.coefficient_mm * last.decay_per_mm, 0.0};
+    last.below = last.thickness_mm ? boundary(last, bottom_)
+                                   : Spectrum::Side{last.coefficient_mm * last.decay_per_mm, 0.0};
     for (std::size_t k = layers.size() - 1; k > 0; --k) {
         const bool open = !layers[k].thickness_mm;
         layers[k - 1].below =
@@ -81,8 +80,9 @@ Exitance LayeredDiffusion::Spectrum::of(std::size_t index, double depth) const {
 double half_space_spectrum(const Diffusion& diffusion, double depth, double per_mm) {
     const double a = std::hypot(diffusion.sigma_tr_per_mm, per_mm);
     const Hyperbolic h = hyperbolic(a, diffusion.extrapolation_mm);
-    return std::exp(-a * depth) * (diffusion.fluence_share / diffusion.coefficient_mm * h.sinh_over +
-                    diffusion.flux_share * h.cosh);
+    return std::exp(-a * depth) *
+           (diffusion.fluence_share / diffusion.coefficient_mm * h.sinh_over +
+            diffusion.flux_share * h.cosh);
 }
 
 }  // namespace livery

@@ -115,13 +115,12 @@ Exitance LayeredBeamDiffusion::at(double radius_mm) const {
     Exitance sum;
     for (std::size_t k = 0; k < sources_.size(); ++k) {
         const BeamSource& source = sources_[k];
-        sum.reflected += source.power * each[k].reflected *
-                         often(source, source.reduced_depth, source.depth_mm);
+        sum.reflected +=
+            source.power * each[k].reflected * often(source, source.reduced_depth, source.depth_mm);
         if (!(thickness_mm_ > 0.0)) continue;
-        sum.transmitted += source.power * each[k].transmitted *
-                           often(source,
-                                 reduced_depth_ - source.reduced_depth,
-                                 thickness_mm_ - source.depth_mm);
+        sum.transmitted +=
+            source.power * each[k].transmitted *
+            often(source, reduced_depth_ - source.reduced_depth, thickness_mm_ - source.depth_mm);
     }
     return sum;
 }

@@ -47,10 +47,9 @@ double ScatteringStack::mean_free_path_mm() const {
 }
 
 void check_stack(const ScatteringStack& stack) {
-    check_argument(!stack.layers.empty() && stack.layers.size() <= kMostLayers,
-                   fmt::format("layers: found {}, expected 1 to {}",
-                               stack.layers.size(),
-                               kMostLayers));
+    check_argument(
+        !stack.layers.empty() && stack.layers.size() <= kMostLayers,
+        fmt::format("layers: found {}, expected 1 to {}", stack.layers.size(), kMostLayers));
     for (std::size_t k = 0; k < stack.layers.size(); ++k) {
         const ScatteringMedium& layer = stack.layers[k];
         try {

@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/json.h"
 #include "core/json_ranges.h"
+#include "core/paths.h"
 
 namespace livery {
 
@@ -16,12 +17,8 @@ constexpr double kLargestCoefficient = 1e6, kThickest_mm = 1e6, kThinnest_mm = 1
 constexpr double kLargestG = 0.9999;
 
 ScatteringMedium layer_of(const JsonReader& json, double eta, bool last) {
-    json.allow_only({"sigma_a_per_mm",
-                     "sigma_s_per_mm",
-                     "sigma_s_prime_per_mm",
-                     "g",
-                     "thickness_mm",
-                     "eta"});
+    json.allow_only(
+        {"sigma_a_per_mm", "sigma_s_per_mm", "sigma_s_prime_per_mm", "g", "thickness_mm", "eta"});
     ScatteringMedium layer;
     layer.eta = eta;
     // Rays would bend and mirror between the layers, which no model here knows.

@@ -100,8 +100,8 @@ struct Exit {
 double exitance_of(const Slices& stack, const Slice& slice, double r, Exit beams) {
     if (!(slice.sigma_s > 0.0)) return 0.0;
     const double critical = std::acos(critical_cosine(stack.eta));
-    const double high = slice.from_mm > 0.0 ? std::min(critical, std::atan2(r, slice.from_mm))
-                                            : critical;
+    const double high =
+        slice.from_mm > 0.0 ? std::min(critical, std::atan2(r, slice.from_mm)) : critical;
     // cot t + 1/sin t = cot(t/2): beyond 45 more of it in the exponent nothing is left of a beam
     // that fades away from the boundary.
     const double reach = 45.0 / slice.sigma_t;
@@ -208,9 +208,7 @@ double single_scattering_reflectance(const ScatteringMedium& medium, double radi
 double single_scattering_transmittance(const ScatteringMedium& medium, double radius_mm) {
     return transmittance({medium}, radius_mm);
 }
-DiffuseTotals single_scattering_totals(const ScatteringMedium& medium) {
-    return totals({medium});
-}
+DiffuseTotals single_scattering_totals(const ScatteringMedium& medium) { return totals({medium}); }
 
 double single_scattering_reflectance(const ScatteringStack& stack, double radius_mm) {
     return reflectance(stack.layers, radius_mm);

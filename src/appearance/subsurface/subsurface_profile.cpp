@@ -112,9 +112,10 @@ Made with_single(const ScatteringMedium& medium, const Made& multiple, Exitance 
 /// What is missing from single scattering to the exact total, in the shape of beam diffusion.
 Made scaled(const ScatteringMedium& medium) {
     const Made multiple = beam_diffusion(medium);
-    return with_single(medium,
-                       multiple,
-                       factors_to(exact_totals(medium), single_scattering_totals(medium), multiple));
+    return with_single(
+        medium,
+        multiple,
+        factors_to(exact_totals(medium), single_scattering_totals(medium), multiple));
 }
 
 Made made_of(SubsurfaceModel model, const ScatteringMedium& medium) {
@@ -188,7 +189,12 @@ const std::vector<SubsurfaceModelInfo>& subsurface_models() {
          true,
          true,
          "images on both sides of a slab (Donner and Jensen 2005)"},
-        {p3, "p3", true, false, false, "third-order spherical harmonics, a point source and its image"},
+        {p3,
+         "p3",
+         true,
+         false,
+         false,
+         "third-order spherical harmonics, a point source and its image"},
         {normalized_diffusion,
          "normalized-diffusion",
          true,
@@ -280,9 +286,7 @@ double energy_radius_mm(const SubsurfaceProfile& profile,
     return energy_radius_mm(profile, medium.mean_free_path_mm(), share);
 }
 
-double energy_radius_mm(const SubsurfaceProfile& profile,
-                        double mean_free_path_mm,
-                        double share) {
+double energy_radius_mm(const SubsurfaceProfile& profile, double mean_free_path_mm, double share) {
     check_argument(share > 0.0 && share < 1.0,
                    fmt::format("share: found {}, expected above 0 and below 1", share));
     if (!(profile.least_radius_mm > 0.0) || !(profile.totals.reflectance > 0.0)) return 0.0;

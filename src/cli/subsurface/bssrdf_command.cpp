@@ -194,13 +194,12 @@ void run_model(const std::string& name,
 Json json_of(const MediumErrors& errors) {
     Json models = Json::array();
     for (const ModelError& error : errors.models) {
-        models.push_back(
-            {{"name", info_of(error.model).name},
-             {"rd_l1", error.reflectance_l1},
-             {"total_reflectance_bias", error.reflectance_bias},
-             {"rd_rms_ln", error.rms_ln},
-             {"rt_l1", errors.is_slab ? Json(error.transmittance_l1) : Json(nullptr)},
-             {"was_negative", error.was_negative}});
+        models.push_back({{"name", info_of(error.model).name},
+                          {"rd_l1", error.reflectance_l1},
+                          {"total_reflectance_bias", error.reflectance_bias},
+                          {"rd_rms_ln", error.rms_ln},
+                          {"rt_l1", errors.is_slab ? Json(error.transmittance_l1) : Json(nullptr)},
+                          {"was_negative", error.was_negative}});
     }
     return {{"name", errors.name},
             {"best", errors.best},

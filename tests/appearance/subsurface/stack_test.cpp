@@ -68,9 +68,8 @@ TEST(LayeredDiffusion, IsTheSlabsWhereAllLayersAreEqual) {
     }
     const LayeredDiffusion endless({{diffusion, 0.5}, {diffusion, {}}}, diffusion, diffusion);
     for (const double s : {0.0, 1.0, 30.0}) {
-        EXPECT_NEAR(endless.at(s).of(0, 0.2).reflected,
-                    half_space_spectrum(diffusion, 0.2, s),
-                    1e-12);
+        EXPECT_NEAR(
+            endless.at(s).of(0, 0.2).reflected, half_space_spectrum(diffusion, 0.2, s), 1e-12);
     }
 }
 
@@ -110,10 +109,10 @@ TEST(ScatteringStack, OfNearlyEqualLayersIsNearlyOneSlab) {
         const SubsurfaceProfile one = subsurface_profile(scaled_beam_diffusion, whole);
         const SubsurfaceProfile two = subsurface_profile(scaled_beam_diffusion, stack);
         for (const double r : {0.02, 0.2, 1.0, 3.0}) {
-            EXPECT_NEAR(single_scattering_reflectance(stack, r) /
-                            single_scattering_reflectance(whole, r),
-                        1.0,
-                        1e-5)
+            EXPECT_NEAR(
+                single_scattering_reflectance(stack, r) / single_scattering_reflectance(whole, r),
+                1.0,
+                1e-5)
                 << r;
             EXPECT_NEAR(two.reflectance(r) / one.reflectance(r), 1.0, 1e-3) << r;
             if (!whole.thickness_mm) continue;
@@ -126,9 +125,8 @@ TEST(ScatteringStack, HasTheTotalsThatMcmlPublishes) {
     // sample.mci of MCML (Wang, Jacques and Zheng 1995), per cm there, and what it prints for a
     // million photons: of what arrives, with what never scattered. Three standard errors of so
     // many photons, each of which counts at most .4 off: .0012.
-    const ScatteringStack stack{{{0.1, 10.0, 0.9, 1.37, 1.0},
-                                 {0.1, 1.0, 0.0, 1.37, 1.0},
-                                 {0.2, 1.0, 0.7, 1.37, 2.0}}};
+    const ScatteringStack stack{
+        {{0.1, 10.0, 0.9, 1.37, 1.0}, {0.1, 1.0, 0.0, 1.37, 1.0}, {0.2, 1.0, 0.7, 1.37, 2.0}}};
     const UnscatteredLight straight = unscattered_light(stack);
     const double enters = 1.0 - straight.specular;
     EXPECT_NEAR(straight.specular, 0.0243729, 1e-6);
@@ -136,9 +134,8 @@ TEST(ScatteringStack, HasTheTotalsThatMcmlPublishes) {
     EXPECT_NEAR(enters * (exact.reflectance + straight.reflected), 0.237544, 0.0012);
     EXPECT_NEAR(enters * (exact.transmittance + straight.transmitted), 0.0964896, 0.0012);
     const MonteCarloProfile photons = monte_carlo_profile(stack, {}, {20'000, 9});
-    EXPECT_NEAR(enters * photons.absorbed.value,
-                0.641594,
-                3.5 * photons.absorbed.standard_error + 0.0012);
+    EXPECT_NEAR(
+        enters * photons.absorbed.value, 0.641594, 3.5 * photons.absorbed.standard_error + 0.0012);
 }
 
 double sum_of(const MonteCarloProfile& profile) {
