@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "appearance/subsurface/beam_diffusion.h"
 #include "appearance/subsurface/inverse_hankel.h"
@@ -10,6 +11,9 @@
 namespace livery {
 
 namespace {
+
+/// e^-45 of the shallowest source is less than rounding.
+constexpr double kNothingLeft = 45.0;
 
 ScatteringMedium diffusing(const ScatteringMedium& layer) {
     ScatteringMedium medium = layer;
@@ -85,10 +89,19 @@ LayeredBeamDiffusion::LayeredBeamDiffusion(const ScatteringStack& stack)
     for (const DiffusionLayer& layer : layers_.layers) {
         decay_per_mm_ = std::min(decay_per_mm_, layer.diffusion.sigma_tr_per_mm);
     }
-    if (!stack.is_slab()) return;
-    for (const ScatteringMedium& layer : stack.layers) {
-        thickness_mm_ += *layer.thickness_mm;
-        if (layer.sigma_t_prime() > 0.0) reduced_depth_ += layer.reduced_depth();
+    if (stack.is_slab()) {
+        for (const ScatteringMedium& layer : stack.layers) {
+            thickness_mm_ += *layer.thickness_mm;
+            if (layer.sigma_t_prime() > 0.0) reduced_depth_ += layer.reduced_depth();
+        }
+    }
+    // Of a source in the first layer the half space is taken off: what is left was below it.
+    const double first =
+        stack.layers.front().thickness_mm.value_or(std::numeric_limits<double>::infinity());
+    for (const BeamSource& source : sources_) {
+        const double up = source.layer == 0 ? 2.0 * first - source.depth_mm : source.depth_mm;
+        const double down = stack.is_slab() ? thickness_mm_ - source.depth_mm : up;
+        shortest_.push_back(std::min(up, down));
     }
 }
 
@@ -100,6 +113,7 @@ Exitance LayeredBeamDiffusion::at(double radius_mm) const {
         const auto spectrum = diffusion_.at(per_mm);
         for (std::size_t k = 0; k < sources_.size(); ++k) {
             const BeamSource& source = sources_[k];
+            if (per_mm * shortest_[k] > kNothingLeft) continue;
             const Exitance out = spectrum.of(source.layer, source.depth_in_layer_mm);
             const double known =
                 k < in_first_ ? half_space_spectrum(layers_.top, source.depth_mm, per_mm) : 0.0;

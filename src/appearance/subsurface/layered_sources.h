@@ -43,6 +43,7 @@ class LayeredBeamDiffusion {
     DiffusionStack layers_;
     LayeredDiffusion diffusion_;
     std::vector<BeamSource> sources_;
+    std::vector<double> shortest_;  ///< way to a boundary of what is transformed, each source
     std::size_t in_first_ = 0;
     PointSources near_;
     double thickness_mm_ = 0.0, reduced_depth_ = 0.0;  ///< of a slab
