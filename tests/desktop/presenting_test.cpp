@@ -77,7 +77,7 @@ TEST_F(Presenting, ShowsFrozenFramesInTheStoredOrderAlsoAfterAKillUntilTheRoundI
     program->press_key("Next");
     program->wait_for_state("vote_code", code_of(order[1]));
     program->process().send(SIGKILL);
-    ASSERT_EQ(program->process().wait(10s), 128 + SIGKILL);
+    ASSERT_EQ(program->process().wait(60s), 128 + SIGKILL);
     const auto before = presented;
     start_program_at_home();
     program->wait_for_state("vote_loaded", true);

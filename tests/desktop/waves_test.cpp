@@ -102,7 +102,7 @@ TEST_F(Waves, SeeTheirOwnOrderAndVoteInTheirTurn) {
 
     // --- killed, the second wave goes on where it was ---
     program->process().send(SIGKILL);
-    ASSERT_EQ(program->process().wait(10s), 128 + SIGKILL);
+    ASSERT_EQ(program->process().wait(60s), 128 + SIGKILL);
     const BallotStore::Presented before = presented;
     start_program_at_home();
     program->wait_for_state("vote_loaded", true);
