@@ -48,7 +48,11 @@ std::string PresentedVote::let_phones_vote() {
         20s);
     EXPECT_TRUE(url.starts_with("http://127.0.0.1:")) << url;
     // The panel scrolls to the code when it comes: what is clicked next has moved.
-    if (program->state("vote") == "edit") program->item("phones:qr");
+    if (program->state("vote") == "edit") {
+        program->item("phones:qr");
+        const int frame = program->state("frame");
+        wait_until([&] { return program->state("frame") >= frame + 3; }, 20s);
+    }
     return url + "join/" + store.invitation(store.session().value()).value().token;
 }
 
