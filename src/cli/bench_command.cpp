@@ -11,6 +11,7 @@
 #include "core/marked_block.h"
 #include "core/paths.h"
 #include "ledger/accuracy/accuracy.h"
+#include "ledger/accuracy/chain.h"
 #include "ledger/budget_check.h"
 #include "ledger/effect_errors.h"
 #include "ledger/geometry_errors.h"
@@ -65,8 +66,8 @@ Json json_of(const std::vector<LedgerEffect>& benched) {
         for (const LedgerLevel& level : effect.levels) {
             levels.push_back(
                 {{"name", level.name},
-                 {"ms", level.ms},
-                 {"fastest_ms", level.fastest_ms},
+                 {"ms", level.repeats > 0 ? Json(level.ms) : Json(nullptr)},
+                 {"fastest_ms", level.repeats > 0 ? Json(level.fastest_ms) : Json(nullptr)},
                  {"repeats", level.repeats},
                  {"p95_ms", level.p95_ms ? Json(*level.p95_ms) : Json(nullptr)},
                  {"longest_ms", level.longest_ms ? Json(*level.longest_ms) : Json(nullptr)},
@@ -75,7 +76,9 @@ Json json_of(const std::vector<LedgerEffect>& benched) {
                  {"p95", level.error_p95 ? Json(*level.error_p95) : Json(nullptr)},
                  {"p99", level.error_p99 ? Json(*level.error_p99) : Json(nullptr)},
                  {"swap_ms", level.swap_ms ? Json(*level.swap_ms) : Json(nullptr)},
-                 {"unit", level.error ? Json(level.unit) : Json(nullptr)}});
+                 {"unit", level.error ? Json(level.unit) : Json(nullptr)},
+                 {"against", level.against.empty() ? Json(nullptr) : Json(level.against)},
+                 {"missing", level.missing.empty() ? Json(nullptr) : Json(level.missing)}});
         }
         effects.push_back({{"name", effect.name}, {"levels", levels}});
     }
@@ -124,8 +127,9 @@ Command bench_command() {
     command.options = {
         {"--out",
          "DIR",
-         "also write bench.json and the plots speed.svg and accuracy.svg there, accuracy.csv, and "
-         "effect-errors.json",
+         "also write bench.json and the plots speed.svg and accuracy.svg there, accuracy.csv, "
+         "chain.csv, "
+         "and effect-errors.json",
          &arguments->out,
          false,
          {}},
@@ -193,9 +197,9 @@ Command bench_command() {
                 outcome.figures["effects"].push_back(std::move(effect));
             }
             outcome.text += text_of(result);
-            markdown = markdown_of(result);
+            markdown += markdown_of(result);
         };
-        std::string accuracy_plot, accuracy_csv;
+        std::string accuracy_plot, accuracy_csv, chain_csv;
         EffectErrors errors;
         if (wanted("accuracy")) {
             AccuracyOptions options;
@@ -206,8 +210,11 @@ Command bench_command() {
                                  : std::filesystem::path(arguments->references);
             options.seed = seed;
             std::tie(options.shard, options.shards) = parse_shard(arguments->shard);
-            const AccuracyLedger ledger = measure_accuracy(options, progress);
+            const AccuracyLedger ledger = measure_accuracy(options, progress.part(0.0, 0.8));
             add(ledger);
+            const ChainLedger chain = measure_chain(options, progress.part(0.8, 1.0));
+            add(chain);
+            chain_csv = csv_of(chain);
             accuracy_plot = plot_of(ledger);
             errors = errors_of(ledger.rows);
             // Those of one look would take the place of those of all
@@ -231,6 +238,7 @@ Command bench_command() {
             if (wanted("accuracy")) {
                 write_text_file(out / "accuracy.svg", accuracy_plot);
                 write_text_file(out / "accuracy.csv", accuracy_csv);
+                write_text_file(out / "chain.csv", chain_csv);
                 write_effect_errors(out / "effect-errors.json", errors);
             }
         }

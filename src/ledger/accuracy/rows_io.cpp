@@ -6,9 +6,6 @@
 
 namespace livery {
 
-namespace {
-
-/// Of the program's own file: what another one drew is not what this one draws.
 const std::string& program_hash() {
     static const std::string hash = [] {
         constexpr std::size_t kLargest = std::size_t{4} << 30u;
@@ -18,6 +15,8 @@ const std::string& program_hash() {
     }();
     return hash;
 }
+
+namespace {
 
 Json json_of(const AccuracyRow& row) {
     return {{"format_version", 1},
