@@ -128,8 +128,7 @@ Command bench_command() {
         {"--out",
          "DIR",
          "also write bench.json and the plots speed.svg and accuracy.svg there, accuracy.csv, "
-         "chain.csv, "
-         "and effect-errors.json",
+         "chain.csv, and effect-errors.json",
          &arguments->out,
          false,
          {}},
@@ -162,12 +161,13 @@ Command bench_command() {
          {}},
         {"--suite",
          "NAME",
-         "speed, accuracy (each effect's error beside its time), budget (whether predictions and "
+         "speed, accuracy (each effect's error beside its time, and the rest of the chain's), "
+         "chain (that rest alone), budget (whether predictions and "
          "chosen levels come true), stability (of what is drawn, where it loses most digits), "
          "geometry (what a wrong pose costs) or all (default speed)",
          &arguments->suite,
          false,
-         {"speed", "stability", "accuracy", "budget", "geometry", "all"}},
+         {"speed", "stability", "accuracy", "chain", "budget", "geometry", "all"}},
     };
     command.run = [arguments](const CommonOptions& common, const Progress& progress) {
         const auto wanted = [&](const char* suite) {
@@ -201,7 +201,7 @@ Command bench_command() {
         };
         std::string accuracy_plot, accuracy_csv, chain_csv;
         EffectErrors errors;
-        if (wanted("accuracy")) {
+        const auto accuracy_options = [&] {
             AccuracyOptions options;
             options.device = common.gl_device();
             options.quick = arguments->quick;
@@ -210,16 +210,22 @@ Command bench_command() {
                                  : std::filesystem::path(arguments->references);
             options.seed = seed;
             std::tie(options.shard, options.shards) = parse_shard(arguments->shard);
-            const AccuracyLedger ledger = measure_accuracy(options, progress.part(0.0, 0.8));
+            return options;
+        };
+        if (wanted("accuracy")) {
+            const AccuracyLedger ledger = measure_accuracy(accuracy_options(), progress);
             add(ledger);
-            const ChainLedger chain = measure_chain(options, progress.part(0.8, 1.0));
-            add(chain);
-            chain_csv = csv_of(chain);
             accuracy_plot = plot_of(ledger);
             errors = errors_of(ledger.rows);
             // Those of one look would take the place of those of all
             if (!arguments->quick) write_effect_errors(effect_errors_file(), errors);
             accuracy_csv = csv_of(ledger);
+        }
+        const bool chain = wanted("accuracy") || arguments->suite == "chain";
+        if (chain) {
+            const ChainLedger ledger = measure_chain(accuracy_options(), progress);
+            add(ledger);
+            chain_csv = csv_of(ledger);
         }
         if (wanted("stability")) {
             add(measure_stability(common.gl_device(), arguments->quick, seed, progress));
@@ -238,9 +244,9 @@ Command bench_command() {
             if (wanted("accuracy")) {
                 write_text_file(out / "accuracy.svg", accuracy_plot);
                 write_text_file(out / "accuracy.csv", accuracy_csv);
-                write_text_file(out / "chain.csv", chain_csv);
                 write_effect_errors(out / "effect-errors.json", errors);
             }
+            if (chain) write_text_file(out / "chain.csv", chain_csv);
         }
         if (!arguments->markdown.empty())
             replace_marked_block(arguments->markdown, "bench", markdown);

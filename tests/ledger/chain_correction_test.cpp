@@ -35,7 +35,7 @@ TEST(CorrectionRows, OfASmallBenchAreAllMeasured) {
     const HeadlessContext context(GlDevice::automatic);
     std::vector<ChainRow> rows = correction_rows("small");
     ASSERT_EQ(rows.size(), 9u);
-    measure_corrections(description, {"solid-red"}, rows);
+    measure_corrections(description, {"solid-red"}, Quality::draft, rows);
     for (const ChainRow& row : rows) {
         SCOPED_TRACE(row.what + ", " + row.level);
         EXPECT_GT(row.compared, 0u);

@@ -44,23 +44,21 @@ std::vector<ChainRow> measured_rows(const std::vector<ChainPart>& parts,
         const auto leave_out = [&](const char* because) {
             for (ChainRow& row : of_part) row.missing = because;
         };
-        if (options.quick && part.slow) {
+        own.update(0.0, of_part.front().what);
+        const std::string hash = hash_of(part);
+        if (auto known = read_chain_rows(kept, hash)) {
+            of_part = std::move(*known);
+        } else if (options.quick && part.slow) {
             leave_out("not measured by --quick");
+        } else if (k % static_cast<std::size_t>(options.shards) !=
+                   static_cast<std::size_t>(options.shard - 1)) {
+            leave_out("another shard's, not there yet");
         } else {
-            own.update(0.0, of_part.front().what);
-            const std::string hash = hash_of(part);
-            if (auto known = read_chain_rows(kept, hash)) {
-                of_part = std::move(*known);
-            } else if (k % static_cast<std::size_t>(options.shards) ==
-                       static_cast<std::size_t>(options.shard - 1)) {
-                part.measure(of_part, own);
-                for (ChainRow& row : of_part) {
-                    if (row.compared == 0) row.missing = "nothing to compare";
-                }
-                write_chain_rows(kept, hash, of_part);
-            } else {
-                leave_out("another shard's, not there yet");
+            part.measure(of_part, own);
+            for (ChainRow& row : of_part) {
+                if (row.compared == 0) row.missing = "nothing to compare";
             }
+            write_chain_rows(kept, hash, of_part);
         }
         for (ChainRow& row : of_part) rows.push_back(std::move(row));
     }

@@ -32,7 +32,7 @@ void set_errors(ChainRow& row, const std::vector<float>& errors);
 /// Rows that are measured, and kept, together.
 struct ChainPart {
     std::vector<ChainRow> rows;           ///< what they are, not measured yet
-    bool slow = false;                    ///< --quick leaves it out
+    bool slow = false;                    ///< --quick leaves it out where it is not kept
     std::function<std::string()> inputs;  ///< hash of what they depend on beside the program
     std::function<void(std::vector<ChainRow>& rows, const Progress& progress)> measure;
 };

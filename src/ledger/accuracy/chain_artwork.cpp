@@ -1,6 +1,5 @@
 #include "ledger/accuracy/chain_artwork.h"
 
-#include <chrono>
 #include <cmath>
 #include <span>
 
@@ -11,6 +10,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/statistics.h"
+#include "ledger/accuracy/chain_steps.h"
 #include "radiance/artwork_inputs.h"
 #include "radiance/lanes/lane_shading.h"
 #include "reference/sobol.h"
@@ -18,14 +18,6 @@
 namespace livery {
 
 namespace {
-
-template <typename Work>
-double milliseconds_of(const Work& work) {
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-        .count();
-}
 
 /// As frames find it, of each fragment of the part.
 std::vector<float> covers_by_footprint(const Scene& scene,

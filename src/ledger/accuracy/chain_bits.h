@@ -19,4 +19,7 @@ std::vector<float> drive_errors(const CompensationTable& table,
                                 const ImageF& exact,
                                 int side_px);
 
+/// Of correcting a frame on the processor, the median of several.
+double compensation_ms(const CompensationTable& table, const ImageF& wanted_working);
+
 }  // namespace livery

@@ -1,7 +1,6 @@
 #include "ledger/accuracy/chain_correction.h"
 
 #include <array>
-#include <chrono>
 #include <memory>
 
 #include <fmt/format.h>
@@ -10,10 +9,10 @@
 #include "core/colour.h"
 #include "core/hash.h"
 #include "core/paths.h"
-#include "core/statistics.h"
 #include "jobs/calibrate/bench_calibration.h"
 #include "jobs/eye_comparison.h"
 #include "jobs/picture.h"
+#include "ledger/accuracy/chain_bits.h"
 #include "ledger/accuracy/chain_steps.h"
 #include "radiance/renderer.h"
 #include "scene/library.h"
@@ -25,22 +24,21 @@ namespace livery {
 namespace {
 
 constexpr double kDesignWhitePercentile = 20.0;
-constexpr int kRepeats = 5;
 
-struct Calibrating {
+struct WayToCalibrate {
     const char* mode_name;
     ColourMode mode;
     int photographs;  ///< of each colour picture
 };
-constexpr std::array kCalibrations{Calibrating{"paper", ColourMode::paper, 2},
-                                   Calibrating{"robust", ColourMode::robust, 1},
-                                   Calibrating{"robust", ColourMode::robust, 2},
-                                   Calibrating{"robust", ColourMode::robust, 4}};
+constexpr std::array kCalibrations{WayToCalibrate{"paper", ColourMode::paper, 2},
+                                   WayToCalibrate{"robust", ColourMode::robust, 1},
+                                   WayToCalibrate{"robust", ColourMode::robust, 2},
+                                   WayToCalibrate{"robust", ColourMode::robust, 4}};
 /// As `livery calibrate` is without options: its design white and gamut serve all rows.
 constexpr std::size_t kUsual = 2;
 constexpr std::array kMappings{GamutMapping::strict, GamutMapping::preserve};
 
-struct Wanted {
+struct WantedLight {
     ImageF working, xyz;
     ComparisonMasks masks;
 };
@@ -48,13 +46,13 @@ struct Wanted {
 /// Errors of all looks together.
 struct Judge {
     const Bench& bench;
-    const std::vector<Wanted>& looks;
+    const std::vector<WantedLight>& looks;
     double white_y;
 
     template <typename DriveOf>
     std::vector<float> errors(bool reachable, const DriveOf& drive_of) const {
         std::vector<float> all;
-        for (const Wanted& look : looks) {
+        for (const WantedLight& look : looks) {
             const Comparison comparison = compare_xyz(look.xyz,
                                                       bench.observe_xyz(drive_of(look.working)),
                                                       white_y * d65_xyz(),
@@ -66,22 +64,10 @@ struct Judge {
     }
 };
 
-double milliseconds_of_compensation(const CompensationTable& table, const ImageF& wanted) {
-    Image8 drive = compensate(table, wanted);
-    std::vector<double> ms;
-    for (int k = 0; k < kRepeats; ++k) {
-        const auto start = std::chrono::steady_clock::now();
-        compensate_again(table, wanted, 0, &drive);
-        ms.push_back(
-            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-                .count());
-    }
-    return median(ms);
-}
-
 std::vector<ImageF> drawn(const std::vector<std::string>& looks,
                           const BenchDescription& description,
                           const std::shared_ptr<const Product>& product,
+                          Quality quality,
                           const Progress& progress) {
     RadianceRenderer renderer(product, description.projector.view, progress);
     std::shared_ptr<const Environment> environment;
@@ -90,7 +76,7 @@ std::vector<ImageF> drawn(const std::vector<std::string>& looks,
         const Look look = find_look_for(name, product->mesh);
         const Scene scene = make_scene(product, look, description.eye_mm, environment);
         environment = scene.environment;
-        FramePlan plan = plan_frame(scene, Quality::normal, FrameStage::radiance);
+        FramePlan plan = plan_frame(scene, quality, FrameStage::radiance);
         renderer.render(scene, plan, progress);
         pictures.push_back(renderer.read_back());
     }
@@ -109,7 +95,7 @@ std::vector<BenchCalibration> calibrations(Bench& bench,
     const BenchPorts ports = bench.ports();
     request.map = calibrate_through_ports(ports, request, progress.part(0.0, 0.5)).live.map;
     std::vector<BenchCalibration> all;
-    for (const Calibrating& one : kCalibrations) {
+    for (const WayToCalibrate& one : kCalibrations) {
         request.mode = one.mode;
         request.colour_shots = one.photographs;
         all.push_back(calibrate_through_ports(ports, request, Progress{{}, progress.stop}));
@@ -147,7 +133,7 @@ std::vector<ChainRow> correction_rows(const std::string& bench_name) {
     const std::string against = "the wanted light, simulated";
     const std::string on = fmt::format(", bench {} (simulated)", bench_name);
     std::vector<ChainRow> rows{{"correction" + on, "none", against}};
-    for (const Calibrating& one : kCalibrations) {
+    for (const WayToCalibrate& one : kCalibrations) {
         rows.push_back({"correction" + on,
                         fmt::format("{}, {} photograph{} a picture",
                                     one.mode_name,
@@ -165,6 +151,7 @@ std::vector<ChainRow> correction_rows(const std::string& bench_name) {
 
 void measure_corrections(const BenchDescription& description,
                          const std::vector<std::string>& looks,
+                         Quality quality,
                          std::vector<ChainRow>& rows,
                          const Progress& progress) {
     const auto product = find_product(description.product.string());
@@ -174,9 +161,9 @@ void measure_corrections(const BenchDescription& description,
     const double white_y = design_white_luminance(
         usual, kDesignWhitePercentile, mockup_mask(product->mesh, description.projector.view));
     const Image8 valid = corrected_by_all(all);
-    std::vector<Wanted> wanted;
-    for (ImageF& picture : drawn(looks, description, product, progress.part(0.7, 0.9))) {
-        Wanted& one = wanted.emplace_back();
+    std::vector<WantedLight> wanted;
+    for (ImageF& picture : drawn(looks, description, product, quality, progress.part(0.7, 0.9))) {
+        WantedLight& one = wanted.emplace_back();
         one.working = std::move(picture);
         one.xyz = xyz_from_wanted(one.working, white_y);
         one.masks = {
@@ -199,7 +186,7 @@ void measure_corrections(const BenchDescription& description,
     for (const bool reachable : {true, false}) {
         for (const GamutMapping mapping : kMappings) {
             const CompensationTable table = bake(usual, white_y, mapping);
-            row->ms = milliseconds_of_compensation(table, wanted.front().working);
+            row->ms = compensation_ms(table, wanted.front().working);
             set_errors(*row++, judge.errors(reachable, [&](const ImageF& working) {
                 return compensate(table, working);
             }));
@@ -233,7 +220,8 @@ std::vector<ChainPart> correction_parts(const AccuracyOptions& options) {
             return hasher.hex();
         };
         part.measure = [description](std::vector<ChainRow>& rows, const Progress& progress) {
-            measure_corrections(description(), {"solid-red", "silver-metallic"}, rows, progress);
+            measure_corrections(
+                description(), {"solid-red", "silver-metallic"}, Quality::normal, rows, progress);
         };
     }
     return parts;

@@ -8,6 +8,7 @@
 #include "gl/context.h"
 #include "jobs/comparison.h"
 #include "ledger/accuracy/chain.h"
+#include "scene/effects.h"
 #include "twin/description.h"
 
 namespace livery {
@@ -22,11 +23,12 @@ std::vector<float> interior_errors(const Comparison& comparison,
 std::vector<ChainRow> correction_rows(const std::string& bench_name);
 
 /// Calibrates the bench's colours in each mode and with each number of photographs, told where
-/// everything stands, and compares the spectral light of its mock-up with that of `looks`, at each
-/// projector pixel. One design white, and the pixels that all calibrations correct, serve all rows.
-/// Needs a current OpenGL context. Throws as calibrate_through_ports().
+/// everything stands, and compares the spectral light of its mock-up with that of `looks` drawn in
+/// `quality`, at each projector pixel. One design white, and the pixels that all calibrations
+/// correct, serve all rows. Needs a current OpenGL context. Throws as calibrate_through_ports().
 void measure_corrections(const BenchDescription& description,
                          const std::vector<std::string>& looks,
+                         Quality quality,
                          std::vector<ChainRow>& rows,
                          const Progress& progress = {});
 

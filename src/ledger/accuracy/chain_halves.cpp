@@ -1,10 +1,8 @@
 #include "ledger/accuracy/chain_halves.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include "core/error.h"
-#include "core/hash.h"
 #include "core/pictures/colour_differences.h"
 #include "core/statistics.h"
 #include "ledger/accuracy/chain_steps.h"
@@ -58,11 +56,10 @@ StoredPicture stored_picture(const AccuracyScene& scene,
     RadianceRenderer renderer(geometry, false, ShadingDevice::gl, halves);
     const auto drawn = [&](const Scene& its) {
         FramePlan plan = plan_frame(its, Quality::normal, FrameStage::radiance);
-        const auto start = std::chrono::steady_clock::now();
-        renderer.render(its, plan, progress);
-        renderer.picture();
-        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-            .count();
+        return milliseconds_of([&] {
+            renderer.render(its, plan, progress);
+            renderer.picture();
+        });
     };
     StoredPicture stored;
     drawn(scene.scene);

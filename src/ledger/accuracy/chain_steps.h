@@ -1,6 +1,8 @@
 // The steps of the chain (chain.h): of each, its rows and how they are measured.
 #pragma once
 
+#include <chrono>
+
 #include "ledger/accuracy/chain.h"
 
 namespace livery {
@@ -15,5 +17,13 @@ std::vector<ChainPart> bit_parts(const AccuracyOptions& options);
 std::vector<ChainPart> correction_parts(const AccuracyOptions& options);
 /// Three channels, against the integral over the spectrum.
 std::vector<ChainPart> spectral_parts(const AccuracyOptions& options);
+
+template <typename Work>
+double milliseconds_of(const Work& work) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+        .count();
+}
 
 }  // namespace livery
