@@ -11,6 +11,7 @@
 #include "core/marked_block.h"
 #include "core/paths.h"
 #include "ledger/accuracy/accuracy.h"
+#include "ledger/accuracy/chain.h"
 #include "ledger/budget_check.h"
 #include "ledger/effect_errors.h"
 #include "ledger/geometry_errors.h"
@@ -65,8 +66,8 @@ Json json_of(const std::vector<LedgerEffect>& benched) {
         for (const LedgerLevel& level : effect.levels) {
             levels.push_back(
                 {{"name", level.name},
-                 {"ms", level.ms},
-                 {"fastest_ms", level.fastest_ms},
+                 {"ms", level.repeats > 0 ? Json(level.ms) : Json(nullptr)},
+                 {"fastest_ms", level.repeats > 0 ? Json(level.fastest_ms) : Json(nullptr)},
                  {"repeats", level.repeats},
                  {"p95_ms", level.p95_ms ? Json(*level.p95_ms) : Json(nullptr)},
                  {"longest_ms", level.longest_ms ? Json(*level.longest_ms) : Json(nullptr)},
@@ -75,7 +76,9 @@ Json json_of(const std::vector<LedgerEffect>& benched) {
                  {"p95", level.error_p95 ? Json(*level.error_p95) : Json(nullptr)},
                  {"p99", level.error_p99 ? Json(*level.error_p99) : Json(nullptr)},
                  {"swap_ms", level.swap_ms ? Json(*level.swap_ms) : Json(nullptr)},
-                 {"unit", level.error ? Json(level.unit) : Json(nullptr)}});
+                 {"unit", level.error ? Json(level.unit) : Json(nullptr)},
+                 {"against", level.against.empty() ? Json(nullptr) : Json(level.against)},
+                 {"missing", level.missing.empty() ? Json(nullptr) : Json(level.missing)}});
         }
         effects.push_back({{"name", effect.name}, {"levels", levels}});
     }
@@ -125,7 +128,7 @@ Command bench_command() {
         {"--out",
          "DIR",
          "also write bench.json and the plots speed.svg and accuracy.svg there, accuracy.csv, "
-         "accuracy.json, and effect-errors.json",
+         "accuracy.json, chain.csv, and effect-errors.json",
          &arguments->out,
          false,
          {}},
@@ -158,12 +161,13 @@ Command bench_command() {
          {}},
         {"--suite",
          "NAME",
-         "speed, accuracy (each effect's error beside its time), budget (whether predictions and "
+         "speed, accuracy (each effect's error beside its time, and the rest of the chain's), "
+         "chain (that rest alone), budget (whether predictions and "
          "chosen levels come true), stability (of what is drawn, where it loses most digits), "
          "geometry (what a wrong pose costs) or all (default speed)",
          &arguments->suite,
          false,
-         {"speed", "stability", "accuracy", "budget", "geometry", "all"}},
+         {"speed", "stability", "accuracy", "chain", "budget", "geometry", "all"}},
     };
     command.run = [arguments](const CommonOptions& common, const Progress& progress) {
         const auto wanted = [&](const char* suite) {
@@ -193,12 +197,12 @@ Command bench_command() {
                 outcome.figures["effects"].push_back(std::move(effect));
             }
             outcome.text += text_of(result);
-            markdown = markdown_of(result);
+            markdown += markdown_of(result);
         };
-        std::string accuracy_plot, accuracy_csv;
+        std::string accuracy_plot, accuracy_csv, chain_csv;
         EffectErrors errors;
         AccuracyLedger accuracy;
-        if (wanted("accuracy")) {
+        const auto accuracy_options = [&] {
             AccuracyOptions options;
             options.device = common.gl_device();
             options.quick = arguments->quick;
@@ -207,7 +211,10 @@ Command bench_command() {
                                  : std::filesystem::path(arguments->references);
             options.seed = seed;
             std::tie(options.shard, options.shards) = parse_shard(arguments->shard);
-            const AccuracyLedger ledger = measure_accuracy(options, progress);
+            return options;
+        };
+        if (wanted("accuracy")) {
+            const AccuracyLedger ledger = measure_accuracy(accuracy_options(), progress);
             add(ledger);
             accuracy_plot = plot_of(ledger);
             errors = errors_of(ledger.rows);
@@ -216,6 +223,12 @@ Command bench_command() {
             if (ledger.missing == 0) write_accuracy(accuracy_file(), ledger);
             accuracy = ledger;
             accuracy_csv = csv_of(ledger);
+        }
+        const bool chain = wanted("accuracy") || arguments->suite == "chain";
+        if (chain) {
+            const ChainLedger ledger = measure_chain(accuracy_options(), progress);
+            add(ledger);
+            chain_csv = csv_of(ledger);
         }
         if (wanted("stability")) {
             add(measure_stability(common.gl_device(), arguments->quick, seed, progress));
@@ -237,6 +250,7 @@ Command bench_command() {
                 write_effect_errors(out / "effect-errors.json", errors);
                 write_accuracy(out / "accuracy.json", accuracy);
             }
+            if (chain) write_text_file(out / "chain.csv", chain_csv);
         }
         if (!arguments->markdown.empty())
             replace_marked_block(arguments->markdown, "bench", markdown);

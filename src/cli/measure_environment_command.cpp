@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "cli/command.h"
-#include "jobs/environment_measurement.h"
+#include "jobs/environment/environment_measurement.h"
 
 namespace livery {
 

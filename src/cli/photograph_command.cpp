@@ -6,7 +6,7 @@
 
 #include "appearance/material_library.h"
 #include "cli/command.h"
-#include "jobs/simulated_ball.h"
+#include "jobs/environment/simulated_ball.h"
 #include "jobs/simulated_captures.h"
 #include "jobs/simulated_sphere.h"
 

@@ -228,6 +228,34 @@ ImageF map_gamut(const kernel::Functions& functions,
     return mapped;
 }
 
+ImageF exact_drive(const CompensationTable& table, const ImageF& wanted) {
+    const kernel::Functions& functions = kernel::best();
+    const ImageF mapped = map_gamut(functions, table, wanted);
+    ImageF drive(table.width, table.height, 3);
+    const std::size_t total = table.pixels.size();
+    kernel::Wanted colours;
+    kernel::Separated n;
+    for (std::size_t begin = 0; begin < total; begin += kernel::kBlock) {
+        const kernel::Job job = job_of(table, begin, std::min(kernel::kBlock, total - begin));
+        gather(mapped, job.pixels, job.count, &colours);
+        functions.separate(job, colours, &n);
+        for (std::size_t i = 0; i < job.count; ++i) {
+            if (n.usable[i] == 0) continue;
+            const glm::vec3 its_n(n.r[i], n.g[i], n.b[i]);
+            glm::vec3 exact, residual;
+            if (table.non_additive.grid > 0) {
+                exact = drive_of_n(table.non_additive, its_n, &residual);
+            } else {
+                for (int c = 0; c < 3; ++c) {
+                    exact[c] = look_up(table.drive_from_n[static_cast<std::size_t>(c)], its_n[c]);
+                }
+            }
+            std::memcpy(&drive.values[3 * std::size_t{job.pixels[i]}], &exact.x, 3 * sizeof(float));
+        }
+    }
+    return drive;
+}
+
 CompensationStats stats_of(const kernel::Counts& counts, std::size_t covered_pixels) {
     const auto covered = static_cast<std::int64_t>(covered_pixels);
     CompensationStats stats;

@@ -23,4 +23,8 @@ ImageF map_gamut(const kernel::Functions& functions,
                  const CompensationTable& table,
                  const ImageF& wanted_working);
 
+/// The drives, 0 to 255, before dither and the cut to whole levels: three channels, black where
+/// compensate() is. Throws as compensate().
+ImageF exact_drive(const CompensationTable& table, const ImageF& wanted_working);
+
 }  // namespace livery

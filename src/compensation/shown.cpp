@@ -19,28 +19,24 @@
 namespace livery {
 namespace {
 
-/// Of each of the 256 drives, where a rising curve of drives over equal steps of [0, 1] has it.
-std::array<float, 256> places_of_drives(const std::vector<float>& drive_from) {
-    std::array<float, 256> places{};
-    for (std::size_t drive = 0; drive < places.size(); ++drive) {
-        const auto wanted = static_cast<float>(drive);
-        const auto above = std::lower_bound(drive_from.begin(), drive_from.end(), wanted);
-        if (above == drive_from.begin()) continue;
-        if (above == drive_from.end()) {
-            places[drive] = 1.0f;
-            continue;
-        }
-        const auto i = static_cast<std::size_t>(above - drive_from.begin());
-        const float share = (wanted - drive_from[i - 1]) / (drive_from[i] - drive_from[i - 1]);
-        places[drive] =
-            (static_cast<float>(i - 1) + share) / static_cast<float>(drive_from.size() - 1);
-    }
-    return places;
+/// Where a rising curve of drives over equal steps of [0, 1] has a drive.
+float place_of(const std::vector<float>& drive_from, float drive) {
+    const auto above = std::lower_bound(drive_from.begin(), drive_from.end(), drive);
+    if (above == drive_from.begin()) return 0.0f;
+    if (above == drive_from.end()) return 1.0f;
+    const auto i = static_cast<std::size_t>(above - drive_from.begin());
+    const float share = (drive - drive_from[i - 1]) / (drive_from[i] - drive_from[i - 1]);
+    return (static_cast<float>(i - 1) + share) / static_cast<float>(drive_from.size() - 1);
 }
 
-}  // namespace
+const std::vector<float>& curve_of(const CompensationTable& table, std::size_t channel) {
+    return table.non_additive.grid == 0 ? table.drive_from_n[channel]
+                                        : table.non_additive.rho[channel];
+}
 
-ImageF shown_by(const CompensationTable& table, const Image8& drive) {
+/// `places(pixel)` are the curves' for its three drives.
+template <typename T, typename Places>
+ImageF shown_of(const CompensationTable& table, const Image<T>& drive, const Places& places) {
     check_argument(
         drive.width == table.width && drive.height == table.height && drive.channels >= 3,
         "the projector input is " + std::to_string(drive.width) + "x" +
@@ -48,19 +44,12 @@ ImageF shown_by(const CompensationTable& table, const Image8& drive) {
             " channels, the calibration is of " + std::to_string(table.width) + "x" +
             std::to_string(table.height));
     const bool additive = table.non_additive.grid == 0;
-    std::array<std::array<float, 256>, 3> places;
-    for (std::size_t c = 0; c < 3; ++c) {
-        places[c] = places_of_drives(additive ? table.drive_from_n[c] : table.non_additive.rho[c]);
-    }
     ImageF shown(table.width, table.height, 4);
     const std::size_t count = table.pixels.size();
     parallel_for(count, 1024, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t pixel = table.pixels[i];
-            const std::uint8_t* levels =
-                &drive.values[pixel * static_cast<std::size_t>(drive.channels)];
-            glm::vec3 n;
-            for (int c = 0; c < 3; ++c) n[c] = places[static_cast<std::size_t>(c)][levels[c]];
+            glm::vec3 n = places(&drive.values[pixel * static_cast<std::size_t>(drive.channels)]);
             if (!additive) n = n_at_linear(table.non_additive, n, nullptr);
             // N = A rgb + b, row by row
             glm::dmat3 a;
@@ -81,6 +70,28 @@ ImageF shown_by(const CompensationTable& table, const Image8& drive) {
         }
     });
     return shown;
+}
+
+}  // namespace
+
+ImageF shown_by(const CompensationTable& table, const Image8& drive) {
+    std::array<std::array<float, 256>, 3> places{};
+    for (std::size_t c = 0; c < 3; ++c) {
+        for (std::size_t level = 0; level < 256; ++level) {
+            places[c][level] = place_of(curve_of(table, c), static_cast<float>(level));
+        }
+    }
+    return shown_of(table, drive, [&](const std::uint8_t* levels) {
+        return glm::vec3(places[0][levels[0]], places[1][levels[1]], places[2][levels[2]]);
+    });
+}
+
+ImageF shown_by(const CompensationTable& table, const ImageF& drive) {
+    return shown_of(table, drive, [&](const float* levels) {
+        return glm::vec3(place_of(curve_of(table, 0), levels[0]),
+                         place_of(curve_of(table, 1), levels[1]),
+                         place_of(curve_of(table, 2), levels[2]));
+    });
 }
 
 PictureReach reach_of(const CompensationTable& table, const ImageF& wanted, const Image8& drive) {

@@ -11,6 +11,8 @@ namespace livery {
 /// bits, clipping and gamut mapping included; what the calibration itself is wrong about it cannot
 /// know. Throws std::invalid_argument on a wrong size or channel count.
 ImageF shown_by(const CompensationTable& table, const Image8& drive);
+/// The same of drives between whole levels, 0 to 255 (exact_drive()).
+ImageF shown_by(const CompensationTable& table, const ImageF& drive);
 
 /// How much of a wanted picture is shown as it is wanted, by shown_by().
 struct PictureReach {

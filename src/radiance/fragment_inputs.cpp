@@ -55,7 +55,8 @@ FragmentInputs::FragmentInputs(const Mesh& mesh,
                                const SurfaceMap& map,
                                const PackedLayout& layout,
                                ShadingDevice device,
-                               bool keep_better)
+                               bool keep_better,
+                               InputLayers::Precision light_precision)
     : mesh_(mesh),
       tracer_(tracer),
       shared_exchange_(std::move(exchange)),
@@ -64,6 +65,7 @@ FragmentInputs::FragmentInputs(const Mesh& mesh,
       layout_(layout),
       device_(device),
       keep_better_(keep_better),
+      light_precision_(light_precision),
       mirror_(mesh, tracer, map, layout),
       subsurface_(mesh, tracer, std::move(transports)) {}
 

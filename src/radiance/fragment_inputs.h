@@ -85,7 +85,8 @@ class FragmentInputs {
                    const SurfaceMap& map,
                    const PackedLayout& layout,
                    ShadingDevice device,
-                   bool keep_better);
+                   bool keep_better,
+                   InputLayers::Precision light_precision);
 
     /// Another map of the same fragments: nothing that was solved stands.
     void use(const SurfaceMap& map);
@@ -156,6 +157,7 @@ class FragmentInputs {
 
     const ShadingDevice device_;
     const bool keep_better_;
+    const InputLayers::Precision light_precision_;  ///< of `lit`, `sky` and `mirror`
 
     std::vector<Light> lights_;
     FilteredEnvironment filtered_;

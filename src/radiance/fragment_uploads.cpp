@@ -32,7 +32,7 @@ glm::vec3 radiance_working(const DirectionalLight& light) {
 FragmentInputs::Changed FragmentInputs::upload(const Scene& scene, StageClock& clock) {
     if (mirror_.has_uploads()) {
         clock.add(PassKind::mirrored_environment, [&] {
-            const MirrorInputs::Uploaded done = mirror_.upload(device_, shading_);
+            const MirrorInputs::Uploaded done = mirror_.upload(device_, light_precision_, shading_);
             if (done.other_light) changed_.glossy = true;
             if (done.more_room) ++layers_made_;
         });
@@ -104,7 +104,7 @@ void FragmentInputs::upload_sky() {
         shading_.sky = InputLayers();
         return;
     }
-    make(shading_.sky, 0, InputLayers::Precision::half);
+    make(shading_.sky, 0, light_precision_);
     const auto light_on = [&](std::size_t i) {
         glm::vec3 sum = (sky_.empty() ? glm::vec3(0.0f) : sky_[i]) +
                         (between.empty() ? glm::vec3(0.0f) : between[i]);
@@ -146,7 +146,7 @@ glm::vec3 FragmentInputs::entering_at(std::size_t fragment,
 }
 
 void FragmentInputs::upload_diffuse_light() {
-    make(shading_.lit, 0, InputLayers::Precision::half);
+    make(shading_.lit, 0, light_precision_);
     const auto light_on = [&](std::size_t i) {
         glm::vec3 sum = sky_.empty() ? glm::vec3(0.0f) : sky_[i];
         const std::vector<glm::vec3>& between = exchanged_.on_diffuser;

@@ -308,7 +308,9 @@ void MirrorInputs::take(const Light& light,
     std::move(solved.begin(), solved.end(), std::back_inserter(solved_texels_));
 }
 
-MirrorInputs::Uploaded MirrorInputs::upload(ShadingDevice device, ShadingInputs& shading) {
+MirrorInputs::Uploaded MirrorInputs::upload(ShadingDevice device,
+                                            InputLayers::Precision precision,
+                                            ShadingInputs& shading) {
     Uploaded done;
     done.other_light = std::exchange(other_light_, false);
     if (!light_.environment) {
@@ -318,8 +320,7 @@ MirrorInputs::Uploaded MirrorInputs::upload(ShadingDevice device, ShadingInputs&
     }
     std::vector<bool> layers(kMirrorLayers, false);
     for (const Texels& texels : solved_texels_) layers[texels.layer] = true;
-    done.more_room =
-        shading.mirror.make_room(device, layout_.rows, layers, InputLayers::Precision::half);
+    done.more_room = shading.mirror.make_room(device, layout_.rows, layers, precision);
     for (const Texels& texels : solved_texels_) {
         shading.mirror.upload(
             texels.values, static_cast<int>(texels.layer), layout_.row_begin[texels.part]);

@@ -88,7 +88,7 @@ class MirrorInputs {
         bool more_room = false;
     };
     /// Hands what was solved to the device that shades.
-    Uploaded upload(ShadingDevice device, ShadingInputs& shading);
+    Uploaded upload(ShadingDevice device, InputLayers::Precision precision, ShadingInputs& shading);
 
   private:
     /// Whether what was traced is of another eye or quality.

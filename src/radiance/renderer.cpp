@@ -85,6 +85,7 @@ struct RadianceRenderer::State {
     bool map_reported = false;
 
     const ShadingDevice device;
+    const TexelFormat picture_format;
     PackedLayout layout;
     SurfaceMap tilted;  ///< the map with a relief, where the scene has one
     std::vector<PartArtwork> relief;
@@ -107,10 +108,12 @@ struct RadianceRenderer::State {
 
     State(std::shared_ptr<const FrameGeometry> its_geometry,
           bool keep_better,
-          ShadingDevice its_device)
+          ShadingDevice its_device,
+          StoredHalves halves)
         : geometry(std::move(its_geometry)),
           map(geometry->map),
           device(its_device),
+          picture_format(halves == StoredHalves::all ? TexelFormat::rgba16f : TexelFormat::rgba32f),
           layout(layout_of(map)),
           inputs(geometry->product->mesh,
                  *geometry->tracer,
@@ -120,7 +123,9 @@ struct RadianceRenderer::State {
                  map,
                  layout,
                  device,
-                 keep_better),
+                 keep_better,
+                 halves == StoredHalves::none ? InputLayers::Precision::full
+                                              : InputLayers::Precision::half),
           artwork(geometry->product->mesh, geometry->view, map, layout, device),
           parts(geometry->product->mesh.parts.size()) {
         if (device == ShadingDevice::gl) programs.emplace();
@@ -189,14 +194,14 @@ void RadianceRenderer::State::make_shading() {
     if (device == ShadingDevice::processor) {
         processor.emplace(map, layout);
     } else {
-        shaded = Texture2D(kPackedWidth, layout.rows, TexelFormat::rgba16f);
+        shaded = Texture2D(kPackedWidth, layout.rows, picture_format);
         shaded_framebuffer = Framebuffer({&shaded});
     }
 }
 
 void RadianceRenderer::State::make_target() {
     if (target) return;
-    target = Texture2D(map.width, map.height, TexelFormat::rgba16f);
+    target = Texture2D(map.width, map.height, picture_format);
     target_framebuffer = Framebuffer({&target});
     target.clear();
 }
@@ -329,9 +334,13 @@ RadianceRenderer::RadianceRenderer(std::shared_ptr<const Product> product,
 
 RadianceRenderer::RadianceRenderer(std::shared_ptr<const FrameGeometry> geometry,
                                    bool keep_better,
-                                   ShadingDevice device) {
+                                   ShadingDevice device,
+                                   StoredHalves halves) {
     check_argument(geometry != nullptr, "a renderer needs a geometry");
-    state_ = std::make_unique<State>(std::move(geometry), keep_better, chosen_device(device));
+    const ShadingDevice chosen = chosen_device(device);
+    check_argument(chosen == ShadingDevice::gl || halves == StoredHalves::all,
+                   "the processor's lanes read half floats: full ones are OpenGL's");
+    state_ = std::make_unique<State>(std::move(geometry), keep_better, chosen, halves);
 }
 
 RadianceRenderer::~RadianceRenderer() = default;

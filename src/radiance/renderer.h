@@ -32,10 +32,13 @@ class RadianceRenderer {
                      const View& view,
                      const Progress& progress = {});
     /// With `keep_better`, what was solved with more rays than a plan's quality asks for stands, so
-    /// that a draft of a new light keeps the environment of a better level.
+    /// that a draft of a new light keeps the environment of a better level. Throws
+    /// std::invalid_argument for the processor with other than StoredHalves::all: its lanes read
+    /// halves.
     explicit RadianceRenderer(std::shared_ptr<const FrameGeometry> geometry,
                               bool keep_better = false,
-                              ShadingDevice device = ShadingDevice::automatic);
+                              ShadingDevice device = ShadingDevice::automatic,
+                              StoredHalves halves = StoredHalves::all);
     ~RadianceRenderer();
     RadianceRenderer(const RadianceRenderer&) = delete;
     RadianceRenderer& operator=(const RadianceRenderer&) = delete;
@@ -76,7 +79,8 @@ class RadianceRenderer {
     /// The same without a copy, shared with the renderer until it draws the next one.
     std::shared_ptr<const ImageF> picture() const;
 
-    /// OpenGL name of the RGBA16F texture that holds the last frame, for the compensation pass.
+    /// OpenGL name of the texture that holds the last frame, for the compensation pass: RGBA16F,
+    /// but RGBA32F where pictures are not stored in halves.
     unsigned texture() const;
     const SurfaceMap& surface_map() const;
     const std::shared_ptr<const FrameGeometry>& geometry() const;

@@ -12,6 +12,7 @@
 #include "calibration/environment/map_figures.h"
 #include "calibration/environment/mirror_ball.h"
 #include "calibration/environment/panorama.h"
+#include "core/worst_error.h"
 #include "scene/look.h"
 #include "support/message_of.h"
 
@@ -172,7 +173,7 @@ TEST(UnseenDirections, AreFilledHarmonically) {
                 const glm::dvec3 d = texel_direction(map.seen, x, y);
                 if (glm::dot(d, middle) < std::cos(angle)) continue;
                 for (int c = 0; c < 3; ++c) {
-                    worst = std::max(worst, std::abs(map.radiance.at(x, y, c) - exact(d)[c]));
+                    worst = worse_of(worst, std::abs(map.radiance.at(x, y, c) - exact(d)[c]));
                 }
             }
         }

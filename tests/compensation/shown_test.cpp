@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "compensation/compensate.h"
 #include "compensation/synthetic.h"
 #include "compensation/white_segment.h"
 #include "core/random.h"
@@ -85,6 +86,33 @@ TEST(Shown, IsWhatTheCorrectionAnswersWithThatDrive) {
         bake(synthetic::calibrate_segment(world, 17), kWhiteY), world, random_drives(world, 4));
 }
 
+/// The drives that are asked for a picture show it, to what floats leave of it.
+void expect_exact(const CompensationTable& table, const World& world) {
+    const ImageF wanted = picture(world, [](std::size_t i) {
+        return glm::dvec3(0.1 + 0.0001 * static_cast<double>(i), 0.2, 0.15);
+    });
+    const ImageF shown = shown_by(table, exact_drive(table, wanted));
+    const Image8 drive = compensate(table, wanted);
+    double worst = 0.0, worst_in_levels = 0.0;
+    for (std::size_t i = 0; i < wanted.values.size(); ++i) {
+        worst = worse_of(worst, std::abs(static_cast<double>(shown.values[i] - wanted.values[i])));
+    }
+    const ImageF exact = exact_drive(table, wanted);
+    for (std::size_t i = 0; i < exact.values.size(); ++i) {
+        worst_in_levels = worse_of(
+            worst_in_levels, std::abs(static_cast<double>(exact.values[i]) - drive.values[i]));
+    }
+    EXPECT_LT(worst, 1e-4);
+    EXPECT_LE(worst_in_levels, 1.0 + 1e-3) << "a dither adds less than a level";
+    EXPECT_GT(worst_in_levels, 0.5);
+}
+
+TEST(Shown, IsWhatWasWantedOfDrivesBetweenWholeLevels) {
+    const World world = make_world(40, 30, 6);
+    expect_exact(bake(synthetic::calibrate(world), kWhiteY), world);
+    expect_exact(bake(synthetic::calibrate_segment(world, 17), kWhiteY), world);
+}
+
 TEST(Shown, ReachIsAllOfAModestLookAndLittleOfOneTooBright) {
     const World world = make_world(40, 30, 5);
     const CompensationTable table = bake(synthetic::calibrate(world), kWhiteY);
@@ -130,6 +158,8 @@ TEST(Shown, OtherSizesAreRefused) {
     const CompensationTable table = bake(synthetic::calibrate(world), kWhiteY);
     EXPECT_THROW(shown_by(table, Image8(8, 5, 3)), std::invalid_argument);
     EXPECT_THROW(shown_by(table, Image8(8, 6, 1)), std::invalid_argument);
+    EXPECT_THROW(shown_by(table, ImageF(8, 5, 3)), std::invalid_argument);
+    EXPECT_THROW(exact_drive(table, ImageF(8, 5, 3)), std::invalid_argument);
     EXPECT_THROW(reach_of(table, ImageF(8, 6, 3), Image8(8, 6, 3)), std::invalid_argument);
 }
 

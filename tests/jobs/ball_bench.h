@@ -11,8 +11,8 @@
 #include "core/colour.h"
 #include "core/image_io.h"
 #include "core/json.h"
-#include "jobs/environment_measurement.h"
-#include "jobs/simulated_ball.h"
+#include "jobs/environment/environment_measurement.h"
+#include "jobs/environment/simulated_ball.h"
 #include "scene/look.h"
 #include "support/temporary_folder.h"
 

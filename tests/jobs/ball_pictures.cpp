@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/paths.h"
+#include "core/worst_error.h"
 #include "jobs/ball_bench.h"
 
 namespace livery {
@@ -68,7 +69,7 @@ void tell(const EnvironmentMeasurement& report, const Environment& truth, const 
         const glm::dvec3 wanted = rec709_from_working() * irradiance_of(working, normal);
         const glm::dvec3 off =
             glm::abs(irradiance_of(light_in(report.map.radiance), normal) / wanted - 1.0);
-        worst = std::max({worst, off.x, off.y, off.z});
+        for (int c = 0; c < 3; ++c) worst = worse_of(worst, off[c]);
         sum += (off.x + off.y + off.z) / 3.0 / static_cast<double>(normals.size());
     }
     std::printf(

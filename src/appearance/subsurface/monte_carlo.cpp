@@ -98,7 +98,7 @@ glm::dvec3 scattered(const glm::dvec3& from, double g, Random& random) {
 }
 
 /// Where a photon is: the layer, and its depth under the top of all.
-struct Place {
+struct PhotonPlace {
     std::size_t layer = 0;
     double depth_mm = 0.0;
 };
@@ -131,7 +131,7 @@ class Strata {
     double thickness() const { return layers_.back().bottom; }
 
     /// Mean free paths from a place straight up, or down, to the boundary.
-    double optical_to_boundary(const Place& place, bool up) const {
+    double optical_to_boundary(const PhotonPlace& place, bool up) const {
         const Layer& layer = layers_[place.layer];
         if (layers_.size() == 1) {
             return layer.sigma_t * (up ? place.depth_mm : layer.bottom - place.depth_mm);
@@ -141,7 +141,7 @@ class Strata {
     }
     /// How far a flight of so many mean free paths goes, which meets something before a boundary;
     /// `place` becomes where.
-    double fly(Place& place, double flight, double cosine) const {
+    double fly(PhotonPlace& place, double flight, double cosine) const {
         double flown = 0.0;
         while (true) {
             const Layer& layer = layers_[place.layer];
@@ -215,7 +215,7 @@ class Walk {
                 layer = up ? 0 : strata_.last();
                 along.z = -along.z;
             } else {
-                Place place{layer, at.z};
+                PhotonPlace place{layer, at.z};
                 at += strata_.fly(place, flight, along.z) * along;
                 if (place.layer != layer) at.z = place.depth_mm;
                 layer = place.layer;
@@ -247,7 +247,7 @@ class Walk {
         }
     }
     /// Whoever has scattered so often is far from the beam, and goes where diffusion goes.
-    void share_out(const Place& place, double weight, PhotonTally& tally) const {
+    void share_out(const PhotonPlace& place, double weight, PhotonTally& tally) const {
         Exitance out = far_.of(place.layer, place.depth_mm - strata_.at(place.layer).top);
         if (diffusion_.lost_below) out.transmitted = 0.0;
         const double all = std::max(out.reflected + out.transmitted, 1.0);

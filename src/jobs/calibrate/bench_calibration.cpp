@@ -16,6 +16,7 @@ LiveOptions live_options_of(const BenchCalibrationRequest& request) {
     options.shots = request.colour_shots;
     options.width = request.width;
     options.height = request.height;
+    options.colour.mode = request.mode;
     options.colour.made_with = request.made_with;
     options.places = request.places;
     options.map = request.map;

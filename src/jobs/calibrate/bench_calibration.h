@@ -42,6 +42,7 @@ struct BenchCalibrationRequest {
     std::optional<ProjectorToCamera> map;
     std::optional<CameraToXyz> camera_to_xyz;
     int colour_shots = 2;  ///< photographs of each colour picture
+    ColourMode mode = ColourMode::robust;
     /// What keeps the photographs that a room is found from, with what was found (`room.json`,
     /// `map.exr`); and those of the colours. Not for photographs taken before.
     Recording* room_recording = nullptr;

@@ -51,6 +51,9 @@ class RowMeasurement {
     std::unique_ptr<State> state_;
 };
 
+/// Of the program's own file: what another one drew is not what this one draws.
+const std::string& program_hash();
+
 /// What a row depends on: its scene's truth, its levels, the program and the machine.
 std::string hash_of(const AccuracyRow& row, const std::string& truth_hash);
 std::optional<AccuracyRow> read_row(const std::filesystem::path& folder, const std::string& hash);

@@ -8,9 +8,6 @@
 
 namespace livery {
 
-namespace {
-
-/// Of the program's own file: what another one drew is not what this one draws.
 const std::string& program_hash() {
     static const std::string hash = [] {
         constexpr std::size_t kLargest = std::size_t{4} << 30u;
@@ -20,6 +17,8 @@ const std::string& program_hash() {
     }();
     return hash;
 }
+
+namespace {
 
 /// JSON knows no infinity.
 constexpr double kMost = 1e12;

@@ -20,6 +20,14 @@ enum class ShadingDevice {
 /// What `asked` means in the current OpenGL context: the one place where a device is chosen.
 ShadingDevice chosen_device(ShadingDevice asked);
 
+/// What a renderer keeps in half floats. A picture is drawn with halves; full floats are there to
+/// tell what those make of it, and OpenGL's alone.
+enum class StoredHalves {
+    all,     ///< light that reaches fragments, shaded fragments, the picture
+    inputs,  ///< light that reaches fragments
+    none
+};
+
 /// One input in the packed layout, in one or more layers.
 class InputLayers {
   public:

@@ -1,4 +1,4 @@
-#include "jobs/simulated_ball.h"
+#include "jobs/environment/simulated_ball.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "jobs/environment_view.h"
+#include "jobs/environment/environment_view.h"
 
 #include <algorithm>
 #include <numbers>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "capture/environment_folder.h"
-#include "jobs/environment_measurement.h"
+#include "jobs/environment/environment_measurement.h"
 
 namespace livery {
 

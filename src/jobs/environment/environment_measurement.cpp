@@ -1,4 +1,4 @@
-#include "jobs/environment_measurement.h"
+#include "jobs/environment/environment_measurement.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 #include "core/error.h"
 #include "core/image_io.h"
 #include "jobs/camera_to_xyz_file.h"
-#include "jobs/environment_view.h"
+#include "jobs/environment/environment_view.h"
 
 namespace livery {
 

@@ -1,0 +1,115 @@
+#include "ledger/accuracy/chain_bits.h"
+
+#include <cmath>
+
+#include "compensation/compensate.h"
+#include "compensation/shown.h"
+#include "core/pictures/colour_differences.h"
+#include "core/statistics.h"
+#include "jobs/synthetic_calibration.h"
+#include "ledger/accuracy/chain_steps.h"
+#include "radiance/renderer.h"
+#include "scene/library.h"
+
+namespace livery {
+
+namespace {
+
+constexpr double kDesignWhitePercentile = 20.0;
+constexpr int kSquare_px = 4, kRepeats = 9;
+
+/// The car's body from dark to light.
+constexpr const char* kPaints[] = {"solid black", "solid red", "solid white"};
+
+AccuracyScene car_in(const std::string& paint) {
+    AccuracyScene scene = accuracy_scenes(true).front();
+    Look look = find_look("solid-red");
+    look.parts["body"] = paint;
+    scene.name = paint;
+    scene.scene =
+        make_scene(scene.scene.product, look, scene.scene.eye_in_world_mm, scene.scene.environment);
+    return scene;
+}
+
+/// Means over squares whose pixels are all covered; coverage 0 elsewhere.
+ImageF means_of(const ImageF& shown, int side_px) {
+    ImageF means(shown.width / side_px, shown.height / side_px, 4);
+    const float share = 1.0f / static_cast<float>(side_px * side_px);
+    for (int y = 0; y < means.height * side_px; ++y) {
+        for (int x = 0; x < means.width * side_px; ++x) {
+            for (int c = 0; c < 4; ++c) {
+                means.at(x / side_px, y / side_px, c) += share * shown.at(x, y, c);
+            }
+        }
+    }
+    for (std::size_t i = 3; i < means.values.size(); i += 4) {
+        means.values[i] = means.values[i] > 1.0f - 0.5f * share ? 1.0f : 0.0f;
+    }
+    return means;
+}
+
+void measure(const std::string& paint, std::vector<ChainRow>& rows, const Progress& progress) {
+    const AccuracyScene scene = car_in(paint);
+    RadianceRenderer renderer(scene.scene.product, scene.view, progress);
+    FramePlan plan = plan_frame(scene.scene, Quality::draft, FrameStage::radiance);
+    renderer.render(scene.scene, plan, progress);
+    const ImageF wanted = renderer.read_back();
+    const ColourCalibration calibration = synthetic_calibration(renderer.surface_map().coverage);
+    const CompensationTable table =
+        bake(calibration, design_white_luminance(calibration, kDesignWhitePercentile, {}));
+    const ImageF exact = exact_drive(table, wanted);
+    const Image8 rounded = rounded_drive(exact), dithered = compensate(table, wanted);
+    set_errors(rows.at(0), drive_errors(table, rounded, exact, 1));
+    set_errors(rows.at(1), drive_errors(table, dithered, exact, 1));
+    set_errors(rows.at(2), drive_errors(table, rounded, exact, kSquare_px));
+    set_errors(rows.at(3), drive_errors(table, dithered, exact, kSquare_px));
+    rows.at(1).ms = compensation_ms(table, wanted);
+}
+
+}  // namespace
+
+Image8 rounded_drive(const ImageF& exact) {
+    Image8 drive(exact.width, exact.height, exact.channels);
+    for (std::size_t i = 0; i < exact.values.size(); ++i) {
+        drive.values[i] = static_cast<std::uint8_t>(std::lround(exact.values[i]));
+    }
+    return drive;
+}
+
+std::vector<float> drive_errors(const CompensationTable& table,
+                                const Image8& drive,
+                                const ImageF& exact,
+                                int side_px) {
+    return colour_differences(means_of(shown_by(table, drive), side_px),
+                              means_of(shown_by(table, exact), side_px));
+}
+
+double compensation_ms(const CompensationTable& table, const ImageF& wanted) {
+    Image8 drive = compensate(table, wanted);
+    std::vector<double> ms;
+    for (int k = 0; k < kRepeats; ++k) {
+        // Nothing is counted: covered pixels need not be known
+        ms.push_back(milliseconds_of([&] { compensate_again(table, wanted, 0, &drive); }));
+    }
+    return median(ms);
+}
+
+std::vector<ChainPart> bit_parts(const AccuracyOptions&) {
+    std::vector<ChainPart> parts;
+    for (const std::string paint : kPaints) {
+        ChainPart& part = parts.emplace_back();
+        for (const char* level : {"rounded",
+                                  "dithered",
+                                  "rounded, mean of 4x4 pixels",
+                                  "dithered, mean of 4x4 pixels"}) {
+            part.rows.push_back({"8 bits, " + paint, level, "the exact drive"});
+        }
+        part.inputs = [paint] { return hash_of(car_in(paint)); };
+        part.measure = [paint](std::vector<ChainRow>& rows, const Progress& progress) {
+            measure(paint, rows, progress);
+        };
+    }
+    return parts;
+}
+
+}  // namespace livery
