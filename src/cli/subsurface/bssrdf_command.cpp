@@ -16,9 +16,9 @@ namespace livery {
 namespace {
 
 struct BssrdfArguments : MediumArguments {
-    std::string layers, model = "best", radii = "0.1,0.2,0.5,1,2,5,10", markdown;
+    std::string model = "best", radii = "0.1,0.2,0.5,1,2,5,10", markdown;
     int photons = 1'000'000;
-    bool compare = false, compare_layers = false;
+    bool compare = false;
 };
 
 std::vector<double> parse_radii(const std::string& text) {
@@ -44,38 +44,19 @@ MonteCarloSettings photons_of(const BssrdfArguments& arguments, const CommonOpti
     return {static_cast<std::uint64_t>(arguments.photons), static_cast<std::uint64_t>(common.seed)};
 }
 
-ScatteringStack stack_from(const BssrdfArguments& arguments) {
-    if (arguments.layers.empty()) return {{medium_from(arguments)}};
-    check_argument(arguments.sigma_a.empty() && arguments.sigma_s.empty() && arguments.g.empty() &&
-                       arguments.eta.empty() && arguments.thickness_mm.empty() &&
-                       arguments.material.empty(),
-                   "--layers: found beside options of one medium, expected one or the other");
-    return read_scattering_stack(arguments.layers);
-}
-
-Json json_of(const ScatteringMedium& medium) {
-    Json json = {{"sigma_a_per_mm", medium.sigma_a_per_mm},
-                 {"sigma_s_per_mm", medium.sigma_s_per_mm},
-                 {"sigma_s_prime_per_mm", medium.sigma_s_prime()},
-                 {"g", medium.g},
-                 {"eta", medium.eta}};
-    if (medium.thickness_mm) json["thickness_mm"] = *medium.thickness_mm;
-    return json;
-}
-
-/// What is said of a medium, or layers, by every model.
-void tell_medium(const ScatteringStack& stack, bool layered, Outcome& outcome) {
-    const UnscatteredLight unscattered = unscattered_light(stack);
+/// What is said of a medium by every model.
+void tell_medium(const ScatteringMedium& medium, Outcome& outcome) {
+    const UnscatteredLight unscattered = unscattered_light(medium);
     Json& figures = outcome.figures;
     figures["specular"] = unscattered.specular;
     figures["unscattered_transmittance"] = unscattered.transmitted;
     figures["unscattered_reflectance"] = unscattered.reflected;
-    if (!layered) {
-        figures["medium"] = json_of(stack.layers.front());
-        return;
-    }
-    figures["layers"] = Json::array();
-    for (const ScatteringMedium& layer : stack.layers) figures["layers"].push_back(json_of(layer));
+    figures["medium"] = {{"sigma_a_per_mm", medium.sigma_a_per_mm},
+                         {"sigma_s_per_mm", medium.sigma_s_per_mm},
+                         {"sigma_s_prime_per_mm", medium.sigma_s_prime()},
+                         {"g", medium.g},
+                         {"eta", medium.eta}};
+    if (medium.thickness_mm) figures["medium"]["thickness_mm"] = *medium.thickness_mm;
 }
 
 std::string text_of(const Json& figures) {
@@ -108,16 +89,16 @@ std::string text_of(const Json& figures) {
     return text;
 }
 
-void run_monte_carlo(const ScatteringStack& stack,
+void run_monte_carlo(const ScatteringMedium& medium,
                      const std::vector<double>& radii,
                      const MonteCarloSettings& settings,
                      const Progress& progress,
                      Json& figures) {
     std::vector<ProfileRing> rings;
-    if (stack.depth() > 0.0) {
+    if (medium.sigma_t() > 0.0) {
         for (const double radius : radii) {
             // Without sigma_s' there is no shortest radius, and nothing to see.
-            ProfileRing ring = ring_around(stack, radius);
+            ProfileRing ring = ring_around(medium, radius);
             if (!(ring.outer_mm > 0.0)) ring.outer_mm = 1e-9;
             rings.push_back(ring);
         }
@@ -125,7 +106,7 @@ void run_monte_carlo(const ScatteringStack& stack,
         rings.resize(radii.size());
         for (ProfileRing& ring : rings) ring.outer_mm = 1.0;
     }
-    const MonteCarloProfile profile = monte_carlo_profile(stack, rings, settings, progress);
+    const MonteCarloProfile profile = monte_carlo_profile(medium, rings, settings, progress);
     figures["model"] = "montecarlo";
     figures["radii_mm"] = radii;
     const auto tell = [&](const char* name, const std::vector<Estimate>& estimates) {
@@ -138,7 +119,7 @@ void run_monte_carlo(const ScatteringStack& stack,
         figures[std::string(name) + "_se"] = errors;
     };
     tell("rd", profile.rd);
-    if (stack.is_slab()) tell("rt", profile.rt);
+    if (medium.thickness_mm) tell("rt", profile.rt);
     figures["total_reflectance"] = profile.total_reflectance.value;
     figures["total_reflectance_se"] = profile.total_reflectance.standard_error;
     figures["total_transmittance"] = profile.total_transmittance.value;
@@ -149,13 +130,13 @@ void run_monte_carlo(const ScatteringStack& stack,
 }
 
 void run_model(const std::string& name,
-               const ScatteringStack& stack,
+               const ScatteringMedium& medium,
                const std::vector<double>& radii,
                Json& figures) {
     const bool best = name == "best";
     const ModelChoice choice =
-        best ? best_model(stack) : ModelChoice{*find_subsurface_model(name), ""};
-    const SubsurfaceProfile profile = subsurface_profile(choice.model, stack);
+        best ? best_model(medium) : ModelChoice{*find_subsurface_model(name), ""};
+    const SubsurfaceProfile profile = subsurface_profile(choice.model, medium);
     figures["model"] = info_of(choice.model).name;
     if (best) {
         figures["asked"] = "best";
@@ -165,20 +146,20 @@ void run_model(const std::string& name,
     Json rd = Json::array(), rt = Json::array();
     for (const double radius : radii) {
         rd.push_back(profile.reflectance(radius));
-        if (stack.is_slab()) rt.push_back(profile.transmittance(radius));
+        if (medium.thickness_mm) rt.push_back(profile.transmittance(radius));
     }
     figures["rd"] = rd;
-    if (stack.is_slab()) figures["rt"] = rt;
+    if (medium.thickness_mm) figures["rt"] = rt;
     figures["total_reflectance"] = profile.totals.reflectance;
     figures["total_transmittance"] = profile.totals.transmittance;
-    const UnscatteredLight unscattered = unscattered_light(stack);
+    const UnscatteredLight unscattered = unscattered_light(medium);
     figures["absorbed"] = 1.0 - profile.totals.reflectance - profile.totals.transmittance -
                           unscattered.transmitted - unscattered.reflected;
     Json notes = Json::array();
     if (profile.was_negative) {
         notes.push_back("the model is below 0 in places, given as 0: the albedo is too low for it");
     }
-    const DiffuseTotals exact = exact_totals(stack);
+    const DiffuseTotals exact = exact_totals(medium);
     const double off = std::max(std::abs(profile.totals.reflectance - exact.reflectance),
                                 std::abs(profile.totals.transmittance - exact.transmittance));
     if (off > 0.02) {
@@ -194,12 +175,13 @@ void run_model(const std::string& name,
 Json json_of(const MediumErrors& errors) {
     Json models = Json::array();
     for (const ModelError& error : errors.models) {
-        models.push_back({{"name", info_of(error.model).name},
-                          {"rd_l1", error.reflectance_l1},
-                          {"total_reflectance_bias", error.reflectance_bias},
-                          {"rd_rms_ln", error.rms_ln},
-                          {"rt_l1", errors.is_slab ? Json(error.transmittance_l1) : Json(nullptr)},
-                          {"was_negative", error.was_negative}});
+        models.push_back(
+            {{"name", info_of(error.model).name},
+             {"rd_l1", error.reflectance_l1},
+             {"total_reflectance_bias", error.reflectance_bias},
+             {"rd_rms_ln", error.rms_ln},
+             {"rt_l1", errors.medium.thickness_mm ? Json(error.transmittance_l1) : Json(nullptr)},
+             {"was_negative", error.was_negative}});
     }
     return {{"name", errors.name},
             {"best", errors.best},
@@ -207,27 +189,26 @@ Json json_of(const MediumErrors& errors) {
             {"models", models}};
 }
 
-/// Every model of media, or of layers, against Monte Carlo; `mark` is the table's in the file.
-template <typename Named>
-Outcome compare(const std::vector<Named>& all,
-                const std::string& markdown,
-                const char* mark,
+Outcome compare(const BssrdfArguments& arguments,
                 const MonteCarloSettings& settings,
                 const Progress& progress) {
-    if (!markdown.empty()) check_marked_block(markdown, mark);
-    std::vector<MediumErrors> found;
-    for (std::size_t k = 0; k < all.size(); ++k) {
+    if (!arguments.markdown.empty()) check_marked_block(arguments.markdown, "bssrdf");
+    std::vector<MediumErrors> all;
+    const auto& media = compared_media();
+    for (std::size_t k = 0; k < media.size(); ++k) {
         const auto share = [&](std::size_t n) {
-            return static_cast<double>(n) / static_cast<double>(all.size());
+            return static_cast<double>(n) / static_cast<double>(media.size());
         };
-        found.push_back(model_errors(all[k], settings, progress.part(share(k), share(k + 1))));
+        all.push_back(model_errors(media[k], settings, progress.part(share(k), share(k + 1))));
     }
     Outcome outcome;
     outcome.figures = {
         {"photons", settings.photons}, {"seed", settings.seed}, {"media", Json::array()}};
-    for (const MediumErrors& errors : found) outcome.figures["media"].push_back(json_of(errors));
-    outcome.text = markdown_of(found);
-    if (!markdown.empty()) replace_marked_block(markdown, mark, markdown_of(found));
+    for (const MediumErrors& errors : all) outcome.figures["media"].push_back(json_of(errors));
+    outcome.text = markdown_of(all);
+    if (!arguments.markdown.empty()) {
+        replace_marked_block(arguments.markdown, "bssrdf", markdown_of(all));
+    }
     return outcome;
 }
 
@@ -244,12 +225,6 @@ Command bssrdf_command() {
         "livery bssrdf --sigma-a 0.0041 --sigma-s 2.62 --eta 1.5 --radii-mm 0.5,1,2,5";
     command.options = medium_options(*arguments);
     const std::vector<Option> own = {
-        {"--layers",
-         "FILE",
-         "translucent layers in the place of one medium (docs/files.md)",
-         &arguments->layers,
-         false,
-         {}},
         {"--model",
          "NAME",
          "a model of docs/subsurface.md, montecarlo, or best: the nearest to Monte Carlo (default "
@@ -270,15 +245,9 @@ Command bssrdf_command() {
          &arguments->compare,
          false,
          {}},
-        {"--compare-layers",
-         "",
-         "the same in layers of all kinds",
-         &arguments->compare_layers,
-         false,
-         {}},
         {"--markdown",
          "FILE",
-         "with --compare or --compare-layers: also write the table between the marks in this file",
+         "with --compare: also write the table between the marks in this file",
          &arguments->markdown,
          false,
          {}},
@@ -286,27 +255,19 @@ Command bssrdf_command() {
     command.options.insert(command.options.end(), own.begin(), own.end());
     command.run = [arguments](const CommonOptions& common, const Progress& progress) {
         const MonteCarloSettings settings = photons_of(*arguments, common);
-        check_argument(!arguments->compare || !arguments->compare_layers,
-                       "--compare-layers: found beside --compare, expected one or the other");
-        if (arguments->compare) {
-            return compare(compared_media(), arguments->markdown, "bssrdf", settings, progress);
-        }
-        if (arguments->compare_layers) {
-            return compare(
-                compared_stacks(), arguments->markdown, "bssrdf-layers", settings, progress);
-        }
+        if (arguments->compare) return compare(*arguments, settings, progress);
         check_argument(arguments->markdown.empty(),
-                       "--markdown: found without --compare or --compare-layers, expected "
-                       "with one of them");
+                       "--markdown: found without --compare, expected "
+                       "with it");
         const std::vector<double> radii = parse_radii(arguments->radii);
-        const ScatteringStack stack = stack_from(*arguments);
+        const ScatteringMedium medium = medium_from(*arguments);
         Outcome outcome;
         if (arguments->model == "montecarlo") {
-            run_monte_carlo(stack, radii, settings, progress, outcome.figures);
+            run_monte_carlo(medium, radii, settings, progress, outcome.figures);
         } else {
-            run_model(arguments->model, stack, radii, outcome.figures);
+            run_model(arguments->model, medium, radii, outcome.figures);
         }
-        tell_medium(stack, !arguments->layers.empty(), outcome);
+        tell_medium(medium, outcome);
         outcome.text = text_of(outcome.figures);
         return outcome;
     };
