@@ -39,6 +39,8 @@ SimulatedBall photograph_ball(const SimulatedBallRequest& request, const Progres
         {"environment", "ball"},
         {"camera_to_xyz", "camera-to-xyz.json"},
         {"sphere", {{"centre_mm", {0.0, 0.0, 0.0}}, {"diameter_mm", stand.diameter_mm}}}};
+    // A perfect mirror shows at its rim what stands behind it: where it is, the stand knows
+    if (!stand.metal) manifest["fit_outline"] = false;
     if (stand.metal) manifest["reflectance"] = json_from(metal_reflectance(*stand.metal, 1.0));
     describe_encoding(stand.cameras.front(), manifest);
     manifest["views"] = views;
