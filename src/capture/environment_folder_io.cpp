@@ -101,25 +101,24 @@ BallView read_view(const JsonReader& view,
     return ball;
 }
 
+/// Of a view, or of the manifest where it has one view.
+const std::initializer_list<std::string_view> kViewFields{"camera",
+                                                          "captures",
+                                                          "sphere",
+                                                          "outline_px",
+                                                          "fit_outline",
+                                                          "mask",
+                                                          "camera_deg",
+                                                          "exposure_s",
+                                                          "transfer",
+                                                          "black_level",
+                                                          "saturates_at",
+                                                          "raw_half"};
+
 void read_views(const JsonReader& root, const Json& json, EnvironmentFolder& result) {
-    root.allow_only({"format_version",
-                     "environment",
-                     "camera_to_xyz",
-                     "reflectance",
-                     "fresnel",
-                     "sphere",
-                     "views",
-                     "camera",
-                     "captures",
-                     "outline_px",
-                     "fit_outline",
-                     "mask",
-                     "camera_deg",
-                     "exposure_s",
-                     "transfer",
-                     "black_level",
-                     "saturates_at",
-                     "raw_half"});
+    root.allow_only(
+        {"format_version", "environment", "camera_to_xyz", "reflectance", "fresnel", "views"},
+        kViewFields);
     if (root.has("reflectance")) {
         result.reflectance = read_share(root["reflectance"], kDarkestBall);
     }
@@ -140,18 +139,7 @@ void read_views(const JsonReader& root, const Json& json, EnvironmentFolder& res
     }
     for (std::size_t k = 0; k < views.size(); ++k) {
         const auto view = views.at(k);
-        view.allow_only({"camera",
-                         "captures",
-                         "sphere",
-                         "outline_px",
-                         "fit_outline",
-                         "mask",
-                         "camera_deg",
-                         "exposure_s",
-                         "transfer",
-                         "black_level",
-                         "saturates_at",
-                         "raw_half"});
+        view.allow_only(kViewFields);
         result.views.push_back(read_view(view, root, json["views"][k], result.manifest));
     }
 }

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "cli/command.h"
+#include "cli/measured_captures.h"
 #include "jobs/sphere_measurement.h"
 
 namespace livery {
@@ -83,18 +84,8 @@ Command measure_brdf_command() {
         "photographs of a painted sphere, one light at a time -> measured reflectance";
     command.example = "livery measure brdf --captures sphere --out garnet.csv";
     command.options = {
-        {"--captures",
-         "DIR",
-         "photographs with their manifest.json (docs/measuring.md)",
-         &arguments->captures,
-         true,
-         {}},
-        {"--camera-to-xyz",
-         "FILE",
-         "matrix of linear camera RGB to XYZ (default: as the manifest says, else Rec.709)",
-         &arguments->camera_to_xyz,
-         false,
-         {}},
+        captures_option(&arguments->captures),
+        camera_to_xyz_option(&arguments->camera_to_xyz),
         {"--out", "FILE", "measured reflectance, .csv", &arguments->out, true, {}},
     };
     command.run = [arguments](const CommonOptions&, const Progress& progress) {

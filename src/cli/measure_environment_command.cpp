@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "cli/command.h"
+#include "cli/measured_captures.h"
 #include "jobs/environment/environment_measurement.h"
 
 namespace livery {
@@ -128,24 +129,14 @@ Command measure_environment_command() {
     command.summary = "photographs of a mirror ball or a panorama -> a map of the light all around";
     command.example = "livery measure environment --captures ball --out room.exr";
     command.options = {
-        {"--captures",
-         "DIR",
-         "photographs with their manifest.json (docs/measuring.md)",
-         &arguments->captures,
-         true,
-         {}},
+        captures_option(&arguments->captures),
         {"--ball-reflectance",
          "R,G,B",
          "the ball's, at normal incidence (default: as the manifest says, else 1,1,1)",
          &arguments->reflectance,
          false,
          {}},
-        {"--camera-to-xyz",
-         "FILE",
-         "matrix of linear camera RGB to XYZ (default: as the manifest says, else Rec.709)",
-         &arguments->camera_to_xyz,
-         false,
-         {}},
+        camera_to_xyz_option(&arguments->camera_to_xyz),
         {"--width",
          "N",
          "of the map, twice its height (default: 1024)",

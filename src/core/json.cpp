@@ -216,11 +216,14 @@ glm::dmat3 JsonReader::matrix3() const {
     return {v[0], v[3], v[6], v[1], v[4], v[7], v[2], v[5], v[8]};
 }
 
-void JsonReader::allow_only(std::initializer_list<std::string_view> allowed) const {
+void JsonReader::allow_only(std::initializer_list<std::string_view> allowed,
+                            std::initializer_list<std::string_view> and_these) const {
+    std::vector<std::string_view> all(allowed);
+    all.insert(all.end(), and_these);
     for (const auto& key : keys()) {
-        if (std::find(allowed.begin(), allowed.end(), key) != allowed.end()) continue;
+        if (std::find(all.begin(), all.end(), key) != all.end()) continue;
         std::string names;
-        for (const auto& name : allowed) names += (names.empty() ? "" : ", ") + std::string(name);
+        for (const auto& name : all) names += (names.empty() ? "" : ", ") + std::string(name);
         fail("the unknown field \"" + key + "\"", "only " + names);
     }
 }

@@ -56,7 +56,8 @@ class JsonReader {
     glm::dmat3 matrix3() const;  ///< nine numbers, row by row
 
     /// Refuses members not in the list, so that a misspelt option is never ignored.
-    void allow_only(std::initializer_list<std::string_view> allowed) const;
+    void allow_only(std::initializer_list<std::string_view> allowed,
+                    std::initializer_list<std::string_view> and_these = {}) const;
     /// Refuses a missing, wrong or newer "format_version", by name.
     void require_format_version(int newest_known) const;
 

@@ -10,6 +10,7 @@
 #include "core/paths.h"
 #include "core/worst_error.h"
 #include "jobs/ball_bench.h"
+#include "jobs/picture_tool.h"
 
 namespace livery {
 namespace {
@@ -117,15 +118,4 @@ int draw(const char* file) {
 }  // namespace
 }  // namespace livery
 
-int main(int argc, char** argv) {
-    if (argc != 2) {
-        std::fprintf(stderr, "usage: livery_ball_pictures FILE.png\n");
-        return 2;
-    }
-    try {
-        return livery::draw(argv[1]);
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "%s\n", error.what());
-        return 1;
-    }
-}
+int main(int argc, char** argv) { return livery::draw_named_picture(argc, argv, livery::draw); }

@@ -10,6 +10,7 @@
 #include "appearance/material_library.h"
 #include "core/colour.h"
 #include "core/image_io.h"
+#include "jobs/picture_tool.h"
 #include "twin/sensor.h"
 #include "twin/sphere_stand.h"
 
@@ -64,15 +65,4 @@ int draw(const char* file) {
 }  // namespace
 }  // namespace livery
 
-int main(int argc, char** argv) {
-    if (argc != 2) {
-        std::fprintf(stderr, "usage: livery_sphere_pictures FILE.png\n");
-        return 2;
-    }
-    try {
-        return livery::draw(argv[1]);
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "%s\n", error.what());
-        return 1;
-    }
-}
+int main(int argc, char** argv) { return livery::draw_named_picture(argc, argv, livery::draw); }
