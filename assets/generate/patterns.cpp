@@ -18,7 +18,6 @@ namespace livery::assets {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kSamples = 4;  // a pixel's side
 
 /// Means of linear colours over each pixel, encoded as sRGB.
@@ -73,7 +72,8 @@ std::vector<Flower> flowers() {
             return glm::length(around(at, other.at)) > 1.15 * (radius + other.radius);
         });
         if (free)
-            list.push_back({at, radius, 2.0 * kPi * random.uniform(), petals[random.below(4)]});
+            list.push_back(
+                {at, radius, 2.0 * std::numbers::pi * random.uniform(), petals[random.below(4)]});
     }
     return list;
 }
@@ -83,7 +83,8 @@ bool in_leaf(const glm::dvec2& d, double turn, double radius) {
     const double length = 1.45 * radius;
     const double along = (d.x * std::cos(turn) + d.y * std::sin(turn)) / length;
     const double across = (d.y * std::cos(turn) - d.x * std::sin(turn)) / length;
-    return along > 0.0 && along < 1.0 && std::abs(across) < 0.22 * std::sin(kPi * along);
+    return along > 0.0 && along < 1.0 &&
+           std::abs(across) < 0.22 * std::sin(std::numbers::pi * along);
 }
 
 }  // namespace
@@ -139,7 +140,7 @@ Image8 weave(int size) {
             // Heights in threads: round across, a wave along
             const double slope_across = -0.9 * (across - std::floor(across) - 0.5);
             const double slope_along =
-                -0.55 * std::sin(2.0 * kPi * (along - std::floor(along) - 0.5) * 0.5);
+                -0.55 * std::sin(2.0 * std::numbers::pi * (along - std::floor(along) - 0.5) * 0.5);
             const double right = warp ? slope_across : slope_along;
             const double down = warp ? slope_along : slope_across;
             const glm::dvec3 normal = glm::normalize(glm::dvec3(-right, down, 1.0));

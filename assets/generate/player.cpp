@@ -16,7 +16,7 @@ namespace livery::assets {
 
 namespace {
 
-enum PlayerPart { kShell, kBack, kGlass, kWheel, kButton, kTrim, kPlayerParts };
+enum PlayerPart { kShell, kBack, kPlayerGlass, kWheel, kButton, kPlayerTrim, kPlayerParts };
 enum PlayerPanel {
     kShellPanel,
     kBackPanel,
@@ -155,8 +155,8 @@ std::vector<PanelStyle> cut_player(Sheet& sheet) {
 
     std::vector<PanelStyle> styles(kPlayerPanels, {kShell, 0.0, 0.12, kWall_mm});
     styles[kBackPanel].part = kBack;
-    styles[kSeam] = {kTrim, 0.1, 0.1, 1.2};
-    styles[kScreen] = {kGlass, 0.1, 0.12, 1.0, [screen](const LimitVertex& v) {
+    styles[kSeam] = {kPlayerTrim, 0.1, 0.1, 1.2};
+    styles[kScreen] = {kPlayerGlass, 0.1, 0.12, 1.0, [screen](const LimitVertex& v) {
                            return rounded_edge_mm(-screen(v));
                        }};
     styles[kWheelRing] = {kWheel, 0.05, 0.16, 1.2, [](const LimitVertex& v) {
@@ -174,7 +174,7 @@ std::vector<PanelStyle> cut_player(Sheet& sheet) {
                                      std::hypot(v.position.z, v.position.y - kWheelY_mm);
                                  return rounded_edge_mm(kButtonRadius_mm - r);
                              }};
-    styles[kPorts] = {kTrim, 0.8, 0.08, 0.5};
+    styles[kPorts] = {kPlayerTrim, 0.8, 0.08, 0.5};
     styles[kSlider] = {kButton, -0.35, 0.14, 1.2};
     return styles;
 }
@@ -191,7 +191,7 @@ std::vector<PartMesh> make_player() {
     const auto styles = cut_player(sheet);
 
     std::vector<PartMesh> half(kPlayerParts);
-    build_panels(sheet, styles, chart, kTrim, half);
+    build_panels(sheet, styles, chart, kPlayerTrim, half);
     const std::array<PartStyle, kPlayerParts> looks{{{"shell", glm::dvec3(0.75), 0.3},
                                                      {"back", glm::dvec3(0.75), 0.3},
                                                      {"glass", glm::dvec3(0.03), 0.1},

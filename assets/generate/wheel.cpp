@@ -15,7 +15,6 @@ namespace livery::assets {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kSpokes = 5, kNuts = 5;
 
 /// Height of the spokes' face over the wheel's middle: concave, steepening toward the rim.
@@ -113,7 +112,7 @@ PartMesh make_rim() {
     PartMesh rim = revolve(barrel, true, 48);
     append(rim, revolve(hub, false, 36), {0, 0, 0});
     for (int k = 0; k < kSpokes; ++k) {
-        const double angle = kPi / 2 + 2.0 * kPi * k / kSpokes;
+        const double angle = std::numbers::pi / 2 + 2.0 * std::numbers::pi * k / kSpokes;
         for (double side : {-1.0, 1.0}) append(rim, make_arm(angle, side), {0, 0, 0});
     }
     const std::vector<glm::dvec2> disc{{3.0, -2.6}, {8.1, -2.6}, {8.1, -1.9}, {3.0, -1.9}};
@@ -128,7 +127,7 @@ PartMesh make_brake() {
     const std::vector<glm::dvec2> nut{
         {0.0, 0.6}, {0.26, 0.6}, {0.26, 1.14}, {0.2, 1.2}, {0.0, 1.2}};
     for (int k = 0; k < kNuts; ++k) {
-        const double angle = kPi / 2 + 2.0 * kPi * (k + 0.5) / kNuts;
+        const double angle = std::numbers::pi / 2 + 2.0 * std::numbers::pi * (k + 0.5) / kNuts;
         append(brake, revolve(nut, false, 8), {1.8 * std::cos(angle), 1.8 * std::sin(angle), 0});
     }
     // The caliper, a sector around the disc at its rear.

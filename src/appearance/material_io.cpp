@@ -17,7 +17,7 @@ namespace livery {
 namespace {
 
 constexpr int kFormatVersion = 1;
-constexpr std::size_t kLargestFile_bytes = std::size_t{1} << 20u;
+constexpr std::size_t kLargestMaterial_bytes = std::size_t{1} << 20u;
 
 const ModelInfo& read_model(const JsonReader& reader) {
     const std::string name = reader.text();
@@ -199,12 +199,12 @@ Json json_of(const Material& material) {
 }
 
 Material read_material_file(const std::filesystem::path& file) {
-    return with_measured_read(parse_material(read_text_file(file, kLargestFile_bytes), file));
+    return with_measured_read(parse_material(read_text_file(file, kLargestMaterial_bytes), file));
 }
 
 Material read_paint_file(const std::filesystem::path& file) {
     if (!is_measured_file(file)) {
-        return parse_material(read_text_file(file, kLargestFile_bytes), file);
+        return parse_material(read_text_file(file, kLargestMaterial_bytes), file);
     }
     Material material;
     material.name = file.stem().string();

@@ -24,7 +24,7 @@ namespace livery {
 
 namespace {
 
-constexpr std::size_t kLargestFile_bytes = std::size_t{1} << 24u;
+constexpr std::size_t kLargestChips_bytes = std::size_t{1} << 24u;
 constexpr std::size_t kMostChips = 100'000;
 
 constexpr const char* kColourForms =
@@ -215,7 +215,7 @@ glm::dvec3 parse_colour(const std::string& text) {
 }
 
 std::vector<ColourChip> read_colour_chips(const std::filesystem::path& file) {
-    return parse_colour_chips(read_text_file(file, kLargestFile_bytes), file);
+    return parse_colour_chips(read_text_file(file, kLargestChips_bytes), file);
 }
 
 std::vector<ColourChip> parse_colour_chips(const std::string& text,

@@ -45,8 +45,6 @@ FiveAngleLab lab_of_spectra(const MeasuredReflectance& measured) {
     return lab;
 }
 
-double luminance_of(const glm::dvec3& working) { return (xyz_from_working() * working).y; }
-
 /// Models whose interface has Schlick's Fresnel term, as they were published.
 bool has_schlick(ReflectanceModel model) {
     return model == ReflectanceModel::cook_torrance ||
@@ -99,7 +97,7 @@ double specular_gloss(const Material& material, double angle_deg) {
     if (drawn.measured) {
         return specular_gloss(
             [&](const glm::dvec3& wi, const glm::dvec3& wo) {
-                return luminance_of(evaluate(drawn, glm::vec3(wi), glm::vec3(wo)));
+                return luminance_of_working(evaluate(drawn, glm::vec3(wi), glm::vec3(wo)));
             },
             angle_deg);
     }
@@ -107,15 +105,15 @@ double specular_gloss(const Material& material, double angle_deg) {
     const f64::BsdfParameters p = parameters_of_f64(material);
     const bool schlick = has_schlick(material.model);
     const f64::BsdfParameters alone = schlick ? interface_alone(model, p) : p;
-    const double f0 = std::clamp(luminance_of(p.f0), 0.0, 1.0);
+    const double f0 = std::clamp(luminance_of_working(p.f0), 0.0, 1.0);
     const auto whole = model.f64.bound(p), mirrored = model.f64.bound(alone);
     return specular_gloss(
         [&](const glm::dvec3& wi, const glm::dvec3& wo) {
-            double value = luminance_of(whole->eval(wi, wo));
+            double value = luminance_of_working(whole->eval(wi, wo));
             if (schlick && f0 > 0.0) {
                 const double cosine = glm::dot(wi, glm::normalize(wi + wo));
-                value +=
-                    luminance_of(mirrored->eval(wi, wo)) * (fresnel_over_schlick(f0, cosine) - 1.0);
+                value += luminance_of_working(mirrored->eval(wi, wo)) *
+                         (fresnel_over_schlick(f0, cosine) - 1.0);
             }
             return value;
         },

@@ -20,7 +20,7 @@ namespace {
 constexpr double kTargetPeak = 0.80, kHighestPeak = 0.85, kLowestPeak = 0.60;
 constexpr double kDarkestPeak = 0.20;  // usable where nothing better can be set
 constexpr double kClippedPeak = 0.97;  // says nothing of how much too bright it is
-constexpr double kOtherExposure = 0.01;
+constexpr double kSameBenchExposure = 0.01;
 constexpr double kStep = 1.3;    // a little more than a third of a stop
 constexpr int kMostInVain = 3;   // by then it was asked for more than a stop
 constexpr double kMixed = 0.02;  // of white: an eighth of a photograph, or a lamp that flickers
@@ -89,7 +89,7 @@ Photograph BenchSession::photograph(const std::string& name) {
     if (!fixed()) photo.name = name;
     ++photographs_;
     check_photograph(photo, name);
-    if (met_s_ > 0.0 && std::abs(photo.exposure_s / met_s_ - 1.0) > kOtherExposure)
+    if (met_s_ > 0.0 && std::abs(photo.exposure_s / met_s_ - 1.0) > kSameBenchExposure)
         throw Refused("automatic exposure: the photograph of " + name + " was exposed for " +
                           seconds(photo.exposure_s) + ", those before it for " + seconds(met_s_),
                       kManualExposure);

@@ -14,7 +14,7 @@
 namespace livery {
 namespace {
 
-constexpr int kLevels = 256, kBlock = 4, kMostBlocks = 20000;
+constexpr int kCameraLevels = 256, kBlockSide = 4, kMostBlocks = 20000;
 /// What is clipped, also by the noise, tells nothing.
 constexpr double kLeastValue = 2.0, kMostValue = 250.0;
 /// A block with an edge in it has no one light.
@@ -29,8 +29,8 @@ struct LightPlace {
 /// The mean of a block: finer than the file's steps, and quieter than a pixel.
 double value_of_block(const ImageF& image, int x, int y, int channel) {
     double sum = 0.0, least = 255.0, most = 0.0;
-    for (int dy = 0; dy < kBlock; ++dy)
-        for (int dx = 0; dx < kBlock; ++dx) {
+    for (int dy = 0; dy < kBlockSide; ++dy)
+        for (int dx = 0; dx < kBlockSide; ++dx) {
             const double value = image.at(x + dx, y + dy, channel);
             sum += value;
             least = std::min(least, value);
@@ -38,7 +38,7 @@ double value_of_block(const ImageF& image, int x, int y, int channel) {
         }
     const bool one_light =
         least >= kLeastValue && most <= kMostValue && most - least <= kMostSpread;
-    return one_light ? sum / (kBlock * kBlock) : -1.0;
+    return one_light ? sum / (kBlockSide * kBlockSide) : -1.0;
 }
 
 std::vector<LightPlace> places_of(const std::vector<Photograph>& photographs) {
@@ -48,7 +48,7 @@ std::vector<LightPlace> places_of(const std::vector<Photograph>& photographs) {
                            photograph.image.height == first.height &&
                            photograph.image.channels == first.channels,
                        "photographs of different sizes");
-    const int across = first.width / kBlock, blocks = across * (first.height / kBlock);
+    const int across = first.width / kBlockSide, blocks = across * (first.height / kBlockSide);
     // Odd, so that it does not walk down one column.
     const int step = (blocks * first.channels / kMostBlocks) | 1;
     std::vector<LightPlace> places;
@@ -57,8 +57,10 @@ std::vector<LightPlace> places_of(const std::vector<Photograph>& photographs) {
             LightPlace place;
             int usable = 0;
             for (const Photograph& photograph : photographs) {
-                place.value.push_back(value_of_block(
-                    photograph.image, block % across * kBlock, block / across * kBlock, channel));
+                place.value.push_back(value_of_block(photograph.image,
+                                                     block % across * kBlockSide,
+                                                     block / across * kBlockSide,
+                                                     channel));
                 usable += place.value.back() >= 0.0 ? 1 : 0;
             }
             // One alone says nothing of the curve.
@@ -77,7 +79,7 @@ struct LevelWeights {
     double above_share;
 };
 LevelWeights row_of(double value) {
-    const int below = std::clamp(static_cast<int>(value), 1, kLevels - 2);
+    const int below = std::clamp(static_cast<int>(value), 1, kCameraLevels - 2);
     return {below, value - below};
 }
 
@@ -99,7 +101,7 @@ struct Problem {
         : places(of_places) {
         for (const Photograph& photograph : photographs)
             log_exposure.push_back(std::log(photograph.exposure_s));
-        const auto size = kLevels + static_cast<Eigen::Index>(photographs.size());
+        const auto size = kCameraLevels + static_cast<Eigen::Index>(photographs.size());
         normal.setZero(size, size);
         right.setZero(size);
     }
@@ -136,7 +138,7 @@ struct Problem {
             const LevelWeights row = row_of(place.value[k]);
             const std::array entries{Entry{row.below, 1.0 - row.above_share},
                                      Entry{row.below + 1, row.above_share},
-                                     Entry{kLevels + static_cast<Eigen::Index>(k), -1.0}};
+                                     Entry{kCameraLevels + static_cast<Eigen::Index>(k), -1.0}};
             for (const Entry& a : entries) {
                 for (const Entry& b : entries)
                     normal(a.index, b.index) += weight * a.factor * b.factor;
@@ -156,7 +158,7 @@ struct Problem {
     void add_smoothness() {
         constexpr double kWeight = 1.0;
         const auto size = normal.rows();
-        for (int level = 2; level < kLevels - 1; ++level) {
+        for (int level = 2; level < kCameraLevels - 1; ++level) {
             const double before = std::log(level / (level - 1.0)),
                          after = std::log((level + 1.0) / level), step = 0.5 * (before + after);
             Eigen::VectorXd bend = Eigen::VectorXd::Zero(size);
@@ -174,9 +176,9 @@ struct Problem {
         const auto only = [size](Eigen::Index index) -> Eigen::VectorXd {
             return Eigen::VectorXd::Unit(size, index);
         };
-        add(only(kLevels - 1), 0.0, 1.0);
+        add(only(kCameraLevels - 1), 0.0, 1.0);
         add(only(0), 0.0, 1.0);
-        for (Eigen::Index k = kLevels; k < size; ++k)
+        for (Eigen::Index k = kCameraLevels; k < size; ++k)
             add(only(k), 0.0, 1.0 / (kExposureError * kExposureError));
     }
 };
@@ -191,7 +193,7 @@ double residual_of(const Problem& problem, const Eigen::VectorXd& unknowns) {
             if (place.value[k] < 0.0) continue;
             const double weight = weight_of(place.value[k]);
             const double light = at(unknowns, place.value[k]) - problem.log_exposure[k] -
-                                 unknowns[kLevels + static_cast<Eigen::Index>(k)];
+                                 unknowns[kCameraLevels + static_cast<Eigen::Index>(k)];
             sum += weight * light;
             sum_square += weight * light * light;
             weight_sum += weight;
@@ -230,7 +232,8 @@ CameraResponse fit_camera_response(const std::vector<Photograph>& photographs) {
 
     CameraResponse response;
     response.residual = residual_of(problem, unknowns);
-    const double exposure_error = unknowns.tail(unknowns.size() - kLevels).cwiseAbs().maxCoeff();
+    const double exposure_error =
+        unknowns.tail(unknowns.size() - kCameraLevels).cwiseAbs().maxCoeff();
     if (!(response.residual < kMostResidual && exposure_error < kMostExposureError))
         throw Refused(fmt::format("the photographs do not follow their exposures: after the fit "
                                   "their light differs by {:.1f}%, their exposures are up to "
@@ -239,11 +242,11 @@ CameraResponse fit_camera_response(const std::vector<Photograph>& photographs) {
                                   100.0 * std::expm1(exposure_error)),
                       "switch automatic exposure, automatic ISO and picture optimisers (active "
                       "D-lighting, HDR) off, and keep the light still");
-    response.linear_from_file.assign(kLevels, 0.0);
-    for (int level = 1; level < kLevels; ++level) {
+    response.linear_from_file.assign(kCameraLevels, 0.0);
+    for (int level = 1; level < kCameraLevels; ++level) {
         const auto index = static_cast<std::size_t>(level);
         response.linear_from_file[index] =
-            std::max(std::exp(unknowns[level] - unknowns[kLevels - 1]),
+            std::max(std::exp(unknowns[level] - unknowns[kCameraLevels - 1]),
                      response.linear_from_file[index - 1]);
     }
     return response;

@@ -19,7 +19,7 @@ namespace livery {
 
 namespace {
 
-constexpr int kBlock_px = 32, kLevels = 5, kSteps = 12;
+constexpr int kWindow_px = 32, kLevels = 5, kSteps = 12;
 
 ImageF linear_mean(const Photograph& photograph) {
     ImageF mean = mean_of_channels(photograph.image);
@@ -78,7 +78,7 @@ struct Normal {
 };
 
 Normal normal_of(const ImageF& then, const ImageF& now, glm::dvec2 centre, glm::dvec2 shift) {
-    constexpr int kHalf = kBlock_px / 2;
+    constexpr int kHalf = kWindow_px / 2;
     Normal sums;
     const int left = std::clamp(static_cast<int>(centre.x) - kHalf, 1, then.width - 2),
               right = std::clamp(static_cast<int>(centre.x) + kHalf, 1, then.width - 2);
@@ -128,7 +128,7 @@ std::optional<glm::dvec2> follow(const std::vector<ImageF>& then,
         glm::dvec2 here = scale * shift;
         for (int step = 0; step < kSteps; ++step) {
             const Normal normal = normal_of(then[k], now[k], scale * centre, here);
-            if (!(normal.smaller_eigenvalue() > 1e-4 * normal.energy / kBlock_px)) break;
+            if (!(normal.smaller_eigenvalue() > 1e-4 * normal.energy / kWindow_px)) break;
             const glm::dvec2 by = normal.step();
             here += by;
             if (glm::length(by) < 0.005) break;
@@ -199,10 +199,10 @@ Drift drift_between(const DriftReference& then, const DriftReference& now) {
     constexpr double kOpen_px = 0.05;
     const double noise = noise_of(lit, 0.1f * brightest);
     std::vector<glm::dvec2> centres;
-    for (int y = kBlock_px; y + kBlock_px < lit.height; y += kBlock_px)
-        for (int x = kBlock_px; x + kBlock_px < lit.width; x += kBlock_px) {
+    for (int y = kWindow_px; y + kWindow_px < lit.height; y += kWindow_px)
+        for (int x = kWindow_px; x + kWindow_px < lit.width; x += kWindow_px) {
             const Normal normal = normal_of(lit, lit, {x, y}, {0.0, 0.0});
-            const double level = std::sqrt(normal.energy) / (kBlock_px + 1);
+            const double level = std::sqrt(normal.energy) / (kWindow_px + 1);
             const bool detailed =
                 normal.smaller_eigenvalue() > 2.0 * noise * noise / (kOpen_px * kOpen_px) &&
                 normal.smaller_eigenvalue() > 1e-5 * normal.energy;

@@ -11,8 +11,8 @@ namespace livery {
 
 namespace {
 
-constexpr int kNewestVersion = 1;
-constexpr std::size_t kMostCaptures = 1000, kMostViews = 100, kMostPoints = 10'000;
+constexpr int kNewestEnvironmentVersion = 1;
+constexpr std::size_t kMostPictures = 1000, kMostViews = 100, kMostPoints = 10'000;
 constexpr double kFarthest_px = 1e5;
 constexpr double kDarkestBall = 0.02;
 
@@ -21,9 +21,9 @@ std::vector<Capture> read_captures(const JsonReader& owner,
                                    const std::filesystem::path& folder) {
     const auto list = owner["captures"];
     if (list.size() == 0) list.fail("an empty list", "at least one photograph");
-    if (list.size() > kMostCaptures) {
+    if (list.size() > kMostPictures) {
         list.fail(std::to_string(list.size()) + " captures",
-                  "at most " + std::to_string(kMostCaptures));
+                  "at most " + std::to_string(kMostPictures));
     }
     std::vector<Capture> captures;
     for (std::size_t k = 0; k < list.size(); ++k) {
@@ -204,7 +204,7 @@ EnvironmentFolder parse_environment_manifest(const std::string& text,
                                              const std::filesystem::path& manifest) {
     const Json json = parse_json(text, manifest);
     const JsonReader root(manifest, json);
-    if (root.has("format_version")) root.require_format_version(kNewestVersion);
+    if (root.has("format_version")) root.require_format_version(kNewestEnvironmentVersion);
     EnvironmentFolder result;
     result.manifest = manifest;
     if (root["environment"].one_of({"ball", "panorama"}) == 0) {

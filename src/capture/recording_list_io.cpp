@@ -11,7 +11,7 @@ namespace livery {
 
 namespace {
 
-constexpr int kNewestVersion = 1;
+constexpr int kNewestListVersion = 1;
 /// Numbers of files above it are none of ours, and what is added to them would overflow.
 constexpr int kHighestNumber = 1'000'000'000;
 
@@ -65,7 +65,7 @@ RecordedShowing showing_from(const JsonReader& json) {
 RecordingList parse_recording_list(const std::string& text, const std::filesystem::path& file) {
     const Json json = parse_json(text, file);
     const JsonReader root(file, json);
-    root.require_format_version(kNewestVersion);
+    root.require_format_version(kNewestListVersion);
     root.allow_only({"format_version", "bench", "showings"});
     RecordingList list;
     list.bench = root["bench"].text();
@@ -77,7 +77,7 @@ RecordingList parse_recording_list(const std::string& text, const std::filesyste
 }
 
 std::string text_of(const RecordingList& list) {
-    Json json = {{"format_version", kNewestVersion}, {"bench", list.bench}};
+    Json json = {{"format_version", kNewestListVersion}, {"bench", list.bench}};
     json["showings"] = Json::array();
     for (const RecordedShowing& showing : list.showings) {
         if (showing.photographs.empty() && showing.measured.empty()) continue;

@@ -12,8 +12,8 @@ namespace livery {
 
 namespace {
 
-constexpr int kNewestVersion = 1;
-constexpr std::size_t kMostCaptures = 10'000;
+constexpr int kNewestSphereVersion = 1;
+constexpr std::size_t kMostSphereCaptures = 10'000;
 constexpr double kDarkestWhite = 0.05;  ///< darker is no white
 
 std::optional<glm::dvec3> read_light(const JsonReader& entry, const SpherePlace& sphere) {
@@ -115,7 +115,7 @@ SphereFolder read_sphere_folder(const std::filesystem::path& folder) {
 SphereFolder parse_sphere_manifest(const std::string& text, const std::filesystem::path& manifest) {
     const Json json = parse_json(text, manifest);
     const JsonReader root(manifest, json);
-    if (root.has("format_version")) root.require_format_version(kNewestVersion);
+    if (root.has("format_version")) root.require_format_version(kNewestSphereVersion);
     root.allow_only({"format_version",
                      "projector",
                      "captures",
@@ -131,9 +131,9 @@ SphereFolder parse_sphere_manifest(const std::string& text, const std::filesyste
     result.manifest = manifest;
     const auto captures = root["captures"];
     if (captures.size() == 0) captures.fail("an empty list", "at least one photograph");
-    if (captures.size() > kMostCaptures) {
+    if (captures.size() > kMostSphereCaptures) {
         captures.fail(std::to_string(captures.size()) + " captures",
-                      "at most " + std::to_string(kMostCaptures));
+                      "at most " + std::to_string(kMostSphereCaptures));
     }
     result.sphere = read_sphere_place(root["sphere"]);
     const CameraText camera = read_camera_text(root, json, manifest);

@@ -7,13 +7,12 @@
 
 #include "cli/command.h"
 #include "cli/measured_captures.h"
+#include "core/angles.h"
 #include "jobs/environment/environment_measurement.h"
 
 namespace livery {
 
 namespace {
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 Json figures_of(const EnvironmentView& view) {
     Json figures = {{"photographs", view.photographs},
@@ -22,7 +21,7 @@ Json figures_of(const EnvironmentView& view) {
     if (view.ball) {
         figures["sphere"] = {{"centre_mm", json_from(view.ball->centre_mm)},
                              {"diameter_mm", view.ball->diameter_mm}};
-        figures["hidden_deg"] = kDegrees * view.hidden_rad;
+        figures["hidden_deg"] = kDegreesPerRadian * view.hidden_rad;
     }
     if (view.outline) {
         figures["outline"] = {{"rms_px", view.outline->rms_px},
@@ -56,7 +55,7 @@ Json figures_of(const EnvironmentMeasurement& report) {
     if (report.views.front().ball) {
         figures["ball_reflectance"] = json_from(report.reflectance);
     } else {
-        figures["marks_residual_deg"] = kDegrees * report.marks_residual_rad;
+        figures["marks_residual_deg"] = kDegreesPerRadian * report.marks_residual_rad;
     }
     return figures;
 }

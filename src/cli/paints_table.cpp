@@ -32,7 +32,7 @@ std::string whole(const glm::dvec3& v) {
     return fmt::format("{}, {}, {}", rounded(v.x), rounded(v.y), rounded(v.z));
 }
 
-Json numbers(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+Json lab_numbers(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
 }  // namespace
 
@@ -130,8 +130,8 @@ Json json_of(const ListedPaint& paint) {
     json["origin"] = origin_of(material);
     json["aspecular_deg"] = kAspecularAngles_deg;
     json["lab"] = Json::array();
-    for (const glm::dvec3& lab : paint.figures.lab) json["lab"].push_back(numbers(lab));
-    json["lab_45"] = numbers(paint.figures.lab[kFaceAngle]);
+    for (const glm::dvec3& lab : paint.figures.lab) json["lab"].push_back(lab_numbers(lab));
+    json["lab_45"] = lab_numbers(paint.figures.lab[kFaceAngle]);
     json["flop_index"] = paint.figures.flop ? Json(*paint.figures.flop) : Json(nullptr);
     json["gloss_20"] = paint.figures.gloss_20;
     json["gloss_60"] = paint.figures.gloss_60;

@@ -35,6 +35,11 @@ struct Photograph {
     std::vector<std::string> kept_as;
 };
 
+/// File units: what is brighter counts as saturated.
+inline double saturation_limit(const Photograph& photograph) {
+    return photograph.black_level + 0.98 * (photograph.saturates_at - photograph.black_level);
+}
+
 /// Linear camera colour per second: (value - black_level) / exposure_s.
 inline double linear_from_file_units(const Photograph& photograph, double value) {
     return (value - photograph.black_level) / photograph.exposure_s;

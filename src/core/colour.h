@@ -23,6 +23,10 @@ const glm::dmat3& xyz_from_working();
 const glm::dmat3& working_from_xyz();
 const glm::dmat3& working_from_rec709();
 const glm::dmat3& rec709_from_working();
+/// CIE Y of a colour of the working space.
+inline double luminance_of_working(const glm::dvec3& working) {
+    return (xyz_from_working() * working).y;
+}
 
 /// CIE 1976 L*a*b*; both arguments on the same scale.
 glm::dvec3 lab_from_xyz(glm::dvec3 xyz, glm::dvec3 white_xyz);

@@ -61,4 +61,11 @@ std::string printable(std::string_view text, std::size_t longest) {
     return out;
 }
 
+std::string_view trimmed(std::string_view text) {
+    constexpr std::string_view kEnds = " \t\r";
+    const std::size_t begin = text.find_first_not_of(kEnds);
+    if (begin == std::string_view::npos) return {};
+    return text.substr(begin, text.find_last_not_of(kEnds) + 1 - begin);
+}
+
 }  // namespace livery

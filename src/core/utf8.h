@@ -21,4 +21,7 @@ void append_code_point(std::string& text, char32_t point);
 std::string printable(std::string_view text,
                       std::size_t longest = std::numeric_limits<std::size_t>::max());
 
+/// Without the spaces, tabs and carriage returns at its ends; a part of `text`.
+std::string_view trimmed(std::string_view text);
+
 }  // namespace livery

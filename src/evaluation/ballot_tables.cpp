@@ -12,6 +12,8 @@ namespace livery {
 
 namespace {
 
+using What = LogEntry::What;
+
 /// Everything that is recorded, from the log or from the tables, to be compared.
 struct Books {
     using Ballot = std::tuple<int, int, int, std::string, int>;  // choices, time, log entry
@@ -49,7 +51,6 @@ std::string name_in(const LogEntry& seat) { return seat.best != 0 ? std::string(
 
 /// `file` is named where an entry's text cannot be read.
 void apply(Books& books, const LogEntry& entry, const std::string& file) {
-    using What = LogEntry::What;
     switch (entry.what) {
         case What::session:
             books.sessions[entry.session] = entry.at;

@@ -16,12 +16,6 @@ namespace {
 constexpr std::string_view kPaperSeat = "paper ";
 constexpr std::string_view kBlanks = " \t\r";
 
-std::string_view trimmed(std::string_view text) {
-    const std::size_t begin = text.find_first_not_of(kBlanks);
-    if (begin == std::string_view::npos) return {};
-    return text.substr(begin, text.find_last_not_of(kBlanks) + 1 - begin);
-}
-
 /// The number that the text is and nothing else; nothing for more than four digits.
 std::optional<int> number_of(std::string_view text) {
     int number = 0;

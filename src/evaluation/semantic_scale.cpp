@@ -40,12 +40,6 @@ void check_word(const std::string& word) {
     if (word.front() == ' ' || word.back() == ' ') refuse("white space around a word");
 }
 
-std::string trimmed(std::string_view text) {
-    const std::size_t begin = text.find_first_not_of(" \t");
-    if (begin == std::string_view::npos) return "";
-    return std::string(text.substr(begin, text.find_last_not_of(" \t") - begin + 1));
-}
-
 }  // namespace
 
 SemanticScale parse_scale(std::string_view text) {
@@ -53,7 +47,8 @@ SemanticScale parse_scale(std::string_view text) {
     check_argument(comma != std::string_view::npos,
                    "scale: found \"" + printable(text, 60) +
                        "\", expected two words with a comma between, as \"cheap,precious\"");
-    SemanticScale scale{trimmed(text.substr(0, comma)), trimmed(text.substr(comma + 1))};
+    SemanticScale scale{std::string(trimmed(text.substr(0, comma))),
+                        std::string(trimmed(text.substr(comma + 1)))};
     check_scale(scale);
     return scale;
 }

@@ -23,7 +23,7 @@ constexpr std::size_t kLargestFile = std::size_t{1} << 30u;
 /// While fewer have come it is said how many, not which are missing.
 constexpr double kShareToName = 0.6;
 /// Of the files that were exposed otherwise; after so many it is all of them.
-constexpr std::size_t kMostNamed = 12;
+constexpr std::size_t kMostNamedCaptures = 12;
 
 Capture capture_of(const std::filesystem::path& file) {
     Capture capture;
@@ -61,7 +61,7 @@ std::string text_of(const WatchedState& state) {
     text += fmt::format("; {} were exposed otherwise than the others ({}):",
                         state.exposed_otherwise.size(),
                         text_of(state.usual_exposure));
-    const std::size_t named = std::min(state.exposed_otherwise.size(), kMostNamed);
+    const std::size_t named = std::min(state.exposed_otherwise.size(), kMostNamedCaptures);
     for (std::size_t k = 0; k < named; ++k)
         text += fmt::format(" {} {:+.1f} stops,",
                             state.exposed_otherwise[k].file,

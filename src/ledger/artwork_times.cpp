@@ -9,7 +9,7 @@ namespace livery {
 
 namespace {
 
-constexpr int kRepeats = 7;
+constexpr int kArtworkRepeats = 7;
 
 struct ArtworkKind {
     std::string name;
@@ -78,7 +78,7 @@ ArtworkTimes measure_artwork(RadianceRenderer& renderer,
     for (const ArtworkKind& kind : kinds()) {
         Scene with = scene;
         std::vector<double> more;
-        for (int k = 0; k < kRepeats; ++k) {
+        for (int k = 0; k < kArtworkRepeats; ++k) {
             progress.check_stop();
             // Another place each time, so that its cover is solved; then another exposure, which
             // shades both anew and solves nothing.

@@ -28,7 +28,6 @@ namespace {
 
 constexpr const char* kBench = "default";
 constexpr const char* kLook = "blue-metallic";
-constexpr double kDesignWhitePercentile = 20.0;
 
 /// What the program believes: where the projector stands and how its lens is, and the mesh.
 struct Belief {

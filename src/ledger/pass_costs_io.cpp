@@ -37,7 +37,7 @@ std::string level_name(const PassCost& cost) {
 }
 
 /// None: this version has no such level.
-std::optional<int> level_of(const PassId& pass, const std::string& name) {
+std::optional<int> numbered_level_of(const PassId& pass, const std::string& name) {
     const auto effect = effect_of(pass);
     if (!effect) return name.empty() ? std::optional(0) : std::nullopt;
     const std::vector<EffectLevel>& levels = effect_info(*effect).levels;
@@ -136,7 +136,7 @@ std::optional<std::vector<PassCost>> parse_pass_costs(const std::string& text,
             cost.fragments_per_pixel = entry["fragments_per_pixel"].number_between(0.01, 1e3);
         }
         if (!pass) continue;  // another version's: no plan of this one lists it
-        const auto its_level = level_of(*pass, level);
+        const auto its_level = numbered_level_of(*pass, level);
         if (!its_level) continue;
         cost.pass = *pass;
         cost.level = *its_level;

@@ -10,6 +10,7 @@
 #include "appearance/model_table.h"
 #include "compensation/compensation.h"
 #include "compensation/gpu_pass.h"
+#include "core/elapsed.h"
 #include "core/parallel.h"
 #include "jobs/synthetic_calibration.h"
 #include "ledger/accuracy/truth.h"
@@ -26,10 +27,6 @@ namespace livery {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double milliseconds_since(Clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 LedgerLevel worked_level_of(const std::string& name, std::vector<double> ms, double work_items) {
     LedgerLevel level = level_of(name, std::move(ms));

@@ -11,9 +11,8 @@
 namespace livery {
 namespace {
 
-constexpr double kLeft = 78.0, kRight = 742.0, kTop = 96.0, kBottom = 548.0;
+constexpr double kPlotLeft = 78.0, kPlotRight = 742.0, kPlotTop = 96.0, kPlotBottom = 548.0;
 constexpr double kLabelHeight = 40.0, kRefresh_ms = 1000.0 / 60.0;
-constexpr const char* kInk = "#1d2430";
 
 struct PlottedSeries {
     SwapStage stage;
@@ -29,13 +28,13 @@ std::string grid(const LogAxis& x, const LogAxis& y) {
     std::string svg = svg_grid(x, y, "pixels of the mock-up in the projector's picture", "ms");
     if (kRefresh_ms > y.low && kRefresh_ms < y.high) {
         const double at = y.at(kRefresh_ms);
-        svg += svg_line(kLeft,
+        svg += svg_line(kPlotLeft,
                         at,
-                        kRight,
+                        kPlotRight,
                         at,
                         "stroke=\"#b3261e\" stroke-width=\"1\" stroke-dasharray=\"2 4\"");
         svg += svg_text(
-            kLeft + 8.0, at - 6.0, "one refresh at 60 Hz", "font-size=\"12\" fill=\"#b3261e\"");
+            kPlotLeft + 8.0, at - 6.0, "one refresh at 60 Hz", "font-size=\"12\" fill=\"#b3261e\"");
     }
     return svg;
 }
@@ -75,16 +74,16 @@ std::string draw(const PlottedSeries& series,
         "stroke-width=\"0.8\" opacity=\"0.6\"/>\n",
         x.at(last) + 8.0,
         end,
-        kRight + 6.0,
+        kPlotRight + 6.0,
         series.label_px,
-        kRight + 14.0,
+        kPlotRight + 14.0,
         series.label_px,
         series.colour);
-    svg += svg_text(kRight + 20.0,
+    svg += svg_text(kPlotRight + 20.0,
                     series.label_px - 2.0,
                     series.name,
                     fmt::format("font-size=\"14\" font-weight=\"600\" fill=\"{}\"", series.colour));
-    svg += svg_text(kRight + 20.0,
+    svg += svg_text(kPlotRight + 20.0,
                     series.label_px + 15.0,
                     fmt::format("{:.1f} ns a pixel · slope {:.2f} · R² {:.3f}",
                                 series.law.typical_ns,
@@ -102,7 +101,7 @@ void place_labels(std::vector<PlottedSeries>& all, const LogAxis& y, double pixe
     std::sort(all.begin(), all.end(), [](const PlottedSeries& a, const PlottedSeries& b) {
         return a.label_px < b.label_px;
     });
-    double free_from = kTop + 6.0;
+    double free_from = kPlotTop + 6.0;
     for (PlottedSeries& series : all) {
         series.label_px = std::max(series.label_px, free_from);
         free_from = series.label_px + kLabelHeight;
@@ -137,7 +136,7 @@ std::string sweep_svg(const std::vector<SweepPoint>& sweep) {
     add(SwapStage::correction, all_threads, "#d55e00", false);
     add(SwapStage::mixing, all_threads, "#009e73", false);
 
-    LogAxis x{1e12, 0.0, kLeft, kRight - 14.0}, y{1e12, 0.0, kBottom, kTop};
+    LogAxis x{1e12, 0.0, kPlotLeft, kPlotRight - 14.0}, y{1e12, 0.0, kPlotBottom, kPlotTop};
     for (const SweepPoint& point : sweep) {
         x.low = std::min(x.low, point.pixels);
         x.high = std::max(x.high, point.pixels);

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "compensation/compensation.h"
+#include "core/elapsed.h"
 #include "core/parallel.h"
 #include "jobs/synthetic_calibration.h"
 #include "radiance/renderer.h"
@@ -17,10 +18,6 @@ namespace livery {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double milliseconds_since(Clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 constexpr std::array kCoverages{0.01, 0.05, 0.15, 0.39, 0.60};
 constexpr std::array<std::array<int, 2>, 5> kSizes{

@@ -9,7 +9,6 @@ namespace livery {
 namespace {
 
 constexpr double kWidth = 1000.0, kHeight = 620.0, kTitleLeft = 28.0;
-constexpr const char* kInk = "#1d2430";
 constexpr const char* kSoft = "#66707f";
 
 /// 10 000 as 10k, 2 000 000 as 2M.

@@ -7,6 +7,8 @@
 
 namespace livery {
 
+inline constexpr const char* kInk = "#1d2430";
+
 /// From `low` to `high` along the picture.
 struct LogAxis {
     double low, high, begin_px, end_px;

@@ -11,7 +11,7 @@ namespace livery {
 
 namespace {
 
-constexpr int kSwaps = 7;
+constexpr int kTranslucentSwaps = 7;
 
 struct Timed {
     double frame_ms = 0.0, pass_ms = 0.0;
@@ -55,7 +55,7 @@ TranslucentTimes measure_translucent(RadianceRenderer& renderer,
         Scene worn = scene;
         std::vector<double> swaps;
         std::vector<double> first;
-        for (int k = 0; k <= kSwaps; ++k) {
+        for (int k = 0; k <= kTranslucentSwaps; ++k) {
             progress.check_stop();
             TranslucentMaterial medium = large;
             medium.sigma_a_per_mm *= 1.0 + 0.1 * k;

@@ -16,7 +16,7 @@ namespace livery {
 namespace {
 
 /// Rises when a calibration on the same bench comes out differently.
-constexpr int kVersion = 5;
+constexpr int kReuseVersion = 5;
 constexpr const char* kNote = "bench.json";
 constexpr std::size_t kLargestNamedFile_bytes = std::size_t{1} << 30u;
 
@@ -58,7 +58,7 @@ class FileHasher {
 
 std::string bench_key(const std::string& bench, const Product& product) {
     Hasher hasher;
-    hasher.add(fmt::format("{} {}\n", kVersion, LIVERY_VERSION));
+    hasher.add(fmt::format("{} {}\n", kReuseVersion, LIVERY_VERSION));
     FileHasher(hasher).add(read_bench_file(bench).file);
     hasher.add(shape_hash(product.mesh));
     for (const Part& part : product.mesh.parts) hasher.add(part.name + "\n");

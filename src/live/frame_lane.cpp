@@ -15,6 +15,7 @@
 #include "appearance/measured/measured_paint.h"
 #include "appearance/model_table.h"
 #include "appearance/subsurface/translucent_paint.h"
+#include "core/elapsed.h"
 #include "core/error.h"
 #include "jobs/picture.h"
 
@@ -23,10 +24,6 @@ namespace livery {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double milliseconds_since(Clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 /// On a thread of its own that gives way, waited for: a thread's priority only goes down, and this
 /// one has frames to draw afterwards.

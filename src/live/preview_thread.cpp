@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "core/elapsed.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "core/worker.h"
@@ -41,10 +42,6 @@ struct SwatchRequest {
     std::function<void(const Image8&)> on_drawn;
     std::optional<Thumbnail> look;
 };
-
-double milliseconds_since(Clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 void check(const PreviewDescription& description) {
     const Scene& scene = description.scene;

@@ -18,7 +18,7 @@ namespace livery {
 namespace {
 
 /// Rises when what is kept, or how it is worked out from a calibration, changes.
-constexpr int kVersion = 3;
+constexpr int kSetupVersion = 3;
 
 /// Values one after the other into bytes.
 class Writer {
@@ -169,7 +169,7 @@ std::string setup_cache_name(const std::filesystem::path& calibration,
     if (error) throw FileError(calibration, "", error.message(), "a folder that can be read");
     std::sort(files.begin(), files.end());
     Hasher hasher;
-    hasher.add(fmt::format("{} {} {}", kVersion, design_white_percentile, to_string(gamut)));
+    hasher.add(fmt::format("{} {} {}", kSetupVersion, design_white_percentile, to_string(gamut)));
     hasher.add_bytes(mockup.values.data(), mockup.values.size());
     for (const auto& file : files) {
         hasher.add(file.filename().string());

@@ -23,7 +23,7 @@ namespace livery {
 namespace {
 
 /// Grows whenever swatches come to look different.
-constexpr int kVersion = 3;
+constexpr int kSwatchVersion = 3;
 constexpr double kFov_rad = 0.2;
 
 View swatch_view(const Bounds& bounds, int size_px) {
@@ -94,7 +94,7 @@ Image8 SwatchPainter::paint(const Material& material, int size_px) {
 
 std::filesystem::path swatch_file(const Material& material, int size_px) {
     Hasher hasher;
-    const std::array integers{kVersion, size_px};
+    const std::array integers{kSwatchVersion, size_px};
     hasher.add(std::span<const int>(integers));
     hasher.add(std::span<const double>(reflectance_numbers(material)));
     return user_folder() / "swatches" / (hasher.hex() + ".png");

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kBehind = 1.0, kInFront = 1.0 / 3.0;
 constexpr std::size_t kThicknesses = 13;
-constexpr double kOutline = 0.96;  ///< of the square, as the spheres of other paints
+constexpr double kSphereShare = 0.96;  ///< of the square, as the spheres of other paints
 
 /// Linear Rec.709 at thicknesses in equal ratios.
 std::array<glm::dvec3, kThicknesses> wedge_of(const TranslucentMaterial& material) {
@@ -46,7 +46,7 @@ Image8 translucent_swatch(const Material& translucent, int size_px) {
                    fmt::format("paint '{}' is not translucent", translucent.name));
     const auto wedge = wedge_of(*translucent.medium);
     Image8 swatch(size_px, size_px, 4);
-    const double middle = 0.5 * size_px, radius = kOutline * middle;
+    const double middle = 0.5 * size_px, radius = kSphereShare * middle;
     for (int y = 0; y < size_px; ++y) {
         for (int x = 0; x < size_px; ++x) {
             const double across = x + 0.5 - middle, down = y + 0.5 - middle;

@@ -30,7 +30,7 @@ std::size_t size_of(int component_type) {
 }
 
 template <typename T>
-double load(const char* bytes) {
+double native(const char* bytes) {
     T value;
     std::memcpy(&value, bytes, sizeof value);
     return static_cast<double>(value);
@@ -39,17 +39,17 @@ double load(const char* bytes) {
 double load_component(int type, const char* bytes) {
     switch (type) {
         case byte:
-            return load<std::int8_t>(bytes);
+            return native<std::int8_t>(bytes);
         case ubyte:
-            return load<std::uint8_t>(bytes);
+            return native<std::uint8_t>(bytes);
         case int16:
-            return load<std::int16_t>(bytes);
+            return native<std::int16_t>(bytes);
         case uint16:
-            return load<std::uint16_t>(bytes);
+            return native<std::uint16_t>(bytes);
         case uint32:
-            return load<std::uint32_t>(bytes);
+            return native<std::uint32_t>(bytes);
         default:
-            return load<float>(bytes);
+            return native<float>(bytes);
     }
 }
 

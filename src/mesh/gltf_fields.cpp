@@ -165,8 +165,8 @@ constexpr Member kSampler[] = {whole("wrapS", 0, 65535), whole("wrapT", 0, 65535
 constexpr Member kImage[] = {text("uri"), text("mimeType"), index("bufferView", "bufferViews")};
 
 constexpr Member kVariant[] = {required(text("name"))};
-constexpr Member kVariants[] = {required(objects("variants", kVariant))};
-constexpr Member kExtensions[] = {object("KHR_materials_variants", kVariants)};
+constexpr Member kVariantsMembers[] = {required(objects("variants", kVariant))};
+constexpr Member kExtensions[] = {object("KHR_materials_variants", kVariantsMembers)};
 constexpr Member kRoot[] = {objects("buffers", kBuffer),
                             objects("bufferViews", kBufferView),
                             objects("accessors", kAccessor),

@@ -38,10 +38,6 @@ bool has_extension(const tinygltf::Material& material, std::string_view name) {
     return material.extensions.contains(std::string(name));
 }
 
-double number_or(const tinygltf::Value& object, const char* key, double otherwise) {
-    return object.Has(key) ? object.Get(key).GetNumberAsDouble() : otherwise;
-}
-
 /// What a material has that no paint of ours takes, by name.
 std::vector<std::string> dropped(const tinygltf::Material& material) {
     std::vector<std::string> names;
@@ -204,6 +200,10 @@ std::optional<Material> paint_in_extras(const GltfFile& gltf,
 }
 
 }  // namespace
+
+double number_or(const tinygltf::Value& object, const char* key, double otherwise) {
+    return object.Has(key) ? object.Get(key).GetNumberAsDouble() : otherwise;
+}
 
 GltfSurface surface_of(const tinygltf::Material& material) {
     const tinygltf::PbrMetallicRoughness& pbr = material.pbrMetallicRoughness;

@@ -10,6 +10,7 @@
 #include "core/utf8.h"
 #include "mesh/because.h"
 #include "mesh/gltf_parts.h"
+#include "mesh/gltf_words.h"
 
 namespace livery {
 
@@ -46,14 +47,12 @@ struct MaterialGroup {
     std::vector<std::size_t> primitives;
 };
 
-const char* const kVariants = "KHR_materials_variants";
-
 /// Which material a primitive has in which variant. Throws FileError: two in one.
 std::map<int, int> variants_of(const GltfFile& gltf,
                                const tinygltf::Primitive& primitive,
                                const std::string& field) {
     std::map<int, int> materials;
-    const auto extension = primitive.extensions.find(kVariants);
+    const auto extension = primitive.extensions.find(kVariantsExtension);
     if (extension == primitive.extensions.end()) return materials;
     const tinygltf::Value& mappings = extension->second.Get("mappings");
     for (int m = 0; m < static_cast<int>(mappings.Size()); ++m) {
@@ -63,7 +62,8 @@ std::map<int, int> variants_of(const GltfFile& gltf,
             const int material = mappings.Get(m).Get("material").GetNumberAsInt();
             if (materials.try_emplace(variant, material).second) continue;
             gltf.fail(
-                fmt::format("{}.extensions.{}.mappings[{}].variants[{}]", field, kVariants, m, k),
+                fmt::format(
+                    "{}.extensions.{}.mappings[{}].variants[{}]", field, kVariantsExtension, m, k),
                 fmt::format("the variant {} a second time", variant),
                 "one material a variant");
         }
@@ -141,7 +141,7 @@ const std::string& first_of(const std::string& a, const std::string& b, const st
 
 std::vector<std::string> variant_names(const tinygltf::Model& model) {
     std::vector<std::string> names;
-    const auto extension = model.extensions.find(kVariants);
+    const auto extension = model.extensions.find(kVariantsExtension);
     if (extension == model.extensions.end()) return names;
     const tinygltf::Value& variants = extension->second.Get("variants");
     UniqueNames unique;

@@ -14,7 +14,6 @@ namespace {
 
 constexpr double kMmPerMetre = 1000.0;
 /// A thousand kilometres: beyond, float coordinates are no longer a product.
-constexpr double kFarthestMm = 1e9;
 
 using Notes = std::vector<std::string>;
 

@@ -10,6 +10,7 @@
 #include <glm/common.hpp>
 
 #include "mesh/gltf_parts.h"
+#include "mesh/gltf_words.h"
 
 namespace livery {
 
@@ -20,7 +21,7 @@ using Notes = std::vector<std::string>;
 /// Paints side by side on one part.
 constexpr std::size_t kMostPaints = 12;
 /// Of all paints' pictures of a file: half a gigabyte.
-constexpr std::size_t kMostTexels = 1u << 25u;
+constexpr std::size_t kMostWornTexels = 1u << 25u;
 /// What changes by less, of 1, is even.
 constexpr double kEven = 0.015;
 /// Slope parameters, the squares of roughnesses, of paints that are mixed.
@@ -35,10 +36,6 @@ struct Use {
     GltfUvs uvs;
     std::shared_ptr<const ArtworkPicture> picture{};
 };
-
-double number_or(const tinygltf::Value& object, const char* key, double otherwise) {
-    return object.Has(key) ? object.Get(key).GetNumberAsDouble() : otherwise;
-}
 
 glm::dvec2 pair_or(const tinygltf::Value& object, const char* key, const glm::dvec2& otherwise) {
     if (!object.Has(key)) return otherwise;
@@ -378,7 +375,7 @@ void wear_pictures(const GltfFile& gltf,
     if (first) material.uvs = first->uvs;
     if (!texels.base && texels.axes.empty()) return;
 
-    choose_grid(texels, kMostTexels / textured_materials(gltf.model));
+    choose_grid(texels, kMostWornTexels / textured_materials(gltf.model));
     if (texels.base) {
         glm::dvec3 sum(0.0);
         for (std::size_t i = 0; i < texels.count(); ++i) {

@@ -11,6 +11,9 @@ namespace livery {
 /// Of a material's extras: the text of a material file.
 inline constexpr const char* kPaintInExtras = "livery_paint";
 
+/// The extension that says which paints a primitive may wear.
+inline constexpr const char* kVariantsExtension = "KHR_materials_variants";
+
 /// A material's metallic-roughness values with those extensions that paints are read from.
 struct GltfWords {
     GltfSurface surface;
@@ -19,6 +22,9 @@ struct GltfWords {
     bool grain_across = false;       ///< turned by a right angle
     bool whole = false;              ///< they say all of the paint
 };
+
+/// A member's number, or `otherwise` where there is none.
+double number_or(const tinygltf::Value& object, const char* key, double otherwise);
 
 /// What comes nearest to a paint.
 GltfWords words_of(const Material& paint);

@@ -18,7 +18,6 @@ namespace livery {
 namespace {
 
 using Value = tinygltf::Value;
-constexpr const char* kVariants = "KHR_materials_variants";
 constexpr float kMetresPerMm = 1e-3f;
 
 /// Numbers appended to the one buffer, with a view and an accessor of their own.
@@ -170,7 +169,7 @@ std::string gltf_bytes(const Mesh& mesh,
         for (const MeshLook& look : looks) worn.push_back(materials.of(look.part_materials[part]));
         tinygltf::Primitive primitive = part_primitive(model, mesh, part);
         primitive.material = worn.front();
-        primitive.extensions[kVariants] = mappings_of(worn);
+        primitive.extensions[kVariantsExtension] = mappings_of(worn);
         tinygltf::Mesh own;
         own.name = mesh.parts[part].name;
         own.primitives.push_back(std::move(primitive));
@@ -185,9 +184,10 @@ std::string gltf_bytes(const Mesh& mesh,
     for (const MeshLook& look : looks) {
         names.emplace_back(Value::Object{{"name", Value(look.name)}});
     }
-    model.extensions[kVariants] = Value(Value::Object{{"variants", Value(std::move(names))}});
+    model.extensions[kVariantsExtension] =
+        Value(Value::Object{{"variants", Value(std::move(names))}});
     model.extensionsUsed.assign(materials.extensions().begin(), materials.extensions().end());
-    model.extensionsUsed.emplace_back(kVariants);
+    model.extensionsUsed.emplace_back(kVariantsExtension);
     model.scenes.push_back(std::move(scene));
     model.defaultScene = 0;
 

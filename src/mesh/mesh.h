@@ -18,6 +18,9 @@
 
 namespace livery {
 
+/// Positions in files lie nearer than this, or the file is refused.
+inline constexpr double kFarthestMm = 1e9;
+
 struct Part {
     std::string name;
     std::string material_name;            ///< as the file names it; may be empty

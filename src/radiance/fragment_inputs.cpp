@@ -11,10 +11,6 @@
 namespace livery {
 namespace {
 
-bool same_disc(const DirectionalLight& a, const DirectionalLight& b) {
-    return a.direction == b.direction && a.angle_rad == b.angle_rad;
-}
-
 /// Whether what was filtered of one serves the other: filters know neither rotation nor scale.
 bool same_map(const std::shared_ptr<const Environment>& a,
               const std::shared_ptr<const Environment>& b) {

@@ -10,11 +10,10 @@
 #include "core/colour.h"
 #include "core/mutation.h"
 #include "radiance/fragment_inputs.h"
+#include "radiance/largest_half.h"
 
 namespace livery {
 namespace {
-
-constexpr float kHalfLargest = 65000.0f;
 
 /// Into the fragment's own frame: tangent, across, mean normal.
 glm::vec3 to_local(const Fragment& f, const glm::vec3& direction) {
@@ -120,7 +119,7 @@ void FragmentInputs::upload_sky() {
                                                          0.0f);
             }
         }
-        return glm::vec4(glm::min(sum, glm::vec3(kHalfLargest)), 1.0f);
+        return glm::vec4(glm::min(sum, glm::vec3(kLargestHalf)), 1.0f);
     };
     upload_packed(shading_.sky, 0, light_on);
 }
@@ -156,7 +155,7 @@ void FragmentInputs::upload_diffuse_light() {
             sum +=
                 radiance_working(light.light) * (light.at[i].visibility * std::max(cosine, 0.0f));
         }
-        return glm::vec4(glm::min(sum, glm::vec3(kHalfLargest)), 1.0f);
+        return glm::vec4(glm::min(sum, glm::vec3(kLargestHalf)), 1.0f);
     };
     upload_packed(shading_.lit, 0, light_on);
 }

@@ -6,12 +6,12 @@
 #include <utility>
 
 #include "core/parallel.h"
+#include "radiance/largest_half.h"
 #include "radiance/light/mirrored_environment.h"
 
 namespace livery {
 namespace {
 
-constexpr float kHalfLargest = 65000.0f;
 /// Numbers that are kept of a part: a quarter of a gigabyte.
 constexpr std::size_t kMostKept = std::size_t{1} << 26u;
 /// Less than anybody sees between two pixels, or while they are dragged.
@@ -26,7 +26,7 @@ std::vector<bool> parts_of(const MirrorInputs::LayersOfParts& layers) {
 
 /// Half floats hold the radiance in units in which the brightest texel fits.
 float unit_of(const MirrorInputs::Light& light, float largest) {
-    return std::max(1.0f, largest * static_cast<float>(light.environment->scale) / kHalfLargest);
+    return std::max(1.0f, largest * static_cast<float>(light.environment->scale) / kLargestHalf);
 }
 
 Texel load(const std::vector<float>& texels, std::size_t k) {

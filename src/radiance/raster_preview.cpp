@@ -16,13 +16,13 @@
 #include "gl/read_back.h"
 #include "radiance/artwork_textures.h"
 #include "radiance/glints.h"
+#include "radiance/largest_half.h"
 #include "radiance/light/environment_filter.h"
 #include "radiance/shading.h"
 
 namespace livery {
 namespace {
 
-constexpr float kHalfLargest = 65000.0f;
 constexpr std::size_t kMostTriangles = 1u << 24u;  // that floats count exactly
 constexpr int kMostRows = 16384;                   // of a texture
 
@@ -231,7 +231,7 @@ RasterPreview::State::State(std::shared_ptr<const Product> its_product, int supe
 void RasterPreview::State::upload_layers(const FilteredEnvironment& filtered) {
     const ImageF& sharpest = filtered.mirrored.front();
     const float largest = *std::max_element(sharpest.values.begin(), sharpest.values.end());
-    const float unit = std::max(1.0f, largest / kHalfLargest);
+    const float unit = std::max(1.0f, largest / kLargestHalf);
     layers_unit = unit;
     layers =
         Texture2D({sharpest.width, sharpest.height, static_cast<int>(filtered.mirrored.size())},

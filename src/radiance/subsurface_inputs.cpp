@@ -18,13 +18,13 @@ bool same_medium(const TranslucentMaterial& a, const TranslucentMaterial& b) {
            a.sigma_s_prime_per_mm == b.sigma_s_prime_per_mm && a.g == b.g && a.eta == b.eta;
 }
 
-bool same(const std::optional<TranslucentMaterial>& a,
-          const std::optional<TranslucentMaterial>& b) {
+bool same_or_none(const std::optional<TranslucentMaterial>& a,
+                  const std::optional<TranslucentMaterial>& b) {
     return a.has_value() == b.has_value() && (!a || same_medium(*a, *b));
 }
 
 bool same_media(const Media& a, const Media& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), same);
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), same_or_none);
 }
 
 bool same_light(const SubsurfaceInputs::Wanted& a, const SubsurfaceInputs::Wanted& b) {

@@ -14,8 +14,6 @@ namespace livery {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /// Right-handed, third column `n` (Duff et al. 2017).
 glm::dmat3 frame_around(const glm::dvec3& n) {
     const double sign = std::copysign(1.0, n.z);
@@ -41,12 +39,12 @@ int find_step(const double* begin, const double* end, double u, double& within) 
 DiscLight::DiscLight(const DirectionalLight& light)
     : world_from_light_(frame_around(glm::normalize(light.direction))) {
     const glm::dvec3 radiance = working_from_rec709() * light.radiance_rec709;
-    irradiance_ = LIVERY_MUTATED(reference_point_lamp, glm::vec3(kPi * radiance));
-    const double radius = std::min(0.5 * light.angle_rad, 0.5 * kPi);
+    irradiance_ = LIVERY_MUTATED(reference_point_lamp, glm::vec3(std::numbers::pi * radiance));
+    const double radius = std::min(0.5 * light.angle_rad, 0.5 * std::numbers::pi);
     if (radius <= 0.0) return;
     const double half_sine = std::sin(0.5 * radius);
     one_minus_cos_ = 2.0 * half_sine * half_sine;
-    solid_angle_ = 2.0 * kPi * one_minus_cos_;
+    solid_angle_ = 2.0 * std::numbers::pi * one_minus_cos_;
     // A disc of radiance L lights a plane that faces it with pi L sin^2 of its radius.
     radiance_ =
         LIVERY_MUTATED(reference_lamp, glm::vec3(radiance / (std::sin(radius) * std::sin(radius))));
@@ -55,7 +53,7 @@ DiscLight::DiscLight(const DirectionalLight& light)
 LightSample DiscLight::sample(glm::vec2 u) const {
     const double height = static_cast<double>(u.x) * one_minus_cos_;
     const double sine = std::sqrt(height * (2.0 - height));
-    const double phi = 2.0 * kPi * static_cast<double>(u.y);
+    const double phi = 2.0 * std::numbers::pi * static_cast<double>(u.y);
     const glm::dvec3 local(sine * std::cos(phi), sine * std::sin(phi), 1.0 - height);
     return {
         glm::vec3(world_from_light_ * local), radiance_, static_cast<float>(1.0 / solid_angle_)};
@@ -78,9 +76,9 @@ EnvironmentSampler::EnvironmentSampler(const Environment* environment) : environ
     row_sum_.reserve(static_cast<std::size_t>(map.height));
     column_sum_.reserve(map.pixel_count());
     for (int y = 0; y < map.height; ++y) {
-        const double solid_angle =
-            2.0 * kPi / map.width *
-            (std::cos(kPi * y / map.height) - std::cos(kPi * (y + 1) / map.height));
+        const double solid_angle = 2.0 * std::numbers::pi / map.width *
+                                   (std::cos(std::numbers::pi * y / map.height) -
+                                    std::cos(std::numbers::pi * (y + 1) / map.height));
         double row = 0.0;
         for (int x = 0; x < map.width; ++x) {
             row += importance(x, y) * solid_angle;
@@ -118,11 +116,11 @@ LightSample EnvironmentSampler::sample(glm::vec2 u) const {
     const int x = find_step(columns, columns + map.width, static_cast<double>(u.x), within_column);
     LightSample light = of_pixel(x, y);
     // Uniform over the pixel's solid angle: even steps of the polar cosine
-    const double top = std::cos(kPi * y / map.height);
-    const double bottom = std::cos(kPi * (y + 1) / map.height);
+    const double top = std::cos(std::numbers::pi * y / map.height);
+    const double bottom = std::cos(std::numbers::pi * (y + 1) / map.height);
     const double polar = std::acos(std::clamp(top + within_row * (bottom - top), -1.0, 1.0));
-    light.direction =
-        glm::vec3(direction_from_uv(*environment_, {(x + within_column) / map.width, polar / kPi}));
+    light.direction = glm::vec3(direction_from_uv(
+        *environment_, {(x + within_column) / map.width, polar / std::numbers::pi}));
     return light;
 }
 

@@ -16,7 +16,6 @@ namespace livery {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kMostScatterings = 100'000;
 
 double largest(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
@@ -31,7 +30,7 @@ void basis(const glm::dvec3& n, glm::dvec3& u, glm::dvec3& v) {
 /// Henyey and Greenstein (1941).
 double phase(double g, double cosine) {
     const double square = 1.0 + g * g - 2.0 * g * cosine;
-    return (1.0 - g * g) / (4.0 * kPi * square * std::sqrt(square));
+    return (1.0 - g * g) / (4.0 * std::numbers::pi * square * std::sqrt(square));
 }
 
 glm::dvec3 scattered(double g, const glm::dvec3& direction, Random& random) {
@@ -42,7 +41,7 @@ glm::dvec3 scattered(double g, const glm::dvec3& direction, Random& random) {
         cosine = std::clamp((1.0 + g * g - part * part) / (2.0 * g), -1.0, 1.0);
     }
     const double sine = std::sqrt(std::max(0.0, (1.0 - cosine) * (1.0 + cosine)));
-    const double angle = 2.0 * kPi * random.uniform();
+    const double angle = 2.0 * std::numbers::pi * random.uniform();
     glm::dvec3 a, b;
     basis(direction, a, b);
     return glm::normalize(sine * std::cos(angle) * a + sine * std::sin(angle) * b +

@@ -18,8 +18,8 @@ namespace {
 
 constexpr std::size_t kMaxJsonBytes = std::size_t{256} << 20u;
 
-constexpr int kFormatVersion = 1;
-constexpr int kLargestSide = 16384;
+constexpr int kCalibrationVersion = 1;
+constexpr int kLargestPlaneSide = 16384;
 constexpr double kHuge = 1e300;
 
 const std::vector<std::string> kMatrixNames{
@@ -199,7 +199,7 @@ void read_residuals(const JsonReader& field, ColourCalibration& c) {
 void write_calibration(const std::filesystem::path& folder, const ColourCalibration& c) {
     check_complete(c);
     Json json;
-    json["format_version"] = kFormatVersion;
+    json["format_version"] = kCalibrationVersion;
     json["kind"] = "colour calibration";
     json["id"] = c.id;
     json["created"] = c.created;
@@ -271,7 +271,7 @@ ColourCalibration read_calibration(const std::filesystem::path& folder) {
 ColourCalibration parse_calibration(const std::string& text, const std::filesystem::path& file) {
     const Json json = parse_json(text, file);
     const JsonReader root(file, json);
-    root.require_format_version(kFormatVersion);
+    root.require_format_version(kCalibrationVersion);
     if (const auto kind = root["kind"]; kind.text() != "colour calibration") {
         kind.fail(kind.found(), "\"colour calibration\"");
     }
@@ -300,8 +300,8 @@ ColourCalibration parse_calibration(const std::string& text, const std::filesyst
         root["mode"].fail(root["mode"].found(), "\"paper\" or \"robust\"");
     }
     c.made_with = root["made_with"].text();
-    c.width = root["width"].integer(1, kLargestSide);
-    c.height = root["height"].integer(1, kLargestSide);
+    c.width = root["width"].integer(1, kLargestPlaneSide);
+    c.height = root["height"].integer(1, kLargestPlaneSide);
     c.dark_drive = root["dark_drive"].number_between(0.0, 255.0);
     c.bright_drive = root["bright_drive"].number_between(c.dark_drive, 255.0);
     const auto response = root["response"];

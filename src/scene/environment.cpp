@@ -20,7 +20,6 @@ namespace livery {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 /// 8192 x 4096: larger maps bring nothing to a mock-up and take gigabytes.
 constexpr std::size_t kMaxPixels = std::size_t{1} << 25u;
 
@@ -117,17 +116,17 @@ std::optional<std::string> environment_problem(const EnvironmentReference& refer
 glm::dvec2 uv_from_direction(const Environment& environment, const glm::dvec3& direction) {
     const glm::dvec3 d = glm::normalize(direction);
     const double azimuth = std::atan2(d.x, -d.z) + environment.rotation_rad;
-    double u = azimuth / (2.0 * kPi) + 0.5;
+    double u = azimuth / (2.0 * std::numbers::pi) + 0.5;
     u -= std::floor(u);
     // atan2 stays exact near the poles, where acos(y) loses half of the digits.
-    const double v = std::atan2(std::hypot(d.x, d.z), d.y) / kPi;
+    const double v = std::atan2(std::hypot(d.x, d.z), d.y) / std::numbers::pi;
     constexpr double below_one = 0x1.fffffffffffffp-1;
     return {std::min(u, below_one), std::min(v, below_one)};
 }
 
 glm::dvec3 direction_from_uv(const Environment& environment, const glm::dvec2& uv) {
-    const double azimuth = 2.0 * kPi * (uv.x - 0.5) - environment.rotation_rad;
-    const double polar = kPi * uv.y;
+    const double azimuth = 2.0 * std::numbers::pi * (uv.x - 0.5) - environment.rotation_rad;
+    const double polar = std::numbers::pi * uv.y;
     return {
         std::sin(polar) * std::sin(azimuth), std::cos(polar), -std::sin(polar) * std::cos(azimuth)};
 }

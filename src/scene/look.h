@@ -26,6 +26,11 @@ struct DirectionalLight {
     bool operator==(const DirectionalLight&) const = default;
 };
 
+/// Whether two lights stand in the same place at the same size, whatever their radiance.
+inline bool same_disc(const DirectionalLight& a, const DirectionalLight& b) {
+    return a.direction == b.direction && a.angle_rad == b.angle_rad;
+}
+
 /// Of length 1. What already is, to rounding, comes back as it is: writing and reading a light
 /// again and again never moves it.
 glm::dvec3 unit_direction(const glm::dvec3& direction);

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 
 #include <glm/geometric.hpp>
 
@@ -11,8 +12,7 @@ namespace livery {
 
 namespace {
 
-constexpr int kFormatVersion = 1;
-constexpr double kPi = 3.14159265358979323846;
+constexpr int kLookVersion = 1;
 
 DirectionalLight read_light(const JsonReader& field) {
     field.allow_only({"type", "direction", "radiance", "angle_rad"});
@@ -26,7 +26,8 @@ DirectionalLight read_light(const JsonReader& field) {
     }
     light.direction = unit_direction(light.direction);
     light.radiance_rec709 = vec3_within(field["radiance"], 1e6);
-    if (field.has("angle_rad")) light.angle_rad = field["angle_rad"].number_between(0.0, kPi);
+    if (field.has("angle_rad"))
+        light.angle_rad = field["angle_rad"].number_between(0.0, std::numbers::pi);
     return light;
 }
 
@@ -132,7 +133,7 @@ Look read_look_file(const std::filesystem::path& file) {
 Look parse_look(const std::string& text, const std::filesystem::path& file) {
     const Json json = parse_json(text, file);
     const JsonReader root(file, json);
-    root.require_format_version(kFormatVersion);
+    root.require_format_version(kLookVersion);
     root.allow_only({"format_version",
                      "name",
                      "parts",
@@ -149,7 +150,7 @@ Look parse_look(const std::string& text, const std::filesystem::path& file) {
 
 void write_look_file(const std::filesystem::path& file, const Look& look) {
     Json json;
-    json["format_version"] = kFormatVersion;
+    json["format_version"] = kLookVersion;
     json.update(json_of(look));
     write_json_file(file, json);
 }

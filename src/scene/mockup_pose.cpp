@@ -11,7 +11,7 @@ namespace livery {
 
 namespace {
 
-constexpr int kFormatVersion = 1;
+constexpr int kPoseVersion = 1;
 
 }  // namespace
 
@@ -22,7 +22,7 @@ MockupPose read_pose_file(const std::filesystem::path& file) {
 MockupPose parse_mockup_pose(const std::string& text, const std::filesystem::path& file) {
     const Json json = parse_json(text, file);
     const JsonReader root(file, json);
-    root.require_format_version(kFormatVersion);
+    root.require_format_version(kPoseVersion);
     root.allow_only({"format_version",
                      "kind",
                      "product",
@@ -55,7 +55,7 @@ MockupPose parse_mockup_pose(const std::string& text, const std::filesystem::pat
 
 void write_pose_file(const std::filesystem::path& file, const MockupPose& pose) {
     Json json = json_of(pose.camera_from_product);
-    json["format_version"] = kFormatVersion;
+    json["format_version"] = kPoseVersion;
     json["kind"] = "pose";
     json["product"] = pose.product;
     json["method"] = pose.method;

@@ -9,7 +9,7 @@ namespace livery {
 
 namespace {
 
-constexpr int kFormatVersion = 1;
+constexpr int kRoomVersion = 1;
 constexpr double kFarthest_px = 1e6;
 
 std::size_t read_count(const JsonReader& field) {
@@ -25,7 +25,7 @@ RoomGeometry read_room_file(const std::filesystem::path& file) {
 RoomGeometry parse_room(const std::string& text, const std::filesystem::path& file) {
     const Json json = parse_json(text, file);
     const JsonReader root(file, json);
-    root.require_format_version(kFormatVersion);
+    root.require_format_version(kRoomVersion);
     root.allow_only({"format_version",
                      "kind",
                      "projector",
@@ -65,7 +65,7 @@ RoomGeometry parse_room(const std::string& text, const std::filesystem::path& fi
 
 void write_room_file(const std::filesystem::path& file, const RoomGeometry& room) {
     write_json_file(file,
-                    {{"format_version", kFormatVersion},
+                    {{"format_version", kRoomVersion},
                      {"kind", "room"},
                      {"projector", json_of(room.projector)},
                      {"camera", json_of(room.camera)},

@@ -7,7 +7,7 @@ namespace livery {
 
 namespace {
 
-constexpr int kFormatVersion = 1;
+constexpr int kViewVersion = 1;
 constexpr int kLargestSide = 65536;
 
 }  // namespace
@@ -42,7 +42,7 @@ View parse_camera(const std::string& text, const std::filesystem::path& file) {
     const Json json = parse_json(text, file);
     const JsonReader root(file, json);
     // The bare OpenCV form of other programs has no version; ours always writes one.
-    if (root.has("format_version")) root.require_format_version(kFormatVersion);
+    if (root.has("format_version")) root.require_format_version(kViewVersion);
     root.allow_only({"format_version",
                      "name",
                      "width",
@@ -55,7 +55,7 @@ View parse_camera(const std::string& text, const std::filesystem::path& file) {
 }
 
 void write_camera_file(const std::filesystem::path& file, const View& view) {
-    Json json = {{"format_version", kFormatVersion}};
+    Json json = {{"format_version", kViewVersion}};
     json.update(json_of(view));
     write_json_file(file, json);
 }

@@ -18,7 +18,7 @@ namespace livery {
 namespace {
 
 // 2 has seats. What has none is written as before, for programs from before there were any.
-constexpr int kFormatVersion = 2, kWithoutSeats = 1;
+constexpr int kDocumentVersion = 2, kWithoutSeats = 1;
 constexpr int kLargestId = std::numeric_limits<int>::max() - 1;
 
 /// A text that can be shown; a mistake is told of its field.
@@ -84,7 +84,7 @@ void read_paints(const JsonReader& list, Document& document) {
 Json json_of(const Document& document) {
     Json json = Json::object();
     const bool seats = !document.seats.empty() || document.eye_choice != EyeChoice{};
-    json["format_version"] = seats ? kFormatVersion : kWithoutSeats;
+    json["format_version"] = seats ? kDocumentVersion : kWithoutSeats;
     json["product"] = document.product;
     if (document.product_unit) json["product_unit"] = to_string(*document.product_unit);
     json["looks"] = Json::array();
@@ -108,7 +108,7 @@ Json json_of(const Document& document) {
 }
 
 Document read_document(const JsonReader& root) {
-    root.require_format_version(kFormatVersion);
+    root.require_format_version(kDocumentVersion);
     root.allow_only({"format_version",
                      "product",
                      "product_unit",

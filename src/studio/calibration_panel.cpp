@@ -26,12 +26,12 @@ namespace livery {
 
 namespace {
 
-constexpr double kBetweenListings_s = 2.0;
+constexpr double kBetweenCalibrations_s = 2.0;
 
 void list_what_there_is(Studio& studio) {
     CalibrationPanelState& state = *studio.panels.calibration;
     const bool recently =
-        state.listed_at_s >= 0.0 && studio.now_s - state.listed_at_s < kBetweenListings_s;
+        state.listed_at_s >= 0.0 && studio.now_s - state.listed_at_s < kBetweenCalibrations_s;
     if (recently) return;
     state.listed_at_s = studio.now_s;
     state.list_problem.clear();

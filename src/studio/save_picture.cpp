@@ -23,10 +23,10 @@ namespace {
 
 enum What { preview, wanted_exr, wanted_png, projector_input, photograph };
 
-struct Choice {
+struct SavedAs {
     const char *label, *name, *suffix, *help;
 };
-constexpr std::array<Choice, 5> kChoices = {{
+constexpr std::array<SavedAs, 5> kSavedAs = {{
     {"Preview", "preview", ".png", "The product as in the preview, sRGB."},
     {"Wanted light, exact",
      "wanted",
@@ -103,7 +103,7 @@ int what_is_on_stage(const Shell& shell) {
 }
 
 std::string suggested_name(const Shell& shell, int what) {
-    const Choice& choice = kChoices[static_cast<std::size_t>(what)];
+    const SavedAs& choice = kSavedAs[static_cast<std::size_t>(what)];
     const auto* look = find_look(shell.studio.session.document(), shell.studio.shown_look);
     const std::string name = look ? file_name_of(look->look.name) : "picture";
     return fmt::format("{}-{}{}", name, choice.name, choice.suffix);
@@ -132,13 +132,13 @@ void save(Shell& shell, int what, const std::filesystem::path& file) {
 }
 
 void use_choice(const Shell& shell, int what, FileQuestion& question) {
-    question.suffixes = {kChoices[static_cast<std::size_t>(what)].suffix};
+    question.suffixes = {kSavedAs[static_cast<std::size_t>(what)].suffix};
     question.suggested = question.suggested.parent_path() / suggested_name(shell, what);
 }
 
 void draw_choices(const Shell& shell, int& what, FileQuestion& question) {
-    for (int i = 0; i < static_cast<int>(kChoices.size()); ++i) {
-        const Choice& choice = kChoices[static_cast<std::size_t>(i)];
+    for (int i = 0; i < static_cast<int>(kSavedAs.size()); ++i) {
+        const SavedAs& choice = kSavedAs[static_cast<std::size_t>(i)];
         if (ImGui::RadioButton(choice.label, what == i)) {
             what = i;
             use_choice(shell, what, question);

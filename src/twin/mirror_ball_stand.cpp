@@ -18,7 +18,7 @@ namespace livery {
 
 namespace {
 
-constexpr double kCamera_mm = 800.0, kTurn_deg = 110.0;
+constexpr double kBallCamera_mm = 800.0, kTurn_deg = 110.0;
 constexpr double kShownPart = 0.75;
 constexpr int kRings = 180;  ///< of the mesh: its outline is round to a hundredth of a pixel
 
@@ -85,11 +85,11 @@ glm::dvec3 metal_reflectance(const MetalIndex& metal, double cosine) {
 
 MirrorBallStand usual_mirror_ball_stand(const CameraDescription& camera, int size_px, int count) {
     MirrorBallStand stand;
-    const double half = std::asin(0.5 * stand.diameter_mm / kCamera_mm);
+    const double half = std::asin(0.5 * stand.diameter_mm / kBallCamera_mm);
     for (int k = 0; k < count; ++k) {
         const double turn = std::numbers::pi / 180.0 * kTurn_deg * k;
         CameraDescription one = camera;
-        one.view = look_at(kCamera_mm * glm::dvec3(std::sin(turn), 0.0, std::cos(turn)),
+        one.view = look_at(kBallCamera_mm * glm::dvec3(std::sin(turn), 0.0, std::cos(turn)),
                            {0.0, 0.0, 0.0},
                            2.0 * std::atan(std::tan(half) / kShownPart),
                            size_px,

@@ -9,7 +9,7 @@ namespace livery {
 
 namespace {
 
-constexpr int kNewestVersion = 1;
+constexpr int kNewestPaintVersion = 1;
 
 Spectrum column(const std::filesystem::path& file, const SpectrumTable& table, const char* name) {
     const auto found = std::find(table.names.begin(), table.names.end(), name);
@@ -44,7 +44,7 @@ SpectralPaint read_spectral_paint(const std::filesystem::path& file_or_name) {
 SpectralPaint parse_spectral_paint(const std::string& text, const std::filesystem::path& file) {
     const Json content = parse_json(text, file);
     const JsonReader json(file, content);
-    json.require_format_version(kNewestVersion);
+    json.require_format_version(kNewestPaintVersion);
     json.allow_only({"format_version",
                      "kind",
                      "name",

@@ -22,7 +22,7 @@ TEST(DirectionalAlbedo, GgxOfAlphaOneAndF0OneAtNormalIncidenceIsOneMinusLogTwo) 
     EXPECT_NEAR(albedo, 1.0 - std::numbers::ln2, 3e-5);
 }
 
-class Energy : public testing::TestWithParam<ReflectanceModel> {};
+class Energy : public ::testing::TestWithParam<ReflectanceModel> {};
 
 TEST_P(Energy, NeverExceedsOneWhereItIsClaimed) {
     const ModelInfo& model = model_info(GetParam());
@@ -136,7 +136,7 @@ TEST_P(Energy, LightFromAllAroundIsWeightedByTheAlbedo) {
     EXPECT_LT(std::abs(layer.mean()), 0.015);
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, Energy, testing::ValuesIn(all_models()), prefix_of);
+INSTANTIATE_TEST_SUITE_P(Models, Energy, ::testing::ValuesIn(all_models()), prefix_of);
 
 TEST(DirectionalAlbedo, StaysWithinOneForStretchedLobes) {
     for (const double alpha : {1e-3, 0.05, 0.3}) {

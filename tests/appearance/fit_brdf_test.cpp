@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "appearance/bsdf.h"
+#include "appearance/everywhere.h"
 #include "appearance/fit/fit_search.h"
 #include "appearance/measured/measured_reflectance.h"
 #include "core/colour.h"
@@ -21,8 +22,6 @@
 
 namespace livery {
 namespace {
-
-bool everywhere(const DirectionPair&) { return true; }
 
 /// A model's own values, with noise of 2% on each channel.
 FitSamples noisy_samples(const Material& material, unsigned seed) {

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "appearance/bsdf.h"
+#include "appearance/everywhere.h"
 #include "appearance/fit/fit_brdf.h"
 #include "appearance/measured/measured_reflectance.h"
 #include "core/colour.h"
@@ -55,8 +56,6 @@ std::vector<std::string> chosen(std::vector<std::string> names, std::size_t few)
     if (!thorough()) names.resize(few);
     return names;
 }
-
-bool everywhere(const DirectionPair&) { return true; }
 
 void print(const std::string& name, const BrdfFit& fit) {
     std::printf("    %-24s CIEDE2000 %.2f, 95%% %.1f, log error %.3f, albedo %.2f, %.1f s\n",

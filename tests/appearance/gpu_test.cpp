@@ -21,7 +21,7 @@ struct Cases {
     std::vector<glm::vec3> wi, wo;
 };
 
-class OnTheGpu : public testing::TestWithParam<ReflectanceModel> {
+class OnTheGpu : public ::testing::TestWithParam<ReflectanceModel> {
   protected:
     static Texture2D texture_of(const std::vector<glm::vec3>& vectors) {
         std::vector<float> texels;
@@ -145,7 +145,7 @@ TEST(PreparedFields, AreAllOfThePreparedNumbers) {
     EXPECT_EQ(fields.back().name, "entry.path");
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, OnTheGpu, testing::ValuesIn(all_models()), prefix_of);
+INSTANTIATE_TEST_SUITE_P(Models, OnTheGpu, ::testing::ValuesIn(all_models()), prefix_of);
 
 }  // namespace
 }  // namespace livery

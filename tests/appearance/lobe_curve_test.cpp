@@ -11,8 +11,6 @@
 namespace livery {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 Material ggx(double alpha) {
     Material material;
     material.model = ReflectanceModel::ggx;
@@ -23,10 +21,10 @@ Material ggx(double alpha) {
 }
 
 TEST(LobeCurve, RunsFromHorizonToHorizonInOrder) {
-    for (const double light : {0.0, 0.4, 1.2, 0.5 * kPi}) {
+    for (const double light : {0.0, 0.4, 1.2, 0.5 * std::numbers::pi}) {
         const auto curve = lobe_curve(ggx(0.3), light);
-        EXPECT_LT(curve.front().theta_o_rad, -0.499 * kPi);
-        EXPECT_GT(curve.back().theta_o_rad, 0.499 * kPi);
+        EXPECT_LT(curve.front().theta_o_rad, -0.499 * std::numbers::pi);
+        EXPECT_GT(curve.back().theta_o_rad, 0.499 * std::numbers::pi);
         EXPECT_TRUE(std::is_sorted(curve.begin(), curve.end(), [](const auto& a, const auto& b) {
             return a.theta_o_rad < b.theta_o_rad;
         }));
@@ -40,7 +38,7 @@ TEST(LobeCurve, OfADiffuserIsFlat) {
     Material material;
     material.diffuse = {0.5, 0.5, 0.5};
     for (const LobePoint& point : lobe_curve(material, 0.7)) {
-        EXPECT_NEAR(point.value.y, 0.5 / kPi, 1e-12);
+        EXPECT_NEAR(point.value.y, 0.5 / std::numbers::pi, 1e-12);
     }
 }
 

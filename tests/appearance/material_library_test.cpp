@@ -17,7 +17,7 @@ namespace livery {
 namespace {
 
 /// Each test has a home of its own.
-class UsersLibrary : public testing::Test {
+class UsersLibrary : public ::testing::Test {
   protected:
     UsersLibrary() {
         const char* home = std::getenv("LIVERY_HOME");

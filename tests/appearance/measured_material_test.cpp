@@ -14,7 +14,7 @@
 namespace livery {
 namespace {
 
-class MeasuredMaterial : public testing::Test {
+class MeasuredMaterial : public ::testing::Test {
   protected:
     std::filesystem::path measurement(const std::string& name, const std::string& rgb) const {
         std::string text = "theta_i,phi_i,theta_o,phi_o,r,g,b\n";

@@ -23,7 +23,7 @@ inline std::vector<ReflectanceModel> all_models() {
 }
 
 /// For the names of parametrised tests.
-inline std::string prefix_of(const testing::TestParamInfo<ReflectanceModel>& info) {
+inline std::string prefix_of(const ::testing::TestParamInfo<ReflectanceModel>& info) {
     return model_info(info.param).prefix;
 }
 

@@ -60,7 +60,7 @@ std::vector<double> expected_shares(ReflectanceModel model,
     return shares;
 }
 
-class Sampling : public testing::TestWithParam<ReflectanceModel> {};
+class Sampling : public ::testing::TestWithParam<ReflectanceModel> {};
 
 TEST_P(Sampling, ChiSquareAgainstTheDensity) {
     Random random(17);
@@ -146,7 +146,7 @@ TEST_P(Sampling, WeightsAverageToTheAlbedoForNarrowLobesToo) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, Sampling, testing::ValuesIn(all_models()), prefix_of);
+INSTANTIATE_TEST_SUITE_P(Models, Sampling, ::testing::ValuesIn(all_models()), prefix_of);
 
 }  // namespace
 }  // namespace livery

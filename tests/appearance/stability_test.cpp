@@ -15,7 +15,7 @@
 namespace livery {
 namespace {
 
-class Stability : public testing::TestWithParam<ReflectanceModel> {};
+class Stability : public ::testing::TestWithParam<ReflectanceModel> {};
 
 TEST_P(Stability, IsTheSameWithLightAndEyeExchanged) {
     if (!model_info(GetParam()).reciprocal) GTEST_SKIP() << "not claimed";
@@ -123,7 +123,7 @@ TEST(ParametersOutOfRange, AreRefusedNotANumberIncluded) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, Stability, testing::ValuesIn(all_models()), prefix_of);
+INSTANTIATE_TEST_SUITE_P(Models, Stability, ::testing::ValuesIn(all_models()), prefix_of);
 
 }  // namespace
 }  // namespace livery

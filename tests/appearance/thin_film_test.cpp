@@ -17,8 +17,6 @@
 namespace livery {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 double between_bands(const Spectrum& spectrum, double wavelength_nm) {
     const double at = (wavelength_nm - kSpectrumFirst_nm) / kSpectrumStep_nm;
     const auto k = std::min(static_cast<std::size_t>(at), spectrum.size() - 2);
@@ -42,7 +40,7 @@ double airy(const Layers& n, double film_nm, double sine, double wavelength_nm, 
         return (a - b) / (a + b);
     };
     const double front = amplitude(n.coat, n.film), back = amplitude(n.film, n.base);
-    const double phase = 4.0 * kPi * n.film * film_nm * cosine(n.film) / wavelength_nm;
+    const double phase = 4.0 * std::numbers::pi * n.film * film_nm * cosine(n.film) / wavelength_nm;
     const std::complex<double> turn = std::polar(1.0, phase);
     return std::norm((front + back * turn) / (1.0 + front * back * turn));
 }
@@ -90,7 +88,7 @@ double colour_difference(const glm::dvec3& a, const glm::dvec3& b) {
 // angles and both polarisations.
 TEST(ThinFilm, ColoursAreThoseOfAirysFormula) {
     for (const double degrees : {0.0, 45.0, 75.0}) {
-        const double sine = std::sin(degrees * kPi / 180.0);
+        const double sine = std::sin(degrees * std::numbers::pi / 180.0);
         std::vector<double> errors, colours;
         for (const double base : {1.58, 2.0, 3.5, 12.0}) {
             for (const double film : {1.3, 1.8, 2.3, 2.7}) {

@@ -22,13 +22,13 @@ const Solids& solids_of_product(const std::string& name) {
     return place->second;
 }
 
-class Products : public testing::TestWithParam<const char*> {
+class Products : public ::testing::TestWithParam<const char*> {
   protected:
     const Solids& solids() const { return solids_of_product(GetParam()); }
 };
 INSTANTIATE_TEST_SUITE_P(Shipped,
                          Products,
-                         testing::Values("car", "player", "sphere"),
+                         ::testing::Values("car", "player", "sphere"),
                          [](const auto& product) { return std::string(product.param); });
 
 TEST_P(Products, AreWatertight) {

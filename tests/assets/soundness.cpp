@@ -57,7 +57,7 @@ void find_shells(Solids& solids) {
     solids.shells = static_cast<int>(shells.size());
 }
 
-using Box = CGAL::Box_intersection_d::
+using TriangleBox = CGAL::Box_intersection_d::
     Box_with_handle_d<double, 3, std::vector<std::uint32_t>::const_iterator>;
 
 /// Calls `visit` for each pair of triangles whose boxes, `margin_mm` larger, overlap.
@@ -65,7 +65,7 @@ template <typename Visit>
 void for_close_pairs(const Solids& solids, double margin_mm, Visit&& visit) {
     std::vector<std::uint32_t> index(solids.triangles.size());
     std::iota(index.begin(), index.end(), 0u);
-    std::vector<Box> boxes;
+    std::vector<TriangleBox> boxes;
     for (auto k = index.cbegin(); k != index.cend(); ++k) {
         const auto& t = solids.triangles[*k];
         auto low = solids.points_mm[t.x], high = low;
@@ -80,9 +80,10 @@ void for_close_pairs(const Solids& solids, double margin_mm, Visit&& visit) {
         }
         boxes.emplace_back(lo.data(), hi.data(), k);
     }
-    CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& a, const Box& b) {
-        visit(*a.handle(), *b.handle());
-    });
+    CGAL::box_self_intersection_d(
+        boxes.begin(), boxes.end(), [&](const TriangleBox& a, const TriangleBox& b) {
+            visit(*a.handle(), *b.handle());
+        });
 }
 
 /// Corners of `t` in an order that starts with those that `other` has too; how many these are.

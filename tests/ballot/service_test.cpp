@@ -14,7 +14,7 @@ using Json = nlohmann::json;
 
 constexpr double kNow = 1'700'000'000.0;
 
-class BallotServiceTest : public testing::Test {
+class BallotServiceTest : public ::testing::Test {
   protected:
     BallotServiceTest()
         : file_(folder_ / "ballots.sqlite"),

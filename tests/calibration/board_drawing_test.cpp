@@ -20,7 +20,6 @@ namespace {
 
 using testing::charuco_board;
 using testing::chessboard;
-using testing::message_of;
 
 /// From the page's upper left, millimetres; later ones cover earlier ones.
 struct Bar {

@@ -19,18 +19,14 @@ using testing::board_scene;
 using testing::BoardScene;
 using testing::chessboard;
 using testing::photographs_of;
+using testing::search_board;
 
-constexpr Board kBoard{9, 7, 75.0};
-
-SightSearch search(const std::vector<RoledPhotograph>& photographs, const Board& board = kBoard) {
-    const auto decoded = decode_gray_code(photographs, 256, 192);
-    return search_sight(photographs, decoded.projector_px, board);
-}
+constexpr Board kChessboard{9, 7, 75.0};
 
 /// What is said of a pose that cannot be used.
 std::string reason_of(const std::vector<RoledPhotograph>& photographs,
-                      const Board& board = kBoard) {
-    const SightSearch found = search(photographs, board);
+                      const Board& board = kChessboard) {
+    const SightSearch found = search_board(photographs, board);
     EXPECT_FALSE(found.sight.has_value());
     std::printf("    %s\n", found.reason.c_str());
     return found.reason;
@@ -75,7 +71,7 @@ TEST(BoardSight, CornersAreWhereTheBoardsAre) {
                                    glm::dvec3(0, -0.5, 0.1),
                                    glm::dvec3(0, 0, 3.1)}) {
         const BoardScene scene = board_scene(turn);
-        const SightSearch found = search(photographs_of(scene));
+        const SightSearch found = search_board(photographs_of(scene), kChessboard);
         ASSERT_TRUE(found.sight) << found.reason;
         EXPECT_EQ(found.corners, 63u);
         const auto [camera_px, projector_px] = worst_errors(scene, *found.sight);
@@ -122,7 +118,7 @@ TEST(BoardSight, BlurIsNamed) {
         auto photographs = photographs_of(board_scene({0.3, 0.1, 0}));
         const auto decoded = decode_gray_code(photographs, 256, 192);
         for (RoledPhotograph& one : photographs) blur(one.photograph.image, sigma);
-        const SightSearch found = search_sight(photographs, decoded.projector_px, kBoard);
+        const SightSearch found = search_sight(photographs, decoded.projector_px, kChessboard);
         std::printf("    %s\n", found.reason.c_str());
         EXPECT_FALSE(found.sight.has_value());
         EXPECT_TRUE(holds(found.reason, "blurred")) << sigma;
@@ -130,7 +126,7 @@ TEST(BoardSight, BlurIsNamed) {
     }
     auto photographs = photographs_of(board_scene({0.3, 0.1, 0}));
     for (RoledPhotograph& one : photographs) blur(one.photograph.image, 1.5);
-    EXPECT_TRUE(search(photographs).sight.has_value());
+    EXPECT_TRUE(search_board(photographs, kChessboard).sight.has_value());
 }
 
 TEST(BoardSight, EdgesOfKnownWidthAreMeasured) {
@@ -155,7 +151,7 @@ TEST(BoardSight, ABoardThatMovedDuringTheCodeIsNamed) {
         for (std::size_t k = 0; k < mixed.size(); ++k)
             if (mixed[k].role != "white" && mixed[k].role != "black") mixed[k] = after[k];
         const auto decoded = decode_gray_code(mixed, 256, 192);
-        const SightSearch found = search_sight(mixed, decoded.projector_px, kBoard);
+        const SightSearch found = search_sight(mixed, decoded.projector_px, kChessboard);
         std::printf("    %s\n", found.reason.c_str());
         EXPECT_TRUE(holds(found.reason, "px elsewhere in gray-")) << away_mm;
         EXPECT_TRUE(holds(found.reason, "photograph the pose again")) << away_mm;
@@ -193,7 +189,7 @@ TEST(BoardSight, AMirroredPictureIsNamed) {
 
 TEST(BoardSight, WhatIsNoSetOfPhotographsIsRefused) {
     const ImageF map(64, 64, 2);
-    EXPECT_THROW(search_sight({}, map, kBoard), FileError);
+    EXPECT_THROW(search_sight({}, map, kChessboard), FileError);
     RoledPhotograph white{"white", {}};
     white.photograph.image = ImageF(64, 64, 1, 0.5f);
     EXPECT_THROW(search_sight({white}, map, Board{2, 7, 75.0}), std::invalid_argument);

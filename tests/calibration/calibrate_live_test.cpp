@@ -14,7 +14,6 @@
 namespace livery {
 namespace {
 
-using testing::message_of;
 using testing::SyntheticBench;
 
 /// The synthetic bench behind the three ports, with a projector that may be late.

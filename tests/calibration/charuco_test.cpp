@@ -22,8 +22,9 @@ using testing::board_scene;
 using testing::BoardScene;
 using testing::charuco_board;
 using testing::photographs_of;
+using testing::search_board;
 
-constexpr Board kBoard{9, 7, 75.0, BoardKind::charuco, 52.5};
+constexpr Board kCharucoBoard{9, 7, 75.0, BoardKind::charuco, 52.5};
 
 /// The board from straight above, ten millimetres a pixel's third, one square of white around it.
 Image8 picture_of(const Board& board, int px_per_square) {
@@ -58,7 +59,7 @@ TEST(Charuco, MarkersAreThoseOfTheArucoOriginalDictionary) {
 }
 
 TEST(Charuco, OpenCVReadsTheSameBoard) {
-    for (const Board& board : {kBoard,
+    for (const Board& board : {kCharucoBoard,
                                Board{4, 6, 40.0, BoardKind::charuco, 30.0},
                                Board{6, 5, 40.0, BoardKind::charuco, 24.0}}) {
         const Image8 picture = picture_of(board, 60);
@@ -105,7 +106,7 @@ TEST(Charuco, OpenCVReadsTheSameBoard) {
 }
 
 TEST(Charuco, MarkersAreReadHoweverTheyLie) {
-    const Image8 picture = picture_of(kBoard, 40);
+    const Image8 picture = picture_of(kCharucoBoard, 40);
     for (int turns = 0; turns < 4; ++turns) {
         Image8 turned(turns % 2 ? picture.height : picture.width,
                       turns % 2 ? picture.width : picture.height,
@@ -116,7 +117,7 @@ TEST(Charuco, MarkersAreReadHoweverTheyLie) {
                 const glm::ivec2 to[] = {{x, y}, {bottom, x}, {right, bottom}, {y, right}};
                 turned.at(to[turns].x, to[turns].y) = picture.at(x, y);
             }
-        const auto corners = find_charuco(turned, kBoard);
+        const auto corners = find_charuco(turned, kCharucoBoard);
         ASSERT_EQ(corners.size(), 63u) << turns;
         for (const auto& corner : corners) EXPECT_TRUE(corner) << turns;
         // The first corner, from the upper left as it was.
@@ -124,11 +125,6 @@ TEST(Charuco, MarkersAreReadHoweverTheyLie) {
         const glm::dvec2 first[] = {{80, 80}, {h - 80, 80}, {w - 80, h - 80}, {80, w - 80}};
         EXPECT_LT(glm::distance(*corners[0], first[turns]), 0.2) << turns;
     }
-}
-
-SightSearch search(const std::vector<RoledPhotograph>& photographs, const Board& board = kBoard) {
-    const auto decoded = decode_gray_code(photographs, 256, 192);
-    return search_sight(photographs, decoded.projector_px, board);
 }
 
 /// The largest distance of the corners from where they are, camera pixels.
@@ -145,7 +141,7 @@ double worst_error(const BoardScene& scene, const BoardSight& sight) {
 /// Cells of markers are four pixels and more.
 BoardScene charuco_scene(const glm::dvec3& turn) {
     BoardScene scene = board_scene(turn);
-    scene.reflectance = charuco_board(kBoard);
+    scene.reflectance = charuco_board(kCharucoBoard);
     return scene;
 }
 
@@ -153,12 +149,12 @@ BoardScene charuco_scene(const glm::dvec3& turn) {
 TEST(Charuco, HalfHiddenBoardsAreUsable) {
     for (const glm::dvec3& turn : {glm::dvec3(0.3, 0.1, 0), glm::dvec3(-0.3, 0.4, 3.0)}) {
         BoardScene scene = charuco_scene(turn);
-        const SightSearch all = search(photographs_of(scene));
+        const SightSearch all = search_board(photographs_of(scene), kCharucoBoard);
         ASSERT_TRUE(all.sight) << all.reason;
         EXPECT_EQ(all.corners, 63u);
         const double whole_px = worst_error(scene, *all.sight);
         scene.before = [](glm::dvec2 p) { return p.x > 330.0 ? 0.1 : -1.0; };
-        const SightSearch half = search(photographs_of(scene));
+        const SightSearch half = search_board(photographs_of(scene), kCharucoBoard);
         ASSERT_TRUE(half.sight) << half.reason;
         EXPECT_GE(half.corners, 20u);
         EXPECT_LE(half.corners, 40u);
@@ -173,8 +169,8 @@ TEST(Charuco, HalfHiddenBoardsAreUsable) {
 }
 
 TEST(Charuco, WhatIsMissingIsNamed) {
-    const auto reason_of = [](const BoardScene& scene, const Board& board = kBoard) {
-        const SightSearch found = search(photographs_of(scene), board);
+    const auto reason_of = [](const BoardScene& scene, const Board& board = kCharucoBoard) {
+        const SightSearch found = search_board(photographs_of(scene), board);
         EXPECT_FALSE(found.sight.has_value());
         std::printf("    %s\n", found.reason.c_str());
         return found.reason;
@@ -200,7 +196,7 @@ TEST(Charuco, BoardsThatCannotBeAreRefused) {
                                Board{9, 7, std::nan(""), BoardKind::chessboard, 0.0},
                                Board{2, 7, 75.0}})
         EXPECT_THROW(check_board(wrong), std::invalid_argument);
-    EXPECT_TRUE(find_charuco(grey, kBoard).empty());
+    EXPECT_TRUE(find_charuco(grey, kCharucoBoard).empty());
 }
 
 }  // namespace

@@ -14,7 +14,6 @@
 namespace livery {
 namespace {
 
-using testing::message_of;
 using testing::SyntheticBench;
 
 std::vector<Pattern> patterns_of(const SyntheticBench& bench,

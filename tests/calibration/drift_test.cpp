@@ -12,7 +12,7 @@
 namespace livery {
 namespace {
 
-constexpr int kWidth = 480, kHeight = 320;
+constexpr int kCameraWidth = 480, kCameraHeight = 320;
 
 /// A lit disc with waves of light on it, as smooth as a lens leaves them; moved by `by`.
 double light_at(double x, double y, glm::dvec2 by) {
@@ -31,10 +31,10 @@ struct Then {
 DriftReference seen(const Then& at) {
     Random random(at.seed, 3);
     Photograph white, black;
-    white.image = ImageF(kWidth, kHeight, 3);
-    black.image = ImageF(kWidth, kHeight, 3);
-    for (int y = 0; y < kHeight; ++y)
-        for (int x = 0; x < kWidth; ++x)
+    white.image = ImageF(kCameraWidth, kCameraHeight, 3);
+    black.image = ImageF(kCameraWidth, kCameraHeight, 3);
+    for (int y = 0; y < kCameraHeight; ++y)
+        for (int x = 0; x < kCameraWidth; ++x)
             for (int c = 0; c < 3; ++c) {
                 const auto noise = [&] { return at.noise * (2.0 * random.uniform() - 1.0); };
                 const double light = at.light * light_at(x, y, at.moved);
@@ -102,7 +102,7 @@ TEST(Drift, RefusesWhatCannotBeCompared) {
         flat.white.values[i] = flat.black.values[i] + 0.5f;
     EXPECT_NE(message_of([&] { drift_between(flat, flat); }).find("detail"), std::string::npos);
     DriftReference other = then();
-    other.white = ImageF(kWidth / 2, kHeight / 2, 1);
+    other.white = ImageF(kCameraWidth / 2, kCameraHeight / 2, 1);
     EXPECT_THROW(drift_between(then(), other), FileError);
 }
 

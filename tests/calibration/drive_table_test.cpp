@@ -14,7 +14,6 @@
 namespace livery {
 namespace {
 
-using testing::message_of;
 using LightOf = std::function<glm::dvec3(glm::dvec3 u)>;
 
 glm::dvec3 channel_light(const std::array<std::uint8_t, 3>& drive) {

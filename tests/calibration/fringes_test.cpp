@@ -18,7 +18,6 @@ namespace livery {
 namespace {
 
 using testing::FringeScene;
-using testing::message_of;
 
 constexpr auto kBoth = PlaceCode::gray_and_phase;
 

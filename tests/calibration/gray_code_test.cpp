@@ -13,7 +13,6 @@
 namespace livery {
 namespace {
 
-using testing::message_of;
 using testing::SyntheticBench;
 
 SyntheticBench small_bench() {

@@ -9,14 +9,15 @@
 #include <gtest/gtest.h>
 
 #include "calibration/environment/ball_outline.h"
+#include "calibration/support/degree.h"
 #include "core/random.h"
 #include "support/message_of.h"
 
 namespace livery {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegree = kPi / 180.0;
+using testing::kDegree;
+
 const Sphere kBall{{12.0, -7.0, 20.0}, 90.0};
 
 View camera(double distance_mm = 600.0) {
@@ -102,10 +103,10 @@ TEST(MirrorBall, HidesWhatIsBehindItAndBehindTheCamera) {
         const glm::dvec3 aside = glm::normalize(glm::cross(to_eye, glm::dvec3(0, 1, 0)));
         return std::cos(angle) * to_eye + std::sin(angle) * aside;
     };
-    EXPECT_FALSE(see(at(kPi - 0.9 * hidden)));
+    EXPECT_FALSE(see(at(std::numbers::pi - 0.9 * hidden)));
     // The outermost pixel and a half, of 150, mirror the next 20 degrees.
-    EXPECT_FALSE(see(at(kPi - hidden - 0.1)));
-    EXPECT_TRUE(see(at(kPi - hidden - 0.5)));
+    EXPECT_FALSE(see(at(std::numbers::pi - hidden - 0.1)));
+    EXPECT_TRUE(see(at(std::numbers::pi - hidden - 0.5)));
     EXPECT_TRUE(see(to_eye));
     const SeeDirection beside = seen_in_ball(view, {kBall, glm::dvec3(1.0), true, 5.0 * kDegree});
     EXPECT_FALSE(beside(to_eye));
@@ -151,7 +152,7 @@ std::vector<glm::dvec2> outline_points(const View& view, int count, double turns
     Random random(5);
     std::vector<glm::dvec2> points;
     for (int k = 0; k < count; ++k) {
-        const double turn = 2.0 * kPi * turns * k / count;
+        const double turn = 2.0 * std::numbers::pi * turns * k / count;
         const auto pixel =
             project(view, middle + touch * (std::cos(turn) * side + std::sin(turn) * up));
         points.push_back(*pixel + noise_px * glm::dvec2(random.normal(), random.normal()));

@@ -15,7 +15,6 @@
 namespace livery {
 namespace {
 
-using testing::message_of;
 using testing::SyntheticBench;
 
 ColourSamples samples_of(SyntheticBench& bench, int shots = 1) {

@@ -18,8 +18,6 @@ using testing::bench_world;
 using testing::BenchWorld;
 using testing::traced_sight;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-
 /// How the camera truly stands to the projector.
 Rigid3 true_pair(const BenchWorld& world) {
     return world.projector.view_from_world * inverse(world.camera.view_from_world);

@@ -17,9 +17,7 @@
 namespace livery {
 namespace {
 
-using testing::message_of;
-
-constexpr int kWidth = 200, kHeight = 140;
+constexpr int kProjectorWidth = 200, kProjectorHeight = 140;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 const glm::dvec3 kPeak(0.9, 1.1, 0.7);  ///< span per unit of geometry
 const glm::dvec3 kAmbient(0.011, 0.013, 0.017);
@@ -39,7 +37,7 @@ const Surface kSurfaces[] = {
 };
 
 glm::dvec3 point_of(const Surface& surface, double u, double v) {
-    const double x = (u - 0.5 * kWidth) / 400.0, y = (v - 0.5 * kHeight) / 400.0;
+    const double x = (u - 0.5 * kProjectorWidth) / 400.0, y = (v - 0.5 * kProjectorHeight) / 400.0;
     double z = 1.0;
     for (int k = 0; k < 60; ++k) z = surface.depth(x * z, y * z);
     return {x * z, y * z, z};
@@ -47,9 +45,9 @@ glm::dvec3 point_of(const Surface& surface, double u, double v) {
 
 /// cos(theta) / distance^2, by finite differences of the surface.
 ImageF geometry_of(const Surface& surface) {
-    ImageF geometry(kWidth, kHeight, 1);
-    for (int y = 0; y < kHeight; ++y) {
-        for (int x = 0; x < kWidth; ++x) {
+    ImageF geometry(kProjectorWidth, kProjectorHeight, 1);
+    for (int y = 0; y < kProjectorHeight; ++y) {
+        for (int x = 0; x < kProjectorWidth; ++x) {
             const double u = x + 0.5, v = y + 0.5, step = 1e-3;
             const glm::dvec3 p = point_of(surface, u, v);
             const glm::dvec3 across = point_of(surface, u + step, v) - p;
@@ -64,24 +62,26 @@ ImageF geometry_of(const Surface& surface) {
 
 /// 6% less light in the corners: an ordinary lens has 20% over a picture several times this wide.
 double vignetting(int x, int y) {
-    const double u = (x - 0.5 * kWidth) / kWidth, v = (y - 0.5 * kHeight) / kWidth;
+    const double u = (x - 0.5 * kProjectorWidth) / kProjectorWidth,
+                 v = (y - 0.5 * kProjectorHeight) / kProjectorWidth;
     return 1.0 - 0.16 * (u * u + v * v);
 }
 
 ColourCalibration measured_everywhere(const ImageF& geometry, std::uint64_t seed) {
     Random random(seed);
     ColourCalibration c;
-    c.width = kWidth;
-    c.height = kHeight;
+    c.width = kProjectorWidth;
+    c.height = kProjectorHeight;
     c.mixing_spread = 1.1;
-    c.unmixing = ImageF(kWidth, kHeight, 9);
-    c.dark = ImageF(kWidth, kHeight, 3);
-    c.span = ImageF(kWidth, kHeight, 3);
-    c.camera_px = ImageF(kWidth, kHeight, 2, 10.0f);
-    c.status = Image8(kWidth, kHeight, 1, static_cast<std::uint8_t>(PixelStatus::measured));
+    c.unmixing = ImageF(kProjectorWidth, kProjectorHeight, 9);
+    c.dark = ImageF(kProjectorWidth, kProjectorHeight, 3);
+    c.span = ImageF(kProjectorWidth, kProjectorHeight, 3);
+    c.camera_px = ImageF(kProjectorWidth, kProjectorHeight, 2, 10.0f);
+    c.status = Image8(
+        kProjectorWidth, kProjectorHeight, 1, static_cast<std::uint8_t>(PixelStatus::measured));
     const float unmixing[9] = {1.2f, -0.2f, 0.05f, -0.1f, 1.3f, -0.15f, 0.0f, -0.25f, 1.1f};
-    for (int y = 0; y < kHeight; ++y) {
-        for (int x = 0; x < kWidth; ++x) {
+    for (int y = 0; y < kProjectorHeight; ++y) {
+        for (int x = 0; x < kProjectorWidth; ++x) {
             const double light = static_cast<double>(geometry.at(x, y)) * vignetting(x, y);
             for (int k = 0; k < 9; ++k) c.unmixing.at(x, y, k) = unmixing[k];
             for (int k = 0; k < 3; ++k) {
@@ -112,8 +112,8 @@ std::vector<glm::ivec2> hide_disc(ColourCalibration& c) {
     constexpr PixelStatus kinds[] = {
         PixelStatus::unlit, PixelStatus::not_decoded, PixelStatus::edge, PixelStatus::too_dark};
     std::vector<glm::ivec2> hidden;
-    for (int y = 0; y < kHeight; ++y) {
-        for (int x = 0; x < kWidth; ++x) {
+    for (int y = 0; y < kProjectorHeight; ++y) {
+        for (int x = 0; x < kProjectorWidth; ++x) {
             if ((x - 130) * (x - 130) + (y - 60) * (y - 60) > 18 * 18) continue;
             c.status.at(x, y) = static_cast<std::uint8_t>(kinds[hidden.size() % 4]);
             for (int k = 0; k < 9; ++k) c.unmixing.at(x, y, k) = 0.0f;
@@ -135,8 +135,9 @@ TEST(PredictHidden, FindsTheLightOfAHiddenRegion) {
 
         EXPECT_NE(p.id, id) << surface.name;
         EXPECT_TRUE(p.warnings.empty()) << p.warnings.front();
-        EXPECT_NEAR(
-            p.predicted_fraction, static_cast<double>(hidden.size()) / (kWidth * kHeight), 1e-12);
+        EXPECT_NEAR(p.predicted_fraction,
+                    static_cast<double>(hidden.size()) / (kProjectorWidth * kProjectorHeight),
+                    1e-12);
         std::vector<double> errors;
         for (const glm::ivec2 at : hidden) {
             ASSERT_EQ(status_at(p, at.x, at.y), PixelStatus::predicted) << surface.name;
@@ -167,8 +168,8 @@ TEST(PredictHidden, LeavesMeasuredPixelsAsTheyAre) {
     ColourCalibration c = measured_everywhere(geometry, 12);
     hide(c, 40, 40, PixelStatus::edge);
     const ColourCalibration p = predict_hidden(c, geometry);
-    for (int y = 0; y < kHeight; ++y) {
-        for (int x = 0; x < kWidth; ++x) {
+    for (int y = 0; y < kProjectorHeight; ++y) {
+        for (int x = 0; x < kProjectorWidth; ++x) {
             if (x == 40 && y == 40) continue;
             ASSERT_EQ(p.span.at(x, y, 1), c.span.at(x, y, 1));
             ASSERT_EQ(p.dark.at(x, y, 1), c.dark.at(x, y, 1));
@@ -214,8 +215,8 @@ TEST(PredictHidden, NothingIsPredictedOnASurfaceThatIsNotNeutral) {
     ColourCalibration c = measured_everywhere(geometry, 15);
     hide(c, 100, 60, PixelStatus::edge);
     // A fifth of it painted: another matrix there, far over its noise.
-    for (int y = 0; y < kHeight; ++y) {
-        for (int x = 0; x < kWidth / 5; ++x) c.unmixing.at(x, y, 1) -= 0.2f;
+    for (int y = 0; y < kProjectorHeight; ++y) {
+        for (int x = 0; x < kProjectorWidth / 5; ++x) c.unmixing.at(x, y, 1) -= 0.2f;
     }
     c.mixing_spread = 40.0;
     seal(c);
@@ -245,7 +246,8 @@ TEST(PredictHidden, APoseThatDoesNotFitIsNotUsed) {
     ASSERT_EQ(p.warnings.size(), 1u);
     EXPECT_HAS(p.warnings[0], "check that pose, lens and mesh");
 
-    const ColourCalibration beside = predict_hidden(c, ImageF(kWidth, kHeight, 1));
+    const ColourCalibration beside =
+        predict_hidden(c, ImageF(kProjectorWidth, kProjectorHeight, 1));
     ASSERT_EQ(beside.warnings.size(), 1u);
     EXPECT_HAS(beside.warnings[0], "only 0 measured pixels lie on the mesh");
 }
@@ -256,8 +258,10 @@ TEST(PredictHidden, RefusesGeometryThatMakesNoSense) {
     const auto message = [&](const ImageF& wrong) {
         return message_of<std::invalid_argument>([&] { predict_hidden(c, wrong); });
     };
-    EXPECT_HAS(message(ImageF(kWidth, kHeight - 1, 1)), "geometry of 200x139 with 1 channels");
-    EXPECT_HAS(message(ImageF(kWidth, kHeight, 3)), "geometry of 200x140 with 3 channels");
+    EXPECT_HAS(message(ImageF(kProjectorWidth, kProjectorHeight - 1, 1)),
+               "geometry of 200x139 with 1 channels");
+    EXPECT_HAS(message(ImageF(kProjectorWidth, kProjectorHeight, 3)),
+               "geometry of 200x140 with 3 channels");
     ImageF wrong = geometry;
     wrong.at(3, 3) = -1.0f;
     EXPECT_HAS(message(wrong), "geometry of -1");

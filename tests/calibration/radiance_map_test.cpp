@@ -12,6 +12,7 @@
 #include "calibration/environment/map_figures.h"
 #include "calibration/environment/mirror_ball.h"
 #include "calibration/environment/panorama.h"
+#include "calibration/support/degree.h"
 #include "core/worst_error.h"
 #include "scene/look.h"
 #include "support/message_of.h"
@@ -19,8 +20,7 @@
 namespace livery {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegree = kPi / 180.0;
+using testing::kDegree;
 
 RadianceMap empty(int width) {
     return {ImageF(width, width / 2, 3),
@@ -54,7 +54,7 @@ TEST(RadianceMap, TexelsCoverAllDirectionsOnce) {
             middle += texel_sr(map, y) * texel_direction(map, x, y);
         }
     }
-    EXPECT_NEAR(sum, 4.0 * kPi, 1e-12);
+    EXPECT_NEAR(sum, 4.0 * std::numbers::pi, 1e-12);
     EXPECT_LT(glm::length(middle), 1e-10);
 }
 
@@ -239,14 +239,14 @@ TEST(MapFigures, ClippedLampsAreCountedAndSaidHowMuchTheyGive) {
     ASSERT_EQ(lamps.size(), 2u);
     EXPECT_GT(glm::dot(lamps[0].direction, seam), std::cos(0.3 * kDegree));
     EXPECT_GT(glm::dot(lamps[1].direction, other), std::cos(0.3 * kDegree));
-    const double sr = 2.0 * kPi * (1.0 - near);
+    const double sr = 2.0 * std::numbers::pi * (1.0 - near);
     EXPECT_NEAR(lamps[0].solid_angle_sr / sr, 1.0, 0.02);
     EXPECT_NEAR(lamps[0].luminance, 101.0, 0.01);
     // On a surface that faces the first: its own, even light's pi, and the other's aslant, if at
     // all.
     const double facing = sr * (1.0 + near) / 2.0;
-    const double all =
-        101.0 * facing + kPi - facing + 40.0 * facing * std::max(glm::dot(seam, other), 0.0);
+    const double all = 101.0 * facing + std::numbers::pi - facing +
+                       40.0 * facing * std::max(glm::dot(seam, other), 0.0);
     EXPECT_NEAR(lamps[0].irradiance_share, 101.0 * facing / all, 0.01);
     EXPECT_TRUE(
         clipped_lamps(seen_map(16, [](const glm::dvec3&) { return glm::dvec3(1.0); })).empty());
@@ -294,7 +294,7 @@ TEST(Panorama, MarksTellHowItWasTurned) {
     }
     EXPECT_LT(found.residual_rad, 1e-9);
     EXPECT_NEAR(orientation_of(a, mark({-4.0, 1.0, 0.5}, 5.0), 2048, 1024).residual_rad,
-                5.0 * 2.0 * kPi / 2048,
+                5.0 * 2.0 * std::numbers::pi / 2048,
                 0.01);
     EXPECT_THROW(orientation_of(a, mark({1.0, 0.2, -2.9}, 0.0), 2048, 1024), Refused);
     EXPECT_THROW(orientation_of(a, {b.pixel, {1.0, 0.5, -2.0}}, 2048, 1024), Refused);
@@ -304,7 +304,7 @@ TEST(Panorama, KeepsItsPixelsInAMapOfItsSize) {
     LightPicture picture{ImageF(128, 64, 3), Image8(128, 64, 1), Image8(128, 64, 1)};
     for (int y = 0; y < 64; ++y) {
         for (int x = 0; x < 128; ++x) {
-            const double u = 2.0 * kPi * (x + 0.5) / 128;
+            const double u = 2.0 * std::numbers::pi * (x + 0.5) / 128;
             picture.light.at(x, y, 0) = static_cast<float>(2.0 + std::sin(3.0 * u));
             picture.light.at(x, y, 1) = static_cast<float>(1.0 + y);
         }

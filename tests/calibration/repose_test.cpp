@@ -13,6 +13,7 @@
 
 #include "calibration/registration/rotation.h"
 #include "calibration/support/bench_world.h"
+#include "calibration/support/degree.h"
 #include "calibration/support/traced_stripes.h"
 #include "core/error.h"
 #include "core/statistics.h"
@@ -23,12 +24,11 @@ namespace {
 using testing::bench_world;
 using testing::drawn_errors;
 using testing::DrawnErrors;
+using testing::kDegree;
 using testing::roughened;
 using testing::traced_photographs;
 using testing::traced_sight;
 using World = testing::BenchWorld;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// A quarter of the bench's pixels.
 World half_world(const char* name) {

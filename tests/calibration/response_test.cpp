@@ -13,8 +13,6 @@
 namespace livery {
 namespace {
 
-using testing::message_of;
-
 /// Least squares over every way to cut the sequence into constant runs that rise: the optimum of
 /// isotonic regression is one of them.
 std::vector<double> brute_force_isotonic(const std::vector<double>& values,

@@ -16,7 +16,6 @@
 namespace livery {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 const Sphere kSphere{{4.0, -3.0, 12.0}, 50.0};
 
 View camera(int size_px) {
@@ -29,11 +28,11 @@ View camera(int size_px) {
 /// the half vector.
 using Paint = std::function<double(double theta_h, double theta_d)>;
 
-double chalk(double, double) { return 0.3 / kPi; }
+double chalk(double, double) { return 0.3 / std::numbers::pi; }
 /// Brighter the more grazing.
 double sheen(double, double theta_d) { return 0.05 + 0.5 * std::pow(1.0 - std::cos(theta_d), 2.0); }
 double satin(double theta_h, double) {
-    return 0.1 / kPi + 0.8 * std::exp(-theta_h * theta_h / 0.08);
+    return 0.1 / std::numbers::pi + 0.8 * std::exp(-theta_h * theta_h / 0.08);
 }
 
 /// What a lamp of strength 1e9 at `light_mm` lets the camera see a second.
@@ -78,7 +77,7 @@ LitSphere photographed(const View& view, const glm::dvec3& light_mm, const Paint
 std::vector<LitSphere> photographed_all(const View& view, const Paint& paint) {
     std::vector<LitSphere> lit;
     for (int k = 0; k < 14; ++k) {
-        const double angle = kPi / 180.0 * (5.0 + 11.0 * k), turn = 2.4 * k;
+        const double angle = std::numbers::pi / 180.0 * (5.0 + 11.0 * k), turn = 2.4 * k;
         lit.push_back(photographed(view,
                                    500.0 * glm::dvec3(std::sin(angle) * std::cos(turn),
                                                       std::sin(angle) * std::sin(turn),
@@ -141,8 +140,8 @@ TEST(SphereOutline, BoxesAreWhereTheSphereIs) {
 
 TEST(SphereReflectance, ALampsStrengthIsTheWhiteSpheres) {
     const View view = camera(240);
-    const LitSphere white =
-        photographed(view, {250.0, 0.0, 450.0}, [](double, double) { return 0.9 / kPi; });
+    const LitSphere white = photographed(
+        view, {250.0, 0.0, 450.0}, [](double, double) { return 0.9 / std::numbers::pi; });
     const LampResponse lamp = lamp_response(view, kSphere, white, glm::dvec3(0.9));
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(lamp.units[c], 1e9, 3e6);
     EXPECT_LT(lamp.rms, 0.01);
@@ -208,8 +207,8 @@ TEST(SphereReflectance, TakesVeilingLightOff) {
     std::vector<double> values;
     for (const glm::dvec3& value : measured.values) values.push_back(worst_if_nan(value.y));
     std::sort(values.begin(), values.end());
-    EXPECT_NEAR(values[values.size() / 2] / (0.3 / kPi), 1.0, 0.005);
-    EXPECT_NEAR(values[values.size() / 20] / (0.3 / kPi), 1.0, 0.03);
+    EXPECT_NEAR(values[values.size() / 2] / (0.3 / std::numbers::pi), 1.0, 0.005);
+    EXPECT_NEAR(values[values.size() / 20] / (0.3 / std::numbers::pi), 1.0, 0.03);
 }
 
 TEST(SphereReflectance, ResidualsTellOfAWrongLamp) {

@@ -24,7 +24,7 @@ struct Folder {
         write_png(folder / "000.png", Image8(4, 3, 3, 128));
         folder.write("manifest.json", manifest);
     }
-    testing::AssertionResult fails(std::initializer_list<std::string_view> parts) const {
+    ::testing::AssertionResult fails(std::initializer_list<std::string_view> parts) const {
         return fails_with([&] { read_captures_folder(folder.path()); }, parts);
     }
 };

@@ -14,7 +14,7 @@ namespace livery {
 namespace {
 
 /// A folder with pictures and a manifest that tests take apart.
-class EnvironmentFolderTest : public testing::Test {
+class EnvironmentFolderTest : public ::testing::Test {
   protected:
     EnvironmentFolderTest() {
         for (const char* name : {"0.png", "1.png", "2.png", "mask.png"}) {
@@ -40,8 +40,8 @@ class EnvironmentFolderTest : public testing::Test {
         write_json_file(folder_ / "manifest.json", json);
         return read_environment_folder(folder_.path());
     }
-    testing::AssertionResult fails(const Json& json,
-                                   std::initializer_list<std::string_view> parts) const {
+    ::testing::AssertionResult fails(const Json& json,
+                                     std::initializer_list<std::string_view> parts) const {
         return fails_with([&] { read(json); }, parts);
     }
 

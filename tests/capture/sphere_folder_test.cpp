@@ -13,7 +13,7 @@ namespace livery {
 namespace {
 
 /// A folder with pictures and a manifest that tests take apart.
-class SphereFolderTest : public testing::Test {
+class SphereFolderTest : public ::testing::Test {
   protected:
     SphereFolderTest() {
         for (const char* name : {"0.png", "1.png", "white.png"}) {
@@ -34,7 +34,7 @@ class SphereFolderTest : public testing::Test {
         write_json_file(folder_ / "manifest.json", json_);
         return read_sphere_folder(folder_.path());
     }
-    testing::AssertionResult fails(std::initializer_list<std::string_view> parts) const {
+    ::testing::AssertionResult fails(std::initializer_list<std::string_view> parts) const {
         return fails_with([&] { read(); }, parts);
     }
 

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "capture/fault_of.h"
 #include "capture/gphoto_settings.h"
 #include "capture/patient_camera.h"
 #include "capture/recording.h"
@@ -53,16 +54,6 @@ TetheredOptions quick(const PtpIpCamera& camera) {
     options.answer = std::chrono::milliseconds(1500);
     options.photograph = std::chrono::milliseconds(1500);
     return options;
-}
-
-CameraFault fault_of(const std::function<void()>& call) {
-    try {
-        call();
-    } catch (const CameraFault& fault) {
-        EXPECT_FALSE(fault.fix().empty()) << fault.why();
-        return fault;
-    }
-    throw std::runtime_error("no fault");
 }
 
 const CameraSetting& setting(const CameraState& state, const std::string& name) {

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/videoio.hpp>
 
+#include "capture/fault_of.h"
 #include "core/colour.h"
 #include "support/jpeg.h"
 #include "support/message_of.h"
@@ -35,15 +36,6 @@ VideoCameraOptions stream_of(const MjpegServer& server) {
     options.frames = 3;
     options.timeout_ms = 1500;
     return options;
-}
-
-CameraFault fault_of(const std::function<void()>& call) {
-    try {
-        call();
-    } catch (const CameraFault& fault) {
-        return fault;
-    }
-    throw std::runtime_error("no fault");
 }
 
 TEST(VideoCamera, PhotographsWhatTheStreamShowsNow) {

@@ -1,25 +1,21 @@
 // livery capture as people call it.
 #include <gtest/gtest.h>
 
+#include "cli/livery_run.h"
 #include "core/json.h"
-#include "support/run_program.h"
 #include "support/small_bench_file.h"
 #include "support/temporary_folder.h"
 
 namespace livery {
 namespace {
 
-ProgramRun livery_run(const std::vector<std::string>& arguments) {
-    return run_program(LIVERY_PROGRAM, arguments);
-}
-
-std::string small_bench(const TemporaryFolder& folder) {
+std::string small_bench_camera(const TemporaryFolder& folder) {
     return "bench:" + testing::small_bench_file(folder).string();
 }
 
 TEST(Capture, OnTheSimulatedBench) {
     const TemporaryFolder folder;
-    const std::string camera = small_bench(folder), out = (folder / "captures").string();
+    const std::string camera = small_bench_camera(folder), out = (folder / "captures").string();
     const std::string calibration = (folder / "calibration").string();
     const ProgramRun first = livery_run(
         {"capture", "--camera", camera, "--out", out, "--calibration", calibration, "--json"});
@@ -54,7 +50,7 @@ TEST(Capture, OnTheSimulatedBench) {
 TEST(Capture, LooksOnly) {
     const TemporaryFolder folder;
     const ProgramRun run =
-        livery_run({"capture", "--camera", small_bench(folder), "--preflight", "--json"});
+        livery_run({"capture", "--camera", small_bench_camera(folder), "--preflight", "--json"});
     // A quarter of the pixels: the finest stripes are blurred, and that is said.
     const Json figures = Json::parse(run.out)["preflight"];
     ASSERT_EQ(figures.size(), 12u);

@@ -7,19 +7,15 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "cli/livery_run.h"
 #include "core/channels.h"
 #include "core/image_io.h"
 #include "core/paths.h"
-#include "support/run_program.h"
 
 namespace livery {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-ProgramRun livery_run(const std::vector<std::string>& arguments) {
-    return run_program(LIVERY_PROGRAM, arguments);
-}
 
 /// Through a shell, which can close what a program cannot.
 ProgramRun shell_run(const std::filesystem::path& folder, const std::string& command) {

@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-class Fit : public testing::Test {
+class Fit : public ::testing::Test {
   protected:
     /// A paint's values as somebody's measurements.
     std::string measurements(const Material& paint) const {

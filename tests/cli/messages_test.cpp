@@ -11,17 +11,13 @@
 #include <sys/types.h>
 #include <unistd.h>
 
+#include "cli/livery_run.h"
 #include "scene/view.h"
-#include "support/run_program.h"
 
 namespace livery {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-ProgramRun livery_run(const std::vector<std::string>& arguments) {
-    return run_program(LIVERY_PROGRAM, arguments);
-}
 
 /// Exit status 2, and one line on stderr with every one of these texts in it.
 void expect_refusal(const std::vector<std::string>& arguments,

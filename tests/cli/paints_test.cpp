@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-class Paints : public testing::Test {
+class Paints : public ::testing::Test {
   protected:
     ProgramRun run(std::vector<std::string> words) const {
         words.insert(words.begin(), {"paints", "--json"});

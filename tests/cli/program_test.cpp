@@ -12,18 +12,14 @@
 #include <sys/types.h>
 #include <unistd.h>
 
+#include "cli/livery_run.h"
 #include "core/image_io.h"
 #include "scene/view.h"
-#include "support/run_program.h"
 
 namespace livery {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-ProgramRun livery_run(const std::vector<std::string>& arguments) {
-    return run_program(LIVERY_PROGRAM, arguments);
-}
 
 Json json_of(const ProgramRun& run) {
     const Json json = Json::parse(run.out, nullptr, false);

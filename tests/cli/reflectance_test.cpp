@@ -20,7 +20,7 @@ using Rows = std::vector<std::vector<double>>;
 
 const std::string kHeader = "theta_i,phi_i,theta_o,phi_o\n";
 
-class Reflectance : public testing::Test {
+class Reflectance : public ::testing::Test {
   protected:
     std::string lambert() const {
         return folder_

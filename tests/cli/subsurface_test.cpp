@@ -123,7 +123,7 @@ TEST(Bssrdf, RefusesWithTheOption) {
     refuses({"--sigma-a", "1", "--sigma-s", "1", "--eta", "0.1"}, "eta: found 0.1");
 }
 
-class FitBssrdf : public testing::Test {
+class FitBssrdf : public ::testing::Test {
   protected:
     /// Skim milk, green, by the best model.
     std::string profile(double farthest_mm) const {

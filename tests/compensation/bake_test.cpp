@@ -1,7 +1,6 @@
 // What a calibration must be before it is baked, and the white that its projector can show.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -17,11 +16,10 @@ namespace livery {
 namespace {
 
 using synthetic::calibrate;
+using synthetic::kInf;
+using synthetic::kNan;
 using synthetic::make_world;
 using synthetic::World;
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 TEST(Bake, NamesWhatIsWrongWithACalibration) {
     const World world = make_world(6, 4, 61);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -21,12 +20,11 @@ namespace livery {
 namespace {
 
 using synthetic::calibrate;
+using synthetic::kInf;
+using synthetic::kNan;
 using synthetic::make_world;
 using synthetic::picture;
 using synthetic::World;
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 /// Equation 9 and the dither, written down once more in doubles and without any baking.
 Image8 oracle(const ColourCalibration& c, double white_y, const ImageF& wanted) {
@@ -145,7 +143,7 @@ TEST(Compensate, StaysWithinOneLevelOfDoubles) {
     for (const double ambient : {0.0, 0.004, 0.05}) {
         const World world = make_world(131, 77, 31, ambient);
         for (const bool paper : {false, true}) {
-            SCOPED_TRACE(testing::Message() << "ambient " << ambient << " paper " << paper);
+            SCOPED_TRACE(::testing::Message() << "ambient " << ambient << " paper " << paper);
             const ColourCalibration calibration =
                 paper ? calibrate(world, 64.0, 200.0, 257) : calibrate(world);
             Random random(77);

@@ -19,7 +19,7 @@ using synthetic::calibrate_segment;
 using synthetic::make_world;
 using synthetic::World;
 
-class DriveTableTest : public testing::Test {
+class DriveTableTest : public ::testing::Test {
   protected:
     DriveTableTest()
         : world_(make_world(24, 16, 71)),

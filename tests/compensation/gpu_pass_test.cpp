@@ -16,7 +16,7 @@
 namespace livery {
 namespace {
 
-class GpuPass : public testing::Test {
+class GpuPass : public ::testing::Test {
   protected:
     GpuPass() : context_(GlDevice::automatic) { set_gl_checks(true); }
     ~GpuPass() override { set_gl_checks(false); }
@@ -76,7 +76,7 @@ ImageF random_wanted(const synthetic::World& world, std::uint64_t seed) {
 TEST_F(GpuPass, AgreesWithTheOracle) {
     // Sizes that are no multiple of a group, smaller than one, and one pixel wide.
     for (const auto& [width, height] : {std::pair{131, 77}, {31, 33}, {1, 65}, {64, 32}}) {
-        SCOPED_TRACE(testing::Message() << width << "x" << height);
+        SCOPED_TRACE(::testing::Message() << width << "x" << height);
         const synthetic::World world = synthetic::make_world(width, height, 81);
         const ImageF wanted = random_wanted(world, 82);
         for (const bool paper : {false, true}) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -12,6 +13,9 @@
 #include "scene/colour_calibration.h"
 
 namespace livery::synthetic {
+
+inline constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+inline constexpr float kInf = std::numeric_limits<float>::infinity();
 
 /// Projector response: a power of the drive bent by an S-curve, p(0) = leak, p(255) = 1 + leak.
 struct Response {

@@ -57,9 +57,9 @@ TEST(JsonFile, RoundTrips) {
 }
 
 /// What a JsonReader says about one text.
-testing::AssertionResult refuses(const std::string& text,
-                                 const std::function<void(const JsonReader&)>& read,
-                                 std::initializer_list<std::string_view> parts) {
+::testing::AssertionResult refuses(const std::string& text,
+                                   const std::function<void(const JsonReader&)>& read,
+                                   std::initializer_list<std::string_view> parts) {
     const Json json = Json::parse(text);
     return fails_with([&] { read(JsonReader("f.json", json)); }, parts);
 }

@@ -40,9 +40,9 @@ std::string body(const std::string& line) { return line.substr(line.find(' ') + 
 // Must stay the first of this file: nothing is open yet.
 TEST(Log, GoesNowhereUntilOpened) {
     const TemporaryFolder folder;
-    testing::internal::CaptureStderr();
+    ::testing::internal::CaptureStderr();
     log_line(LogLevel::error, "nobody reads this");
-    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+    EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
@@ -185,10 +185,10 @@ TEST(Log, AFullDiskIsSaidOnceAndTheLogGoesOnAfterwards) {
     const TemporaryFolder folder;
     const auto file = folder / "a.log";
     std::filesystem::create_symlink("/dev/full", file);
-    testing::internal::CaptureStderr();
+    ::testing::internal::CaptureStderr();
     open_log(file);
     for (int k = 0; k < 5; ++k) log_line(LogLevel::info, "lost");
-    EXPECT_EQ(testing::internal::GetCapturedStderr(),
+    EXPECT_EQ(::testing::internal::GetCapturedStderr(),
               "livery: the log " + file.string() +
                   " cannot be written: No space left on device; going on without it\n");
     std::filesystem::remove(file);  // the disk has room again
@@ -200,13 +200,13 @@ TEST(Log, AFullDiskIsSaidOnceAndTheLogGoesOnAfterwards) {
 TEST(Log, AReadOnlyFolderIsSaidOnce) {
     const TemporaryFolder folder;
     std::filesystem::permissions(folder.path(), std::filesystem::perms(0555));
-    testing::internal::CaptureStderr();
+    ::testing::internal::CaptureStderr();
     {
         const WithoutRights nobody;
         open_log(folder / "logs/a.log");
         for (int k = 0; k < 5; ++k) log_line(LogLevel::info, "lost");
     }
-    EXPECT_EQ(testing::internal::GetCapturedStderr(),
+    EXPECT_EQ(::testing::internal::GetCapturedStderr(),
               "livery: the log " + (folder / "logs/a.log").string() +
                   " cannot be written: Permission denied; going on without it\n");
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
@@ -218,13 +218,13 @@ TEST(Log, ALogThatCannotBeRotatedStaysWithinItsSize) {
     const auto file = folder.write("a.log", "");
     std::filesystem::permissions(file, std::filesystem::perms(0666));
     std::filesystem::permissions(folder.path(), std::filesystem::perms(0555));
-    testing::internal::CaptureStderr();
+    ::testing::internal::CaptureStderr();
     {
         const WithoutRights nobody;
         open_log(file, 200, 2);
         for (int k = 0; k < 20; ++k) log_line(LogLevel::info, "a line of a certain length");
     }
-    const auto said = testing::internal::GetCapturedStderr();
+    const auto said = ::testing::internal::GetCapturedStderr();
     EXPECT_NE(said.find("Permission denied"), std::string::npos) << said;
     EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
     EXPECT_LE(std::filesystem::file_size(file), 200u);
@@ -240,11 +240,11 @@ TEST(Log, SomethingElseInItsPlaceIsSaidOnce) {
              {folder.path(), "Is a directory"},
              {folder / "file/a.log", "Not a directory"},
              {folder / "pipe", "No such device or address"}}) {
-        testing::internal::CaptureStderr();
+        ::testing::internal::CaptureStderr();
         open_log(place);
         log_line(LogLevel::info, "lost");
         log_line(LogLevel::info, "lost");
-        const auto said = testing::internal::GetCapturedStderr();
+        const auto said = ::testing::internal::GetCapturedStderr();
         EXPECT_NE(said.find(place.string() + " cannot be written: " + reason), std::string::npos)
             << said;
         EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;

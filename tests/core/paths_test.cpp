@@ -38,7 +38,7 @@ class Environment {
     bool had_ = false;
 };
 
-std::size_t files_in(const std::filesystem::path& folder) {
+std::size_t count_of_files(const std::filesystem::path& folder) {
     std::size_t count = 0;
     for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder)) ++count;
     return count;
@@ -50,7 +50,7 @@ TEST(TextFile, ReplacesAsAWhole) {
     write_text_file(file, "first, and longer");
     write_text_file(file, std::string("se\0cond", 7));
     EXPECT_EQ(read_text_file(file), std::string("se\0cond", 7));
-    EXPECT_EQ(files_in(folder.path()), 1u) << "a temporary file was left";
+    EXPECT_EQ(count_of_files(folder.path()), 1u) << "a temporary file was left";
     write_text_file(file, "");
     EXPECT_EQ(read_text_file(file), "");
 }
@@ -61,7 +61,7 @@ TEST(TextFile, AFailedWriteLeavesTheOldContent) {
     std::filesystem::create_directories(folder / "a.txt/inside");
     EXPECT_TRUE(fails_with([&] { write_text_file(folder / "a.txt", "x"); },
                            {"a.txt", "cannot replace", "a writable place"}));
-    EXPECT_EQ(files_in(folder.path()), 1u) << "a temporary file was left";
+    EXPECT_EQ(count_of_files(folder.path()), 1u) << "a temporary file was left";
     EXPECT_TRUE(fails_with([&] { write_text_file(folder / "no/a.txt", "x"); },
                            {"no/a.txt", "cannot create: No such file", "a writable place"}));
 }

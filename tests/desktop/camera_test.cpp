@@ -36,7 +36,6 @@ using testing::small_bench_description;
 using testing::small_bench_product;
 using testing::smooth_colours;
 
-constexpr auto patience = 60s;
 constexpr int pause_ms = 1500;        ///< the pictures before it have long been photographed
 constexpr int most_of_a_picture = 2;  ///< photographs of it
 constexpr int settling = 6;           ///< photographs of a picture that is shown anew

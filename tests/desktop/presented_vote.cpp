@@ -56,7 +56,7 @@ std::string PresentedVote::let_phones_vote() {
     return url + "join/" + store.invitation(store.session().value()).value().token;
 }
 
-testing::AssertionResult PresentedVote::projector_shows_frame(const std::string& name) {
+::testing::AssertionResult PresentedVote::projector_shows_frame(const std::string& name) {
     const Image8& frame = *frames.at(name);
     std::string why;
     const bool shown = wait_until(
@@ -74,8 +74,8 @@ testing::AssertionResult PresentedVote::projector_shows_frame(const std::string&
             return coloured == 0 && hash_of(seen) == presented.plan.frames.at(name);
         },
         20s);
-    if (shown) return testing::AssertionSuccess();
-    return testing::AssertionFailure()
+    if (shown) return ::testing::AssertionSuccess();
+    return ::testing::AssertionFailure()
            << name << " is not shown. " << why << " state: " << program->state("vote") << " "
            << program->state("vote_frame") << " seen: " << saved(projector_picture(), "seen");
 }

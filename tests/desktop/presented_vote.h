@@ -23,7 +23,7 @@ class PresentedVote : public TwoMonitors {
 
     /// Waits until every pixel that the frame lights is on the projector, by its hash; what stands
     /// beside it has no colour.
-    testing::AssertionResult projector_shows_frame(const std::string& name);
+    ::testing::AssertionResult projector_shows_frame(const std::string& name);
     /// Pixels with light on the projector that no frozen frame lights: code and time.
     int lit_beside();
 

@@ -13,7 +13,7 @@ namespace {
 using namespace std::chrono_literals;
 
 /// Long enough to be seen, and stopped where a test looks closely.
-constexpr const char* kSettings = R"({"format_version": 1, "settings": {
+constexpr const char* kQuickTurns = R"({"format_version": 1, "settings": {
   "presenting-adapt-s": "60", "presenting-look-s": "3", "presenting-grey-s": "3",
   "presenting-passes": "1", "presenting-seed": "7", "phones-port": "0"
 }})";
@@ -21,7 +21,7 @@ constexpr const char* kSettings = R"({"format_version": 1, "settings": {
 using Presenting = PresentedVote;
 
 TEST_F(Presenting, ShowsFrozenFramesInTheStoredOrderAlsoAfterAKillUntilTheRoundIsLocked) {
-    start_vote(kSettings, 3);
+    start_vote(kQuickTurns, 3);
     let_phones_vote();
     program->click("present:least");
     program->click("present:scales");

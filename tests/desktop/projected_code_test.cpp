@@ -10,7 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr const char* kSettings = R"({"format_version": 1, "settings": {
+constexpr const char* kLongAdapting = R"({"format_version": 1, "settings": {
   "presenting-adapt-s": "60", "presenting-passes": "1", "presenting-seed": "7", "phones-port": "0"
 }})";
 
@@ -38,7 +38,7 @@ bool is_lit(const Image8& picture, std::size_t pixel) {
 
 TEST_F(ProjectedCode, StandsBesideTheMockUpUntilItIsUntickedOrTheLooksAreFrozen) {
     if (!reader.is_there()) GTEST_SKIP() << "no libzbar.so.0";
-    start_vote(kSettings, 2);
+    start_vote(kLongAdapting, 2);
     const Image8 look = drive_of_place(0);
     ASSERT_TRUE(projector_shows(look));
     const Image8 before = projector_picture();

@@ -147,7 +147,7 @@ TEST_F(Projector, FollowsItsMonitorToAnotherPlace) {
         desktop->plug_projector(side);
         EXPECT_TRUE(projector_shows(a));
         EXPECT_TRUE(wait_until([&] { return window_is_on_operators_monitor(); }))
-            << program->state("projector") << testing::PrintToString(static_cast<int>(side));
+            << program->state("projector") << ::testing::PrintToString(static_cast<int>(side));
         EXPECT_TRUE(operators_monitor_is_free_of_the_projectors_window());
     }
 }

@@ -14,10 +14,6 @@ namespace livery {
 namespace {
 
 using Json = nlohmann::json;
-using namespace std::chrono_literals;
-
-/// On two cores that others use as well.
-constexpr auto patience = 60s;
 
 std::string text_of(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);

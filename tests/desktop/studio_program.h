@@ -18,6 +18,9 @@
 
 namespace livery {
 
+/// On two cores that others use as well.
+inline constexpr auto patience = std::chrono::seconds(60);
+
 /// A line of the program's `--trace`.
 struct TraceLine {
     double t_s = 0.0;

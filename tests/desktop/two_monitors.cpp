@@ -9,9 +9,6 @@
 namespace livery {
 namespace {
 
-using namespace std::chrono_literals;
-
-constexpr auto patience = 60s;
 /// The program's OpenGL compensation may round a level differently from the command line's.
 constexpr int level_tolerance = 2;
 constexpr double pixels_that_may_differ = 2e-3;
@@ -24,10 +21,10 @@ bool has_hue(const Rgb& c, const std::string& hue) {
     throw std::invalid_argument(hue);
 }
 
-testing::AssertionResult same(const Image8& seen, const Image8& wanted) {
+::testing::AssertionResult same(const Image8& seen, const Image8& wanted) {
     const double different = fraction_different(seen, wanted, level_tolerance);
-    if (different <= pixels_that_may_differ) return testing::AssertionSuccess();
-    return testing::AssertionFailure()
+    if (different <= pixels_that_may_differ) return ::testing::AssertionSuccess();
+    return ::testing::AssertionFailure()
            << 100.0 * different
            << "% of the projector's pixels are wrong; seen: " << saved(seen, "seen")
            << ", wanted: " << saved(wanted, "wanted");
@@ -38,8 +35,8 @@ std::shared_ptr<RunningStudio> shared_studio;
 }  // namespace
 
 std::string saved(const Image8& picture, const std::string& name) {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    const auto file = std::filesystem::path(testing::TempDir()) /
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    const auto file = std::filesystem::path(::testing::TempDir()) /
                       ("livery-" + std::string(test->name()) + "-" + name + ".png");
     write_png(file, picture);
     return file.string();
@@ -125,11 +122,11 @@ void TwoMonitors::TearDown() {
 
 void TwoMonitors::TearDownTestSuite() { shared_studio.reset(); }
 
-testing::AssertionResult TwoMonitors::projector_shows_now(const Image8& wanted) {
+::testing::AssertionResult TwoMonitors::projector_shows_now(const Image8& wanted) {
     return same(projector_picture(), wanted);
 }
 
-testing::AssertionResult TwoMonitors::projector_shows(const Image8& wanted) {
+::testing::AssertionResult TwoMonitors::projector_shows(const Image8& wanted) {
     Image8 seen;
     wait_until(
         [&] {
@@ -140,7 +137,7 @@ testing::AssertionResult TwoMonitors::projector_shows(const Image8& wanted) {
     return same(seen, wanted);
 }
 
-testing::AssertionResult TwoMonitors::projector_is_black() {
+::testing::AssertionResult TwoMonitors::projector_is_black() {
     const Rectangle area = desktop->projector_area();
     return projector_shows(Image8(area.width, area.height, 3));
 }
@@ -155,7 +152,7 @@ Rgb TwoMonitors::painted_colour() {
         {0, 0, 16, 16});
 }
 
-testing::AssertionResult TwoMonitors::operator_sees(const std::string& hue) {
+::testing::AssertionResult TwoMonitors::operator_sees(const std::string& hue) {
     Rgb seen;
     const bool right = wait_until(
         [&] {
@@ -163,8 +160,8 @@ testing::AssertionResult TwoMonitors::operator_sees(const std::string& hue) {
             return has_hue(seen, hue);
         },
         patience);
-    if (right) return testing::AssertionSuccess();
-    return testing::AssertionFailure()
+    if (right) return ::testing::AssertionSuccess();
+    return ::testing::AssertionFailure()
            << "the operator sees " << seen << " instead of " << hue << ": "
            << saved(desktop->read(desktop->operator_area()), "operator");
 }

@@ -31,7 +31,7 @@ struct RunningStudio {
 /// Saves what was seen where the log of a test run can point to it; the file.
 std::string saved(const Image8& picture, const std::string& name);
 
-class TwoMonitors : public testing::Test {
+class TwoMonitors : public ::testing::Test {
   protected:
     /// A program of the test's own; the projector is not picked yet.
     void start(const DesktopOptions& options = {}, const std::vector<std::string>& arguments = {});
@@ -51,10 +51,10 @@ class TwoMonitors : public testing::Test {
     static void TearDownTestSuite();
 
     /// Waits until the projector shows this picture.
-    testing::AssertionResult projector_shows(const Image8& wanted);
+    ::testing::AssertionResult projector_shows(const Image8& wanted);
     /// Looks once.
-    testing::AssertionResult projector_shows_now(const Image8& wanted);
-    testing::AssertionResult projector_is_black();
+    ::testing::AssertionResult projector_shows_now(const Image8& wanted);
+    ::testing::AssertionResult projector_is_black();
     Image8 projector_picture() { return desktop->read(desktop->projector_area()); }
 
     /// The picture in the middle of the operator's window.
@@ -63,7 +63,7 @@ class TwoMonitors : public testing::Test {
     Rgb painted_colour();
     /// Waits until the paint in the operator's window has this hue: "red", "blue", "green" or
     /// "ivory".
-    testing::AssertionResult operator_sees(const std::string& hue);
+    ::testing::AssertionResult operator_sees(const std::string& hue);
 
     /// What the projector should show for the prepared session's look with another body paint.
     Image8 drive_with_body(const std::string& paint);

@@ -11,7 +11,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr const char* kSettings = R"({"format_version": 1, "settings": {
+constexpr const char* kWavesOfNine = R"({"format_version": 1, "settings": {
   "presenting-adapt-s": "600", "presenting-look-s": "600", "presenting-grey-s": "600",
   "presenting-seed": "7", "presenting-wave-size": "9", "phones-port": "0"
 }})";
@@ -44,7 +44,7 @@ class Waves : public PresentedVote {
 };
 
 TEST_F(Waves, SeeTheirOwnOrderAndVoteInTheirTurn) {
-    start_vote(kSettings, 3);
+    start_vote(kWavesOfNine, 3);
     const Segment edit = filled_segment();
     EXPECT_EQ(edit.number, 0);
     program->click("present:order");

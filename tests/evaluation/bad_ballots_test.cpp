@@ -36,8 +36,8 @@ std::string bytes_of(const std::filesystem::path& file) {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-testing::AssertionResult opening_fails(const std::filesystem::path& file,
-                                       std::initializer_list<std::string_view> parts) {
+::testing::AssertionResult opening_fails(const std::filesystem::path& file,
+                                         std::initializer_list<std::string_view> parts) {
     return fails_with([&] { BallotStore{file}; }, parts);
 }
 

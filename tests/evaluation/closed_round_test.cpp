@@ -12,7 +12,7 @@
 namespace livery {
 namespace {
 
-std::filesystem::path voted(const TemporaryFolder& folder) {
+std::filesystem::path closed_then_open(const TemporaryFolder& folder) {
     const auto file = folder / "votes.livery-ballots";
     BallotStore store(file);
     const int round = store.open_round({"red, bright", "silver", "sand"}, "1234abcd");
@@ -34,7 +34,7 @@ std::vector<std::pair<int, int>> choices(const ClosedRound& round) {
 
 TEST(ClosedRound, HasItsBallotsInAnOrderOfChance) {
     const TemporaryFolder folder;
-    const auto file = voted(folder);
+    const auto file = closed_then_open(folder);
     const ClosedRound round = read_closed_round(file, {}, 1);
     EXPECT_EQ(round.id, 1);
     EXPECT_EQ(round.calibration_id, "1234abcd");
@@ -56,7 +56,7 @@ TEST(ClosedRound, HasItsBallotsInAnOrderOfChance) {
 
 TEST(ClosedRound, IsHandedOnWithItsSeed) {
     const TemporaryFolder folder;
-    const ClosedRound round = read_closed_round(voted(folder), {}, 9);
+    const ClosedRound round = read_closed_round(closed_then_open(folder), {}, 9);
     const std::string text = ballots_csv(round, 9);
     EXPECT_NE(text.find("# calibration 1234abcd\r\n"), std::string::npos) << text;
     EXPECT_NE(text.find("seed 9\r\n"), std::string::npos) << text;
@@ -67,7 +67,7 @@ TEST(ClosedRound, IsHandedOnWithItsSeed) {
 
 TEST(ClosedRound, TellsNothingBeforeTheClose) {
     const TemporaryFolder folder;
-    const auto file = voted(folder);
+    const auto file = closed_then_open(folder);
     EXPECT_NE(message_of([&] { read_closed_round(file, 2, 1); }).find("round 2 is open"),
               std::string::npos);
     EXPECT_NE(

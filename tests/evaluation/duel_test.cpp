@@ -21,21 +21,22 @@ namespace {
 
 /// Whether `work` throws Refused with every part in its message.
 template <typename Work>
-testing::AssertionResult refused_with(Work&& work, std::initializer_list<std::string_view> parts) {
+::testing::AssertionResult refused_with(Work&& work,
+                                        std::initializer_list<std::string_view> parts) {
     try {
         work();
     } catch (const Refused& refused) {
         const std::string message = refused.what();
         for (const auto part : parts) {
             if (message.find(part) != std::string::npos) continue;
-            return testing::AssertionFailure() << "no \"" << part << "\" in \"" << message << '"';
+            return ::testing::AssertionFailure() << "no \"" << part << "\" in \"" << message << '"';
         }
-        return testing::AssertionSuccess();
+        return ::testing::AssertionSuccess();
     }
-    return testing::AssertionFailure() << "nothing refused";
+    return ::testing::AssertionFailure() << "nothing refused";
 }
 
-class DuelTest : public testing::Test {
+class DuelTest : public ::testing::Test {
   protected:
     DuelTest() {
         const int session = store_.open_session();

@@ -85,7 +85,7 @@ TEST(PaperBallots, GetNumbersThatAreFree) {
     EXPECT_NE(message_of([&] { numbered_ballots(papers, 9999); }).find("10000"), std::string::npos);
 }
 
-class PaperTypingTest : public testing::Test {
+class PaperTypingTest : public ::testing::Test {
   protected:
     int opened(bool least) {
         RoundSetup setup{{"red", "silver", "sand"}, "", {481, 376, 912}};

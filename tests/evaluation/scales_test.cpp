@@ -46,7 +46,7 @@ TEST(SemanticScale, IsTwoWordsWithAComma) {
     EXPECT_THROW(check_scales({{"a", "b"}, {"a", "b"}}), std::invalid_argument);
 }
 
-class Ratings : public testing::Test {
+class Ratings : public ::testing::Test {
   protected:
     Ratings() {
         const int session = store_.open_session();

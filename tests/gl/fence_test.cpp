@@ -31,7 +31,7 @@ void main() {
     return program;
 }
 
-struct FenceTest : testing::Test {
+struct FenceTest : ::testing::Test {
     FenceTest() { set_gl_checks(true); }
     ~FenceTest() override { set_gl_checks(false); }
     HeadlessContext context{GlDevice::software};

@@ -21,7 +21,7 @@
 namespace livery {
 namespace {
 
-class Gl : public testing::Test {
+class Gl : public ::testing::Test {
   protected:
     Gl() : context_(GlDevice::software) { set_gl_checks(true); }
     ~Gl() override { set_gl_checks(false); }

@@ -16,7 +16,7 @@
 namespace livery {
 namespace {
 
-class ProgramTest : public testing::Test {
+class ProgramTest : public ::testing::Test {
   protected:
     ProgramTest() : context_(GlDevice::software) { set_gl_checks(true); }
     HeadlessContext context_;
@@ -61,7 +61,7 @@ TEST_F(ProgramTest, LinkErrorNamesBothStages) {
     }
 }
 
-class ShaderFiles : public testing::Test {
+class ShaderFiles : public ::testing::Test {
   protected:
     ShaderFiles() : folder_(std::filesystem::temp_directory_path() / "livery_shader_files_test") {
         std::filesystem::create_directories(folder_ / "shaders" / "lib");

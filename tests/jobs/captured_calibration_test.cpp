@@ -22,7 +22,8 @@
 namespace livery {
 namespace {
 
-constexpr int kWidth = 320, kHeight = 200;
+using testing::kSmallHeight;
+using testing::kSmallWidth;
 
 /// A folder of the simulated bench's photographs, in the order in which a live session takes them:
 /// white and black first, and once more at the end.
@@ -30,16 +31,16 @@ class CapturedCalibration : public ::testing::Test {
   protected:
     static void SetUpTestSuite() {
         shared_ = new TemporaryFolder;
-        std::vector<Pattern> geometry = geometry_patterns(kWidth, kHeight);
+        std::vector<Pattern> geometry = geometry_patterns(kSmallWidth, kSmallHeight);
         std::vector<Pattern> patterns{geometry[geometry.size() - 2], geometry.back()};
         patterns.insert(patterns.end(), geometry.begin(), geometry.end() - 2);
-        for (const Pattern& pattern : colour_patterns(kWidth, kHeight, 0, 255))
+        for (const Pattern& pattern : colour_patterns(kSmallWidth, kSmallHeight, 0, 255))
             patterns.push_back(pattern);
         patterns.insert(patterns.end(), geometry.end() - 2, geometry.end());
         std::vector<PatternFile> files;
         for (const Pattern& one : patterns)
             files.push_back({one.role, one.drive, one.drive_values});
-        write_patterns_folder(*shared_ / "patterns", kWidth, kHeight, files);
+        write_patterns_folder(*shared_ / "patterns", kSmallWidth, kSmallHeight, files);
         photograph_patterns(
             {testing::small_bench_description(), *shared_ / "patterns", *shared_ / "captures"});
     }
@@ -119,7 +120,7 @@ TEST_F(CapturedCalibration, IsTheOneOfTheSamePhotographsTakenLive) {
 
     std::vector<std::pair<Image8, Photograph>> known;
     for (const Capture& capture : read_captures_folder(folder_.path()).captures) {
-        Image8 drive(kWidth, kHeight, 3);
+        Image8 drive(kSmallWidth, kSmallHeight, 3);
         const ImageFile shown = read_image(capture.pattern);
         std::copy(shown.image.values.begin(), shown.image.values.end(), drive.values.begin());
         known.emplace_back(std::move(drive), load_photograph(capture));
@@ -186,11 +187,11 @@ TEST_F(CapturedCalibration, NamesThePictureThatNobodyPhotographed) {
 // Fringes in the folder are used by themselves: all of them, or the one that is missing is named.
 TEST_F(CapturedCalibration, UsesFringesThatWerePhotographed) {
     std::vector<PatternFile> files;
-    for (const Pattern& one : place_patterns(PlaceCode::gray_and_phase, kWidth, kHeight))
+    for (const Pattern& one : place_patterns(PlaceCode::gray_and_phase, kSmallWidth, kSmallHeight))
         files.push_back({one.role, one.drive, one.drive_values});
-    for (const Pattern& one : colour_patterns(kWidth, kHeight, 0, 255))
+    for (const Pattern& one : colour_patterns(kSmallWidth, kSmallHeight, 0, 255))
         files.push_back({one.role, one.drive, one.drive_values});
-    write_patterns_folder(folder_ / "patterns", kWidth, kHeight, files);
+    write_patterns_folder(folder_ / "patterns", kSmallWidth, kSmallHeight, files);
     photograph_patterns(
         {testing::small_bench_description(), folder_ / "patterns", folder_ / "captures"});
     const std::filesystem::path manifest_file = folder_ / "captures/manifest.json";

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kIrradiance = 0.03, kDirection_deg = 1.0;
-constexpr int kSize_px = 400;
+constexpr int kMeasuredSize_px = 400;
 
 const std::vector<glm::dvec3>& normals() {
     static const std::vector<glm::dvec3> directions = even_directions(60);
@@ -69,7 +69,7 @@ void print(const EnvironmentMeasurement& report, const char* of) {
 }
 
 TEST(EnvironmentMeasurement, IrradianceIsTheRoomsFromTwoSides) {
-    BallBench bench(kSize_px, 2, in_working(room_rec709));
+    BallBench bench(kMeasuredSize_px, 2, in_working(room_rec709));
     const EnvironmentMeasurement both = bench.measure();
     print(both, "two sides");
     EXPECT_LT(irradiance_error(bench.map(), "two sides"), kIrradiance);
@@ -86,7 +86,7 @@ TEST(EnvironmentMeasurement, IrradianceIsTheRoomsFromTwoSides) {
 }
 
 TEST(EnvironmentMeasurement, IrradianceIsTheRoomsFromOneSideWithoutALampBehindTheBall) {
-    const BallBench bench(kSize_px, 1, in_working(turned_room_rec709));
+    const BallBench bench(kMeasuredSize_px, 1, in_working(turned_room_rec709));
     const EnvironmentMeasurement report = bench.measure();
     print(report, "one side");
     EXPECT_LT(irradiance_error(bench.map(), "one side", irradiance_in(turned_room_rec709)),
@@ -99,9 +99,10 @@ TEST(EnvironmentMeasurement, IrradianceIsTheRoomsFromOneSideWithoutALampBehindTh
 TEST(EnvironmentMeasurement, ASteelBallIsUndoneByItsReflectance) {
     // Iron's indices at 650, 550 and 450 nm; the manifest has what they are at normal incidence,
     // and Schlick's curve is what the program makes of it.
-    const BallBench bench(kSize_px, 2, in_working(room_rec709), [](SimulatedBallRequest& request) {
-        request.stand.metal = MetalIndex{{2.91, 2.95, 2.55}, {3.29, 2.99, 2.68}};
-    });
+    const BallBench bench(
+        kMeasuredSize_px, 2, in_working(room_rec709), [](SimulatedBallRequest& request) {
+            request.stand.metal = MetalIndex{{2.91, 2.95, 2.55}, {3.29, 2.99, 2.68}};
+        });
     bench.measure();
     EXPECT_LT(irradiance_error(bench.map(), "steel"), kIrradiance);
     // What the manifest says may be said on the command line instead.
@@ -155,7 +156,7 @@ std::pair<double, int> worst_lamp(const RadianceMap& map, const ImageF& file, co
 }
 
 TEST(EnvironmentMeasurement, LampsAreWhereTheyAre) {
-    const BallBench bench(kSize_px, 2, in_working(lamps_rec709));
+    const BallBench bench(kMeasuredSize_px, 2, in_working(lamps_rec709));
     const EnvironmentMeasurement both = bench.measure(512);
     const auto [worst, seen] = worst_lamp(both.map, bench.map(), "two sides");
     EXPECT_EQ(seen, 40);
@@ -206,9 +207,10 @@ TEST(EnvironmentMeasurement, LampsAreWhereTheyAre) {
 TEST(EnvironmentMeasurement, TheOutlineIsFoundInThePhotographs) {
     // A ball of painted steel, darker than what is behind it, put three millimetres beside its
     // place.
-    BallBench bench(kSize_px, 2, in_working(room_rec709), [](SimulatedBallRequest& request) {
-        request.stand.metal = MetalIndex{{2.91, 2.95, 2.55}, {3.29, 2.99, 2.68}};
-    });
+    BallBench bench(
+        kMeasuredSize_px, 2, in_working(room_rec709), [](SimulatedBallRequest& request) {
+            request.stand.metal = MetalIndex{{2.91, 2.95, 2.55}, {3.29, 2.99, 2.68}};
+        });
     bench.manifest["fit_outline"] = true;
     bench.manifest["sphere"]["centre_mm"] = {1.5, -1.0, 0.5};
     bench.rewrite();
@@ -230,9 +232,10 @@ TEST(EnvironmentMeasurement, TheOutlineIsFoundInThePhotographs) {
 }
 
 TEST(EnvironmentMeasurement, TheCameraIsLeftOutWhereAnotherSees) {
-    BallBench bench(kSize_px, 2, in_working(room_rec709), [](SimulatedBallRequest& request) {
-        request.stand.camera_radius_mm = 90.0;
-    });
+    BallBench bench(
+        kMeasuredSize_px, 2, in_working(room_rec709), [](SimulatedBallRequest& request) {
+            request.stand.camera_radius_mm = 90.0;
+        });
     bench.measure();
     const glm::dvec3 ahead = glm::normalize(centre_in_world(bench.stand.cameras[0].view));
     const ImageF with_camera = bench.map();

@@ -16,13 +16,13 @@
 namespace livery {
 namespace {
 
-constexpr int kSize_px = 192;
+constexpr int kSmallSize_px = 192;
 
-class EnvironmentProblems : public testing::Test {
+class EnvironmentProblems : public ::testing::Test {
   protected:
-    EnvironmentProblems() : bench_(kSize_px, 1, in_working(room_rec709)) {}
+    EnvironmentProblems() : bench_(kSmallSize_px, 1, in_working(room_rec709)) {}
 
-    testing::AssertionResult fails(std::initializer_list<std::string_view> parts) const {
+    ::testing::AssertionResult fails(std::initializer_list<std::string_view> parts) const {
         bench_.rewrite();
         return fails_with([&] { bench_.measure(64); }, parts);
     }
@@ -49,11 +49,12 @@ class EnvironmentProblems : public testing::Test {
 TEST_F(EnvironmentProblems, ABallHalfOutOfThePicture) {
     // The left half of every photograph, by a camera file that says so.
     const View& whole = bench_.stand.cameras[0].view;
-    const View half = cropped(whole, 0, 0, kSize_px / 2, kSize_px);
+    const View half = cropped(whole, 0, 0, kSmallSize_px / 2, kSmallSize_px);
     write_camera_file(bench_.captures() / "camera-1.json", half);
     for (const Json& capture : captures()) {
         const auto file = bench_.captures() / capture["file"].get<std::string>();
-        const ImageF picture = crop(read_image(file).image, {0, 0, kSize_px / 2, kSize_px});
+        const ImageF picture =
+            crop(read_image(file).image, {0, 0, kSmallSize_px / 2, kSmallSize_px});
         Image16 out(picture.width, picture.height, 3);
         for (std::size_t k = 0; k < out.values.size(); ++k) {
             out.values[k] = static_cast<std::uint16_t>(picture.values[k]);
@@ -109,7 +110,7 @@ TEST_F(EnvironmentProblems, AClippedLampIsNamedWithWhatItGives) {
 }
 
 TEST_F(EnvironmentProblems, PixelsThatAreNoNumbers) {
-    ImageF light(kSize_px, kSize_px, 3, 100.0f);
+    ImageF light(kSmallSize_px, kSmallSize_px, 3, 100.0f);
     light.at(90, 80, 1) = std::numeric_limits<float>::quiet_NaN();
     photograph_again(light);
     EXPECT_TRUE(fails({"light.exr: pixel 90,80: found NaN"}));
@@ -117,7 +118,7 @@ TEST_F(EnvironmentProblems, PixelsThatAreNoNumbers) {
     photograph_again(light);
     EXPECT_TRUE(fails({"light.exr: pixel 90,80: found infinity"}));
     // Dark everywhere.
-    photograph_again(ImageF(kSize_px, kSize_px, 3));
+    photograph_again(ImageF(kSmallSize_px, kSmallSize_px, 3));
     EXPECT_NE(refusal().find("show no light"), std::string::npos) << refusal();
 }
 
@@ -150,12 +151,12 @@ TEST_F(EnvironmentProblems, ABallThatCannotBe) {
 TEST_F(EnvironmentProblems, PicturesOfAnotherSize) {
     write_png(bench_.captures() / "000.png", Image16(100, 100, 3, 5000));
     EXPECT_TRUE(fails({"000.png: size: found 100x100, expected the camera's 192x192"}));
-    write_png(bench_.captures() / "000.png", Image16(kSize_px, kSize_px, 3, 5000));
+    write_png(bench_.captures() / "000.png", Image16(kSmallSize_px, kSmallSize_px, 3, 5000));
     write_png(bench_.captures() / "mask.png", Image8(100, 100, 1, 0));
     view()["mask"] = "mask.png";
     EXPECT_TRUE(fails({"mask.png: size: found 100x100, expected the photographs' 192x192"}));
     // Everything is left out.
-    write_png(bench_.captures() / "mask.png", Image8(kSize_px, kSize_px, 1, 255));
+    write_png(bench_.captures() / "mask.png", Image8(kSmallSize_px, kSmallSize_px, 1, 255));
     EXPECT_NE(refusal().find("no direction's light"), std::string::npos) << refusal();
 }
 

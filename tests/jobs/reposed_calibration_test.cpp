@@ -12,6 +12,7 @@
 #include "calibration/registration/rotation.h"
 #include "jobs/calibrate/calibration_folder.h"
 #include "jobs/eye_comparison.h"
+#include "jobs/half_size_bench.h"
 #include "scene/mockup_mask.h"
 #include "session/small_session.h"
 #include "support/temporary_folder.h"
@@ -23,14 +24,6 @@ namespace {
 using testing::judged;
 using testing::Judged;
 using testing::refusal_of;
-
-/// A quarter of a shipped bench's pixels.
-BenchDescription half_bench(const std::string& name) {
-    BenchDescription description = read_bench_file(name);
-    description.projector.view = resized(description.projector.view, 640, 400);
-    description.camera.view = resized(description.camera.view, 864, 576);
-    return description;
-}
 
 /// The mock-up turned about its foot and shifted; all else stays. The bench's frame is the
 /// mock-up's.
@@ -51,8 +44,8 @@ BenchDescription bumped(BenchDescription description,
 }
 
 /// Calibrated as it stood, kept as a folder keeps it.
-struct Calibrated {
-    explicit Calibrated(const BenchDescription& description)
+struct CalibratedBench {
+    explicit CalibratedBench(const BenchDescription& description)
         : product(find_product(description.product.string())), bench(description, product) {
         made = calibrate_through_ports(bench, product, {});
         origin = origin_of(made, request_of(description, product));
@@ -100,8 +93,8 @@ Worth worth_of(const Bench& bench,
 }
 
 void expect_found_again(const char* name, const glm::dvec3& axis_angle, const glm::dvec3& shift) {
-    const BenchDescription description = half_bench(name);
-    const Calibrated then(description);
+    const BenchDescription description = half_size(name);
+    const CalibratedBench then(description);
     Bench now(bumped(description, axis_angle, shift), then.product);
     BenchPorts ports = now.ports();
     int photographs = 0;
@@ -125,7 +118,7 @@ void expect_found_again(const char* name, const glm::dvec3& axis_angle, const gl
     for (const std::string& warning : reposed.found.warnings)
         std::printf("        %s\n", warning.c_str());
     EXPECT_EQ(photographs, 4) << "two to find it, and white and black for the next look for drift";
-    const Calibrated anew(now.description());
+    const CalibratedBench anew(now.description());
     const Worth before =
         worth_of(now, *then.product, then.made.calibration, *then.made.projector, "before");
     const Worth still =
@@ -162,7 +155,7 @@ TEST(ReposedCalibration, IsAsGoodAsAnewForThePlayer) {
 
 TEST(ReposedCalibration, IsKeptAndFoundAgainFromItsFolder) {
     const BenchDescription description = testing::small_bench_description();
-    const Calibrated then(description);
+    const CalibratedBench then(description);
     Bench now(bumped(description, {0.0, 0.04, 0.0}, {4.0, 0.0, -3.0}), then.product);
     const ReposedCalibration reposed =
         repose_through_ports(now.ports(), then.made.calibration, then.origin, *then.product);

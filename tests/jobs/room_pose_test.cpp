@@ -4,20 +4,13 @@
 #include "core/error.h"
 #include "jobs/calibrate/bench_calibration.h"
 #include "jobs/eye_comparison.h"
+#include "jobs/half_size_bench.h"
 #include "scene/library.h"
 #include "support/thorough.h"
 #include "twin/bench.h"
 
 namespace livery {
 namespace {
-
-/// A quarter of a shipped bench's pixels.
-BenchDescription half_size(const std::string& name) {
-    BenchDescription description = read_bench_file(name);
-    description.projector.view = resized(description.projector.view, 640, 400);
-    description.camera.view = resized(description.camera.view, 864, 576);
-    return description;
-}
 
 ErrorStatistics offset_of(const Bench& bench, const Product& product, const View& found) {
     const ErrorStatistics off = picture_offset(

@@ -9,6 +9,7 @@
 #include "compensation/compensation.h"
 #include "core/worst_error.h"
 #include "jobs/calibrate/bench_calibration.h"
+#include "jobs/half_size_bench.h"
 #include "jobs/projector_irradiance.h"
 #include "scene/mockup_mask.h"
 #include "session/small_session.h"
@@ -21,21 +22,13 @@ using testing::live_options;
 using testing::small_bench_description;
 using testing::small_bench_product;
 
-/// A bench with a quarter of the default's pixels.
-BenchDescription half_size(const std::string& name) {
-    BenchDescription description = read_bench_file(name);
-    description.projector.view = resized(description.projector.view, 640, 400);
-    description.camera.view = resized(description.camera.view, 864, 576);
-    return description;
-}
-
-struct Calibrated {
+struct CalibratedRoom {
     ColourCalibration calibration;
     Image8 mockup, lit, edge;
 };
 
 /// As where nobody knows the mock-up's pose: the room is lit too.
-Calibrated calibrated(const BenchDescription& description) {
+CalibratedRoom calibrated(const BenchDescription& description) {
     Bench bench(description, small_bench_product());
     const Mesh& mesh = small_bench_product()->mesh;
     return {predict_hidden(calibrate_live(bench.ports(), live_options(description)).calibration,
@@ -48,7 +41,7 @@ Calibrated calibrated(const BenchDescription& description) {
 TEST(Room, IsSeenByTheDefaultBenchsCamera) {
     const BenchDescription description = small_bench_description();
     EXPECT_EQ(description.surroundings.size(), 3u);
-    const Calibrated bench = calibrated(description);
+    const CalibratedRoom bench = calibrated(description);
     int table = 0, mockup = 0;
     for (std::size_t i = 0; i < bench.mockup.values.size(); ++i) {
         const bool valid = is_valid(static_cast<PixelStatus>(bench.calibration.status.values[i]));
@@ -61,9 +54,9 @@ TEST(Room, IsSeenByTheDefaultBenchsCamera) {
 // A dark table and a far wall count as little as a black cloth would.
 TEST(Room, DesignWhiteIsTheMockupsOwn) {
     BenchDescription description = small_bench_description();
-    const Calibrated room = calibrated(description);
+    const CalibratedRoom room = calibrated(description);
     description.surroundings.clear();
-    const Calibrated black = calibrated(description);
+    const CalibratedRoom black = calibrated(description);
     const double own = design_white_luminance(room.calibration, 20.0, room.mockup);
     const double alone = design_white_luminance(black.calibration, 20.0, black.mockup);
     const double all = design_white_luminance(room.calibration, 20.0, {});
@@ -75,7 +68,7 @@ TEST(Room, DesignWhiteIsTheMockupsOwn) {
 // Light from the car reaches its shadow on the table, where stripes decode at random; such codes
 // must not tear holes into panels whose places they happen to name.
 TEST(Room, LeavesNoBlackSpecksOnSmoothPanels) {
-    const Calibrated bench = calibrated(half_size("room"));
+    const CalibratedRoom bench = calibrated(half_size("room"));
     const Image8& status = bench.calibration.status;
     int interior = 0, specks = 0, filled = 0;
     for (int y = 1; y + 1 < status.height; ++y)
@@ -149,7 +142,7 @@ TEST(Room, TheResponseHoldsInTheDark) {
     BenchDescription description = read_bench_file("default");
     description.projector.leak = 0.001;
     description.camera.flare = 0.01;
-    const Calibrated bench = calibrated(description);
+    const CalibratedRoom bench = calibrated(description);
     for (int channel = 0; channel < 3; ++channel) {
         const auto& curve = bench.calibration.response[static_cast<std::size_t>(channel)];
         const auto last = static_cast<double>(curve.drive_from_n.size() - 1);

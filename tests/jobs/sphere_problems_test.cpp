@@ -35,11 +35,11 @@ Material white_paint() {
 }
 
 /// Six lamps around a small picture of a matte sphere.
-class SphereProblems : public testing::Test {
+class SphereProblems : public ::testing::Test {
   protected:
     SphereProblems() : bench_(lambert_paint(), 128, noisy_camera(), six_lamps) {}
 
-    testing::AssertionResult fails(std::initializer_list<std::string_view> parts) const {
+    ::testing::AssertionResult fails(std::initializer_list<std::string_view> parts) const {
         bench_.rewrite();
         return fails_with([&] { bench_.measure(); }, parts);
     }

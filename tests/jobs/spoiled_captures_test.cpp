@@ -14,13 +14,14 @@
 namespace livery {
 namespace {
 
-constexpr int kWidth = 320, kHeight = 200;
+using testing::kSmallHeight;
+using testing::kSmallWidth;
 
 std::vector<Pattern> all_patterns() {
-    std::vector<Pattern> patterns = geometry_patterns(kWidth, kHeight);
-    for (Pattern& pattern : colour_patterns(kWidth, kHeight, 0, 255))
+    std::vector<Pattern> patterns = geometry_patterns(kSmallWidth, kSmallHeight);
+    for (Pattern& pattern : colour_patterns(kSmallWidth, kSmallHeight, 0, 255))
         patterns.push_back(std::move(pattern));
-    for (Pattern& pattern : geometry_patterns(kWidth, kHeight))
+    for (Pattern& pattern : geometry_patterns(kSmallWidth, kSmallHeight))
         if (pattern.role == "white" || pattern.role == "black")
             patterns.push_back(std::move(pattern));
     return patterns;
@@ -121,9 +122,9 @@ BenchPorts ports_of(const Shots& shots) {
 std::string said_of(const Shots& shots) {
     try {
         LiveOptions options;
-        options.width = kWidth;
-        options.height = kHeight;
-        options.patterns = colour_patterns(kWidth, kHeight, 0, 255);
+        options.width = kSmallWidth;
+        options.height = kSmallHeight;
+        options.patterns = colour_patterns(kSmallWidth, kSmallHeight, 0, 255);
         const ColourCalibration calibration = calibrate_live(ports_of(shots), options).calibration;
         return "accepted: " + testing::all_warnings(calibration);
     } catch (const Refused& refused) {

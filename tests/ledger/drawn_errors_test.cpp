@@ -13,7 +13,7 @@
 namespace livery {
 namespace {
 
-class Drawn : public testing::TestWithParam<ReflectanceModel> {
+class Drawn : public ::testing::TestWithParam<ReflectanceModel> {
   protected:
     HeadlessContext context_{GlDevice::software};
 };
@@ -43,13 +43,13 @@ std::vector<ReflectanceModel> every_model() {
     return models;
 }
 
-std::string name_of_model(const testing::TestParamInfo<ReflectanceModel>& parameter) {
+std::string name_of_model(const ::testing::TestParamInfo<ReflectanceModel>& parameter) {
     std::string name = model_info(parameter.param).name;
     for (char& c : name) c = c == '-' ? '_' : c;
     return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, Drawn, testing::ValuesIn(every_model()), name_of_model);
+INSTANTIATE_TEST_SUITE_P(Models, Drawn, ::testing::ValuesIn(every_model()), name_of_model);
 
 }  // namespace
 }  // namespace livery

@@ -56,7 +56,7 @@ struct OnTheProjector {
     CompensationStats stats;
 };
 
-class NoNumber : public testing::Test {
+class NoNumber : public ::testing::Test {
   protected:
     HeadlessContext context_{GlDevice::software};
     synthetic::World world_ = synthetic::make_world(kFragments, 1, 31);
@@ -150,7 +150,7 @@ TEST_F(NoNumber, InWhatAFragmentReadsEndsBlackAndCounted) {
         const ImageF of_gl = picture_of(shaded_in_gl(material, good, -4.0));
         const ImageF of_lanes = picture_of(shaded_in_lanes(material, good, -4.0));
         for (const auto& [name, spoil] : spoils(material)) {
-            SCOPED_TRACE(testing::Message() << model_info(model).name << ": " << name);
+            SCOPED_TRACE(::testing::Message() << model_info(model).name << ": " << name);
             LooseFragments spoiled = good;
             spoil(spoiled);
             expect_black_and_counted(
@@ -186,12 +186,12 @@ TEST_F(NoNumber, InAUniformEndsBlackAndCountedEverywhere) {
             }
         };
         for (const auto& [name, spoil] : of_light) {
-            SCOPED_TRACE(testing::Message() << model_info(model).name << ": " << name);
+            SCOPED_TRACE(::testing::Message() << model_info(model).name << ": " << name);
             LooseFragments spoiled = fragments_of(model, false);
             spoil(spoiled);
             expect_black(spoiled, -4.0);
         }
-        SCOPED_TRACE(testing::Message() << model_info(model).name << ": exposure");
+        SCOPED_TRACE(::testing::Message() << model_info(model).name << ": exposure");
         expect_black(fragments_of(model, false), std::nan(""));
     }
 }

@@ -88,7 +88,7 @@ inline std::shared_ptr<const ProjectorSetup> setup_of(const View& view, const Sc
 }
 
 /// Two spheres under a key light, and a frame thread in two contexts that share.
-class FrameThreadTest : public testing::Test {
+class FrameThreadTest : public ::testing::Test {
   protected:
     FrameThreadTest() {
         for (HeadlessContext* context : {&window_, &front_, &back_}) context->release();
@@ -202,7 +202,7 @@ class FrameThreadTest : public testing::Test {
 
 /// What both devices have to do alike.
 class FrameThreadOnADevice : public FrameThreadTest,
-                             public testing::WithParamInterface<ShadingDevice> {
+                             public ::testing::WithParamInterface<ShadingDevice> {
   protected:
     FrameThreadOnADevice() { device_ = GetParam(); }
 };

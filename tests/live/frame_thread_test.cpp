@@ -24,7 +24,7 @@ namespace {
 
 INSTANTIATE_TEST_SUITE_P(Devices,
                          FrameThreadOnADevice,
-                         testing::Values(ShadingDevice::gl, ShadingDevice::processor),
+                         ::testing::Values(ShadingDevice::gl, ShadingDevice::processor),
                          [](const auto& device) {
                              return device.param == ShadingDevice::gl ? "OpenGl" : "Processor";
                          });

@@ -69,11 +69,11 @@ TEST_F(PaintSwaps, EachIsTheVeryNextFrameAndSolvesNothing) {
     EXPECT_EQ(expected, description_.number);
 }
 
-class PaintSwapsOnADevice : public testing::TestWithParam<ShadingDevice> {};
+class PaintSwapsOnADevice : public ::testing::TestWithParam<ShadingDevice> {};
 
 INSTANTIATE_TEST_SUITE_P(Devices,
                          PaintSwapsOnADevice,
-                         testing::Values(ShadingDevice::gl, ShadingDevice::processor),
+                         ::testing::Values(ShadingDevice::gl, ShadingDevice::processor),
                          [](const auto& device) {
                              return device.param == ShadingDevice::gl ? "OpenGl" : "Processor";
                          });

@@ -17,7 +17,7 @@
 namespace livery {
 namespace {
 
-class GltfMaterial : public testing::Test {
+class GltfMaterial : public ::testing::Test {
   protected:
     /// The part that wears a material with these members.
     Part part_of(const char* members) {
@@ -40,8 +40,8 @@ class GltfMaterial : public testing::Test {
         EXPECT_TRUE(part.paint) << members;
         return part.paint.value_or(Material());
     }
-    testing::AssertionResult fails(const char* members,
-                                   std::initializer_list<std::string_view> parts) {
+    ::testing::AssertionResult fails(const char* members,
+                                     std::initializer_list<std::string_view> parts) {
         return fails_with([&] { part_of(members); }, parts);
     }
 

@@ -21,7 +21,7 @@ namespace {
 using Use = PartPicture::Use;
 constexpr const char* kPlain = R"("metallicFactor": 0, "roughnessFactor": 0.5)";
 
-class GltfPictureTest : public testing::Test {
+class GltfPictureTest : public ::testing::Test {
   protected:
     /// A picture of 8 bits beside the model, a pixel a value.
     void write(const std::string& name, int width, const std::vector<std::uint8_t>& rgb) {

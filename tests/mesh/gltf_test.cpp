@@ -16,7 +16,7 @@ namespace {
 using Words = std::vector<std::uint16_t>;
 using Floats = std::vector<float>;
 
-class LoadMesh : public testing::Test {
+class LoadMesh : public ::testing::Test {
   protected:
     Mesh load(const GltfBuilder& gltf) {
         notes_.clear();

@@ -33,7 +33,7 @@ GltfBuilder plate_of_day_and_night() {
     return plate;
 }
 
-class GltfVariant : public testing::Test {
+class GltfVariant : public ::testing::Test {
   protected:
     Mesh load(const GltfBuilder& plate) {
         notes_.clear();

@@ -61,7 +61,7 @@ Mesh two_parts() {
     return mesh;
 }
 
-class GltfWrite : public testing::Test {
+class GltfWrite : public ::testing::Test {
   protected:
     Mesh back(const std::string& bytes) {
         notes_.clear();

@@ -19,7 +19,7 @@ using Notes = std::vector<std::string>;
 const char* const kNoNormals =
     "no normals; computed, with edges sharper than 50 degrees kept sharp";
 
-class RepairedScan : public testing::Test {
+class RepairedScan : public ::testing::Test {
   protected:
     Mesh load(const ScanWriter& scan) {
         notes_.clear();

@@ -16,7 +16,7 @@ namespace {
 
 using Notes = std::vector<std::string>;
 
-class LoadScan : public testing::Test {
+class LoadScan : public ::testing::Test {
   protected:
     Mesh load(const char* name, const std::string& bytes) {
         notes_.clear();

@@ -16,7 +16,7 @@ namespace {
 
 using Kind = SignalWarning::Kind;
 
-struct CheckSignalTest : testing::Test {
+struct CheckSignalTest : ::testing::Test {
     CheckSignalTest() { ::unsetenv("DBUS_SESSION_BUS_ADDRESS"); }
 
     std::vector<SignalWarning> check(glm::ivec2 calibrated_px = {1280, 800}) const {

@@ -38,7 +38,7 @@ TEST(Numerals, ScaleAndStayInside) {
     EXPECT_THROW(draw_number(picture, -1, {50.0, 50.0}, 20.0, {}), std::invalid_argument);
 }
 
-struct MonitorNumbersTest : testing::TestWithParam<bool> {
+struct MonitorNumbersTest : ::testing::TestWithParam<bool> {
     Stage stage{GetParam()};
 
     bool is_tile(const Rectangle& monitor) const {
@@ -86,9 +86,12 @@ TEST_P(MonitorNumbersTest, LieAboveTheProjectorsPictureAndLeaveItWhole) {
     EXPECT_TRUE(stage.projector_becomes(kGreen));
 }
 
-INSTANTIATE_TEST_SUITE_P(Desktops, MonitorNumbersTest, testing::Bool(), [](const auto& parameter) {
-    return parameter.param ? "openbox" : "bare";
-});
+INSTANTIATE_TEST_SUITE_P(Desktops,
+                         MonitorNumbersTest,
+                         ::testing::Bool(),
+                         [](const auto& parameter) {
+                             return parameter.param ? "openbox" : "bare";
+                         });
 
 }  // namespace
 }  // namespace livery

@@ -20,7 +20,7 @@ namespace {
 
 using State = ProjectorScreen::State;
 
-struct ProjectorScreenTest : testing::TestWithParam<bool> {
+struct ProjectorScreenTest : ::testing::TestWithParam<bool> {
     Stage stage{GetParam()};
     std::string projector = Desktop::projector_output;
 };
@@ -348,9 +348,12 @@ TEST_P(ProjectorScreenTest, TellsHowSoonItShowsAndIsBlack) {
                 kRounds);
 }
 
-INSTANTIATE_TEST_SUITE_P(Desktops, ProjectorScreenTest, testing::Bool(), [](const auto& parameter) {
-    return parameter.param ? "openbox" : "bare";
-});
+INSTANTIATE_TEST_SUITE_P(Desktops,
+                         ProjectorScreenTest,
+                         ::testing::Bool(),
+                         [](const auto& parameter) {
+                             return parameter.param ? "openbox" : "bare";
+                         });
 
 }  // namespace
 }  // namespace livery

@@ -17,7 +17,7 @@ namespace {
 
 using State = ProjectorScreen::State;
 
-struct UnplugTest : testing::TestWithParam<bool> {
+struct UnplugTest : ::testing::TestWithParam<bool> {
     Stage stage{GetParam()};
     std::string projector = Desktop::projector_output;
 
@@ -222,7 +222,7 @@ TEST_P(UnplugTest, TellsHowSoonItHides) {
                 delays_ms.back());
 }
 
-INSTANTIATE_TEST_SUITE_P(Desktops, UnplugTest, testing::Bool(), [](const auto& parameter) {
+INSTANTIATE_TEST_SUITE_P(Desktops, UnplugTest, ::testing::Bool(), [](const auto& parameter) {
     return parameter.param ? "openbox" : "bare";
 });
 

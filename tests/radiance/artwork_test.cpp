@@ -20,7 +20,7 @@ using ArtworkFrame = Renderer;
 
 INSTANTIATE_TEST_SUITE_P(Devices,
                          ArtworkFrame,
-                         testing::Values(ShadingDevice::gl, ShadingDevice::processor),
+                         ::testing::Values(ShadingDevice::gl, ShadingDevice::processor),
                          [](const auto& device) {
                              return device.param == ShadingDevice::gl ? "OpenGl" : "Processor";
                          });
@@ -41,19 +41,19 @@ void write_picture(const std::filesystem::path& file) {
     write_exr(file, image);
 }
 
-struct Case {
+struct ArtworkCase {
     std::string name;
     Artwork artwork;
     Material material;
 };
 
-std::vector<Case> cases(const std::filesystem::path& picture) {
+std::vector<ArtworkCase> cases(const std::filesystem::path& picture) {
     const Material glossy = paint_of(ReflectanceModel::ggx, 0.2);
     Material coated = paint_of(ReflectanceModel::clearcoat, 0.1);
     coated.diffuse = {0.05, 0.5, 0.6};
     Material rough = paint_of(ReflectanceModel::blinn_phong, 0.2);
     rough.diffuse = {0.1, 0.5, 0.2};
-    std::vector<Case> list;
+    std::vector<ArtworkCase> list;
     for (const ArtworkShape shape :
          {ArtworkShape::half, ArtworkShape::stripes, ArtworkShape::checks, ArtworkShape::dots}) {
         Artwork artwork;
@@ -89,7 +89,7 @@ std::vector<Case> cases(const std::filesystem::path& picture) {
     return list;
 }
 
-Scene scene_with(const Case& one) {
+Scene scene_with(const ArtworkCase& one) {
     Scene scene = scene_of(two_spheres(), paint_of(ReflectanceModel::lambert, 0.2));
     scene.lights = {light_from({0.3, 0.6, 0.8}, 0.05), light_from({-0.6, 0.1, 0.8}, 0.05, 0.5)};
     const auto picture =
@@ -102,7 +102,7 @@ TEST_P(ArtworkFrame, AgreesWithBruteForce) {
     const TemporaryFolder folder;
     write_picture(folder / "rings.exr");
     const View view = test_view(96, 72);
-    for (const Case& one : cases(folder / "rings.exr")) {
+    for (const ArtworkCase& one : cases(folder / "rings.exr")) {
         const Scene scene = scene_with(one);
         const RadianceError error =
             radiance_error(draw(scene, view), direct_light(scene, view, {16, 0}));
@@ -125,7 +125,7 @@ TEST_P(ArtworkFrame, BothDevicesDrawTheSame) {
     write_picture(folder / "rings.exr");
     const View view = test_view(64, 48);
     const ShadingDevice other = in_opengl() ? ShadingDevice::processor : ShadingDevice::gl;
-    for (const Case& one : cases(folder / "rings.exr")) {
+    for (const ArtworkCase& one : cases(folder / "rings.exr")) {
         Scene scene = scene_with(one);
         scene.environment = studio();
         const ImageF a = draw(scene, view, Quality::draft, GetParam());
@@ -141,7 +141,7 @@ TEST_P(ArtworkFrame, ThePreviewShowsIt) {
     const TemporaryFolder folder;
     write_picture(folder / "rings.exr");
     const View view = test_view(120, 90);
-    for (const Case& one : cases(folder / "rings.exr")) {
+    for (const ArtworkCase& one : cases(folder / "rings.exr")) {
         const Scene scene = scene_with(one);
         Scene without = scene;
         without.artwork.clear();

@@ -17,8 +17,6 @@
 namespace livery {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 struct Frame {
     glm::dvec3 s, t, n;
     glm::dvec3 to_local(const glm::dvec3& v) const {
@@ -34,7 +32,8 @@ glm::dvec3 disc_direction(const DirectionalLight& light, glm::dvec2 u) {
     const glm::dvec3 t = glm::cross(axis, s);
     const double z = 1.0 - u.x * (1.0 - std::cos(0.5 * light.angle_rad));
     const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
-    return z * axis + r * (std::cos(2 * kPi * u.y) * s + std::sin(2 * kPi * u.y) * t);
+    return z * axis + r * (std::cos(2 * std::numbers::pi * u.y) * s +
+                           std::sin(2 * std::numbers::pi * u.y) * t);
 }
 
 glm::dvec3 sky(const Environment& environment, const glm::dvec3& direction) {
@@ -61,19 +60,19 @@ glm::dvec3 even_point(int index, const glm::dvec3& shift) {
     return glm::fract(shift + static_cast<double>(index) * step);
 }
 
-using Paint = BoundBsdfPointer<double, glm::dvec3>;
-Paint paint_of(const Material& material) {
+using BoundPaint = BoundBsdfPointer<double, glm::dvec3>;
+BoundPaint paint_of(const Material& material) {
     return model_info(material.model).f64.bound(parameters_of_f64(material));
 }
 
 /// What shines at a point: the part's paint and artwork's over it.
 struct Worn {
     double share;
-    Paint bsdf;
+    BoundPaint bsdf;
 };
 
 std::vector<Worn> worn_at(const Scene& scene,
-                          const std::vector<Paint>& paints,
+                          const std::vector<BoundPaint>& paints,
                           const SurfacePoint& point) {
     std::vector<Worn> worn{{1.0, paints[point.part]}};
     for (const PartArtwork& artwork : scene.artwork) {
@@ -104,7 +103,7 @@ glm::vec3 relieved_normal(const Scene& scene, const SurfacePoint& point) {
 ImageF direct_light(const Scene& scene, const View& view, const OracleOptions& options) {
     const Mesh& mesh = scene.product->mesh;
     const Tracer tracer(mesh);
-    std::vector<Paint> paints;
+    std::vector<BoundPaint> paints;
     for (const Material& m : scene.part_materials) paints.push_back(paint_of(m));
     ImageF image(view.width, view.height, 4);
     const int side = options.side, count = side * side;
@@ -157,8 +156,9 @@ ImageF direct_light(const Scene& scene, const View& view, const OracleOptions& o
                     const glm::dvec3 wi = frame.to_local(direction);
                     if (wi.z <= 0.0 || !visible(direction)) continue;
                     for (const Worn& paint : worn) {
-                        sum += paint.share * kPi * (working_from_rec709() * light.radiance_rec709) *
-                               wi.z * paint.bsdf->eval(wi, wo);
+                        sum += paint.share * std::numbers::pi *
+                               (working_from_rec709() * light.radiance_rec709) * wi.z *
+                               paint.bsdf->eval(wi, wo);
                     }
                 }
                 for (const Worn& paint : worn) {

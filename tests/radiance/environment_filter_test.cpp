@@ -15,8 +15,6 @@
 namespace livery {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 template <typename Radiance>
 Environment environment_of(int width, int height, const Radiance& radiance) {
     Environment environment;
@@ -45,8 +43,8 @@ double lobe_mean(double alpha, glm::dvec3 axis, const std::function<double(glm::
     double sum = 0.0, total = 0.0;
     const int rings = 800, sectors = 256;
     for (int i = 0; i < rings; ++i) {
-        const double theta = kPi / 2.0 * std::pow((i + 0.5) / rings, 2.0);
-        const double width = kPi / 2.0 * 2.0 * ((i + 0.5) / rings) / rings;
+        const double theta = std::numbers::pi / 2.0 * std::pow((i + 0.5) / rings, 2.0);
+        const double width = std::numbers::pi / 2.0 * 2.0 * ((i + 0.5) / rings) / rings;
         const double c = std::cos(0.5 * theta), s2 = std::pow(std::sin(0.5 * theta), 2.0);
         const double k = alpha / (s2 + c * c * alpha * alpha);
         const double mu = std::cos(theta);
@@ -54,7 +52,7 @@ double lobe_mean(double alpha, glm::dvec3 axis, const std::function<double(glm::
             2.0 * mu / (mu + std::sqrt(alpha * alpha + (1 - alpha * alpha) * mu * mu));
         const double weight = k * k * g2 * std::sin(theta) * width;
         for (int j = 0; j < sectors; ++j) {
-            const double phi = 2.0 * kPi * (j + 0.5) / sectors;
+            const double phi = 2.0 * std::numbers::pi * (j + 0.5) / sectors;
             sum += weight *
                    radiance(mu * axis + std::sin(theta) * (std::cos(phi) * s + std::sin(phi) * t));
             total += weight;
@@ -64,7 +62,7 @@ double lobe_mean(double alpha, glm::dvec3 axis, const std::function<double(glm::
 }
 
 /// Smooth, with three lamps of different size, the smallest 0.03 rad wide.
-double studio(glm::dvec3 d) {
+double lamps(glm::dvec3 d) {
     const auto lamp = [&](glm::dvec3 at, double width, double power) {
         const glm::dvec3 away = d - glm::normalize(at);
         return power * std::exp(-0.5 * glm::dot(away, away) / (width * width));
@@ -118,7 +116,7 @@ TEST(EnvironmentFilter, DiffuserUnderAHalfSky) {
     const Environment half =
         environment_of(1024, 512, [](glm::dvec3 d) { return glm::dvec3(d.y > 0.0 ? 1.0 : 0.0); });
     const FilteredEnvironment filtered = filter_environment(half, {false, true, false, false});
-    for (double t = 0.05; t < kPi; t += 0.15) {
+    for (double t = 0.05; t < std::numbers::pi; t += 0.15) {
         const glm::dvec3 n(std::sin(t), std::cos(t), 0.0);
         EXPECT_NEAR(towards(half, filtered.diffuse, n).x, 0.5 + 0.5 * std::cos(t), 1e-3);
     }
@@ -126,7 +124,7 @@ TEST(EnvironmentFilter, DiffuserUnderAHalfSky) {
 
 TEST(EnvironmentFilter, LayersAreMeansOverTheirLobes) {
     const Environment environment =
-        environment_of(1024, 512, [](glm::dvec3 d) { return glm::dvec3(studio(d)); });
+        environment_of(1024, 512, [](glm::dvec3 d) { return glm::dvec3(lamps(d)); });
     const FilteredEnvironment filtered =
         filter_environment(environment, {true, false, false, false});
     for (const std::size_t layer : {1u, 2u, 4u, 6u, 7u, 8u, 10u, 12u}) {
@@ -138,7 +136,7 @@ TEST(EnvironmentFilter, LayersAreMeansOverTheirLobes) {
                                       glm::dvec3(0.02, 1, 0.01),
                                       glm::dvec3(0, -1, 0.2)}) {
             const glm::dvec3 unit = glm::normalize(axis);
-            const double expected = lobe_mean(alpha, unit, studio);
+            const double expected = lobe_mean(alpha, unit, lamps);
             // Bilinear interpolation of a lamp .03 rad wide on texels of .012 rad: up to h^2 / 4
             // sigma^2 = 4% between texels.
             EXPECT_NEAR(towards(environment, filtered.mirrored[layer], unit).x,
@@ -168,7 +166,7 @@ TEST(EnvironmentFilter, OtherSizesAreTakenAndRotationOnlyTurns) {
     Environment small = environment_of(90, 45, [](glm::dvec3 d) { return glm::dvec3(1.0 + d.x); });
     const FilteredEnvironment filtered = filter_environment(small, {false, true, false, false});
     EXPECT_NEAR(towards(small, filtered.diffuse, {1, 0, 0}).x, 1.0 + 2.0 / 3.0, 3e-3);
-    small.rotation_rad = kPi / 2.0;
+    small.rotation_rad = std::numbers::pi / 2.0;
     const glm::dvec3 where = direction_from_uv(small, {0.75, 0.5});
     EXPECT_NEAR(towards(small, filtered.diffuse, where).x, 1.0 + 2.0 / 3.0, 3e-3);
 }
@@ -250,7 +248,7 @@ TEST(EnvironmentFilter, GaussiansMixToTheVarianceAskedFor) {
         for (const double v : {0.0, 1e-4, 2e-4, 3e-4, 1e-3, 5e-3, 7e-3, 0.01, 0.03, 0.15, 0.4}) {
             for (std::size_t k = 0; k < mirror_sums_available(); ++k) {
                 const MirrorSums& sums = mirror_sums_available(k);
-                SCOPED_TRACE(testing::Message() << sums.instruction_set << " " << v);
+                SCOPED_TRACE(::testing::Message() << sums.instruction_set << " " << v);
                 const glm::vec3 found = seen_along(layers, sky, d, static_cast<float>(v), sums);
                 const double tolerance = 1e-3 + 0.5 * v * v;
                 EXPECT_NEAR(found.x, 1.0 + std::exp(-v) * d.x, tolerance);

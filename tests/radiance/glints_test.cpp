@@ -325,7 +325,7 @@ class RenderedGlints : public Renderer {
 
 INSTANTIATE_TEST_SUITE_P(Devices,
                          RenderedGlints,
-                         testing::Values(ShadingDevice::gl, ShadingDevice::processor),
+                         ::testing::Values(ShadingDevice::gl, ShadingDevice::processor),
                          [](const auto& device) {
                              return device.param == ShadingDevice::gl ? "OpenGl" : "Processor";
                          });

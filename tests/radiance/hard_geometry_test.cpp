@@ -180,7 +180,7 @@ TEST_P(HardGeometry, APictureDoesNotDependOnTheUnit) {
 
 INSTANTIATE_TEST_SUITE_P(Devices,
                          HardGeometry,
-                         testing::Values(ShadingDevice::gl, ShadingDevice::processor),
+                         ::testing::Values(ShadingDevice::gl, ShadingDevice::processor),
                          [](const auto& device) {
                              return device.param == ShadingDevice::gl ? "OpenGl" : "Processor";
                          });

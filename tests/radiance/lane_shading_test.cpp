@@ -184,7 +184,7 @@ TEST(LaneShading, WhatIsNoNumberStaysNone) {
             for (const auto& [name, spoil] : spoils) {
                 const bool lambert = model == 0, of_lambert = &spoil == &spoils[0].second;
                 if (lambert != of_lambert && lambert) continue;  // reads nothing else
-                SCOPED_TRACE(testing::Message()
+                SCOPED_TRACE(::testing::Message()
                              << functions.instruction_set << ", model " << model << ": " << name);
                 const std::vector<float> bad = shaded(functions, model, true, spoil);
                 for (std::size_t i = 0; i < bad.size(); ++i) {

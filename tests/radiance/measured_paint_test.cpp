@@ -37,7 +37,7 @@ using RendererOfMeasured = Renderer;
 
 INSTANTIATE_TEST_SUITE_P(Devices,
                          RendererOfMeasured,
-                         testing::Values(ShadingDevice::gl, ShadingDevice::processor),
+                         ::testing::Values(ShadingDevice::gl, ShadingDevice::processor),
                          [](const auto& device) {
                              return device.param == ShadingDevice::gl ? "OpenGl" : "Processor";
                          });

@@ -12,7 +12,7 @@ using MirrorInputs = Renderer;
 
 INSTANTIATE_TEST_SUITE_P(Devices,
                          MirrorInputs,
-                         testing::Values(ShadingDevice::gl, ShadingDevice::processor),
+                         ::testing::Values(ShadingDevice::gl, ShadingDevice::processor),
                          [](const auto& device) {
                              return device.param == ShadingDevice::gl ? "OpenGl" : "Processor";
                          });
@@ -55,8 +55,8 @@ TEST_P(MirrorInputs, TheWornRoughnessesLookAsIfAllWereSolved) {
         all.prepare(scene, ahead);
         for (const MirrorLayers& of_part : all.mirrored()) EXPECT_TRUE(of_part.all());
         for (const Material& paint : paints()) {
-            SCOPED_TRACE(testing::Message() << model_info(paint.model).name << " " << paint.alpha.x
-                                            << " " << to_string(quality));
+            SCOPED_TRACE(::testing::Message() << model_info(paint.model).name << " "
+                                              << paint.alpha.x << " " << to_string(quality));
             scene.part_materials[0] = paint;
             FramePlan its_plan = plan(scene, quality);
             all.render(scene, its_plan);

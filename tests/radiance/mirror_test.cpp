@@ -170,7 +170,7 @@ class Mirror : public Renderer {
 };
 INSTANTIATE_TEST_SUITE_P(Devices,
                          Mirror,
-                         testing::Values(ShadingDevice::processor),
+                         ::testing::Values(ShadingDevice::processor),
                          [](const auto&) { return "Processor"; });
 
 TEST_P(Mirror, LobesOfAllWidthsAreAsBrightAsTheTruth) {

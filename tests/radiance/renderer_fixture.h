@@ -15,7 +15,7 @@
 namespace livery {
 
 /// Everything holds in OpenGL and on the processor.
-class Renderer : public testing::TestWithParam<ShadingDevice> {
+class Renderer : public ::testing::TestWithParam<ShadingDevice> {
   protected:
     HeadlessContext context{GlDevice::software};
 

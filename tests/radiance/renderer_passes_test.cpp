@@ -14,7 +14,7 @@ using RendererPasses = Renderer;
 
 INSTANTIATE_TEST_SUITE_P(Devices,
                          RendererPasses,
-                         testing::Values(ShadingDevice::gl, ShadingDevice::processor),
+                         ::testing::Values(ShadingDevice::gl, ShadingDevice::processor),
                          [](const auto& device) {
                              return device.param == ShadingDevice::gl ? "OpenGl" : "Processor";
                          });

@@ -25,7 +25,7 @@ namespace {
 
 INSTANTIATE_TEST_SUITE_P(Devices,
                          Renderer,
-                         testing::Values(ShadingDevice::gl, ShadingDevice::processor),
+                         ::testing::Values(ShadingDevice::gl, ShadingDevice::processor),
                          [](const auto& device) {
                              return device.param == ShadingDevice::gl ? "OpenGl" : "Processor";
                          });
@@ -100,7 +100,7 @@ TEST_P(Renderer, WhatIsNoNumberIsNeverBright) {
                                          ReflectanceModel::car_paint,
                                          ReflectanceModel::ward_1992}) {
         for (const bool in_environment : {false, true}) {
-            SCOPED_TRACE(testing::Message() << model_info(model).name << in_environment);
+            SCOPED_TRACE(::testing::Message() << model_info(model).name << in_environment);
             Scene scene = scene_of(two_spheres(), paint_of(model, 0.1));
             scene.lights = {light_from({0.5, 0.8, 0.6}, 0.05), light_from({-0.9, 0.3, 0.5}, 0.0)};
             auto environment = std::make_shared<Environment>(*studio());

@@ -14,8 +14,6 @@
 namespace livery {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 View front_view(int width, int height, double distance_mm, double fov_rad) {
     return look_at({0, 0, distance_mm}, {0, 0, 0}, fov_rad, width, height);
 }
@@ -51,7 +49,7 @@ TEST(SurfaceMap, SphereCoversItsExactOutline) {
     // pixel on about 500 edge pixels, each with an error of a few percent: .05% of the area.
     const double outline_px =
         view.focal_px.x * radius / std::sqrt(distance * distance - radius * radius);
-    EXPECT_NEAR(area / (kPi * outline_px * outline_px), 1.0, 1e-3);
+    EXPECT_NEAR(area / (std::numbers::pi * outline_px * outline_px), 1.0, 1e-3);
 }
 
 TEST(SurfaceMap, FragmentsLieOnTheSphereWithItsNormalsAndTheirSpread) {

@@ -21,7 +21,7 @@ using UncalledEffects = Renderer;
 
 INSTANTIATE_TEST_SUITE_P(Devices,
                          UncalledEffects,
-                         testing::Values(ShadingDevice::gl, ShadingDevice::processor),
+                         ::testing::Values(ShadingDevice::gl, ShadingDevice::processor),
                          [](const auto& device) {
                              return device.param == ShadingDevice::gl ? "OpenGl" : "Processor";
                          });

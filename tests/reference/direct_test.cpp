@@ -28,7 +28,7 @@ Material varnished() {
     return material;
 }
 
-class DiscOfLight : public testing::TestWithParam<ReferenceSampling> {};
+class DiscOfLight : public ::testing::TestWithParam<ReferenceSampling> {};
 
 TEST_P(DiscOfLight, LightsAFloorWithTheCosineOfItsCentreWhateverItsSize) {
     for (const double angle_rad : {0.009, 0.05, 0.6, 1.2}) {
@@ -51,9 +51,9 @@ TEST_P(DiscOfLight, LightsAFloorWithTheCosineOfItsCentreWhateverItsSize) {
 
 INSTANTIATE_TEST_SUITE_P(Ways,
                          DiscOfLight,
-                         testing::Values(ReferenceSampling::combined,
-                                         ReferenceSampling::lights,
-                                         ReferenceSampling::reflectance));
+                         ::testing::Values(ReferenceSampling::combined,
+                                           ReferenceSampling::lights,
+                                           ReferenceSampling::reflectance));
 
 TEST(Lights, PointAtInfinityIsExactAndExposureDoubles) {
     Scene scene = scene_of(floor_mesh(500.0f), white_diffuse(0.5), {0.0, 1000.0, 0.0});

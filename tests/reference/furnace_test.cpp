@@ -46,7 +46,7 @@ TEST(Furnace, WhiteLambertSphereVanishesWithBouncesToo) {
     EXPECT_NEAR(mean.colour.y, 1.0, 4.0 * mean.standard_error + 1e-3);
 }
 
-class GgxFurnace : public testing::TestWithParam<double> {};
+class GgxFurnace : public ::testing::TestWithParam<double> {};
 
 TEST_P(GgxFurnace, SphereShowsTheAlbedoOfTheQuadrature) {
     Material metal;
@@ -84,7 +84,7 @@ TEST_P(GgxFurnace, SphereShowsTheAlbedoOfTheQuadrature) {
     EXPECT_LT(chi2 / compared, 1.3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Alphas, GgxFurnace, testing::Values(0.05, 0.3, 1.0));
+INSTANTIATE_TEST_SUITE_P(Alphas, GgxFurnace, ::testing::Values(0.05, 0.3, 1.0));
 
 }  // namespace
 }  // namespace livery

@@ -11,7 +11,7 @@
 namespace livery {
 namespace {
 
-Json some_look() {
+Json liveried_look() {
     return Json::parse(R"({"format_version": 1, "name": "liveried", "parts": {"*": "grey"},
         "artwork": [
           {"name": "two tones", "part": "body", "paint": "white", "shape": "half",
@@ -30,7 +30,7 @@ Json some_look() {
 Look look_of(const Json& json) { return parse_look(json.dump(), "look.json"); }
 
 TEST(ArtworkFile, IsRead) {
-    const Look look = look_of(some_look());
+    const Look look = look_of(liveried_look());
     ASSERT_EQ(look.artwork.size(), 7u);
     const Artwork& tones = look.artwork[0];
     EXPECT_EQ(tones.name, "two tones");
@@ -55,7 +55,7 @@ TEST(ArtworkFile, IsRead) {
 
 TEST(ArtworkFile, ComesBackAsItWas) {
     const TemporaryFolder folder;
-    const Look look = look_of(some_look());
+    const Look look = look_of(liveried_look());
     write_look_file(folder / "again.json", look);
     EXPECT_EQ(read_look_file(folder / "again.json").artwork, look.artwork);
 }
@@ -108,7 +108,7 @@ TEST(ArtworkFile, EveryMistakeIsNamed) {
          "artwork",
          "47 artworks"}};
     for (const Case& one : cases) {
-        Json json = some_look();
+        Json json = liveried_look();
         one.change(json["artwork"]);
         EXPECT_TRUE(
             fails_with([&] { look_of(json); }, {"look.json", one.field, one.part_of_message}));

@@ -1,11 +1,11 @@
 #include <fstream>
-#include <functional>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 #include <opencv2/calib3d.hpp>
 
 #include "core/json.h"
+#include "scene/broken.h"
 #include "scene/view.h"
 #include "support/file_error.h"
 #include "support/temporary_folder.h"
@@ -56,13 +56,7 @@ TEST(CameraFile, ComesBackAsItWas) {
     EXPECT_EQ(back.view_from_world.translation, view.view_from_world.translation);
 }
 
-struct Broken {
-    const char* what;
-    std::function<void(Json&)> damage;
-    const char* message;
-};
-
-const Broken kBroken[] = {
+const Broken kBrokenCameras[] = {
     {"width missing", [](Json& c) { c.erase("width"); }, "width: found nothing"},
     {"width zero", [](Json& c) { c["width"] = 0; }, "width: found 0"},
     {"width huge",
@@ -117,7 +111,7 @@ const Broken kBroken[] = {
 
 TEST(CameraFile, EachMistakeIsNamed) {
     const TemporaryFolder folder;
-    for (const auto& broken : kBroken) {
+    for (const auto& broken : kBrokenCameras) {
         Json json = some_camera();
         broken.damage(json);
         const auto file = folder.write("camera.json", json.dump());

@@ -10,6 +10,7 @@
 #include "core/image_io.h"
 #include "core/json.h"
 #include "core/random.h"
+#include "scene/broken.h"
 #include "support/file_error.h"
 #include "support/temporary_folder.h"
 
@@ -172,13 +173,7 @@ TEST(ColourCalibration, OnlySealedAndCompleteOnesAreWritten) {
     EXPECT_FALSE(std::filesystem::exists(folder / "c"));
 }
 
-struct Broken {
-    const char* what;
-    std::function<void(Json&)> damage;
-    const char* message;
-};
-
-const Broken kBroken[] = {
+const Broken kBrokenCalibrations[] = {
     {"no version", [](Json& c) { c.erase("format_version"); }, "format_version: found nothing"},
     {"newer version", [](Json& c) { c["format_version"] = 2; }, "found 2 (written by a newer"},
     {"other kind", [](Json& c) { c["kind"] = "geometry"; }, "kind: found \"geometry\""},
@@ -230,7 +225,7 @@ TEST(ColourCalibration, EachMistakeInItsJsonIsNamed) {
     const TemporaryFolder folder;
     write_calibration(folder / "c", some_calibration());
     const Json good = read_json_file(folder / "c/calibration.json");
-    for (const auto& broken : kBroken) {
+    for (const auto& broken : kBrokenCalibrations) {
         Json json = good;
         broken.damage(json);
         folder.write("c/calibration.json", json.dump());

@@ -7,6 +7,7 @@
 #include "appearance/material_library.h"
 #include "appearance/parameter_table.h"
 #include "scene/frame_plan.h"
+#include "scene/grey_environment.h"
 #include "scene/subsurface_reach.h"
 
 namespace livery {
@@ -19,12 +20,6 @@ Scene sphere_scene() {
     scene.product = std::make_shared<const Product>(std::move(product));
     scene.part_materials.resize(1);
     return scene;
-}
-
-std::shared_ptr<const Environment> grey_environment() {
-    auto environment = std::make_shared<Environment>();
-    environment->radiance_working = ImageF(8, 4, 3, 0.5f);
-    return environment;
 }
 
 TEST(EffectTable, StandsInOrderWithNamesOfItsOwn) {

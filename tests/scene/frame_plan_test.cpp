@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "scene/grey_environment.h"
+
 namespace livery {
 namespace {
 
@@ -20,12 +22,6 @@ Scene bare_scene() {
     scene.product = std::make_shared<const Product>(two_part_product());
     scene.part_materials.resize(2);
     return scene;
-}
-
-std::shared_ptr<const Environment> grey_environment() {
-    Environment environment;
-    environment.radiance_working = ImageF(8, 4, 3, 0.5f);
-    return std::make_shared<const Environment>(environment);
 }
 
 DirectionalLight light(double angle_rad, double radiance = 1.0) {

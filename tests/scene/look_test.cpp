@@ -1,18 +1,17 @@
 #include "scene/look.h"
 
-#include <functional>
-
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include "core/json.h"
+#include "scene/broken.h"
 #include "support/file_error.h"
 #include "support/temporary_folder.h"
 
 namespace livery {
 namespace {
 
-Json some_look() {
+Json evening_look() {
     return Json::parse(R"({"format_version": 1, "name": "evening",
         "parts": {"body": "red", "*": "grey"},
         "lights": [{"type": "directional", "direction": [0, 3, 4], "radiance": [1, 0.9, 0.8],
@@ -23,7 +22,7 @@ Json some_look() {
 
 TEST(LookFile, IsReadWithLightsNormalised) {
     const TemporaryFolder folder;
-    const Look look = read_look_file(folder.write("look.json", some_look().dump()));
+    const Look look = read_look_file(folder.write("look.json", evening_look().dump()));
     EXPECT_EQ(look.name, "evening");
     EXPECT_EQ(look.parts.at("body"), "red");
     EXPECT_EQ(look.parts.at("*"), "grey");
@@ -36,7 +35,7 @@ TEST(LookFile, IsReadWithLightsNormalised) {
 
 TEST(LookFile, ComesBackAsItWas) {
     const TemporaryFolder folder;
-    const Look look = read_look_file(folder.write("look.json", some_look().dump()));
+    const Look look = read_look_file(folder.write("look.json", evening_look().dump()));
     write_look_file(folder / "again.json", look);
     const Look again = read_look_file(folder / "again.json");
     EXPECT_EQ(again.name, look.name);
@@ -55,13 +54,7 @@ TEST(LookFile, NeedsNothingButItsVersion) {
     EXPECT_TRUE(look.parts.empty() && look.lights.empty() && look.environment.file.empty());
 }
 
-struct Broken {
-    const char* what;
-    std::function<void(Json&)> damage;
-    const char* message;
-};
-
-const Broken kBroken[] = {
+const Broken kBrokenLooks[] = {
     {"no version", [](Json& l) { l.erase("format_version"); }, "format_version: found nothing"},
     {"newer version", [](Json& l) { l["format_version"] = 2; }, "found 2 (written by a newer"},
     {"misspelt field", [](Json& l) { l["light"] = 1; }, "the unknown field \"light\""},
@@ -108,14 +101,14 @@ const Broken kBroken[] = {
 
 TEST(LookFile, EachMistakeIsNamed) {
     const TemporaryFolder folder;
-    for (const auto& broken : kBroken) {
-        Json json = some_look();
+    for (const auto& broken : kBrokenLooks) {
+        Json json = evening_look();
         broken.damage(json);
         const auto file = folder.write("look.json", json.dump());
         EXPECT_TRUE(fails_with([&] { read_look_file(file); }, {"look.json", broken.message}))
             << broken.what;
     }
-    const std::string good = some_look().dump();
+    const std::string good = evening_look().dump();
     EXPECT_TRUE(fails_with([&] { read_look_file(folder / "gone.json"); }, {"no such file"}));
     EXPECT_TRUE(fails_with([&] { read_look_file(folder.write("a.json", "")); }, {"empty file"}));
     EXPECT_TRUE(fails_with([&] { read_look_file(folder.write("a.json", good.substr(0, 90))); },

@@ -1,13 +1,12 @@
 #include "scene/product.h"
 
-#include <functional>
-
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <gtest/gtest.h>
 
 #include "core/image_io.h"
 #include "mesh/gltf_builder.h"
+#include "scene/broken.h"
 #include "scene/scene.h"
 #include "support/file_error.h"
 #include "support/temporary_folder.h"
@@ -15,7 +14,7 @@
 namespace livery {
 namespace {
 
-class ProductOfAFile : public testing::Test {
+class ProductOfAFile : public ::testing::Test {
   protected:
     ProductOfAFile() { folder_.write("plate.glb", make_plate().glb()); }
     std::filesystem::path write(const Json& json) {
@@ -56,13 +55,7 @@ TEST_F(ProductOfAFile, AnUnknownPartIsAnsweredWithTheKnownOnes) {
     }
 }
 
-struct Broken {
-    const char* what;
-    std::function<void(Json&)> damage;
-    const char* message;
-};
-
-const Broken kBroken[] = {
+const Broken kBrokenProducts[] = {
     {"no version", [](Json& p) { p.erase("format_version"); }, "format_version: found nothing"},
     {"newer version", [](Json& p) { p["format_version"] = 9; }, "found 9 (written by a newer"},
     {"no mesh", [](Json& p) { p.erase("mesh"); }, "product.json: mesh: found nothing"},
@@ -175,7 +168,7 @@ TEST_F(ProductOfAFile, TwoPartsOfOneNameAreRefused) {
 }
 
 TEST_F(ProductOfAFile, EachMistakeIsNamed) {
-    for (const auto& broken : kBroken) {
+    for (const auto& broken : kBrokenProducts) {
         Json json = some_product();
         broken.damage(json);
         const auto file = write(json);

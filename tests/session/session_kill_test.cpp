@@ -19,7 +19,7 @@ namespace {
 using testing::state_of;
 using testing::take_step;
 
-constexpr std::uint64_t kSeed = 20;
+constexpr std::uint64_t kKillSeed = 20;
 
 /// Runs the writer from step `first` on, and kills it `delay_us` after it told of `least` steps (or
 /// that it is open). Returns the steps that it told of, -1: it was not open yet.
@@ -29,7 +29,7 @@ int killed_after(const std::filesystem::path& file,
                  useconds_t delay_us) {
     int pipe_ends[2];
     if (::pipe(pipe_ends) != 0) throw std::runtime_error("no pipe");
-    const std::string seed = std::to_string(kSeed), step = std::to_string(first);
+    const std::string seed = std::to_string(kKillSeed), step = std::to_string(first);
     const pid_t child = ::fork();
     if (child == 0) {
         ::dup2(pipe_ends[1], STDOUT_FILENO);
@@ -62,19 +62,19 @@ TEST(KilledSession, LosesNoCommandThatWasDone) {
     const auto file = folder / "Sitzung.livery";
     // The same steps on a session that is never killed.
     Session model = Session::unsaved(testing::car(), "a model");
-    Random random(kSeed);
+    Random random(kKillSeed);
     std::uint64_t next = 0;
     int between = 0;
     for (int kill = 0; kill < 20; ++kill) {
         const int least = static_cast<int>(random.below(15));
         const int told = killed_after(file, next, least, random.below(8000));
         ASSERT_GE(told, least);
-        for (int k = 0; k < told; ++k) take_step(model, kSeed, next++);
+        for (int k = 0; k < told; ++k) take_step(model, kKillSeed, next++);
         ASSERT_NO_THROW(SessionFile(file, SessionFile::Access::read).check_all());
         const Session session = Session::open(file);
         if (state_of(session) != state_of(model)) {
             // On disk, and killed before it could tell.
-            take_step(model, kSeed, next++);
+            take_step(model, kKillSeed, next++);
             ++between;
         }
         ASSERT_EQ(state_of(session), state_of(model)) << "after kill " << kill;
@@ -87,7 +87,7 @@ TEST(KilledSession, LosesNoCommandThatWasDone) {
         ASSERT_EQ(state_of(session), state_of(model));
     }
     EXPECT_FALSE(session.can_undo());
-    std::cout << "    seed " << kSeed << ": " << next << " steps, 20 kills, " << between
+    std::cout << "    seed " << kKillSeed << ": " << next << " steps, 20 kills, " << between
               << " between disk and telling\n";
 }
 

@@ -22,11 +22,14 @@
 
 namespace livery::testing {
 
+/// Pixels of the small bench's projector.
+inline constexpr int kSmallWidth = 320, kSmallHeight = 200;
+
 /// The default bench with a sixteenth of its pixels; every nuisance is off. Noise, spectra and
 /// geometry are the full bench's.
 inline BenchDescription small_bench_description() {
     BenchDescription description = read_bench_file("default");
-    description.projector.view = resized(description.projector.view, 320, 200);
+    description.projector.view = resized(description.projector.view, kSmallWidth, kSmallHeight);
     description.camera.view = resized(description.camera.view, 432, 288);
     return description;
 }

@@ -24,7 +24,7 @@ Document three_looks() {
     return document;
 }
 
-struct Window : testing::Test {
+struct Window : ::testing::Test {
     Window() { keep_shown_looks_valid(shell.studio); }
 
     bool press(int key, bool ctrl = false, bool shift = false, KeyboardOwner owner = {}) {

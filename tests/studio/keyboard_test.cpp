@@ -30,7 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// An ImGui that draws nowhere, and folders of the test's own as home and as the user's folder.
-class Keyboard : public testing::Test {
+class Keyboard : public ::testing::Test {
   protected:
     Keyboard() {
         // Of the test's own process; every test of this file sets them anew.

@@ -1,23 +1,15 @@
 #include "studio/product/lit_share.h"
 
-#include <bit>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
 #include "live/projector_setup.h"
-#include "mesh/scan_writer.h"
 #include "scene/library.h"
+#include "studio/box_mesh.h"
 
 namespace livery {
 namespace {
-
-Mesh box(const glm::vec3& sides) {
-    return read_mesh(box_scan(0.5f * sides).binary_ply(std::endian::little),
-                     "/no folder/box.ply",
-                     nullptr,
-                     LengthUnit::mm);
-}
 
 View bench_projector() { return uncorrected_setup("default")->view; }
 

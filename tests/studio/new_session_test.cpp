@@ -17,6 +17,7 @@
 #include "core/paths.h"
 #include "mesh/scan_writer.h"
 #include "scene/library.h"
+#include "studio/box_mesh.h"
 #include "studio/product/mesh_picture.h"
 #include "studio/product/open_session.h"
 #include "studio/window/shell.h"
@@ -25,14 +26,6 @@
 
 namespace livery {
 namespace {
-
-/// A box of these sides about `middle`, in a file's numbers.
-Mesh box(const glm::vec3& sides, const glm::vec3& middle = {}) {
-    ScanWriter scan = box_scan(0.5f * sides);
-    for (glm::vec3& position : scan.positions) position += middle;
-    return read_mesh(
-        scan.binary_ply(std::endian::little), "/no folder/box.ply", nullptr, LengthUnit::mm);
-}
 
 TEST(SuggestedAnswers, AScanOfACarInMetresWithZUpIsSeenThrough) {
     const MeshFacts facts = facts_of(box({4.6f, 1.9f, 1.45f}, {12, -3, 0.7f}), "car.ply");
@@ -141,7 +134,7 @@ TEST(MeshPicture, ShowsTheProductAsItWouldStand) {
 }
 
 /// The window's state without a window, on a session in a file.
-class OneWindow : public testing::Test {
+class OneWindow : public ::testing::Test {
   protected:
     OneWindow() : shell_(first_session()) {
         shell_.studio.background = std::make_unique<Background>([] {});

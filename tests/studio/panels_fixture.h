@@ -44,7 +44,7 @@ inline void draw_ballot(Studio& studio) {
 }
 
 /// A studio without threads, projector and window, and an ImGui that draws nowhere.
-class Panels : public testing::TestWithParam<float> {
+class Panels : public ::testing::TestWithParam<float> {
   protected:
     Panels() {
         setenv("LIVERY_HOME", home_.path().c_str(), 1);

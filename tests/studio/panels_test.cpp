@@ -76,7 +76,7 @@ TEST_P(Panels, FitIntoTheNarrowestColumn) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scales, Panels, testing::Values(1.0f, 2.0f));
+INSTANTIATE_TEST_SUITE_P(Scales, Panels, ::testing::Values(1.0f, 2.0f));
 
 TEST_F(Panels, ATooltipIsNeverTallerThanItsText) {
     use_scale(1.0f);

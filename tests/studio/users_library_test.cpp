@@ -18,7 +18,7 @@
 namespace livery {
 namespace {
 
-class UsersLibrary : public testing::Test {
+class UsersLibrary : public ::testing::Test {
   protected:
     UsersLibrary() {
         setenv("LIVERY_HOME", home_.path().c_str(), 1);

@@ -10,7 +10,7 @@ namespace livery {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr int kSize = 96;
+constexpr int kBallView_px = 96;
 
 TEST(MetalReflectance, IsFresnels) {
     // At normal incidence ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2).
@@ -28,7 +28,7 @@ TEST(MetalReflectance, IsFresnels) {
 }
 
 TEST(MirrorBallStand, EvenLightIsEvenInAPerfectMirror) {
-    const MirrorBallStand stand = usual_mirror_ball_stand({}, kSize, 1);
+    const MirrorBallStand stand = usual_mirror_ball_stand({}, kBallView_px, 1);
     const ImageF light = mirror_ball_light(
         stand, stand.cameras[0], [](const glm::dvec3&) { return glm::dvec3(0.25, 0.5, 1.0); }, 2);
     for (std::size_t k = 0; k < light.pixel_count(); ++k) {
@@ -38,7 +38,7 @@ TEST(MirrorBallStand, EvenLightIsEvenInAPerfectMirror) {
 }
 
 TEST(MirrorBallStand, MirrorsWhatIsWhere) {
-    const MirrorBallStand stand = usual_mirror_ball_stand({}, kSize, 2);
+    const MirrorBallStand stand = usual_mirror_ball_stand({}, kBallView_px, 2);
     ASSERT_EQ(stand.cameras.size(), 2u);
     const View& view = stand.cameras[0].view;
     // Light from the right, from above, and from behind the camera, each with a colour of its own.
@@ -59,7 +59,7 @@ TEST(MirrorBallStand, MirrorsWhatIsWhere) {
     EXPECT_NEAR(at({-1.0, 0.0, 1.0})[0], 0.0, 1e-3);
     // The ball fills three quarters of the picture.
     const auto top = project(view, {0.0, 40.0, 0.0});
-    EXPECT_NEAR(0.5 * kSize - top->y, 0.375 * kSize, 3.0);
+    EXPECT_NEAR(0.5 * kBallView_px - top->y, 0.375 * kBallView_px, 3.0);
     // The second camera is 110 degrees away.
     const glm::dvec3 a = glm::normalize(centre_in_world(view));
     const glm::dvec3 b = glm::normalize(centre_in_world(stand.cameras[1].view));
@@ -67,13 +67,14 @@ TEST(MirrorBallStand, MirrorsWhatIsWhere) {
 }
 
 TEST(MirrorBallStand, ItsCameraStandsInItsOwnLight) {
-    MirrorBallStand stand = usual_mirror_ball_stand({}, kSize, 1);
+    MirrorBallStand stand = usual_mirror_ball_stand({}, kBallView_px, 1);
     stand.camera_radius_mm = 100.0;
     const ImageF light = mirror_ball_light(
         stand, stand.cameras[0], [](const glm::dvec3&) { return glm::dvec3(1.0); }, 2);
     const auto middle = project(stand.cameras[0].view, {0.0, 0.0, 40.0});
     EXPECT_EQ(light.at(static_cast<int>(middle->x), static_cast<int>(middle->y), 1), 0.0f);
-    EXPECT_NEAR(light.at(kSize / 2 + kSize / 5, kSize / 2, 1), 20'000.0f, 2.0f);
+    EXPECT_NEAR(
+        light.at(kBallView_px / 2 + kBallView_px / 5, kBallView_px / 2, 1), 20'000.0f, 2.0f);
     EXPECT_NEAR(light.at(2, 2, 1), 20'000.0f, 2.0f);  // past the ball
 }
 

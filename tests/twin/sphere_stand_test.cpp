@@ -10,7 +10,7 @@
 namespace livery {
 namespace {
 
-constexpr int kSize = 96;
+constexpr int kSphereView_px = 96;
 
 Material white(double reflectance) {
     Material paint;
@@ -29,7 +29,7 @@ double light_at(const SphereStand& stand, const ImageF& light, const glm::dvec3&
 }
 
 TEST(SphereStand, LightFallsOffWithDistanceAndCosine) {
-    SphereStand stand = usual_sphere_stand({}, kSize, kSize);
+    SphereStand stand = usual_sphere_stand({}, kSphereView_px, kSphereView_px);
     stand.lamp_diameter_mm = 0.01;
     const glm::dvec3 lamp(200.0, 100.0, 500.0);
     const ImageF light = sphere_light(stand, white(0.8), lamp);
@@ -50,7 +50,7 @@ TEST(SphereStand, LightFallsOffWithDistanceAndCosine) {
 }
 
 TEST(SphereStand, LampsStandFromBesideTheCameraToBehindTheSphere) {
-    const SphereStand stand = usual_sphere_stand({}, kSize, kSize);
+    const SphereStand stand = usual_sphere_stand({}, kSphereView_px, kSphereView_px);
     ASSERT_EQ(stand.lamps_mm.size(), 28u);
     const auto degrees = [](const glm::dvec3& lamp) {
         return std::acos(lamp.z / glm::length(lamp)) * 180.0 / std::numbers::pi;
@@ -61,8 +61,8 @@ TEST(SphereStand, LampsStandFromBesideTheCameraToBehindTheSphere) {
         EXPECT_NEAR(glm::length(lamp), 600.0, 1e-9);
         // Not in the picture, and not between the sphere and the camera.
         const auto pixel = project(stand.camera.view, lamp);
-        const bool shown =
-            pixel && pixel->x >= 0.0 && pixel->y >= 0.0 && pixel->x < kSize && pixel->y < kSize;
+        const bool shown = pixel && pixel->x >= 0.0 && pixel->y >= 0.0 &&
+                           pixel->x < kSphereView_px && pixel->y < kSphereView_px;
         EXPECT_FALSE(shown);
     }
 }
@@ -70,15 +70,15 @@ TEST(SphereStand, LampsStandFromBesideTheCameraToBehindTheSphere) {
 TEST(SphereStand, FlareReachesTheCloth) {
     CameraDescription camera;
     const glm::dvec3 lamp(0.0, 60.0, 590.0), beside(0.0, 35.0, 0.0);
-    const SphereStand clean = usual_sphere_stand(camera, kSize, kSize);
+    const SphereStand clean = usual_sphere_stand(camera, kSphereView_px, kSphereView_px);
     camera.flare = 0.02;
-    const SphereStand flaring = usual_sphere_stand(camera, kSize, kSize);
+    const SphereStand flaring = usual_sphere_stand(camera, kSphereView_px, kSphereView_px);
     EXPECT_GT(light_at(flaring, sphere_light(flaring, white(0.8), lamp), beside),
               light_at(clean, sphere_light(clean, white(0.8), lamp), beside) + 20.0);
 }
 
 TEST(SphereStand, ALampInTheSphereIsAMistake) {
-    const SphereStand stand = usual_sphere_stand({}, kSize, kSize);
+    const SphereStand stand = usual_sphere_stand({}, kSphereView_px, kSphereView_px);
     EXPECT_THROW(sphere_light(stand, white(0.5), {0.0, 0.0, 31.0}), std::invalid_argument);
 }
 

@@ -13,8 +13,8 @@ constexpr std::array kIndices{1.35, 1.8, 2.5};
 // Index times thickness: a fringe of green light is 275 nm.
 constexpr double kFirstPath_nm = 50.0, kLastPath_nm = 1250.0, kPathStep_nm = 50.0;
 constexpr std::size_t kFirstSamples = 400, kSecondSamples = 1500;
-constexpr int kFirstSteps = 4, kSecondSteps = 25;
-constexpr std::size_t kSecondStarts = 8, kKept = 3;
+constexpr int kFilmFirstSteps = 4, kFilmSecondSteps = 25;
+constexpr std::size_t kFilmSecondStarts = 8, kKept = 3;
 constexpr double kFaintest = 0.05;  ///< of a flake's reflectance to start from
 
 double mean_of(const glm::dvec3& v) { return (v.x + v.y + v.z) / 3.0; }
@@ -87,13 +87,14 @@ std::vector<f64::BsdfParameters> with_films(const ModelInfo& model,
         return nearest;
     };
     // What flakes and varnish are like is known; which colours the film makes is not.
-    const FitSearch colours{
-        kFirstSteps, {"alpha", "flake_alpha", "coat_alpha", "coat_f0"}, {"film_nm", "film_eta"}};
+    const FitSearch colours{kFilmFirstSteps,
+                            {"alpha", "flake_alpha", "coat_alpha", "coat_f0"},
+                            {"film_nm", "film_eta"}};
     const auto first = nearest_of(
-        starts_of(without), kFirstSamples, colours, kSecondStarts, progress.part(0.0, 0.6));
+        starts_of(without), kFirstSamples, colours, kFilmSecondStarts, progress.part(0.0, 0.6));
     return nearest_of(first,
                       kSecondSamples,
-                      {kSecondSteps, {}, {"film_nm", "film_eta"}},
+                      {kFilmSecondSteps, {}, {"film_nm", "film_eta"}},
                       kKept,
                       progress.part(0.6, 1.0));
 }

@@ -23,8 +23,6 @@ namespace {
 
 constexpr int kRelativePairs = 20'000;
 
-double luminance_of(const glm::dvec3& working) { return (xyz_from_working() * working).y; }
-
 /// By the shader's own steps; its angles are those of f32 or f64.
 template <typename Real, typename Nodes>
 glm::vec<3, Real> interpolated(const MeasuredGrid& grid, const Nodes& nodes) {
@@ -164,7 +162,7 @@ DifferenceTruth difference_truth(const ReflectanceFunction& truth) {
         };
         const glm::dvec3 wi = direction();
         const glm::dvec3 wo = direction();
-        const double expected = luminance_of(truth(wi, wo));
+        const double expected = luminance_of_working(truth(wi, wo));
         if (expected <= 0.0) continue;
         known.pairs.push_back({wi, wo});
         known.luminances.push_back(expected);
@@ -181,7 +179,7 @@ ReflectanceDifference difference_of(const ReflectanceFunction& value,
     ReflectanceDifference difference;
     std::vector<double> relative;
     for (std::size_t k = 0; k < truth.pairs.size(); ++k) {
-        const double luminance = luminance_of(value(truth.pairs[k].wi, truth.pairs[k].wo));
+        const double luminance = luminance_of_working(value(truth.pairs[k].wi, truth.pairs[k].wo));
         relative.push_back(std::abs(luminance - truth.luminances[k]) / truth.luminances[k]);
     }
     difference.relative_median = quantile(relative, 0.5);

@@ -19,7 +19,7 @@ namespace {
 /// Samples that take part in a value: enough for each direction around, few enough to be quick.
 constexpr std::size_t kNeighbours = 24;
 /// What is interpolated is log(value + this): per steradian, below what the instruments resolve.
-constexpr double kFloor = 1e-4;
+constexpr double kFaintestSample = 1e-4;
 /// Samples nearer than this are one, which has their mean: repeated, or light and eye exchanged.
 constexpr double kSame = 1e-6;
 
@@ -75,7 +75,8 @@ SampleInterpolator::SampleInterpolator(const MeasuredSamples& samples)
         }
         points_.push_back(points[sorted[first]]);
         const auto count = static_cast<double>(end - first);
-        for (const double total : sum) logarithms_.push_back(std::log(total / count + kFloor));
+        for (const double total : sum)
+            logarithms_.push_back(std::log(total / count + kFaintestSample));
     }
     order_.resize(points_.size());
     std::iota(order_.begin(), order_.end(), std::size_t{0});
@@ -194,7 +195,7 @@ void SampleInterpolator::evaluate(glm::dvec3 half_difference, std::span<double> 
             low = std::min(low, value);
             high = std::max(high, value);
         }
-        values[c] = std::max(std::exp(std::clamp(sum, low, high)) - kFloor, 0.0);
+        values[c] = std::max(std::exp(std::clamp(sum, low, high)) - kFaintestSample, 0.0);
     }
 }
 

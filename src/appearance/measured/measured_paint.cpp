@@ -21,7 +21,7 @@ constexpr int kRings = 64;
 constexpr int kRingAzimuths = 48;
 constexpr int kAlbedoPoints = 96;
 constexpr float kLobeShare = 0.7f;  ///< of the samples; the rest is even in the cosine
-constexpr auto kPi = std::numbers::pi_v<float>;
+constexpr auto kPiF = std::numbers::pi_v<float>;
 
 float luminance(const glm::vec3& working) {
     return static_cast<float>((xyz_from_working() * glm::dvec3(working)).y);
@@ -41,11 +41,11 @@ MeasuredRings rings_of(const MeasuredPaint& paint) {
             static_cast<float>(std::sqrt(1.0 - mu * mu)), 0.0f, static_cast<float>(mu));
         for (int ring = 0; ring < kRings; ++ring) {
             const auto k = static_cast<std::size_t>(ring);
-            const float area = 2.0f * kPi * (rings.versines[k + 1] - rings.versines[k]);
+            const float area = 2.0f * kPiF * (rings.versines[k + 1] - rings.versines[k]);
             const float v = 0.5f * (rings.versines[k] + rings.versines[k + 1]);
             const float sine = std::sqrt(v * (2.0f - v));
             for (int turn = 0; turn < kRingAzimuths; ++turn) {
-                const float phi = 2.0f * kPi * (static_cast<float>(turn) + 0.5f) / kRingAzimuths;
+                const float phi = 2.0f * kPiF * (static_cast<float>(turn) + 0.5f) / kRingAzimuths;
                 const glm::vec3 h(sine * std::cos(phi), sine * std::sin(phi), 1.0f - v);
                 const float along = glm::dot(wo, h);
                 const glm::vec3 wi = h * (2.0f * along) - wo;
@@ -76,7 +76,7 @@ glm::vec3 profile(const MeasuredPaint& paint, float theta_h) {
     const glm::vec3 t(std::cos(theta_h), 0.0f, -std::sin(theta_h));
     const float side = 0.5f, along = std::sqrt(0.75f);
     for (int k = 0; k < kTurns; ++k) {
-        const float phi = kPi * (static_cast<float>(k) + 0.5f) / kTurns;
+        const float phi = kPiF * (static_cast<float>(k) + 0.5f) / kTurns;
         const glm::vec3 across = side * (std::cos(phi) * t + glm::vec3(0.0f, std::sin(phi), 0.0f));
         sum += evaluate(paint, along * h + across, along * h - across);
     }
@@ -88,17 +88,17 @@ glm::vec3 diffuse_part(const MeasuredPaint& paint) {
     glm::vec3 lowest = profile(paint, 0.0f);
     for (int k = 1; k <= 10;
          ++k) {  // to 50 degrees; beyond, half of the pairs lie below the horizon
-        lowest = glm::min(lowest, profile(paint, kPi / 36.0f * static_cast<float>(k)));
+        lowest = glm::min(lowest, profile(paint, kPiF / 36.0f * static_cast<float>(k)));
     }
-    return kPi * lowest;
+    return kPiF * lowest;
 }
 
 /// Half of a GGX lobe's light, D cos(theta_h), lies where the tangent is below alpha. Of two lobes
 /// this takes the one that matters: a varnish's narrow one is bright, but holds little.
 float lobe_alpha(const MeasuredPaint& paint, const glm::vec3& diffuse) {
     constexpr int kSteps = 200;
-    constexpr float kWidest = 50.0f / 180.0f * kPi;
-    const float base = luminance(diffuse) / kPi;
+    constexpr float kWidest = 50.0f / 180.0f * kPiF;
+    const float base = luminance(diffuse) / kPiF;
     std::vector<float> below(1, 0.0f);
     for (int k = 0; k < kSteps; ++k) {
         const float root = (static_cast<float>(k) + 0.5f) / kSteps;
@@ -191,7 +191,7 @@ glm::vec3 sample(const MeasuredPaint& paint, glm::vec3 wo, glm::vec3 u) {
     const float t = share > 0.0f ? std::min((u.x - cumulative[edge - 1]) / share, 1.0f) : 0.5f;
     const float v = glm::mix(versines[edge - 1], versines[edge], t);
     const float sine = std::sqrt(v * (2.0f - v));
-    const float phi = 2.0f * kPi * u.y;
+    const float phi = 2.0f * kPiF * u.y;
     const glm::vec3 h(sine * std::cos(phi), sine * std::sin(phi), 1.0f - v);
     return h * (2.0f * glm::dot(wo, h)) - wo;
 }
@@ -207,9 +207,9 @@ float pdf(const MeasuredPaint& paint, glm::vec3 wi, glm::vec3 wo) {
     const auto above = std::upper_bound(versines.begin() + 1, versines.end() - 1, v);
     const auto edge = static_cast<std::size_t>(above - versines.begin());
     const float of_half_vector = (cumulative[edge] - cumulative[edge - 1]) /
-                                 (2.0f * kPi * (versines[edge] - versines[edge - 1]));
+                                 (2.0f * kPiF * (versines[edge] - versines[edge - 1]));
     // wo.h is half the sum's length.
-    return kLobeShare * of_half_vector / (2.0f * length) + (1.0f - kLobeShare) * wi.z / kPi;
+    return kLobeShare * of_half_vector / (2.0f * length) + (1.0f - kLobeShare) * wi.z / kPiF;
 }
 
 f32::BsdfEnvironment environment_weights(const MeasuredPaint& paint, float mu) {

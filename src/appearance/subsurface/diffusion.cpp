@@ -11,7 +11,6 @@ namespace livery {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kModes = 40;
 constexpr double kModesFrom = 0.2;  // of the period
 constexpr int kMostPairs = 12;
@@ -69,21 +68,21 @@ PointSources::PointSources(const Diffusion& diffusion,
     if (!thickness_) return;
     const double zb = diffusion_.extrapolation_mm;
     for (int n = 1; n <= kModes; ++n) {
-        const double wave = n * kPi / period_;
+        const double wave = n * std::numbers::pi / period_;
         mode_exit_.push_back(
             (diffusion_.fluence_share / diffusion_.coefficient_mm * std::sin(wave * zb) +
              diffusion_.flux_share * wave * std::cos(wave * zb)) /
-            (kPi * period_));
+            (std::numbers::pi * period_));
     }
     for (const double depth : depths_) {
         for (int n = 1; n <= kModes; ++n) {
-            mode_source_.push_back(std::sin(n * kPi / period_ * (depth + zb)));
+            mode_source_.push_back(std::sin(n * std::numbers::pi / period_ * (depth + zb)));
         }
     }
 }
 
 double PointSources::decay_per_mm() const {
-    const double across = thickness_ ? kPi / period_ : 0.0;
+    const double across = thickness_ ? std::numbers::pi / period_ : 0.0;
     return std::hypot(diffusion_.sigma_tr_per_mm, across);
 }
 
@@ -96,7 +95,7 @@ Exitance PointSources::half_space(double depth, double radius) const {
     return {LIVERY_MUTATED(dipole,
                            (diffusion_.fluence_share * fluence +
                             diffusion_.flux_share * (real.flux + image.flux)) /
-                               (4.0 * kPi)),
+                               (4.0 * std::numbers::pi)),
             0.0};
 }
 
@@ -130,8 +129,8 @@ Exitance PointSources::images(double depth, double radius) const {
         sum.reflected += left * (sum.reflected - before.reflected);
         sum.transmitted += left * (sum.transmitted - before.transmitted);
     }
-    return {std::max(sum.reflected, 0.0) / (4.0 * kPi),
-            std::max(sum.transmitted, 0.0) / (4.0 * kPi)};
+    return {std::max(sum.reflected, 0.0) / (4.0 * std::numbers::pi),
+            std::max(sum.transmitted, 0.0) / (4.0 * std::numbers::pi)};
 }
 
 void PointSources::at(double radius, std::vector<Exitance>& out) const {
@@ -145,9 +144,9 @@ void PointSources::at(double radius, std::vector<Exitance>& out) const {
     double weights[kModes];
     int modes = 0;
     while (modes < kModes) {
-        const double wave = (modes + 1) * kPi / period_;
+        const double wave = (modes + 1) * std::numbers::pi / period_;
         const double x = std::hypot(diffusion_.sigma_tr_per_mm, wave) * radius;
-        if (modes > 0 && wave * radius > kPi / period_ * radius + 25.0) break;
+        if (modes > 0 && wave * radius > std::numbers::pi / period_ * radius + 25.0) break;
         weights[modes] =
             x < 700.0 ? mode_exit_[static_cast<std::size_t>(modes)] * std::cyl_bessel_k(0.0, x)
                       : 0.0;

@@ -13,8 +13,8 @@ namespace livery {
 
 namespace {
 
-constexpr double kDifference = 1e-4;  // of the logarithms of the parameters
-constexpr double kFewestSamples = 6;
+constexpr double kLogDifference = 1e-4;  // of the logarithms of the parameters
+constexpr double kFewestRadii = 6;
 /// What calibration leaves at best: a fit without residuals is not one without errors.
 constexpr double kLeastNoise = 0.02;
 /// Of calibration and model together, alike for neighbouring radii.
@@ -126,12 +126,12 @@ class ProfileCost : public ceres::CostFunction {
     /// The residuals' change by parameter k, without weights.
     std::vector<double> slope(const Logarithms& x, std::size_t k) const {
         Logarithms more = x, less = x;
-        more[k] += kDifference;
-        less[k] -= kDifference;
+        more[k] += kLogDifference;
+        less[k] -= kLogDifference;
         std::vector<double> change = at(more);
         const std::vector<double> below = at(less);
         for (std::size_t i = 0; i < change.size(); ++i) {
-            change[i] = (change[i] - below[i]) / (2.0 * kDifference);
+            change[i] = (change[i] - below[i]) / (2.0 * kLogDifference);
         }
         return change;
     }
@@ -183,7 +183,7 @@ Logarithms start_of(const std::vector<ProfileSample>& samples, const ProfileFitO
             const Logarithms x{ln_s, ln_s + ln_ratio};
             const ScatteringMedium medium = medium_of(x, options);
             const auto inside = weighed_samples(samples, window_of(medium, options.model));
-            if (static_cast<double>(inside.size()) < kFewestSamples) continue;
+            if (static_cast<double>(inside.size()) < kFewestRadii) continue;
             // A window of few samples is easily fitted.
             const double square = weighed_square(inside, residuals_of(inside, quick, medium)) /
                                   std::log(inside.back().r_mm / inside.front().r_mm);
@@ -379,7 +379,7 @@ ProfileFit fit_profile(const std::vector<ProfileSample>& samples,
                           next.back().r_mm == inside.back().r_mm;
         if (same) break;
         inside = std::move(next);
-        if (static_cast<double>(inside.size()) < kFewestSamples) {
+        if (static_cast<double>(inside.size()) < kFewestRadii) {
             throw Refused(fmt::format("only {} radii lie between {:.3g} and {:.3g} mm, where the "
                                       "profile tells of the medium",
                                       inside.size(),

@@ -11,9 +11,9 @@
 namespace livery {
 namespace {
 
-constexpr double kAdded = 0.003;         // of white on the mock-up
-constexpr double kOtherExposure = 0.06;  // of the light there
-constexpr double kHardlyLit = 0.2;       // of the peak
+constexpr double kAdded = 0.003;             // of white on the mock-up
+constexpr double kOtherRoomExposure = 0.06;  // of the light there
+constexpr double kHardlyLit = 0.2;           // of the peak
 
 /// light(i) of some dim blocks over the peak of white: the mean of the middle half. Room light
 /// reaches nearly all of them, what a moved camera sees at edges few; a median of 8-bit files would
@@ -109,7 +109,7 @@ void check_room_light(const Evidence& e, const ShownDrives& drives) {
     for (const std::vector<std::size_t>& band : e.dim) {
         const double in_black = dim_light(e, band, *e.black);
         const double by_white = std::max(0.0, dim_light(e, band, *e.white) - in_black);
-        const double usual = kAdded + kOtherExposure * (by_white + in_black);
+        const double usual = kAdded + kOtherRoomExposure * (by_white + in_black);
         const auto judge_dark = [&] {
             if (!e.dark || drives.dark != 0) return;
             const double added = dim_light(e, band, *e.dark) - in_black;

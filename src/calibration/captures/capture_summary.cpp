@@ -13,7 +13,6 @@ namespace livery {
 namespace {
 
 constexpr int kBlocksAcross = 240;
-constexpr double kSaturatedShare = 0.98;
 /// A sensor's limit gathers pixels that would spread far above it; the brightest value of a picture
 /// that is not clipped is reached by a few.
 constexpr double kPlateauShare = 0.002, kPlateauOverBelow = 3.0;
@@ -55,8 +54,7 @@ CaptureSummary summary_of(const RoledPhotograph& capture, int block) {
     const auto gain =
         static_cast<float>(1.0 / (photo.exposure_s * static_cast<double>(block) * block));
     const auto black = static_cast<float>(photo.black_level);
-    const auto limit = static_cast<float>(
-        photo.black_level + kSaturatedShare * (photo.saturates_at - photo.black_level));
+    const auto limit = static_cast<float>(saturation_limit(photo));
     const auto channels = static_cast<std::size_t>(image.channels);
     parallel_for(static_cast<std::size_t>(height), 8, [&](std::size_t begin, std::size_t end) {
         for (std::size_t row = begin; row < end; ++row)

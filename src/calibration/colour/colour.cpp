@@ -23,9 +23,8 @@
 namespace livery {
 namespace {
 
-constexpr double kSigmas = 20.0;        // of T - S over its noise
-constexpr double kShareOfPeak = 0.005;  // of T - S over the mock-up's largest
-constexpr double kConditionLimit = 10.0;
+constexpr double kSigmas = 20.0;          // of T - S over its noise
+constexpr double kShareOfPeak = 0.005;    // of T - S over the mock-up's largest
 constexpr int kFarthestFromBorder = 5;    // projector pixels
 constexpr std::uint32_t kBlock_px = 16;   // the largest blocks of gray-levels
 constexpr float kUnknownScatter = 0.01f;  // of the scattered light's square: 10%
@@ -91,7 +90,7 @@ std::vector<PixelStatus> judge(const ColourSamples& samples, const PixelMixing& 
             status[i] = PixelStatus::too_dark;
         else if (passing < 3)
             status[i] = PixelStatus::one_channel;
-        else if (!(mixing.condition[i] <= kConditionLimit))
+        else if (!(mixing.condition[i] <= kMixingConditionLimit))
             status[i] = PixelStatus::ill_conditioned;
     }
     return status;

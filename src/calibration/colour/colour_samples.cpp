@@ -12,7 +12,6 @@ namespace {
 
 constexpr std::array<const char*, kPictureCount> kRoles{
     "dark-gray", "bright-gray", "red", "green", "blue", "gray-levels"};
-constexpr double kSaturatedShare = 0.98;
 
 std::string name_of(const RoledPhotograph& capture) {
     return capture.photograph.name.empty() ? capture.role : capture.photograph.name;
@@ -59,8 +58,7 @@ void add_photograph(const Photograph& photo,
     const auto row = static_cast<std::size_t>(photo.image.width) * 3;
     const auto black = static_cast<float>(photo.black_level);
     const auto gain = static_cast<float>(1.0 / photo.exposure_s);
-    const auto limit = static_cast<float>(
-        photo.black_level + kSaturatedShare * (photo.saturates_at - photo.black_level));
+    const auto limit = static_cast<float>(saturation_limit(photo));
     parallel_for(taps.corner.size(), 8192, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const float* const p = values + taps.corner[i];

@@ -13,7 +13,7 @@
 namespace livery {
 namespace {
 
-constexpr int kCell_px = 24;  // projector pixels; one bright block at least in most
+constexpr int kCheckedCell_px = 24;  // projector pixels; one bright block at least in most
 constexpr double kBrightN = 0.15;
 /// A photograph of another picture follows the levels not at all; one of the right picture by more
 /// than nine tenths even in a bright room.
@@ -48,7 +48,8 @@ LevelsVerdict check_levels(const LevelsSamples& seen,
                            const ScatteredLight& scattered,
                            const std::array<LevelCurve, 3>& curves) {
     const auto& [samples, mixing, usable, levels, centre] = seen;
-    const int columns = samples.width / kCell_px + 1, rows = samples.height / kCell_px + 1;
+    const int columns = samples.width / kCheckedCell_px + 1,
+              rows = samples.height / kCheckedCell_px + 1;
     std::vector<std::vector<float>> ratios(static_cast<std::size_t>(columns) *
                                            static_cast<std::size_t>(rows));
     double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0;
@@ -69,8 +70,8 @@ LevelsVerdict check_levels(const LevelsSamples& seen,
         syy += y * y;
         const double expected = curves[1].n[drive[1]];
         if (expected < kBrightN) continue;
-        const int cx = static_cast<int>(p) % samples.width / kCell_px,
-                  cy = static_cast<int>(p) / samples.width / kCell_px;
+        const int cx = static_cast<int>(p) % samples.width / kCheckedCell_px,
+                  cy = static_cast<int>(p) / samples.width / kCheckedCell_px;
         ratios[static_cast<std::size_t>(cy) * static_cast<std::size_t>(columns) +
                static_cast<std::size_t>(cx)]
             .push_back(static_cast<float>(y / expected));

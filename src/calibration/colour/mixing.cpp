@@ -20,7 +20,6 @@
 namespace livery {
 namespace {
 
-constexpr double kConditionLimit = 10.0;
 constexpr int kNeighbourhood = 4;  // radius in projector pixels; 81 pixels
 
 constexpr std::array<PictureOf, 3> kChannelPictures{kRed, kGreen, kBlue};
@@ -359,7 +358,7 @@ PixelMixing mix_robustly(const ColourSamples& samples, const PooledMixing& poole
             if (!usable(samples, i)) continue;
             glm::dmat3 own(vn[i]);
             double condition = condition_number(own);
-            if (condition > kConditionLimit && pooled.neutral) {
+            if (condition > kMixingConditionLimit && pooled.neutral) {
                 vn[i] = glm::mat3(pooled.vn);
                 own = pooled.vn;
                 condition = condition_number(own);

@@ -10,6 +10,9 @@
 
 namespace livery {
 
+/// Mixing matrices of a larger condition number are not inverted.
+inline constexpr double kMixingConditionLimit = 10.0;
+
 /// N = (unmixing C - dark) / span, one a sample.
 struct PixelMixing {
     std::vector<glm::mat3> unmixing;    ///< Vn^-1

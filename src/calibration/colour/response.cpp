@@ -14,13 +14,13 @@
 namespace livery {
 namespace {
 
-constexpr int kLevels = 256;
+constexpr int kDriveLevels = 256;
 constexpr std::size_t kKnownScatter = 8;  // samples whose scatter says how sure their mean is
 
 constexpr int kOrder = 3;  // of the differences; also how many polynomials they do not see
 constexpr std::array<double, kOrder + 1> kDifference{-1.0, 3.0, -3.0, 1.0};
 
-using Levels = std::array<double, kLevels>;
+using Levels = std::array<double, kDriveLevels>;
 
 struct SmoothFit {
     Levels x{};
@@ -33,16 +33,16 @@ struct SmoothFit {
 /// and Thompson (Biometrika 58, 1971, "Recovery of inter-block information").
 SmoothFit solve_smooth(const Levels& y, const Levels& weight, double strength, double sampled) {
     // Lower band by rows: band[i][j] is the entry (i, i - j).
-    std::array<std::array<double, kOrder + 1>, kLevels> band{};
+    std::array<std::array<double, kOrder + 1>, kDriveLevels> band{};
     const auto index = [](int i) { return static_cast<std::size_t>(i); };
-    for (int i = 0; i < kLevels; ++i) band[index(i)][0] = weight[index(i)];
-    for (int row = 0; row + kOrder < kLevels; ++row)
+    for (int i = 0; i < kDriveLevels; ++i) band[index(i)][0] = weight[index(i)];
+    for (int row = 0; row + kOrder < kDriveLevels; ++row)
         for (int a = 0; a <= kOrder; ++a)
             for (int b = 0; b <= a; ++b)
                 band[index(row + a)][index(a - b)] +=
                     strength * kDifference[index(a)] * kDifference[index(b)];
     double log_determinant = 0.0;
-    for (int i = 0; i < kLevels; ++i) {
+    for (int i = 0; i < kDriveLevels; ++i) {
         auto& row = band[index(i)];
         for (int j = std::min(kOrder, i); j >= 0; --j) {
             double sum = row[index(j)];
@@ -55,28 +55,29 @@ SmoothFit solve_smooth(const Levels& y, const Levels& weight, double strength, d
     }
     SmoothFit fit;
     Levels& x = fit.x;
-    for (int i = 0; i < kLevels; ++i) {
+    for (int i = 0; i < kDriveLevels; ++i) {
         double sum = weight[index(i)] * y[index(i)];
         for (int k = 1; k <= std::min(kOrder, i); ++k)
             sum -= band[index(i)][index(k)] * x[index(i - k)];
         x[index(i)] = sum / band[index(i)][0];
     }
-    for (int i = kLevels - 1; i >= 0; --i) {
+    for (int i = kDriveLevels - 1; i >= 0; --i) {
         double sum = x[index(i)];
-        for (int k = 1; k <= kOrder && i + k < kLevels; ++k)
+        for (int k = 1; k <= kOrder && i + k < kDriveLevels; ++k)
             sum -= band[index(i + k)][index(k)] * x[index(i + k)];
         x[index(i)] = sum / band[index(i)][0];
     }
 
     double misfit = 0.0;
-    for (std::size_t i = 0; i < kLevels; ++i) misfit += weight[i] * (x[i] - y[i]) * (x[i] - y[i]);
-    for (int row = 0; row + kOrder < kLevels; ++row) {
+    for (std::size_t i = 0; i < kDriveLevels; ++i)
+        misfit += weight[i] * (x[i] - y[i]) * (x[i] - y[i]);
+    for (int row = 0; row + kOrder < kDriveLevels; ++row) {
         double bend = 0.0;
         for (int a = 0; a <= kOrder; ++a) bend += kDifference[index(a)] * x[index(row + a)];
         misfit += strength * bend * bend;
     }
     fit.unlikeliness = (sampled - kOrder) * std::log(std::max(misfit, 1e-300)) + log_determinant -
-                       (kLevels - kOrder) * std::log(strength);
+                       (kDriveLevels - kOrder) * std::log(strength);
     return fit;
 }
 
@@ -262,10 +263,10 @@ LevelCurve smooth_levels(const LevelCurve& measured) {
             return std::sqrt(measured.weight[i]) * std::abs(measured.n[i] - smooth.n[i]);
         };
         std::vector<double> all;
-        for (std::size_t i = 0; i < kLevels; ++i)
+        for (std::size_t i = 0; i < kDriveLevels; ++i)
             if (measured.weight[i] > 0.0) all.push_back(off(i));
         const double reach = kHuber * std::max(1.0, kDeviation * median(all));
-        for (std::size_t i = 0; i < kLevels; ++i)
+        for (std::size_t i = 0; i < kDriveLevels; ++i)
             weight[i] = measured.weight[i] * (off(i) > reach ? reach / off(i) : 1.0);
     }
     // Bridged drives count too from here on.
@@ -276,7 +277,7 @@ LevelCurve smooth_levels(const LevelCurve& measured) {
 }
 
 ResponseCurve invert_levels(const LevelCurve& levels, int dark_drive, int bright_drive) {
-    check_argument(dark_drive >= 0 && dark_drive < bright_drive && bright_drive < kLevels,
+    check_argument(dark_drive >= 0 && dark_drive < bright_drive && bright_drive < kDriveLevels,
                    "drives " + std::to_string(dark_drive) + ", " + std::to_string(bright_drive) +
                        " are not 0 <= s < t <= 255");
     ResponseCurve curve;

@@ -35,7 +35,7 @@ using ContrastOf =
                        std::uint16_t,
                        std::conditional_t<std::is_same_v<T, std::uint16_t>, std::uint32_t, float>>;
 
-constexpr std::size_t kBlock = 1024;  // pixels; the working set stays in the first cache
+constexpr std::size_t kBlockPixels = 1024;  // pixels; the working set stays in the first cache
 
 /// Stripes answered with less than this part of white - black say little of where the light came
 /// from. Blur weakens the two finest bits of an axis, a stripe's border one more.
@@ -44,15 +44,16 @@ constexpr std::uint8_t kMostWeakBits = 3;
 
 /// One axis of a block of pixels. Bytes, so that a vector register holds as many pixels as it can.
 struct AxisOfBlock {
-    std::array<std::uint8_t, kBlock> coarse, fine;  ///< Gray code, its last eight bits in `fine`
-    std::array<std::uint8_t, kBlock> weak;          ///< bits that were answered weakly
-    std::array<std::uint16_t, kBlock> number;       ///< columns or rows
+    std::array<std::uint8_t, kBlockPixels> coarse,
+        fine;                                        ///< Gray code, its last eight bits in `fine`
+    std::array<std::uint8_t, kBlockPixels> weak;     ///< bits that were answered weakly
+    std::array<std::uint16_t, kBlockPixels> number;  ///< columns or rows
 };
 
 /// The least answer to a stripe that is not weak, of each pixel.
 template <typename T>
 void least_answers(const T* white, const T* black, T* __restrict least) {
-    for (std::size_t i = 0; i < kBlock; ++i) {
+    for (std::size_t i = 0; i < kBlockPixels; ++i) {
         const T above = white[i] > black[i] ? white[i] : black[i];
         const T lit_by = static_cast<T>(above - black[i]);
         if constexpr (std::is_floating_point_v<T>)
@@ -82,7 +83,7 @@ void decode_axis(const Planes<T>& planes,
         std::uint8_t* const __restrict code =
             bit < bits - 8 ? axis.coarse.data() : axis.fine.data();
         std::uint8_t* const __restrict weak = axis.weak.data();
-        for (std::size_t i = 0; i < kBlock; ++i) {
+        for (std::size_t i = 0; i < kBlockPixels; ++i) {
             const bool above = positive[i] > negative[i];
             const T high = above ? positive[i] : negative[i];
             const T low = above ? negative[i] : positive[i];
@@ -92,7 +93,7 @@ void decode_axis(const Planes<T>& planes,
             contrast[i] = static_cast<ContrastOf<T>>(contrast[i] + answer);
         }
     }
-    for (std::size_t i = 0; i < kBlock; ++i) {
+    for (std::size_t i = 0; i < kBlockPixels; ++i) {
         // Gray to binary: each bit is the exclusive or of all Gray bits before it.
         unsigned code = static_cast<unsigned>(axis.coarse[i]) << 8 | axis.fine[i];
         code ^= code >> 8;
@@ -110,7 +111,7 @@ struct Tail {
 
     Tail(const Planes<T>& source, std::size_t offset, std::size_t count) : planes(source) {
         const auto copy = [&](const T* from) {
-            storage.emplace_back(kBlock, T{});
+            storage.emplace_back(kBlockPixels, T{});
             std::copy_n(from + offset, count, storage.back().begin());
             return storage.back().data();
         };
@@ -132,10 +133,10 @@ DecodeCounts decode_block(const Planes<T>& planes,
                           float threshold,
                           float* __restrict projector_px,
                           std::uint8_t* __restrict decoded) {
-    std::array<T, kBlock> least;
+    std::array<T, kBlockPixels> least;
     least_answers(planes.white + offset, planes.black + offset, least.data());
     AxisOfBlock columns_of, rows_of;
-    std::array<ContrastOf<T>, kBlock> contrast{};
+    std::array<ContrastOf<T>, kBlockPixels> contrast{};
     decode_axis(planes, 0, planes.column_bits, offset, least.data(), columns_of, contrast.data());
     decode_axis(planes,
                 planes.column_bits,
@@ -221,7 +222,7 @@ CameraToProjector decode_planes(const Planes<T>& planes, double lit_threshold) {
     const auto threshold = static_cast<float>(result.lit_threshold);
 
     const std::size_t pixels = result.decoded.pixel_count();
-    const std::size_t full_blocks = pixels / kBlock;
+    const std::size_t full_blocks = pixels / kBlockPixels;
     std::atomic<std::size_t> lit{0}, decoded{0};
     const auto decode_one =
         [&](const Planes<T>& from, std::size_t from_offset, std::size_t offset, std::size_t count) {
@@ -236,11 +237,11 @@ CameraToProjector decode_planes(const Planes<T>& planes, double lit_threshold) {
         };
     parallel_for(full_blocks, 16, [&](std::size_t begin, std::size_t end) {
         for (std::size_t block = begin; block < end; ++block)
-            decode_one(planes, block * kBlock, block * kBlock, kBlock);
+            decode_one(planes, block * kBlockPixels, block * kBlockPixels, kBlockPixels);
     });
-    if (const std::size_t rest = pixels - full_blocks * kBlock; rest > 0) {
-        const Tail<T> tail(planes, full_blocks * kBlock, rest);
-        decode_one(tail.planes, 0, full_blocks * kBlock, rest);
+    if (const std::size_t rest = pixels - full_blocks * kBlockPixels; rest > 0) {
+        const Tail<T> tail(planes, full_blocks * kBlockPixels, rest);
+        decode_one(tail.planes, 0, full_blocks * kBlockPixels, rest);
     }
 
     // Verdict

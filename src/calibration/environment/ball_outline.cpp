@@ -11,14 +11,14 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "core/angles.h"
 #include "core/error.h"
 
 namespace livery {
 
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr int kSectors = 180;
+constexpr int kBallSectors = 180;
 constexpr double kStep_px = 0.25;  ///< along a way across the outline
 constexpr int kSide = 6;           ///< steps to each side over which brightness is compared
 /// How far from the outline steps are looked for, round by round; the first of them in parts of the
@@ -26,9 +26,9 @@ constexpr int kSide = 6;           ///< steps to each side over which brightness
 constexpr double kFirstReach = 0.06;
 constexpr std::array<double, 4> kReaches_px{12.0, 6.0, 4.0, 4.0};
 constexpr double kFaintest = 0.04;  ///< step over the brightness around it
-constexpr double kOnOutline_px = 1.5, kFewestSeen = 0.6, kFewestOfAll = 0.35;
-constexpr double kLargestRms_px = 1.0;
-constexpr double kOpen = kTurn * 2.0 / 3.0, kNear = kTurn / 6.0;
+constexpr double kOnOutline_px = 1.5, kFewestOfVisible = 0.6, kFewestOfAll = 0.35;
+constexpr double kLargestBallRms_px = 1.0;
+constexpr double kOpen = kFullTurn * 2.0 / 3.0, kNearAzimuth = kFullTurn / 6.0;
 
 double pixel_angle(const View& view) { return 1.0 / std::min(view.focal_px.x, view.focal_px.y); }
 
@@ -62,12 +62,12 @@ Spread spread_of(std::span<const ConeEdge> edges) {
     std::vector<double> turns;
     for (const ConeEdge& edge : edges) turns.push_back(edge.turn_rad);
     std::sort(turns.begin(), turns.end());
-    turns.push_back(turns.front() + kTurn);
+    turns.push_back(turns.front() + kFullTurn);
     Spread spread;
     for (std::size_t k = 1; k < turns.size(); ++k) {
         const double gap = turns[k] - turns[k - 1];
         spread.largest_gap_rad = std::max(spread.largest_gap_rad, gap);
-        if (gap <= kNear) spread.near_rad += gap;
+        if (gap <= kNearAzimuth) spread.near_rad += gap;
     }
     return spread;
 }
@@ -136,7 +136,7 @@ std::optional<double> steepest_step(const View& view,
     return cone.angle_rad + (top + shift) * kStep_px * pixel_rad;
 }
 
-[[noreturn]] void refuse_outline(const std::string& why) {
+[[noreturn]] void refuse_ball_outline(const std::string& why) {
     throw Refused("the ball's outline does not show: " + why,
                   "put it before a background of another brightness, or name points of its outline "
                   "(outline_px) and set fit_outline to false");
@@ -176,16 +176,16 @@ OutlineFit fit_outline_points(const View& view,
     }
     const Spread spread = spread_of(edges);
     if (!(spread.largest_gap_rad < kOpen) || !(cone.angle_rad > pixel_rad) ||
-        !(cone.angle_rad < 0.25 * kTurn)) {
+        !(cone.angle_rad < 0.25 * kFullTurn)) {
         throw Refused(fmt::format("the outline's points leave {:.0f} degrees open",
-                                  360.0 * spread.largest_gap_rad / kTurn),
+                                  360.0 * spread.largest_gap_rad / kFullTurn),
                       fix);
     }
     if (!(rms <= largest_rms_px)) {
         throw Refused(fmt::format("the outline's points lie {:.1f} px from a ball's outline", rms),
                       "check them and the camera file: pixel centres are at half integers");
     }
-    return {sphere_with(view, cone, diameter_mm), rms, spread.near_rad / kTurn};
+    return {sphere_with(view, cone, diameter_mm), rms, spread.near_rad / kFullTurn};
 }
 
 OutlineFit find_ball_outline(const View& view, const LightPicture& picture, const Sphere& start) {
@@ -197,18 +197,18 @@ OutlineFit find_ball_outline(const View& view, const LightPicture& picture, cons
         const double reach_px = round == 0 ? first : kReaches_px[round - 1];
         std::vector<ConeEdge> edges;
         double in_picture = 0.0;
-        for (int k = 0; k < kSectors; ++k) {
-            const double turn = kTurn * (k + 0.5) / kSectors;
+        for (int k = 0; k < kBallSectors; ++k) {
+            const double turn = kFullTurn * (k + 0.5) / kBallSectors;
             bool inside = false;
             const auto edge = steepest_step(view, picture, cone, turn, reach_px, inside);
             in_picture += inside ? 1.0 : 0.0;
             if (edge) edges.push_back({turn, *edge});
         }
         const auto found = static_cast<double>(edges.size());
-        if (found < kFewestSeen * in_picture || found < kFewestOfAll * kSectors) {
-            refuse_outline(
+        if (found < kFewestOfVisible * in_picture || found < kFewestOfAll * kBallSectors) {
+            refuse_ball_outline(
                 fmt::format("a step of brightness is found over {:.0f}% of the way around",
-                            100.0 * found / kSectors));
+                            100.0 * found / kBallSectors));
         }
         const TangentCone before = cone;
         move_cone(edges, 0.5 * pixel_rad, cone);
@@ -226,11 +226,11 @@ OutlineFit find_ball_outline(const View& view, const LightPicture& picture, cons
             squares += off * off;
             on += 1.0;
         }
-        fit.seen_fraction = on / kSectors;
+        fit.seen_fraction = on / kBallSectors;
         fit.rms_px = on > 0.0 ? std::sqrt(squares / on) : 0.0;
         if (round == kReaches_px.size() &&
-            (on < kFewestSeen * in_picture || fit.rms_px > kLargestRms_px)) {
-            refuse_outline(
+            (on < kFewestOfVisible * in_picture || fit.rms_px > kLargestBallRms_px)) {
+            refuse_ball_outline(
                 fmt::format("{:.0f}% of the way around lies on one", 100.0 * fit.seen_fraction));
         }
     }

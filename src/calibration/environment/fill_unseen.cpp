@@ -11,7 +11,6 @@ namespace livery {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr float kKnown = 0.5f;
 constexpr double kResidual = 1e-6;  ///< of the equation, relative to where it began
 constexpr int kMostSteps = 20'000;
@@ -41,7 +40,7 @@ class Laplace {
         const auto width = static_cast<std::size_t>(width_);
         const std::size_t y = texel / width, x = texel % width;
         const double row = static_cast<double>(y);
-        const double dtheta = kPi / height_, dphi = 2.0 * kPi / width_;
+        const double dtheta = std::numbers::pi / height_, dphi = 2.0 * std::numbers::pi / width_;
         const double sideways = dtheta / (dphi * std::sin(dtheta * (row + 0.5)));
         visit(y * width + (x + 1) % width, sideways);
         visit(y * width + (x + width - 1) % width, sideways);
@@ -147,7 +146,7 @@ double fill_unseen(RadianceMap& map) {
     double filled = 0.0;
     for (std::size_t k = 0; k < laplace.size(); ++k) {
         const auto row = laplace.texel(k) / static_cast<std::size_t>(map.seen.width);
-        filled += texel_sr(map.seen, static_cast<int>(row)) / (4.0 * kPi);
+        filled += texel_sr(map.seen, static_cast<int>(row)) / (4.0 * std::numbers::pi);
     }
     std::size_t holes = 0;
     const std::vector<std::size_t> hole = holes_of(laplace, holes);

@@ -13,8 +13,7 @@ namespace livery {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kCoarse_rad = 2.0 * kPi / 180.0;
+constexpr double kCoarse_rad = 2.0 * std::numbers::pi / 180.0;
 constexpr float kSeen = 0.5f;
 constexpr int kNormals = 512, kCellsAcross = 128;
 
@@ -112,11 +111,11 @@ std::vector<ClippedLamp> clipped_lamps(const RadianceMap& map) {
 double brightest_white(const ImageF& radiance_rec709) {
     const auto beams = beams_of(radiance_rec709);
     double most = 0.0;
-    const double golden_angle = kPi * (3.0 - std::sqrt(5.0));
+    const double golden_angle = std::numbers::pi * (3.0 - std::sqrt(5.0));
     for (int k = 0; k < kNormals; ++k) {
         const double y = 1.0 - (2.0 * k + 1.0) / kNormals, r = std::sqrt(1.0 - y * y);
         const glm::dvec3 normal(r * std::cos(golden_angle * k), y, r * std::sin(golden_angle * k));
-        most = std::max(most, irradiance(beams, normal) / kPi);
+        most = std::max(most, irradiance(beams, normal) / std::numbers::pi);
     }
     return most;
 }
@@ -137,7 +136,7 @@ double dynamic_range_stops(const RadianceMap& map) {
 Coverage coverage_of(const RadianceMap& map) {
     Coverage coverage;
     for (int y = 0; y < map.seen.height; ++y) {
-        const double share = texel_sr(map.seen, y) / (4.0 * kPi);
+        const double share = texel_sr(map.seen, y) / (4.0 * std::numbers::pi);
         for (int x = 0; x < map.seen.width; ++x) {
             if (map.seen.at(x, y) < kSeen) continue;
             const auto widest = static_cast<double>(map.widest_rad.at(x, y));

@@ -15,8 +15,8 @@ namespace livery {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kLeastApart_rad = 10.0 * kPi / 180.0, kLargestResidual_rad = 10.0 * kPi / 180.0;
+constexpr double kLeastApart_rad = 10.0 * std::numbers::pi / 180.0,
+                 kLargestResidual_rad = 10.0 * std::numbers::pi / 180.0;
 
 double angle_between(const glm::dvec3& a, const glm::dvec3& b) {
     return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
@@ -53,10 +53,10 @@ PanoramaOrientation orientation_of(const PanoramaMark& first,
                      to_b = glm::normalize(second.direction);
     const double apart = angle_between(a, b), wanted = angle_between(to_a, to_b);
     for (const double angle : {apart, wanted}) {
-        if (!(angle >= kLeastApart_rad && angle <= kPi - kLeastApart_rad)) {
-            throw Refused(
-                fmt::format("the two marks lie {:.1f} degrees apart", 180.0 / kPi * angle),
-                "take marks about a right angle apart");
+        if (!(angle >= kLeastApart_rad && angle <= std::numbers::pi - kLeastApart_rad)) {
+            throw Refused(fmt::format("the two marks lie {:.1f} degrees apart",
+                                      180.0 / std::numbers::pi * angle),
+                          "take marks about a right angle apart");
         }
     }
     PanoramaOrientation orientation;
@@ -64,8 +64,8 @@ PanoramaOrientation orientation_of(const PanoramaMark& first,
     if (!(orientation.residual_rad <= kLargestResidual_rad)) {
         throw Refused(fmt::format("the marks lie {:.1f} degrees apart in the panorama, and their "
                                   "directions {:.1f}",
-                                  180.0 / kPi * apart,
-                                  180.0 / kPi * wanted),
+                                  180.0 / std::numbers::pi * apart,
+                                  180.0 / std::numbers::pi * wanted),
                       "check the marks' pixels and directions");
     }
     orientation.world_from_panorama = frame_of(to_a, to_b) * glm::transpose(frame_of(a, b));
@@ -79,7 +79,8 @@ SeeDirection seen_in_panorama(const glm::dmat3& world_from_panorama, int width, 
         const glm::dvec2 uv = uv_from_direction(unturned, panorama_from_world * direction);
         SeenAt seen;
         seen.pixel = uv * glm::dvec2(width, height);
-        const double down = kPi / height, across = 2.0 * kPi / width * std::sin(kPi * uv.y);
+        const double down = std::numbers::pi / height,
+                     across = 2.0 * std::numbers::pi / width * std::sin(std::numbers::pi * uv.y);
         seen.widest_rad = std::max(down, across);
         // Toward a pole pixels narrow to nothing; no more is told there than across.
         seen.finest_rad = std::max(std::min(down, across), 0.1 * seen.widest_rad);

@@ -14,7 +14,6 @@ namespace livery {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kPartsAPixel = 1.5;  ///< looks a pixel's width
 constexpr int kFewestParts = 2, kMostParts = 32, kEdgeParts = 4;
 /// How little a clipped picture counts beside one that is not.
@@ -34,7 +33,8 @@ int parts_of(double texel_rad, double pixel_rad) {
 
 /// The polar angle at a share of a row, even in solid angle.
 double polar_at(int height, int y, double share) {
-    const double from = std::cos(kPi * y / height), to = std::cos(kPi * (y + 1) / height);
+    const double from = std::cos(std::numbers::pi * y / height),
+                 to = std::cos(std::numbers::pi * (y + 1) / height);
     return std::acos(std::clamp(from + (to - from) * share, -1.0, 1.0));
 }
 
@@ -46,17 +46,18 @@ void gather_texel(const LightPicture& picture,
                   RadianceMap& map) {
     const int width = map.radiance.width, height = map.radiance.height;
     const auto middle = see(texel_direction(map.radiance, x, y));
-    const double row_rad = 2.0 * kPi / width * std::sin(kPi * (y + 0.5) / height);
+    const double row_rad =
+        2.0 * std::numbers::pi / width * std::sin(std::numbers::pi * (y + 0.5) / height);
     const int across = middle ? parts_of(row_rad, middle->finest_rad) : kEdgeParts;
-    const int down = middle ? parts_of(kPi / height, middle->finest_rad) : kEdgeParts;
+    const int down = middle ? parts_of(std::numbers::pi / height, middle->finest_rad) : kEdgeParts;
     glm::dvec3 sum(0.0);
     double saturated = 0.0, widest = 0.0;
     int seen = 0;
     for (int v = 0; v < down; ++v) {
         const double polar = polar_at(height, y, (v + 0.5) / down);
         for (int u = 0; u < across; ++u) {
-            const glm::dvec3 direction =
-                direction_from_uv(unturned(), {(x + (u + 0.5) / across) / width, polar / kPi});
+            const glm::dvec3 direction = direction_from_uv(
+                unturned(), {(x + (u + 0.5) / across) / width, polar / std::numbers::pi});
             const auto at = see(direction);
             if (!at) continue;
             const auto light = sample(picture, at->pixel, wraps);
@@ -89,8 +90,9 @@ glm::dvec3 texel_direction(const ImageF& map, int x, int y) {
 }
 
 double texel_sr(const ImageF& map, int y) {
-    return 2.0 * kPi / map.width *
-           (std::cos(kPi * y / map.height) - std::cos(kPi * (y + 1) / map.height));
+    return 2.0 * std::numbers::pi / map.width *
+           (std::cos(std::numbers::pi * y / map.height) -
+            std::cos(std::numbers::pi * (y + 1) / map.height));
 }
 
 RadianceMap gather(const LightPicture& picture,

@@ -20,7 +20,7 @@ namespace livery {
 namespace {
 
 constexpr std::size_t kWanted = 3000, kLeast = 500;
-constexpr int kSamples = 800;
+constexpr int kPoseSamples = 800;
 constexpr double kOnePlane = 4.0;  ///< as well as the pose does: within so many times its error
 
 /// The same place in both pictures, lens distortion undone: x / z, y / z.
@@ -263,7 +263,7 @@ bool lies_on_a_plane(const std::vector<Sighting>& all,
     std::vector<double> off_pose;
     for (const Sighting& one : all) off_pose.push_back(std::abs(sampson(e, one)));
     const double allowed = kOnePlane * quantile(std::move(off_pose), 0.9);
-    for (int k = 0; k < kSamples / 8; ++k) {
+    for (int k = 0; k < kPoseSamples / 8; ++k) {
         std::vector<std::size_t> chosen(24);
         for (std::size_t& one : chosen) one = random.below(static_cast<std::uint32_t>(all.size()));
         const Eigen::Matrix3d h = homography_of(all, chosen, to_c, to_p);
@@ -296,7 +296,7 @@ PairPose pose_of_pair(const View& camera,
     Random random(seed, 20);
     Eigen::Matrix3d best = Eigen::Matrix3d::Zero();
     double least = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < kSamples; ++k) {
+    for (int k = 0; k < kPoseSamples; ++k) {
         progress.check_stop();
         // More than eight: noise matters more than outliers do.
         std::vector<std::size_t> chosen(24);

@@ -17,7 +17,7 @@ namespace livery {
 
 namespace {
 
-constexpr int kWanted = 2500;  // correspondences a sight
+constexpr int kWantedPairs = 2500;  // correspondences a sight
 constexpr int kRounds = 12;
 
 Rigid3 moved(const double* six, const Rigid3& pose) {
@@ -145,7 +145,7 @@ std::vector<Correspondence> correspondences_of(const Mesh& mesh,
         glm::length(box.high - box.low) * scale /
         glm::length(centre_in_world(projector) - 0.5 * scale * (box.low + box.high)) *
         projector.focal_px.x;
-    const int stride = std::max(1, static_cast<int>(across * 0.5 / std::sqrt(kWanted)));
+    const int stride = std::max(1, static_cast<int>(across * 0.5 / std::sqrt(kWantedPairs)));
     std::vector<std::vector<Correspondence>> rows(
         static_cast<std::size_t>(projector.height / stride));
     const auto row_of = [&](std::size_t row) {

@@ -243,10 +243,11 @@ PixelRefinement best_refined(const TargetMesh& target,
                              const LensPrior& prior,
                              const Progress& progress,
                              Registration& result) {
-    constexpr std::size_t kMostAlike = 6;
+    constexpr std::size_t kMostPosesAlike = 6;
     std::vector<const PoseCandidate*> alike;
     for (const PoseCandidate& one : found)
-        if (one.evidence.score() > 0.9 * found[0].evidence.score() && alike.size() < kMostAlike)
+        if (one.evidence.score() > 0.9 * found[0].evidence.score() &&
+            alike.size() < kMostPosesAlike)
             alike.push_back(&one);
     std::vector<PixelRefinement> refined;
     std::vector<PoseEvidence> evidence;

@@ -14,6 +14,7 @@
 
 #include "calibration/registration/around_mockup.h"
 #include "calibration/registration/rotation.h"
+#include "calibration/registration/symmetry.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/random.h"
@@ -29,7 +30,6 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 constexpr std::size_t kForSearch = 600, kForFit = 20000;  // crossings
 constexpr std::size_t kLeastCrossings = 200;
 constexpr double kLeastAgreement = 0.6, kLargestMedian_px = 0.5;
-constexpr double kSlips = 0.03;  // as free_turns()
 constexpr double kFacing = 0.15;
 constexpr int kStarts = 300, kSearchRounds = 10, kFitRounds = 30;
 
@@ -164,7 +164,7 @@ Equations equations_of(const std::vector<CrossingRow>& rows, double largest_scal
     }
     const Eigen::SelfAdjointEigenSolver<Matrix6> solver(slips / std::max(weights, 1e-9));
     int slipping = 0;
-    while (slipping < 6 && solver.eigenvalues()[slipping] < kSlips * kSlips) ++slipping;
+    while (slipping < 6 && solver.eigenvalues()[slipping] < kSlipsFreely * kSlipsFreely) ++slipping;
     equations.held = solver.eigenvectors().rightCols(6 - slipping);
     return equations;
 }

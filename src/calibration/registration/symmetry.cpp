@@ -10,12 +10,6 @@
 
 namespace livery {
 
-namespace {
-
-constexpr double kSlips = 0.03;
-
-}  // namespace
-
 FreeTurns free_turns(const SurfaceSamples& samples, double cell_mm) {
     const SurfaceSamples mesh = cell_means(samples, cell_mm);
     const auto count = static_cast<double>(mesh.size());
@@ -36,7 +30,7 @@ FreeTurns free_turns(const SurfaceSamples& samples, double cell_mm) {
     FreeTurns free;
     free.through_mm = middle;
     int slipping = 0;
-    while (slipping < 6 && solver.eigenvalues()[slipping] < kSlips * kSlips) ++slipping;
+    while (slipping < 6 && solver.eigenvalues()[slipping] < kSlipsFreely * kSlipsFreely) ++slipping;
     if (slipping == 0) return free;
     free.count = slipping >= 3 ? 3 : 1;
     if (free.count == 3) {

@@ -9,6 +9,10 @@
 
 namespace livery {
 
+/// A turn or shift that moves surfaces along their normals by less than this share of the way is
+/// one that shape does not fix.
+inline constexpr double kSlipsFreely = 0.03;
+
 /// About which axes a product turns without changing: none, one (a surface of revolution, its axis
 /// given) or all (a sphere).
 struct FreeTurns {

@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/statistics.h"
@@ -19,7 +20,6 @@ namespace livery {
 namespace {
 
 constexpr int kSectors = 72;
-constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kDimmestEdge = 0.15;  ///< cosine of the light to the outline's normal
 constexpr double kCoarseReach = 0.35;  ///< of the angular radius: how far off the start may be
 constexpr std::array<double, 4> kFineReaches_px{12.0, 6.0, 6.0, 6.0};
@@ -40,7 +40,8 @@ Sectors pixels_near(const std::vector<glm::dvec3>& rays,
     for (std::size_t k = 0; k < rays.size(); ++k) {
         const ConeEdge at = edge_of(cone, rays[k]);
         if (std::abs(at.angle_rad - cone.angle_rad) > reach_rad) continue;
-        const int sector = std::min(static_cast<int>(at.turn_rad / kTurn * kSectors), kSectors - 1);
+        const int sector =
+            std::min(static_cast<int>(at.turn_rad / kFullTurn * kSectors), kSectors - 1);
         sectors[static_cast<std::size_t>(sector)].push_back({k, at.angle_rad});
     }
     return sectors;
@@ -204,7 +205,7 @@ std::vector<ConeEdge> found_of(const Edges& edges) {
     std::vector<ConeEdge> found;
     for (std::size_t k = 0; k < edges.size(); ++k) {
         if (edges[k])
-            found.push_back({kTurn * (static_cast<double>(k) + 0.5) / kSectors, *edges[k]});
+            found.push_back({kFullTurn * (static_cast<double>(k) + 0.5) / kSectors, *edges[k]});
     }
     return found;
 }
@@ -229,8 +230,9 @@ std::optional<OutlineBox> outline_box(const View& view, const Sphere& sphere) {
     const TangentCone cone = cone_of(view, sphere);
     OutlineBox box{1e30, 1e30, -1e30, -1e30};
     for (int k = 0; k < kSectors; ++k) {
-        const glm::dvec3 direction = std::cos(cone.angle_rad) * cone.axis +
-                                     std::sin(cone.angle_rad) * around(cone, kTurn * k / kSectors);
+        const glm::dvec3 direction =
+            std::cos(cone.angle_rad) * cone.axis +
+            std::sin(cone.angle_rad) * around(cone, kFullTurn * k / kSectors);
         const auto pixel = project(view, centre_in_world(view) + cone.distance_mm * direction);
         if (!pixel) return std::nullopt;
         box.left = std::min(box.left, pixel->x);
@@ -266,7 +268,7 @@ OutlineFit fit_outline(const View& view, const Sphere& start, std::span<const Li
         Edges edges;
         parallel_for(kSectors, 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t k = begin; k < end; ++k) {
-                const double turn = kTurn * (static_cast<double>(k) + 0.5) / kSectors;
+                const double turn = kFullTurn * (static_cast<double>(k) + 0.5) / kSectors;
                 std::vector<double> found;
                 for (const std::size_t one : best_lights(cone, view, turn, lit)) {
                     if (const auto edge = find(sectors[k], light[one])) found.push_back(*edge);

@@ -8,6 +8,8 @@
 
 namespace livery {
 
+inline constexpr double kFigureSize = 8.5;  ///< of a chart's figures, in points
+
 /// A value's place between two ends; logarithmic where it says so.
 struct ChartAxis {
     double low = 0.0, high = 1.0, left = 0.0, right = 1.0;

@@ -13,8 +13,6 @@ namespace livery {
 
 namespace {
 
-constexpr double kFigureSize = 8.5;
-
 /// Odds of a over b, whichever way round the pair stands.
 struct PairOdds {
     double odds = 1.0, low = 1.0, high = 1.0, p = 1.0;

@@ -12,8 +12,6 @@ namespace livery {
 
 namespace {
 
-constexpr double kFigureSize = 8.5;
-
 std::size_t index_of(int design) { return static_cast<std::size_t>(design); }
 
 /// A part of a bar with its number, where there is room for it.

@@ -6,12 +6,11 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "evaluation/statistics/significance.h"
 
 namespace livery {
 
 namespace {
-
-constexpr double kLevel = 0.05;
 
 /// P(X >= larger) of a fair coin, on both sides.
 double sign_test_p(int one, int other) {
@@ -20,10 +19,6 @@ double sign_test_p(int one, int other) {
 }
 
 std::string percent(double share) { return fmt::format("{:.0f}%", 100.0 * share); }
-
-std::string p_words(double p) {
-    return p < 0.0001 ? std::string("p < 0.0001") : fmt::format("p = {:.2g}", p);
-}
 
 std::string evaluators_in_words(int count) {
     return fmt::format("{} evaluator{}", count, count == 1 ? "" : "s");
@@ -37,7 +32,7 @@ std::string share_words(const DuelStatistics& statistics) {
 
 std::string consistency_words(const DuelStatistics& statistics) {
     if (statistics.complete == 0) return "";
-    const bool more = statistics.consistency_p <= kLevel;
+    const bool more = statistics.consistency_p <= kSignificanceLevel;
     return fmt::format(
         " Of {} who answered every repeat {} gave the same answer each time; guessing gives {} "
         "({}): "
@@ -105,10 +100,10 @@ DuelStatistics duel_statistics(const std::vector<DuelAnswers>& answers, int repe
     statistics.consistency_p = binomial_tail(
         statistics.consistent, statistics.complete, statistics.consistent_by_guessing);
     statistics.consistent_share = wilson_interval(statistics.consistent, statistics.complete);
-    statistics.kind = statistics.evaluators == 0         ? DuelVerdictKind::nobody
-                      : sign_test_p(counted, 0) > kLevel ? DuelVerdictKind::too_few
-                      : statistics.sign_p > kLevel       ? DuelVerdictKind::no_preference
-                                                         : DuelVerdictKind::preferred;
+    statistics.kind = statistics.evaluators == 0                     ? DuelVerdictKind::nobody
+                      : sign_test_p(counted, 0) > kSignificanceLevel ? DuelVerdictKind::too_few
+                      : statistics.sign_p > kSignificanceLevel ? DuelVerdictKind::no_preference
+                                                               : DuelVerdictKind::preferred;
     return statistics;
 }
 

@@ -8,12 +8,12 @@
 
 #include "core/error.h"
 #include "core/shuffle.h"
+#include "evaluation/statistics/significance.h"
 
 namespace livery {
 
 namespace {
 
-constexpr double kLevel = 0.05;
 constexpr int kFewestForInterval = 8;
 // Streams of their own: one more scale moves no other's draws.
 constexpr std::uint64_t kBootstrapStream = 1000, kPermutationStream = 2000;
@@ -96,8 +96,6 @@ Interval bootstrap_interval(const std::vector<int>& steps, Random random, std::s
     return {means[low], means[means.size() - 1 - low]};
 }
 
-std::string p_words(double p) { return fmt::format("p = {:.2g}", p); }
-
 std::string words_of(const ScaleFigures& figures, const std::vector<std::string>& names) {
     const std::string scale = in_words(figures.scale);
     if (figures.complete == 0) {
@@ -105,7 +103,7 @@ std::string words_of(const ScaleFigures& figures, const std::vector<std::string>
     }
     const std::string evaluators =
         fmt::format("{} evaluator{}", figures.complete, figures.complete == 1 ? "" : "s");
-    if (figures.holm_p > kLevel) {
+    if (figures.holm_p > kSignificanceLevel) {
         return fmt::format(
             "{}: the looks are not shown to differ ({} placed all of them, {} after "
             "Holm); it does not say that they are alike",

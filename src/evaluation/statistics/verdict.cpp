@@ -5,13 +5,13 @@
 #include <numeric>
 
 #include "evaluation/statistics/power.h"
+#include "evaluation/statistics/significance.h"
 #include "evaluation/statistics/tails.h"
 
 namespace livery {
 
 namespace {
 
-constexpr double kLevel = 0.05;
 // The law that the rival's p goes by is that of fitted worths: with .05 here, of two that are
 // equally good one was called the winner in up to 6% of drawn rounds.
 constexpr double kRivalLevel = 0.04;
@@ -65,9 +65,9 @@ Verdict judge(const VoteCounts& counts,
 
     // Whether there is any preference at all.
     verdict.friedman_p = friedman_p(null, counts);
-    verdict.too_few = smallest_p(null) > kLevel;
+    verdict.too_few = smallest_p(null) > kSignificanceLevel;
     verdict.kind = VerdictKind::no_preference;
-    if (verdict.friedman_p > kLevel) return verdict;
+    if (verdict.friedman_p > kSignificanceLevel) return verdict;
 
     verdict.win_probability = win_probability(verdict.leader);
 

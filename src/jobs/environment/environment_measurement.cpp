@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr int kNarrowest = 16, kWidest = 8192;
-constexpr double kNotedCorrection = 0.02, kNotedFill = 0.1, kNotedCut = 0.01;
+constexpr double kNotedMapCorrection = 0.02, kNotedFill = 0.1, kNotedCut = 0.01;
 constexpr double kNotedResidual_rad = kPi / 180.0;
 
 void check_name(const std::string& option, const std::filesystem::path& file) {
@@ -102,7 +102,7 @@ void tell_views(EnvironmentMeasurement& report) {
                 k + 1));
         }
         if (view.ball && view.correction_mm &&
-            *view.correction_mm > kNotedCorrection * view.ball->diameter_mm) {
+            *view.correction_mm > kNotedMapCorrection * view.ball->diameter_mm) {
             report.notes.push_back(
                 fmt::format("view {}: the outline puts the ball {:.1f} mm from the manifest's "
                             "place, and was taken",

@@ -19,8 +19,8 @@ namespace livery {
 namespace {
 
 constexpr double kRadians = std::numbers::pi / 180.0;
-constexpr double kMostAcross_px = 2000.0;  ///< a larger ball's pixels are averaged in blocks
-constexpr double kClickedRms_px = 5.0;     ///< of points of the outline that somebody named
+constexpr double kMostBallAcross_px = 2000.0;  ///< a larger ball's pixels are averaged in blocks
+constexpr double kClickedRms_px = 5.0;         ///< of points of the outline that somebody named
 
 /// The window of a mask's picture, as photographs have it; as large as they are.
 Image8 read_mask(const std::filesystem::path& file,
@@ -103,7 +103,7 @@ ViewOfEnvironment view_of_ball(const BallView& ball,
     Sphere sphere = start_of(ball, camera, figures);
     check_before_camera(ball, camera, sphere, reading.manifest);
 
-    const SphereWindow window = window_around(camera, sphere, kMostAcross_px, reading.manifest);
+    const SphereWindow window = window_around(camera, sphere, kMostBallAcross_px, reading.manifest);
     LightPicture picture = merged_light(
         ball.captures, window.pixels, progress.part(0.0, 0.5), [&](const Capture& one) {
             return load_photograph_of(one, camera);

@@ -16,7 +16,7 @@ namespace livery {
 
 namespace {
 
-constexpr int kSamples = 256, kQuickSamples = 64;
+constexpr int kFullSamples = 256, kQuickSamples = 64;
 
 std::vector<const AccuracyRow*> of_level(const AccuracyLedger& ledger, const AccuracyRow& like) {
     std::vector<const AccuracyRow*> rows;
@@ -37,7 +37,7 @@ AccuracyLedger measure_accuracy(const AccuracyOptions& options, const Progress& 
                    fmt::format("shard {} of {}", options.shard, options.shards));
     const std::vector<AccuracyScene> scenes = accuracy_scenes(options.quick, progress);
     TruthOptions truths;
-    truths.samples_per_pixel = options.quick ? kQuickSamples : kSamples;
+    truths.samples_per_pixel = options.quick ? kQuickSamples : kFullSamples;
     truths.seed = options.seed;
     truths.folder = options.folder / "truths";
     const std::filesystem::path kept = options.folder / "rows";

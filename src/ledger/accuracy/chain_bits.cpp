@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "compensation/compensate.h"
+#include "compensation/compensation.h"
 #include "compensation/shown.h"
 #include "core/pictures/colour_differences.h"
 #include "core/statistics.h"
@@ -15,8 +16,7 @@ namespace livery {
 
 namespace {
 
-constexpr double kDesignWhitePercentile = 20.0;
-constexpr int kSquare_px = 4, kRepeats = 9;
+constexpr int kSquare_px = 4, kRoundings = 9;
 
 /// The car's body from dark to light.
 constexpr const char* kPaints[] = {"solid black", "solid red", "solid white"};
@@ -87,7 +87,7 @@ std::vector<float> drive_errors(const CompensationTable& table,
 double compensation_ms(const CompensationTable& table, const ImageF& wanted) {
     Image8 drive = compensate(table, wanted);
     std::vector<double> ms;
-    for (int k = 0; k < kRepeats; ++k) {
+    for (int k = 0; k < kRoundings; ++k) {
         // Nothing is counted: covered pixels need not be known
         ms.push_back(milliseconds_of([&] { compensate_again(table, wanted, 0, &drive); }));
     }

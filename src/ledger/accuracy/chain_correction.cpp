@@ -23,8 +23,6 @@ namespace livery {
 
 namespace {
 
-constexpr double kDesignWhitePercentile = 20.0;
-
 struct WayToCalibrate {
     const char* mode_name;
     ColourMode mode;

@@ -13,7 +13,7 @@ namespace livery {
 
 namespace {
 
-constexpr int kSwaps = 5;
+constexpr int kHalvesSwaps = 5;
 
 AccuracyScene scene_named(const std::string& name, const Progress& progress = {}) {
     std::vector<AccuracyScene> scenes = accuracy_scenes(true, progress);
@@ -66,7 +66,7 @@ StoredPicture stored_picture(const AccuracyScene& scene,
     stored.working = renderer.read_back();
     std::vector<double> swaps;
     Scene again = scene.scene;
-    for (int k = 0; k < kSwaps; ++k) {
+    for (int k = 0; k < kHalvesSwaps; ++k) {
         progress.check_stop();
         // Another exposure shades every part anew, and nothing else
         again.exposure_ev += 0.01;

@@ -10,7 +10,7 @@ namespace livery {
 
 namespace {
 
-constexpr int kWidth = 640, kHeight = 400;
+constexpr int kWidth_px = 640, kHeight_px = 400;
 
 struct NamedLook {
     const char* name;
@@ -84,7 +84,7 @@ void add_translucent(std::vector<AccuracyScene>& scenes, const Progress& progres
             light(look);
             AccuracyScene& scene = scenes.emplace_back();
             scene.name = name + ", marble, " + light_name;
-            scene.view = resized(bench.projector.view, kWidth, kHeight);
+            scene.view = resized(bench.projector.view, kWidth_px, kHeight_px);
             scene.scene = make_scene(product, look, bench.eye_mm, nullptr);
         }
     }
@@ -102,7 +102,7 @@ std::vector<AccuracyScene> accuracy_scenes(bool quick, const Progress& progress)
         const std::string product_name = name;
         const auto product = find_product(product_name);
         const BenchDescription bench = read_bench_file(*bench_of_shipped_product(product_name));
-        const View view = resized(bench.projector.view, kWidth, kHeight);
+        const View view = resized(bench.projector.view, kWidth_px, kHeight_px);
         for (const auto& [light_name, light] : lights()) {
             std::shared_ptr<const Environment> environment;
             for (const NamedLook& one : looks()) {

@@ -13,7 +13,7 @@ MirrorSums mirror_sums(const char* instruction_set);
 
 namespace {
 
-const std::vector<MirrorSums>& all() {
+const std::vector<MirrorSums>& all_sums() {
     static const std::vector<MirrorSums> list = [] {
         std::vector<MirrorSums> available;
 #if defined(__x86_64__)
@@ -27,10 +27,10 @@ const std::vector<MirrorSums>& all() {
 
 }  // namespace
 
-const MirrorSums& best_mirror_sums() { return all().front(); }
+const MirrorSums& best_mirror_sums() { return all_sums().front(); }
 
-std::size_t mirror_sums_available() { return all().size(); }
+std::size_t mirror_sums_available() { return all_sums().size(); }
 
-const MirrorSums& mirror_sums_available(std::size_t index) { return all().at(index); }
+const MirrorSums& mirror_sums_available(std::size_t index) { return all_sums().at(index); }
 
 }  // namespace livery

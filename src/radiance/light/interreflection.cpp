@@ -28,7 +28,7 @@ namespace {
 /// Rays in all, and of a node.
 constexpr std::size_t kRays = 2'000'000;
 constexpr int kFewestRays = 16, kMostRays = 64;
-constexpr int kRaysALight = 8;
+constexpr int kNodeRaysALight = 8;
 
 /// Light that is left of the first bounce's, below which no further one is followed.
 constexpr float kNothingLeft = 1e-3f;
@@ -216,7 +216,7 @@ std::vector<glm::vec3> direct_at_nodes(const Mesh& mesh,
                 const float cosine = glm::dot(n, lamps[l].direction);
                 if (cosine <= 0.0f || lamps[l].radiance == glm::vec3(0.0f)) continue;
                 const float open = disc_openness(
-                    tracer, nodes.ray_origin_mm(mesh, i), n, lights[l], kRaysALight, i);
+                    tracer, nodes.ray_origin_mm(mesh, i), n, lights[l], kNodeRaysALight, i);
                 direct[i] +=
                     open * (medium ? working * (lamps[l].radiance_rec709 *
                                                 entering_of_lamp(

@@ -47,7 +47,7 @@ double cap_of(const DirectionalLight& light) {
     return 2.0 * std::pow(std::sin(0.25 * light.angle_rad), 2.0);
 }
 
-double turn_of(std::size_t seed) { return turn_of_fragment_rad(seed, 17u, 3u); }
+double turn_of_seed(std::size_t seed) { return turn_of_fragment_rad(seed, 17u, 3u); }
 
 /// Sums up what is seen of the light from one fragment.
 LightAtFragment summarise(const glm::vec3& normal,
@@ -85,7 +85,8 @@ float disc_openness(const Tracer& tracer,
     std::vector<glm::vec3> directions(
         static_cast<std::size_t>(light.angle_rad > 0.0 ? ray_count : 1), centre);
     if (light.angle_rad > 0.0) {
-        DiscDirections(centre, cap_of(light), directions.size()).turned(turn_of(seed), directions);
+        DiscDirections(centre, cap_of(light), directions.size())
+            .turned(turn_of_seed(seed), directions);
     }
     int open = 0;
     for (const glm::vec3& direction : directions) {
@@ -159,7 +160,7 @@ std::vector<LightAtFragment> light_at_fragments(const Mesh& mesh,
             result[i].direction = centre;
             if (glm::dot(map.fragments[i].normal, centre) <= lowest) return;
             const std::size_t at = waiting.size() * ray_count;
-            if (!point) disc.turned(turn_of(i), std::span(directions).subspan(at, ray_count));
+            if (!point) disc.turned(turn_of_seed(i), std::span(directions).subspan(at, ray_count));
             const std::size_t own = std::min(ray_count, kSamplesAFragment);
             ray_origins(mesh, map, i, std::span(origins).first(own));
             for (std::size_t k = 0; k < ray_count; ++k) {

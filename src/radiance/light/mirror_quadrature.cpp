@@ -15,8 +15,6 @@
 namespace livery {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 /// Slopes of a ring that every size has, of the innermost at most, within the sharpest lobe's
 /// width, and of the last, past which even alpha 1 has 3% of its normals, nearly all of them
 /// masked.
@@ -41,7 +39,7 @@ static_assert(are_alphas(kHalfAngleLobes[0], 0.02f, 0.042f, 0.06f) &&
 /// Rows of the table, even in the root of 1 - sine: that is linear in the cosine at grazing and in
 /// the sine at the normal, and so is what changes there.
 constexpr std::size_t kRows = 128;
-constexpr double kLowestCosine = 1e-4;
+constexpr double kSteepestCosine = 1e-4;
 /// Every so many rows the albedo is integrated, and interpolated in between.
 constexpr std::size_t kAlbedoRows = 8;
 
@@ -82,12 +80,13 @@ Cell cell_around(const glm::dvec3& wi, const Cells& cells) {
     const double area = std::max(ring2 * cells.of_slope2, cells.least) * cells.across;
     const double solid_angle =
         area * 4.0 * std::max(glm::dot(cells.wo, h), 1e-4) * std::pow(h.z, 3);
-    cell.variance = cells.overlap * cells.overlap * solid_angle / (4.0 * kPi);
+    cell.variance = cells.overlap * cells.overlap * solid_angle / (4.0 * std::numbers::pi);
     cell.cut = std::min(std::pow(kWidthOverHorizon * wi.z, 2) / cell.variance, 1.0);
     for (std::size_t k = 0; k < cell.share.size(); ++k) {
         const double alpha = static_cast<double>(kMirrorAlphas[k]), a2 = alpha * alpha;
         const double spread = 1.0 + (x * x + y * y) / a2;
-        cell.share[k] = area / (kPi * a2 * spread * spread) * masking(h, wi, cells.wo, alpha);
+        cell.share[k] =
+            area / (std::numbers::pi * a2 * spread * spread) * masking(h, wi, cells.wo, alpha);
     }
     return cell;
 }
@@ -203,9 +202,9 @@ std::vector<Node> nodes_under(double mu, const MirrorRings& size, const Shares& 
     // Mirrored, slopes along the eye's plane move light 1 / mu times as far as those across it.
     // Half way between slopes and directions, cells are stretched by little in either.
     const double across = std::pow(std::max(mu, 0.02), -0.4);
-    const double turn = 2.0 * kPi / size.nodes;
+    const double turn = 2.0 * std::numbers::pi / size.nodes;
     const double inner = slope_of(size, 0) * std::exp(-0.5 * size.step);
-    const Cells middle{wo, across, 0.0, kPi * inner * inner, size.overlap};
+    const Cells middle{wo, across, 0.0, std::numbers::pi * inner * inner, size.overlap};
     const Cells around{wo, across, std::sinh(size.step) * turn, 0.0, size.overlap};
     std::vector<Node> nodes;
     for (std::size_t k = 0; k < MirrorQuadrature::kFacets; ++k) {
@@ -236,7 +235,7 @@ double mirror_correction(double cosine_to_eye, double alpha) {
     // Over the visible normals, of which one half mirrors the other; closer together toward those
     // that are tilted most, where some mirror below the horizon
     constexpr int kAround = 16, kTilted = 48;
-    const double mu = std::max(cosine_to_eye, kLowestCosine);
+    const double mu = std::max(cosine_to_eye, kSteepestCosine);
     const glm::dvec3 wo(std::sqrt((1.0 - mu) * (1.0 + mu)), 0.0, mu);
     double sum = 0.0;
     for (int i = 0; i < kAround; ++i) {
@@ -258,7 +257,7 @@ double mirror_correction(double cosine_to_eye, double alpha) {
 
 MirrorRings mirror_rings(int nodes) {
     if (nodes == 0) return {4, 0.6, 1.2};
-    return {nodes, 2.0 * kPi / nodes, 1.7};
+    return {nodes, 2.0 * std::numbers::pi / nodes, 1.7};
 }
 
 int mirror_nodes(int nodes) {
@@ -284,7 +283,7 @@ MirrorQuadrature::MirrorQuadrature(const MirrorRings& size) : nodes_(size.nodes)
     const auto cosine_of = [](std::size_t row) {
         const double root = static_cast<double>(row) / kRows;
         const double sine = 1.0 - root * root;
-        return std::max(std::sqrt((1.0 - sine) * (1.0 + sine)), kLowestCosine);
+        return std::max(std::sqrt((1.0 - sine) * (1.0 + sine)), kSteepestCosine);
     };
     std::array<Shares, kRows / kAlbedoRows + 1> returned;
     parallel_for(returned.size(), 1, [&](std::size_t begin, std::size_t end) {

@@ -15,7 +15,6 @@ namespace livery {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double kPi = std::numbers::pi;
 
 /// Legendre functions under this add nothing that a float would show: near the poles high orders
 /// are that small over most degrees.
@@ -28,7 +27,7 @@ class Legendre {
     explicit Legendre(int degree) : degree_(degree) {
         const auto orders = static_cast<std::size_t>(degree + 1);
         steps_.resize(orders * (orders + 1) / 2);
-        double log_start = 0.5 * std::log(1.0 / (4.0 * kPi));
+        double log_start = 0.5 * std::log(1.0 / (4.0 * std::numbers::pi));
         for (int order = 0; order <= degree; ++order) {
             const double m = order;
             if (order > 0) log_start += 0.5 * std::log1p(-0.5 / m);
@@ -73,7 +72,7 @@ class Legendre {
     std::vector<Step> steps_;  ///< of each order, from its own degree upward
 };
 
-double polar_angle(int row, int rows) { return kPi * (row + 0.5) / rows; }
+double polar_angle(int row, int rows) { return std::numbers::pi * (row + 0.5) / rows; }
 
 /// Fejer's first rule: exact for polynomials in the cosine of a lower degree than there are rows.
 double row_weight(int row, int rows) {
@@ -133,8 +132,8 @@ std::vector<Triple> series_of_rows(const ImageF& picture, std::size_t orders) {
     // Column j is at azimuth 2 pi (j + 1/2) / width
     std::vector<Complex> half_column;
     for (std::size_t m = 0; m < orders; ++m) {
-        half_column.push_back(
-            std::polar(1.0, -kPi * static_cast<double>(m) / static_cast<double>(columns)));
+        half_column.push_back(std::polar(
+            1.0, -std::numbers::pi * static_cast<double>(m) / static_cast<double>(columns)));
     }
     std::vector<Triple> series(rows * orders);
     parallel_for(rows, 16, [&](std::size_t begin, std::size_t end) {
@@ -147,7 +146,8 @@ std::vector<Triple> series_of_rows(const ImageF& picture, std::size_t orders) {
         };
         for (std::size_t y = begin; y < end; ++y) {
             const int row = static_cast<int>(y);
-            const double weight = row_weight(row, picture.height) * 2.0 * kPi / picture.width;
+            const double weight =
+                row_weight(row, picture.height) * 2.0 * std::numbers::pi / picture.width;
             const float* texel = picture.pixel(0, row);
             for (std::size_t x = 0; x < columns; ++x, texel += 3) {
                 red_green[x] = Complex(static_cast<double>(texel[0]) * weight,
@@ -238,7 +238,7 @@ std::vector<ImageF> synthesise_sphere(const SphericalHarmonics& harmonics,
     parallel_for(orders, 8, [&](std::size_t begin, std::size_t end) {
         for (std::size_t m = begin; m < end; ++m) {
             const Complex turn =
-                std::polar(m == 0 ? 1.0 : 2.0, kPi * static_cast<double>(m) / width);
+                std::polar(m == 0 ? 1.0 : 2.0, std::numbers::pi * static_cast<double>(m) / width);
             for (std::size_t l = m; l < orders; ++l) {
                 const std::size_t at = harmonics.index(static_cast<int>(l), static_cast<int>(m));
                 Triple unscaled;

@@ -21,7 +21,7 @@ namespace {
 constexpr double kMostNodes = 60'000.0;
 /// A surface crosses about that many cells of the nodes' grid per side squared.
 constexpr double kCellsCrossed = 1.5;
-constexpr int kSkyRays = 32;
+constexpr int kPlaceSkyRays = 32;
 /// Of the nodes' grid: sums over nodes of what begins that softly are as good as integrals.
 constexpr double kNearCells = 2.0;
 /// Nodes of sheets, over those of bodies, at most.
@@ -293,7 +293,7 @@ SubsurfaceTransport solve_transport(const Mesh& product,
     transport.exchange = blocked_directions(transport.mesh,
                                             tracer,
                                             exchange_nodes(transport.mesh, std::sqrt(cell_mm2)),
-                                            kSkyRays,
+                                            kPlaceSkyRays,
                                             progress);
     transport.area_mm2 = node_areas_mm2(transport.mesh, transport.exchange.nodes);
     find_slabs(tracer, product, transport);

@@ -17,10 +17,6 @@ namespace {
 constexpr int kRaysALight = 8;
 constexpr int kSkyRays = 32;
 
-bool same_disc(const DirectionalLight& a, const DirectionalLight& b) {
-    return a.direction == b.direction && a.angle_rad == b.angle_rad;
-}
-
 bool same_discs(const std::vector<DirectionalLight>& a, const std::vector<DirectionalLight>& b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), same_disc);
 }

@@ -13,6 +13,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "session/naming.h"
 
@@ -20,14 +21,13 @@ namespace livery {
 
 namespace {
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 /// Of its greater extent along the ground: what is lower than this is looked at from above.
 constexpr double kFlat = 0.2;
 
 /// Right, up and toward whoever stands at these angles, square to one another.
 glm::dmat3 frame_at(const Angles& angles) {
-    const double azimuth = angles.azimuth_deg / kDegrees;
-    const double elevation = angles.elevation_deg / kDegrees;
+    const double azimuth = angles.azimuth_deg / kDegreesPerRadian;
+    const double elevation = angles.elevation_deg / kDegreesPerRadian;
     const glm::dvec3 toward = direction_of(angles);
     const glm::dvec3 up{-std::sin(elevation) * std::sin(azimuth),
                         std::cos(elevation),
@@ -233,13 +233,13 @@ double turn_deg_of(const ArtworkPlace& place) {
     const ArtworkPlane level = plane_of(place_on(place.centre_mm, plane.toward, place.through));
     const double turn =
         std::atan2(-glm::dot(plane.t_axis, level.s_axis), glm::dot(plane.t_axis, level.t_axis));
-    return std::abs(turn) < 1e-9 ? 0.0 : kDegrees * turn;
+    return std::abs(turn) < 1e-9 ? 0.0 : kDegreesPerRadian * turn;
 }
 
 ArtworkPlace with_turn(const ArtworkPlace& place, double turn_deg) {
     const ArtworkPlane level =
         plane_of(place_on(place.centre_mm, plane_of(place).toward, place.through));
-    const double turn = turn_deg / kDegrees;
+    const double turn = turn_deg / kDegreesPerRadian;
     ArtworkPlace turned = place;
     turned.up = std::cos(turn) * level.t_axis - std::sin(turn) * level.s_axis;
     return turned;

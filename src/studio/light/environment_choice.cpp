@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "core/angles.h"
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/paths.h"
@@ -23,7 +24,6 @@ namespace livery {
 namespace {
 
 constexpr int kThumbnailWidth = 512;
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr const char* kFolder = "assets/environments";
 
 /// Names as a look gives them: "assets/environments/studio.hdr".
@@ -208,9 +208,9 @@ void draw_environment_choice(Studio& studio,
     draw_thumbnail(state, environment.rotation_rad);
 
     row_label("Rotation");
-    double rotation_deg = kDegrees * environment.rotation_rad;
+    double rotation_deg = kDegreesPerRadian * environment.rotation_rad;
     number_slider("##rotation", rotation_deg, -180.0, 180.0, "%.0f°");
-    if (last_item_is_held()) environment.rotation_rad = rotation_deg / kDegrees;
+    if (last_item_is_held()) environment.rotation_rad = rotation_deg / kDegreesPerRadian;
     name_last_item("environment-rotation");
     tooltip("Turns the map about the vertical, counter-clockwise seen from above.");
     after_item();

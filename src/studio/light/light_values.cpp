@@ -6,30 +6,27 @@
 
 #include <glm/geometric.hpp>
 
+#include "core/angles.h"
 #include "core/error.h"
 
 namespace livery {
 
-namespace {
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
-
-}  // namespace
+namespace {}  // namespace
 
 Angles angles_of(const glm::dvec3& direction) {
     const double across = std::hypot(direction.x, direction.z);
     check_argument(across > 0.0 || direction.y != 0.0, "a direction of no length has no angles");
     Angles angles;
     if (across > 1e-9 * std::abs(direction.y)) {
-        angles.azimuth_deg = kDegrees * std::atan2(direction.x, -direction.z);
+        angles.azimuth_deg = kDegreesPerRadian * std::atan2(direction.x, -direction.z);
     }
-    angles.elevation_deg = kDegrees * std::atan2(direction.y, across);
+    angles.elevation_deg = kDegreesPerRadian * std::atan2(direction.y, across);
     return angles;
 }
 
 glm::dvec3 direction_of(const Angles& angles) {
-    const double azimuth = angles.azimuth_deg / kDegrees;
-    const double elevation = angles.elevation_deg / kDegrees;
+    const double azimuth = angles.azimuth_deg / kDegreesPerRadian;
+    const double elevation = angles.elevation_deg / kDegreesPerRadian;
     return {std::cos(elevation) * std::sin(azimuth),
             std::sin(elevation),
             -std::cos(elevation) * std::cos(azimuth)};
@@ -37,14 +34,14 @@ glm::dvec3 direction_of(const Angles& angles) {
 
 glm::dvec2 pad_from_angles(const Angles& angles) {
     const double radius = (90.0 - angles.elevation_deg) / 90.0;
-    const double azimuth = angles.azimuth_deg / kDegrees;
+    const double azimuth = angles.azimuth_deg / kDegreesPerRadian;
     return {radius * std::sin(azimuth), -radius * std::cos(azimuth)};
 }
 
 Angles angles_from_pad(const glm::dvec2& pad) {
     const double radius = glm::length(pad);
     Angles angles;
-    if (radius > 1e-6) angles.azimuth_deg = kDegrees * std::atan2(pad.x, -pad.y);
+    if (radius > 1e-6) angles.azimuth_deg = kDegreesPerRadian * std::atan2(pad.x, -pad.y);
     angles.elevation_deg = 90.0 * (1.0 - std::min(radius, 1.0));
     return angles;
 }

@@ -12,6 +12,7 @@
 #include <glm/geometric.hpp>
 #include <imgui.h>
 
+#include "core/angles.h"
 #include "core/error.h"
 #include "mesh/mesh.h"
 #include "studio/kit/theme.h"
@@ -30,7 +31,6 @@ namespace livery {
 
 namespace {
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr std::size_t kMostLights = 8;
 
 bool same_light(const DirectionalLight& a, const DirectionalLight& b) {
@@ -129,10 +129,10 @@ void draw_strength(LightRows& rows, DirectionalLight& light, const DirectionalLi
 }
 
 void draw_angle(LightRows& rows, DirectionalLight& light) {
-    double degrees = kDegrees * light.angle_rad;
+    double degrees = kDegreesPerRadian * light.angle_rad;
     row_label("Size");
     ratio_slider("##angle", degrees, 0.0, 180.0, degrees <= 0.0 ? "a point" : "%.1f°");
-    if (last_item_is_held()) light.angle_rad = degrees / kDegrees;
+    if (last_item_is_held()) light.angle_rad = degrees / kDegreesPerRadian;
     rows.after_item("angle",
                     "Angular diameter: 0 casts sharp shadows, 0.5° is the sun's, 3° a "
                     "lamp's, 30° a large soft box's.");
@@ -175,7 +175,7 @@ void draw_lights(Studio& studio, Look& edited, const Look& before) {
         DirectionalLight light;
         light.direction = glm::normalize(glm::dvec3(0.3, 1.0, 0.6));
         light.radiance_rec709 = glm::dvec3(0.25);
-        light.angle_rad = 3.0 / kDegrees;
+        light.angle_rad = 3.0 / kDegreesPerRadian;
         lights.push_back(light);
         commit(studio, SetLights{studio.shown_look, lights});
     }

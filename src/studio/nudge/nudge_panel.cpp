@@ -29,7 +29,7 @@ namespace livery {
 namespace {
 
 constexpr std::array<double, 3> kSteps_px{0.1, 1.0, 10.0};
-constexpr double kCoarse = 10.0;  // with Shift
+constexpr double kCoarseMove = 10.0;  // with Shift
 
 /// A direction: what a button says and which keys mean it.
 struct Way {
@@ -39,7 +39,7 @@ struct Way {
     int key;
     bool ctrl;
 };
-constexpr std::array<Way, 12> kWays{{
+constexpr std::array<Way, 12> kMoves{{
     {"left", "←", "To the left", &Nudge::right_px, -1.0, GLFW_KEY_LEFT, false},
     {"right", "→", "To the right", &Nudge::right_px, 1.0, GLFW_KEY_RIGHT, false},
     {"up", "↑", "Up", &Nudge::down_px, -1.0, GLFW_KEY_UP, false},
@@ -141,7 +141,7 @@ void draw_way(Shell& shell, const Way& way, float width) {
 /// Four arrows in a cross, plus and minus beside them, from `first` on.
 void draw_cross(Shell& shell, std::size_t first, const char* title, const char* beside) {
     const float width = em(2.6f), gap = ImGui::GetStyle().ItemSpacing.x;
-    const auto at = [&](std::size_t k) -> const Way& { return kWays[first + k]; };
+    const auto at = [&](std::size_t k) -> const Way& { return kMoves[first + k]; };
     heading(title);
     const float left = ImGui::GetCursorPosX();
     const auto column = [&](int k) {
@@ -258,9 +258,9 @@ void take_nudge(Shell& shell) {
 
 bool nudge_key(Shell& shell, const KeyChord& chord) {
     NudgePanelState& state = state_of(shell);
-    for (const Way& way : kWays) {
+    for (const Way& way : kMoves) {
         if (way.key != chord.key || way.ctrl != chord.ctrl) continue;
-        move(shell, way, state.step_px * (chord.shift ? kCoarse : 1.0));
+        move(shell, way, state.step_px * (chord.shift ? kCoarseMove : 1.0));
         return true;
     }
     if (chord.ctrl && chord.key == GLFW_KEY_Z && !chord.shift) {

@@ -22,13 +22,11 @@ constexpr double kSteepest_deg = 89.0;
 constexpr ImU32 kComparedColour = IM_COL32(205, 150, 235, 255);
 constexpr float kPi = std::numbers::pi_v<float>;
 
-double luminance(const glm::dvec3& working) { return (xyz_from_working() * working).y; }
-
 double largest(const std::vector<LobePoint>* curve) {
     double most = 0.0;
     if (!curve) return most;
     for (const LobePoint& point : *curve) {
-        most = std::max(most, luminance(point.value));
+        most = std::max(most, luminance_of_working(point.value));
     }
     return most;
 }
@@ -122,7 +120,7 @@ void tell_value(const LobePlot& plot, const Dial& dial, double light_deg) {
             curve.begin(), curve.end() - 1, angle, [](const LobePoint& point, double x) {
                 return point.theta_o_rad < x;
             });
-        return luminance(next->value);
+        return luminance_of_working(next->value);
     };
     std::string text = fmt::format("Light from {:.0f}°: drag to turn it.", light_deg);
     if (plot.curve && !plot.curve->empty()) {
@@ -193,11 +191,11 @@ bool draw_lobe_plot(const LobePlot& plot, double& light_deg, float width) {
         }
     }
     if (plot.compared) {
-        draw_curve(list, dial, scale, *plot.compared, kComparedColour, 1.5f, luminance);
+        draw_curve(list, dial, scale, *plot.compared, kComparedColour, 1.5f, luminance_of_working);
     }
     if (plot.curve) {
         const ImU32 white = ImGui::GetColorU32(colours::text);
-        draw_curve(list, dial, scale, *plot.curve, white, 1.5f, luminance);
+        draw_curve(list, dial, scale, *plot.curve, white, 1.5f, luminance_of_working);
     }
     draw_light(list, dial, light_deg);
     ImGui::PopFont();

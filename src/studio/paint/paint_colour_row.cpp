@@ -74,7 +74,7 @@ void draw_typed(Studio& studio, const Material& paint) {
     if (!made.reached) warning_text(made.why_not);
 }
 
-std::string lab_text(const glm::dvec3& lab) {
+std::string short_lab_text(const glm::dvec3& lab) {
     return fmt::format("{:.0f}, {:.0f}, {:.0f}", lab.x, lab.y, lab.z);
 }
 
@@ -84,14 +84,14 @@ void draw_asked_for(const Material& paint) {
     if (!asked) return;
     if (asked->de00 <= kColourReached) {
         dim_text(fmt::format("Asked for L*a*b* {}: CIEDE2000 {:.1f} from it.",
-                             lab_text(asked->asked_lab10),
+                             short_lab_text(asked->asked_lab10),
                              asked->de00));
     } else {
         warning_text(fmt::format(
             "Not the colour that was asked for: L*a*b* {} became {}, CIEDE2000 {:.1f} from it. "
             "This finish comes no nearer.",
-            lab_text(asked->asked_lab10),
-            lab_text(asked->came_lab10),
+            short_lab_text(asked->asked_lab10),
+            short_lab_text(asked->came_lab10),
             asked->de00));
     }
     name_last_item("paint-colour-asked");

@@ -20,7 +20,7 @@ namespace livery {
 
 namespace {
 
-constexpr double kCoarse = 10.0, kFine = 0.1;  // with Shift, with Ctrl
+constexpr double kCoarseStep = 10.0, kFineStep = 0.1;  // with Shift, with Ctrl
 
 SeatsPanelState& state_of(Studio& studio) { return *studio.panels.seats; }
 
@@ -261,7 +261,9 @@ void show_seats(Shell& shell, bool shown) {
 bool seats_key(Shell& shell, const KeyChord& chord) {
     Studio& studio = shell.studio;
     if (!selected_seat(studio)) return false;
-    const double step_mm = kSeatStep_mm * (chord.shift ? kCoarse : chord.ctrl ? kFine : 1.0);
+    const double step_mm = kSeatStep_mm * (chord.shift  ? kCoarseStep
+                                           : chord.ctrl ? kFineStep
+                                                        : 1.0);
     switch (chord.key) {
         case GLFW_KEY_LEFT:
             move_selected(studio, {-step_mm, 0.0, 0.0});

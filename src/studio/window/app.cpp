@@ -41,6 +41,7 @@
 #include "studio/window/running_window.h"
 #include "studio/window/shell.h"
 #include "studio/window/shell_state.h"
+#include "studio/window/trace.h"
 #include "studio/window/window_icon.h"
 #include "studio/window/window_place.h"
 #include "studio/window/wiring.h"
@@ -61,8 +62,6 @@ constexpr double kGiveWay_s = 0.004;
 // Set by GLFW's callbacks, which carry no pointer.
 bool monitors_have_changed = false;
 std::vector<std::filesystem::path> dropped_files;
-
-double now_s() { return seconds_of(std::chrono::steady_clock::now()); }
 
 std::filesystem::path session_file(const DesktopOptions& options) {
     return options.session.empty() ? default_session_file() : options.session;

@@ -16,8 +16,6 @@ namespace livery {
 
 namespace {
 
-double now_s() { return seconds_of(std::chrono::steady_clock::now()); }
-
 InputQueue& queue_of(GLFWwindow* window) {
     return *static_cast<InputQueue*>(glfwGetWindowUserPointer(window));
 }

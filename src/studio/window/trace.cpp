@@ -33,6 +33,8 @@ double seconds_of(std::chrono::steady_clock::time_point at) {
     return std::chrono::duration<double>(at.time_since_epoch()).count();
 }
 
+double now_s() { return seconds_of(std::chrono::steady_clock::now()); }
+
 std::chrono::steady_clock::time_point time_of(double seconds) {
     using Clock = std::chrono::steady_clock;
     return Clock::time_point(

@@ -33,6 +33,9 @@ class Trace {
 
 /// Seconds on the steady clock.
 double seconds_of(std::chrono::steady_clock::time_point at);
+
 std::chrono::steady_clock::time_point time_of(double seconds);
+
+double now_s();  ///< seconds_of this moment
 
 }  // namespace livery

@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "appearance/subsurface/media.h"
 #include "appearance/subsurface/monte_carlo.h"
 #include "core/error.h"
 #include "core/random.h"
@@ -18,7 +19,7 @@
 namespace livery {
 namespace {
 
-constexpr std::uint64_t kSeed = 5;
+constexpr std::uint64_t kNoiseSeed = 5;
 
 std::vector<double> radii_between(double from, double to, int count) {
     std::vector<double> radii;
@@ -34,8 +35,8 @@ std::vector<ProfileSample> measured(const ScatteringMedium& medium,
                                     std::uint64_t photons) {
     std::vector<ProfileRing> rings;
     for (const double r : radii) rings.push_back({0.95 * r, 1.05 * r});
-    const MonteCarloProfile truth = monte_carlo_profile(medium, rings, {photons, kSeed});
-    Random random(kSeed);
+    const MonteCarloProfile truth = monte_carlo_profile(medium, rings, {photons, kNoiseSeed});
+    Random random(kNoiseSeed);
     std::vector<ProfileSample> samples;
     for (std::size_t k = 0; k < radii.size(); ++k) {
         samples.push_back({radii[k], truth.rd[k].value * (1.0 + 0.02 * random.normal())});
@@ -62,12 +63,10 @@ std::string refusal(const std::function<void()>& work) {
     return "";
 }
 
-const ScatteringMedium kMarble{0.0041, 2.62, 0.0, 1.5, {}};
 const ScatteringMedium kMilk{0.0025, 1.22, 0.0, 1.3, {}};
-const ScatteringMedium kSkin{0.17, 0.88, 0.0, 1.3, {}};
 
 TEST(FitProfile, FindsKnownMediaInNoise) {
-    std::printf("seed %d\n", static_cast<int>(kSeed));
+    std::printf("seed %d\n", static_cast<int>(kNoiseSeed));
     using enum SubsurfaceModel;
     struct {
         const char* name;

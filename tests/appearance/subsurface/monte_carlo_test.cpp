@@ -20,7 +20,7 @@
 namespace livery {
 namespace {
 
-constexpr std::uint64_t kSeed = 4;
+constexpr std::uint64_t kPhotonSeed = 4;
 
 double sum_of(const MonteCarloProfile& profile) {
     return profile.total_reflectance.value + profile.total_transmittance.value +
@@ -29,7 +29,7 @@ double sum_of(const MonteCarloProfile& profile) {
 }
 
 TEST(MonteCarlo, IsWithinItsErrorOfExactTotals) {
-    std::printf("seed %d\n", static_cast<int>(kSeed));
+    std::printf("seed %d\n", static_cast<int>(kPhotonSeed));
     for (const ScatteringMedium& medium : {ScatteringMedium{1.0, 9.0, 0.75, 1.0, 0.2},
                                            ScatteringMedium{1.0, 9.0, 0.0, 1.5, {}},
                                            ScatteringMedium{0.17, 0.88, 0.0, 1.0, {}},
@@ -37,7 +37,7 @@ TEST(MonteCarlo, IsWithinItsErrorOfExactTotals) {
                                            ScatteringMedium{0.5, 0.5, -0.5, 1.4, 1.0},
                                            ScatteringMedium{0.05, 4.0, 0.9, 1.5, 1.0},
                                            ScatteringMedium{0.1, 1.0, 0.0, 0.8, 1.0}}) {
-        const MonteCarloProfile profile = monte_carlo_profile(medium, {}, {100'000, kSeed});
+        const MonteCarloProfile profile = monte_carlo_profile(medium, {}, {100'000, kPhotonSeed});
         const DiffuseTotals exact = exact_totals(medium);
         const auto near = [&](const Estimate& estimate, double value) {
             EXPECT_NEAR(estimate.value, value, 3.5 * estimate.standard_error + 2e-4)
@@ -59,7 +59,7 @@ TEST(MonteCarlo, LosesNothingInHardCases) {
                                            ScatteringMedium{1.0, 0.0, 0.0, 1.5, 0.3},
                                            ScatteringMedium{0.0, 0.0, 0.0, 1.5, 0.3}}) {
         const MonteCarloProfile profile =
-            monte_carlo_profile(medium, {{0.0, 1.0}, {1.0, 5.0}}, {2000, kSeed});
+            monte_carlo_profile(medium, {{0.0, 1.0}, {1.0, 5.0}}, {2000, kPhotonSeed});
         EXPECT_NEAR(sum_of(profile), 1.0, 1e-9) << medium.sigma_s_per_mm;
         for (const auto& rings : {profile.rd, profile.rt}) {
             for (const Estimate& ring : rings) {
@@ -68,7 +68,8 @@ TEST(MonteCarlo, LosesNothingInHardCases) {
             }
         }
     }
-    const auto conservative = monte_carlo_profile({0.0, 1.0, 0.0, 1.0, {}}, {}, {2000, kSeed});
+    const auto conservative =
+        monte_carlo_profile({0.0, 1.0, 0.0, 1.0, {}}, {}, {2000, kPhotonSeed});
     EXPECT_NEAR(conservative.total_reflectance.value, 1.0, 1e-9);
 }
 
@@ -90,7 +91,7 @@ TEST(MonteCarlo, IsTheSameOnAnyNumberOfThreads) {
 
 TEST(MonteCarlo, OverlappingRingsAreWhatTheyAreAlone) {
     const ScatteringMedium medium{0.17, 0.88, 0.0, 1.3, {}};
-    const MonteCarloSettings settings{6400, kSeed};
+    const MonteCarloSettings settings{6400, kPhotonSeed};
     const ProfileRing wide{0.2, 2.0}, narrow{0.5, 1.0};
     const auto both = monte_carlo_profile(medium, {wide, narrow}, settings);
     EXPECT_NEAR(both.rd[0].value, monte_carlo_profile(medium, {wide}, settings).rd[0].value, 1e-12);
@@ -116,7 +117,7 @@ TEST(MonteCarlo, FollowsTheTablesOfAnIndependentPhotonCode) {
     for (const ReferenceTable& table : reference_tables(data)) {
         const bool slow = table.medium.sigma_a_per_mm < 0.1 && !table.medium.thickness_mm;
         const auto profile =
-            monte_carlo_profile(table.medium, table.rings, {slow ? 20'000u : 60'000u, kSeed});
+            monte_carlo_profile(table.medium, table.rings, {slow ? 20'000u : 60'000u, kPhotonSeed});
         const auto chi_square = [&](const auto& ours, const auto& theirs) {
             double sum = 0.0;
             int count = 0;

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "appearance/subsurface/beam_diffusion.h"
+#include "appearance/subsurface/media.h"
 #include "appearance/subsurface/normalized_diffusion.h"
 #include "appearance/subsurface/over_plane.h"
 #include "appearance/subsurface/p3.h"
@@ -19,9 +20,6 @@ namespace livery {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-
-const ScatteringMedium kMarble{0.0041, 2.62, 0.0, 1.5, {}};
-const ScatteringMedium kSkin{0.17, 0.88, 0.0, 1.3, {}};
 
 ScatteringMedium slab_of(ScatteringMedium medium, double thickness_mm) {
     medium.thickness_mm = thickness_mm;

@@ -11,6 +11,7 @@
 #include "calibration/correspondence/gray_code.h"
 #include "calibration/correspondence/patterns.h"
 #include "calibration/geometry/board.h"
+#include "calibration/geometry/board_sight.h"
 #include "calibration/geometry/solve_pair.h"
 #include "calibration/registration/rotation.h"
 
@@ -160,6 +161,12 @@ inline std::vector<RoledPhotograph> photographs_of(const BoardScene& scene) {
         photographs.push_back(std::move(one));
     }
     return photographs;
+}
+
+/// The board in photographs_of() a scene of the usual projector.
+inline SightSearch search_board(const std::vector<RoledPhotograph>& photographs,
+                                const Board& board) {
+    return search_sight(photographs, decode_gray_code(photographs, 256, 192).projector_px, board);
 }
 
 }  // namespace livery::testing

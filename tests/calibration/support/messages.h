@@ -5,8 +5,9 @@
 
 #include <gtest/gtest.h>
 
-namespace livery::testing {
+namespace livery {
 
+/// What an exception of this kind says; another one, or none, is a failure.
 template <typename Error, typename Call>
 std::string message_of(const Call& call) {
     try {
@@ -21,7 +22,7 @@ std::string message_of(const Call& call) {
     return "";
 }
 
-}  // namespace livery::testing
+}  // namespace livery
 
 #define EXPECT_HAS(text, part)                                                       \
     do {                                                                             \

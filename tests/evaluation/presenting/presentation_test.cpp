@@ -101,7 +101,7 @@ TEST(Presentation, EveryEventInEveryStateIsSoundAndDoesNothingWhereItIsNotAllowe
                 for (const double now_s : {9.0, 10.0, 12.5, 1e6}) {
                     const PresentationState next = after(plan, state, event, now_s);
                     expect_sound(plan, next);
-                    if (testing::Test::HasFatalFailure()) FAIL() << what;
+                    if (::testing::Test::HasFatalFailure()) FAIL() << what;
                     const bool nothing = !is_allowed(plan, state, event) ||
                                          (event == Event::tick && !is_running(state));
                     EXPECT_TRUE(!nothing || next == state) << what;
@@ -252,7 +252,7 @@ TEST(Presentation, WhateverHappensItIsSoundAndComesBackFromItsText) {
             const auto event = static_cast<Event>(random.below(kPresentationEvents));
             state = after(plan, state, event, now_s);
             expect_sound(plan, state);
-            ASSERT_FALSE(testing::Test::HasFatalFailure()) << to_string(event);
+            ASSERT_FALSE(::testing::Test::HasFatalFailure()) << to_string(event);
             // Killed now, it is back where it was, and waits.
             const auto step = parse_step(text_of(state, event), "log");
             EXPECT_EQ(step.event, event);

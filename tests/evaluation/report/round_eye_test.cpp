@@ -13,8 +13,6 @@
 namespace livery {
 namespace {
 
-const std::vector<int> kCodes = {481, 376, 912};
-
 RoundDetails some_details() {
     RoundDetails details;
     details.eye = RoundEye{

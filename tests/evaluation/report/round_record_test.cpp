@@ -11,15 +11,14 @@
 #include "evaluation/report/html_report.h"
 #include "evaluation/report/report_pictures.h"
 #include "evaluation/report/round_report.h"
+#include "evaluation/report/sample_votes.h"
 #include "support/message_of.h"
 #include "support/temporary_folder.h"
 
 namespace livery {
 namespace {
 
-const std::vector<int> kCodes = {481, 376, 912};
-
-std::filesystem::path voted(const TemporaryFolder& folder) {
+std::filesystem::path recorded_round(const TemporaryFolder& folder) {
     const auto file = folder / "votes.sqlite";
     BallotStore store(file);
     RoundSetup setup{{"red", "silver", "sand"}, "1234abcd", kCodes, 7};
@@ -31,7 +30,7 @@ std::filesystem::path voted(const TemporaryFolder& folder) {
 
 TEST(RoundRecord, HasWhatProvesARound) {
     const TemporaryFolder folder;
-    const auto file = voted(folder);
+    const auto file = recorded_round(folder);
     const RoundRecord record = read_round_record(file, {}, 1);
     EXPECT_EQ(record.file, "votes.sqlite");
     EXPECT_EQ(record.codes, kCodes);
@@ -105,7 +104,7 @@ TEST(RoundDetails, BadOnesAreRefusedByField) {
 
 TEST(RoundReport, TellsWhatItHasAndSaysWhatItHasNot) {
     const TemporaryFolder folder;
-    const auto file = voted(folder);
+    const auto file = recorded_round(folder);
     write_png(folder / "a.png", Image8(900, 40, 3, std::uint8_t{90}));
     RoundReportSource source;
     source.record = read_round_record(file, {}, 1);

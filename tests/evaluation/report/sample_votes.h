@@ -5,11 +5,12 @@
 #include <vector>
 
 #include "evaluation/report/round_report.h"
+#include "evaluation/statistics/table3.h"
 
 namespace livery {
 
-/// Table 3 of the paper.
-inline VoteCounts table3() { return {{1, 6, 1, 2}, {0, 3, 2, 5}}; }
+/// Codes of three designs.
+inline const std::vector<int> kCodes = {481, 376, 912};
 
 inline RoundReportSource source_of(const VoteCounts& counts,
                                    const std::vector<std::string>& names,

@@ -16,7 +16,7 @@
 namespace livery {
 namespace {
 
-constexpr std::uint64_t kSeed = 20150101;
+constexpr std::uint64_t kVerdictSeed = 20150101;
 
 struct Rates {
     double preference = 0.0;  ///< any verdict but "no preference"
@@ -65,7 +65,7 @@ Rates rates(const std::vector<double>& worths, int evaluators, bool has_least, i
     const BallotLaw law = ballot_law(worths, has_least);
     const auto designs = static_cast<int>(worths.size());
     Judge judge_round(designs, evaluators, has_least);
-    Random random(kSeed);
+    Random random(kVerdictSeed);
     std::array<int, 3> told{};
     for (int round = 0; round < rounds; ++round) {
         const auto ballots = draw_round(law, evaluators, random);
@@ -81,7 +81,7 @@ double allowed(int rounds) { return 0.05 + 3.0 * std::sqrt(0.05 * 0.95 / rounds)
 
 void print(const char* name, int rounds, const Rates& found) {
     std::printf("seed %llu, %d rounds, %s: preference %.4f, a pair apart %.4f, clear winner %.4f\n",
-                static_cast<unsigned long long>(kSeed),
+                static_cast<unsigned long long>(kVerdictSeed),
                 rounds,
                 name,
                 found.preference,
@@ -140,7 +140,7 @@ TEST(ErrorRates, BetweenTwoThatAreEquallyGood) {
 TEST(ErrorRates, TheThresholdHoldsItsLevelInDrawnRounds) {
     constexpr int rounds = 100000;
     const BallotLaw law = ballot_law({1.0, 1.0, 1.0, 1.0}, false);
-    Random random(kSeed);
+    Random random(kVerdictSeed);
     int at_threshold = 0, below = 0;
     for (int round = 0; round < rounds; ++round) {
         const auto sums = rank_sums(count_drawn(draw_round(law, 10, random), 4, false));
@@ -149,7 +149,7 @@ TEST(ErrorRates, TheThresholdHoldsItsLevelInDrawnRounds) {
         below += *high - *low >= 14.0 ? 1 : 0;
     }
     std::printf("seed %llu, %d rounds: range of 14.5 or more in %.4f, of 14 or more in %.4f\n",
-                static_cast<unsigned long long>(kSeed),
+                static_cast<unsigned long long>(kVerdictSeed),
                 rounds,
                 at_threshold / double{rounds},
                 below / double{rounds});

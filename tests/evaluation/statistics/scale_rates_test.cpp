@@ -12,7 +12,7 @@
 namespace livery {
 namespace {
 
-constexpr std::uint64_t kSeed = 20150101;
+constexpr std::uint64_t kScaleSeed = 20150101;
 const std::vector<SemanticScale> kScales = {
     {"cheap", "precious"}, {"cold", "warm"}, {"plain", "striking"}};
 const std::vector<std::string> kNames = {"a", "b", "c", "d"};
@@ -39,7 +39,7 @@ TEST(ScaleErrorRates, AFamilyOfScalesIsCalledDifferentInFivePercentAtMost) {
     // Three standard errors of a rate of .05 in 2000 rounds
     const double most = 0.05 + 3.0 * std::sqrt(0.05 * 0.95 / rounds);
     for (const int evaluators : {4, 10, 24}) {
-        Random random(kSeed, static_cast<std::uint64_t>(evaluators));
+        Random random(kScaleSeed, static_cast<std::uint64_t>(evaluators));
         int different = 0;
         for (int round = 0; round < rounds; ++round) {
             const auto found = scale_statistics(drawn_answers(evaluators, random),
@@ -66,7 +66,7 @@ TEST(ScaleErrorRates, IntervalsOfMeansHoldAboutAsOftenAsTheySay) {
     constexpr int rounds = 2000;
     for (const int evaluators : {8, 10, 24}) {
         // The truth, from many
-        Random random(kSeed, 99);
+        Random random(kScaleSeed, 99);
         double truth = 0.0;
         const auto many = drawn_answers(40'000, random);
         for (const ScaleAnswers& own : many) truth += own[0][0] / 40'000.0;

@@ -9,7 +9,7 @@
 namespace livery {
 namespace {
 
-class Table3 : public testing::Test {
+class Table3 : public ::testing::Test {
   protected:
     static void SetUpTestSuite() {
         statistics_ = new VoteStatistics(vote_statistics(table3(), default_names(4), 1));

@@ -31,7 +31,7 @@ Document two_looks() {
     return document;
 }
 
-class PresentingStudio : public testing::Test {
+class PresentingStudio : public ::testing::Test {
   protected:
     PresentingStudio() {
         setenv("LIVERY_HOME", home_.path().c_str(), 1);

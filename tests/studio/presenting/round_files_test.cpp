@@ -11,12 +11,13 @@
 namespace livery {
 namespace {
 
+using Event = PresentationEvent;
+
 std::shared_ptr<const ImageF> wanted_of(float level) {
     return std::make_shared<const ImageF>(16, 10, 4, level);
 }
 
 TEST(RoundFiles, OfAPresentedRoundAreWhatItsReportSays) {
-    using Event = PresentationEvent;
     const TemporaryFolder folder;
     const auto file = folder / "ballots.sqlite";
     BallotStore store(file);
