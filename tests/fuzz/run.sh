@@ -5,7 +5,7 @@
 #
 # SEED (default 1) chooses the inputs. What is kept in corpus/ comes first. Any crash, leak, input
 # that takes over ten seconds or asks for more than 2 GB fails; the input is left in
-# build/fuzz/found/, to become a file of the corpus once it is mended.
+# build/sanitize/found/, to become a file of the corpus once it is mended.
 set -euo pipefail
 export LC_ALL=C
 
@@ -14,10 +14,10 @@ root=$(cd "$here/../.." && pwd)
 runs=${1:-20000}
 shift || true
 seed=${SEED:-1}
-build=$root/build/fuzz
+build=$root/build/sanitize
 
 if [ ! -f "$build/build.ninja" ]; then
-    (cd "$root" && cmake --preset fuzz >&2)
+    (cd "$root" && cmake --preset sanitize >&2)
 fi
 if [ $# -eq 0 ]; then
     set -- "$here"/*_fuzz.cpp
