@@ -15,10 +15,10 @@
 #include "appearance/css_colours.h"
 #include "appearance/material_library.h"
 #include "core/colour.h"
-#include "core/csv.h"
 #include "core/error.h"
 #include "core/paths.h"
 #include "core/ten_degree.h"
+#include "core/text/csv.h"
 
 namespace livery {
 

@@ -8,8 +8,8 @@
 
 #include "cli/command.h"
 #include "core/error.h"
-#include "core/marked_block.h"
 #include "core/paths.h"
+#include "core/text/marked_block.h"
 #include "ledger/accuracy/accuracy.h"
 #include "ledger/accuracy/chain.h"
 #include "ledger/budget_check.h"

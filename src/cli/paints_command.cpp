@@ -14,7 +14,7 @@
 #include "cli/command.h"
 #include "cli/paints_table.h"
 #include "core/error.h"
-#include "core/marked_block.h"
+#include "core/text/marked_block.h"
 
 namespace livery {
 

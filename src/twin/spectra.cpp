@@ -5,9 +5,9 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
-#include "core/csv.h"
 #include "core/error.h"
 #include "core/paths.h"
+#include "core/text/csv.h"
 
 namespace livery {
 

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "core/marked_block.h"
 #include "core/paths.h"
+#include "core/text/marked_block.h"
 #include "ledger/speed_plot.h"
 #include "ledger/speed_table.h"
 #include "radiance/surface_map.h"

@@ -10,8 +10,8 @@
 
 #include "appearance/directions.h"
 #include "core/colour.h"
-#include "core/csv.h"
 #include "core/paths.h"
+#include "core/text/csv.h"
 
 namespace livery {
 

@@ -10,9 +10,9 @@
 
 #include "appearance/measured/measured_samples.h"
 #include "core/colour.h"
-#include "core/csv.h"
 #include "core/error.h"
 #include "core/paths.h"
+#include "core/text/csv.h"
 
 namespace livery {
 

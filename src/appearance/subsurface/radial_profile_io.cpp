@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include "appearance/subsurface/radial_profile.h"
-#include "core/csv.h"
 #include "core/error.h"
 #include "core/paths.h"
+#include "core/text/csv.h"
 
 namespace livery {
 

@@ -1,8 +1,8 @@
 #include <array>
 
 #include "calibration/registration/picked_points.h"
-#include "core/csv.h"
 #include "core/paths.h"
+#include "core/text/csv.h"
 
 namespace livery {
 

@@ -9,7 +9,7 @@
 #include "appearance/subsurface/translucent_material.h"
 #include "cli/command.h"
 #include "cli/subsurface/medium_options.h"
-#include "core/marked_block.h"
+#include "core/text/marked_block.h"
 
 namespace livery {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "appearance/subsurface/monte_carlo.h"
-#include "core/csv.h"
 #include "core/paths.h"
+#include "core/text/csv.h"
 
 namespace livery {
 

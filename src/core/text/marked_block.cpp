@@ -1,4 +1,4 @@
-#include "core/marked_block.h"
+#include "core/text/marked_block.h"
 
 #include "core/error.h"
 #include "core/paths.h"
