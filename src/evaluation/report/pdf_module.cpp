@@ -223,7 +223,9 @@ void draw_picture(void* handle,
     cairo_translate(cairo, x, y);
     cairo_scale(cairo, width / columns, height / rows);
     cairo_set_source_surface(cairo, image.get(), 0.0, 0.0);
-    cairo_paint(cairo);
+    // Painting everything drops what a page began with, a tag's beginning as well.
+    cairo_rectangle(cairo, 0.0, 0.0, columns, rows);
+    cairo_fill(cairo);
     cairo_restore(cairo);
 }
 

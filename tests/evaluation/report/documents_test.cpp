@@ -118,6 +118,19 @@ TEST(PdfReport, IsOneWhateverTheNamesHold) {
     EXPECT_GE(hostile.pages, plain.pages);
 }
 
+TEST(PdfReport, BreaksPicturesOverPages) {
+    // A picture that begins a page is the first thing in its tag: once refused by Cairo.
+    ReportPictures pictures;
+    for (int k = 0; k < 12; ++k) {
+        pictures.pictures.push_back(
+            {std::to_string(k), "a look", Image8(64, 40, 3, static_cast<std::uint8_t>(20 * k))});
+    }
+    ReportDocument document;
+    document.title = "pictures";
+    document.blocks.push_back(pictures);
+    EXPECT_EQ(pdf_of(document).pages, 2);
+}
+
 TEST(PdfReport, BreaksTablesOverPages) {
     ReportDocument document;
     document.title = "a long table";
