@@ -217,6 +217,8 @@ void draw_page(Studio& studio) {
             break;
         case Page::vote:
             draw_vote(studio, Round(*open));
+            // One page after the other: a ballot that was just confirmed has left this one.
+            if (state.page == Page::vote) draw_phones(studio);
             break;
         case Page::thanks:
             draw_thanks(studio, Round(*open));
@@ -250,6 +252,7 @@ void draw_ballot_panel(Studio& studio, bool& open) {
         if (studio.ballots) read_rounds(studio);
         go_to(state, Page::start);
     }
+    if (std::exchange(state.to_top, false)) ImGui::SetScrollY(0.0f);
     const float side = ImGui::GetFrameHeight();
     heading("Ballot");
     ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - side);

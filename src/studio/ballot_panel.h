@@ -24,6 +24,7 @@ struct BallotPanelState {
     std::string problem;
     std::optional<int> shown_round;
     bool asking_to_close = false;
+    bool to_top = false;      ///< a page that was gone to begins at its top
     int presented_phase = 0;  ///< in the frame before; 0: nothing was presented
 };
 

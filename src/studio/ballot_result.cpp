@@ -20,7 +20,10 @@ std::string design_letter(std::size_t design) {
                              : fmt::format("{}", design + 1);
 }
 
-void draw_tally(const Tally& tally, const std::vector<int>& codes) {
+namespace {
+
+/// Nothing of it is drawn where it is scrolled out of sight.
+void draw_counts(const Tally& tally) {
     // As many columns as fit share the width; more are scrolled to.
     constexpr std::size_t shared = 10, most = 62;
     const std::size_t designs = std::min(tally.designs.size(), most);
@@ -52,6 +55,12 @@ void draw_tally(const Tally& tally, const std::vector<int>& codes) {
         row("Least liked", [&](std::size_t i) { return fmt::format("{}", tally.least[i]); });
     }
     ImGui::EndTable();
+}
+
+}  // namespace
+
+void draw_tally(const Tally& tally, const std::vector<int>& codes) {
+    draw_counts(tally);
     for (std::size_t i = 0; i < tally.designs.size(); ++i) {
         const std::string code = i < codes.size() ? fmt::format("  {}", codes[i]) : "";
         ImGui::TextWrapped(

@@ -11,6 +11,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "core/utf8.h"
 #include "studio/ballot_pages.h"
 #include "studio/ballot_result.h"
 #include "studio/kit/theme.h"
@@ -36,6 +37,7 @@ void go_to(BallotPanelState& state, Page page) {
     state.page = page;
     state.problem.clear();
     state.asking_to_close = false;
+    state.to_top = true;
     if (page == Page::vote) {
         state.evaluator.clear();
         state.best.reset();
@@ -158,9 +160,15 @@ void draw_designs(Studio& studio, const Round& round) {
         ImGui::SameLine();
         ImGui::BeginGroup();
         const float width = ImGui::GetContentRegionAvail().x;
-        // Who votes on what was presented knows codes.
-        draw_title(
-            is_presenting(studio) ? fmt::format("{}", round.codes[i]) : round.designs[i], i, width);
+        // Who votes on what was presented knows codes, and so do phones.
+        const std::string code = fmt::format("{}", round.codes[i]);
+        const bool phones =
+            presenting(studio).phones || !phones_in(presenting(studio).seats).empty();
+        draw_title(is_presenting(studio) ? code
+                   : phones              ? code + "  " + round.designs[i]
+                                         : round.designs[i],
+                   i,
+                   width);
         const float places = round.asks_least ? 3.0f : 2.0f;
         const float each = std::floor((width - (places - 1.0f) * gap) / places);
         const bool room = each >= button_width("Second best");
@@ -215,7 +223,7 @@ void confirm(Studio& studio, const Round& round) {
     const Ballot ballot{state.evaluator, *state.best, *state.second, state.least};
     if (!attempted(state, [&] { studio.ballots->vote(id, ballot); })) return;
     read_rounds(studio);
-    state.thanked = state.evaluator;
+    state.thanked = trimmed(state.evaluator);
     go_to(state, Page::thanks);
 }
 
@@ -274,7 +282,13 @@ void draw_thanks(Studio& studio, const Round& round) {
     ImGui::TextWrapped("Thank you, %s.", state.thanked.c_str());
     ImGui::PopFont();
     name_last_item("ballot:thanks");
-    ImGui::Text("%s in round %d.", count_of(round.ballots).c_str(), round.id);
+    // As it is now: `round` may be of when its phase began.
+    const auto now = std::find_if(state.rounds.begin(), state.rounds.end(), [&](const Round& one) {
+        return one.id == round.id;
+    });
+    ImGui::Text("%s in round %d.",
+                count_of(now == state.rounds.end() ? round.ballots : now->ballots).c_str(),
+                round.id);
     ImGui::Spacing();
     const bool next = ImGui::Button("Next ballot", {-FLT_MIN, em(2.4f)});
     name_last_item("ballot:next");

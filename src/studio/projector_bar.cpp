@@ -24,6 +24,10 @@ void draw_monitor_choice(Shell& shell, float width) {
                               : shell.projector_monitor.empty() ? "no projector"
                                                                 : "not plugged in";
     ImGui::SetNextItemWidth(width);
+    // A presentation stays where its audience looks.
+    const bool presented = is_presenting(shell.studio) &&
+                           phase_of(shell.studio) != PresentationPhase::locked && chosen;
+    begin_disabled(presented);
     const bool open = ImGui::BeginCombo("##projector", shown.c_str());
     name_last_item("projector-monitor");
     if (open) {
@@ -44,9 +48,12 @@ void draw_monitor_choice(Shell& shell, float width) {
         }
         ImGui::EndCombo();
     }
+    end_disabled();
     ImGui::SameLine();
+    begin_disabled(is_presenting(shell.studio));
     if (ImGui::Button("Show numbers")) show_monitor_numbers(shell);
     name_last_item("show-numbers");
+    end_disabled();
     tooltip("Shows each monitor's number, large, on every monitor for a moment.");
 }
 

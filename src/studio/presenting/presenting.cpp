@@ -220,13 +220,15 @@ std::string why_no_editing(const Studio& studio) {
 bool refuse_editing(Studio& studio) {
     const std::string why = why_no_editing(studio);
     if (why.empty()) return false;
-    const bool locked = phase_of(studio) == Phase::locked;
+    const Phase phase = phase_of(studio);
     notify(studio,
            {Notice::Level::warning,
             "Nothing can be changed now.",
             why,
-            locked ? "Go back to editing in the bar at the top."
-                   : "Lock the round, or abort it, in the bar at the top.",
+            presenting(studio).freezing ? "Wait for them, or cancel it in the bar at the top."
+            : phase == Phase::locked    ? "Go back to editing in the bar at the top."
+            : phase == Phase::voting    ? "Lock the round in the bar at the top."
+                                        : "Abort the round in the bar at the top.",
             studio.now_s + 8.0});
     return true;
 }
@@ -266,8 +268,10 @@ void send(Studio& studio, PresentationEvent event) {
         return;
     }
     log_line(LogLevel::info, fmt::format("round {}: {}", presented.round.id, text_of(next, event)));
+    // Time going by answers no question.
+    const bool asks_still = event == PresentationEvent::tick && next.phase == presented.state.phase;
+    if (!asks_still) state.asking_to_abort = state.asking_to_lock = false;
     presented.state = next;
-    state.asking_to_abort = state.asking_to_lock = false;
     for (const Round& round : studio.ballots->rounds()) {
         if (round.id == presented.round.id) presented.round = round;
     }
@@ -329,11 +333,15 @@ void find_presented_round(Studio& studio) {
         studio.ballots->record_step(id, state, PresentationEvent::resume);
         log_line(LogLevel::info, fmt::format("round {} goes on: {}", id, to_string(state.phase)));
         take_round(studio, std::move(found->round), std::move(found->plan), state);
+        const std::size_t phones = phones_in(presenting(studio).seats).size();
         notify(studio,
                {Notice::Level::info,
                 fmt::format("Round {} goes on where it was.", id),
                 state.paused ? "It is paused: Go on, or the space bar, goes on." : "",
-                "",
+                phones == 0 || state.phase == Phase::locked
+                    ? std::string()
+                    : fmt::format("{} that had joined cannot vote until you press Let phones vote.",
+                                  phones == 1 ? "A phone" : fmt::format("{} phones", phones)),
                 studio.now_s + 20.0});
     } catch (const std::exception&) {
         notify_failure(

@@ -83,6 +83,7 @@ struct PresentingState {
     std::optional<PresentedRound> presented;
     std::string problem;  ///< why what should be seen is not
     bool asking_to_abort = false, asking_to_lock = false;
+    double quits_until_s = 0.0;                        ///< until then quitting is meant
     std::string scale_low, scale_high, scale_problem;  ///< words that are being typed
 
     // Who has joined and voted, never for what.

@@ -13,6 +13,7 @@
 #include "studio/kit/widgets.h"
 #include "studio/presenting/presenting.h"
 #include "studio/presenting/vote_mode.h"
+#include "studio/projector_control.h"
 #include "studio/window/shell.h"
 
 namespace livery {
@@ -28,7 +29,7 @@ std::size_t segment_of(const Studio& studio) {
     if (presenting(studio).freezing) return 1;
     switch (phase_of(studio)) {
         case Phase::edit:
-            return 0;
+            return open_round(*studio.panels.ballot) ? 2 : 0;
         case Phase::adapting:
         case Phase::presenting:
             return 1;
@@ -99,7 +100,7 @@ std::string headline(const Studio& studio) {
     if (state.freezing) return "Freezing…";
     if (!state.presented) return "";
     const PresentationState& step = state.presented->state;
-    if (step.paused && !step.blank) return "PAUSED";
+    if (step.paused) return step.blank ? "PAUSED, GREY" : "PAUSED";
     if (step.blank) return "GREY";
     if (const auto code = code_on_show(studio)) return fmt::format("{}", *code);
     switch (step.phase) {
@@ -166,7 +167,8 @@ void draw_words(const Studio& studio, float left, float right, const ImVec2& cor
     ImFont& font = *large_font();
     const float x = left + em(0.8f), room = right - x - em(0.5f);
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    const bool warns = large == "PAUSED" || large == "GREY" || !presenting(studio).problem.empty();
+    const bool warns =
+        large.starts_with("PAUSED") || large == "GREY" || !presenting(studio).problem.empty();
     const auto lines = fitted_lines(details(studio), std::max(room, em(2.0f)), 2);
     const float line = ImGui::GetTextLineHeight();
     const float block =
@@ -291,7 +293,7 @@ float draw_buttons(Studio& studio, float right, float top, float height) {
     for (const Button& one : kShowing) {
         const bool on =
             (one.event == Event::pause && step.paused) || (one.event == Event::blank && step.blank);
-        const char* label = on ? "Go on" : one.label;
+        const char* label = !on ? one.label : one.event == Event::blank ? "Show" : "Go on";
         // Its place stays; its words change.
         ImGui::PushID(one.name);
         const bool pressed = bar_button(label, one.name, one.help, each, button, on);
@@ -326,11 +328,16 @@ void draw_vote_stage(Shell& shell) {
     const PresentingState& state = presenting(studio);
     const ImVec2 from = ImGui::GetCursorScreenPos(), space = ImGui::GetContentRegionAvail();
     ImDrawList& list = *ImGui::GetWindowDrawList();
+    shell.stage_x = from.x;
+    shell.stage_y = from.y;
     const float caption = 1.6f * ImGui::GetTextLineHeight();
     const ImVec2 room(std::max(16.0f, space.x), std::max(16.0f, space.y - caption));
     list.AddRectFilled(
         from, {from.x + room.x, from.y + room.y}, IM_COL32(18, 18, 18, 255), em(0.25f));
-    std::string words = "What the audience sees: the projector's picture";
+    std::string words =
+        is_black(shell) ? "The audience sees nothing now: the projector is black (Ctrl+B)."
+        : shell.projector_monitor.empty() ? "Nobody sees it: no projector is chosen."
+                                          : "What the audience sees: the projector's picture";
     if (state.freezing) words = "Each look is rendered once; the projector keeps its picture.";
     if (state.picture && !state.freezing) {
         const auto width = static_cast<float>(state.picture->size_px.x);

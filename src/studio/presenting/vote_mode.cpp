@@ -380,18 +380,22 @@ void show_what_is_due(Shell& shell) {
                                          : with_surround(presented, *found->second, studio.now_s));
 }
 
-/// People must not be shown what no projector shows.
-void pause_without_projector(Shell& shell) {
+/// No look's time goes by while nobody can see it.
+void pause_unseen(Shell& shell) {
     Studio& studio = shell.studio;
     const PresentingState& state = presenting(studio);
     if (!studio.projector || !state.presented || !is_running(state.presented->state)) return;
-    if (studio.projector->state() != ProjectorScreen::State::waiting_for_monitor) return;
+    const bool gone = studio.projector->state() == ProjectorScreen::State::waiting_for_monitor;
+    if (!gone && !is_black(shell)) return;
     send(studio, Event::pause);
     notify(studio,
            {Notice::Level::warning,
-            "The presentation is paused: the projector is gone.",
-            studio.projector->why_waiting(),
-            "Plug it in; Repeat shows this look anew."});
+            gone ? "The presentation is paused: the projector is gone."
+                 : "The presentation is paused: the projector is black.",
+            gone ? studio.projector->why_waiting() : "",
+            gone ? "Plug it in; Repeat shows this look anew."
+                 : "Ctrl+B gives light again; Repeat shows this look anew.",
+            gone ? 0.0 : studio.now_s + 15.0});
 }
 
 }  // namespace
@@ -403,6 +407,10 @@ void step_vote_mode(Shell& shell) {
     try {
         if (std::exchange(state.begin_wanted, false)) begin_presentation(shell);
         if (const auto round = std::exchange(state.duel_wanted, {})) begin_duel(shell, *round);
+    } catch (const std::exception&) {
+        notify_failure(studio, "The round does not begin.", std::current_exception());
+    }
+    try {
         if (std::exchange(state.give_up_wanted, false)) end_freezing(shell);
         if (state.freezing) go_on_freezing(shell);
     } catch (const std::exception&) {
@@ -410,7 +418,7 @@ void step_vote_mode(Shell& shell) {
     }
     watch_phones(studio);
     if (state.phones || state.presented) read_seats(studio);
-    pause_without_projector(shell);
+    pause_unseen(shell);
     if (state.presented) {
         PresentationState& clock = state.presented->state;
         // Until it can be seen no time goes by.
@@ -431,6 +439,16 @@ bool vote_mode_key(Shell& shell, const KeyChord& chord, bool repeated) {
                                                      {GLFW_KEY_R, Event::repeat},
                                                      {GLFW_KEY_B, Event::blank},
                                                      {GLFW_KEY_PERIOD, Event::blank}};
+    PresentingState& state = presenting(shell.studio);
+    if (state.asking_to_abort || state.asking_to_lock) {
+        // The question is answered first.
+        const bool keeps = chord.key == GLFW_KEY_ESCAPE && !chord.ctrl && !chord.shift;
+        if (keeps) state.asking_to_abort = state.asking_to_lock = false;
+        const bool means = std::any_of(std::begin(keys), std::end(keys), [&](const auto& one) {
+            return one.first == chord.key && !chord.ctrl && !chord.shift;
+        });
+        return keeps || means;
+    }
     const Phase phase = phase_of(shell.studio);
     const bool shows = phase == Phase::adapting || phase == Phase::presenting;
     if (chord.ctrl || chord.shift || !shows) return false;
@@ -439,6 +457,24 @@ bool vote_mode_key(Shell& shell, const KeyChord& chord, bool repeated) {
         if (!repeated) send(shell.studio, event);
         return true;
     }
+    return false;
+}
+
+bool may_quit(Shell& shell) {
+    Studio& studio = shell.studio;
+    PresentingState& state = presenting(studio);
+    if (!state.presented || phase_of(studio) == Phase::locked) return true;
+    if (studio.now_s < state.quits_until_s) return true;
+    constexpr double kToAskAgain_s = 8.0;
+    state.quits_until_s = studio.now_s + kToAskAgain_s;
+    notify(
+        studio,
+        {Notice::Level::warning,
+         fmt::format("Round {} is under way.", state.presented->round.id),
+         "Without the program the mock-up goes dark and phones cannot vote. Nothing is lost: the "
+         "round goes on here when the program is started again.",
+         "To end the program, quit once more now.",
+         state.quits_until_s});
     return false;
 }
 

@@ -19,6 +19,10 @@ double next_vote_change_s(const Shell& shell);
 
 /// The bar over the whole width, which nobody can miss, and what the audience sees.
 bool has_vote_bar(const Shell& shell);
+/// Whether the program may end now. While a round is under way it has to be asked twice within some
+/// seconds; the first time says what ends.
+bool may_quit(Shell& shell);
+
 void draw_vote_bar(Shell& shell);
 void draw_vote_stage(Shell& shell);
 

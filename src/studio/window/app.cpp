@@ -166,7 +166,7 @@ class Desktop {
     /// What to go on with; nothing: the program ends.
     std::optional<Handover> run() {
         prepare();
-        while (!shell_.quit && !shell_.next_session && !glfwWindowShouldClose(window_->native())) {
+        while (!shell_.next_session && !ends()) {
             wait_for_something();
             draw_frame();
         }
@@ -177,6 +177,15 @@ class Desktop {
     }
 
   private:
+    bool ends() {
+        if (glfwWindowShouldClose(window_->native())) {
+            glfwSetWindowShouldClose(window_->native(), GLFW_FALSE);
+            shell_.quit = true;
+        }
+        if (shell_.quit && !may_quit(shell_)) shell_.quit = false;
+        return shell_.quit;
+    }
+
     void prepare() {
         Studio& studio = shell_.studio;
         if (!options_.trace.empty()) shell_.trace = std::make_shared<Trace>(options_.trace);
