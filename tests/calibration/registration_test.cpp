@@ -15,6 +15,7 @@
 #include "scene/product.h"
 #include "support/message_of.h"
 #include "support/reference_data.h"
+#include "support/thorough.h"
 #include "twin/description.h"
 
 namespace livery {
@@ -295,12 +296,12 @@ TEST(Registration, LosesLittleByARoughMeshOrAWrongLens) {
         double mesh_rms_mm, lens_off;
         double median_px = 0.5, p95_px = 1.0;  // the goals, where they are reached
     };
-    for (const Row& row : {Row{0.0, 0.0},
-                           Row{0.1, 0.01},
-                           Row{0.3, 0.01, 1.0, 1.5},
-                           Row{1.0, 0.01, 8.0, 15.0},
-                           Row{0.03, 0.02},
-                           Row{0.03, 0.03}}) {
+    std::vector<Row> rows{Row{0.3, 0.01, 1.0, 1.5}, Row{0.03, 0.03}};
+    if (thorough()) {
+        rows.insert(rows.end(),
+                    {Row{0.0, 0.0}, Row{0.1, 0.01}, Row{1.0, 0.01, 8.0, 15.0}, Row{0.03, 0.02}});
+    }
+    for (const Row& row : rows) {
         const Given given = given_of(world, row.lens_off, 1);
         const Registration found =
             register_scan(roughened(world.product, row.mesh_rms_mm), given.projector, given.sights);

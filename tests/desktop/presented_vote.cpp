@@ -20,6 +20,9 @@ void PresentedVote::start_vote(const std::string& settings, std::size_t looks) {
 }
 
 void PresentedVote::present_paused() {
+    // What looks were ticked changes the sentences above the button, and where it is.
+    const int frame = program->state("frame");
+    wait_until([&] { return program->state("frame") >= frame + 3; }, 20s);
     program->click("ballot:present");
     program->wait_for_state("vote", "adapting");
     program->press_key("space");

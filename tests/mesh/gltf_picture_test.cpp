@@ -34,7 +34,7 @@ class GltfPictureTest : public ::testing::Test {
         GltfBuilder plate = make_plate();
         Json material = Json::parse("{" + members + "}");
         material["name"] = "skin";
-        plate.json["materials"] = {material};
+        plate.json["materials"] = Json::array({material});
         plate.json["textures"] = Json::array();
         plate.json["images"] = Json::array();
         for (std::size_t k = 0; k < pictures.size(); ++k) {
