@@ -58,7 +58,18 @@ TEST_F(Remote, EveryKeyShowsWhatItSays) {
     // Ctrl+B is black as ever, and back.
     program->press_key("ctrl+b");
     EXPECT_TRUE(projector_is_black());
+    program->wait_for_state("vote_paused", true);  // nobody sees its time go by
     program->press_key("ctrl+b");
+    EXPECT_TRUE(projector_shows_frame(between));
+
+    // One wrong key or click ends nothing.
+    program->press_key("ctrl+q");
+    program->click("vote:abort");
+    program->item("vote:confirm");
+    program->press_key("b");
+    program->press_key("Escape");
+    program->item("vote:abort");
+    EXPECT_EQ(program->state("vote"), "presenting");
     EXPECT_TRUE(projector_shows_frame(between));
 }
 
