@@ -1,7 +1,6 @@
 // livery measure environment
 
 #include <memory>
-#include <numbers>
 
 #include <fmt/format.h>
 

@@ -15,7 +15,7 @@
 
 namespace livery {
 
-/// Of the reachable luminances: what sessions start with, and what is judged by.
+/// Of the reachable luminances, as sessions start with it: what the ledgers judge by.
 inline constexpr double kDesignWhitePercentile = 20.0;
 
 /// The brightest D65 neutral (as Y in the calibration's XYZ) that at least (100 - percentile)% of

@@ -1,7 +1,6 @@
 // What becomes of the pictures in glTF's materials.
 
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <glm/geometric.hpp>
 
@@ -10,8 +9,6 @@
 #include "core/error.h"
 
 namespace livery {
-
-namespace {}  // namespace
 
 Angles angles_of(const glm::dvec3& direction) {
     const double across = std::hypot(direction.x, direction.z);
