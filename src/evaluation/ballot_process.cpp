@@ -1,5 +1,6 @@
 #include "evaluation/ballot_process.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
@@ -7,6 +8,7 @@
 #include <cstring>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include <fcntl.h>
 #include <poll.h>
@@ -22,26 +24,7 @@ namespace livery {
 
 namespace {
 
-constexpr std::chrono::seconds kPatience{10};
 constexpr std::size_t kLongestLine = 4096;
-
-/// One line from a pipe: the whole of what is said when it ends before.
-std::string first_line(int descriptor) {
-    const auto give_up = std::chrono::steady_clock::now() + kPatience;
-    std::string line;
-    while (line.size() < kLongestLine) {
-        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
-            give_up - std::chrono::steady_clock::now());
-        pollfd ready{descriptor, POLLIN, 0};
-        if (left.count() <= 0 || ::poll(&ready, 1, static_cast<int>(left.count())) == 0) break;
-        char c = 0;
-        const ssize_t got = ::read(descriptor, &c, 1);
-        if (got < 0 && errno == EINTR) continue;
-        if (got <= 0 || c == '\n') break;
-        line += c;
-    }
-    return line;
-}
 
 }  // namespace
 
@@ -86,17 +69,43 @@ BallotProcess::BallotProcess(const BallotProcessOptions& options) {
         id_ = -1;
         throw FileError(program, "", std::strerror(failure), "the program that serves ballots");
     }
-    const std::string line = first_line(pipe[0]);
-    ::close(pipe[0]);
-    if (!line.starts_with("{")) {
-        stop();
-        throw std::runtime_error(line.empty() ? "livery-ballots: found no answer within 10 s"
-                                              : printable(line, 1000));
-    }
-    place_ = parse_ballot_place(line);
+    words_ = pipe[0];
 }
 
 BallotProcess::~BallotProcess() { stop(); }
+
+bool BallotProcess::listens_within(std::chrono::milliseconds patience) {
+    const auto give_up = std::chrono::steady_clock::now() + patience;
+    while (!place_) {
+        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
+            give_up - std::chrono::steady_clock::now());
+        pollfd ready{words_, POLLIN, 0};
+        const int said = ::poll(
+            &ready, 1, static_cast<int>(std::max(left, std::chrono::milliseconds(0)).count()));
+        if (said < 0 && errno == EINTR) continue;
+        if (said <= 0) return false;
+        char c = 0;
+        const ssize_t got = ::read(words_, &c, 1);
+        if (got < 0 && errno == EINTR) continue;
+        const bool whole = got <= 0 || c == '\n' || said_.size() >= kLongestLine;
+        if (!whole) {
+            said_ += c;
+            continue;
+        }
+        if (!said_.starts_with("{")) {
+            stop();
+            throw std::runtime_error(said_.empty() ? "livery-ballots: ended without a word"
+                                                   : printable(said_, 1000));
+        }
+        place_ = parse_ballot_place(said_);
+        close_words();
+    }
+    return true;
+}
+
+void BallotProcess::close_words() {
+    if (words_ >= 0) ::close(std::exchange(words_, -1));
+}
 
 bool BallotProcess::running() {
     if (id_ > 0 && ::waitpid(id_, nullptr, WNOHANG) == id_) id_ = -1;
@@ -104,6 +113,7 @@ bool BallotProcess::running() {
 }
 
 void BallotProcess::stop() {
+    close_words();
     if (!running()) return;
     ::kill(id_, SIGTERM);
     const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(2);

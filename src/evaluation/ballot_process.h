@@ -1,7 +1,9 @@
 // The phone page's server, started and watched: livery-ballots beside this program.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,23 +24,30 @@ struct BallotProcessOptions {
 
 class BallotProcess {
   public:
-    /// Waits until it listens, at most ten seconds. Throws std::runtime_error with what it said
-    /// when it does not start. It ends with the thread that started it: the main one, say.
+    /// Starts it, and returns before it listens. Throws FileError when the program cannot be run.
+    /// It ends with the thread that started it: the main one, say.
     explicit BallotProcess(const BallotProcessOptions& options);
     /// Ends it.
     ~BallotProcess();
     BallotProcess(const BallotProcess&) = delete;
     BallotProcess& operator=(const BallotProcess&) = delete;
 
-    const BallotServerPlace& place() const { return place_; }
+    /// Waits at most that long until it listens, and says whether it does: a busy machine takes its
+    /// time. Throws std::runtime_error with what it said when it ended instead.
+    bool listens_within(std::chrono::milliseconds patience);
+    /// Nothing before listens_within() has said so.
+    const std::optional<BallotServerPlace>& place() const { return place_; }
     pid_t id() const { return id_; }
     /// False once it has ended, by itself or killed; votes that it confirmed are in the file.
     bool running();
 
   private:
     void stop();
+    void close_words();
     pid_t id_ = -1;
-    BallotServerPlace place_;
+    int words_ = -1;  ///< both of its outputs, until it has said where it listens
+    std::string said_;
+    std::optional<BallotServerPlace> place_;
 };
 
 }  // namespace livery

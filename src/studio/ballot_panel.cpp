@@ -69,6 +69,22 @@ void draw_looks_to_choose(Studio& studio) {
     }
 }
 
+/// At the heading's end.
+void draw_all_or_none(Studio& studio) {
+    const float width = ImGui::GetFrameHeight() * 2.2f;
+    const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
+    ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - 2.0f * width - gap);
+    for (const bool ticked : {true, false}) {
+        if (ImGui::Button(ticked ? "All" : "None", {width, 0.0f})) {
+            for (const SessionLook& look : studio.session.document().looks) {
+                studio.panels.ballot->chosen_looks[look.id] = ticked;
+            }
+        }
+        name_last_item(ticked ? "ballot:all-looks" : "ballot:no-looks");
+        if (ticked) ImGui::SameLine(0.0f, gap);
+    }
+}
+
 std::vector<const SessionLook*> chosen_looks(const Studio& studio) {
     std::vector<const SessionLook*> looks;
     for (const SessionLook& look : studio.session.document().looks) {
@@ -104,6 +120,7 @@ void draw_earlier_rounds(Studio& studio) {
 void draw_start(Studio& studio) {
     BallotPanelState& state = *studio.panels.ballot;
     heading("Looks under vote");
+    draw_all_or_none(studio);
     draw_looks_to_choose(studio);
     std::vector<std::string> names;
     std::vector<int> ids;

@@ -12,6 +12,7 @@
 #include "live/orbit.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/widgets.h"
+#include "studio/paint/users_library.h"
 
 namespace livery {
 
@@ -40,12 +41,10 @@ std::optional<Scene> scene_of_paints(const Studio& studio, const SessionLook& lo
     Document document = studio.session.document();
     for (SessionLook& other : document.looks) other.look.environment = {};
     try {
-        Scene scene = scene_of(document, look.id, studio.product);
-        if (unread_files(scene).empty()) return scene;
+        return scene_of(document, look.id, studio.product);
     } catch (const std::exception&) {
-        // Told where the look itself is drawn.
+        return std::nullopt;  // Told where the look itself is drawn.
     }
-    return std::nullopt;
 }
 
 void ask_for(Studio& studio, const SessionLook& look, const glm::ivec2& size_px) {
@@ -54,8 +53,13 @@ void ask_for(Studio& studio, const SessionLook& look, const glm::ivec2& size_px)
         fmt::format("{} {} {}", studio.session.revision(), size_px.x, size_px.y);
     std::string& asked = state.asked[look.look.name];
     if (asked == key || !studio.previews || !studio.product || studio.opening) return;
-    asked = key;
     const auto scene = scene_of_paints(studio, look);
+    if (scene) {
+        // Looks that were not shown yet may wear paints that are files.
+        const auto unread = unread_files(*scene);
+        if (!unread.empty()) return refresh_library(studio, unread);
+    }
+    asked = key;
     if (!scene) return;
     const View view = eye_view(eye_in_use_mm(studio.session.document()),
                                bounds_of(studio.product->mesh),

@@ -4,6 +4,7 @@
 #include <imgui_stdlib.h>
 
 #include "studio/kit/theme.h"
+#include "studio/kit/widgets.h"
 #include "studio/studio.h"
 
 namespace livery {
@@ -81,9 +82,12 @@ void draw_row(Studio& studio, const SessionLook& look, int place, int count) {
         draw_name_field(studio, look, width);
     } else {
         ImGui::PushStyleVar(ImGuiStyleVar_SelectableTextAlign, {0.0f, 0.5f});
-        const std::string label = place < 9 ? fmt::format(" {}   {}", place + 1, look.look.name)
-                                            : "      " + look.look.name;
-        if (ImGui::Selectable(label.c_str(),
+        const std::string number =
+            place < 9 ? fmt::format(" {}   ", place + 1) : std::string("      ");
+        const float room = width - ImGui::CalcTextSize(number.c_str()).x;
+        const auto lines = fitted_lines(look.look.name, room, 1);
+        const std::string name = lines.empty() ? std::string() : lines[0];
+        if (ImGui::Selectable((number + name + "###row").c_str(),
                               look.id == studio.shown_look,
                               ImGuiSelectableFlags_AllowDoubleClick,
                               {width, height})) {
@@ -93,6 +97,7 @@ void draw_row(Studio& studio, const SessionLook& look, int place, int count) {
         }
         ImGui::PopStyleVar();
         name_last_item(fmt::format("look:{}", look.id));
+        if (name != look.look.name) tooltip(look.look.name);
         draw_row_menu(studio, look, place, count);
     }
     ImGui::SameLine();

@@ -48,7 +48,7 @@ std::string PresentedVote::let_phones_vote() {
             url = program->state("phones");
             return !url.empty() && store.session() && store.invitation(*store.session());
         },
-        20s);
+        60s);
     EXPECT_TRUE(url.starts_with("http://127.0.0.1:")) << url;
     // The panel scrolls to the code when it comes: what is clicked next has moved.
     if (program->state("vote") == "edit") {

@@ -100,6 +100,12 @@ TEST_F(Presenting, ShowsFrozenFramesInTheStoredOrderAlsoAfterAKillUntilTheRoundI
     EXPECT_TRUE(projector_shows_frame(kRestFrame));
     program->press_key("Next");
     EXPECT_EQ(program->state("vote"), "voting") << "a remote ends no vote";
+    program->click("vote:back");
+    EXPECT_EQ(program->state("vote"), "presenting");
+    EXPECT_FALSE(program->has_item("vote:abort")) << "votes may have come";
+    EXPECT_TRUE(projector_shows_frame(kRestFrame));
+    program->click("vote:next");
+    program->wait_for_state("vote", "voting");
     program->click("ballot:type-in");
     program->click("ballot:name");
     desktop->type("Bo");

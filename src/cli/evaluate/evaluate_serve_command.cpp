@@ -24,6 +24,9 @@ namespace livery {
 
 namespace {
 
+/// For a busy machine to start the server.
+constexpr std::chrono::seconds kPatience{60};
+
 struct ServeArguments {
     std::string ballots, interface = "lo", designs, certificate, key;
     std::vector<std::string> hosts, scales;
@@ -56,7 +59,7 @@ class ServeSession {
         if (arguments.duel) next_repeat(store_, duelled_round(), seed_);
         if (arguments.new_audience && store_.session()) store_.open_session();
         start();
-        say(words_for(server_->place()));
+        say(words_for(place()));
     }
 
     Outcome run(const Progress& progress) {
@@ -79,6 +82,9 @@ class ServeSession {
     }
 
   private:
+    /// start() has waited for it.
+    const BallotServerPlace& place() const { return server_->place().value(); }
+
     void say(const std::string& text) {
         std::fputs(text.c_str(), out_);
         std::fflush(out_);
@@ -89,7 +95,7 @@ class ServeSession {
         options.ballots = arguments_.ballots;
         options.interface = arguments_.interface;
         // Started anew it is where it was: the QR code on the wall stays good.
-        if (server_) arguments_.port = server_->place().port;
+        if (server_) arguments_.port = place().port;
         options.port = arguments_.port;
         options.hosts = arguments_.hosts;
         options.certificate = arguments_.certificate;
@@ -97,6 +103,9 @@ class ServeSession {
         options.seats = arguments_.seats;
         server_.reset();
         server_ = std::make_unique<BallotProcess>(options);
+        if (!server_->listens_within(kPatience)) {
+            throw std::runtime_error("livery-ballots: found no answer within a minute");
+        }
     }
 
     /// Says what has changed since the last look.
@@ -123,7 +132,7 @@ class ServeSession {
     }
 
     void show_qr_code(const std::string& token) {
-        const std::string url = join_url(server_->place(), token);
+        const std::string url = join_url(place(), token);
         if (::isatty(::fileno(out_)) == 1) say(qr_text(qr_code(url)));
         say("join at " + url + "\n");
     }
@@ -211,9 +220,9 @@ class ServeSession {
         Outcome outcome;
         const int session = store_.session().value();
         outcome.figures = {{"ballots", arguments_.ballots},
-                           {"url", url_of(server_->place())},
-                           {"interface", server_->place().interface},
-                           {"tls", server_->place().tls},
+                           {"url", url_of(place())},
+                           {"interface", place().interface},
+                           {"tls", place().tls},
                            {"session", session},
                            {"seats", store_.seats(session).size()},
                            {"rounds", Json::array()}};

@@ -63,7 +63,13 @@ PresentationState forward(const PresentationPlan& plan, PresentationState state)
     return state;
 }
 
-PresentationState backward(PresentationState state) {
+PresentationState backward(const PresentationPlan& plan, PresentationState state) {
+    if (state.phase == Phase::voting) {
+        state.phase = Phase::presenting;
+        state.place = last_place(plan, state);
+        state.grey = true;
+        return state;
+    }
     if (state.phase == Phase::presenting && !state.grey) {
         if (state.place > 0) {
             --state.place;
@@ -149,9 +155,10 @@ bool is_allowed(const PresentationPlan& plan,
         case Event::blank:
             return shows;
         case Event::repeat:
-        case Event::back:
         case Event::abort:
             return shows;
+        case Event::back:
+            return shows || state.phase == Phase::voting;
         case Event::next:
             return shows || (state.phase == Phase::voting && has_next_sitting(plan, state));
         case Event::lock:
@@ -189,7 +196,7 @@ PresentationState after(const PresentationPlan& plan,
         case Event::next:
             return begun(plan, forward(plan, state), now_s);
         case Event::back:
-            return begun(plan, backward(state), now_s);
+            return begun(plan, backward(plan, state), now_s);
         case Event::lock:
             state.phase = Phase::locked;
             return begun(plan, state, now_s);

@@ -70,7 +70,8 @@ enum class PresentationEvent {
     repeat,   ///< this step from its beginning; in a grey the look before it
     next,     ///< a look -> the grey after it -> the next look; after the last one -> voting;
               ///< voting -> the next sitting, where there is one
-    back,     ///< the look before this one; from the first one to the adaptation
+    back,     ///< the look before this one; from the first one to the adaptation; voting -> the
+              ///< grey after the last look: votes that are in stay, and more may come meanwhile
     lock,     ///< voting -> locked
     abort,    ///< adapting, presenting -> edit
     done,     ///< locked -> edit

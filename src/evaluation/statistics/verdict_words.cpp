@@ -115,8 +115,9 @@ class VerdictWords {
                            apart());
     }
 
-    /// What the rank sums tell over all pairs.
+    /// What the rank sums tell over all pairs; of one pair all has been said.
     std::string apart() const {
+        if (statistics_.counts.designs() < 3) return ".";
         std::vector<std::string> pairs;
         constexpr std::size_t most = 6;
         for (const auto& [better, worse] : statistics_.apart) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <string_view>
 #include <utility>
@@ -125,10 +126,16 @@ bool sits_later(const PresentingState& state, int seat) {
     return false;
 }
 
+bool has_voted(const PresentingState& state, int seat) {
+    return std::find(state.voted.begin(), state.voted.end(), seat) != state.voted.end();
+}
+
 VotesSoFar votes_so_far(const PresentingState& state) {
     VotesSoFar so_far;
     so_far.voted = state.voted.size();
     for (const Seat& seat : state.seats) {
+        // Who was typed in for an earlier round need not be in this one.
+        if (!seat.name.empty() && !has_voted(state, seat.number)) continue;
         ++(sits_later(state, seat.number) ? so_far.later : so_far.awaited);
     }
     return so_far;
@@ -375,8 +382,9 @@ void read_seats(Studio& studio, bool now) {
 void serve_phones(Studio& studio, bool on) {
     PresentingState& state = presenting(studio);
     state.phones_problem.clear();
+    state.phones.reset();
     if (!on) {
-        state.phones.reset();
+        state.phones_place.reset();
         state.qr_projected = false;
         log_line(LogLevel::info, "phones: off");
         return;
@@ -386,24 +394,36 @@ void serve_phones(Studio& studio, bool on) {
         options.ballots = studio.ballots->file();
         options.interface = presenting_settings(studio).network;
         // Started anew it is where it was: the QR code on the wall stays good.
-        options.port = presenting_settings(studio).port;
-        if (state.phones) options.port = state.phones->place().port;
-        state.phones.reset();
+        options.port =
+            state.phones_place ? state.phones_place->port : presenting_settings(studio).port;
         state.phones = std::make_unique<BallotProcess>(options);
-        log_line(LogLevel::info, "phones: " + url_of(state.phones->place()));
-        keep_presenting_settings(studio);
     } catch (const std::exception& error) {
         state.phones_problem = error.what();
         state.qr_projected = false;
     }
-    read_seats(studio, true);
 }
 
 void watch_phones(Studio& studio) {
     PresentingState& state = presenting(studio);
-    if (!state.phones || state.phones->running()) return;
-    serve_phones(studio, true);
     if (!state.phones) return;
+    try {
+        if (state.phones->place()) {
+            if (!state.phones->running()) serve_phones(studio, true);
+            return;
+        }
+        if (!state.phones->listens_within(std::chrono::milliseconds(0))) return;
+    } catch (const std::exception& error) {
+        state.phones.reset();
+        state.phones_place.reset();
+        state.phones_problem = error.what();
+        state.qr_projected = false;
+        return;
+    }
+    const bool anew = std::exchange(state.phones_place, state.phones->place()).has_value();
+    log_line(LogLevel::info, "phones: " + url_of(*state.phones_place));
+    keep_presenting_settings(studio);
+    read_seats(studio, true);
+    if (!anew) return;
     notify(studio,
            {Notice::Level::warning,
             "The phones' server had ended; it was started again.",

@@ -93,10 +93,11 @@ struct PresentingState {
     double seats_read_s = -1.0;
 
     // The phones' server.
-    std::unique_ptr<BallotProcess> phones;
+    std::unique_ptr<BallotProcess> phones;          ///< without a place: still starting
+    std::optional<BallotServerPlace> phones_place;  ///< where it listens, or did when it ended
     std::string phones_problem;
     bool qr_projected = false;
-    bool qr_sought = false;  ///< it has come to the panel and may be out of sight
+    bool phones_sought = false;  ///< what came of starting may be out of sight
 
     // On the projector and on the stage.
     std::shared_ptr<const ProjectorPicture> picture;
@@ -110,7 +111,9 @@ struct PresentingState {
 
 /// Its wave comes after the one that looks or votes now.
 bool sits_later(const PresentingState& state, int seat);
-/// How many have voted of those whose turn has come, and whose turn is still to come.
+bool has_voted(const PresentingState& state, int seat);
+/// How many have voted of those whose turn has come, and whose turn is still to come. People whose
+/// ballots are typed in are waited for by nobody.
 struct VotesSoFar {
     std::size_t voted = 0, awaited = 0, later = 0;
     bool operator==(const VotesSoFar&) const = default;
@@ -153,9 +156,9 @@ void take_round(Studio& studio, Round round, PresentationPlan plan, Presentation
 /// What phones and other programs did meanwhile; reads at most twice a second.
 void read_seats(Studio& studio, bool now = false);
 
-/// Starts the phones' server, or ends it; told in `phones_problem`.
+/// Starts the phones' server without waiting for it, or ends it; told in `phones_problem`.
 void serve_phones(Studio& studio, bool on);
-/// Restarts a server that has ended by itself.
+/// Notes that it listens, and restarts one that has ended by itself.
 void watch_phones(Studio& studio);
 
 /// "2:05", "9 s".

@@ -80,7 +80,8 @@ void times_row(Studio& studio, PresentationTimes& times) {
                   "present:grey",
                   times.grey_s,
                   width,
-                  "Between two looks, as bright as they are in the mean; at least 4 s.");
+                  "Between two looks, as bright as they are in the mean. Four seconds let "
+                  "an after-image fade; less is for trying out.");
 }
 
 void count_row(Studio& studio,
@@ -220,6 +221,29 @@ std::string words_of(const BallotServerPlace& place) {
                                 "votes and take seats.");
 }
 
+/// A look may take a minute where light has to be solved for it.
+void draw_freezing(const Studio& studio) {
+    const Freezing& freezing = *presenting(studio).freezing;
+    const std::size_t done = freezing.frames.size(), all = freezing.looks.size();
+    if (freezing.writing || done >= all) return progress_bar(1.0, "keeping the frames");
+    const auto solving = studio.frames->solving();
+    const double within = solving ? solving->fraction : 0.0;
+    progress_bar(
+        (static_cast<double>(done) + within) / static_cast<double>(all),
+        fmt::format(
+            "look {} of {}{}", done + 1, all, solving ? ": " + solving->stage : std::string()));
+    name_last_item("vote:freezing");
+}
+
+/// Which of a duel's blind repeats it is; empty: of none.
+std::string repeat_in_words(const Studio& studio, int round) {
+    const auto series = studio.ballots->series_of(round);
+    if (!series) return "";
+    const auto held = static_cast<std::size_t>(std::count_if(
+        series->rounds.begin(), series->rounds.end(), [&](int other) { return other < round; }));
+    return fmt::format(": repeat {} of {} of a duel", held + 1, series->repeats);
+}
+
 }  // namespace
 
 void draw_presentation_setup(Studio& studio, const std::vector<int>& looks) {
@@ -273,9 +297,10 @@ void draw_presentation_setup(Studio& studio, const std::vector<int>& looks) {
     }
     name_last_item("ballot:present");
     end_disabled();
-    tooltip(
-        "Freezes the looks, then shows them under their codes. Nothing can be changed until the "
-        "round is locked or aborted.");
+    tooltip(looks.size() < 2 ? "Tick two looks or more: a vote compares them."
+            : words.empty()  ? fmt::format("Tick at most {} looks.", kMostDesigns)
+                             : "Freezes the looks, then shows them under their codes. Nothing can "
+                               "be changed until the round is locked or aborted.");
 }
 
 void draw_seats(Studio& studio) {
@@ -297,8 +322,7 @@ void draw_seats(Studio& studio) {
     const float left = at.x;
     for (const Seat& seat : state.seats) {
         if (at.x + side > right) at = {left, at.y + side + gap};
-        const bool voted =
-            std::find(state.voted.begin(), state.voted.end(), seat.number) != state.voted.end();
+        const bool voted = has_voted(state, seat.number);
         const ImVec2 high(at.x + side, at.y + side);
         list.AddRectFilled(
             at, high, ImGui::GetColorU32(voted ? colours::good : colours::raised), em(0.2f));
@@ -315,6 +339,7 @@ void draw_seats(Studio& studio) {
         tooltip((seat.name.empty() ? fmt::format("Seat {}, a phone", seat.number) : seat.name) +
                 (voted                            ? ": has voted."
                  : sits_later(state, seat.number) ? ": its wave is still to come."
+                 : votes && !seat.name.empty()    ? ": typed in; no ballot in this round."
                  : votes                          ? ": has not voted yet."
                                                   : "."));
         at.x += side + gap;
@@ -330,12 +355,15 @@ void draw_phones(Studio& studio) {
         draw_network_choice(studio);
         if (ImGui::Button("Let phones vote", {-FLT_MIN, 0.0f})) {
             serve_phones(studio, true);
-            state.qr_sought = !state.presented;
+            state.phones_sought = !state.presented;
         }
         name_last_item("phones:start");
         tooltip("Starts the phones' page on that network. Off until it is pressed.");
+    } else if (!state.phones->place()) {
+        dim_text("Starting the phones' page…");
+        draw_stop_phones(studio);
     } else {
-        const BallotServerPlace& place = state.phones->place();
+        const BallotServerPlace& place = *state.phones->place();
         dim_text(words_of(place));
         name_last_item("phones:words");
         const bool joins = !state.presented;
@@ -360,7 +388,7 @@ void draw_phones(Studio& studio) {
             draw_stop_phones(studio);
             ImGui::EndGroup();
             // Half of a code is none: below the looks there may be no room for it
-            if (std::exchange(state.qr_sought, false)) ImGui::SetScrollHereY(1.0f);
+            if (std::exchange(state.phones_sought, false)) ImGui::SetScrollHereY(1.0f);
         } else if (!joins) {
             dim_text(
                 "Joining is closed while a round is open: who came now would not have seen every "
@@ -371,6 +399,7 @@ void draw_phones(Studio& studio) {
     if (!state.phones_problem.empty()) {
         warning_text(state.phones_problem);
         name_last_item("phones:problem");
+        if (std::exchange(state.phones_sought, false)) ImGui::SetScrollHereY(1.0f);
     }
 }
 
@@ -378,13 +407,16 @@ void draw_presented_round(Studio& studio) {
     const PresentingState& state = presenting(studio);
     if (state.freezing) {
         heading("Freezing the looks");
+        draw_freezing(studio);
         return dim_text(
             "Each is rendered once and kept with its hash; these pictures and no others are "
             "shown.");
     }
     if (!state.presented) return;
     const PresentedRound& presented = *state.presented;
-    heading(fmt::format("Round {}", presented.round.id).c_str());
+    heading(
+        fmt::format("Round {}{}", presented.round.id, repeat_in_words(studio, presented.round.id))
+            .c_str());
     dim_text(fmt::format("Seed {}. Frames in {}.", presented.round.seed, presented.plan.folder));
     if (!state.problem.empty()) {
         warning_text(state.problem);

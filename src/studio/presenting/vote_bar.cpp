@@ -150,7 +150,9 @@ std::string details(const Studio& studio) {
             const std::string place =
                 fmt::format("{}look {} of {}", sitting, step.place + 1, looks);
             if (!step.grey) return place + time;
-            return left < kWaits ? "grey after " + place + time : "all seen: Next lets people vote";
+            if (left < kWaits) return "grey after " + place + time;
+            return presented.round.voting ? "all seen: Next goes back to the votes"
+                                          : "all seen: Next lets people vote";
         }
         case Phase::voting:
             return sitting + "have voted";
@@ -272,7 +274,15 @@ float draw_buttons(Studio& studio, float right, float top, float height) {
     }
     if (step.phase == Phase::voting) {
         const bool more = is_allowed(plan, step, Event::next);
-        const float left = begin(row_width(more ? 2 : 1, wide));
+        const float left = begin(row_width(1, each) + row_width(more ? 2 : 1, wide));
+        if (bar_button("Back",
+                       "vote:back",
+                       "The looks once more: votes that are in stay and can be changed.",
+                       each,
+                       button)) {
+            send(studio, Event::back);
+            return left;
+        }
         if (more && bar_button("Next wave",
                                "vote:next-wave",
                                "The next people sit down: eyes adapt.",
@@ -289,7 +299,9 @@ float draw_buttons(Studio& studio, float right, float top, float height) {
         }
         return left;
     }
-    const float left = begin(row_width(kShowing.size() + 1, each));
+    // Once people vote the round is locked, not aborted.
+    const bool may_abort = !state.presented->round.voting;
+    const float left = begin(row_width(kShowing.size() + (may_abort ? 1 : 0), each));
     for (const Button& one : kShowing) {
         const bool on =
             (one.event == Event::pause && step.paused) || (one.event == Event::blank && step.blank);
@@ -303,7 +315,8 @@ float draw_buttons(Studio& studio, float right, float top, float height) {
             if (!state.presented) return left;
         }
     }
-    if (bar_button("Abort…", "vote:abort", "Nobody votes on this round.", each, button)) {
+    if (may_abort &&
+        bar_button("Abort…", "vote:abort", "Nobody votes on this round.", each, button)) {
         state.asking_to_abort = true;
     }
     return left;

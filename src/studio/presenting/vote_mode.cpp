@@ -336,7 +336,9 @@ void show_frames_again(Shell& shell) {
 void show_qr_code(Shell& shell) {
     Studio& studio = shell.studio;
     PresentingState& state = presenting(studio);
-    if (!state.invitation || !studio.frame || !studio.frame->pictures || !studio.setup) return;
+    const auto& phones = state.phones->place();
+    if (!state.invitation || !phones || !studio.frame || !studio.frame->pictures || !studio.setup)
+        return;
     const std::string key = "qr " + state.invitation->token;
     if (state.picture_key == key) return;
     const auto wanted = radiance_of(*studio.frame->pictures);
@@ -346,8 +348,7 @@ void show_qr_code(Shell& shell) {
     const auto place = free_place(lit, 1.0);
     try {
         if (!place) throw Refused("there is no room for it beside the mock-up", "");
-        draw_qr_code(
-            picture, *place, qr_code(join_url(state.phones->place(), state.invitation->token)));
+        draw_qr_code(picture, *place, qr_code(join_url(*phones, state.invitation->token)));
         show(shell, key, picture);
     } catch (const std::exception& error) {
         state.qr_projected = false;

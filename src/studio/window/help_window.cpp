@@ -76,6 +76,10 @@ void draw_help(Shell& shell) {
             "it back.\n"
             "Tab and Shift+Tab go from one button, list or field to the next; the arrow keys move "
             "inside lists and among neighbours.\n"
+            "While looks are presented: arrow right or Page Down goes on, arrow left or Page Up "
+            "goes back, the space bar pauses,\n"
+            "R shows the look anew, B or the full stop shows grey; black is Ctrl+B then. A "
+            "presenter's remote sends these keys.\n"
             "Enter presses, opens a list, or types into a slider; Esc closes. On the swatches the "
             "arrow keys try the neighbours, Enter paints.");
         ImGui::End();

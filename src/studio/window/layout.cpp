@@ -27,6 +27,15 @@ namespace livery {
 
 namespace {
 
+/// Its first key, or its second with Ctrl where plain letters mean something else now.
+std::string key_in_menu(const Action& action, const Shell& shell) {
+    if (action.chords.empty()) return "";
+    const bool letters = is_presenting(shell.studio) || ballot_letters(shell.studio) > 0;
+    const bool other =
+        letters && action.chords.size() > 1 && !action.chords[0].ctrl && action.chords[1].ctrl;
+    return text_of(action.chords[other ? 1 : 0]);
+}
+
 void draw_menu_entry(const Action& action, Shell& shell) {
     if (action.starts_group) ImGui::Separator();
     std::string label = action.label;
@@ -34,7 +43,7 @@ void draw_menu_entry(const Action& action, Shell& shell) {
         if (const std::string detail = action.detail(shell); !detail.empty())
             label += ": " + detail;
     }
-    const std::string keys = action.chords.empty() ? std::string() : text_of(action.chords.front());
+    const std::string keys = key_in_menu(action, shell);
     const bool checked = action.checked && action.checked(shell);
     if (ImGui::MenuItem(label.c_str(), keys.c_str(), checked, is_enabled(action, shell))) {
         run_action(action, shell);

@@ -251,7 +251,8 @@ MapState state_of_shell(const Shell& shell) {
         state["vote_round"] = std::to_string(presented.round.id);
         state["vote_loaded"] = text(!presented.frames.empty());
     }
-    state["phones"] = quoted(vote.phones ? url_of(vote.phones->place()) : "");
+    state["phones"] =
+        quoted(vote.phones && vote.phones->place() ? url_of(*vote.phones->place()) : "");
     state["scale"] = fmt::format("{:.3f}", studio.ui_scale);
     Json notices = Json::array();
     for (const Notice& notice : studio.notices) notices.push_back(notice.what);

@@ -72,10 +72,14 @@ TEST(PresentationStore, VotingBeginsAndEndsWithTheSteps) {
     store.record_step(round, {Phase::voting}, Event::next);
     EXPECT_TRUE(store.open_round()->voting);
     store.vote(round, {"Bo", 0, 1});
+    store.record_step(round, {Phase::presenting, 0, 2, true}, Event::back);
+    EXPECT_TRUE(store.open_round()->voting) << "what people were told holds";
+    store.vote(round, {"Di", 0, 2});
+    store.record_step(round, {Phase::voting}, Event::next);
     store.record_step(round, {Phase::voting}, Event::resume);
     store.record_step(round, {Phase::locked}, Event::lock);
     EXPECT_FALSE(store.open_round());
-    EXPECT_EQ(store.tally(round).best, (std::vector<int>{1, 0, 0}));
+    EXPECT_EQ(store.tally(round).best, (std::vector<int>{2, 0, 0}));
     EXPECT_EQ(store.presented()->step.state.phase, Phase::locked);
     store.record_step(round, {}, Event::done);
     EXPECT_FALSE(store.presented());

@@ -126,9 +126,10 @@ TEST(Presentation, AllowsWhatThePhaseAllows) {
     EXPECT_EQ(allowed({Phase::adapting}), while_shown);
     EXPECT_EQ(allowed({Phase::presenting, 1, 2}), while_shown);
     EXPECT_EQ(allowed({Phase::voting, 0}),
-              (std::set<std::string>{"tick", "next", "lock", "resume"}));
+              (std::set<std::string>{"tick", "next", "back", "lock", "resume"}));
     const int last = static_cast<int>(plan.sittings.size()) - 1;
-    EXPECT_EQ(allowed({Phase::voting, last}), (std::set<std::string>{"tick", "lock", "resume"}));
+    EXPECT_EQ(allowed({Phase::voting, last}),
+              (std::set<std::string>{"tick", "back", "lock", "resume"}));
     EXPECT_EQ(allowed({Phase::locked}), (std::set<std::string>{"tick", "done", "resume"}));
 }
 
@@ -225,6 +226,14 @@ TEST(Presentation, WavesVoteOneAfterTheOther) {
     for (int k = 0; k < 4; ++k) state = after(plan, state, Event::next, 1.0);
     EXPECT_EQ(frame_of(plan, state), kRestFrame) << "people remember before they vote";
     EXPECT_EQ(left_s(state, 1e9), kWaits);
+    const PresentationState seen = state;
+    state = after(plan, state, Event::next, 2.0);
+    EXPECT_EQ(state.phase, Phase::voting);
+    state = after(plan, state, Event::back, 2.0);
+    EXPECT_EQ(std::tie(state.phase, state.place, state.grey, state.sitting),
+              std::tie(seen.phase, seen.place, seen.grey, seen.sitting))
+        << "Next pressed twice is taken back";
+    EXPECT_EQ(frame_of(plan, state), kRestFrame) << "which nobody sees";
     state = after(plan, state, Event::next, 2.0);
     EXPECT_EQ(state.phase, Phase::voting);
     state = after(plan, state, Event::next, 3.0);
