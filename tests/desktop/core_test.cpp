@@ -96,6 +96,14 @@ TEST_F(Core, SwapsPaintsInOpenGl) {
     program->click("paint:solid green");
     program->move_away();
     EXPECT_TRUE(projector_shows(drive_with_body("solid green")));
+    // Light between parts of another paint comes a moment later.
+    program->wait_for_state("unfinished", "");
+    ASSERT_TRUE(wait_until(
+        [&] {
+            return program->state("shown_number") == program->state("asked_number") &&
+                   program->state("unfinished") == "";
+        },
+        60s));
     const Image8 shown = projector_picture();
     const std::filesystem::path file = studio->folder / "sent.png";
     desktop->press_key("ctrl+s");
