@@ -20,6 +20,9 @@ int measured_error(const ScatteringMedium& medium) {
     return 4;
 }
 
+/// The same of compared_stacks().
+constexpr int kStackError = 10;
+
 }  // namespace
 
 ModelChoice best_model(const ScatteringMedium& medium) {
@@ -32,6 +35,17 @@ ModelChoice best_model(const ScatteringMedium& medium) {
                         "single scattering and beam diffusion scaled to the exact total: within "
                         "{}% of the light in those like this one",
                         measured_error(medium))};
+}
+
+ModelChoice best_model(const ScatteringStack& given) {
+    const ScatteringStack stack = merged(given);
+    if (stack.layers.size() == 1) return best_model(stack.layers.front());
+    constexpr auto kBest = SubsurfaceModel::scaled_beam_diffusion;
+    if (!stack.scatters()) return {kBest, "nothing scatters here, which every model knows"};
+    return {kBest,
+            fmt::format("nearer to Monte Carlo than the multipole in every stack compared, within "
+                        "{}% of the light",
+                        kStackError)};
 }
 
 }  // namespace livery
