@@ -12,9 +12,8 @@ namespace livery {
 
 namespace {
 
-constexpr int kNewestVersion = 1;
-constexpr double kLargestCoefficient = 1e6, kThickest_mm = 1e6, kThinnest_mm = 1e-9;
-constexpr double kLargestG = 0.9999;
+constexpr int kNewestStackVersion = 1;
+constexpr double kThinnest_mm = 1e-9;
 
 ScatteringMedium layer_of(const JsonReader& json, double eta, bool last) {
     json.allow_only(
@@ -26,18 +25,20 @@ ScatteringMedium layer_of(const JsonReader& json, double eta, bool last) {
         json["eta"].fail("another index than the stack's", fmt::format("{} in all layers", eta));
     }
     if (json.has("g")) layer.g = json["g"].number_between(-kLargestG, kLargestG);
-    layer.sigma_a_per_mm = json["sigma_a_per_mm"].number_between(0.0, kLargestCoefficient);
+    layer.sigma_a_per_mm = json["sigma_a_per_mm"].number_between(0.0, kLargestCoefficient_per_mm);
     if (json.has("sigma_s_prime_per_mm")) {
         const JsonReader reduced = json["sigma_s_prime_per_mm"];
         if (json.has("sigma_s_per_mm")) {
             reduced.fail("beside sigma_s_per_mm", "one or the other");
         }
-        layer.sigma_s_per_mm = reduced.number_between(0.0, kLargestCoefficient) / (1.0 - layer.g);
-        if (layer.sigma_s_per_mm > kLargestCoefficient) {
+        layer.sigma_s_per_mm =
+            reduced.number_between(0.0, kLargestCoefficient_per_mm) / (1.0 - layer.g);
+        if (layer.sigma_s_per_mm > kLargestCoefficient_per_mm) {
             reduced.fail("more than 1000000 per mm over 1 - g", "less");
         }
     } else {
-        layer.sigma_s_per_mm = json["sigma_s_per_mm"].number_between(0.0, kLargestCoefficient);
+        layer.sigma_s_per_mm =
+            json["sigma_s_per_mm"].number_between(0.0, kLargestCoefficient_per_mm);
     }
     if (json.has("thickness_mm")) {
         layer.thickness_mm = json["thickness_mm"].number_between(kThinnest_mm, kThickest_mm);
@@ -56,7 +57,7 @@ ScatteringStack read_scattering_stack(const std::filesystem::path& file) {
 ScatteringStack parse_scattering_stack(const std::string& text, const std::filesystem::path& file) {
     const Json content = parse_json(text, file);
     const JsonReader json(file, content);
-    json.require_format_version(kNewestVersion);
+    json.require_format_version(kNewestStackVersion);
     json.allow_only({"format_version", "kind", "name", "eta", "layers", "provenance"});
     if (json.has("kind") && json["kind"].text() != "layers") {
         json["kind"].fail("'" + json["kind"].text() + "'", "'layers', or none");

@@ -12,6 +12,7 @@
 
 #include "appearance/subsurface/inverse_hankel.h"
 #include "appearance/subsurface/layered_sources.h"
+#include "appearance/subsurface/media.h"
 #include "appearance/subsurface/model_errors.h"
 #include "appearance/subsurface/single_scattering.h"
 
@@ -20,8 +21,8 @@ namespace {
 
 using enum SubsurfaceModel;
 
-const ScatteringMedium kMarble{0.0041, 2.62, 0.0, 1.5, 1.0};
-const ScatteringMedium kSkin{0.17, 0.88, 0.0, 1.5, 1.0};
+const ScatteringMedium kMarbleLayer{0.0041, 2.62, 0.0, 1.5, 1.0};
+const ScatteringMedium kSkinLayer{0.17, 0.88, 0.0, 1.5, 1.0};
 
 ScatteringMedium with_thickness(ScatteringMedium medium, std::optional<double> thickness_mm) {
     medium.thickness_mm = thickness_mm;
@@ -58,7 +59,7 @@ TEST(InverseHankel, GivesTheClosedFormOfADipolesTerms) {
 }
 
 TEST(LayeredDiffusion, IsTheSlabsWhereAllLayersAreEqual) {
-    const ScatteringMedium slab = with_thickness(kSkin, 2.0);
+    const ScatteringMedium slab = with_thickness(kSkinLayer, 2.0);
     const Diffusion diffusion = improved_diffusion(slab);
     const LayeredDiffusion layers({{diffusion, 0.5}, {diffusion, 1.5}}, diffusion, diffusion);
     for (const double depth : {0.1, 0.49, 0.7, 1.9}) {
@@ -76,8 +77,8 @@ TEST(LayeredDiffusion, IsTheSlabsWhereAllLayersAreEqual) {
 }
 
 TEST(ScatteringStack, OfEqualLayersIsOneSlab) {
-    const ScatteringMedium slab = with_thickness(kMarble, 2.0);
-    const ScatteringStack two{{kMarble, kMarble}};
+    const ScatteringMedium slab = with_thickness(kMarbleLayer, 2.0);
+    const ScatteringStack two{{kMarbleLayer, kMarbleLayer}};
     for (const SubsurfaceModel model : {multipole, scaled_beam_diffusion}) {
         const SubsurfaceProfile one = subsurface_profile(model, slab);
         const SubsurfaceProfile both = subsurface_profile(model, two);
@@ -97,8 +98,8 @@ TEST(ScatteringStack, OfEqualLayersIsOneSlab) {
 TEST(ScatteringStack, OfNearlyEqualLayersIsNearlyOneSlab) {
     // The whole way through layers, at what the slab's own code gives by other means. A thousandth:
     // both integrate over depths by eight points a panel, in panels that are not the same.
-    for (const ScatteringMedium& whole : {with_thickness(kMarble, 2.0),
-                                          with_thickness(kSkin, 2.0),
+    for (const ScatteringMedium& whole : {with_thickness(kMarbleLayer, 2.0),
+                                          with_thickness(kSkinLayer, 2.0),
                                           with_thickness({0.17, 4.4, 0.8, 1.3, {}}, {})}) {
         const ScatteringStack stack = nearly(whole, 0.6);
         const DiffuseTotals exact = exact_totals(whole), layered = exact_totals(stack);
@@ -136,12 +137,6 @@ TEST(ScatteringStack, HasTheTotalsThatMcmlPublishes) {
     const MonteCarloProfile photons = monte_carlo_profile(stack, {}, {20'000, 9});
     EXPECT_NEAR(
         enters * photons.absorbed.value, 0.641594, 3.5 * photons.absorbed.standard_error + 0.0012);
-}
-
-double sum_of(const MonteCarloProfile& profile) {
-    return profile.total_reflectance.value + profile.total_transmittance.value +
-           profile.absorbed.value + profile.unscattered_reflectance +
-           profile.unscattered_transmittance;
 }
 
 TEST(MonteCarlo, InLayersIsWithinItsErrorOfExactTotals) {
@@ -183,17 +178,17 @@ TEST(ScatteringStack, IsSafeAtItsCorners) {
     const auto endless = [](const ScatteringMedium& medium) { return with_thickness(medium, {}); };
     const std::vector<ScatteringStack> stacks{{{white, thin}},
                                               {{thin, endless(white)}},
-                                              {{thin, kSkin, thin}},
-                                              {{bright, endless(kSkin)}},
+                                              {{thin, kSkinLayer, thin}},
+                                              {{bright, endless(kSkinLayer)}},
                                               {{bright, white}},
-                                              {{forward, kMarble}},
-                                              {{kMarble, endless(forward)}},
-                                              {{clear, kMarble, clear}},
-                                              {{absorber, kMarble, absorber}},
-                                              {{kMarble, endless(clear)}},
+                                              {{forward, kMarbleLayer}},
+                                              {{kMarbleLayer, endless(forward)}},
+                                              {{clear, kMarbleLayer, clear}},
+                                              {{absorber, kMarbleLayer, absorber}},
+                                              {{kMarbleLayer, endless(clear)}},
                                               {{clear, absorber}},
                                               {{clear, endless(absorber)}},
-                                              {{kMarble, endless(absorber)}}};
+                                              {{kMarbleLayer, endless(absorber)}}};
     for (std::size_t k = 0; k < stacks.size(); ++k) {
         const UnscatteredLight straight = unscattered_light(stacks[k]);
         const double most = 1.0 - straight.reflected - straight.transmitted;
@@ -223,11 +218,11 @@ TEST(ScatteringStack, IsRefusedWithTheLayerThatIsWrong) {
         }
     };
     refuses({}, "layers: found 0");
-    refuses({{kMarble, with_thickness(kSkin, -1.0)}}, "layer 2: thickness: found -1");
-    refuses({{with_thickness(kMarble, {}), kSkin}}, "layer 1: found no thickness");
-    refuses({{kMarble, {0.1, 1.0, 0.0, 1.3, 1.0}}}, "layer 2: found an index of 1.3");
+    refuses({{kMarbleLayer, with_thickness(kSkinLayer, -1.0)}}, "layer 2: thickness: found -1");
+    refuses({{with_thickness(kMarbleLayer, {}), kSkinLayer}}, "layer 1: found no thickness");
+    refuses({{kMarbleLayer, {0.1, 1.0, 0.0, 1.3, 1.0}}}, "layer 2: found an index of 1.3");
     refuses({{{std::numeric_limits<double>::quiet_NaN(), 1.0, 0.0, 1.5, 1.0}}}, "layer 1: sigma_a");
-    EXPECT_THROW(subsurface_profile(dipole, ScatteringStack{{kMarble, kSkin}}),
+    EXPECT_THROW(subsurface_profile(dipole, ScatteringStack{{kMarbleLayer, kSkinLayer}}),
                  std::invalid_argument);
 }
 
