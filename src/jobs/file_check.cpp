@@ -11,6 +11,7 @@
 #include "appearance/measured/measured_paint.h"
 #include "appearance/measured/measured_reflectance.h"
 #include "appearance/subsurface/radial_profile.h"
+#include "appearance/subsurface/scattering_stack.h"
 #include "appearance/subsurface/translucent_material.h"
 #include "calibration/registration/picked_points.h"
 #include "capture/captures_folder.h"
@@ -300,6 +301,9 @@ FileKind kind_of_json(const Path& file, const Progress& progress) {
         return {"translucent",
                 [](const Path& path, FileCheck&) { read_translucent_material(path); }};
     }
+    if (has("layers")) {
+        return {"layers", [](const Path& path, FileCheck&) { read_scattering_stack(path); }};
+    }
     if (has("kind") && json["kind"] == "pose") {
         return {"pose", [](const Path& path, FileCheck&) { read_pose_file(path); }};
     }
@@ -328,8 +332,8 @@ FileKind kind_of_json(const Path& file, const Progress& progress) {
                     path,
                     "",
                     "a JSON object of no known kind",
-                    "a material, translucent material, look, product, bench, camera, geometry, "
-                    "pose, room, camera-to-xyz or captures "
+                    "a material, translucent material, layers, look, product, bench, camera, "
+                    "geometry, pose, room, camera-to-xyz or captures "
                     "file");
             }};
 }

@@ -123,6 +123,71 @@ TEST(Bssrdf, RefusesWithTheOption) {
     refuses({"--sigma-a", "1", "--sigma-s", "1", "--eta", "0.1"}, "eta: found 0.1");
 }
 
+class BssrdfLayers : public ::testing::Test {
+  protected:
+    std::string stack(const std::string& layers) const {
+        return folder_
+            .write("stack.json", R"({"format_version": 1, "eta": 1.5, "layers": [)" + layers + "]}")
+            .string();
+    }
+    TemporaryFolder folder_;
+};
+
+const char* const kAbove = R"({"sigma_a_per_mm": 0.17, "sigma_s_per_mm": 0.88, "thickness_mm": 1})";
+const char* const kBelow =
+    R"({"sigma_a_per_mm": 0.0041, "sigma_s_prime_per_mm": 2.62, "g": 0.5, "thickness_mm": 2})";
+
+TEST_F(BssrdfLayers, HaveAProfileByEachModel) {
+    const std::string file = stack(std::string(kAbove) + "," + kBelow);
+    for (const std::string model : {"best", "multipole", "montecarlo"}) {
+        const Json answer = answer_of(
+            {"--layers", file, "--model", model, "--photons", "2000", "--radii-mm", "0.5,2"});
+        EXPECT_EQ(answer["layers"].size(), 2u);
+        EXPECT_NEAR(answer["layers"][1]["sigma_s_per_mm"].get<double>(), 5.24, 1e-12);
+        EXPECT_EQ(answer["rd"].size(), 2u);
+        EXPECT_EQ(answer["rt"].size(), 2u);
+        double sum = 0.0;
+        for (const char* part : {"total_reflectance",
+                                 "total_transmittance",
+                                 "absorbed",
+                                 "unscattered_reflectance",
+                                 "unscattered_transmittance"}) {
+            sum += answer[part].get<double>();
+        }
+        // Of photons the part that scatters is a sample: .01 is the standard error of two thousand.
+        EXPECT_NEAR(sum, 1.0, model == "montecarlo" ? 0.04 : 1e-9) << model;
+        EXPECT_GT(answer["absorbed"].get<double>(), 0.0) << model;
+    }
+    const ProgramRun check = run_program(LIVERY_PROGRAM, {"check", "--json", file});
+    EXPECT_EQ(check.exit_code, 0) << check.err;
+    EXPECT_EQ(Json::parse(check.out)["files"][0]["kind"], "layers");
+}
+
+TEST_F(BssrdfLayers, AreRefusedWithWhatIsWrong) {
+    const auto refuses = [&](const std::string& layers, const std::string& part) {
+        const ProgramRun run = bssrdf({"--layers", stack(layers)});
+        EXPECT_EQ(run.exit_code, 2) << layers;
+        EXPECT_NE(run.err.find(part), std::string::npos) << run.err;
+    };
+    refuses("", "layers: found 0");
+    refuses(R"({"sigma_a_per_mm": 1, "sigma_s_per_mm": 1, "thickness_mm": -1})",
+            "layers[0].thickness_mm");
+    refuses(std::string(R"({"sigma_a_per_mm": 1, "sigma_s_per_mm": 1},)") + kAbove, "layers[0]");
+    refuses(R"({"sigma_a_per_mm": NaN, "sigma_s_per_mm": 1})", "stack.json");
+    refuses(R"({"sigma_a_per_mm": 1, "sigma_s_per_mm": 1, "eta": 1.3})", "layers[0].eta");
+    const std::string good = stack(kAbove);
+    const ProgramRun both = bssrdf({"--layers", good, "--sigma-a", "1"});
+    EXPECT_EQ(both.exit_code, 2);
+    EXPECT_NE(both.err.find("--layers"), std::string::npos);
+    const ProgramRun other =
+        bssrdf({"--layers", stack(std::string(kAbove) + "," + kBelow), "--model", "dipole"});
+    EXPECT_EQ(other.exit_code, 2);
+    EXPECT_NE(other.err.find("multipole"), std::string::npos) << other.err;
+    const std::string wrong =
+        folder_.write("kind.json", R"({"format_version": 1, "kind": "room"})").string();
+    EXPECT_EQ(bssrdf({"--layers", wrong}).exit_code, 2);
+}
+
 class FitBssrdf : public ::testing::Test {
   protected:
     /// Skim milk, green, by the best model.

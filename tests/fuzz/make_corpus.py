@@ -231,6 +231,8 @@ put("picked_points", "six.csv", "x_mm,y_mm,z_mm,u_px,v_px\n" + "".join(
     "%d,%d,%d,%d.5,%d\n" % (k, 7 * k % 5, k * k, 100 + 90 * k, 400 - 3 * k) for k in range(6)))
 put("radial_profile", "plain.csv", "r_mm,rd\n" + "".join("%g,%g\n" % (0.5 * k + 0.5, 0.3 / (k + 1) ** 3) for k in range(8)))
 put("radial_profile", "others.csv", "# spot .2 mm\r\nnote,rd,r_mm\r\nfar,-1e-6,9\r\n,0.5,0\r\n,.25,1\r\n,1e-1,2.5\r\n")
+put("layers", "slab.json", {"format_version": 1, "eta": 1.4, "layers": [{"sigma_a_per_mm": 0.1, "sigma_s_per_mm": 10, "g": 0.9, "thickness_mm": 1}, {"sigma_a_per_mm": 0, "sigma_s_prime_per_mm": 2, "thickness_mm": 0.5}]})
+put("layers", "endless.json", {"format_version": 1, "kind": "layers", "name": "a", "eta": 1.5, "layers": [{"sigma_a_per_mm": 0, "sigma_s_per_mm": 0, "eta": 1.5, "thickness_mm": 2}, {"sigma_a_per_mm": 1, "sigma_s_per_mm": 3}], "provenance": "a"})
 put("translucent", "grey.json", {"format_version": 1, "kind": "translucent", "name": "a", "sigma_a_per_mm": 0.01, "sigma_s_prime_per_mm": 2, "eta": 1.5})
 put("translucent", "sheet.json", {"format_version": 1, "kind": "translucent", "name": "a", "sigma_a_per_mm": [0, 1e-3, 2], "sigma_s_prime_per_mm": [1, 2, 3], "g": -0.5, "eta": 1.3, "thickness_mm": 2, "provenance": "a"})
 put("picked_points", "others.csv", "# roof\r\nname,v_px,\"u_px\",z_mm,y_mm,x_mm\r\nleft,1e2,-3,0,0,9e9\r\n")

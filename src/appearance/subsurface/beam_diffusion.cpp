@@ -13,38 +13,41 @@ namespace {
 
 constexpr double kShallowest = 1e-5, kDeepest = 34.0;  // mean free paths
 
-struct Depths {
-    std::vector<double> depths_mm, powers;
-};
+std::vector<double> depths_mm(const ScatteringMedium& medium) {
+    std::vector<double> depths = beam_depths(0.0, medium.reduced_depth()).reduced_depths;
+    for (double& depth : depths) depth /= medium.sigma_t_prime();
+    return depths;
+}
 
-/// Depths of the beam in panels that grow with the depth, each with the power that is left there:
-/// what is near the surface shapes the profile near the beam.
-Depths depths_of(const ScatteringMedium& medium) {
+}  // namespace
+
+BeamDepths beam_depths(double from, double to) {
     static const auto nodes = gauss_legendre(8);
-    const double all = medium.sigma_t_prime();
-    const double last = std::min(medium.reduced_depth(), kDeepest);
-    const double first = std::min(kShallowest, 1e-4 * last);
-    Depths found;
-    const int panels = std::max(4, static_cast<int>(std::ceil(std::log(last / first) / 2.2)));
+    BeamDepths found;
+    const double last = std::min(to, kDeepest);
+    if (!(from < last)) return found;
+    const double first = from > 0.0 ? from : std::min(kShallowest, 1e-4 * last);
+    const int fewest = from > 0.0 ? 1 : 4;
+    const int panels = std::max(fewest, static_cast<int>(std::ceil(std::log(last / first) / 2.2)));
     const double step = std::log(last / first) / panels;
     for (int k = 0; k < panels; ++k) {
         for (const QuadratureNode& node : nodes) {
             const double depth = first * std::exp(step * (k + node.at));
-            found.depths_mm.push_back(depth / all);
+            found.reduced_depths.push_back(depth);
             found.powers.push_back(node.weight * step * depth * std::exp(-depth));
         }
     }
     return found;
 }
 
-}  // namespace
-
 BeamDiffusion::BeamDiffusion(const ScatteringMedium& medium)
     : sigma_t_prime_(medium.sigma_t_prime()),
       thickness_(medium.thickness_mm),
-      sources_(improved_diffusion(medium), medium.thickness_mm, depths_of(medium).depths_mm) {
+      sources_(improved_diffusion(medium), medium.thickness_mm, depths_mm(medium)) {
     const double albedo = medium.albedo_prime();
-    for (const double power : depths_of(medium).powers) powers_.push_back(albedo * albedo * power);
+    for (const double power : beam_depths(0.0, medium.reduced_depth()).powers) {
+        powers_.push_back(albedo * albedo * power);
+    }
 }
 
 Exitance BeamDiffusion::at(double radius_mm) const {

@@ -8,6 +8,14 @@
 
 namespace livery {
 
+/// A narrow beam's sources between two reduced depths: these, and the power each stands for.
+struct BeamDepths {
+    std::vector<double> reduced_depths, powers;
+};
+/// In panels that grow with the depth, down to where nothing is left of the beam: what is near the
+/// surface shapes the profile near the beam.
+BeamDepths beam_depths(double from, double to);
+
 class BeamDiffusion {
   public:
     explicit BeamDiffusion(const ScatteringMedium& medium);

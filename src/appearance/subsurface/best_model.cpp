@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -20,6 +21,17 @@ int measured_error(const ScatteringMedium& medium) {
     return 4;
 }
 
+/// The same of compared_stacks(): what crosses a layer without being scattered is no narrow beam's
+/// light any more, and of what comes out below several layers a seventh lies elsewhere.
+int measured_error(const ScatteringStack& stack) {
+    const bool clear =
+        std::any_of(stack.layers.begin(), stack.layers.end(), [](const ScatteringMedium& layer) {
+            const double depth = layer.thickness_mm.value_or(0.0) * layer.sigma_s_prime();
+            return layer.thickness_mm && depth < 0.3;
+        });
+    return stack.is_slab() || clear ? 16 : 5;
+}
+
 }  // namespace
 
 ModelChoice best_model(const ScatteringMedium& medium) {
@@ -32,6 +44,17 @@ ModelChoice best_model(const ScatteringMedium& medium) {
                         "single scattering and beam diffusion scaled to the exact total: within "
                         "{}% of the light in those like this one",
                         measured_error(medium))};
+}
+
+ModelChoice best_model(const ScatteringStack& given) {
+    const ScatteringStack stack = merged(given);
+    if (stack.layers.size() == 1) return best_model(stack.layers.front());
+    constexpr auto kBest = SubsurfaceModel::scaled_beam_diffusion;
+    if (!stack.scatters()) return {kBest, "nothing scatters here, which every model knows"};
+    return {kBest,
+            fmt::format("nearer to Monte Carlo than the multipole in every stack compared, within "
+                        "{}% of the light",
+                        measured_error(stack))};
 }
 
 }  // namespace livery

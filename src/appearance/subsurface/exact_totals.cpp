@@ -99,21 +99,14 @@ Layer doubled(const Layer& layer) {
 
 constexpr double kNothing = 1e-9;
 
-}  // namespace
-
-DiffuseTotals exact_totals(const ScatteringMedium& medium, int points) {
-    check_medium(medium);
-    if (medium.sigma_s_per_mm == 0.0) return {};
-    // All that enters a half space comes out again.
-    if (!medium.thickness_mm && medium.sigma_a_per_mm == 0.0) return {1.0, 0.0};
-    const Cosines cosines = cosines_of(medium.eta, points);
+/// A layer of the thickness, or one so thick that nothing gets through.
+Layer homogeneous_layer(const Cosines& cosines, const ScatteringMedium& medium, int points) {
     const double cut =
         std::pow(std::abs(medium.g), points) * (medium.g < 0.0 && points % 2 != 0 ? -1.0 : 1.0);
     const double scattered = medium.sigma_s_per_mm * (1.0 - cut);
     const double extinction = medium.sigma_a_per_mm + scattered;
-    const double albedo = scattered / extinction;
+    const double albedo = extinction > 0.0 ? scattered / extinction : 0.0;
 
-    // A layer of the thickness, or one so thick that nothing gets through.
     const double thinnest = 0.02 * cosines.mu.minCoeff();
     double depth = thinnest;
     int doublings = 80;
@@ -128,13 +121,60 @@ DiffuseTotals exact_totals(const ScatteringMedium& medium, int points) {
         if (layer.transmitted.cwiseAbs().maxCoeff() < kNothing) break;
         layer = doubled(layer);
     }
+    return layer;
+}
+
+Vector mirrored_at(const Cosines& cosines, double eta) {
+    Vector mirrored(cosines.mu.size());
+    for (Eigen::Index k = 0; k < mirrored.size(); ++k) {
+        mirrored[k] = inner_reflectance(eta, cosines.mu[k]);
+    }
+    return mirrored;
+}
+
+/// Rounding of forty doublings may gain some millionths, and lose them where nothing is absorbed.
+DiffuseTotals conserving(double up, double down, const UnscatteredLight& light, bool lossless) {
+    DiffuseTotals totals{std::clamp(up, 0.0, 1.0), std::clamp(down, 0.0, 1.0)};
+    const double scattered_share = 1.0 - light.reflected - light.transmitted;
+    const double sum = totals.reflectance + totals.transmittance;
+    if (sum > scattered_share || (lossless && sum > 0.0)) {
+        totals.reflectance *= scattered_share / sum;
+        totals.transmittance *= scattered_share / sum;
+    }
+    return totals;
+}
+
+/// Several layers, which do not look the same from above (down) and from below (up).
+struct Layers {
+    Matrix reflected_down, transmitted_down, reflected_up, transmitted_up;
+};
+
+Layers added(const Layers& above, const Layers& below) {
+    const Eigen::Index count = above.reflected_up.rows();
+    const Matrix one = Matrix::Identity(count, count);
+    const auto down = (one - above.reflected_up * below.reflected_down).partialPivLu();
+    const auto up = (one - below.reflected_down * above.reflected_up).partialPivLu();
+    const Matrix between_down = down.solve(above.transmitted_down);
+    const Matrix between_up = up.solve(below.transmitted_up);
+    return {above.reflected_down + above.transmitted_up * below.reflected_down * between_down,
+            below.transmitted_down * between_down,
+            below.reflected_up + below.transmitted_down * above.reflected_up * between_up,
+            above.transmitted_up * between_up};
+}
+
+}  // namespace
+
+DiffuseTotals exact_totals(const ScatteringMedium& medium, int points) {
+    check_medium(medium);
+    if (medium.sigma_s_per_mm == 0.0) return {};
+    // All that enters a half space comes out again.
+    if (!medium.thickness_mm && medium.sigma_a_per_mm == 0.0) return {1.0, 0.0};
+    const Cosines cosines = cosines_of(medium.eta, points);
+    const Layer layer = homogeneous_layer(cosines, medium, points);
 
     // Even light of radiance 1 from above, and what the two boundaries then send to and fro: half
     // of it is the same from above and below, half the opposite.
-    Vector mirrored(cosines.mu.size());
-    for (Eigen::Index k = 0; k < mirrored.size(); ++k) {
-        mirrored[k] = inner_reflectance(medium.eta, cosines.mu[k]);
-    }
+    const Vector mirrored = mirrored_at(cosines, medium.eta);
     const Vector entering = 0.5 * (Vector::Ones(mirrored.size()) - mirrored);
     const Matrix one = Matrix::Identity(mirrored.size(), mirrored.size());
     const auto leaves = [&](const Matrix& through) -> Vector {
@@ -149,18 +189,51 @@ DiffuseTotals exact_totals(const ScatteringMedium& medium, int points) {
     const UnscatteredLight unscattered = unscattered_light(medium);
     const double up = alike[normal] + opposite[normal] - unscattered.reflected;
     const double down = alike[normal] - opposite[normal] - unscattered.transmitted;
-    DiffuseTotals totals;
-    totals.reflectance = LIVERY_MUTATED(exact_totals, std::clamp(up, 0.0, 1.0));
-    totals.transmittance = medium.thickness_mm ? std::clamp(down, 0.0, 1.0) : 0.0;
-    // Rounding of forty doublings may gain some millionths, and lose them where nothing is
-    // absorbed.
-    const double scattered_share = 1.0 - unscattered.reflected - unscattered.transmitted;
-    const double sum = totals.reflectance + totals.transmittance;
-    if (sum > scattered_share || (medium.sigma_a_per_mm == 0.0 && sum > 0.0)) {
-        totals.reflectance *= scattered_share / sum;
-        totals.transmittance *= scattered_share / sum;
+    return conserving(LIVERY_MUTATED(exact_totals, std::clamp(up, 0.0, 1.0)),
+                      medium.thickness_mm ? down : 0.0,
+                      unscattered,
+                      medium.sigma_a_per_mm == 0.0);
+}
+
+DiffuseTotals exact_totals(const ScatteringStack& given, int points) {
+    check_stack(given);
+    const ScatteringStack stack = merged(given);
+    if (stack.layers.size() == 1) return exact_totals(stack.layers.front(), points);
+    if (!stack.scatters()) return {};
+    const ScatteringMedium& last = stack.layers.back();
+    const bool lossless = std::all_of(stack.layers.begin(),
+                                      stack.layers.end(),
+                                      [](const auto& one) { return one.sigma_a_per_mm == 0.0; });
+    const bool open_below = !stack.is_slab() && !(last.sigma_t() > 0.0);
+    if (lossless && !stack.is_slab() && !open_below) return {1.0, 0.0};
+
+    const Cosines cosines = cosines_of(stack.eta(), points);
+    const Eigen::Index count = cosines.mu.size();
+    const Matrix one = Matrix::Identity(count, count);
+    Layers whole{Matrix::Zero(count, count), one, Matrix::Zero(count, count), one};
+    for (const ScatteringMedium& layer : stack.layers) {
+        if (&layer == &last && open_below) continue;
+        const Layer next = homogeneous_layer(cosines, layer, points);
+        whole = added(whole, {next.reflected, next.transmitted, next.reflected, next.transmitted});
     }
-    return totals;
+    // By reciprocity what a beam along the normal makes leave at the top, and the bottom, is what
+    // even light from above, and from below, shows along the normal at the top.
+    const Vector mirrored = mirrored_at(cosines, stack.eta());
+    const Vector below = stack.is_slab() ? mirrored : Vector(Vector::Zero(count));
+    const Vector entering = Vector::Ones(count) - mirrored;
+    Matrix system(2 * count, 2 * count);
+    system << one - whole.reflected_down * mirrored.asDiagonal(),
+        -whole.transmitted_up * below.asDiagonal(), -whole.transmitted_down * mirrored.asDiagonal(),
+        one - whole.reflected_up * below.asDiagonal();
+    Matrix light(2 * count, 2);
+    light << whole.reflected_down * entering, whole.transmitted_up * entering,
+        whole.transmitted_down * entering, whole.reflected_up * entering;
+    const Matrix seen = system.partialPivLu().solve(light);
+    const UnscatteredLight unscattered = unscattered_light(stack);
+    return conserving(seen(count - 1, 0) - unscattered.reflected,
+                      stack.is_slab() ? seen(count - 1, 1) - unscattered.transmitted : 0.0,
+                      unscattered,
+                      lossless && stack.is_slab());
 }
 
 }  // namespace livery

@@ -13,11 +13,11 @@ namespace livery {
 namespace {
 
 /// From the beam to where a thousandth is left, each an eighth wider than the one before.
-std::vector<ProfileRing> rings_of(const ScatteringMedium& medium) {
+std::vector<ProfileRing> rings_of(const ScatteringStack& stack) {
     const SubsurfaceProfile profile =
-        subsurface_profile(SubsurfaceModel::scaled_beam_diffusion, medium);
-    const double path = medium.mean_free_path_mm();
-    const double end = std::max(energy_radius_mm(profile, medium, 0.999), 3.0 * path);
+        subsurface_profile(SubsurfaceModel::scaled_beam_diffusion, stack);
+    const double path = stack.mean_free_path_mm();
+    const double end = std::max(energy_radius_mm(profile, path, 0.999), 3.0 * path);
     std::vector<ProfileRing> rings{{0.0, 0.02 * path}};
     while (rings.back().outer_mm < end) {
         rings.push_back({rings.back().outer_mm, 1.125 * rings.back().outer_mm});
@@ -31,10 +31,11 @@ double area_of(const ProfileRing& ring) {
 
 /// Mean over the ring's area. In the innermost, where profiles go as 1/r, too.
 double mean_over(const std::function<double(double)>& profile, const ProfileRing& ring) {
-    static const auto nodes = gauss_legendre(8);
-    const double sum = integrate(nodes, ring.inner_mm, ring.outer_mm, [&](double r) {
-        return 2.0 * std::numbers::pi * r * profile(r);
-    });
+    static const auto many = gauss_legendre(8), few = gauss_legendre(3);
+    const double sum =
+        integrate(ring.inner_mm > 0.0 ? few : many, ring.inner_mm, ring.outer_mm, [&](double r) {
+            return 2.0 * std::numbers::pi * r * profile(r);
+        });
     return sum / area_of(ring);
 }
 
@@ -87,14 +88,36 @@ const std::vector<NamedMedium>& compared_media() {
     return media;
 }
 
+const std::vector<NamedStack>& compared_stacks() {
+    static const std::vector<NamedStack> stacks{
+        {"skin 1, 1 mm, on marble", {{{0.17, 0.88, 0.0, 1.3, 1.0}, {0.0041, 2.62, 0.0, 1.3, {}}}}},
+        {"marble, 1 mm, on skin 1", {{{0.0041, 2.62, 0.0, 1.3, 1.0}, {0.17, 0.88, 0.0, 1.3, {}}}}},
+        {"marble, 1 mm, on an absorber",
+         {{{0.0041, 2.62, 0.0, 1.5, 1.0}, {2.0, 0.2, 0.0, 1.5, {}}}}},
+        {"clear, .5 mm, on marble", {{{0.0, 0.0, 0.0, 1.5, 0.5}, {0.0041, 2.62, 0.0, 1.5, {}}}}},
+        {"marble, 1 mm, skin 1, 1 mm",
+         {{{0.0041, 2.62, 0.0, 1.5, 1.0}, {0.17, 0.88, 0.0, 1.5, 1.0}}}},
+        {"three of skin, 3 mm",
+         {{{0.3, 1.5, 0.0, 1.4, 0.3}, {0.05, 2.5, 0.0, 1.4, 1.2}, {0.02, 1.0, 0.0, 1.4, 1.5}}}},
+    };
+    return stacks;
+}
+
 MediumErrors model_errors(const NamedMedium& named,
                           const MonteCarloSettings& settings,
                           const Progress& progress) {
-    const ScatteringMedium& medium = named.medium;
-    const std::vector<ProfileRing> rings = rings_of(medium);
-    const MonteCarloProfile truth = monte_carlo_profile(medium, rings, settings, progress);
-    const double whole = exact_totals(medium).reflectance;
-    MediumErrors errors{named.name, medium, 0.0, {}, info_of(best_model(medium).model).name};
+    return model_errors(NamedStack{named.name, {{named.medium}}}, settings, progress);
+}
+
+MediumErrors model_errors(const NamedStack& named,
+                          const MonteCarloSettings& settings,
+                          const Progress& progress) {
+    const ScatteringStack stack = merged(named.stack);
+    const bool is_slab = stack.is_slab(), is_layered = stack.layers.size() > 1;
+    const std::vector<ProfileRing> rings = rings_of(stack);
+    const MonteCarloProfile truth = monte_carlo_profile(stack, rings, settings, progress);
+    const double whole = exact_totals(stack).reflectance;
+    MediumErrors errors{named.name, is_slab, 0.0, {}, info_of(best_model(stack).model).name};
     double noise = 0.0, all = 0.0;
     for (std::size_t k = 0; k < rings.size(); ++k) {
         // The mean of |x| for a normal error.
@@ -103,19 +126,20 @@ MediumErrors model_errors(const NamedMedium& named,
     }
     errors.noise_l1 = all > 0.0 ? noise / all : 0.0;
     for (const SubsurfaceModelInfo& info : subsurface_models()) {
-        if (medium.thickness_mm ? !info.slab : !info.half_space) continue;
-        const SubsurfaceProfile profile = subsurface_profile(info.model, medium);
+        const bool known = is_layered ? info.layers : is_slab ? info.slab : info.half_space;
+        if (!known) continue;
+        const SubsurfaceProfile profile = subsurface_profile(info.model, stack);
         std::vector<double> rd, rt;
         for (const ProfileRing& ring : rings) {
             rd.push_back(mean_over(profile.reflected, ring));
-            rt.push_back(mean_over(profile.transmitted, ring));
+            rt.push_back(is_slab ? mean_over(profile.transmitted, ring) : 0.0);
         }
         ModelError error;
         error.model = info.model;
         error.reflectance_l1 = l1_of(rd, truth.rd, rings);
         error.transmittance_l1 = l1_of(rt, truth.rt, rings);
         error.reflectance_bias = whole > 0.0 ? profile.totals.reflectance / whole - 1.0 : 0.0;
-        error.rms_ln = rms_ln_of(rd, truth.rd, rings, medium.mean_free_path_mm());
+        error.rms_ln = rms_ln_of(rd, truth.rd, rings, stack.mean_free_path_mm());
         error.was_negative = profile.was_negative;
         errors.models.push_back(error);
     }
@@ -130,15 +154,14 @@ std::string markdown_of(const std::vector<MediumErrors>& media) {
         std::string name = errors.name;
         for (const ModelError& error : errors.models) {
             const std::string model = info_of(error.model).name;
-            text += fmt::format("| {} | {} | {:.1f}% | {:+.1f}% | {:.3f} | {} |\n",
-                                name,
-                                model == errors.best ? "**" + model + "**" : model,
-                                100.0 * error.reflectance_l1,
-                                100.0 * error.reflectance_bias,
-                                error.rms_ln,
-                                errors.medium.thickness_mm
-                                    ? fmt::format("{:.1f}%", 100.0 * error.transmittance_l1)
-                                    : "");
+            text += fmt::format(
+                "| {} | {} | {:.1f}% | {:+.1f}% | {:.3f} | {} |\n",
+                name,
+                model == errors.best ? "**" + model + "**" : model,
+                100.0 * error.reflectance_l1,
+                100.0 * error.reflectance_bias,
+                error.rms_ln,
+                errors.is_slab ? fmt::format("{:.1f}%", 100.0 * error.transmittance_l1) : "");
             name.clear();
         }
     }

@@ -21,11 +21,22 @@ struct ModelError {
 
 struct MediumErrors {
     std::string name;
-    ScatteringMedium medium;
+    bool is_slab = false;
     double noise_l1 = 0.0;  ///< what of each L1 Monte Carlo's own standard errors amount to
     std::vector<ModelError> models;
     std::string best;  ///< what best_model() chooses
 };
+
+struct NamedStack {
+    std::string name;
+    ScatteringStack stack;
+};
+/// Layers of all kinds, of which the other table there speaks.
+const std::vector<NamedStack>& compared_stacks();
+
+MediumErrors model_errors(const NamedStack& stack,
+                          const MonteCarloSettings& settings,
+                          const Progress& progress = {});
 
 struct NamedMedium {
     std::string name;

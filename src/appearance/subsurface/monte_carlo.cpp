@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 #include <glm/vec3.hpp>
 
-#include "appearance/subsurface/diffusion.h"
 #include "appearance/subsurface/fresnel_moments.h"
+#include "appearance/subsurface/layered_sources.h"
 #include "core/mutation.h"
 #include "core/parallel.h"
 #include "core/random.h"
@@ -97,30 +97,105 @@ glm::dvec3 scattered(const glm::dvec3& from, double g, Random& random) {
     return to / std::sqrt(to.x * to.x + to.y * to.y + to.z * to.z);
 }
 
+/// Where a photon is: the layer, and its depth under the top of all.
+struct PhotonPlace {
+    std::size_t layer = 0;
+    double depth_mm = 0.0;
+};
+
+/// Layers without boundaries between them: a flight is straight through all of them.
+class Strata {
+  public:
+    explicit Strata(const ScatteringStack& stack) {
+        double from = 0.0, optical = 0.0;
+        for (const ScatteringMedium& layer : stack.layers) {
+            const double thickness =
+                layer.thickness_mm.value_or(std::numeric_limits<double>::infinity());
+            const double sigma_t = layer.sigma_t();
+            layers_.push_back({from,
+                               from + thickness,
+                               optical,
+                               sigma_t,
+                               sigma_t > 0.0 ? layer.sigma_s_per_mm / sigma_t : 0.0,
+                               layer.g});
+            from += thickness;
+            if (sigma_t > 0.0) optical += sigma_t * thickness;
+        }
+        optical_ = optical;
+    }
+    struct Layer {
+        double top, bottom, optical, sigma_t, albedo, g;
+    };
+    const Layer& at(std::size_t layer) const { return layers_[layer]; }
+    std::size_t last() const { return layers_.size() - 1; }
+    double thickness() const { return layers_.back().bottom; }
+
+    /// Mean free paths from a place straight up, or down, to the boundary.
+    double optical_to_boundary(const PhotonPlace& place, bool up) const {
+        const Layer& layer = layers_[place.layer];
+        if (layers_.size() == 1) {
+            return layer.sigma_t * (up ? place.depth_mm : layer.bottom - place.depth_mm);
+        }
+        const double here = layer.optical + layer.sigma_t * (place.depth_mm - layer.top);
+        return up ? here : std::max(optical_ - here, 0.0);
+    }
+    /// How far a flight of so many mean free paths goes, which meets something before a boundary;
+    /// `place` becomes where.
+    double fly(PhotonPlace& place, double flight, double cosine) const {
+        double flown = 0.0;
+        while (true) {
+            const Layer& layer = layers_[place.layer];
+            const double room = cosine < 0.0   ? (layer.top - place.depth_mm) / cosine
+                                : cosine > 0.0 ? (layer.bottom - place.depth_mm) / cosine
+                                               : std::numeric_limits<double>::infinity();
+            const bool ends = place.layer == (cosine < 0.0 ? 0 : last());
+            const double here = layer.sigma_t > 0.0 ? flight / layer.sigma_t : room;
+            if (ends || (here < room && layer.sigma_t > 0.0)) {
+                place.depth_mm += here * cosine;
+                return flown + here;
+            }
+            flight = std::max(flight - layer.sigma_t * room, 0.0);
+            flown += room;
+            place.depth_mm = cosine < 0.0 ? layer.top : layer.bottom;
+            place.layer = cosine < 0.0 ? place.layer - 1 : place.layer + 1;
+        }
+    }
+
+  private:
+    std::vector<Layer> layers_;
+    double optical_ = 0.0;
+};
+
 class Walk {
   public:
-    Walk(const ScatteringMedium& medium, const RingPieces& pieces)
-        : medium_(medium),
+    Walk(const ScatteringStack& stack, const RingPieces& pieces)
+        : eta_(stack.eta()),
+          is_slab_(stack.is_slab()),
           pieces_(pieces),
-          thickness_(medium.thickness_mm.value_or(std::numeric_limits<double>::infinity())),
-          sigma_t_(medium.sigma_t()),
-          albedo_(LIVERY_MUTATED(monte_carlo, medium.sigma_s_per_mm / sigma_t_)) {}
+          strata_(stack),
+          diffusion_(diffusion_stack(stack, classical_diffusion)),
+          far_(LayeredDiffusion(diffusion_.layers, diffusion_.top, diffusion_.bottom).at(0.0)) {}
 
     void photon(Random& random, PhotonTally& tally) const {
         glm::dvec3 at{0.0}, along{0.0, 0.0, 1.0};
+        std::size_t layer = 0;
         double weight = 1.0;
         int scatterings = 0;
         while (true) {
             // What of this flight would meet a boundary, and what the boundary lets out.
             const bool up = along.z < 0.0;
-            const double room = up ? at.z : thickness_ - at.z;
+            const bool has_boundary = up || is_slab_;
+            const double room = up ? at.z : strata_.thickness() - at.z;
             const double boundary =
                 along.z != 0.0 ? room / std::abs(along.z) : std::numeric_limits<double>::infinity();
-            const double optical = sigma_t_ * boundary;
+            double optical = std::numeric_limits<double>::infinity();
+            if (along.z != 0.0) {
+                optical = strata_.optical_to_boundary({layer, at.z}, up) / std::abs(along.z);
+            }
             const double flight = -std::log1p(-random.uniform());
             double mirrored = 1.0;
-            if (optical < kOutOfReach || flight >= optical) {
-                mirrored = inner_reflectance(medium_.eta, std::abs(along.z));
+            if (has_boundary && (optical < kOutOfReach || flight >= optical)) {
+                mirrored = inner_reflectance(eta_, std::abs(along.z));
             }
             if (scatterings > 0 && mirrored < 1.0) {
                 const double x = at.x + boundary * along.x, y = at.y + boundary * along.y;
@@ -129,18 +204,27 @@ class Walk {
                     weight * (1.0 - mirrored) * std::exp(-optical);
             }
             if (flight >= optical) {
+                if (!has_boundary) {
+                    tally.absorbed += weight;
+                    return;
+                }
                 leave(up, scatterings > 0, weight * (1.0 - mirrored), tally);
                 weight *= mirrored;
                 at += boundary * along;
-                at.z = up ? 0.0 : thickness_;
+                at.z = up ? 0.0 : strata_.thickness();
+                layer = up ? 0 : strata_.last();
                 along.z = -along.z;
             } else {
-                at += flight / sigma_t_ * along;
-                tally.absorbed += weight * (1.0 - albedo_);
-                weight *= albedo_;
-                along = scattered(along, medium_.g, random);
+                PhotonPlace place{layer, at.z};
+                at += strata_.fly(place, flight, along.z) * along;
+                if (place.layer != layer) at.z = place.depth_mm;
+                layer = place.layer;
+                const Strata::Layer& met = strata_.at(layer);
+                tally.absorbed += weight * (1.0 - met.albedo);
+                weight *= LIVERY_MUTATED(monte_carlo, met.albedo);
+                along = scattered(along, met.g, random);
                 if (++scatterings == kMostScatterings) {
-                    share_out(at.z, weight, tally);
+                    share_out({layer, at.z}, weight, tally);
                     return;
                 }
             }
@@ -163,18 +247,21 @@ class Walk {
         }
     }
     /// Whoever has scattered so often is far from the beam, and goes where diffusion goes.
-    void share_out(double depth, double weight, PhotonTally& tally) const {
-        const PointSources source(classical_diffusion(medium_), medium_.thickness_mm, {depth});
-        const Exitance out = source.total(0);
+    void share_out(const PhotonPlace& place, double weight, PhotonTally& tally) const {
+        Exitance out = far_.of(place.layer, place.depth_mm - strata_.at(place.layer).top);
+        if (diffusion_.lost_below) out.transmitted = 0.0;
         const double all = std::max(out.reflected + out.transmitted, 1.0);
         tally.reflected += weight * out.reflected / all;
         tally.transmitted += weight * out.transmitted / all;
         tally.absorbed += weight * (1.0 - (out.reflected + out.transmitted) / all);
     }
 
-    ScatteringMedium medium_;
+    double eta_;
+    bool is_slab_;
     const RingPieces& pieces_;
-    double thickness_, sigma_t_, albedo_;
+    Strata strata_;
+    DiffusionStack diffusion_;
+    LayeredDiffusion::Spectrum far_;
 };
 
 /// Of the batches' values per photon.
@@ -191,8 +278,8 @@ Estimate estimate(const Value& value_of_batch) {
 }
 
 /// Nothing is met: what enters goes straight on.
-MonteCarloProfile of_nothing(const ScatteringMedium& medium, std::size_t rings) {
-    const UnscatteredLight light = unscattered_light(medium);
+MonteCarloProfile of_nothing(const ScatteringStack& stack, std::size_t rings) {
+    const UnscatteredLight light = unscattered_light(stack);
     MonteCarloProfile profile;
     profile.rd.resize(rings);
     profile.rt.resize(rings);
@@ -204,10 +291,14 @@ MonteCarloProfile of_nothing(const ScatteringMedium& medium, std::size_t rings) 
 
 }  // namespace
 
-ProfileRing ring_around(const ScatteringMedium& medium, double radius_mm) {
-    const double least = least_radius_mm(medium);
+ProfileRing ring_around(const ScatteringStack& stack, double radius_mm) {
+    const double least = least_radius_mm(stack);
     if (radius_mm < least) return {0.0, least};
     return {0.98 * radius_mm, 1.02 * radius_mm};
+}
+
+ProfileRing ring_around(const ScatteringMedium& medium, double radius_mm) {
+    return ring_around(ScatteringStack{{medium}}, radius_mm);
 }
 
 MonteCarloProfile monte_carlo_profile(const ScatteringMedium& medium,
@@ -215,6 +306,15 @@ MonteCarloProfile monte_carlo_profile(const ScatteringMedium& medium,
                                       const MonteCarloSettings& settings,
                                       const Progress& progress) {
     check_medium(medium);
+    return monte_carlo_profile(ScatteringStack{{medium}}, rings, settings, progress);
+}
+
+MonteCarloProfile monte_carlo_profile(const ScatteringStack& given,
+                                      const std::vector<ProfileRing>& rings,
+                                      const MonteCarloSettings& settings,
+                                      const Progress& progress) {
+    check_stack(given);
+    const ScatteringStack stack = merged(given);
     check_argument(
         settings.photons >= kBatches,
         fmt::format("photons: found {}, expected {} or more", settings.photons, kBatches));
@@ -225,10 +325,10 @@ MonteCarloProfile monte_carlo_profile(const ScatteringMedium& medium,
                         ring.inner_mm,
                         ring.outer_mm));
     }
-    if (!(medium.sigma_t() > 0.0)) return of_nothing(medium, rings.size());
+    if (!(stack.depth() > 0.0)) return of_nothing(stack, rings.size());
 
     const RingPieces pieces(rings);
-    const Walk walk(medium, pieces);
+    const Walk walk(stack, pieces);
     const std::uint64_t each = (settings.photons + kBatches - 1) / kBatches;
     std::vector<PhotonTally> tallies(kBatches);
     for (std::size_t first = 0; first < kBatches; first += kBatchesAtOnce) {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "appearance/subsurface/scattering_medium.h"
+#include "appearance/subsurface/scattering_stack.h"
 #include "core/progress.h"
 
 namespace livery {
@@ -25,6 +25,7 @@ struct ProfileRing {
 };
 /// Within 2% of the radius; the disc of the medium's least radius for one within it.
 ProfileRing ring_around(const ScatteringMedium& medium, double radius_mm);
+ProfileRing ring_around(const ScatteringStack& stack, double radius_mm);
 
 /// Per unit power that enters along the normal at a point. Totals of light that scattered;
 /// reflected + transmitted + absorbed and what never scattered add up to 1 within rounding.
@@ -41,6 +42,11 @@ struct MonteCarloProfile {
 /// is dropped as absorbed at a weight of 1e-6, and after 50 000 scatterings shared out by
 /// diffusion. Throws std::invalid_argument (medium, rings, under 64 photons), Cancelled.
 MonteCarloProfile monte_carlo_profile(const ScatteringMedium& medium,
+                                      const std::vector<ProfileRing>& rings,
+                                      const MonteCarloSettings& settings,
+                                      const Progress& progress = {});
+/// The same in layers. What flies off into an endless clear layer counts as absorbed.
+MonteCarloProfile monte_carlo_profile(const ScatteringStack& stack,
                                       const std::vector<ProfileRing>& rings,
                                       const MonteCarloSettings& settings,
                                       const Progress& progress = {});

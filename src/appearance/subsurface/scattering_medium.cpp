@@ -41,14 +41,16 @@ void check_medium(const ScatteringMedium& medium) {
         throw std::invalid_argument(
             fmt::format("{}: found {}, expected {}", what, found, expected));
     };
-    const auto coefficient = [](double value) { return value >= 0.0 && value <= 1e6; };
+    const auto coefficient = [](double value) {
+        return value >= 0.0 && value <= kLargestCoefficient_per_mm;
+    };
     constexpr const char* kCoefficients = "0 to 1000000 per mm";
     check(coefficient(medium.sigma_a_per_mm), "sigma_a", medium.sigma_a_per_mm, kCoefficients);
     check(coefficient(medium.sigma_s_per_mm), "sigma_s", medium.sigma_s_per_mm, kCoefficients);
     check(std::abs(medium.g) < 1.0, "g", medium.g, "a mean cosine above -1 and below 1");
     check(medium.eta >= 0.5 && medium.eta <= 4.0, "eta", medium.eta, "an index from 0.5 to 4");
     if (medium.thickness_mm) {
-        check(*medium.thickness_mm > 0.0 && *medium.thickness_mm <= 1e6,
+        check(*medium.thickness_mm > 0.0 && *medium.thickness_mm <= kThickest_mm,
               "thickness",
               *medium.thickness_mm,
               "above 0 and up to 1000000 mm");

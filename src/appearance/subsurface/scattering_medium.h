@@ -5,6 +5,9 @@
 
 namespace livery {
 
+/// What files may say: more is no medium, and 1 - g stays a number that can be divided by.
+inline constexpr double kLargestCoefficient_per_mm = 1e6, kThickest_mm = 1e6, kLargestG = 0.9999;
+
 /// Air lies outside. Without a thickness it is a half space, else a slab with air on both sides.
 struct ScatteringMedium {
     double sigma_a_per_mm = 0.0;  ///< absorption

@@ -16,4 +16,9 @@ double single_scattering_transmittance(const ScatteringMedium& medium, double ra
 /// Both over the whole plane.
 DiffuseTotals single_scattering_totals(const ScatteringMedium& medium);
 
+/// The same of layers, each with its own phase function.
+double single_scattering_reflectance(const ScatteringStack& stack, double radius_mm);
+double single_scattering_transmittance(const ScatteringStack& stack, double radius_mm);
+DiffuseTotals single_scattering_totals(const ScatteringStack& stack);
+
 }  // namespace livery

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "appearance/subsurface/beam_diffusion.h"
+#include "appearance/subsurface/made_profile.h"
 #include "appearance/subsurface/normalized_diffusion.h"
 #include "appearance/subsurface/over_plane.h"
 #include "appearance/subsurface/p3.h"
@@ -23,11 +24,7 @@ namespace {
 /// Thinner slabs, in mean free paths, are lit along their depth and not from one point in it.
 constexpr double kThinSlab = 2.5;
 
-/// A profile and its totals, of which each model makes its own.
-struct Made {
-    std::function<Exitance(double)> at;
-    Exitance totals;
-};
+using Made = MadeProfile;
 
 Made of_points(const ScatteringMedium& medium,
                const Diffusion& diffusion,
@@ -115,15 +112,10 @@ Made with_single(const ScatteringMedium& medium, const Made& multiple, Exitance 
 /// What is missing from single scattering to the exact total, in the shape of beam diffusion.
 Made scaled(const ScatteringMedium& medium) {
     const Made multiple = beam_diffusion(medium);
-    const DiffuseTotals exact = exact_totals(medium), once = single_scattering_totals(medium);
-    const auto factor = [](double whole, double part, double shape) {
-        return shape > 0.0 ? std::max(whole - part, 0.0) / shape : 0.0;
-    };
     return with_single(
         medium,
         multiple,
-        {factor(exact.reflectance, once.reflectance, multiple.totals.reflected),
-         factor(exact.transmittance, once.transmittance, multiple.totals.transmitted)});
+        factors_to(exact_totals(medium), single_scattering_totals(medium), multiple));
 }
 
 Made made_of(SubsurfaceModel model, const ScatteringMedium& medium) {
@@ -159,22 +151,35 @@ double value_at(const std::function<double(double)>& profile, double least, doub
 
 }  // namespace
 
+Exitance factors_to(const DiffuseTotals& exact,
+                    const DiffuseTotals& once,
+                    const MadeProfile& multiple) {
+    const auto factor = [](double whole, double part, double shape) {
+        return shape > 0.0 ? std::max(whole - part, 0.0) / shape : 0.0;
+    };
+    return {factor(exact.reflectance, once.reflectance, multiple.totals.reflected),
+            factor(exact.transmittance, once.transmittance, multiple.totals.transmitted)};
+}
+
 const std::vector<SubsurfaceModelInfo>& subsurface_models() {
     using enum SubsurfaceModel;
     static const std::vector<SubsurfaceModelInfo> models{
-        {dipole, "dipole", true, false, "a point source and its image (Jensen et al. 2001)"},
+        {dipole, "dipole", true, false, false, "a point source and its image (Jensen et al. 2001)"},
         {better_dipole,
          "better-dipole",
          true,
+         false,
          false,
          "Grosjean's diffusion and exitance (d'Eon 2012), with single scattering"},
         {beam_diffusion,
          "beam-diffusion",
          true,
          true,
+         false,
          "sources along the beam (Habel et al. 2013), with single scattering"},
         {scaled_beam_diffusion,
          "scaled-beam-diffusion",
+         true,
          true,
          true,
          "the same, diffusion scaled to the exact total"},
@@ -182,11 +187,18 @@ const std::vector<SubsurfaceModelInfo>& subsurface_models() {
          "multipole",
          false,
          true,
+         true,
          "images on both sides of a slab (Donner and Jensen 2005)"},
-        {p3, "p3", true, false, "third-order spherical harmonics, a point source and its image"},
+        {p3,
+         "p3",
+         true,
+         false,
+         false,
+         "third-order spherical harmonics, a point source and its image"},
         {normalized_diffusion,
          "normalized-diffusion",
          true,
+         false,
          false,
          "two exponentials fitted to Monte Carlo (Christensen and Burley 2015)"},
     };
@@ -232,8 +244,19 @@ SubsurfaceProfile subsurface_profile(SubsurfaceModel model, const ScatteringMedi
         return profile;
     }
     const Made made = made_of(model, medium);
+    finish_profile(made, unscattered_light(medium), profile);
+    if (model == SubsurfaceModel::p3) {
+        for (double paths = 1e-2; paths < 1e2 && !profile.was_negative; paths *= 1.3) {
+            profile.was_negative = made.at(paths * medium.mean_free_path_mm()).reflected < 0.0;
+        }
+    }
+    return profile;
+}
+
+void finish_profile(const MadeProfile& made,
+                    const UnscatteredLight& unscattered,
+                    SubsurfaceProfile& profile) {
     profile.totals = {std::max(made.totals.reflected, 0.0), std::max(made.totals.transmitted, 0.0)};
-    const UnscatteredLight unscattered = unscattered_light(medium);
     const double most = 1.0 - unscattered.reflected - unscattered.transmitted;
     const double all = profile.totals.reflectance + profile.totals.transmittance;
     if (all > most) {
@@ -247,12 +270,6 @@ SubsurfaceProfile subsurface_profile(SubsurfaceModel model, const ScatteringMedi
     profile.transmitted = [at = made.at, scale = profile.scale](double r) {
         return scale * std::max(at(r).transmitted, 0.0);
     };
-    if (model == SubsurfaceModel::p3) {
-        for (double paths = 1e-2; paths < 1e2 && !profile.was_negative; paths *= 1.3) {
-            profile.was_negative = made.at(paths * medium.mean_free_path_mm()).reflected < 0.0;
-        }
-    }
-    return profile;
 }
 
 double SubsurfaceProfile::reflectance(double radius_mm) const {
@@ -266,15 +283,18 @@ double SubsurfaceProfile::transmittance(double radius_mm) const {
 double energy_radius_mm(const SubsurfaceProfile& profile,
                         const ScatteringMedium& medium,
                         double share) {
+    return energy_radius_mm(profile, medium.mean_free_path_mm(), share);
+}
+
+double energy_radius_mm(const SubsurfaceProfile& profile, double mean_free_path_mm, double share) {
     check_argument(share > 0.0 && share < 1.0,
                    fmt::format("share: found {}, expected above 0 and below 1", share));
     if (!(profile.least_radius_mm > 0.0) || !(profile.totals.reflectance > 0.0)) return 0.0;
-    const double path = medium.mean_free_path_mm();
     const auto f = [&](double r) { return Exitance{profile.reflected(r), 0.0}; };
     // Rings of a tenth in the logarithm, until there is enough.
-    double within = over_disc(1e-5 * path, 1e-3 * path, f).reflected;
+    double within = over_disc(1e-5 * mean_free_path_mm, 1e-3 * mean_free_path_mm, f).reflected;
     const double wanted = share * profile.totals.reflectance;
-    double r = 1e-3 * path;
+    double r = 1e-3 * mean_free_path_mm;
     for (int k = 0; k < 200; ++k) {
         const double next = r * std::exp(0.1);
         const double ring =

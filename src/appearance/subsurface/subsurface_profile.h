@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "appearance/subsurface/exact_totals.h"
+#include "appearance/subsurface/scattering_stack.h"
 
 namespace livery {
 
@@ -25,7 +26,7 @@ enum class SubsurfaceModel {
 struct SubsurfaceModelInfo {
     SubsurfaceModel model;
     const char* name;
-    bool half_space, slab;
+    bool half_space, slab, layers;
     const char* summary;
 };
 const std::vector<SubsurfaceModelInfo>& subsurface_models();
@@ -63,7 +64,14 @@ struct ModelChoice {
 /// The analytic model that is nearest to Monte Carlo for such a medium, and what says so.
 ModelChoice best_model(const ScatteringMedium& medium);
 
+/// The same for layers: scaled_beam_diffusion, with diffusion solved in all layers at once, or
+/// multipole, layer by layer (Donner and Jensen 2005); others are refused as above. Layers of equal
+/// coefficients are merged, and one that is left is the medium above.
+SubsurfaceProfile subsurface_profile(SubsurfaceModel model, const ScatteringStack& stack);
+ModelChoice best_model(const ScatteringStack& stack);
+
 /// Radius within which this share of what leaves the top does so, by the profile.
+double energy_radius_mm(const SubsurfaceProfile& profile, double mean_free_path_mm, double share);
 double energy_radius_mm(const SubsurfaceProfile& profile,
                         const ScatteringMedium& medium,
                         double share);

@@ -11,14 +11,12 @@ namespace livery {
 namespace {
 
 constexpr int kNewestVersion = 1;
-constexpr double kLargestCoefficient = 1e6, kThickest_mm = 1e6;
-constexpr double kLargestG = 0.9999;
 constexpr const char* kFolder = "materials/translucent";
 
 /// One number for all channels, or three.
 glm::dvec3 coefficients(const JsonReader& value) {
-    if (value.is_number()) return glm::dvec3(value.number_between(0.0, kLargestCoefficient));
-    const auto three = numbers_between(value, 3, 0.0, kLargestCoefficient);
+    if (value.is_number()) return glm::dvec3(value.number_between(0.0, kLargestCoefficient_per_mm));
+    const auto three = numbers_between(value, 3, 0.0, kLargestCoefficient_per_mm);
     return {three[0], three[1], three[2]};
 }
 
@@ -82,7 +80,7 @@ TranslucentMaterial parse_translucent_material(const std::string& text,
     if (json.has("provenance")) material.provenance = json["provenance"].text();
     for (int channel = 0; channel < 3; ++channel) {
         // Strongly forward scattering multiplies what a file says of sigma_s'.
-        if (medium_of(material, channel).sigma_s_per_mm <= kLargestCoefficient) continue;
+        if (medium_of(material, channel).sigma_s_per_mm <= kLargestCoefficient_per_mm) continue;
         json["sigma_s_prime_per_mm"].fail("more than 1000000 per mm over 1 - g", "less");
     }
     return material;

@@ -16,9 +16,9 @@ namespace livery {
 namespace {
 
 struct BssrdfArguments : MediumArguments {
-    std::string model = "best", radii = "0.1,0.2,0.5,1,2,5,10", markdown;
+    std::string layers, model = "best", radii = "0.1,0.2,0.5,1,2,5,10", markdown;
     int photons = 1'000'000;
-    bool compare = false;
+    bool compare = false, compare_layers = false;
 };
 
 std::vector<double> parse_radii(const std::string& text) {
@@ -44,19 +44,38 @@ MonteCarloSettings photons_of(const BssrdfArguments& arguments, const CommonOpti
     return {static_cast<std::uint64_t>(arguments.photons), static_cast<std::uint64_t>(common.seed)};
 }
 
-/// What is said of a medium by every model.
-void tell_medium(const ScatteringMedium& medium, Outcome& outcome) {
-    const UnscatteredLight unscattered = unscattered_light(medium);
+ScatteringStack stack_from(const BssrdfArguments& arguments) {
+    if (arguments.layers.empty()) return {{medium_from(arguments)}};
+    check_argument(arguments.sigma_a.empty() && arguments.sigma_s.empty() && arguments.g.empty() &&
+                       arguments.eta.empty() && arguments.thickness_mm.empty() &&
+                       arguments.material.empty(),
+                   "--layers: found beside options of one medium, expected one or the other");
+    return read_scattering_stack(arguments.layers);
+}
+
+Json json_of(const ScatteringMedium& medium) {
+    Json json = {{"sigma_a_per_mm", medium.sigma_a_per_mm},
+                 {"sigma_s_per_mm", medium.sigma_s_per_mm},
+                 {"sigma_s_prime_per_mm", medium.sigma_s_prime()},
+                 {"g", medium.g},
+                 {"eta", medium.eta}};
+    if (medium.thickness_mm) json["thickness_mm"] = *medium.thickness_mm;
+    return json;
+}
+
+/// What is said of a medium, or layers, by every model.
+void tell_medium(const ScatteringStack& stack, bool layered, Outcome& outcome) {
+    const UnscatteredLight unscattered = unscattered_light(stack);
     Json& figures = outcome.figures;
     figures["specular"] = unscattered.specular;
     figures["unscattered_transmittance"] = unscattered.transmitted;
     figures["unscattered_reflectance"] = unscattered.reflected;
-    figures["medium"] = {{"sigma_a_per_mm", medium.sigma_a_per_mm},
-                         {"sigma_s_per_mm", medium.sigma_s_per_mm},
-                         {"sigma_s_prime_per_mm", medium.sigma_s_prime()},
-                         {"g", medium.g},
-                         {"eta", medium.eta}};
-    if (medium.thickness_mm) figures["medium"]["thickness_mm"] = *medium.thickness_mm;
+    if (!layered) {
+        figures["medium"] = json_of(stack.layers.front());
+        return;
+    }
+    figures["layers"] = Json::array();
+    for (const ScatteringMedium& layer : stack.layers) figures["layers"].push_back(json_of(layer));
 }
 
 std::string text_of(const Json& figures) {
@@ -89,16 +108,16 @@ std::string text_of(const Json& figures) {
     return text;
 }
 
-void run_monte_carlo(const ScatteringMedium& medium,
+void run_monte_carlo(const ScatteringStack& stack,
                      const std::vector<double>& radii,
                      const MonteCarloSettings& settings,
                      const Progress& progress,
                      Json& figures) {
     std::vector<ProfileRing> rings;
-    if (medium.sigma_t() > 0.0) {
+    if (stack.depth() > 0.0) {
         for (const double radius : radii) {
             // Without sigma_s' there is no shortest radius, and nothing to see.
-            ProfileRing ring = ring_around(medium, radius);
+            ProfileRing ring = ring_around(stack, radius);
             if (!(ring.outer_mm > 0.0)) ring.outer_mm = 1e-9;
             rings.push_back(ring);
         }
@@ -106,7 +125,7 @@ void run_monte_carlo(const ScatteringMedium& medium,
         rings.resize(radii.size());
         for (ProfileRing& ring : rings) ring.outer_mm = 1.0;
     }
-    const MonteCarloProfile profile = monte_carlo_profile(medium, rings, settings, progress);
+    const MonteCarloProfile profile = monte_carlo_profile(stack, rings, settings, progress);
     figures["model"] = "montecarlo";
     figures["radii_mm"] = radii;
     const auto tell = [&](const char* name, const std::vector<Estimate>& estimates) {
@@ -119,7 +138,7 @@ void run_monte_carlo(const ScatteringMedium& medium,
         figures[std::string(name) + "_se"] = errors;
     };
     tell("rd", profile.rd);
-    if (medium.thickness_mm) tell("rt", profile.rt);
+    if (stack.is_slab()) tell("rt", profile.rt);
     figures["total_reflectance"] = profile.total_reflectance.value;
     figures["total_reflectance_se"] = profile.total_reflectance.standard_error;
     figures["total_transmittance"] = profile.total_transmittance.value;
@@ -130,13 +149,13 @@ void run_monte_carlo(const ScatteringMedium& medium,
 }
 
 void run_model(const std::string& name,
-               const ScatteringMedium& medium,
+               const ScatteringStack& stack,
                const std::vector<double>& radii,
                Json& figures) {
     const bool best = name == "best";
     const ModelChoice choice =
-        best ? best_model(medium) : ModelChoice{*find_subsurface_model(name), ""};
-    const SubsurfaceProfile profile = subsurface_profile(choice.model, medium);
+        best ? best_model(stack) : ModelChoice{*find_subsurface_model(name), ""};
+    const SubsurfaceProfile profile = subsurface_profile(choice.model, stack);
     figures["model"] = info_of(choice.model).name;
     if (best) {
         figures["asked"] = "best";
@@ -146,20 +165,20 @@ void run_model(const std::string& name,
     Json rd = Json::array(), rt = Json::array();
     for (const double radius : radii) {
         rd.push_back(profile.reflectance(radius));
-        if (medium.thickness_mm) rt.push_back(profile.transmittance(radius));
+        if (stack.is_slab()) rt.push_back(profile.transmittance(radius));
     }
     figures["rd"] = rd;
-    if (medium.thickness_mm) figures["rt"] = rt;
+    if (stack.is_slab()) figures["rt"] = rt;
     figures["total_reflectance"] = profile.totals.reflectance;
     figures["total_transmittance"] = profile.totals.transmittance;
-    const UnscatteredLight unscattered = unscattered_light(medium);
+    const UnscatteredLight unscattered = unscattered_light(stack);
     figures["absorbed"] = 1.0 - profile.totals.reflectance - profile.totals.transmittance -
                           unscattered.transmitted - unscattered.reflected;
     Json notes = Json::array();
     if (profile.was_negative) {
         notes.push_back("the model is below 0 in places, given as 0: the albedo is too low for it");
     }
-    const DiffuseTotals exact = exact_totals(medium);
+    const DiffuseTotals exact = exact_totals(stack);
     const double off = std::max(std::abs(profile.totals.reflectance - exact.reflectance),
                                 std::abs(profile.totals.transmittance - exact.transmittance));
     if (off > 0.02) {
@@ -175,13 +194,12 @@ void run_model(const std::string& name,
 Json json_of(const MediumErrors& errors) {
     Json models = Json::array();
     for (const ModelError& error : errors.models) {
-        models.push_back(
-            {{"name", info_of(error.model).name},
-             {"rd_l1", error.reflectance_l1},
-             {"total_reflectance_bias", error.reflectance_bias},
-             {"rd_rms_ln", error.rms_ln},
-             {"rt_l1", errors.medium.thickness_mm ? Json(error.transmittance_l1) : Json(nullptr)},
-             {"was_negative", error.was_negative}});
+        models.push_back({{"name", info_of(error.model).name},
+                          {"rd_l1", error.reflectance_l1},
+                          {"total_reflectance_bias", error.reflectance_bias},
+                          {"rd_rms_ln", error.rms_ln},
+                          {"rt_l1", errors.is_slab ? Json(error.transmittance_l1) : Json(nullptr)},
+                          {"was_negative", error.was_negative}});
     }
     return {{"name", errors.name},
             {"best", errors.best},
@@ -189,26 +207,27 @@ Json json_of(const MediumErrors& errors) {
             {"models", models}};
 }
 
-Outcome compare(const BssrdfArguments& arguments,
+/// Every model of media, or of layers, against Monte Carlo; `mark` is the table's in the file.
+template <typename Named>
+Outcome compare(const std::vector<Named>& all,
+                const std::string& markdown,
+                const char* mark,
                 const MonteCarloSettings& settings,
                 const Progress& progress) {
-    if (!arguments.markdown.empty()) check_marked_block(arguments.markdown, "bssrdf");
-    std::vector<MediumErrors> all;
-    const auto& media = compared_media();
-    for (std::size_t k = 0; k < media.size(); ++k) {
+    if (!markdown.empty()) check_marked_block(markdown, mark);
+    std::vector<MediumErrors> found;
+    for (std::size_t k = 0; k < all.size(); ++k) {
         const auto share = [&](std::size_t n) {
-            return static_cast<double>(n) / static_cast<double>(media.size());
+            return static_cast<double>(n) / static_cast<double>(all.size());
         };
-        all.push_back(model_errors(media[k], settings, progress.part(share(k), share(k + 1))));
+        found.push_back(model_errors(all[k], settings, progress.part(share(k), share(k + 1))));
     }
     Outcome outcome;
     outcome.figures = {
         {"photons", settings.photons}, {"seed", settings.seed}, {"media", Json::array()}};
-    for (const MediumErrors& errors : all) outcome.figures["media"].push_back(json_of(errors));
-    outcome.text = markdown_of(all);
-    if (!arguments.markdown.empty()) {
-        replace_marked_block(arguments.markdown, "bssrdf", markdown_of(all));
-    }
+    for (const MediumErrors& errors : found) outcome.figures["media"].push_back(json_of(errors));
+    outcome.text = markdown_of(found);
+    if (!markdown.empty()) replace_marked_block(markdown, mark, markdown_of(found));
     return outcome;
 }
 
@@ -225,6 +244,12 @@ Command bssrdf_command() {
         "livery bssrdf --sigma-a 0.0041 --sigma-s 2.62 --eta 1.5 --radii-mm 0.5,1,2,5";
     command.options = medium_options(*arguments);
     const std::vector<Option> own = {
+        {"--layers",
+         "FILE",
+         "translucent layers in the place of one medium (docs/files.md)",
+         &arguments->layers,
+         false,
+         {}},
         {"--model",
          "NAME",
          "a model of docs/subsurface.md, montecarlo, or best: the nearest to Monte Carlo (default "
@@ -245,9 +270,15 @@ Command bssrdf_command() {
          &arguments->compare,
          false,
          {}},
+        {"--compare-layers",
+         "",
+         "the same in layers of all kinds",
+         &arguments->compare_layers,
+         false,
+         {}},
         {"--markdown",
          "FILE",
-         "with --compare: also write the table between the marks in this file",
+         "with --compare or --compare-layers: also write the table between the marks in this file",
          &arguments->markdown,
          false,
          {}},
@@ -255,19 +286,27 @@ Command bssrdf_command() {
     command.options.insert(command.options.end(), own.begin(), own.end());
     command.run = [arguments](const CommonOptions& common, const Progress& progress) {
         const MonteCarloSettings settings = photons_of(*arguments, common);
-        if (arguments->compare) return compare(*arguments, settings, progress);
+        check_argument(!arguments->compare || !arguments->compare_layers,
+                       "--compare-layers: found beside --compare, expected one or the other");
+        if (arguments->compare) {
+            return compare(compared_media(), arguments->markdown, "bssrdf", settings, progress);
+        }
+        if (arguments->compare_layers) {
+            return compare(
+                compared_stacks(), arguments->markdown, "bssrdf-layers", settings, progress);
+        }
         check_argument(arguments->markdown.empty(),
-                       "--markdown: found without --compare, expected "
-                       "with it");
+                       "--markdown: found without --compare or --compare-layers, expected "
+                       "with one of them");
         const std::vector<double> radii = parse_radii(arguments->radii);
-        const ScatteringMedium medium = medium_from(*arguments);
+        const ScatteringStack stack = stack_from(*arguments);
         Outcome outcome;
         if (arguments->model == "montecarlo") {
-            run_monte_carlo(medium, radii, settings, progress, outcome.figures);
+            run_monte_carlo(stack, radii, settings, progress, outcome.figures);
         } else {
-            run_model(arguments->model, medium, radii, outcome.figures);
+            run_model(arguments->model, stack, radii, outcome.figures);
         }
-        tell_medium(medium, outcome);
+        tell_medium(stack, !arguments->layers.empty(), outcome);
         outcome.text = text_of(outcome.figures);
         return outcome;
     };

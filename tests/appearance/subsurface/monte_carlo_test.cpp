@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "appearance/subsurface/exact_totals.h"
+#include "appearance/subsurface/media.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "subsurface_reference.h"
@@ -21,12 +22,6 @@ namespace livery {
 namespace {
 
 constexpr std::uint64_t kPhotonSeed = 4;
-
-double sum_of(const MonteCarloProfile& profile) {
-    return profile.total_reflectance.value + profile.total_transmittance.value +
-           profile.absorbed.value + profile.unscattered_reflectance +
-           profile.unscattered_transmittance;
-}
 
 TEST(MonteCarlo, IsWithinItsErrorOfExactTotals) {
     std::printf("seed %d\n", static_cast<int>(kPhotonSeed));
