@@ -155,7 +155,10 @@ void run_model(const std::string& name,
     const bool best = name == "best";
     const ModelChoice choice =
         best ? best_model(stack) : ModelChoice{*find_subsurface_model(name), ""};
-    const SubsurfaceProfile profile = subsurface_profile(choice.model, stack);
+    // Of one medium each model is what it says, and refuses what it is not for.
+    const SubsurfaceProfile profile = stack.layers.size() == 1
+                                          ? subsurface_profile(choice.model, stack.layers.front())
+                                          : subsurface_profile(choice.model, stack);
     figures["model"] = info_of(choice.model).name;
     if (best) {
         figures["asked"] = "best";
