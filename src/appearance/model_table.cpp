@@ -63,6 +63,18 @@ namespace {
 #prefix, LIVERY_BSDF_OF(f32, float, glm::vec3, prefix, from), \
         LIVERY_BSDF_OF(f64, double, glm::dvec3, prefix, from)
 
+/// Of even light, from anywhere. A lobe's weight is 0 under all cosines or, but for a film's, under
+/// none: f0 and f90 are 0 together.
+template <typename Prepared>
+bool reflects_anything(const Prepared& prepared, int lobe) {
+    for (const float mu : {0.01f, 0.1f, 0.3f, 0.5f, 0.7f, 0.9f, 1.0f}) {
+        const glm::vec3 weight =
+            mirror_weight(prepared, passage_of(prepared, mu), mu, f32::even_light(), lobe);
+        if (weight != glm::vec3(0.0f)) return true;
+    }
+    return false;
+}
+
 template <typename Prepared>
 PreparedPaint numbers_of(const Prepared& prepared) {
     PreparedPaint paint;
@@ -70,6 +82,9 @@ PreparedPaint numbers_of(const Prepared& prepared) {
     std::memcpy(paint.numbers.data(), &prepared, sizeof prepared);
     for (int lobe = 0; lobe < lobe_count(prepared); ++lobe) {
         paint.lobe_slopes.push_back(slopes_of(prepared, lobe));
+        if constexpr (requires { passage_of(prepared, 1.0f); }) {
+            paint.reflects.push_back(reflects_anything(prepared, lobe));
+        }
     }
     return paint;
 }

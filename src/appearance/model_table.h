@@ -27,6 +27,7 @@ using BsdfFunctionsF64 =
 struct PreparedPaint {
     std::vector<float> numbers;          ///< of the model's struct, in its order
     std::vector<glm::vec2> lobe_slopes;  ///< of each lobe that mirrors, along and across
+    std::vector<bool> reflects;          ///< each lobe anything at all: none does with f0 0
 };
 struct PreparedModel {
     const char* type = nullptr;  ///< the struct, "CarPaintPrepared"; null: shading prepares nothing

@@ -55,7 +55,10 @@ PaintUniforms uniforms_of(const Material& material, double exposure_ev) {
     u.paint = model_info(material.model).prepared.of(parameters_of(material));
     u.exposure = exposure_of(exposure_ev, u.paint.numbers);
     for (std::size_t lobe = 0; lobe < u.paint.lobe_slopes.size(); ++lobe) {
-        const glm::vec2 slopes = u.paint.lobe_slopes[lobe];
+        // A lobe that reflects nothing reads what is there for another one
+        std::size_t of = lobe;
+        while (!reads_layers(u.paint, of)) of = (of + 1) % u.paint.lobe_slopes.size();
+        const glm::vec2 slopes = u.paint.lobe_slopes[of];
         u.lobe_layers.at(lobe) = mirror_layers(std::sqrt(slopes.x * slopes.y));
     }
     return u;

@@ -116,6 +116,21 @@ TEST_P(MirrorInputs, OnlyWhatIsReadIsSolved) {
               mirror_rays(16) * static_cast<double>(begin[2] - begin[1]));
 }
 
+TEST_P(MirrorInputs, ALobeThatReflectsNothingAsksForNothing) {
+    // A solid paint under varnish of its binder's index: how rough it is there nobody can see.
+    const View view = test_view(64, 48);
+    Material solid = paint_of(ReflectanceModel::clearcoat, 0.4);
+    solid.f0 = glm::dvec3(0.0);
+    Scene scene = lit_by_the_studio(solid, paint_of(ReflectanceModel::lambert, 0.5));
+    const MirrorLayers layers = mirror_layers_of(solid);
+    const ImageF rough = draw(scene, view);
+    scene.part_materials[0].alpha = glm::dvec2(0.05);
+    EXPECT_EQ(mirror_layers_of(scene.part_materials[0]), layers);
+    expect_same(draw(scene, view), rough);
+    scene.part_materials[0].f0 = glm::dvec3(0.04);
+    EXPECT_GT(mirror_layers_of(scene.part_materials[0]).count(), layers.count());
+}
+
 TEST_P(MirrorInputs, ASwapAddsWhatIsMissing) {
     const View view = test_view(64, 48);
     Scene scene = lit_by_the_studio(paint_of(ReflectanceModel::lambert, 0.5),

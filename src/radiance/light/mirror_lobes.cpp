@@ -5,7 +5,6 @@
 
 #include "appearance/bsdf.h"
 #include "appearance/measured/measured_paint.h"
-#include "appearance/model_table.h"
 #include "scene/artwork_coats.h"
 
 namespace livery {
@@ -56,6 +55,12 @@ MirrorMix mirror_mix(double alpha) {
     return mix;
 }
 
+bool reads_layers(const PreparedPaint& paint, std::size_t lobe) {
+    // One that reflects nothing may read any; all of them, their own
+    return paint.reflects[lobe] ||
+           std::find(paint.reflects.begin(), paint.reflects.end(), true) == paint.reflects.end();
+}
+
 MirrorLayers mirror_layers_of(const Material& paint) {
     const ModelInfo& model = model_info(paint.model);
     MirrorLayers layers;
@@ -73,13 +78,16 @@ MirrorLayers mirror_layers_of(const Material& paint) {
     const bool coated = prepared.lobe_slopes.size() > 1;
     const bool flakes = prepared.lobe_slopes.size() > 2;
     constexpr std::size_t kCoat = 1;
+    bool any_under_coat = false;
     for (std::size_t lobe = 0; lobe < prepared.lobe_slopes.size(); ++lobe) {
+        if (!reads_layers(prepared, lobe)) continue;
+        any_under_coat = any_under_coat || lobe != kCoat;
         const glm::vec2 slopes = prepared.lobe_slopes[lobe];
         const float alpha = std::sqrt(slopes.x * slopes.y);
         add_mix(static_cast<double>(alpha), layers);
         if (!flakes || lobe == kCoat) add_half_angle(alpha, layers);
     }
-    if (coated) layers.set(kMirrorLayers - 1);
+    if (coated && any_under_coat) layers.set(kMirrorLayers - 1);
     return layers;
 }
 

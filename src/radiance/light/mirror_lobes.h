@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "appearance/material.h"
+#include "appearance/model_table.h"
 #include "scene/scene.h"
 
 namespace livery {
@@ -45,6 +46,9 @@ struct MirrorMix {
     std::array<float, 4> share{};
 };
 MirrorMix mirror_mix(double alpha);
+
+/// Whether a lobe needs what is mirrored at its roughness.
+bool reads_layers(const PreparedPaint& paint, std::size_t lobe);
 
 /// Some of those layers, in their order.
 using MirrorLayers = std::bitset<kMirrorLayers>;
