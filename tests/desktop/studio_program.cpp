@@ -195,7 +195,16 @@ void StudioProgram::wait_until_taken(const std::string& counter, int value) {
     const auto ended = [&] { return !process_->running(); };
     const bool done = wait_until([&] { return taken() || ended(); }, patience) &&
                       wait_until([&] { return shown() || ended(); }, patience);
-    if (!done) throw std::runtime_error("the window does not take input:\n" + words());
+    if (!done) {
+        throw std::runtime_error(
+            fmt::format("the window does not take input: {} {} of {}, frame {} of {}\n{}",
+                        counter,
+                        state(counter).dump(),
+                        value,
+                        state("frame").dump(),
+                        frame + 2,
+                        words()));
+    }
 }
 
 void StudioProgram::move_away() {
