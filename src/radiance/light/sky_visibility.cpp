@@ -66,28 +66,59 @@ bool is_noisy(float open, int directions) {
     return 1.0f - open > kNoise * kNoise * open * static_cast<float>(directions);
 }
 
-/// Fills again and more.
+/// Words of further directions of a fragment that is that share of its pixel: so many that its
+/// pixel is no noisier than others.
+std::uint32_t words_of(float coverage, const SkyRays& rays) {
+    const float share = std::min(1.0f, 2.0f * coverage);
+    const float wanted = static_cast<float>(rays.first + rays.more) * share;
+    // A quarter of a word more or less makes no odds.
+    const float words = (wanted - static_cast<float>(rays.first)) / 64.0f - 0.25f;
+    return static_cast<std::uint32_t>(
+        std::ceil(std::clamp(words, 0.0f, static_cast<float>(rays.more / 64))));
+}
+
+/// Directions of one to so many words of them.
+class MoreDirections {
+  public:
+    explicit MoreDirections(int most) {
+        for (int words = 1; words <= most / 64; ++words) of_words_.emplace_back(64 * words);
+    }
+    const SkyDirections& of(const SkyVisibility& visibility, std::size_t at) const {
+        return of_words_[visibility.more_begin[at + 1] - visibility.more_begin[at] - 1];
+    }
+
+  private:
+    std::vector<SkyDirections> of_words_;
+};
+
+/// Fills again, more_begin and more.
 void look_again(const Mesh& mesh,
                 const Tracer& tracer,
                 const SurfaceMap& map,
                 const Progress& progress,
                 SkyVisibility& visibility) {
+    visibility.more_begin = {0};
     for (std::size_t i = 0; i < visibility.blocked.size(); ++i) {
-        if (is_noisy(visibility.openness(i), visibility.rays.first)) {
-            visibility.again.push_back(static_cast<std::uint32_t>(i));
-        }
+        const std::uint32_t words = words_of(map.fragments[i].coverage, visibility.rays);
+        if (words == 0 || !is_noisy(visibility.openness(i), visibility.rays.first)) continue;
+        visibility.again.push_back(static_cast<std::uint32_t>(i));
+        visibility.more_begin.push_back(visibility.more_begin.back() + words);
     }
-    const SkyDirections sky(visibility.rays.more);
-    const std::size_t count = sky.count(), words = count / 64;
-    visibility.more.assign(visibility.again.size() * words, 0);
+    const MoreDirections directions(visibility.rays.more);
+    visibility.more.assign(visibility.more_begin.back(), 0);
     parallel_for(visibility.again.size(), 128, [&](std::size_t begin, std::size_t end) {
         progress.check_stop();
-        std::vector<glm::vec3> toward(count);
-        std::vector<TraceRay> rays(count);
-        std::vector<std::uint8_t> blocked(count);
+        std::vector<glm::vec3> toward;
+        std::vector<TraceRay> rays;
+        std::vector<std::uint8_t> blocked;
         std::array<glm::vec3, kSamplesAFragment> origins;
         for (std::size_t at = begin; at < end; ++at) {
             const std::size_t i = visibility.again[at];
+            const SkyDirections& sky = directions.of(visibility, at);
+            const std::size_t count = sky.count();
+            toward.resize(count);
+            rays.resize(count);
+            blocked.resize(count);
             more_directions_of(mesh, map, i, sky, toward);
             ray_origins(mesh, map, i, origins);
             for (std::size_t k = 0; k < count; ++k) {
@@ -95,9 +126,9 @@ void look_again(const Mesh& mesh,
                 rays[k].direction = toward[k];
             }
             tracer.occluded(rays, blocked, RayOrder::scattered);
+            std::uint64_t* words = &visibility.more[visibility.more_begin[at]];
             for (std::size_t k = 0; k < count; ++k) {
-                if (blocked[k])
-                    visibility.more[at * words + k / 64] |= std::uint64_t{1} << (k % 64);
+                if (blocked[k]) words[k / 64] |= std::uint64_t{1} << (k % 64);
             }
         }
     });
@@ -218,7 +249,7 @@ std::vector<glm::vec3> sky_at_fragments(const Mesh& mesh,
         return rgb_of(seen) / glm::max(rgb_of(hidden + seen), glm::vec3(1e-20f));
     };
     const SkyDirections sky(visibility ? visibility->rays.first : 0);
-    const SkyDirections more(visibility ? visibility->rays.more : 0);
+    const MoreDirections more(visibility ? visibility->rays.more : 0);
     std::vector<glm::vec3> result(map.fragments.size());
     parallel_for(result.size(), 1024, [&](std::size_t begin, std::size_t end) {
         runs.ends(
@@ -240,17 +271,19 @@ std::vector<glm::vec3> sky_at_fragments(const Mesh& mesh,
     });
     // Who looked again knows better
     parallel_for(visibility->again.size(), 256, [&](std::size_t begin, std::size_t end) {
-        std::vector<glm::vec3> directions(more.count());
+        std::vector<glm::vec3> directions;
         for (std::size_t at = begin; at < end; ++at) {
             const std::size_t i = visibility->again[at];
-            more_directions_of(mesh, map, i, more, directions);
+            const SkyDirections& around = more.of(*visibility, at);
+            directions.resize(around.count());
+            more_directions_of(mesh, map, i, around, directions);
             glm::vec3 light(0.0f);
             for (std::size_t k = 0; k < kSamplesAFragment; ++k) {
                 light += open_sky(sample_normal(mesh, map, i, k));
             }
             result[i] =
                 light / static_cast<float>(kSamplesAFragment) *
-                share_seen(around_many, directions, &visibility->more[at * (more.count() / 64)]);
+                share_seen(around_many, directions, &visibility->more[visibility->more_begin[at]]);
         }
     });
     return result;

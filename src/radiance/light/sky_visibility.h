@@ -20,7 +20,8 @@ namespace livery {
 /// that; in a wheel or under an arch, where little of the sky is left, few are pepper.
 struct SkyRays {
     int first = 16;  ///< at most 64
-    int more = 0;    ///< where the first are noisy, a multiple of 64; 0: nobody looks again
+    int more = 0;    ///< where the first are noisy, a multiple of 64; 0: nobody looks again. A
+                     ///< fragment that is less than half of its pixel looks in fewer
     bool joints_only = false;  ///< only fragments that are a part of their pixel look at all
 };
 
@@ -32,8 +33,9 @@ struct SkyVisibility {
     /// looks.
     std::vector<std::uint64_t> blocked;
     /// Fragments that looked again, in their order, each direction around the normal of the
-    /// sub-sample that it starts from; and rays.more / 64 words of each, bits as in `blocked`.
-    std::vector<std::uint32_t> again;
+    /// sub-sample that it starts from; where the words of each begin in `more`, and where the last
+    /// one's end; 64 directions a word, bits as in `blocked`.
+    std::vector<std::uint32_t> again, more_begin;
     std::vector<std::uint64_t> more;
 
     /// The share of the first directions that meet nothing.
