@@ -170,6 +170,7 @@ class Photographer {
         program().click("phones:stop");
         program().click("vote:lock");
         program().click("vote:confirm");
+        wait_until([&] { return program().has_item("ballot:verdict"); }, 300s);
         program().item("ballot:verdict");
         program().move_away();
         settle();
@@ -208,7 +209,7 @@ class Photographer {
     StudioProgram& program() { return *program_; }
 
     void wait_for_vote(const std::string& name, const nlohmann::json& value) {
-        if (!wait_until([&] { return program().state(name) == value; }, 120s)) {
+        if (!wait_until([&] { return program().state(name) == value; }, 300s)) {
             throw std::runtime_error("the vote does not come to " + name);
         }
     }

@@ -482,7 +482,8 @@ bool may_quit(Shell& shell) {
 double next_vote_change_s(const Shell& shell) {
     const PresentingState& state = presenting(shell.studio);
     const double now_s = shell.studio.now_s;
-    if (state.freezing) return now_s + 0.05;
+    // Its bar: the window's frames are not to take the looks' time. What is finished wakes it.
+    if (state.freezing) return now_s + kBarStep_s;
     if (state.presented && is_running(state.presented->state)) {
         const PresentationState& step = state.presented->state;
         return std::min(step.at_s + step.left_s + 0.001, now_s + kBarStep_s);
