@@ -12,31 +12,9 @@ namespace livery {
 namespace {
 
 constexpr int kNewestEnvironmentVersion = 1;
-constexpr std::size_t kMostPictures = 1000, kMostViews = 100, kMostPoints = 10'000;
+constexpr std::size_t kMostViews = 100, kMostPoints = 10'000;
 constexpr double kFarthest_px = 1e5;
 constexpr double kDarkestBall = 0.02;
-
-std::vector<Capture> read_captures(const JsonReader& owner,
-                                   const JsonReader& root,
-                                   const std::filesystem::path& folder) {
-    const auto list = owner["captures"];
-    if (list.size() == 0) list.fail("an empty list", "at least one photograph");
-    if (list.size() > kMostPictures) {
-        list.fail(std::to_string(list.size()) + " captures",
-                  "at most " + std::to_string(kMostPictures));
-    }
-    std::vector<Capture> captures;
-    for (std::size_t k = 0; k < list.size(); ++k) {
-        const auto entry = list.at(k);
-        entry.allow_only(
-            {"file", "exposure_s", "transfer", "black_level", "saturates_at", "raw_half"});
-        Capture capture;
-        capture.file = read_photograph_name(entry, folder);
-        read_settings({entry, owner, root}, folder, capture);
-        captures.push_back(std::move(capture));
-    }
-    return captures;
-}
 
 std::filesystem::path read_mask(const JsonReader& owner, const std::filesystem::path& folder) {
     if (!owner.has("mask")) return {};
@@ -97,7 +75,7 @@ BallView read_view(const JsonReader& view,
     ball.camera_origin = camera.origin;
     read_ball(view, root, ball);
     ball.mask = read_mask(view, manifest.parent_path());
-    ball.captures = read_captures(view, root, manifest.parent_path());
+    ball.captures = read_pictures(view, "captures", {view, root}, manifest.parent_path());
     return ball;
 }
 
@@ -186,7 +164,7 @@ void read_panorama(const JsonReader& root, EnvironmentFolder& result) {
             }
         }
     }
-    panorama.captures = read_captures(root, root, folder);
+    panorama.captures = read_pictures(root, "captures", {root}, folder);
 }
 
 }  // namespace

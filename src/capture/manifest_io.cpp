@@ -18,6 +18,7 @@ namespace {
 constexpr int kNewestVersion = 1;
 constexpr int kLargestSide_px = 16384;
 constexpr std::size_t kMostCaptures = 10'000;
+constexpr std::size_t kMostPictures = 1000;
 
 /// Our own manifests carry a version; a photographer's or a renderer's need not.
 void check_manifest(const JsonReader& root) {
@@ -97,7 +98,32 @@ std::filesystem::path read_photograph_name(const JsonReader& entry,
     return file;
 }
 
-void read_settings(std::initializer_list<JsonReader> places,
+std::vector<Capture> read_pictures(const JsonReader& owner,
+                                   std::string_view name,
+                                   const std::vector<JsonReader>& places,
+                                   const std::filesystem::path& folder) {
+    const auto list = owner[name];
+    if (list.size() == 0) list.fail("an empty list", "at least one photograph");
+    if (list.size() > kMostPictures) {
+        list.fail(std::to_string(list.size()) + " captures",
+                  "at most " + std::to_string(kMostPictures));
+    }
+    std::vector<Capture> captures;
+    for (std::size_t k = 0; k < list.size(); ++k) {
+        const auto entry = list.at(k);
+        entry.allow_only(
+            {"file", "exposure_s", "transfer", "black_level", "saturates_at", "raw_half"});
+        Capture capture;
+        capture.file = read_photograph_name(entry, folder);
+        std::vector<JsonReader> all{entry};
+        all.insert(all.end(), places.begin(), places.end());
+        read_settings(all, folder, capture);
+        captures.push_back(std::move(capture));
+    }
+    return captures;
+}
+
+void read_settings(const std::vector<JsonReader>& places,
                    const std::filesystem::path& folder,
                    Capture& capture) {
     const auto setting = [&](const char* name) -> std::optional<JsonReader> {
@@ -107,7 +133,7 @@ void read_settings(std::initializer_list<JsonReader> places,
         return std::nullopt;
     };
     const auto exposure = setting("exposure_s");
-    capture.exposure_s = read_exposure(exposure ? *exposure : (*places.begin())["exposure_s"]);
+    capture.exposure_s = read_exposure(exposure ? *exposure : places.front()["exposure_s"]);
     if (const auto transfer = setting("transfer")) {
         capture.transfer = transfer->text();
         if (capture.transfer != "linear" && capture.transfer != "srgb") {

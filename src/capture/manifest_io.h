@@ -2,7 +2,7 @@
 #pragma once
 
 #include <filesystem>
-#include <initializer_list>
+#include <string_view>
 #include <vector>
 
 #include "capture/captures_folder.h"
@@ -32,9 +32,16 @@ std::filesystem::path read_photograph_name(const JsonReader& entry,
                                            const std::filesystem::path& folder);
 /// Exposure, transfer, black level and saturation, each from the first of the places that has it.
 /// Throws FileError.
-void read_settings(std::initializer_list<JsonReader> places,
+void read_settings(const std::vector<JsonReader>& places,
                    const std::filesystem::path& folder,
                    Capture& capture);
+
+/// The photographs of one scene that `owner` lists as `name`, each with its settings from its
+/// entry, else from the first of `places` that has them. Throws FileError, also for an empty list.
+std::vector<Capture> read_pictures(const JsonReader& owner,
+                                   std::string_view name,
+                                   const std::vector<JsonReader>& places,
+                                   const std::filesystem::path& folder);
 
 /// The same of their texts; what they name lies beside the file.
 CapturesFolder parse_captures_manifest(const std::string& text,

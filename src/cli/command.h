@@ -83,6 +83,7 @@ Command fit_brdf_command();
 Command fit_bssrdf_command();
 Command measure_brdf_command();
 Command measure_environment_command();
+Command measure_profile_command();
 Command paints_command();
 Command patterns_command();
 Command photograph_command();

@@ -76,6 +76,7 @@ int run(const std::vector<std::string>& arguments) {
                                      calibrate_scan_command(),
                                      measure_brdf_command(),
                                      measure_environment_command(),
+                                     measure_profile_command(),
                                      fit_brdf_command(),
                                      fit_bssrdf_command(),
                                      compensate_command(),

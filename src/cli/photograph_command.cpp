@@ -5,17 +5,19 @@
 #include <fmt/format.h>
 
 #include "appearance/material_library.h"
+#include "appearance/subsurface/translucent_material.h"
 #include "cli/command.h"
 #include "jobs/environment/simulated_ball.h"
 #include "jobs/simulated_captures.h"
 #include "jobs/simulated_sphere.h"
+#include "jobs/spot/simulated_spot.h"
 
 namespace livery {
 
 namespace {
 
 struct PhotographArguments {
-    std::string bench = "default", patterns, sphere, ball, out, size;
+    std::string bench = "default", patterns, sphere, ball, spot, out, size;
     double exposure_s = 0.0;
     int views = 0;
 };
@@ -125,6 +127,43 @@ Outcome photograph_ball(const PhotographArguments& arguments,
     return outcome;
 }
 
+Outcome photograph_spot(const PhotographArguments& arguments,
+                        const CommonOptions& common,
+                        const Progress& progress) {
+    if (arguments.exposure_s != 0.0) {
+        throw std::invalid_argument(
+            "--exposure-s: found with --spot, whose photographs are bracketed; leave it out");
+    }
+    const glm::ivec2 size =
+        parse_size("--size", arguments.size.empty() ? "1024x1024" : arguments.size);
+    if (size.x != size.y) {
+        throw std::invalid_argument("--size: found \"" + arguments.size +
+                                    "\", expected a square with --spot");
+    }
+    const TranslucentMaterial material = read_translucent_material(arguments.spot);
+    SimulatedSpotRequest request;
+    request.stand =
+        usual_spot_stand(read_bench_file(arguments.bench).camera,
+                         {medium_of(material, 0), medium_of(material, 1), medium_of(material, 2)},
+                         size.x);
+    request.out = arguments.out;
+    request.seed = request.stand.seed = static_cast<std::uint64_t>(common.seed);
+    const SimulatedSpot taken = photograph_spot(request, progress);
+    Outcome outcome;
+    outcome.figures = {{"photographs", taken.photographs},
+                       {"material", material.name},
+                       {"eta", material.eta},
+                       {"folder", arguments.out},
+                       {"simulated", true}};
+    outcome.text = fmt::format(
+        "{} simulated photographs of a spot of light on {} (index {}) and on white in {}\n",
+        taken.photographs,
+        material.name,
+        material.eta,
+        arguments.out);
+    return outcome;
+}
+
 using PhotographAction = Outcome (*)(const PhotographArguments&,
                                      const CommonOptions&,
                                      const Progress&);
@@ -132,19 +171,22 @@ using PhotographAction = Outcome (*)(const PhotographArguments&,
 /// By what was named to be photographed.
 PhotographAction chosen(const PhotographArguments& arguments) {
     const int named = (arguments.patterns.empty() ? 0 : 1) + (arguments.sphere.empty() ? 0 : 1) +
-                      (arguments.ball.empty() ? 0 : 1);
+                      (arguments.ball.empty() ? 0 : 1) + (arguments.spot.empty() ? 0 : 1);
     if (named == 0) {
         throw std::invalid_argument(
-            "photograph: found none of --patterns, --sphere and --ball, expected one of them");
+            "photograph: found none of --patterns, --sphere, --ball and --spot, expected one of "
+            "them");
     }
     if (named > 1) {
         throw std::invalid_argument(
-            "photograph: found more than one of --patterns, --sphere and --ball, expected one of "
-            "them");
+            "photograph: found more than one of --patterns, --sphere, --ball and --spot, expected "
+            "one "
+            "of them");
     }
     if (arguments.views != 0 && arguments.ball.empty()) {
         throw std::invalid_argument("--views: found without --ball; leave it out");
     }
+    if (!arguments.spot.empty()) return &photograph_spot;
     if (!arguments.ball.empty()) return &photograph_ball;
     if (!arguments.sphere.empty()) return &photograph_sphere;
     return &photograph_patterns;
@@ -157,7 +199,8 @@ Command photograph_command() {
     Command command;
     command.name = "photograph";
     command.summary =
-        "photograph a patterns folder, a painted sphere or a mirror ball on the simulated bench";
+        "photograph patterns, a painted sphere, a mirror ball or a spot of light on the simulated "
+        "bench";
     command.example = "livery photograph --patterns patterns --out captures";
     command.options = {
         {"--bench",
@@ -180,6 +223,13 @@ Command photograph_command() {
          &arguments->ball,
          false,
          {}},
+        {"--spot",
+         "FILE|NAME",
+         "instead of patterns: a spot of light on that translucent material, as livery measure "
+         "profile takes it",
+         &arguments->spot,
+         false,
+         {}},
         {"--views",
          "N",
          "with --ball: from so many sides, 1 to 3 (default: 2)",
@@ -189,8 +239,8 @@ Command photograph_command() {
         {"--out", "DIR", "captures folder", &arguments->out, true, {}},
         {"--size",
          "WxH",
-         "projector resolution (default: as the bench file says); with --sphere and --ball the "
-         "picture's (default: 512x512, 1024x1024)",
+         "projector resolution (default: as the bench file says); with --sphere, --ball "
+         "and --spot the picture's (default: 512x512, 1024x1024, 1024x1024)",
          &arguments->size,
          false,
          {}},

@@ -18,6 +18,7 @@
 #include "capture/environment_folder.h"
 #include "capture/patterns_folder.h"
 #include "capture/sphere_folder.h"
+#include "capture/spot_folder.h"
 #include "core/error.h"
 #include "core/image_io.h"
 #include "core/json.h"
@@ -159,6 +160,19 @@ void read_environment(const Path& manifest, FileCheck& check, const Progress& pr
     check_photographs(photographs_of(folder), manifest.parent_path(), check, progress);
 }
 
+/// Photographs of a spot of light on a translucent sample.
+void read_spot(const Path& manifest, FileCheck& check, const Progress& progress) {
+    const SpotFolder folder = read_spot_folder(manifest.parent_path());
+    FilesElsewhere elsewhere(manifest.parent_path());
+    if (folder.places) {
+        const std::string& origin = folder.places->camera_origin;
+        parse_camera(folder.places->camera, origin);
+        if (!origin.starts_with(manifest.string())) elsewhere.add(origin);
+    }
+    tell(elsewhere, check);
+    check_photographs(photographs_of(folder), manifest.parent_path(), check, progress);
+}
+
 /// A map from projector to camera pixels says "unknown" with NaN: that is no problem.
 void read_map(const Path& file, FileCheck& check) {
     const ImageFile map = read_image(file);
@@ -228,6 +242,12 @@ FileKind kind_of_manifest(const Path& manifest, const Progress& progress) {
     if (is_environment_manifest(manifest)) {
         return {"environment captures", [manifest, progress](const Path&, FileCheck& check) {
                     read_environment(manifest, check, progress);
+                }};
+    }
+    // Before spheres, whose folders have a white reference too.
+    if (is_spot_manifest(manifest)) {
+        return {"spot captures", [manifest, progress](const Path&, FileCheck& check) {
+                    read_spot(manifest, check, progress);
                 }};
     }
     if (is_sphere_manifest(manifest)) {

@@ -15,6 +15,7 @@
 #include "core/paths.h"
 #include "core/worst_error.h"
 #include "jobs/camera_to_xyz_file.h"
+#include "jobs/merged_captures.h"
 #include "jobs/sphere_window.h"
 
 namespace livery {

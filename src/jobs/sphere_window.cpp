@@ -62,16 +62,4 @@ SphereWindow window_around(const View& camera,
     return window;
 }
 
-Photograph load_photograph_of(const Capture& capture, const View& camera) {
-    Photograph photograph = load_photograph(capture);
-    const ImageF& image = photograph.image;
-    if (image.width != camera.width || image.height != camera.height) {
-        throw FileError(capture.file,
-                        "size",
-                        fmt::format("{}x{}", image.width, image.height),
-                        fmt::format("the camera's {}x{}", camera.width, camera.height));
-    }
-    return photograph;
-}
-
 }  // namespace livery

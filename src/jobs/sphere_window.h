@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include "calibration/sphere/sphere_outline.h"
-#include "capture/captures_folder.h"
 
 namespace livery {
 
@@ -21,8 +20,5 @@ SphereWindow window_around(const View& camera,
                            const Sphere& sphere,
                            double most_across_px,
                            const std::filesystem::path& manifest);
-
-/// Throws FileError, also for a photograph of another size than the camera's.
-Photograph load_photograph_of(const Capture& capture, const View& camera);
 
 }  // namespace livery

@@ -79,6 +79,7 @@ TEST(Doors, AnOutputThatCannotBeWrittenIsFoundBeforeTheWork) {
         {"brdf", "--material", "none", "--in", "none"},
         {"fit", "brdf", "--measured", "none"},
         {"measure", "brdf", "--captures", "none"},
+        {"measure", "profile", "--captures", "none"},
         {"paints", "none", "--tint", "none"},
         {"session", "export", "none", "--look", "1"},
         {"session", "render", "none", "--look", "1"}};

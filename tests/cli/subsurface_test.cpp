@@ -251,6 +251,46 @@ TEST_F(FitBssrdf, RefusesWhatIsNotTold) {
     EXPECT_FALSE(std::filesystem::exists(out()));
 }
 
+/// From a spot of light to a medium, as the documents say it.
+TEST_F(FitBssrdf, TakesWhatMeasureProfileWrites) {
+    const std::string captures = (folder_ / "spot").string();
+    const ProgramRun taken = run_program(
+        LIVERY_PROGRAM,
+        {"photograph", "--spot", "skin 1", "--size", "384x384", "--json", "--out", captures});
+    ASSERT_EQ(taken.exit_code, 0) << taken.err;
+    EXPECT_EQ(Json::parse(taken.out)["eta"], 1.3);
+    const ProgramRun measured = run_program(LIVERY_PROGRAM,
+                                            {"measure",
+                                             "profile",
+                                             "--json",
+                                             "--captures",
+                                             captures,
+                                             "--eta",
+                                             "1.3",
+                                             "--out",
+                                             (folder_ / "skin.csv").string()});
+    ASSERT_EQ(measured.exit_code, 0) << measured.err;
+    const Json answer = Json::parse(measured.out);
+    ASSERT_EQ(answer["channels"].size(), 3u);
+    const Json& green = answer["channels"][1];
+    EXPECT_EQ(green["channel"], "green");
+    EXPECT_NEAR(answer["view_deg"].get<double>(), 45.0, 0.2);
+    EXPECT_LT(green["spot_mm"].get<double>(), green["half_energy_radius_mm"].get<double>() / 3.0);
+    // The command that it says, as a shell takes it.
+    const std::string command = green["fit_command"].get<std::string>();
+    ASSERT_TRUE(command.starts_with("livery fit bssrdf ")) << command;
+    const ProgramRun fitted = run_program(
+        "/bin/sh", {"-c", std::string("'") + LIVERY_PROGRAM + "'" + command.substr(6) + " --json"});
+    ASSERT_EQ(fitted.exit_code, 0) << fitted.err;
+    EXPECT_NEAR(Json::parse(fitted.out)["sigma_s_prime_per_mm"].get<double>(), 0.88, 0.088);
+    EXPECT_NEAR(Json::parse(fitted.out)["sigma_a_per_mm"].get<double>(), 0.17, 0.0425);
+    const ProgramRun check = run_program(
+        LIVERY_PROGRAM, {"check", "--json", captures, green["file"].get<std::string>()});
+    EXPECT_EQ(check.exit_code, 0) << check.err;
+    EXPECT_EQ(Json::parse(check.out)["files"][0]["kind"], "spot captures");
+    EXPECT_EQ(Json::parse(check.out)["files"][1]["kind"], "profile");
+}
+
 TEST_F(FitBssrdf, RefusesBadInput) {
     const std::string good = profile(25.0);
     const auto refuses = [&](const std::vector<std::string>& words, const std::string& part) {

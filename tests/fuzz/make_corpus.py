@@ -275,6 +275,17 @@ put("captures", "panorama.json",
     {"environment": "panorama", "transfer": "srgb", "camera_to_xyz": "colours.json",
      "marks": [{"pixel": [10, 20], "direction": [0, 0, -1]}, {"pixel": [700, 260], "direction": [1, 0, 0]}],
      "captures": [{"file": "0.png", "exposure_s": 0.1}, {"file": "1.png", "exposure_s": 0.8, "raw_half": False}]})
+put("spot", "camera.json",
+    {"format_version": 1, "camera": {"width": 4, "height": 3, "matrix": [9, 0, 2, 0, 9, 1, 0, 0, 1]},
+     "plane": {"point_mm": [0, 0, 600], "normal": [0, 0.1, -1]}, "projector_mm": [400, 0, 0], "black_level": 12,
+     "captures": [{"file": "manifest.json", "exposure_s": 0.1}, {"file": "1.png", "exposure_s": 0.8, "raw_half": False}],
+     "black": [{"file": "2.png", "exposure_s": 0.8}],
+     "white_reference": {"reflectance": [0.9, 0.8, 0.7], "exposure_s": 0.05,
+                         "captures": [{"file": "3.png"}], "black": [{"file": "2.png", "black_level": 3}]}})
+put("spot", "scale.json",
+    {"mm_per_px": 0.04, "incidence_deg": 12, "transfer": "srgb", "exposure_s": 0.5, "captures": [{"file": "0.png"}],
+     "black": [{"file": "1.png"}], "white_reference": {"reflectance": 0.95, "captures": [{"file": "2.png"}],
+                                                       "black": [{"file": "3.png", "saturates_at": 4000}]}})
 put("captures", "response.json",
     {"format_version": 1, "linear_from_file": [0, 0.02, 0.07, 0.16, 0.29, 0.46, 0.69, 1]})
 put("recording", "two.json",

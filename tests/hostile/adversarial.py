@@ -27,6 +27,8 @@ JSONS = {
                                             "--out", "{place}/out/a.csv"]),
     "ball/manifest.json": (files.BALL, ["measure", "environment", "--captures", "{in}/ball",
                                         "--out", "{place}/out/a.exr"]),
+    "spot/manifest.json": (files.SPOT, ["measure", "profile", "--captures", "{in}/spot",
+                                        "--out", "{place}/out/a.csv"]),
     "mesh.gltf": (files.GLTF, ["check", "{in}/mesh.gltf"]),
 }
 
@@ -104,6 +106,9 @@ FIELDS = {
     "ball/manifest.json": (files.BALL, [("views", 0, "camera"), ("camera_to_xyz",), ("views", 0, "mask"),
                                         ("views", 0, "captures", 0, "file")],
                            [["measure", "environment", "--captures", "{in}/ball", "--out", "{place}/out/a.exr"]]),
+    "spot/manifest.json": (files.SPOT, [("camera",), ("captures", 0, "file"),
+                                        ("white_reference", "black", 0, "file")],
+                           [["measure", "profile", "--captures", "{in}/spot", "--out", "{place}/out/a.csv"]]),
     "look.json": (files.LOOK, [("parts", "*"), ("environment", "file"), ("artwork", 0, "paint")], [DRAW]),
     "picture-look.json": (files.PICTURE_LOOK, [("artwork", 0, "picture")], [["check", "{in}/picture-look.json"]]),
     "measured-material.json": (files.MEASURED_MATERIAL, [("parameters", "file")],

@@ -106,6 +106,11 @@ BALL = {"format_version": 1, "environment": "ball", "transfer": "srgb", "camera_
         "sphere": {"centre_mm": [0, 0, 0], "diameter_mm": 60}, "reflectance": [0.6, 0.6, 0.5], "views": [
             {"camera": "camera.json", "mask": "001.png", "outline_px": [[0, 1], [1, 2], [3, 4], [5, 5], [2, 9]],
              "fit_outline": False, "captures": [{"file": "000.png", "exposure_s": 0.1, "black_level": 3}]}]}
+SPOT = {"format_version": 1, "transfer": "srgb", "camera": "camera.json", "exposure_s": 0.1,
+        "plane": {"point_mm": [0, 0, 0], "normal": [0, 0.1, 1]}, "projector_mm": [100, 0, 900],
+        "captures": [{"file": "000.png", "black_level": 3}], "black": [{"file": "001.png"}],
+        "white_reference": {"reflectance": [0.9, 0.9, 0.8], "captures": [{"file": "000.png"}],
+                            "black": [{"file": "001.png", "exposure_s": 0.5}]}}
 XYZ = {"format_version": 1, "matrix": [0.4, 0.3, 0.2, 0.2, 0.7, 0.1, 0, 0.1, 0.9]}
 PRIMARIES = {"format_version": 1, "measured_at_px": [10, 20], "primaries_xyz": {
     "red": [4, 2, 0], "green": [3, 7, 1], "blue": [2, 1, 9], "black": [0.1, 0.1, 0.1]}}
@@ -198,7 +203,7 @@ def good_files():
         "tetra.obj": TETRA_OBJ, "tetra.ply": PLY, "dirs.csv": DIRECTIONS, "nine.csv": NINE}.items()}
     made |= {"triangle.bin": TRIANGLE, "000.png": png(), "001.png": png(grey=0), "dot.png": png(8, 8), "sky.hdr": hdr(),
              "sky.exr": exr(), "mesh.glb": glb({**GLTF, "buffers": [{"byteLength": 42}]}), "map.exr": exr(("X", "Y"))}
-    for folder, manifest in {"patterns": PATTERNS, "captures": CAPTURES, "sphere": SPHERE, "ball": BALL}.items():
+    for folder, manifest in {"patterns": PATTERNS, "captures": CAPTURES, "sphere": SPHERE, "ball": BALL, "spot": SPOT}.items():
         made[folder + "/manifest.json"] = dump(manifest).encode()
         for name in ("000.png", "001.png", "response.json", "camera.json", "xyz.json"):
             made[folder + "/" + name] = made[name]
@@ -206,7 +211,7 @@ def good_files():
 
 
 def good_folder(folder):
-    for part in ("patterns", "captures", "sphere", "ball"):
+    for part in ("patterns", "captures", "sphere", "ball", "spot"):
         (folder / part).mkdir(parents=True)
     for name, data in good_files().items():
         with open(folder / name, "wb") as file:

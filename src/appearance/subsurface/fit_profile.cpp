@@ -271,14 +271,7 @@ void tell_errors(const ProfileCost& cost,
 }
 
 void refuse_what_is_not_told(const ProfileFit& fit, const ProfileFitOptions& options) {
-    if (options.spot_mm > fit.half_energy_radius_mm / 3.0) {
-        throw Refused(
-            fmt::format("the spot is {:.3g} mm wide, more than a third of the {:.3g} mm within "
-                        "which half the light comes back: the profile is the spot's",
-                        options.spot_mm,
-                        fit.half_energy_radius_mm),
-            fmt::format("project a spot of at most {:.2g} mm", fit.half_energy_radius_mm / 3.0));
-    }
+    refuse_wide_spot(options.spot_mm, fit.half_energy_radius_mm);
     if (fit.error > kLargestError) {
         throw Refused(
             fmt::format("no half space or slab of {} comes nearer to the profile than a factor of "
@@ -354,6 +347,16 @@ void warn(const ScatteringMedium& medium, double last_mm, ProfileFit& fit) {
 }
 
 }  // namespace
+
+void refuse_wide_spot(double spot_mm, double half_energy_radius_mm) {
+    if (!(spot_mm > half_energy_radius_mm / 3.0)) return;
+    throw Refused(
+        fmt::format("the spot is {:.3g} mm wide, more than a third of the {:.3g} mm within "
+                    "which half the light comes back: the profile is the spot's",
+                    spot_mm,
+                    half_energy_radius_mm),
+        fmt::format("project a spot of at most {:.2g} mm", half_energy_radius_mm / 3.0));
+}
 
 ScatteringMedium ProfileFit::medium(std::optional<double> thickness_mm) const {
     return {sigma_a_per_mm.value, sigma_s_prime_per_mm.value / (1.0 - g), g, eta, thickness_mm};

@@ -16,7 +16,8 @@ struct ProfileFitOptions {
     double eta = 1.5;
     double g = 0.0;  ///< stated: no profile tells it beyond a mean free path
     std::optional<double> thickness_mm;
-    double spot_mm = 0.0;  ///< diameter of the spot that was projected; 0: not known
+    /// Diameter of the spot that was projected, of the disc that holds half of it; 0: not known.
+    double spot_mm = 0.0;
 };
 
 struct FittedParameter {
@@ -40,6 +41,9 @@ struct ProfileFit {
 
     ScatteringMedium medium(std::optional<double> thickness_mm) const;
 };
+
+/// Throws Refused for a spot wider than a third of the radius that holds half the light.
+void refuse_wide_spot(double spot_mm, double half_energy_radius_mm);
 
 /// Least squares of the logarithm, each sample by the share of ln r that it stands for (so that it
 /// does not matter how densely far radii were sampled), over a window that follows the parameters:

@@ -1,6 +1,6 @@
 #include "jobs/environment/environment_view.h"
 
-#include <algorithm>
+#include <functional>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -12,6 +12,7 @@
 #include "calibration/environment/panorama.h"
 #include "core/error.h"
 #include "core/image_io.h"
+#include "jobs/merged_captures.h"
 #include "jobs/sphere_window.h"
 
 namespace livery {
@@ -48,28 +49,17 @@ Image8 read_mask(const std::filesystem::path& file,
 }
 
 /// Merges photographs as those of painted spheres are.
-template <typename Load>
 LightPicture merged_light(const std::vector<Capture>& captures,
                           const PictureWindow& window,
                           const Progress& progress,
-                          const Load& load) {
-    MergedPhotographs merged;
-    double clipped = 0.0, done = 0.0;
-    for (const Capture& capture : captures) {
-        progress.update(done / static_cast<double>(captures.size()),
-                        "reading " + capture.file.filename().string());
-        done += 1.0;
-        const Photograph whole = load(capture);
-        const Photograph photograph = windowed(whole, window);
-        add(photograph, merged);
-        clipped = std::max(clipped, clipped_light(photograph));
-    }
-    const auto& seconds = merged.seconds.values;
-    if (std::none_of(seconds.begin(), seconds.end(), [](float one) { return one > 0.0f; })) {
+                          const std::function<Photograph(const Capture&)>& load) {
+    const MergedCaptures merged = merge_captures(
+        captures, [&](const Capture& one) { return windowed(load(one), window); }, progress);
+    if (merged.all_saturated()) {
         throw Refused("every pixel is saturated in every photograph",
                       "add photographs with a shorter exposure");
     }
-    return light_of(merged, glm::dvec3(clipped));
+    return light_of(merged.picture, glm::dvec3(merged.clipped_light));
 }
 
 /// Where the manifest says that the ball stands: at its place, or by points of its outline.

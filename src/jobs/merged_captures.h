@@ -1,0 +1,30 @@
+// The photographs of one scene as one picture of its light.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "calibration/captures/exposure_merge.h"
+#include "capture/captures_folder.h"
+#include "core/progress.h"
+#include "scene/view.h"
+
+namespace livery {
+
+/// Throws FileError, also for a photograph of another size than the camera's.
+Photograph load_photograph_of(const Capture& capture, const View& camera);
+
+struct MergedCaptures {
+    MergedPhotographs picture;
+    double clipped_light = 0.0;  ///< file units a second, in the shortest exposure
+    /// Every pixel is saturated in every photograph.
+    bool all_saturated() const;
+};
+
+/// `load` gives each of `captures` as it is to be merged, all of one size. Throws what it throws,
+/// Cancelled.
+MergedCaptures merge_captures(const std::vector<Capture>& captures,
+                              const std::function<Photograph(const Capture&)>& load,
+                              const Progress& progress = {});
+
+}  // namespace livery
