@@ -113,8 +113,13 @@ TEST_F(Core, SwapsPaintsInOpenGl) {
     desktop->type(file.string());
     program->click("file-dialog:ok");
     EXPECT_TRUE(wait_until([&] { return std::filesystem::exists(file); }, 60s));
+    const Image8 shown_after = projector_picture();
     EXPECT_EQ(program->quit(), 0);
-    EXPECT_EQ(fraction_different(read_png(file), shown, 0), 0.0);
+    // Of the pictures before and after, if another one was finished while the dialog was filled in
+    const Image8 kept = read_png(file);
+    EXPECT_TRUE(kept.values == shown.values || kept.values == shown_after.values)
+        << "before: " << saved(shown, "before") << ", after: " << saved(shown_after, "after")
+        << ", kept: " << saved(kept, "kept");
 }
 
 }  // namespace

@@ -190,7 +190,8 @@ void StudioProgram::wait_until_taken(const std::string& counter, int value) {
         frame = state("frame");
         return state(counter) >= value;
     };
-    const auto shown = [&] { return state("frame") >= frame + 2; };
+    // At rest, every frame that it meant has been drawn: seen late, they are not followed by more.
+    const auto shown = [&] { return state("frame") >= frame + 2 || state("at_rest") == true; };
     // A click may end the program.
     const auto ended = [&] { return !process_->running(); };
     const bool done = wait_until([&] { return taken() || ended(); }, patience) &&
