@@ -33,6 +33,7 @@ Json figures_of(const SpotMeasurement& report) {
     Json channels = Json::array();
     for (const MeasuredChannel& one : report.channels) channels.push_back(figures_of(one));
     return {{"channels", channels},
+            {"fit_command", report.fit_command},
             {"photographs", report.photographs},
             {"incidence_deg", kDegreesPerRadian * report.incidence_rad},
             {"view_deg", kDegreesPerRadian * report.view_rad},
@@ -70,7 +71,8 @@ std::string text_of(const SpotMeasurement& report) {
             one.file.string());
         next += "    " + one.fit_command + "\n";
     }
-    return text + "next:\n" + next;
+    return text + "next:\n" +
+           (report.fit_command.empty() ? next : "    " + report.fit_command + "\n");
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "appearance/subsurface/subsurface_profile.h"
+#include "appearance/subsurface/translucent_material.h"
 #include "support/run_program.h"
 
 namespace livery {
@@ -284,6 +285,20 @@ TEST_F(FitBssrdf, TakesWhatMeasureProfileWrites) {
     ASSERT_EQ(fitted.exit_code, 0) << fitted.err;
     EXPECT_NEAR(Json::parse(fitted.out)["sigma_s_prime_per_mm"].get<double>(), 0.88, 0.088);
     EXPECT_NEAR(Json::parse(fitted.out)["sigma_a_per_mm"].get<double>(), 0.17, 0.0425);
+    // All three at once are a material.
+    const std::string all = answer["fit_command"].get<std::string>();
+    const ProgramRun three = run_program(
+        "/bin/sh", {"-c", std::string("'") + LIVERY_PROGRAM + "'" + all.substr(6) + " --json"});
+    ASSERT_EQ(three.exit_code, 0) << three.err;
+    const Json channels = Json::parse(three.out)["channels"];
+    ASSERT_EQ(channels.size(), 3u);
+    EXPECT_EQ(channels[2]["channel"], "blue");
+    EXPECT_EQ(channels[1]["sigma_a_per_mm"], Json::parse(fitted.out)["sigma_a_per_mm"]);
+    const TranslucentMaterial skin = read_translucent_material(folder_ / "skin.json");
+    EXPECT_EQ(skin.name, "skin");
+    EXPECT_EQ(skin.sigma_a_per_mm.y, channels[1]["sigma_a_per_mm"].get<double>());
+    EXPECT_EQ(skin.sigma_s_prime_per_mm.z, channels[2]["sigma_s_prime_per_mm"].get<double>());
+    EXPECT_LT(skin.sigma_a_per_mm.x, skin.sigma_a_per_mm.y) << "skin is red";
     const ProgramRun check = run_program(
         LIVERY_PROGRAM, {"check", "--json", captures, green["file"].get<std::string>()});
     EXPECT_EQ(check.exit_code, 0) << check.err;
@@ -302,6 +317,9 @@ TEST_F(FitBssrdf, RefusesBadInput) {
     refuses({"--profile", "missing.csv"}, "missing.csv");
     const std::string bad = folder_.write("bad.csv", "r_mm,rd\n1,2\n2,x\n").string();
     refuses({"--profile", bad}, "line 3, rd");
+    refuses({"--profile", good + "," + good}, "--profile: found 2 files");
+    refuses({"--profile", good + "," + good + "," + bad}, "line 3, rd");
+    refuses({"--profile", good + "," + good + "," + good, "--spot-mm", "0.1,0.1"}, "--spot-mm");
     refuses({"--profile", good, "--model", "multipole"}, "--thickness-mm is missing");
     refuses({"--profile", good, "--model", "p3", "--thickness-mm", "2"}, "--model: found p3");
     refuses({"--profile", good, "--eta", "0"}, "eta: found 0");

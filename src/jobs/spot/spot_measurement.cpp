@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -186,6 +187,22 @@ std::string csv_of(const SpotMeasurement& report, const MeasuredChannel& one) {
     return text;
 }
 
+std::string fit_command(std::span<const MeasuredChannel> channels,
+                        double eta,
+                        const std::filesystem::path& material) {
+    std::string profiles, spots;
+    for (const MeasuredChannel& one : channels) {
+        const char* comma = profiles.empty() ? "" : ",";
+        profiles += comma + shell_word(one.file);
+        spots += fmt::format("{}{:.4g}", comma, one.profile.spot_mm);
+    }
+    return fmt::format("livery fit bssrdf --profile {} --eta {} --spot-mm {} --out {}",
+                       profiles,
+                       eta,
+                       spots,
+                       shell_word(material));
+}
+
 MeasuredChannel measured_channel(const PlanePixels& pixels,
                                  const ImageF& sample,
                                  const SpotOfLight& spot,
@@ -200,14 +217,10 @@ MeasuredChannel measured_channel(const PlanePixels& pixels,
         throw Refused(measured.channel + ": " + refused.why(), refused.fix());
     }
     measured.file = file_of(request.out, kSpotChannels[channel]);
-    auto material = measured.file;
-    material.replace_extension(".json");
     measured.fit_command =
-        fmt::format("livery fit bssrdf --profile {} --eta {} --spot-mm {:.4g} --out {}",
-                    shell_word(measured.file),
+        fit_command({&measured, 1},
                     request.eta,
-                    measured.profile.spot_mm,
-                    shell_word(material));
+                    std::filesystem::path(measured.file).replace_extension(".json"));
     return measured;
 }
 
@@ -285,6 +298,12 @@ SpotMeasurement measure_profile(const SpotMeasurementRequest& request, const Pro
     for (int c = 0; c < 3; ++c) {
         if (!(spot.power[static_cast<std::size_t>(c)] > 0.0)) continue;
         report.channels.push_back(measured_channel(pixels, sample, spot, c, optics, request));
+    }
+    if (report.channels.size() == 3) {
+        report.fit_command =
+            fit_command(report.channels,
+                        request.eta,
+                        std::filesystem::path(request.out).replace_extension(".json"));
     }
     tell_doubts(spot, report);
     progress.check_stop();

@@ -22,11 +22,12 @@ struct MeasuredChannel {
     std::string channel;         ///< "red", "green", "blue": the camera's
     std::filesystem::path file;  ///< written
     SpotProfile profile;
-    std::string fit_command;  ///< what finds the medium
+    std::string fit_command;  ///< what finds the medium of this channel
 };
 
 struct SpotMeasurement {
     std::vector<MeasuredChannel> channels;  ///< those in which the spot has light
+    std::string fit_command;                ///< of all three channels at once; empty: one lacks
     double incidence_rad = 0.0;             ///< of the projector's light to the normal
     double view_rad = 0.0;                  ///< of the line of sight to the normal
     double best_view_rad = 0.0;             ///< the same where it leaves as in the mean
