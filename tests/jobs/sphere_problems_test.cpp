@@ -45,12 +45,7 @@ class SphereProblems : public ::testing::Test {
     }
     std::string refusal() const {
         bench_.rewrite();
-        try {
-            bench_.measure();
-        } catch (const Refused& refused) {
-            return refused.what();
-        }
-        return "not refused";
+        return message_of([&] { bench_.measure(); });
     }
     Json& captures() { return bench_.manifest["captures"]; }
     std::filesystem::path picture(const char* name) const { return bench_.captures() / name; }
