@@ -68,6 +68,15 @@ std::filesystem::path folder_of(const Studio& studio, const PresentationPlan& pl
     return studio.ballots->file().parent_path() / plan.folder;
 }
 
+/// Which of a duel's blind repeats it is; empty: of none.
+std::string repeat_in_words(const BallotStore& ballots, int round) {
+    const auto series = ballots.series_of(round);
+    if (!series) return "";
+    const auto held = static_cast<std::size_t>(std::count_if(
+        series->rounds.begin(), series->rounds.end(), [&](int other) { return other < round; }));
+    return fmt::format(": repeat {} of {} of a duel", held + 1, series->repeats);
+}
+
 }  // namespace
 
 PresentingState& presenting(Studio& studio) { return *studio.panels.presenting; }
@@ -291,6 +300,7 @@ void take_round(Studio& studio, Round round, PresentationPlan plan, Presentation
     presenting_state.problem.clear();
     PresentedRound& presented = presenting_state.presented.emplace();
     presented.round = std::move(round);
+    if (studio.ballots) presented.repeat = repeat_in_words(*studio.ballots, presented.round.id);
     presented.plan = std::move(plan);
     presented.state = state;
     const int id = presented.round.id;

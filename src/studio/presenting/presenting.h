@@ -64,6 +64,7 @@ struct Freezing {
 /// The round that is presented, voted on or locked.
 struct PresentedRound {
     Round round;
+    std::string repeat;  ///< which of a duel's blind repeats it is; empty: of none
     PresentationPlan plan;
     PresentationState state;
     VoteFrames frames;                    ///< empty: still being loaded, or not what was frozen

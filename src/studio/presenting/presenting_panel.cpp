@@ -235,15 +235,6 @@ void draw_freezing(const Studio& studio) {
     name_last_item("vote:freezing");
 }
 
-/// Which of a duel's blind repeats it is; empty: of none.
-std::string repeat_in_words(const Studio& studio, int round) {
-    const auto series = studio.ballots->series_of(round);
-    if (!series) return "";
-    const auto held = static_cast<std::size_t>(std::count_if(
-        series->rounds.begin(), series->rounds.end(), [&](int other) { return other < round; }));
-    return fmt::format(": repeat {} of {} of a duel", held + 1, series->repeats);
-}
-
 }  // namespace
 
 void draw_presentation_setup(Studio& studio, const std::vector<int>& looks) {
@@ -414,9 +405,7 @@ void draw_presented_round(Studio& studio) {
     }
     if (!state.presented) return;
     const PresentedRound& presented = *state.presented;
-    heading(
-        fmt::format("Round {}{}", presented.round.id, repeat_in_words(studio, presented.round.id))
-            .c_str());
+    heading(fmt::format("Round {}{}", presented.round.id, presented.repeat).c_str());
     dim_text(fmt::format("Seed {}. Frames in {}.", presented.round.seed, presented.plan.folder));
     if (!state.problem.empty()) {
         warning_text(state.problem);
