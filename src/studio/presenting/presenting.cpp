@@ -243,8 +243,8 @@ bool refuse_editing(Studio& studio) {
             why,
             presenting(studio).freezing ? "Wait for them, or cancel it in the bar at the top."
             : phase == Phase::locked    ? "Go back to editing in the bar at the top."
-            : phase == Phase::voting    ? "Lock the round in the bar at the top."
-                                        : "Abort the round in the bar at the top.",
+            : presenting(studio).presented->round.voting ? "Lock the round in the bar at the top."
+                                                         : "Abort the round in the bar at the top.",
             studio.now_s + 8.0});
     return true;
 }
