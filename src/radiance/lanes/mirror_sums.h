@@ -50,6 +50,8 @@ struct MirrorSumJob {
     const float* width = nullptr;  ///< factor of its Gaussian's variance, where there is `seen`
     /// Lists of R, of G and of B over all facets: the light of nodes, in place of looking it up.
     const float* given = nullptr;
+    /// Room for a mark of each block of given nodes, whether any light comes from there.
+    unsigned char* lit = nullptr;
     const int* lobes = nullptr;    ///< to be summed
     const bool* grazes = nullptr;  ///< of each, whether what grazes is summed as well
     std::size_t lobe_count = 0;

@@ -89,7 +89,9 @@ MirroredEnvironment::MirroredEnvironment(const Environment& environment,
     job_.facet_count = MirrorQuadrature::kFacets;
 }
 
-bool MirroredEnvironment::find_seen(std::size_t fragment, Scratch& scratch) const {
+bool MirroredEnvironment::find_seen(std::size_t fragment,
+                                    bool light_alone,
+                                    Scratch& scratch) const {
     const std::vector<MirrorVisibility::Alone>& alone = visibility_->alone;
     const auto own = std::lower_bound(
         alone.begin(), alone.end(), fragment, [](const auto& one, std::size_t index) {
@@ -108,10 +110,17 @@ bool MirroredEnvironment::find_seen(std::size_t fragment, Scratch& scratch) cons
     }
     const std::vector<float>& seen = scratch.seen_nodes;
     const std::size_t places = MirrorQuadrature::kFacets * quadrature_.places();
-    scratch.seen.assign(places, 0.0f);
-    scratch.width.assign(places, 1.0f);
     const bool product_lit = product_.hits && scale_ > 0.0f;
     scratch.in_the_way.assign(product_lit ? 3 * places : 0, 0.0f);
+    for (std::size_t k = 0; k < (product_lit ? seen.size() : 0); ++k) {
+        const glm::vec3& light = scratch.hidden_light[k];
+        if (light == glm::vec3(0.0f)) continue;
+        float* to = &scratch.in_the_way[quadrature_.place_of(k)];
+        for (std::size_t c = 0; c < 3; ++c) to[c * places] = light[static_cast<int>(c)] / scale_;
+    }
+    if (light_alone) return true;
+    scratch.seen.assign(places, 0.0f);
+    scratch.width.assign(places, 1.0f);
     for (std::size_t k = 0; k < seen.size(); ++k) {
         float least = 1.0f;
         for (const std::uint16_t beside : quadrature_.beside(k)) {
@@ -120,11 +129,6 @@ bool MirroredEnvironment::find_seen(std::size_t fragment, Scratch& scratch) cons
         const std::size_t place = quadrature_.place_of(k);
         scratch.seen[place] = seen[k];
         scratch.width[place] = 1.0f - (1.0f - kBesideHidden) * (1.0f - least);
-        if (!product_lit) continue;
-        for (std::size_t c = 0; c < 3; ++c) {
-            scratch.in_the_way[c * places + place] =
-                scratch.hidden_light[k][static_cast<int>(c)] / scale_;
-        }
     }
     return true;
 }
@@ -210,34 +214,38 @@ MirroredLight MirroredEnvironment::at_fragment(std::size_t fragment,
                                                Scratch& scratch,
                                                std::span<float> sums,
                                                bool known) const {
-    const bool hidden = visibility_ && find_seen(fragment, scratch);
+    const bool hidden = visibility_ && find_seen(fragment, known, scratch);
     const bool product_lit = hidden && !scratch.in_the_way.empty();
     const std::size_t sum_count = kNodeLists * lobes.count();
-    const Facets facets = visibility_ ? facets_of(mesh_, map_, fragment, eye_mm_, quadrature_)
-                                      : even_facets(map_.fragments[fragment], eye_mm_, quadrature_);
-    std::array<MirrorFacet, MirrorQuadrature::kFacets> for_sums;
-    for (std::size_t f = 0; f < facets.size(); ++f) for_sums[f] = facet_for_sums(facets[f], f);
-    scratch.light.resize(kNodeLists * facets.size() * quadrature_.places());
-    MirrorSumJob job = job_;
-    job.facets = for_sums.data();
-    job.seen = hidden ? scratch.seen.data() : nullptr;
-    job.width = scratch.width.data();
-    job.lobes = lobes.lobes();
-    job.grazes = lobes.grazes();
-    job.lobe_count = lobes.count();
-    job.light = scratch.light.data();
-    job.sums = scratch.sums.data();
-    if (known) {
-        std::copy_n(sums.begin(), sum_count, scratch.sums.begin());
-    } else {
-        best_mirror_sums().sum(job);
-        if (!sums.empty()) std::copy_n(scratch.sums.begin(), sum_count, sums.begin());
-    }
-    if (product_lit) {
-        job.given = scratch.in_the_way.data();
-        job.sums = scratch.of_product.data();
-        best_mirror_sums().sum(job);
-        for (std::size_t k = 0; k < sum_count; ++k) scratch.sums[k] += scratch.of_product[k];
+    if (known) std::copy_n(sums.begin(), sum_count, scratch.sums.begin());
+    if (!known || product_lit) {
+        const Facets facets = visibility_
+                                  ? facets_of(mesh_, map_, fragment, eye_mm_, quadrature_)
+                                  : even_facets(map_.fragments[fragment], eye_mm_, quadrature_);
+        std::array<MirrorFacet, MirrorQuadrature::kFacets> for_sums;
+        for (std::size_t f = 0; f < facets.size(); ++f) for_sums[f] = facet_for_sums(facets[f], f);
+        scratch.light.resize(kNodeLists * facets.size() * quadrature_.places());
+        scratch.lit.resize(facets.size() * quadrature_.places() / kNodeBlock);
+        MirrorSumJob job = job_;
+        job.facets = for_sums.data();
+        job.seen = hidden ? scratch.seen.data() : nullptr;
+        job.width = scratch.width.data();
+        job.lobes = lobes.lobes();
+        job.grazes = lobes.grazes();
+        job.lobe_count = lobes.count();
+        job.light = scratch.light.data();
+        job.lit = scratch.lit.data();
+        if (!known) {
+            job.sums = scratch.sums.data();
+            best_mirror_sums().sum(job);
+            if (!sums.empty()) std::copy_n(scratch.sums.begin(), sum_count, sums.begin());
+        }
+        if (product_lit) {
+            job.given = scratch.in_the_way.data();
+            job.sums = scratch.of_product.data();
+            best_mirror_sums().sum(job);
+            for (std::size_t k = 0; k < sum_count; ++k) scratch.sums[k] += scratch.of_product[k];
+        }
     }
 
     const Fragment& mean = map_.fragments[fragment];

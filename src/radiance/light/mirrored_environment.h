@@ -67,6 +67,7 @@ class MirroredEnvironment {
         std::vector<float> seen, width;  ///< by place: the same, and of its Gaussian's variance
         std::vector<float> in_the_way;   ///< by colour and place: hidden_light
         std::vector<float> light;
+        std::vector<unsigned char> lit;  ///< blocks of nodes
         std::array<float, kNodeLists * kMirrorAlphas.size()> sums{}, of_product{};
     };
     /// Sums over the nodes that see the environment, to be kept: kSumsALobe numbers a lobe.
@@ -80,8 +81,9 @@ class MirroredEnvironment {
                               bool known = false) const;
 
   private:
-    /// Whether any node is hidden, and by how much each.
-    bool find_seen(std::size_t fragment, Scratch& scratch) const;
+    /// Whether any node is hidden, and what the product sends from there; unless that alone is
+    /// asked for, also by how much each is.
+    bool find_seen(std::size_t fragment, bool light_alone, Scratch& scratch) const;
     void ask_neighbours(std::size_t fragment, Scratch& scratch) const;
     void ask_itself(const MirrorVisibility::Alone& alone, Scratch& scratch) const;
     /// What is sent along the ray of a word's bit, if it is set; the word's hits begin at `first`.
