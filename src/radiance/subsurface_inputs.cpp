@@ -76,7 +76,7 @@ void SubsurfaceInputs::solve(const Wanted& wanted,
             const auto sheet_mm = sheet_thickness_mm(tracer_, mesh_, p, deep_mm);
             const float reach_mm =
                 sheet_mm ? std::min(deep_mm, kernel_reach_mm(medium, sheet_mm)) : deep_mm;
-            kernels_[p] = {medium, reach_mm, {}};
+            kernels_[p] = {medium, shared_reach_mm(reach_mm), {}};
         }
         KernelOf& of = *kernels_[p];
         progress.check_stop();
@@ -108,7 +108,7 @@ void SubsurfaceInputs::solve(const Wanted& wanted,
         };
         Part& part = parts[p].emplace(where_it_enters(medium));
         part.spread = true;
-        part.at_fragments = at_fragment(leaving.from_afar);
+        part.at_fragments = at_fragment(transport->exchange.nodes.sharpened(leaving.from_afar));
         const std::vector<glm::vec3> near_share = at_fragment(leaving.near_share);
         std::vector<glm::vec3> bent;
         for (const float curvature : transport->curvature_per_mm) bent.emplace_back(curvature);

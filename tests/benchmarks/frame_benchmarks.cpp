@@ -1,11 +1,13 @@
 // What each paint swap costs. Items are the mock-up's pixels, fragments where a part is shaded.
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
 #include <glm/geometric.hpp>
 
+#include "appearance/subsurface/translucent_paint.h"
 #include "benchmarks/car.h"
 #include "compensation/compensation.h"
 #include "compensation/gpu_pass.h"
@@ -205,6 +207,14 @@ BENCHMARK(SwapInOpenGl)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 
+/// Each pass's milliseconds an iteration.
+void count_passes(benchmark::State& state, const std::map<std::string, double>& ms) {
+    for (const auto& [pass, sum] : ms) {
+        if (sum <= 0.0) continue;
+        state.counters[pass] = benchmark::Counter(sum, benchmark::Counter::kAvgIterations);
+    }
+}
+
 /// A light, an eye or an environment that the mouse drags, as a draft shows it: what a lane solves
 /// and draws for each of its steps, until the projector's texture is there.
 template <typename Move>
@@ -234,10 +244,7 @@ void drag(benchmark::State& state, const Move& move) {
             ms[to_string(cost_key(pass.id))] += pass.ms.value_or(0.0);
         }
     }
-    for (const auto& [pass, sum] : ms) {
-        if (sum <= 0.0) continue;
-        state.counters[pass] = benchmark::Counter(sum, benchmark::Counter::kAvgIterations);
-    }
+    count_passes(state, ms);
 }
 
 void DraggingTheEye(benchmark::State& state) {
@@ -274,6 +281,62 @@ void TurningTheEnvironment(benchmark::State& state) {
     });
 }
 BENCHMARK(TurningTheEnvironment)
+    ->ArgName("width")
+    ->Arg(640)
+    ->Arg(1280)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+/// A colour or a depth of a translucent body that a designer drags, as it is solved behind the
+/// draft that the mock-up shows meanwhile: marble as of a car of full size, in the studio's light.
+void translucent_body(benchmark::State& state,
+                      const std::function<void(TranslucentMaterial&, double)>& change) {
+    HeadlessContext context(GlDevice::automatic);
+    const Car& bench = car();
+    Scene scene = bench.looks.front();
+    const auto body = static_cast<std::size_t>(part_index(*bench.product, "body"));
+    const TranslucentMaterial marble = read_translucent_material("marble");
+    const TranslucentMaterial large =
+        with_mean_free_path(marble, bench.product->product_scale * mean_free_path_mm(marble));
+    RadianceRenderer renderer(
+        geometry_of_width(static_cast<int>(state.range(0))), false, ShadingDevice::processor);
+    int step = 0;
+    const auto next = [&] {
+        TranslucentMaterial medium = large;
+        change(medium, 0.01 * (1 + step++ % 20));
+        scene.part_materials[body] = translucent_paint(medium);
+        FramePlan plan = plan_frame(scene, Quality::normal, FrameStage::radiance);
+        renderer.render(scene, plan);
+        return plan;
+    };
+    next();
+    std::map<std::string, double> ms;
+    for (auto _ : state) {
+        for (const PlannedPass& pass : next().passes) {
+            ms[to_string(cost_key(pass.id))] += pass.ms.value_or(0.0);
+        }
+    }
+    count_passes(state, ms);
+}
+
+void AnotherColourOfATranslucentBody(benchmark::State& state) {
+    translucent_body(state, [](TranslucentMaterial& medium, double part) {
+        medium.sigma_a_per_mm *= 1.0 + part;
+    });
+}
+BENCHMARK(AnotherColourOfATranslucentBody)
+    ->ArgName("width")
+    ->Arg(640)
+    ->Arg(1280)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+void AnotherDepthOfATranslucentBody(benchmark::State& state) {
+    translucent_body(state, [](TranslucentMaterial& medium, double part) {
+        medium = with_mean_free_path(medium, (1.0 + part) * mean_free_path_mm(medium));
+    });
+}
+BENCHMARK(AnotherDepthOfATranslucentBody)
     ->ArgName("width")
     ->Arg(640)
     ->Arg(1280)

@@ -19,6 +19,7 @@
 #include "radiance/scenes.h"
 #include "reference/path_tracer.h"
 #include "support/small_meshes.h"
+#include "tracing/ray_counters.h"
 
 namespace livery {
 namespace {
@@ -118,6 +119,43 @@ TEST(SubsurfaceTransport, CoversThePartAndGivesBackWhatEnters) {
     }
     for (int c = 0; c < 3; ++c) {
         EXPECT_NEAR(left[c] / entered[c], static_cast<double>(of_ball[c]), 0.01) << c;
+    }
+}
+
+TEST(SubsurfaceTransport, IsSharedByMediaThatAreNearOneAnother) {
+    EXPECT_EQ(shared_reach_mm(0.0f), 0.0f);
+    float before = 0.0f;
+    for (float reach_mm = 1e-3f; reach_mm < 1e4f; reach_mm *= 1.01f) {
+        const float shared = shared_reach_mm(reach_mm);
+        ASSERT_GE(shared, 0.99999f * reach_mm);
+        ASSERT_LT(shared, 1.1893f * reach_mm);
+        ASSERT_GE(shared, before);
+        before = shared;
+    }
+    // A ball of which a designer drags the colour: rays between nodes are traced once
+    Scene scene = shadowed_ball(translucent_paint(medium_named("marble")));
+    const View view = look_at({0, 90, 10}, {0, 24.6, 4}, 0.36, 12, 12);
+    const HeadlessContext context(GlDevice::software);
+    const EffectLevels levels = levels_of(Quality::high);
+    RadianceRenderer renderer(std::make_shared<const FrameGeometry>(scene.product, view),
+                              false,
+                              ShadingDevice::processor);
+    const auto rays_for = [&](double absorption) {
+        TranslucentMaterial medium = medium_named("marble");
+        medium.sigma_a_per_mm *= absorption;
+        scene.part_materials[0] = translucent_paint(medium);
+        FramePlan plan = plan_frame(scene, levels, FrameStage::radiance);
+        const RayCounters begin = ray_counters();
+        renderer.render(scene, plan);
+        return (ray_counters() - begin).occluded;
+    };
+    const auto first = rays_for(1.0);
+    const float own = shared_reach_mm(kernel_reach_mm(medium_named("marble")));
+    for (const double absorption : {1.01, 1.02, 0.99}) {
+        TranslucentMaterial medium = medium_named("marble");
+        medium.sigma_a_per_mm *= absorption;
+        ASSERT_EQ(shared_reach_mm(kernel_reach_mm(medium)), own);
+        EXPECT_LT(rays_for(absorption), first / 10) << absorption;
     }
 }
 

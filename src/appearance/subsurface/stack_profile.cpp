@@ -180,7 +180,7 @@ SubsurfaceProfile subsurface_profile(SubsurfaceModel model, const ScatteringStac
     profile.model = model;
     profile.least_radius_mm = least_radius_mm(stack);
     if (!stack.scatters()) {
-        profile.reflected = profile.transmitted = [](double) { return 0.0; };
+        finish_profile({[](double) { return Exitance{}; }, {}}, unscattered_light(stack), profile);
         return profile;
     }
     finish_profile(is_multipole ? multipole(stack) : scaled_beam_diffusion(stack),

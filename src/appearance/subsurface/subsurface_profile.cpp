@@ -140,13 +140,19 @@ Made made_of(SubsurfaceModel model, const ScatteringMedium& medium) {
 }
 
 /// At r, or the mean over the smallest disc.
-double value_at(const std::function<double(double)>& profile, double least, double radius) {
+DiffuseTotals value_at(const std::function<DiffuseTotals(double)>& profile,
+                       double least,
+                       double radius) {
     check_argument(radius >= 0.0 && std::isfinite(radius),
                    fmt::format("radius: found {} mm, expected 0 or more", radius));
-    if (!(least > 0.0)) return 0.0;
+    if (!(least > 0.0)) return {};
     if (radius >= least) return profile(radius);
-    const auto both = [&](double r) { return Exitance{profile(r), 0.0}; };
-    return over_disc(1e-4 * least, least, both).reflected / (std::numbers::pi * least * least);
+    const Exitance sum = over_disc(1e-4 * least, least, [&](double r) {
+        const DiffuseTotals at = profile(r);
+        return Exitance{at.reflectance, at.transmittance};
+    });
+    const double area = std::numbers::pi * least * least;
+    return {sum.reflected / area, sum.transmitted / area};
 }
 
 }  // namespace
@@ -240,7 +246,7 @@ SubsurfaceProfile subsurface_profile(SubsurfaceModel model, const ScatteringMedi
     profile.least_radius_mm = least_radius_mm(medium);
     // Nothing scatters: nothing comes back, and no model has a formula for it.
     if (!(medium.sigma_s_prime() > 0.0)) {
-        profile.reflected = profile.transmitted = [](double) { return 0.0; };
+        finish_profile({[](double) { return Exitance{}; }, {}}, unscattered_light(medium), profile);
         return profile;
     }
     const Made made = made_of(model, medium);
@@ -264,20 +270,23 @@ void finish_profile(const MadeProfile& made,
         profile.totals.reflectance *= profile.scale;
         profile.totals.transmittance *= profile.scale;
     }
-    profile.reflected = [at = made.at, scale = profile.scale](double r) {
-        return scale * std::max(at(r).reflected, 0.0);
+    profile.both = [at = made.at, scale = profile.scale](double r) {
+        const Exitance sum = at(r);
+        return DiffuseTotals{scale * std::max(sum.reflected, 0.0),
+                             scale * std::max(sum.transmitted, 0.0)};
     };
-    profile.transmitted = [at = made.at, scale = profile.scale](double r) {
-        return scale * std::max(at(r).transmitted, 0.0);
-    };
+    profile.reflected = [both = profile.both](double r) { return both(r).reflectance; };
+    profile.transmitted = [both = profile.both](double r) { return both(r).transmittance; };
 }
 
-double SubsurfaceProfile::reflectance(double radius_mm) const {
-    return value_at(reflected, least_radius_mm, radius_mm);
+DiffuseTotals SubsurfaceProfile::at(double radius_mm) const {
+    return value_at(both, least_radius_mm, radius_mm);
 }
+
+double SubsurfaceProfile::reflectance(double radius_mm) const { return at(radius_mm).reflectance; }
 
 double SubsurfaceProfile::transmittance(double radius_mm) const {
-    return value_at(transmitted, least_radius_mm, radius_mm);
+    return at(radius_mm).transmittance;
 }
 
 double energy_radius_mm(const SubsurfaceProfile& profile,

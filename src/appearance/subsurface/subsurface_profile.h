@@ -45,12 +45,15 @@ struct SubsurfaceProfile {
     double scale = 1.0;
     /// What the model says at r > 0, per mm^2 and unit power that enters, never below 0.
     std::function<double(double radius_mm)> reflected, transmitted;
+    /// Both at once, for about the price of either.
+    std::function<DiffuseTotals(double radius_mm)> both;
     double least_radius_mm = 0.0;
 
     /// The profile at r, and the mean over the disc of `least_radius_mm` within it. Finite. Throws
     /// std::invalid_argument for a negative radius or one that is no number.
     double reflectance(double radius_mm) const;
     double transmittance(double radius_mm) const;
+    DiffuseTotals at(double radius_mm) const;
 };
 
 /// Throws std::invalid_argument (a medium out of range, a model that knows no slab or nothing but

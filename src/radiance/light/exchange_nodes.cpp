@@ -314,6 +314,15 @@ std::vector<glm::vec3> ExchangeNodes::at_points(const std::vector<glm::vec3>& at
     return values;
 }
 
+std::vector<glm::vec3> ExchangeNodes::sharpened(const std::vector<glm::vec3>& at_nodes) const {
+    const std::vector<glm::vec3> blurred = at_points(at_nodes);
+    std::vector<glm::vec3> values(at_nodes.size());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        values[i] = glm::max(2.0f * at_nodes[i] - blurred[point_of[i]], glm::vec3(0.0f));
+    }
+    return values;
+}
+
 std::array<ExchangePoints::Share, 3> ExchangePoints::around(const Mesh& mesh,
                                                             std::uint32_t triangle,
                                                             const glm::vec2& barycentric) const {

@@ -60,6 +60,9 @@ struct ExchangeNodes {
 
     /// Of each point, from a value of each node.
     std::vector<glm::vec3> at_points(const std::vector<glm::vec3>& at_nodes) const;
+    /// Interpolation blurs: values of which it gives `at_nodes` where they lie, but for the fourth
+    /// order, of what is smooth (Van Cittert's first step). Never below 0.
+    std::vector<glm::vec3> sharpened(const std::vector<glm::vec3>& at_nodes) const;
 };
 
 /// Nodes are a hundredth of the mesh's diagonal apart, or farther where that would make too many

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "appearance/subsurface/fresnel_moments.h"
 #include "appearance/subsurface/subsurface_profile.h"
@@ -17,6 +18,9 @@ namespace {
 
 constexpr double kShare = 0.997;
 constexpr std::size_t kSamples = 160;
+/// Of which the profile is asked for one in three, and the others lie between.
+constexpr std::size_t kApart = 3;
+static_assert((kSamples - 1) % kApart == 0);
 /// Of the reach: what lies within is told by its mean over the disc.
 constexpr double kInnermost = 1e-4;
 
@@ -76,18 +80,49 @@ struct Samples {
     }
 };
 
-/// `profile(r)` at those radii.
-template <typename Profile>
-Samples samples_of(const Profile& profile, double reach_mm) {
+Samples no_samples(double reach_mm) {
     Samples samples;
     samples.first = std::log(kInnermost * reach_mm);
     samples.step = std::log(1.0 / kInnermost) / (kSamples - 1);
     samples.value.resize(kSamples);
-    parallel_for(kSamples, 8, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) {
-            samples.value[k] = profile(samples.radius(k));
+    return samples;
+}
+
+/// Fills in what lies between every kApart-th one: by Catmull and Rom's cubic of the logarithm, in
+/// which a profile hardly bends, or along a line where one of them is 0.
+void fill_between(std::vector<double>& values) {
+    const std::size_t last = values.size() - 1;
+    for (std::size_t from = 0; from < last; from += kApart) {
+        const double p0 = values[from >= kApart ? from - kApart : from], p1 = values[from];
+        const double p2 = values[from + kApart], p3 = values[std::min(from + 2 * kApart, last)];
+        for (std::size_t k = 1; k < kApart; ++k) {
+            const double t = static_cast<double>(k) / kApart;
+            if (!(std::min({p0, p1, p2, p3}) > 0.0)) {
+                values[from + k] = (1.0 - t) * p1 + t * p2;
+                continue;
+            }
+            const double a = std::log(p1), b = std::log(p2);
+            const double begin = from >= kApart ? 0.5 * (b - std::log(p0)) : b - a;
+            const double end = from + kApart < last ? 0.5 * (std::log(p3) - a) : b - a;
+            const double u = 1.0 - t;
+            values[from + k] = std::exp(u * u * ((1.0 + 2.0 * t) * a + t * begin) +
+                                        t * t * ((1.0 + 2.0 * u) * b - u * end));
+        }
+    }
+}
+
+/// `profile(r)` at those radii, a number or several.
+template <std::size_t Count, typename Profile>
+std::array<Samples, Count> samples_of(const Profile& profile, double reach_mm) {
+    std::array<Samples, Count> samples;
+    samples.fill(no_samples(reach_mm));
+    parallel_for(kSamples / kApart + 1, 4, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin * kApart; k < end * kApart; k += kApart) {
+            const std::array<double, Count> values = profile(samples[0].radius(k));
+            for (std::size_t n = 0; n < Count; ++n) samples[n].value[k] = values[n];
         }
     });
+    for (Samples& one : samples) fill_between(one.value);
     return samples;
 }
 
@@ -98,18 +133,53 @@ Samples profile_samples(const ScatteringMedium& medium, double reach_mm) {
     constexpr double kOftenFrom = 4.0, kOften = 12.0;  // mean free paths
     const SubsurfaceProfile scaled =
         subsurface_profile(SubsurfaceModel::scaled_beam_diffusion, medium);
-    if (!(medium.sigma_s_prime() > 0.0)) {
-        return samples_of([](double) { return 0.0; }, reach_mm);
-    }
+    if (!(medium.sigma_s_prime() > 0.0)) return no_samples(reach_mm);
     const SubsurfaceProfile diffusion = subsurface_profile(SubsurfaceModel::beam_diffusion, medium);
-    return samples_of(
+    return samples_of<1>(
         [&](double r) {
             const double x = std::clamp(
                 (r * medium.sigma_t_prime() - kOftenFrom) / (kOften - kOftenFrom), 0.0, 1.0);
             const double often = x * x * (3.0 - 2.0 * x);
-            return (1.0 - often) * scaled.reflectance(r) + often * diffusion.reflectance(r);
+            double sum = 0.0;
+            if (often < 1.0) sum += (1.0 - often) * scaled.reflectance(r);
+            if (often > 0.0) sum += often * diffusion.reflectance(r);
+            return std::array{sum};
         },
-        reach_mm);
+        reach_mm)[0];
+}
+
+/// Of numbers at the samples' radii, the means over the disc that a node stands for: sums over
+/// nodes of a kernel that is narrower than they are apart would miss it between them, or take its
+/// peak for as wide as they are.
+std::vector<double> over_nodes(const Samples& samples,
+                               const std::vector<double>& values,
+                               double near_mm) {
+    constexpr int kRings = 4, kSpokes = 8;
+    const double disc_mm = near_mm / kNearCells / std::sqrt(std::numbers::pi);
+    std::vector<double> means(kSamples, 0.0);
+    for (std::size_t k = 0; k < kSamples; ++k) {
+        for (int ring = 0; ring < kRings; ++ring) {
+            const double r = disc_mm * std::sqrt((ring + 0.5) / kRings);
+            for (int spoke = 0; spoke < kSpokes; ++spoke) {
+                const double angle = (spoke + 0.5) * 2.0 * std::numbers::pi / kSpokes;
+                const double at =
+                    std::hypot(samples.radius(k) + r * std::cos(angle), r * std::sin(angle));
+                means[k] += samples.at(values, at);
+            }
+        }
+        means[k] /= kRings * kSpokes;
+    }
+    return means;
+}
+
+/// The profile times `weight`.
+template <typename Weight>
+std::vector<double> weighed(const Samples& samples, const Weight& weight) {
+    std::vector<double> values(kSamples);
+    for (std::size_t k = 0; k < kSamples; ++k) {
+        values[k] = samples.value[k] * weight(samples.radius(k));
+    }
+    return values;
 }
 
 ScatteringMedium deep(const TranslucentMaterial& material, int channel) {
@@ -132,7 +202,8 @@ SlabKernel slab_kernel(const TranslucentMaterial& material,
                        double near_mm) {
     SlabKernel slab;
     slab.thickness_mm = thickness_mm;
-    std::array<Samples, 3> reflected, through;
+    const Samples places = no_samples(reach_mm);
+    std::array<std::vector<double>, 3> far_of, through_of;
     glm::dvec3 near(0.0), total(0.0), passed(0.0);
     for (int c = 0; c < 3; ++c) {
         ScatteringMedium medium = medium_of(material, c);
@@ -140,11 +211,18 @@ SlabKernel slab_kernel(const TranslucentMaterial& material,
         const SubsurfaceProfile profile =
             subsurface_profile(SubsurfaceModel::scaled_beam_diffusion, medium);
         const auto channel = static_cast<std::size_t>(c);
-        reflected[channel] = samples_of([&](double r) { return profile.reflectance(r); }, reach_mm);
-        through[channel] = samples_of([&](double r) { return profile.transmittance(r); }, reach_mm);
-        near[c] = reflected[channel].within([&](double r) { return near_part(r, near_mm); }).back();
+        const auto [reflected, through] = samples_of<2>(
+            [&](double r) {
+                const DiffuseTotals at = profile.at(r);
+                return std::array{at.reflectance, at.transmittance};
+            },
+            reach_mm);
+        near[c] = reflected.within([&](double r) { return near_part(r, near_mm); }).back();
         total[c] = profile.totals.reflectance;
         passed[c] = profile.totals.transmittance;
+        const auto far = [&](double r) { return 1.0 - near_part(r, near_mm); };
+        far_of[channel] = over_nodes(reflected, weighed(reflected, far), near_mm);
+        through_of[channel] = over_nodes(through, through.value, near_mm);
     }
     const glm::dmat3& working = working_from_rec709();
     slab.near_share = glm::vec3(working * near);
@@ -155,9 +233,8 @@ SlabKernel slab_kernel(const TranslucentMaterial& material,
         glm::dvec3 far, by;
         for (int c = 0; c < 3; ++c) {
             const auto channel = static_cast<std::size_t>(c);
-            far[c] =
-                reflected[channel].at(reflected[channel].value, r) * (1.0 - near_part(r, near_mm));
-            by[c] = through[channel].at(through[channel].value, r);
+            far[c] = places.at(far_of[channel], r);
+            by[c] = places.at(through_of[channel], r);
         }
         slab.far_per_mm2.emplace_back(working * far);
         slab.through_per_mm2.emplace_back(working * by);
@@ -211,6 +288,7 @@ SubsurfaceKernel subsurface_kernel(const TranslucentMaterial& material,
     if (!(reach_mm > 0.0f)) return kernel;
     const auto reach = static_cast<double>(reach_mm), near = static_cast<double>(kernel.near_mm);
     std::array<Samples, 3> samples;
+    std::array<std::vector<double>, 3> far_of, bent_of;
     glm::dvec3 far_share(0.0), bent_share(0.0);
     for (int c = 0; c < 3; ++c) {
         const ScatteringMedium medium = deep(material, c);
@@ -224,15 +302,13 @@ SubsurfaceKernel subsurface_kernel(const TranslucentMaterial& material,
             kernel.decay_per_mm[c] = std::sqrt(medium.sigma_a_per_mm / diffusion);
             kernel.inward[c] = 2.0 * a * diffusion * kernel.decay_per_mm[c];
         }
-        samples[channel] = profile_samples(medium, reach);
-        far_share[c] =
-            samples[channel].within([&](double r) { return 1.0 - near_part(r, near); }).back();
-        bent_share[c] =
-            samples[channel]
-                .within([&](double r) {
-                    return (1.0 - near_part(r, near)) * bent_part(r, kernel.decay_per_mm[c]);
-                })
-                .back();
+        const Samples& own = samples[channel] = profile_samples(medium, reach);
+        const auto far = [&](double r) { return 1.0 - near_part(r, near); };
+        const auto bent = [&](double r) { return far(r) * bent_part(r, kernel.decay_per_mm[c]); };
+        far_share[c] = own.within(far).back();
+        bent_share[c] = own.within(bent).back();
+        far_of[channel] = over_nodes(own, weighed(own, far), near);
+        bent_of[channel] = over_nodes(own, weighed(own, bent), near);
     }
     // What is far is as it is, what is near the rest of the exact total
     kernel.near_share = glm::vec3(working * (kernel.albedo - far_share));
@@ -243,17 +319,20 @@ SubsurfaceKernel subsurface_kernel(const TranslucentMaterial& material,
         for (int c = 0; c < 3; ++c) {
             const auto channel = static_cast<std::size_t>(c);
             const Samples& own = samples[channel];
-            far[c] = own.at(own.value, r) * (1.0 - near_part(r, near));
-            bent[c] = far[c] * bent_part(r, kernel.decay_per_mm[c]);
+            far[c] = own.at(far_of[channel], r);
+            bent[c] = own.at(bent_of[channel], r);
             by_near[c] = own.at(own.value, close) * near_part(close, near);
         }
         kernel.far_per_mm2.emplace_back(working * far);
         kernel.bent_per_mm2.emplace_back(working * bent);
         kernel.near_per_mm2.emplace_back(working * by_near);
     }
-    for (const float thickness : slabs_mm) {
-        kernel.slabs.push_back(slab_kernel(material, thickness, reach, near));
-    }
+    kernel.slabs.resize(slabs_mm.size());
+    parallel_for(slabs_mm.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            kernel.slabs[k] = slab_kernel(material, slabs_mm[k], reach, near);
+        }
+    });
     return kernel;
 }
 

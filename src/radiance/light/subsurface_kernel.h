@@ -16,6 +16,10 @@ namespace livery {
 inline constexpr std::uint32_t kDistanceSteps = 2048;
 std::uint16_t distance_code(float distance_mm, float reach_mm);
 
+/// Of what is near, in cells of the nodes' grid: sums over nodes of what begins that softly are as
+/// good as integrals.
+inline constexpr double kNearCells = 2.0;
+
 /// Beyond, three thousandths of what leaves the plane do so; or of what leaves a sheet that thick.
 float kernel_reach_mm(const TranslucentMaterial& on_mock_up, std::optional<float> sheet_mm = {});
 

@@ -22,8 +22,6 @@ constexpr double kMostNodes = 60'000.0;
 /// A surface crosses about that many cells of the nodes' grid per side squared.
 constexpr double kCellsCrossed = 1.5;
 constexpr int kPlaceSkyRays = 32;
-/// Of the nodes' grid: sums over nodes of what begins that softly are as good as integrals.
-constexpr double kNearCells = 2.0;
 /// Nodes of sheets, over those of bodies, at most.
 constexpr double kMoreForSlabs = 4.0;
 /// Classes of thickness; those that are thicker than all of them count as deep.
@@ -190,6 +188,9 @@ void find_others(const Tracer& tracer,
                                             ? std::numeric_limits<float>::infinity()
                                             : transport.slabs_mm[slab];
                 float bent = 0.0f, all = 0.0f;
+                // Itself: far light goes some way within what a node stands for
+                list.other.push_back(static_cast<std::uint32_t>(i));
+                list.code.push_back(0);
                 cells.around(nodes.position_mm(i), [&](std::uint32_t j) {
                     if (j == i) return;
                     const glm::vec3 way = nodes.position_mm(j) - nodes.position_mm(i);
@@ -267,6 +268,12 @@ glm::vec3 mean_of(const NodeLists& lists,
 }
 
 }  // namespace
+
+float shared_reach_mm(float reach_mm) {
+    constexpr float kOfAnOctave = 4.0f;
+    if (!(reach_mm > 0.0f)) return reach_mm;
+    return std::exp2(std::ceil(kOfAnOctave * std::log2(reach_mm)) / kOfAnOctave);
+}
 
 SubsurfaceTransport solve_transport(const Mesh& product,
                                     const Tracer& tracer,

@@ -49,6 +49,9 @@ struct SubsurfaceTransport {
     std::vector<std::uint32_t> through_first, through;
     std::vector<std::uint16_t> through_code;
 };
+/// The next longer reach of a geometric row, of fourths of an octave: colours and depths that are
+/// near one another share nodes, so that who drags them has new ones sought once in many steps.
+float shared_reach_mm(float reach_mm);
 SubsurfaceTransport solve_transport(const Mesh& product,
                                     const Tracer& tracer,
                                     std::size_t part,
