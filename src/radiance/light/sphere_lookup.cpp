@@ -7,45 +7,11 @@
 #include "core/parallel.h"
 
 namespace livery {
-namespace {
-
-/// Of the quotients of numbers that are not negative; 0 of two zeros. A polynomial on [0, 1],
-/// within 2e-6 rad.
-float first_quadrant_angle(float y, float x) {
-    const float larger = std::max(x, y), smaller = std::min(x, y);
-    const float t = smaller / std::max(larger, 1e-30f);
-    const float t2 = t * t;
-    float p = -0.01172120f;
-    p = p * t2 + 0.05265332f;
-    p = p * t2 - 0.11643287f;
-    p = p * t2 + 0.19354346f;
-    p = p * t2 - 0.33262347f;
-    p = p * t2 + 0.99997726f;
-    const float angle = p * t;
-    return y > x ? 0.5f * std::numbers::pi_v<float> - angle : angle;
-}
-
-}  // namespace
-
 SpherePlaces::SpherePlaces(const Environment& environment)
     : turns_([&] {
           const double turns = environment.rotation_rad / (2.0 * std::numbers::pi) + 0.5;
           return static_cast<float>(turns - std::floor(turns));
       }()) {}
-
-glm::vec2 SpherePlaces::of(const glm::vec3& d) const {
-    constexpr float kPi = std::numbers::pi_v<float>;
-    constexpr float kTurn = 0.5f * std::numbers::inv_pi_v<float>;
-    // Clockwise from -z
-    float azimuth = first_quadrant_angle(std::abs(d.x), std::abs(d.z));
-    azimuth = d.z > 0.0f ? kPi - azimuth : azimuth;
-    float u = (d.x < 0.0f ? -azimuth : azimuth) * kTurn + turns_;
-    u = u >= 1.0f ? u - 1.0f : u;
-    u = u < 0.0f ? u + 1.0f : u;
-    float polar = first_quadrant_angle(std::sqrt(d.x * d.x + d.z * d.z), std::abs(d.y));
-    polar = d.y < 0.0f ? kPi - polar : polar;
-    return {u, polar * std::numbers::inv_pi_v<float>};
-}
 
 SphereStack::SphereStack(std::span<const ImageF> pictures)
     : width_(pictures.front().width), height_(pictures.front().height), count_(pictures.size()) {
