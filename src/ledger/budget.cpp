@@ -147,8 +147,11 @@ PriceList make_price_list(const Scene& scene,
     }
     // The planner looks at the parts' albedos and shapes too
     const FramePlan plan = plan_frame(scene, dearest_levels(), stage);
-    if (!find_pass(plan, PassKind::interreflection)) {
-        list.called_for[index_of(Effect::interreflection)] = false;
+    for (const auto& [pass, effect] :
+         {std::pair(PassKind::interreflection, Effect::interreflection),
+          std::pair(PassKind::mirrored_environment, Effect::mirrored_environment),
+          std::pair(PassKind::reflection_occlusion, Effect::reflected_occlusion)}) {
+        if (!find_pass(plan, pass)) list.called_for[index_of(effect)] = false;
     }
     return list;
 }

@@ -19,6 +19,16 @@ bool same_map(const std::shared_ptr<const Environment>& a,
            a->radiance_working.values == b->radiance_working.values;
 }
 
+/// What parts that only lamps light are mirrored before.
+const std::shared_ptr<const Environment>& no_environment() {
+    static const std::shared_ptr<const Environment> black = [] {
+        auto environment = std::make_shared<Environment>();
+        environment->radiance_working = ImageF(32, 16, 3, 0.0f);
+        return environment;
+    }();
+    return black;
+}
+
 }  // namespace
 
 FragmentRays rays_of(const EffectLevels& levels) {
@@ -275,20 +285,23 @@ void FragmentInputs::solve_subsurface(const Scene& scene,
     });
 }
 
-bool FragmentInputs::mirror_filtered(const Scene& scene, int nodes) const {
-    return same_map(nodes == kNoNodes ? look_up_of_ : layered_, scene.environment);
+bool FragmentInputs::mirror_filtered(const std::shared_ptr<const Environment>& environment,
+                                     int nodes) const {
+    return same_map(nodes == kNoNodes ? look_up_of_ : layered_, environment);
 }
 
-void FragmentInputs::filter_for_mirror(const Scene& scene, int nodes, const Progress& progress) {
+void FragmentInputs::filter_for_mirror(const std::shared_ptr<const Environment>& environment,
+                                       int nodes,
+                                       const Progress& progress) {
     if (nodes == kNoNodes) {
         mirror_look_up_.emplace(
-            filter_environment(*scene.environment, {true, false, false, false}, progress));
-        look_up_of_ = scene.environment;
+            filter_environment(*environment, {true, false, false, false}, progress));
+        look_up_of_ = environment;
         return;
     }
     filtered_.gaussians =
-        filter_environment(*scene.environment, {false, false, false, true}, progress).gaussians;
-    layered_ = scene.environment;
+        filter_environment(*environment, {false, false, false, true}, progress).gaussians;
+    layered_ = environment;
 }
 
 void FragmentInputs::solve_mirror(const Scene& scene,
@@ -298,8 +311,9 @@ void FragmentInputs::solve_mirror(const Scene& scene,
                                   bool keep_exchange) {
     // A scene whose paints do not mirror keeps what the next one may; one without environment not.
     const bool ahead = find_pass(plan, mirrored_ahead_pass()) != nullptr;
+    const bool sky = find_pass(plan, PassKind::environment_irradiance) != nullptr;
     if (!ahead && !find_pass(plan, PassKind::mirrored_environment)) {
-        if (find_pass(plan, PassKind::environment_irradiance)) return;
+        if (sky) return;
         mirror_.clear();
         layered_ = look_up_of_ = nullptr;
         filtered_.gaussians.clear();
@@ -309,8 +323,10 @@ void FragmentInputs::solve_mirror(const Scene& scene,
     // Without what hides it, nothing is known of what other parts send into a mirror either
     const bool hides = plan.levels[Effect::reflected_occlusion] > 0;
     const int nodes = rays_of(plan.levels).mirror;
+    const std::shared_ptr<const Environment>& environment =
+        sky ? scene.environment : no_environment();
     MirrorInputs::Light light{
-        scene.environment, scene.eye_in_world_mm, hides ? nodes : std::min(nodes, 0)};
+        environment, scene.eye_in_world_mm, hides ? nodes : std::min(nodes, 0)};
     const MirrorInputs::Light& made = mirror_.light();
     if (made.environment == light.environment && made.eye_mm == light.eye_mm &&
         enough(made.nodes, light.nodes)) {
@@ -332,10 +348,10 @@ void FragmentInputs::solve_mirror(const Scene& scene,
                         exchanged_.version);
     // Who keeps light between parts draws with what was mirrored behind other light of it, too
     const auto worn = mirror_.missing(light, mirror_layers_of(scene), !keep_exchange);
-    const bool filtered = mirror_filtered(scene, light.nodes);
-    if (filtered) (light.nodes == kNoNodes ? look_up_of_ : layered_) = scene.environment;
+    const bool filtered = mirror_filtered(environment, light.nodes);
+    if (filtered) (light.nodes == kNoNodes ? look_up_of_ : layered_) = environment;
     clock.run(PassKind::environment_filter, !filtered, [&] {
-        filter_for_mirror(scene, light.nodes, progress);
+        filter_for_mirror(environment, light.nodes, progress);
     });
     clock.run(PassKind::reflection_occlusion, mirror_.lacks_visibility(light, worn), [&] {
         mirror_.trace(light, worn, runs(false), progress);
@@ -347,7 +363,8 @@ void FragmentInputs::solve_mirror(const Scene& scene,
         MirrorInputs::LayersOfParts(scene.part_materials.size(), MirrorLayers().set()),
         false);
     clock.run(mirrored_ahead_pass(), any(others), [&] {
-        if (!mirror_filtered(scene, light.nodes)) filter_for_mirror(scene, light.nodes, progress);
+        if (!mirror_filtered(environment, light.nodes))
+            filter_for_mirror(environment, light.nodes, progress);
         if (mirror_.lacks_visibility(light, others))
             mirror_.trace(light, others, runs(false), progress);
         solve_layers(others);

@@ -127,8 +127,8 @@ class FragmentInputs {
     void solve_subsurface(const Scene&, const FramePlan&, StageClock&, const Progress&, bool keep);
     void solve_mirror(
         const Scene&, const FramePlan&, StageClock&, const Progress&, bool keep_exchange);
-    bool mirror_filtered(const Scene&, int nodes) const;
-    void filter_for_mirror(const Scene&, int nodes, const Progress&);
+    bool mirror_filtered(const std::shared_ptr<const Environment>&, int nodes) const;
+    void filter_for_mirror(const std::shared_ptr<const Environment>&, int nodes, const Progress&);
     void drop_exchange();
     template <typename Value>
     void upload_packed(InputLayers& input, int layer, const Value& value);

@@ -224,7 +224,7 @@ bool calls_for(const Scene& scene, Effect effect) {
             return has_environment(scene);
         case Effect::mirrored_environment:
         case Effect::reflected_occlusion:
-            return has_environment(scene) && any_paint(scene, mirrors);
+            return (has_environment(scene) || is_lit(scene)) && any_paint(scene, mirrors);
         case Effect::interreflection:
             return is_lit(scene) || has_environment(scene);
         case Effect::glints:

@@ -93,14 +93,35 @@ void plan_lights(const Scene& scene, FramePlan& plan) {
     if (scene.lights.empty()) plan.skipped.push_back({visibility_pass(0), "the look has no light"});
 }
 
+constexpr std::array kMirrorPasses{
+    PassKind::environment_filter, PassKind::reflection_occlusion, PassKind::mirrored_environment};
+
+/// `what` parts mirror: "the environment".
+void plan_mirrors(const Needs& needs, const char* what, FramePlan& plan) {
+    const std::string& mirror = *needs.mirror_parts.begin();
+    plan_pass(plan, PassKind::environment_filter, fmt::format("part {} mirrors {}", mirror, what));
+    if (plan.levels[Effect::reflected_occlusion] == 0) {
+        plan.skipped.push_back(
+            {PassKind::reflection_occlusion, "draft mirrors the environment through other parts"});
+    } else {
+        plan_pass(plan,
+                  PassKind::reflection_occlusion,
+                  fmt::format("part {} may mirror other parts", mirror));
+    }
+    plan_pass(
+        plan,
+        PassKind::mirrored_environment,
+        fmt::format("what {} mirror at the roughnesses worn, whatever the paint's colour",
+                    needs.mirror_parts.size() == 1 ? fmt::format("fragments of part {}", mirror)
+                                                   : fmt::format("fragments of part {} and {} more",
+                                                                 mirror,
+                                                                 needs.mirror_parts.size() - 1)));
+}
+
 void plan_environment(const Needs& needs, const char* why_not, FramePlan& plan) {
-    const std::string mirror = needs.mirror_parts.empty() ? "" : *needs.mirror_parts.begin();
     if (!needs.environment) {
-        for (const PassKind pass : {PassKind::environment_irradiance,
-                                    PassKind::ambient_occlusion,
-                                    PassKind::environment_filter,
-                                    PassKind::reflection_occlusion,
-                                    PassKind::mirrored_environment}) {
+        for (const PassKind pass :
+             {PassKind::environment_irradiance, PassKind::ambient_occlusion}) {
             plan.skipped.push_back({pass, why_not});
         }
         plan.skipped.push_back({mirrored_ahead_pass(), why_not});
@@ -122,32 +143,26 @@ void plan_environment(const Needs& needs, const char* why_not, FramePlan& plan) 
     plan.skipped.push_back({mirrored_ahead_pass(),
                             "other parts and roughnesses wait until the window is idle; no paint "
                             "of this frame mirrors so"});
-    if (mirror.empty()) {
-        for (const PassKind pass : {PassKind::environment_filter,
-                                    PassKind::reflection_occlusion,
-                                    PassKind::mirrored_environment}) {
+    if (needs.mirror_parts.empty()) {
+        for (const PassKind pass : kMirrorPasses) {
             plan.skipped.push_back({pass, "no part mirrors the environment: all are diffuse"});
         }
         return;
     }
-    plan_pass(
-        plan, PassKind::environment_filter, fmt::format("part {} mirrors the environment", mirror));
-    if (plan.levels[Effect::reflected_occlusion] == 0) {
-        plan.skipped.push_back(
-            {PassKind::reflection_occlusion, "draft mirrors the environment through other parts"});
-    } else {
-        plan_pass(plan,
-                  PassKind::reflection_occlusion,
-                  fmt::format("part {} may mirror other parts", mirror));
+    plan_mirrors(needs, "the environment", plan);
+}
+
+/// Without an environment: lamps are mirrored as they are shaded, and parts that they light by what
+/// is known of light between parts, where mirrors look for parts at all.
+void plan_lit_mirrors(const Needs& needs, const char* why_not, FramePlan& plan) {
+    constexpr int kNodesThatTrace = 2;
+    if (!needs.mirror_parts.empty() && find_pass(plan, PassKind::interreflection) &&
+        plan.levels[Effect::reflected_occlusion] > 0 &&
+        plan.levels[Effect::mirrored_environment] >= kNodesThatTrace) {
+        plan_mirrors(needs, "parts in the light of lamps", plan);
+        return;
     }
-    plan_pass(
-        plan,
-        PassKind::mirrored_environment,
-        fmt::format("what {} mirror at the roughnesses worn, whatever the paint's colour",
-                    needs.mirror_parts.size() == 1 ? fmt::format("fragments of part {}", mirror)
-                                                   : fmt::format("fragments of part {} and {} more",
-                                                                 mirror,
-                                                                 needs.mirror_parts.size() - 1)));
+    for (const PassKind pass : kMirrorPasses) plan.skipped.push_back({pass, why_not});
 }
 
 /// Below this nobody sees it.
@@ -458,11 +473,11 @@ FramePlan plan_frame(const Scene& whole, const EffectLevels& levels, FrameStage 
                               scene.product->mesh.parts[scene.relief.front().part].name));
     }
     plan_lights(scene, plan);
-    plan_environment(needs,
-                     left_out(Effect::environment) ? "the environment is left out"
-                                                   : "no environment in the look",
-                     plan);
+    const char* why_no_environment = left_out(Effect::environment) ? "the environment is left out"
+                                                                   : "no environment in the look";
+    plan_environment(needs, why_no_environment, plan);
     plan_interreflection(scene, needs, plan);
+    if (!needs.environment) plan_lit_mirrors(needs, why_no_environment, plan);
     plan_subsurface(scene, whole, plan);
     plan_shading(scene,
                  needs,

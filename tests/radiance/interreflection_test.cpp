@@ -250,26 +250,68 @@ Scene mirror_between_walls() {
     return scene;
 }
 
-TEST_P(Interreflection, AMirrorShowsThePartThatItFaces) {
-    const HeadlessContext context(GlDevice::automatic);
-    Scene scene = mirror_between_walls();
+/// What the mirror shows of the red wall, and the wall itself where it is mirrored.
+struct WallInMirror {
+    glm::vec3 mirrored, wall;
+};
+WallInMirror wall_in_mirror(Scene scene, ShadingDevice device) {
     // From the right over the blue wall's edge, down onto the mirror: it shows the red wall
     scene.eye_in_world_mm = {6.0, 12.0, 0.0};
     const View view = look_at(scene.eye_in_world_mm, {-0.6, 0.0, 0.0}, 0.02, 16, 16);
     const View onto_wall = look_at(scene.eye_in_world_mm, {-1.0, 0.73, 0.0}, 0.02, 16, 16);
     const auto middle_of = [&](const View& seen) {
         RadianceRenderer renderer(
-            std::make_shared<const FrameGeometry>(scene.product, seen), false, GetParam());
+            std::make_shared<const FrameGeometry>(scene.product, seen), false, device);
         FramePlan plan = plan_frame(scene, dearest_levels(), FrameStage::radiance);
         renderer.render(scene, plan);
         const float* v = &renderer.read_back().values[4 * (8 * 16 + 8)];
         return glm::vec3(v[0], v[1], v[2]);
     };
-    const glm::vec3 mirrored = middle_of(view), wall = middle_of(onto_wall);
+    return {middle_of(view), middle_of(onto_wall)};
+}
+
+TEST_P(Interreflection, AMirrorShowsThePartThatItFaces) {
+    const HeadlessContext context(GlDevice::automatic);
+    const auto [mirrored, wall] = wall_in_mirror(mirror_between_walls(), GetParam());
     // At .4 from the wall the mirror shows it .4 * 12 / 6.6 up: as bright as there, within what
     // changes over the lobe and the node that stands for it
     EXPECT_NEAR(mirrored.x, wall.x, 0.15f * wall.x);
     EXPECT_GT(mirrored.x, 4.0f * mirrored.z) << "the blue wall shines in from behind";
+}
+
+TEST_P(Interreflection, AMirrorShowsWhatALampLightsWhereNoEnvironmentIs) {
+    const HeadlessContext context(GlDevice::automatic);
+    Scene scene = mirror_between_walls();
+    scene.environment = nullptr;
+    // From the right and above, onto the red wall; the mirror sends the lamp itself elsewhere
+    DirectionalLight lamp;
+    lamp.direction = glm::normalize(glm::dvec3(1.0, 2.0, 0.3));
+    lamp.radiance_rec709 = glm::dvec3(400.0);
+    lamp.angle_rad = 0.1;
+    scene.lights = {lamp};
+    const auto [mirrored, wall] = wall_in_mirror(scene, GetParam());
+    EXPECT_GT(wall.x, 0.1f);
+    EXPECT_NEAR(mirrored.x, wall.x, 0.15f * wall.x);
+
+    // Then again in an environment, and without: nothing of either is left behind
+    const View view = look_at({6.0, 12.0, 0.0}, {0.0, 0.5, 0.0}, 0.2, 32, 24);
+    scene.eye_in_world_mm = {6.0, 12.0, 0.0};
+    const auto geometry = std::make_shared<const FrameGeometry>(scene.product, view);
+    RadianceRenderer renderer(geometry, false, GetParam());
+    const auto drawn = [&](const Scene& shown) {
+        FramePlan plan = plan_frame(shown, dearest_levels(), FrameStage::radiance);
+        renderer.render(shown, plan);
+        return renderer.read_back();
+    };
+    const ImageF lamps = drawn(scene);
+    Scene both = scene;
+    both.environment = mirror_between_walls().environment;
+    EXPECT_NE(drawn(both).values, lamps.values);
+    EXPECT_EQ(drawn(scene).values, lamps.values);
+
+    // A draft mirrors no parts, and a lamp alone calls for nothing that one would
+    const FramePlan draft = plan_frame(scene, Quality::draft, FrameStage::radiance);
+    EXPECT_EQ(find_pass(draft, PassKind::mirrored_environment), nullptr);
 }
 
 TEST_P(Interreflection, AnotherWallIsMirroredAsIfItHadBeenThereAllAlong) {
