@@ -75,6 +75,8 @@ FN GgxPrepared ggx_prepare(IN(BsdfParameters) p) {
 // leaves, and lamps see the interface alone.
 FN GgxPrepared ggx_exit_prepare(IN(BsdfParameters) p) {
     GgxPrepared q = ggx_interface(p);
+    // Of a body, whatever its index
+    q.f90 = R(1.0);
     q.diffuse = VEC3(R(0.0));
     q.sky_diffuse = VEC3(R(1.0)) / (VEC3(R(1.0)) - ggx_interface_average(q));
     return q;
