@@ -37,14 +37,14 @@ AccuracyLedger measure_accuracy(const AccuracyOptions& options, const Progress& 
                    fmt::format("shard {} of {}", options.shard, options.shards));
     const std::vector<AccuracyScene> scenes = accuracy_scenes(options.quick, progress);
     TruthOptions truths;
-    truths.samples_per_pixel = options.quick ? kQuickSamples : kFullSamples;
+    const int samples = options.quick ? kQuickSamples : kFullSamples;
     truths.seed = options.seed;
     truths.folder = options.folder / "truths";
     const std::filesystem::path kept = options.folder / "rows";
 
     AccuracyLedger ledger;
     ledger.threads = thread_count();
-    ledger.samples_per_pixel = truths.samples_per_pixel;
+    ledger.samples_per_pixel = samples;
     const std::vector<AccuracyRow> wanted = rows_to_measure(scenes);
     const HeadlessContext context(options.device);
     ledger.renderer = context.renderer();
@@ -59,6 +59,7 @@ AccuracyLedger measure_accuracy(const AccuracyOptions& options, const Progress& 
         const Progress part = progress.part(begin, end);
         const bool own = k % static_cast<std::size_t>(options.shards) ==
                          static_cast<std::size_t>(options.shard - 1);
+        truths.samples_per_pixel = samples / scene.fewer_samples;
         // The hash alone is asked for first: a scene whose rows are all there is not traced.
         const std::string hash = truth_hash(scene, truths);
         std::vector<const AccuracyRow*> of_scene;

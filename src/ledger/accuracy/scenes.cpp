@@ -11,6 +11,8 @@ namespace livery {
 namespace {
 
 constexpr int kWidth_px = 640, kHeight_px = 400;
+/// Pictures' sides, and samples a pixel.
+constexpr int kTranslucentSmaller = 4, kTranslucentFewer = 4;
 
 struct NamedLook {
     const char* name;
@@ -71,7 +73,8 @@ std::vector<std::pair<const char*, std::function<void(Look&)>>> lights() {
 }
 
 /// Marble at its own size, where light goes through what is as large as a hand: a ball, and the
-/// shell of the player.
+/// shell of the player. Walks in it are hundreds of scatterings long, so that pictures are smaller
+/// and coarser.
 void add_translucent(std::vector<AccuracyScene>& scenes, const Progress& progress) {
     for (const std::string name : {"sphere", "player"}) {
         const auto product = find_product(name);
@@ -84,8 +87,11 @@ void add_translucent(std::vector<AccuracyScene>& scenes, const Progress& progres
             light(look);
             AccuracyScene& scene = scenes.emplace_back();
             scene.name = name + ", marble, " + light_name;
-            scene.view = resized(bench.projector.view, kWidth_px, kHeight_px);
+            scene.view = resized(bench.projector.view,
+                                 kWidth_px / kTranslucentSmaller,
+                                 kHeight_px / kTranslucentSmaller);
             scene.scene = make_scene(product, look, bench.eye_mm, nullptr);
+            scene.fewer_samples = kTranslucentFewer;
         }
     }
 }
@@ -93,7 +99,7 @@ void add_translucent(std::vector<AccuracyScene>& scenes, const Progress& progres
 }  // namespace
 
 AccuracyScene resized(const AccuracyScene& scene, int width, int height) {
-    return {scene.name, scene.scene, resized(scene.view, width, height)};
+    return {scene.name, scene.scene, resized(scene.view, width, height), scene.fewer_samples};
 }
 
 std::vector<AccuracyScene> accuracy_scenes(bool quick, const Progress& progress) {

@@ -15,6 +15,7 @@ struct AccuracyScene {
     std::string name;  ///< "car, pearl, overcast"
     Scene scene;
     View view;
+    int fewer_samples = 1;  ///< a pixel, in its truth, than in others': by that factor
 };
 
 /// `quick`: one look on the car in one light.
