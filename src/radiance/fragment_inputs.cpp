@@ -309,11 +309,11 @@ void FragmentInputs::solve_mirror(const Scene& scene,
                                   StageClock& clock,
                                   const Progress& progress,
                                   bool keep_exchange) {
-    // A scene whose paints do not mirror keeps what the next one may; one without environment not.
+    // A scene whose paints do not mirror keeps what the next one may; one without anything to not.
     const bool ahead = find_pass(plan, mirrored_ahead_pass()) != nullptr;
     const bool sky = find_pass(plan, PassKind::environment_irradiance) != nullptr;
     if (!ahead && !find_pass(plan, PassKind::mirrored_environment)) {
-        if (sky) return;
+        if (sky || parts_send_light(plan)) return;
         mirror_.clear();
         layered_ = look_up_of_ = nullptr;
         filtered_.gaussians.clear();

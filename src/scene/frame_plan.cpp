@@ -153,12 +153,9 @@ void plan_environment(const Needs& needs, const char* why_not, FramePlan& plan) 
 }
 
 /// Without an environment: lamps are mirrored as they are shaded, and parts that they light by what
-/// is known of light between parts, where mirrors look for parts at all.
+/// is known of light between parts.
 void plan_lit_mirrors(const Needs& needs, const char* why_not, FramePlan& plan) {
-    constexpr int kNodesThatTrace = 2;
-    if (!needs.mirror_parts.empty() && find_pass(plan, PassKind::interreflection) &&
-        plan.levels[Effect::reflected_occlusion] > 0 &&
-        plan.levels[Effect::mirrored_environment] >= kNodesThatTrace) {
+    if (!needs.mirror_parts.empty() && parts_send_light(plan)) {
         plan_mirrors(needs, "parts in the light of lamps", plan);
         return;
     }
@@ -338,13 +335,20 @@ PassId mirrored_ahead_pass() {
     return pass;
 }
 
+bool parts_send_light(const FramePlan& plan) {
+    constexpr int kNodesThatTrace = 2;
+    return find_pass(plan, PassKind::interreflection) &&
+           plan.levels[Effect::reflected_occlusion] > 0 &&
+           plan.levels[Effect::mirrored_environment] >= kNodesThatTrace;
+}
+
 void plan_ahead(FramePlan& plan) {
     const auto skipped =
         std::find_if(plan.skipped.begin(), plan.skipped.end(), [](const SkippedPass& pass) {
             return pass.id == mirrored_ahead_pass();
         });
     const bool environment = find_pass(plan, PassKind::environment_irradiance) != nullptr;
-    if (skipped == plan.skipped.end() || !environment) return;
+    if (skipped == plan.skipped.end() || (!environment && !parts_send_light(plan))) return;
     plan.skipped.erase(skipped);
     plan_pass(plan,
               mirrored_ahead_pass(),

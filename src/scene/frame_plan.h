@@ -51,6 +51,9 @@ PassId shade_pass(const Scene& scene, std::size_t part);
 /// Of the scene's k-th artwork, over the paint of its part.
 PassId artwork_pass(const Scene& scene, std::size_t artwork);
 
+/// Whether mirrors look for parts, and know what these send: then they show something under lamps
+/// alone, too.
+bool parts_send_light(const FramePlan& plan);
 /// What parts and roughnesses mirror that the scene does not wear: for the paint that may be next.
 PassId mirrored_ahead_pass();
 /// Moves that pass from those that the frame skips to those that run.

@@ -246,8 +246,7 @@ TEST_F(FrameThreadTest, LightBetweenPartsFollowsAPaintOnce) {
     ASSERT_TRUE(gallery_.whole(show()));
     wait_until_idle();
     gallery_.clear();
-    // One that mirrors nothing: the first that does has its mirrors solved as well
-    paint(description_.scene, 0, ReflectanceModel::lambert, {0.9, 0.1, 0.1});
+    paint(description_.scene, 0, ReflectanceModel::clearcoat, {0.9, 0.1, 0.1});
     const std::uint64_t number = show();
     const auto frame = gallery_.whole(number);
     ASSERT_TRUE(frame);
