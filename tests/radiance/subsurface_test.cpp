@@ -13,6 +13,7 @@
 #include "core/statistics.h"
 #include "gl/context.h"
 #include "radiance/light/slab_thickness.h"
+#include "radiance/light/subsurface_near.h"
 #include "radiance/light/subsurface_transport.h"
 #include "radiance/photon_picture.h"
 #include "radiance/renderer.h"
@@ -156,6 +157,44 @@ TEST(SubsurfaceTransport, IsSharedByMediaThatAreNearOneAnother) {
         medium.sigma_a_per_mm *= absorption;
         ASSERT_EQ(shared_reach_mm(kernel_reach_mm(medium)), own);
         EXPECT_LT(rays_for(absorption), first / 10) << absorption;
+    }
+}
+
+/// What is near does not depend on where the cubes lie that it is sought in: also not where their
+/// sides fall on fragments, within the rounding of a place.
+TEST(SubsurfaceNear, IsTheSameWhereverTheCubesLie) {
+    SubsurfaceKernel kernel = subsurface_kernel(medium_named("marble"), 20.0f, 6.0f);
+    const float reach = kernel.near_mm;
+    constexpr int kSide = 24;
+    const float step = reach / 4.0f;  // wider than what is taken together
+    PixelSize pixels;
+    pixels.from_mm = {0.0, 0.0, -1e7};
+    pixels.at_one_mm = static_cast<double>(step) * 1e-7;
+    const auto nearby = [&](float offset) {
+        SurfaceMap map;
+        std::vector<glm::vec3> entering;
+        for (int k = 0; k < kSide * kSide; ++k) {
+            Fragment& f = map.fragments.emplace_back();
+            f.position_mm = {offset + step * static_cast<float>(k % kSide),
+                             offset + step * static_cast<float>(k / kSide),
+                             0.0f};
+            f.normal = {0.0f, 0.0f, 1.0f};
+            f.coverage = 1.0f;
+            entering.emplace_back(k % 5 == 0 || k % kSide > kSide / 2 ? 1.0f : 0.0f);
+        }
+        map.part_begin = {0, static_cast<std::uint32_t>(map.fragments.size())};
+        return entering_nearby(map, pixels, 0, kernel, entering);
+    };
+    const std::vector<glm::vec3> usual = nearby(0.37f * step);
+    for (const float places : {0.0f, 1.0f, 3.0f, 17.0f, 1001.0f}) {
+        for (const float direction : {-1e9f, 1e9f}) {
+            // The next number below a side, and above
+            const float offset = std::nextafter(places * reach, direction);
+            const std::vector<glm::vec3> found = nearby(offset);
+            for (std::size_t i = 0; i < usual.size(); ++i) {
+                ASSERT_NEAR(found[i].y, usual[i].y, 5e-3f) << i << " at " << offset;
+            }
+        }
     }
 }
 

@@ -154,20 +154,11 @@ Samples profile_samples(const ScatteringMedium& medium, double reach_mm) {
 std::vector<double> over_nodes(const Samples& samples,
                                const std::vector<double>& values,
                                double near_mm) {
-    constexpr int kRings = 4, kSpokes = 8;
     const double disc_mm = near_mm / kNearCells / std::sqrt(std::numbers::pi);
-    std::vector<double> means(kSamples, 0.0);
+    std::vector<double> means(kSamples);
     for (std::size_t k = 0; k < kSamples; ++k) {
-        for (int ring = 0; ring < kRings; ++ring) {
-            const double r = disc_mm * std::sqrt((ring + 0.5) / kRings);
-            for (int spoke = 0; spoke < kSpokes; ++spoke) {
-                const double angle = (spoke + 0.5) * 2.0 * std::numbers::pi / kSpokes;
-                const double at =
-                    std::hypot(samples.radius(k) + r * std::cos(angle), r * std::sin(angle));
-                means[k] += samples.at(values, at);
-            }
-        }
-        means[k] /= kRings * kSpokes;
+        means[k] = mean_over_disc(
+            samples.radius(k), disc_mm, [&](double r) { return samples.at(values, r); });
     }
     return means;
 }

@@ -1,7 +1,9 @@
 // How far light goes in a translucent paint, as tables that transports are weighed with.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <vector>
@@ -15,6 +17,22 @@ namespace livery {
 /// Distances are told in steps that are finer near the beam, where the profile is steep.
 inline constexpr std::uint32_t kDistanceSteps = 2048;
 std::uint16_t distance_code(float distance_mm, float reach_mm);
+
+/// The mean of `value(distance)` over a disc of that radius, whose middle is that far away.
+template <typename Value>
+auto mean_over_disc(double distance_mm, double radius_mm, const Value& value) {
+    constexpr int kRings = 4, kSpokes = 8;
+    using Mean = decltype(value(distance_mm));
+    Mean sum(0);
+    for (int ring = 0; ring < kRings; ++ring) {
+        const double r = radius_mm * std::sqrt((ring + 0.5) / kRings);
+        for (int spoke = 0; spoke < kSpokes; ++spoke) {
+            const double angle = (spoke + 0.5) * 2.0 * std::numbers::pi / kSpokes;
+            sum += value(std::hypot(distance_mm + r * std::cos(angle), r * std::sin(angle)));
+        }
+    }
+    return sum / static_cast<Mean>(kRings * kSpokes);
+}
 
 /// Of what is near, in cells of the nodes' grid: sums over nodes of what begins that softly are as
 /// good as integrals.

@@ -20,24 +20,17 @@ namespace {
 /// The kernel's near part averaged over discs of that radius at each distance: fragments are about
 /// as wide as light goes, and the profile is steep.
 std::vector<glm::vec3> over_discs(const SubsurfaceKernel& kernel, float radius_mm) {
-    constexpr int kRings = 3, kSpokes = 8;
-    std::vector<glm::vec3> means(kDistanceSteps, glm::vec3(0.0f));
+    std::vector<glm::vec3> means(kDistanceSteps);
     parallel_for(means.size(), 128, [&](std::size_t begin, std::size_t end) {
         for (std::size_t code = begin; code < end; ++code) {
             const float part = static_cast<float>(code) / static_cast<float>(kDistanceSteps - 1);
-            const float distance = part * part * kernel.near_mm;
-            for (int ring = 0; ring < kRings; ++ring) {
-                const float r = radius_mm * std::sqrt((static_cast<float>(ring) + 0.5f) / kRings);
-                for (int spoke = 0; spoke < kSpokes; ++spoke) {
-                    const float angle = (static_cast<float>(spoke) + 0.5f) * 2.0f *
-                                        std::numbers::pi_v<float> / kSpokes;
-                    const float at =
-                        std::hypot(distance + r * std::cos(angle), r * std::sin(angle));
-                    if (at >= kernel.near_mm) continue;
-                    means[code] += kernel.near_per_mm2[distance_code(at, kernel.near_mm)];
-                }
-            }
-            means[code] /= static_cast<float>(kRings * kSpokes);
+            const auto distance_mm = static_cast<double>(part * part * kernel.near_mm);
+            means[code] =
+                mean_over_disc(distance_mm, static_cast<double>(radius_mm), [&](double distance) {
+                    const auto at = static_cast<float>(distance);
+                    if (at >= kernel.near_mm) return glm::vec3(0.0f);
+                    return kernel.near_per_mm2[distance_code(at, kernel.near_mm)];
+                });
         }
     });
     return means;
@@ -53,8 +46,10 @@ struct FragmentPatches {
     std::vector<std::uint32_t> of;  ///< of each fragment of the part
 };
 
-std::uint64_t cell_key(const glm::vec3& position, float side_mm, std::uint64_t kind = 0) {
-    const glm::ivec3 cell(glm::floor(position / side_mm));
+glm::ivec3 cell_of(const glm::vec3& position, float side_mm) {
+    return glm::ivec3(glm::floor(position / side_mm));
+}
+std::uint64_t cell_key(const glm::ivec3& cell, std::uint64_t kind = 0) {
     const auto of = [](int v) { return static_cast<std::uint64_t>(v + 0x80000) & 0xfffffu; };
     return of(cell.x) | of(cell.y) << 20u | of(cell.z) << 40u | kind << 60u;
 }
@@ -84,7 +79,8 @@ FragmentPatches patches_of(std::span<const Fragment> fragments,
             const std::uint64_t side = (f.normal.x > 0.0f ? 1u : 0u) |
                                        (f.normal.y > 0.0f ? 2u : 0u) |
                                        (f.normal.z > 0.0f ? 4u : 0u);
-            index = known.emplace(cell_key(f.position_mm, side_mm, side), index).first->second;
+            index =
+                known.emplace(cell_key(cell_of(f.position_mm, side_mm), side), index).first->second;
         }
         if (index == patches.all.size()) patches.all.emplace_back();
         patches.of[k] = index;
@@ -141,8 +137,7 @@ struct Around {
             const float facing = own.normal.x * nx[k] + own.normal.y * ny[k] + own.normal.z * nz[k];
             part2[k] = facing > 0.0f ? (dx * dx + dy * dy + dz * dz) * per_mm2 : 1.0f;
         }
-        // Each is written and the next one over it where it is not seen: no branch could be
-        // foretold
+        // Each is written, and the next one over it where it is not seen: no branch to foretell
         seen_count = 0;
         for (std::size_t k = 0; k < all; ++k) {
             seen[seen_count] = static_cast<std::uint32_t>(k);
@@ -204,23 +199,23 @@ std::vector<glm::vec3> entering_nearby(const SurfaceMap& map,
         per_mm2.emplace_back(mean, 0.0f);
     }
     const ByCell patches_in(patches.all.size(), [&](std::uint32_t k) {
-        return cell_key(patches.all[k].position_mm, reach);
+        return cell_key(cell_of(patches.all[k].position_mm, reach));
     });
     std::unordered_map<std::uint64_t, std::size_t> place_of;
     for (std::size_t k = 0; k < patches_in.cells.size(); ++k) place_of[patches_in.cells[k]] = k;
     const ByCell own_in(past - first, [&](std::uint32_t k) {
-        return cell_key(map.fragments[first + k].position_mm, reach);
+        return cell_key(cell_of(map.fragments[first + k].position_mm, reach));
     });
     parallel_for(own_in.cells.size(), 4, [&](std::size_t begin, std::size_t end) {
         Around around;
         for (std::size_t cell = begin; cell < end; ++cell) {
             const std::span own(own_in.order.data() + own_in.first[cell],
                                 own_in.order.data() + own_in.first[cell + 1]);
-            const glm::vec3 middle_mm = map.fragments[first + own.front()].position_mm;
+            const glm::ivec3 here = cell_of(map.fragments[first + own.front()].position_mm, reach);
             around.clear();
             for (int c = 0; c < 27; ++c) {
-                const glm::vec3 step(glm::ivec3(c % 3 - 1, c / 3 % 3 - 1, c / 9 - 1));
-                const auto found = place_of.find(cell_key(middle_mm + reach * step, reach));
+                const glm::ivec3 step(c % 3 - 1, c / 3 % 3 - 1, c / 9 - 1);
+                const auto found = place_of.find(cell_key(here + step));
                 if (found == place_of.end()) continue;
                 for (std::uint32_t k = patches_in.first[found->second];
                      k < patches_in.first[found->second + 1];
