@@ -125,6 +125,20 @@ TEST(AccuracyRows, OfAnotherLevelOrTruthAreOthers) {
     EXPECT_GE(rows.size(), 3u + 2u * kEffects);
 }
 
+/// An effect that no scene calls for has no row, whatever its scene is called.
+TEST(AccuracyScenes, SomeSceneCallsForEachEffect) {
+    const std::vector<AccuracyScene> scenes = accuracy_scenes(false);
+    for (const EffectInfo& info : effect_table()) {
+        EXPECT_TRUE(std::any_of(scenes.begin(), scenes.end(), [&](const AccuracyScene& scene) {
+            return calls_for(scene.scene, info.effect);
+        })) << info.name;
+    }
+    for (const AccuracyScene& scene : scenes) {
+        const bool named = scene.name.starts_with("car, silver with glints");
+        EXPECT_EQ(calls_for(scene.scene, Effect::glints), named) << scene.name;
+    }
+}
+
 // Ladders rise: a dearer level is nowhere less accurate, within what the truth itself may err by.
 // On small pictures of scenes that together call for every effect; livery bench has the large ones.
 TEST(Ladders, Rise) {

@@ -33,7 +33,7 @@ Material& body_of(Scene& scene) {
 std::vector<NamedLook> looks() {
     std::vector<NamedLook> all;
     all.push_back({"solid red", find_look("solid-red")});
-    all.push_back({"silver with glints", with_body("silver metallic"), [](Scene& scene) {
+    all.push_back({"silver with glints", with_body("grey silver metallic"), [](Scene& scene) {
                        body_of(scene).glint_density_per_mm2 = 1000.0;
                        body_of(scene).glint_scale = 30.0;
                    }});
