@@ -112,7 +112,7 @@ Json json_of_medium(const Material& material) {
             {"eta", medium.eta}};
 }
 
-/// A file of a medium alone (translucent_material.h) is a paint with a smooth surface.
+/// A file of a medium alone (translucent_material.h) is a paint, too.
 Material paint_of_medium(const std::string& text, const std::filesystem::path& file) {
     const TranslucentMaterial medium = parse_translucent_material(text, file);
     if (!(medium.eta >= kLeastEta && medium.eta <= kLargestEta)) {
@@ -121,7 +121,7 @@ Material paint_of_medium(const std::string& text, const std::filesystem::path& f
                         fmt::format("{:.4g}", medium.eta),
                         fmt::format("{} to {} for a paint", kLeastEta, kLargestEta));
     }
-    Material material = translucent_paint(medium);
+    Material material = translucent_paint(medium, medium.alpha);
     material.file = file;
     return material;
 }

@@ -1,13 +1,18 @@
 // Files of profiles and of translucent materials: what they hold, and what is wrong with them.
 
+#include <algorithm>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "appearance/material_library.h"
 #include "appearance/subsurface/radial_profile.h"
 #include "appearance/subsurface/translucent_material.h"
 #include "core/error.h"
 #include "core/paths.h"
+#include "core/text/csv.h"
+#include "support/reference_data.h"
 #include "support/temporary_folder.h"
 
 namespace livery {
@@ -124,6 +129,42 @@ TEST(TranslucentMaterial, EveryShippedOneIsReadAndSaysItsSource) {
     EXPECT_EQ(milk.sigma_s_prime(), 1.22);
     EXPECT_EQ(milk.sigma_a_per_mm, 0.0025);
     EXPECT_EQ(milk.eta, 1.3);
+}
+
+/// Jensen's and Narasimhan's media are shipped as they were published, every one.
+TEST(TranslucentMaterial, ShippedOnesAreThePublishedOnes) {
+    LIVERY_NEEDS_REFERENCE_DATA(data);
+    std::vector<TranslucentMaterial> shipped;
+    for (const std::string& name : shipped_names("materials/translucent")) {
+        shipped.push_back(read_translucent_material(name));
+    }
+    const auto file = data / "scattering" / "measured_media_rgb_mm.csv";
+    const std::string text = read_text_file(file);
+    CsvReader csv(text, file);
+    std::size_t rows = 0;
+    for (; csv.next(); ++rows) {
+        const glm::dvec3 scattering(csv.number(2), csv.number(3), csv.number(4));
+        const glm::dvec3 absorption(csv.number(5), csv.number(6), csv.number(7));
+        EXPECT_TRUE(std::any_of(shipped.begin(), shipped.end(), [&](const auto& one) {
+            return one.sigma_s_prime_per_mm == scattering && one.sigma_a_per_mm == absorption;
+        })) << csv.text(0);
+    }
+    EXPECT_EQ(rows, 47u);
+}
+
+TEST(TranslucentMaterial, ItsSurfaceIsReadWornAndWritten) {
+    const TemporaryFolder folder;
+    TranslucentMaterial ground = read_translucent_material("frosted glass");
+    EXPECT_EQ(ground.alpha, 0.25);
+    EXPECT_EQ(find_material("frosted glass").alpha, glm::dvec2(0.25));
+    EXPECT_EQ(find_material("marble").alpha, glm::dvec2(kSmoothAlpha));
+    ground.alpha = 0.4;
+    write_translucent_material(folder / "ground.json", ground);
+    EXPECT_EQ(read_translucent_material(folder / "ground.json").alpha, 0.4);
+    write_text_file(folder / "bad.json",
+                    R"({"format_version": 1, "kind": "translucent", "name": "x", "eta": 1.5,
+                        "sigma_a_per_mm": 1, "sigma_s_prime_per_mm": 1, "alpha": 2})");
+    expect_error([&] { read_translucent_material(folder / "bad.json"); }, "alpha", "2");
 }
 
 }  // namespace

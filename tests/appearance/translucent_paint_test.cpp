@@ -59,8 +59,8 @@ TEST(TranslucentPaint, IsRefusedWithFieldAndRange) {
 
 TEST(TranslucentPaint, ShippedMediaArePaintsByTheirName) {
     const auto library = read_paint_library();
-    EXPECT_EQ(library->media.size(), 12u);
-    for (const char* name : {"marble", "skim milk", "Skim-Milk"}) {
+    EXPECT_EQ(library->media.size(), 52u);
+    for (const char* name : {"marble", "skim milk", "Skim-Milk", "white pvc", "candle wax"}) {
         const Material paint = find_material(name, *library);
         EXPECT_EQ(paint.model, ReflectanceModel::translucent) << name;
         ASSERT_TRUE(paint.medium) << name;

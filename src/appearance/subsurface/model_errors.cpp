@@ -74,6 +74,7 @@ const std::vector<NamedMedium>& compared_media() {
     // Green channels of Jensen et al. 2001, and corners between and beyond them.
     static const std::vector<NamedMedium> media{
         {"marble", {0.0041, 2.62, 0.0, 1.5, {}}},
+        {"white PVC", {0.003, 2.0, 0.0, 1.5, {}}},
         {"skim milk", {0.0025, 1.22, 0.0, 1.3, {}}},
         {"skin 1", {0.17, 0.88, 0.0, 1.3, {}}},
         {"ketchup", {0.97, 0.07, 0.0, 1.3, {}}},

@@ -12,12 +12,16 @@
 
 namespace livery {
 
+/// Slope parameter of a boundary of which nothing is said.
+inline constexpr double kSmoothAlpha = 0.02;
+
 struct TranslucentMaterial {
     std::string name;
     glm::dvec3 sigma_a_per_mm{0.0}, sigma_s_prime_per_mm{0.0};  ///< linear Rec.709 channels
     double g = 0.0;
     double eta = 1.5;
     std::optional<double> thickness_mm;  ///< of a sheet; otherwise it is deep
+    double alpha = kSmoothAlpha;         ///< of the boundary that a part wears with it
     std::string provenance;
 };
 

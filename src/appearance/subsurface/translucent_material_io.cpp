@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "appearance/parameter_table.h"
 #include "appearance/subsurface/translucent_material.h"
 #include "core/error.h"
 #include "core/json.h"
@@ -64,6 +65,7 @@ TranslucentMaterial parse_translucent_material(const std::string& text,
                      "g",
                      "eta",
                      "thickness_mm",
+                     "alpha",
                      "provenance"});
     if (const std::string kind = json["kind"].text(); kind != "translucent") {
         json["kind"].fail("'" + kind + "'", "'translucent'");
@@ -76,6 +78,10 @@ TranslucentMaterial parse_translucent_material(const std::string& text,
     material.eta = json["eta"].number_between(0.5, 4.0);
     if (json.has("thickness_mm")) {
         material.thickness_mm = json["thickness_mm"].number_between(1e-9, kThickest_mm);
+    }
+    if (json.has("alpha")) {
+        const ParameterInfo& alpha = parameter_info("alpha");
+        material.alpha = json["alpha"].number_between(alpha.low, alpha.high);
     }
     if (json.has("provenance")) material.provenance = json["provenance"].text();
     for (int channel = 0; channel < 3; ++channel) {
@@ -97,6 +103,7 @@ void write_translucent_material(const std::filesystem::path& file,
                  {"g", material.g},
                  {"eta", material.eta}};
     if (material.thickness_mm) json["thickness_mm"] = *material.thickness_mm;
+    if (material.alpha != kSmoothAlpha) json["alpha"] = material.alpha;
     if (!material.provenance.empty()) json["provenance"] = material.provenance;
     write_json_file(file, json);
 }

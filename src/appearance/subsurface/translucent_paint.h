@@ -10,7 +10,6 @@ namespace livery {
 
 /// A paint of ReflectanceModel::translucent: the medium under a surface of that slope parameter,
 /// smooth unless it is told otherwise.
-inline constexpr double kSmoothAlpha = 0.02;
 Material translucent_paint(const TranslucentMaterial& medium, double alpha = kSmoothAlpha);
 
 /// How much of the light that enters a half space of it leaves again, in linear Rec.709: exact

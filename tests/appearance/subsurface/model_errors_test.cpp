@@ -42,6 +42,7 @@ TEST(ModelErrors, AreThoseOfAnIndependentComparison) {
     using enum SubsurfaceModel;
     const Row rows[] = {
         {"marble", 10'000, 20, 10, 2.5, 9, 0.9},
+        {"white PVC", 10'000, 20, 10, 2.5, 9, 0.9},
         {"skin 1", 60'000, 51, 17, 7.1, 33, 0.9},
         {"albedo .5", 60'000, 131, 17, 9.9, 63, 1.5},
     };
