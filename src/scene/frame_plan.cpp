@@ -201,9 +201,11 @@ void plan_subsurface(const Scene& scene, const Scene& whole, FramePlan& plan) {
     }
     const auto part = spreading_part(whole);
     if (!part) {
-        return skip(fmt::format(
-            "nine tenths of the light leaves translucent parts within {} mm of where it entered",
-            kUnseenReach_mm));
+        return skip(
+            fmt::format("of the light that enters translucent parts nine tenths leave "
+                        "within {} mm, or less than {}% leaves at all",
+                        kUnseenReach_mm,
+                        100.0 * kUnseenAlbedo));
     }
     const std::string reach =
         fmt::format("nine tenths of the light that enters part {} leaves it within {:.2g} mm",

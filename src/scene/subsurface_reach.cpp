@@ -32,11 +32,12 @@ double reach_in_paths(const ScatteringMedium& medium) {
 
 double subsurface_reach_mm(const Material& paint, double product_scale) {
     if (paint.model != ReflectanceModel::translucent || !paint.medium) return 0.0;
+    const glm::dvec3 albedo = entering_albedo(*paint.medium);
     double reach = 0.0;
     for (int c = 0; c < 3; ++c) {
+        if (albedo[c] < kUnseenAlbedo) continue;
         ScatteringMedium medium = medium_of(*paint.medium, c);
         medium.thickness_mm.reset();
-        if (!(medium.sigma_s_prime() > 0.0)) continue;
         reach = std::max(reach, reach_in_paths(medium) * medium.mean_free_path_mm());
     }
     return reach / product_scale;

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "appearance/material_library.h"
 #include "appearance/subsurface/exact_totals.h"
 #include "appearance/subsurface/translucent_paint.h"
 #include "core/colour.h"
@@ -332,7 +333,7 @@ std::vector<PictureCase> cases_of(const char* medium) {
 
 /// The edge of a shadow in pixels of 2 mm.
 TEST(SubsurfacePicture, IsNearPhotonsAndAlbedoAloneIsNot) {
-    for (const char* name : {"marble", "skim milk"}) {
+    for (const char* name : {"marble", "white pvc", "skim milk"}) {
         for (const PictureCase& one : cases_of(name)) {
             SCOPED_TRACE(one.name);
             const PhotonTruth truth = photon_truth(one.scene, one.view, one.around_mm);
@@ -449,6 +450,74 @@ TEST(SubsurfaceTransport, DisplacesWhatEntersAslantAndLosesNothing) {
     }
     // Fresnel's share is taken for even in the divergence: a tenth of a displacement of 6%
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(all[c] / plain, 1.0, 0.006) << c;
+}
+
+/// Juices and drinks scatter so little that light goes through a ball of them: no more leaves than
+/// scatters, whatever diffusion, which knows of no such bodies, says.
+TEST(SubsurfaceTransport, BallsOfAllShippedMediaGiveBackNoMoreThanScatters) {
+    const Mesh mesh = make_sphere({0, 0, 0}, 25.0, 64, "ball");
+    const Tracer tracer(mesh);
+    const auto library = read_paint_library();
+    for (const Material& paint : library->media) {
+        SCOPED_TRACE(paint.name);
+        const TranslucentMaterial& medium = *paint.medium;
+        const float reach_mm = shared_reach_mm(kernel_reach_mm(medium));
+        const SubsurfaceTransport transport =
+            solve_transport(mesh, tracer, 0, reach_mm, {200, true});
+        const SubsurfaceKernel kernel =
+            subsurface_kernel(medium, reach_mm, transport.near_mm, {}, 1.0f);
+        glm::dvec3 scatters;
+        for (int c = 0; c < 3; ++c) {
+            const ScatteringMedium channel = medium_of(medium, c);
+            const double chord = 4.0 / 3.0 * 25.0 * channel.sigma_t_prime();
+            scatters[c] = channel.albedo_prime() * -std::expm1(-chord);
+        }
+        scatters = working_from_rec709() * scatters;
+        const glm::vec3 of_ball = total_at(kernel, 1.0f / 25.0f);
+        const std::vector<glm::vec3> even(transport.area_mm2.size(), glm::vec3(1.0f));
+        const LeavingLight leaving = leaving_at_nodes(transport, kernel, even);
+        for (int c = 0; c < 3; ++c) {
+            ASSERT_LE(of_ball[c], scatters[c] + 1e-6) << c;
+            // Ten times smaller bodies give back neither more than scatters, nor nothing
+            ASSERT_GE(total_at(kernel, 1.0f / 2.5f)[c], 0.0f) << c;
+            for (std::size_t i = 0; i < even.size(); ++i) {
+                const float left = leaving.from_afar[i][c] + leaving.near_share[i][c];
+                ASSERT_GE(left, 0.0f) << c;
+                // Curvatures at nodes are within a tenth of the ball's
+                ASSERT_NEAR(left, of_ball[c], 0.01f + 0.1f * of_ball[c]) << c;
+            }
+        }
+        // No step where the one way of telling the total goes over into the other
+        glm::vec3 before = total_at(kernel, 0.01f);
+        for (float curvature = 0.01f; curvature < 1.0f; curvature *= 1.02f) {
+            const glm::vec3 total = total_at(kernel, curvature);
+            for (int c = 0; c < 3; ++c) ASSERT_NEAR(total[c], before[c], 0.02f) << curvature;
+            before = total;
+        }
+    }
+}
+
+/// How much light comes back from a ball that is a mean free path across, and from one that is ten.
+TEST(SubsurfacePicture, ShowsAsMuchOfClearBallsAsWalks) {
+    const View view = look_at({0, 90, 10}, {0, 0, 0}, 0.9, 24, 24);
+    for (const char* name : {"bleach", "gatorade", "white grapefruit juice"}) {
+        Scene scene = shadowed_ball(translucent_paint(medium_named(name)));
+        scene.lights = {light_from({0.3, 1.0, 0.15}, 0.01)};
+        const ImageF mirrored = mirrored_alone(scene, view);
+        ReferenceOptions options;
+        options.samples_per_pixel = 256;
+        const ImageF walked = trace_reference(scene, view, options).radiance_working;
+        const ImageF drawn = drawn_at(scene, view, 1);
+        double by_walks = 0.0, by_nodes = 0.0;
+        for (std::size_t k = 0; k < drawn.values.size(); ++k) {
+            if (k % 4 == 3) continue;
+            by_walks += static_cast<double>(walked.values[k] - mirrored.values[k]);
+            by_nodes += static_cast<double>(drawn.values[k] - mirrored.values[k]);
+        }
+        std::printf("    %-24s %.3f of what walks find\n", name, by_nodes / by_walks);
+        // Where it leaves is diffusion's guess; ten times as much is what this is about
+        EXPECT_NEAR(by_nodes / by_walks, 1.0, 0.35) << name;
+    }
 }
 
 TEST(SubsurfaceTransport, TakesNoBallForASlab) {

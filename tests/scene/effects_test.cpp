@@ -221,9 +221,13 @@ TEST(Subsurface, IsCalledForWhereLightGoesFarEnough) {
     small.product_scale = 100.0;
     scene.product = std::make_shared<const Product>(small);
     EXPECT_EQ(at(levels),
-              "skipped: nine tenths of the light leaves translucent parts within 0.3 mm of where "
-              "it entered");
+              "skipped: of the light that enters translucent parts nine tenths leave within 0.3 "
+              "mm, or less than 0.05% leaves at all");
     EXPECT_EQ(at_levels(scene, levels).part_materials[0].model, ReflectanceModel::ggx);
+    // A drink through which light goes and hardly ever comes back
+    scene.part_materials[0] = find_material("merlot");
+    EXPECT_EQ(subsurface_reach_mm(scene.part_materials[0], 1.0), 0.0);
+    scene.part_materials[0] = find_material("marble");
     EXPECT_NEAR(subsurface_reach_mm(scene.part_materials[0], 100.0), reach / 100.0, 1e-9);
 }
 

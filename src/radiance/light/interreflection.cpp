@@ -155,7 +155,10 @@ NodeExchange blocked_directions(const Mesh& mesh,
 glm::vec3 entering_of_lamp(const EnteredMedium& medium, float cosine, float curvature_per_mm) {
     const auto enters =
         static_cast<float>(1.0 - dielectric_reflectance(static_cast<double>(cosine), medium.eta));
-    const glm::vec3 shift = curvature_per_mm / static_cast<float>(medium.eta) * medium.path_mm;
+    // To first order: light that goes on for longer than the surface's radius knows nothing of it
+    constexpr float kLargest = 0.25f;
+    const glm::vec3 shift = glm::clamp(
+        curvature_per_mm / static_cast<float>(medium.eta) * medium.path_mm, -kLargest, kLargest);
     return glm::max(
         cosine * enters * (1.0f - 2.0f * cosine * shift) + (1.0f - cosine * cosine) * shift,
         glm::vec3(0.0f));

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
+#include "appearance/subsurface/exact_totals.h"
 #include "appearance/subsurface/fresnel_moments.h"
 #include "appearance/subsurface/subsurface_profile.h"
 #include "appearance/subsurface/translucent_paint.h"
@@ -17,6 +19,10 @@ namespace livery {
 namespace {
 
 constexpr double kShare = 0.997;
+/// In mean free paths, from where on light has scattered often, and where all has.
+constexpr double kOftenFrom = 4.0, kOften = 12.0;
+/// Of the thinnest bodies whose total is tabulated; thinner ones give back in proportion.
+constexpr double kShortestThin = 0.05;
 constexpr std::size_t kSamples = 160;
 /// Of which the profile is asked for one in three, and the others lie between.
 constexpr std::size_t kApart = 3;
@@ -126,20 +132,23 @@ std::array<Samples, Count> samples_of(const Profile& profile, double reach_mm) {
     return samples;
 }
 
+/// How much of light has scattered often on so many mean free paths, from 0 to 1.
+double scattered_often(double paths) {
+    const double x = std::clamp((paths - kOftenFrom) / (kOften - kOftenFrom), 0.0, 1.0);
+    return x * x * (3.0 - 2.0 * x);
+}
+
 /// Single scattering and beam diffusion, of which the part near the beam is scaled so that all add
 /// up to the exact total: where light has scattered often diffusion is right as it is (within the
 /// noise of Monte Carlo, where the scaled one is 4% too dark).
 Samples profile_samples(const ScatteringMedium& medium, double reach_mm) {
-    constexpr double kOftenFrom = 4.0, kOften = 12.0;  // mean free paths
     const SubsurfaceProfile scaled =
         subsurface_profile(SubsurfaceModel::scaled_beam_diffusion, medium);
     if (!(medium.sigma_s_prime() > 0.0)) return no_samples(reach_mm);
     const SubsurfaceProfile diffusion = subsurface_profile(SubsurfaceModel::beam_diffusion, medium);
     return samples_of<1>(
         [&](double r) {
-            const double x = std::clamp(
-                (r * medium.sigma_t_prime() - kOftenFrom) / (kOften - kOftenFrom), 0.0, 1.0);
-            const double often = x * x * (3.0 - 2.0 * x);
+            const double often = scattered_often(r * medium.sigma_t_prime());
             double sum = 0.0;
             if (often < 1.0) sum += (1.0 - often) * scaled.reflectance(r);
             if (often > 0.0) sum += often * diffusion.reflectance(r);
@@ -233,6 +242,49 @@ SlabKernel slab_kernel(const TranslucentMaterial& material,
     return slab;
 }
 
+/// The mean chord of a convex body with that curvature, in a channel's mean free paths.
+double paths_across(double extinction_per_mm, float curvature_per_mm) {
+    if (!(curvature_per_mm > 0.0f)) return std::numeric_limits<double>::infinity();
+    return 4.0 / 3.0 * extinction_per_mm / static_cast<double>(curvature_per_mm);
+}
+
+void add_thin_totals(const TranslucentMaterial& material,
+                     float most_bent_per_mm,
+                     SubsurfaceKernel& kernel) {
+    if (!(most_bent_per_mm > 0.0f)) return;
+    double fewest = kOften;
+    for (int c = 0; c < 3; ++c) {
+        if (!(kernel.extinction_per_mm[c] > 0.0)) continue;
+        fewest = std::min(fewest, paths_across(kernel.extinction_per_mm[c], most_bent_per_mm));
+    }
+    if (fewest >= kOften) return;
+    const double halvings = std::log2(kOften / std::max(fewest, kShortestThin));
+    kernel.thin_totals.resize(static_cast<std::size_t>(std::ceil(halvings)) + 1);
+    parallel_for(3 * kernel.thin_totals.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const int channel = static_cast<int>(k % 3);
+            ScatteringMedium medium = deep(material, channel);
+            if (!(medium.sigma_s_prime() > 0.0)) continue;
+            medium.thickness_mm =
+                kOften * std::exp2(-static_cast<double>(k / 3)) / kernel.extinction_per_mm[channel];
+            const DiffuseTotals slab = exact_totals(medium);
+            kernel.thin_totals[k / 3][channel] = slab.reflectance + slab.transmittance;
+        }
+    });
+}
+
+/// Of a body so many mean free paths across.
+double thin_total(const SubsurfaceKernel& kernel, int channel, double paths) {
+    const std::vector<glm::dvec3>& totals = kernel.thin_totals;
+    if (totals.empty() || paths >= kOften) return kernel.albedo[channel];
+    const double last = static_cast<double>(totals.size() - 1);
+    const double halvings = std::log2(kOften / std::max(paths, 1e-300));
+    if (halvings >= last) return totals.back()[channel] * std::exp2(last - halvings);
+    const auto below = static_cast<std::size_t>(std::max(halvings, 0.0));
+    const double share = std::max(halvings, 0.0) - static_cast<double>(below);
+    return glm::mix(totals[below][channel], totals[below + 1][channel], share);
+}
+
 }  // namespace
 
 glm::vec3 total_at(const SubsurfaceKernel& kernel, float curvature_per_mm) {
@@ -243,7 +295,10 @@ glm::vec3 total_at(const SubsurfaceKernel& kernel, float curvature_per_mm) {
             share_inward(kernel.decay_per_mm[c], static_cast<double>(curvature_per_mm));
         const double inward = kernel.inward[c];
         const double lost = (1.0 - total[c]) * share * (1.0 + inward) / (1.0 + inward * share);
-        total[c] = std::clamp(1.0 - lost, 0.0, 1.0);
+        const double paths = paths_across(kernel.extinction_per_mm[c], curvature_per_mm);
+        total[c] = glm::mix(thin_total(kernel, c, paths),
+                            std::clamp(1.0 - lost, 0.0, 1.0),
+                            kernel.diffuses[c] * scattered_often(paths));
     }
     return glm::vec3(working_from_rec709() * total);
 }
@@ -269,7 +324,8 @@ float kernel_reach_mm(const TranslucentMaterial& material, std::optional<float> 
 SubsurfaceKernel subsurface_kernel(const TranslucentMaterial& material,
                                    float reach_mm,
                                    float near_mm,
-                                   std::span<const float> slabs_mm) {
+                                   std::span<const float> slabs_mm,
+                                   float most_bent_per_mm) {
     SubsurfaceKernel kernel;
     kernel.reach_mm = reach_mm;
     kernel.near_mm = std::min(near_mm, reach_mm);
@@ -285,13 +341,14 @@ SubsurfaceKernel subsurface_kernel(const TranslucentMaterial& material,
         const ScatteringMedium medium = deep(material, c);
         const auto channel = static_cast<std::size_t>(c);
         if (medium.sigma_s_prime() > 0.0) {
-            const double all = medium.sigma_t_prime();
+            const double all = kernel.extinction_per_mm[c] = medium.sigma_t_prime();
             const double diffusion =
                 (2.0 * medium.sigma_a_per_mm + medium.sigma_s_prime()) / (3.0 * all * all);
             const FresnelMoments moments = fresnel_moments(medium.eta);
             const double a = (1.0 + 3.0 * moments.c2) / (1.0 - 2.0 * moments.c1);
             kernel.decay_per_mm[c] = std::sqrt(medium.sigma_a_per_mm / diffusion);
             kernel.inward[c] = 2.0 * a * diffusion * kernel.decay_per_mm[c];
+            kernel.diffuses[c] = scattered_often(1.0 / (1.0 - medium.albedo_prime()));
         }
         const Samples& own = samples[channel] = profile_samples(medium, reach);
         const auto far = [&](double r) { return 1.0 - near_part(r, near); };
@@ -301,6 +358,7 @@ SubsurfaceKernel subsurface_kernel(const TranslucentMaterial& material,
         far_of[channel] = over_nodes(own, weighed(own, far), near);
         bent_of[channel] = over_nodes(own, weighed(own, bent), near);
     }
+    add_thin_totals(material, most_bent_per_mm, kernel);
     // What is far is as it is, what is near the rest of the exact total
     kernel.near_share = glm::vec3(working * (kernel.albedo - far_share));
     kernel.bent_share = glm::vec3(working * bent_share);
@@ -341,7 +399,12 @@ BentShares shares_at(const SubsurfaceKernel& kernel, float curvature_per_mm) {
     shares.far = glm::max(kernel.total - kernel.near_share + shares.bend_per_mm * kernel.bent_share,
                           glm::vec3(0.0f));
     shares.far = glm::min(shares.far, total);
-    shares.near = total - shares.far;
+    for (int c = 0; c < 3; ++c) {
+        const double paths = paths_across(kernel.extinction_per_mm[c], curvature_per_mm);
+        shares.anywhere += static_cast<float>(std::exp(-paths) / 3.0);
+    }
+    shares.near = (1.0f - shares.anywhere) * (total - shares.far);
+    shares.far = total - shares.near;
     return shares;
 }
 

@@ -60,6 +60,13 @@ struct SubsurfaceKernel {
     /// Linear Rec.709: that total, the decay sqrt(sigma_a/D) of what is far, and how much of the
     /// fluence at a plane goes on into it over what leaves it, 2 A D decay (diffusion theory).
     glm::dvec3 albedo{0.0}, decay_per_mm{0.0}, inward{0.0};
+    /// The same of bodies that light crosses in few mean free paths: 1 over one, and what
+    /// leaves slabs that are twelve, six, three and so on of them thick.
+    glm::dvec3 extinction_per_mm{0.0};
+    std::vector<glm::dvec3> thin_totals;
+    /// How far diffusion may be believed, from 0 to 1: light that scatters four times and less
+    /// before it is absorbed knows nothing of the body's shape.
+    glm::dvec3 diffuses{0.0};
 
     std::vector<glm::vec3> near_per_mm2;  ///< at codes of near_mm
     /// At codes of reach_mm; and what a curvature of 1 per mm adds to it, to first order.
@@ -68,15 +75,20 @@ struct SubsurfaceKernel {
     glm::vec3 bent_share{0.0f};  ///< of what is added
     std::vector<SlabKernel> slabs;
 };
-/// Throws std::invalid_argument for a medium out of range.
+/// `most_bent_per_mm`: the largest curvature that total_at() will be asked for. Throws
+/// std::invalid_argument for a medium out of range.
 SubsurfaceKernel subsurface_kernel(const TranslucentMaterial& on_mock_up,
                                    float reach_mm,
                                    float near_mm,
-                                   std::span<const float> slabs_mm = {});
+                                   std::span<const float> slabs_mm = {},
+                                   float most_bent_per_mm = 0.0f);
 
 /// The total where the surface has that mean curvature, 1 over the radius of a ball: of what enters
 /// a convex body less is lost in it, for less of it lies behind. Diffusion in a ball takes coth x -
-/// 1/x of what a plane does, x = radius times decay; around a hollow 1 + 1/x.
+/// 1/x of what a plane does, x = radius times decay; around a hollow 1 + 1/x. Where a ball's mean
+/// chord, 4/3 of its radius, is few mean free paths long, light goes through that diffusion knows
+/// nothing of: there the total is what leaves a slab of that thickness on both sides; and where
+/// light does not scatter often it is the plane's.
 glm::vec3 total_at(const SubsurfaceKernel& kernel, float curvature_per_mm);
 
 /// Where light leaves that much bent a surface: the part of its total that comes from near, and how
@@ -84,6 +96,7 @@ glm::vec3 total_at(const SubsurfaceKernel& kernel, float curvature_per_mm);
 struct BentShares {
     glm::vec3 near{0.0f}, far{0.0f};
     float bend_per_mm = 0.0f;
+    float anywhere = 0.0f;  ///< of the total, as much as crosses the body straight: leaves wherever
 };
 BentShares shares_at(const SubsurfaceKernel& kernel, float curvature_per_mm);
 

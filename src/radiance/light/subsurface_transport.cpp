@@ -332,7 +332,8 @@ LeavingLight leaving_at_nodes(const SubsurfaceTransport& transport,
                 continue;
             }
             const BentShares shares = shares_at(kernel, transport.curvature_per_mm[i]);
-            glm::vec3 sum(0.0f), all(0.0f);
+            glm::vec3 sum(0.0f), all(0.0f), anywhere(0.0f);
+            float area_mm2 = 0.0f;
             for (std::size_t k = transport.first[i]; k < transport.first[i + 1]; ++k) {
                 const std::uint16_t code = transport.code[k];
                 const std::uint32_t j = transport.other[k];
@@ -341,8 +342,12 @@ LeavingLight leaving_at_nodes(const SubsurfaceTransport& transport,
                     glm::vec3(0.0f));
                 sum += weight * power[j];
                 all += transport.area_mm2[j] * weight;
+                anywhere += power[j];
+                area_mm2 += transport.area_mm2[j];
             }
-            leaving.from_afar[i] = shares.far * sum / glm::max(all, glm::vec3(1e-20f));
+            leaving.from_afar[i] = shares.far * glm::mix(sum / glm::max(all, glm::vec3(1e-20f)),
+                                                         anywhere / area_mm2,
+                                                         shares.anywhere);
             leaving.near_share[i] = shares.near;
         }
     });
