@@ -124,7 +124,8 @@ ResolvedFrame resolve_frame(const FrameArguments& arguments, const CommonOptions
     std::optional<View> view;
     if (!arguments.camera.empty()) view = read_camera_file(arguments.camera);
     if (!arguments.calibration.empty()) {
-        if (!view) view = projector_view_of(arguments.calibration);
+        frame.projector = projector_view_of(arguments.calibration);
+        if (!view) view = frame.projector;
         if (!view) {
             throw FileError(std::filesystem::path(arguments.calibration) / "projector.json",
                             "",
@@ -140,6 +141,7 @@ ResolvedFrame resolve_frame(const FrameArguments& arguments, const CommonOptions
     glm::dvec3 eye_mm;
     if (const auto name = bench_of_shipped_product(arguments.product)) {
         const BenchDescription bench = read_bench_file(*name);
+        if (!frame.projector) frame.projector = bench.projector.view;
         if (!view) view = bench.projector.view;
         eye_mm = bench.eye_mm;
     } else {

@@ -27,6 +27,7 @@ std::vector<Option> frame_options(FrameArguments& arguments);
 /// default bench's projector; the eye is --eye, else the default bench's.
 struct ResolvedFrame {
     RenderRequest request;
+    std::optional<View> projector;  ///< the calibration's, else the default bench's
     std::optional<CompensationTable> compensation;
     std::optional<DesignWhite> design_white;  ///< of that correction
     std::vector<std::string> notes;     ///< what was assumed or repaired when loading the product

@@ -10,6 +10,7 @@
 
 #include "cli/frame_options.h"
 #include "core/colour.h"
+#include "jobs/projected_picture.h"
 
 namespace livery {
 
@@ -71,6 +72,34 @@ void tell_traced(const RenderedFrame& rendered, double error, Outcome& outcome) 
     outcome.text += "\n";
 }
 
+/// The picture in the place of the look's light, drawn as it is seen from the eye or the camera.
+void project(const std::string& picture,
+             const std::string& projector,
+             bool from_camera,
+             ResolvedFrame& frame) {
+    RenderRequest& request = frame.request;
+    if (request.backend != RenderBackend::reference || request.stage == FrameStage::projector) {
+        throw std::invalid_argument(
+            "--projects: found --backend gl or --stage projector, expected --backend reference and "
+            "--stage radiance");
+    }
+    const Mesh& mesh = request.scene.product->mesh;
+    if (!projector.empty()) frame.projector = read_camera_file(projector);
+    if (!frame.projector) {
+        throw std::invalid_argument(
+            "--projects: found a product without a bench, expected --projector FILE or "
+            "--calibration DIR");
+    }
+    if (!from_camera) {
+        request.view = view_of_all(
+            mesh, request.scene.eye_in_world_mm, request.view.width, request.view.height);
+    }
+    request.projected = read_projected_picture(picture, *frame.projector, mesh);
+    request.scene.lights.clear();
+    request.scene.environment.reset();
+    request.scene.eye_in_world_mm = centre_in_world(request.view);
+}
+
 std::string nothing_seen(const Mesh& mesh) {
     const auto [low, high] = bounds_of(mesh);
     return fmt::format(
@@ -90,6 +119,7 @@ Command render_command() {
     struct Arguments {
         FrameArguments frame;
         std::string backend = "gl", out;
+        std::string projects, projector;
         int samples = 0, bounces = kReferenceBounces;
         double seconds = 0.0, error = 0.0;
     };
@@ -122,6 +152,20 @@ Command render_command() {
           &arguments->bounces,
           false,
           {}},
+         {"--projects",
+          "FILE",
+          "reference: picture (.exr: light, .png: sRGB) that the projector lights the product "
+          "with, "
+          "in the place of the look's lights; seen from the eye, or --camera",
+          &arguments->projects,
+          false,
+          {}},
+         {"--projector",
+          "FILE",
+          "that projector's camera file (default: the calibration's, else the bench's)",
+          &arguments->projector,
+          false,
+          {}},
          {"--out", "FILE", "picture, .exr (linear Rec.709) or .png", &arguments->out, true, {}}});
     command.run = [arguments](const CommonOptions& common, const Progress& progress) {
         check_frame_file(
@@ -147,6 +191,13 @@ Command render_command() {
         request.seconds = arguments->seconds;
         request.error = arguments->error;
         request.bounces = arguments->bounces;
+        if (!arguments->projector.empty() && arguments->projects.empty()) {
+            throw std::invalid_argument("--projector: found no --projects, expected what it shows");
+        }
+        if (!arguments->projects.empty()) {
+            project(
+                arguments->projects, arguments->projector, !arguments->frame.camera.empty(), frame);
+        }
         if (frame.compensation) request.compensation = &*frame.compensation;
         const RenderedFrame rendered = render_frame(request, progress);
         write_frame(arguments->out, rendered, request.stage);

@@ -45,6 +45,7 @@ RenderedFrame render_by_reference(const RenderRequest& request, const Progress& 
     options.error = request.error;
     options.bounces = request.bounces;
     options.seed = request.seed;
+    options.projected = request.projected;
     ReferenceResult traced = trace_reference(request.scene, request.view, options, progress);
 
     RenderedFrame frame;

@@ -31,6 +31,7 @@ struct RenderRequest {
     double seconds = 0.0;             ///< reference only; 0: by samples
     double error = 0.0;               ///< reference only, as ReferenceOptions has it; 0: by samples
     int bounces = kReferenceBounces;  ///< reference only
+    std::shared_ptr<const ProjectedLight> projected{};  ///< reference only; null: none
     std::uint64_t seed = 1;
     const CompensationTable* compensation = nullptr;  ///< needed for FrameStage::projector
 };

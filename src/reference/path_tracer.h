@@ -1,8 +1,11 @@
 // (1') the same scene in and image out as radiance/, ground truth: an Embree path tracer.
 #pragma once
 
+#include <memory>
+
 #include "core/image.h"
 #include "core/progress.h"
+#include "reference/projected_light.h"
 #include "scene/scene.h"
 #include "scene/view.h"
 
@@ -28,6 +31,7 @@ struct ReferenceOptions {
     std::uint64_t seed = 1;
     bool shade_for_eye = true;  ///< as radiance/ does; false: for the view's own centre
     ReferenceSampling sampling = ReferenceSampling::combined;
+    std::shared_ptr<const ProjectedLight> projected;  ///< beside the scene's lights; null: none
 };
 
 struct ReferenceResult {

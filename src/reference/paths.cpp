@@ -121,10 +121,11 @@ const PaintBsdf& PathScene::bsdf_at(const SurfacePoint& point,
     return bsdfs_[point.part];
 }
 
-bool PathScene::open(const Vertex& vertex, const glm::vec3& direction) const {
+bool PathScene::open(const Vertex& vertex, const glm::vec3& direction, float distance_mm) const {
     TraceRay ray;
     ray.origin = offset_origin(vertex.position, vertex.geometric_normal);
     ray.direction = direction;
+    ray.t_max = distance_mm;
     return !tracer_.occluded(ray);
 }
 
@@ -162,6 +163,16 @@ glm::vec3 PathScene::light_on(const Vertex& vertex,
             add(light.sample(numbers.on_light(at, bounce, static_cast<std::uint32_t>(l))));
         }
     }
+    if (options_.projected) {
+        const auto arriving = options_.projected->at(glm::dvec3(vertex.position));
+        glm::vec3 wi;
+        const glm::vec3 value = arriving.irradiance == glm::vec3(0.0f)
+                                    ? glm::vec3(0.0f)
+                                    : reflected(arriving.direction, wi);
+        if (value != glm::vec3(0.0f) && open(vertex, arriving.direction, arriving.distance_mm)) {
+            sum += value * arriving.irradiance;
+        }
+    }
     if (!environment_.empty() && options_.sampling != ReferenceSampling::reflectance) {
         add(environment_.sample(at.pair(PathNumbers::environment)));
     }
@@ -191,7 +202,8 @@ bool PathScene::pass_through(const TranslucentPart& part,
     entry.geometric_normal = glm::dvec3(vertex.geometric_normal);
     entry.normal = glm::dvec3(vertex.world_from_local[2]);
     entry.toward_eye = glm::dvec3(vertex.world_from_local * vertex.wo);
-    const WalkedLight walked = walk_through(part, mesh_, tracer_, lights_, entry, random);
+    const WalkedLight walked =
+        walk_through(part, mesh_, tracer_, {lights_, options_.projected.get()}, entry, random);
     sum += throughput * glm::vec3(walked.of_lamps);
     if (!walked.left) return false;
     throughput *= glm::vec3(walked.weight);

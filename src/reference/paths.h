@@ -52,7 +52,9 @@ class PathScene {
     /// The paint at a point: artwork's, as often as it covers by a number in [0, 1), else the
     /// part's. `made` keeps one that is only this point's.
     const PaintBsdf& bsdf_at(const SurfacePoint& point, float chance, PaintBsdf& made) const;
-    bool open(const Vertex& vertex, const glm::vec3& direction) const;
+    bool open(const Vertex& vertex,
+              const glm::vec3& direction,
+              float distance_mm = kEndless_mm) const;
 
     const Mesh& mesh_;
     ReferenceOptions options_;

@@ -72,7 +72,7 @@ float chance_of_mirroring(const TranslucentPart& part, float cosine) {
 WalkedLight walk_through(const TranslucentPart& part,
                          const Mesh& mesh,
                          const Tracer& tracer,
-                         const std::vector<DiscLight>& lights,
+                         const WalkLamps& lights,
                          const SurfaceEntry& entry,
                          Random& random) {
     WalkedLight light;
@@ -91,18 +91,33 @@ WalkedLight walk_through(const TranslucentPart& part,
         return part.closed ? at : onto_surface(at, part, mesh, tracer, entry);
     };
     WalkLights lamps;
-    lamps.each = [&](Random& numbers, const std::function<void(const ArrivingLight&)>& use) {
-        for (const DiscLight& one : lights) {
+    lamps.each = [&](const glm::dvec3& point,
+                     Random& numbers,
+                     const std::function<void(const ArrivingLight&)>& use) {
+        for (const DiscLight& one : lights.discs) {
             if (one.irradiance() != glm::vec3(0.0f)) use(arriving(one, numbers));
         }
+        if (!lights.projected) return;
+        ArrivingLight picture;
+        picture.direction = glm::dvec3(lights.projected->at(point).direction);
+        picture.projected = true;
+        use(picture);
     };
-    lamps.reaches = [&](const BoundaryPoint& at, const glm::dvec3& direction) {
+    lamps.reaching = [&](const BoundaryPoint& at, const ArrivingLight& arriving) {
         const BoundaryPoint place = on_surface(at);
-        if (!(glm::dot(place.geometric_normal, direction) > 0.0)) return false;
+        glm::dvec3 irradiance = arriving.irradiance;
         TraceRay ray;
+        if (arriving.projected) {
+            const auto there = lights.projected->at(place.position);
+            irradiance = glm::dvec3(there.irradiance);
+            ray.t_max = there.distance_mm;
+        }
+        if (irradiance == glm::dvec3(0.0)) return irradiance;
+        const glm::dvec3 nothing(0.0);
+        if (!(glm::dot(place.geometric_normal, arriving.direction) > 0.0)) return nothing;
         ray.origin = offset_origin(glm::vec3(place.position), glm::vec3(place.geometric_normal));
-        ray.direction = glm::vec3(direction);
-        return !tracer.occluded(ray);
+        ray.direction = glm::vec3(arriving.direction);
+        return tracer.occluded(ray) ? nothing : irradiance;
     };
     const glm::dmat3& working = working_from_rec709();
     BoundaryPoint start;
@@ -118,7 +133,7 @@ WalkedLight walk_through(const TranslucentPart& part,
         boundary,
         boundary.inside_of(start),
         direction,
-        lights.empty() ? nullptr : &lamps,
+        lights.discs.empty() && !lights.projected ? nullptr : &lamps,
         [&](const glm::dvec3& weight, const glm::dvec3& irradiance) {
             light.of_lamps += narrowed * (working * weight) * irradiance;
         },

@@ -9,6 +9,7 @@
 #include "appearance/material.h"
 #include "core/random.h"
 #include "reference/light_sampling.h"
+#include "reference/projected_light.h"
 #include "reference/subsurface_walk.h"
 #include "scene/product.h"
 #include "tracing/tracer.h"
@@ -31,6 +32,11 @@ Material boundary_alone(const Material& translucent);
 /// How often a path is mirrored by the boundary under that cosine; otherwise it enters.
 float chance_of_mirroring(const TranslucentPart& part, float cosine);
 
+struct WalkLamps {
+    const std::vector<DiscLight>& discs;
+    const ProjectedLight* projected = nullptr;
+};
+
 struct SurfaceEntry {
     glm::dvec3 position{0.0}, geometric_normal{0.0}, normal{0.0};
     glm::dvec3 toward_eye{0.0};
@@ -47,7 +53,7 @@ struct WalkedLight {
 WalkedLight walk_through(const TranslucentPart& part,
                          const Mesh& mesh,
                          const Tracer& tracer,
-                         const std::vector<DiscLight>& lights,
+                         const WalkLamps& lights,
                          const SurfaceEntry& entry,
                          Random& random);
 

@@ -73,6 +73,7 @@ struct Refracted {
     double distance = 0.0;
     double flux = 0.0;       ///< per unit irradiance outside, before the medium takes its share
     glm::dvec3 normal{0.0};  ///< of the boundary where it enters
+    glm::dvec3 irradiance{0.0};
 };
 
 std::optional<Refracted> refracted_to(const glm::dvec3& point,
@@ -101,7 +102,8 @@ std::optional<Refracted> refracted_to(const glm::dvec3& point,
         const double off = glm::distance(*next, travel);
         travel = *next;
         if (off > kNear) continue;
-        if (!lights.reaches(*at, light.direction)) return std::nullopt;
+        const glm::dvec3 irradiance = lights.reaching(*at, light);
+        if (irradiance == glm::dvec3(0.0)) return std::nullopt;
 
         // A small square of the surface, and what the light through it covers at the point
         glm::dvec3 u, v;
@@ -119,7 +121,8 @@ std::optional<Refracted> refracted_to(const glm::dvec3& point,
         return Refracted{travel,
                          at->distance,
                          passes * std::min(lit / std::max(covers, 1e-300), kMostFocused),
-                         at->normal};
+                         at->normal,
+                         irradiance};
     }
     return std::nullopt;
 }
@@ -211,7 +214,7 @@ WalkResult walk_inside(const WalkMedium& medium,
         ++scatterings;
         origin += free * direction;
         if (lights) {
-            lights->each(random, [&](const ArrivingLight& light) {
+            lights->each(origin, random, [&](const ArrivingLight& light) {
                 const auto found =
                     refracted_to(origin, light, medium, boundary, *lights, last_normal, seen);
                 if (!found) return;
@@ -219,7 +222,7 @@ WalkResult walk_inside(const WalkMedium& medium,
                 const double turned = phase(medium.g, glm::dot(found->travel, -direction));
                 add(weight.carried * glm::exp(-found->distance * medium.sigma_t) *
                         (found->flux * turned),
-                    light.irradiance);
+                    found->irradiance);
             });
         }
         direction = scattered(medium.g, direction, random);

@@ -41,17 +41,21 @@ class Boundary {
     virtual glm::dvec3 inside_of(const BoundaryPoint& at) const = 0;
 };
 
-/// Light that arrives at every point alike from one direction, as far as nothing hides it.
+/// Light from one direction, at every point around alike: a projector's, too, a few millimetres
+/// under the surface.
 struct ArrivingLight {
     glm::dvec3 direction{0.0, 0.0, 1.0};  ///< toward it
-    glm::dvec3 irradiance{0.0};           ///< on a plane that faces it
+    glm::dvec3 irradiance{0.0};           ///< on a plane that faces it, of lamps
+    bool projected = false;               ///< otherwise as the picture has it where it enters
 };
 
 struct WalkLights {
-    /// A direction of each light to try at one scattering.
-    std::function<void(Random&, const std::function<void(const ArrivingLight&)>&)> each;
-    /// Whether it reaches the boundary there.
-    std::function<bool(const BoundaryPoint&, const glm::dvec3& direction)> reaches;
+    /// A direction of each light to try at a scattering there.
+    std::function<void(
+        const glm::dvec3& point, Random&, const std::function<void(const ArrivingLight&)>&)>
+        each;
+    /// What reaches the boundary there, on a plane that faces it; 0 where something hides it.
+    std::function<glm::dvec3(const BoundaryPoint&, const ArrivingLight&)> reaching;
 };
 
 /// What became of a walk. Colours multiply light as a reflectance in linear Rec.709 does.

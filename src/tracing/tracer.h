@@ -15,11 +15,13 @@
 
 namespace livery {
 
+inline constexpr float kEndless_mm = 1e30f;
+
 struct TraceRay {
     glm::vec3 origin{0.0f};
     float t_min = 0.0f;
     glm::vec3 direction{0.0f, 0.0f, 1.0f};
-    float t_max = 1e30f;
+    float t_max = kEndless_mm;
 };
 
 struct Hit {

@@ -68,6 +68,10 @@ TEST(Messages, AWrongOutputNameFailsBeforeTheWork) {
     const TemporaryFolder folder;
     // Were the work done first, a missing calibration or look would be what is complained about.
     expect_refusal({"render", "--look", "none", "--out", "a.gif"}, {"a.gif", ".gif", ".png"});
+    const std::string out = (folder / "a.png").string();
+    expect_refusal({"render", "--projects", "b.png", "--out", out}, {"--projects", "reference"});
+    expect_refusal({"render", "--projector", "b.json", "--out", out},
+                   {"--projector", "--projects"});
     expect_refusal({"render", "--look", "none", "--out", "plain"}, {"plain", "none", ".png"});
     expect_refusal({"render", "--look", "none", "--out", (folder / "no/a.png").string()},
                    {"no/a.png", "folder"});
