@@ -83,16 +83,21 @@ void FragmentInputs::use(const SurfaceMap& map) {
     mirror_.use(map);
     subsurface_.clear();
     drop_exchange();
-    runs_.reset();
-    long_runs_.reset();
+    runs_ = {};
     eye_.reset();
     directions_stale_ = sky_stale_ = diffuse_light_stale_ = places_stale_ = true;
 }
 
-const SmoothRuns& FragmentInputs::runs(bool dragged) {
-    constexpr SmoothRuns::Limits kDragged{8, 4.0};
-    std::optional<SmoothRuns>& of = dragged ? long_runs_ : runs_;
-    if (!of) of.emplace(*map_, dragged ? kDragged : SmoothRuns::Limits());
+const SmoothRuns& FragmentInputs::runs(Runs which) {
+    // What a fragment mirrors is traced by its neighbours, of which columns would leave out half
+    constexpr SmoothRuns::Limits kDragged{8, 4, 4.0}, kRows{4, 1};
+    std::optional<SmoothRuns>& of = runs_[static_cast<std::size_t>(which)];
+    if (!of) {
+        of.emplace(*map_,
+                   which == Runs::dragged   ? kDragged
+                   : which == Runs::of_rows ? kRows
+                                            : SmoothRuns::Limits());
+    }
     return *of;
 }
 
@@ -132,8 +137,13 @@ void FragmentInputs::solve_lights(const Scene& scene,
         }
         if (stale && rays == 0) next.at = unhidden_light(*map_, light);
         clock.run(pass, stale, [&] {
-            next.at =
-                light_at_fragments(mesh_, tracer_, *map_, runs(rays == 1), light, rays, progress);
+            next.at = light_at_fragments(mesh_,
+                                         tracer_,
+                                         *map_,
+                                         runs(rays == 1 ? Runs::dragged : Runs::fine),
+                                         light,
+                                         rays,
+                                         progress);
         });
         lights_.insert(lights_.begin() + static_cast<std::ptrdiff_t>(planned++), std::move(next));
         if (changed) directions_stale_ = diffuse_light_stale_ = true;
@@ -170,7 +180,7 @@ void FragmentInputs::solve_sky(const Scene& scene,
         !occluded || stands || (sky_visibility_ && enough(sky_visibility_->rays.first, rays));
     clock.run(PassKind::ambient_occlusion, !visible, [&] {
         sky_visibility_ =
-            solve_sky_visibility(mesh_, tracer_, *map_, runs(false), sky_rays, progress);
+            solve_sky_visibility(mesh_, tracer_, *map_, runs(Runs::fine), sky_rays, progress);
     });
     clock.run(PassKind::environment_irradiance, !stands, [&] {
         if (!same_map(diffused_, scene.environment)) {
@@ -186,7 +196,7 @@ void FragmentInputs::solve_sky(const Scene& scene,
                                 *scene.environment,
                                 filtered_,
                                 occluded ? &*sky_visibility_ : nullptr,
-                                runs(true));
+                                runs(Runs::dragged));
         sky_made_ = {scene.environment, occluded ? sky_visibility_->rays.first : 0};
         ++arriving_version_;
         sky_stale_ = diffuse_light_stale_ = true;
@@ -335,9 +345,9 @@ void FragmentInputs::solve_mirror(const Scene& scene,
     const auto solve_layers = [&](const MirrorInputs::LayersOfParts& layers) {
         const SkyVisibility* joints = sky_visibility_ ? &*sky_visibility_ : nullptr;
         if (light.nodes == kNoNodes) {
-            mirror_.look_up(light, layers, *mirror_look_up_, runs(true), joints, progress);
+            mirror_.look_up(light, layers, *mirror_look_up_, runs(Runs::dragged), joints, progress);
         } else {
-            mirror_.solve(light, layers, filtered_, runs(false), joints, progress);
+            mirror_.solve(light, layers, filtered_, runs(Runs::fine), joints, progress);
         }
     };
     const auto any = [](const MirrorInputs::LayersOfParts& layers) {
@@ -354,7 +364,7 @@ void FragmentInputs::solve_mirror(const Scene& scene,
         filter_for_mirror(environment, light.nodes, progress);
     });
     clock.run(PassKind::reflection_occlusion, mirror_.lacks_visibility(light, worn), [&] {
-        mirror_.trace(light, worn, runs(false), progress);
+        mirror_.trace(light, worn, runs(Runs::of_rows), progress);
     });
     clock.run(PassKind::mirrored_environment, any(worn), [&] { solve_layers(worn); });
     if (!ahead) return;
@@ -366,7 +376,7 @@ void FragmentInputs::solve_mirror(const Scene& scene,
         if (!mirror_filtered(environment, light.nodes))
             filter_for_mirror(environment, light.nodes, progress);
         if (mirror_.lacks_visibility(light, others))
-            mirror_.trace(light, others, runs(false), progress);
+            mirror_.trace(light, others, runs(Runs::of_rows), progress);
         solve_layers(others);
     });
 }

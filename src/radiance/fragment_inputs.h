@@ -114,7 +114,8 @@ class FragmentInputs {
 
   private:
     /// Of map_; those for what is looked up while it is dragged have their ends farther apart.
-    const SmoothRuns& runs(bool dragged);
+    enum class Runs { fine, dragged, of_rows };
+    const SmoothRuns& runs(Runs which);
     struct Light {
         std::size_t index = 0;  ///< in the scene
         DirectionalLight light;
@@ -165,7 +166,7 @@ class FragmentInputs {
     std::shared_ptr<const Environment> layered_;   ///< that filtered_.gaussians was made for
     std::optional<MirrorLookUp> mirror_look_up_;
     std::shared_ptr<const Environment> look_up_of_;  ///< that mirror_look_up_ was made for
-    std::optional<SmoothRuns> runs_, long_runs_;     ///< of map_, when they were asked for
+    std::array<std::optional<SmoothRuns>, 3> runs_;  ///< of map_, when they were asked for
     std::optional<SkyVisibility> sky_visibility_;
     std::vector<glm::vec3> sky_;
     MirrorInputs mirror_;

@@ -38,10 +38,10 @@ void store(const Texel& texel, std::vector<float>& texels, std::size_t k) {
     std::memcpy(&texels[4 * k], &texel, sizeof texel);
 }
 
-/// Of two ends of a run, at a place between them; all by their places among the texels.
+/// Of two fragments, at a place between them; all by their places among the texels.
 void mix(std::vector<float>& texels, std::size_t k, const SmoothRuns::Between& at) {
-    const Texel left = load(texels, at.left), share{at.share, at.share, at.share, at.share};
-    store(left + share * (load(texels, at.right) - left), texels, k);
+    const Texel first = load(texels, at.first), share{at.share, at.share, at.share, at.share};
+    store(first + share * (load(texels, at.second) - first), texels, k);
 }
 
 /// Those of one part, which lie side by side.
@@ -172,10 +172,10 @@ void MirrorInputs::solve_part(const PartSolve& how,
             }
         });
     };
-    const auto differ = [&](std::size_t left, std::size_t right) {
+    const auto differ = [&](std::size_t one, std::size_t other) {
         return std::any_of(texels.begin(), texels.end(), [&](const Texels& to) {
-            const float* a = &to.values[4 * (left - first)];
-            const float* b = &to.values[4 * (right - first)];
+            const float* a = &to.values[4 * (one - first)];
+            const float* b = &to.values[4 * (other - first)];
             for (int c = 0; c < 3; ++c) {
                 if (std::abs(a[c] - b[c]) > how.tolerance * std::max(a[c], b[c])) return true;
             }
@@ -185,18 +185,18 @@ void MirrorInputs::solve_part(const PartSolve& how,
     parallel_for(count, 1024, [&](std::size_t begin, std::size_t end) {
         solve([&](const auto& ask) { how.runs.ends(first + begin, first + end, ask); });
     });
-    parallel_for(count, 4096, [&](std::size_t begin, std::size_t end) {
-        const auto from = [&](const auto& ask, std::size_t i, const SmoothRuns::Between& at) {
-            if (differ(at.left, at.right)) return ask(i);
-            const SmoothRuns::Between in_part{at.left - first, at.right - first, at.share};
-            for (Texels& to : texels) mix(to.values, i - first, in_part);
-        };
-        solve([&](const auto& ask) {
-            how.runs.between(first + begin, first + end, [&](std::size_t i, const auto& at) {
-                from(ask, i, at);
+    for (const SmoothRuns::Line line : SmoothRuns::kLines) {
+        parallel_for(count, 4096, [&](std::size_t begin, std::size_t end) {
+            solve([&](const auto& ask) {
+                how.runs.between(line, first + begin, first + end, [&](std::size_t i, auto at) {
+                    if (differ(at.first, at.second)) return ask(i);
+                    const SmoothRuns::Between in_part{
+                        at.first - first, at.second - first, at.share};
+                    for (Texels& to : texels) mix(to.values, i - first, in_part);
+                });
             });
         });
-    });
+    }
 }
 
 void MirrorInputs::solve(const Light& light,

@@ -1,7 +1,9 @@
-// Fragments between two others of an even surface: what changes slowly over it is worked out at a
-// quarter or an eighth of them, and taken from both ends in between.
+// Fragments between two others of an even surface: what changes slowly over it is worked out at
+// some of them, and taken from both ends in between.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -10,13 +12,14 @@
 
 namespace livery {
 
-/// Of each fragment, where in its row the two are whose values it lies between. They and all
-/// between them are whole pixels of one part, whose normals turn by less than some degrees, so that
-/// no reflection moves by more than twice that.
+/// Of each fragment, which two its value lies between: in its row, or in its column between two
+/// rows of which the same is true. They and all between them are whole pixels of one part, whose
+/// normals turn by less than some degrees, so that no reflection moves by more than twice that.
 class SmoothRuns {
   public:
+    /// From end to end, powers of 2 up to 128; 1: none.
     struct Limits {
-        std::uint32_t longest_px = 4;  ///< from end to end, a power of 2 up to 128
+        std::uint32_t longest_px = 4, highest_px = 2;
         double turn_deg = 1.0;
     };
     explicit SmoothRuns(const SurfaceMap& map) : SmoothRuns(map, Limits()) {}
@@ -24,22 +27,17 @@ class SmoothRuns {
 
     /// Whether its value is its own.
     bool is_end(std::size_t fragment) const { return runs_[fragment].before == 0; }
-    /// The two that a fragment lies between, and the share of the right one.
+    /// The two that a fragment lies between, and the share of the second.
     struct Between {
-        std::size_t left = 0, right = 0;
+        std::size_t first = 0, second = 0;
         float share = 0.0f;
     };
-    /// `from(fragment, between)` for each one from `begin` to `end` that is not an end.
+    /// Those of columns lie between what rows have: one after the other.
+    enum class Line { row, column };
+    static constexpr std::array<Line, 2> kLines{Line::row, Line::column};
+    /// `from(fragment, between)` for each one from `begin` to `end` that lies in such a line.
     template <typename From>
-    void between(std::size_t begin, std::size_t end, const From& from) const {
-        for (std::size_t i = begin; i < end; ++i) {
-            const Run run = runs_[i];
-            if (run.before == 0) continue;
-            const float length = static_cast<float>(run.before + run.after);
-            from(i,
-                 Between{i - run.before, i + run.after, static_cast<float>(run.before) / length});
-        }
-    }
+    void between(Line line, std::size_t begin, std::size_t end, const From& from) const;
     /// Those of a stretch whose values are their own, in their order; then the others.
     template <typename Own>
     void ends(std::size_t begin, std::size_t end, const Own& own) const {
@@ -49,10 +47,40 @@ class SmoothRuns {
     }
 
   private:
+    static constexpr std::uint8_t kInColumn = 0xff;
     struct Run {
         std::uint8_t before = 0, after = 0;  ///< fragments to the left one and to the right one
     };
+    struct Column {
+        std::uint32_t fragment = 0, above = 0, below = 0;
+        float share = 0.0f;
+    };
+    void find_columns(const SurfaceMap& map, std::uint32_t highest, float least_cosine);
+    void find_rows(const SurfaceMap& map, std::uint32_t longest, float least_cosine);
+
     std::vector<Run> runs_;
+    std::vector<Column> columns_;  ///< in the fragments' order
 };
+
+template <typename From>
+void SmoothRuns::between(Line line, std::size_t begin, std::size_t end, const From& from) const {
+    if (line == Line::column) {
+        auto at = std::lower_bound(
+            columns_.begin(), columns_.end(), begin, [](const Column& one, std::size_t fragment) {
+                return one.fragment < fragment;
+            });
+        for (; at != columns_.end() && at->fragment < end; ++at) {
+            from(std::size_t{at->fragment}, Between{at->above, at->below, at->share});
+        }
+        return;
+    }
+    for (std::size_t i = begin; i < end; ++i) {
+        const Run run = runs_[i];
+        if (run.before == 0 || run.before == kInColumn) continue;
+        const std::size_t first = i - run.before;
+        const float length = static_cast<float>(run.before + run.after);
+        from(i, Between{first, i + run.after, static_cast<float>(run.before) / length});
+    }
+}
 
 }  // namespace livery

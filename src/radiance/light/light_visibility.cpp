@@ -175,16 +175,18 @@ std::vector<LightAtFragment> light_at_fragments(const Mesh& mesh,
     parallel_for(result.size(), 1024, [&](std::size_t begin, std::size_t end) {
         trace([&](const auto& ask) { runs.ends(begin, end, ask); });
     });
-    parallel_for(result.size(), 1024, [&](std::size_t begin, std::size_t end) {
-        trace([&](const auto& ask) {
-            runs.between(begin, end, [&](std::size_t i, const SmoothRuns::Between& at) {
-                const float left = result[at.left].visibility;
-                const bool whole = left == 0.0f || left == 1.0f;
-                if (!whole || result[at.right].visibility != left) return ask(i);
-                result[i] = {centre, left};
+    for (const SmoothRuns::Line line : SmoothRuns::kLines) {
+        parallel_for(result.size(), 1024, [&](std::size_t begin, std::size_t end) {
+            trace([&](const auto& ask) {
+                runs.between(line, begin, end, [&](std::size_t i, const SmoothRuns::Between& at) {
+                    const float first = result[at.first].visibility;
+                    const bool whole = first == 0.0f || first == 1.0f;
+                    if (!whole || result[at.second].visibility != first) return ask(i);
+                    result[i] = {centre, first};
+                });
             });
         });
-    });
+    }
     return result;
 }
 

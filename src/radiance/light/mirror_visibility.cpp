@@ -141,16 +141,17 @@ void add_mirror_visibility(const Mesh& mesh,
         parallel_for(count, 512, [&](std::size_t begin, std::size_t end) {
             trace([&](const auto& ask) { runs.ends(first + begin, first + end, ask); });
         });
-        parallel_for(count, 512, [&](std::size_t begin, std::size_t end) {
-            trace([&](const auto& ask) {
-                runs.between(
-                    first + begin, first + end, [&](std::size_t i, const SmoothRuns::Between& at) {
+        for (const SmoothRuns::Line line : SmoothRuns::kLines) {
+            parallel_for(count, 512, [&](std::size_t begin, std::size_t end) {
+                trace([&](const auto& ask) {
+                    runs.between(line, first + begin, first + end, [&](std::size_t i, auto at) {
                         const bool open =
-                            (visibility.blocked[at.left] | visibility.blocked[at.right]) == 0;
+                            (visibility.blocked[at.first] | visibility.blocked[at.second]) == 0;
                         if (!open) ask(i);
                     });
+                });
             });
-        });
+        }
     }
 
     // Of their own part alone do fragments learn

@@ -208,14 +208,16 @@ SkyVisibility solve_sky_visibility(const Mesh& mesh,
     parallel_for(map.fragments.size(), 1024, [&](std::size_t begin, std::size_t end) {
         look([&](const auto& ask) { runs.ends(begin, end, ask); });
     });
-    parallel_for(map.fragments.size(), 1024, [&](std::size_t begin, std::size_t end) {
-        look([&](const auto& ask) {
-            runs.between(begin, end, [&](std::size_t i, const SmoothRuns::Between& at) {
-                // Taken over from those that see less, their noise would show as dashes
-                if ((result.blocked[at.left] | result.blocked[at.right]) != 0) ask(i);
+    for (const SmoothRuns::Line line : SmoothRuns::kLines) {
+        parallel_for(map.fragments.size(), 1024, [&](std::size_t begin, std::size_t end) {
+            look([&](const auto& ask) {
+                runs.between(line, begin, end, [&](std::size_t i, const SmoothRuns::Between& at) {
+                    // Taken over from those that see less, their noise would show as dashes
+                    if ((result.blocked[at.first] | result.blocked[at.second]) != 0) ask(i);
+                });
             });
         });
-    });
+    }
     if (sky_rays.more > 0) look_again(mesh, tracer, map, progress, result);
     return result;
 }
@@ -255,11 +257,13 @@ std::vector<glm::vec3> sky_at_fragments(const Mesh& mesh,
         runs.ends(
             begin, end, [&](std::size_t i) { result[i] = open_sky(map.fragments[i].normal); });
     });
-    parallel_for(result.size(), 1024, [&](std::size_t begin, std::size_t end) {
-        runs.between(begin, end, [&](std::size_t i, const SmoothRuns::Between& at) {
-            result[i] = (1.0f - at.share) * result[at.left] + at.share * result[at.right];
+    for (const SmoothRuns::Line line : SmoothRuns::kLines) {
+        parallel_for(result.size(), 1024, [&](std::size_t begin, std::size_t end) {
+            runs.between(line, begin, end, [&](std::size_t i, const SmoothRuns::Between& at) {
+                result[i] = (1.0f - at.share) * result[at.first] + at.share * result[at.second];
+            });
         });
-    });
+    }
     if (!visibility) return result;
     parallel_for(result.size(), 1024, [&](std::size_t begin, std::size_t end) {
         std::vector<glm::vec3> directions(sky.count());
