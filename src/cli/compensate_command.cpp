@@ -17,7 +17,7 @@ namespace livery {
 Command compensate_command() {
     struct Arguments {
         std::string calibration, target, out, gamut = "strict";
-        double design_white = 20.0;
+        double design_white = kDesignWhitePercentile;
     };
     const auto arguments = std::make_shared<Arguments>();
     Command command;

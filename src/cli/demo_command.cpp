@@ -11,7 +11,7 @@ namespace livery {
 Command demo_command() {
     struct Arguments {
         std::string out = "livery-demo", bench = "default", product = "car", size;
-        double design_white = 20.0;
+        double design_white = kDesignWhitePercentile;
     };
     const auto arguments = std::make_shared<Arguments>();
     Command command;

@@ -17,7 +17,7 @@ struct FrameArguments {
     std::string product = "car", unit, look = "solid-red", calibration, camera, eye;
     std::string quality, levels, stage = "radiance";
     double budget_ms = 0.0, swap_budget_ms = 0.0;
-    double design_white = 20.0;
+    double design_white = kDesignWhitePercentile;
     std::string gamut = "strict";
 };
 

@@ -15,9 +15,6 @@
 
 namespace livery {
 
-/// Of the reachable luminances, as sessions start with it: what the ledgers judge by.
-inline constexpr double kDesignWhitePercentile = 20.0;
-
 /// The brightest D65 neutral (as Y in the calibration's XYZ) that at least (100 - percentile)% of
 /// the valid pixels of `mockup` (one channel, non-zero: counts; empty: all) can show. The projector
 /// also lights the table, and a dark table must not dim the mock-up: pass what is known of the

@@ -14,6 +14,7 @@
 #include "jobs/calibrate/room_pose.h"
 #include "jobs/comparison.h"
 #include "scene/colour_calibration.h"
+#include "scene/gamut_mapping.h"
 #include "twin/description.h"
 
 namespace livery {
@@ -25,7 +26,7 @@ struct DemoOptions {
     glm::ivec2 size_px{0};        ///< projector resolution; 0: as the bench file says
     GlDevice gl_device = GlDevice::automatic;
     std::uint64_t seed = 1;
-    double design_white_percentile = 20.0;
+    double design_white_percentile = kDesignWhitePercentile;
 };
 
 /// A look compared with what was shown of it. `uncorrected`: the wanted picture sRGB-encoded to 8

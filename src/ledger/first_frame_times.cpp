@@ -75,7 +75,7 @@ void run_once(const View& view,
     });
     if (!table) {
         const ColourCalibration calibration = synthetic_calibration(geometry->map.coverage);
-        table = bake(calibration, design_white_luminance(calibration, 20.0, {}));
+        table = bake(calibration, design_white_luminance(calibration, kDesignWhitePercentile, {}));
     }
     parts.time("correction", [&] { compensate(*table, radiance); });
 }

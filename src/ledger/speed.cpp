@@ -218,7 +218,7 @@ void time_frames(SpeedLedger& result,
 
     const ColourCalibration calibration = synthetic_calibration(map.coverage);
     const CompensationTable table =
-        bake(calibration, design_white_luminance(calibration, 20.0, {}));
+        bake(calibration, design_white_luminance(calibration, kDesignWhitePercentile, {}));
     GpuCompensation gpu(table);
     CompensationCounts counts;
     Texture2D input(view.width, view.height, TexelFormat::rgba8);

@@ -101,7 +101,7 @@ class Swapper {
         first_frame_ms_ = milliseconds_since(start);
         const ColourCalibration calibration =
             synthetic_calibration(renderer_->surface_map().coverage);
-        table_ = bake(calibration, design_white_luminance(calibration, 20.0, {}));
+        table_ = bake(calibration, design_white_luminance(calibration, kDesignWhitePercentile, {}));
         covered_ = count_covered(*renderer_->picture());
     }
 

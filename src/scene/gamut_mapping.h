@@ -1,10 +1,14 @@
-// What becomes of colours that the mock-up cannot show.
+// Which colours the mock-up is to show, and what becomes of those that it cannot.
 #pragma once
 
 #include <stdexcept>
 #include <string>
 
 namespace livery {
+
+/// Of the brightest neutrals that its pixels can show, the one that is white unless somebody says
+/// otherwise: four pixels of five show it.
+inline constexpr double kDesignWhitePercentile = 20.0;
 
 /// strict: each channel is cut off, whatever else can be shown is exact. preserve: the hue stays,
 /// chroma gives way before lightness, and what lies just inside the gamut makes room.

@@ -103,7 +103,7 @@ struct SetBench {
     std::string bench;
 };
 struct SetDesignWhite {
-    double percentile = 20.0;
+    double percentile = kDesignWhitePercentile;
 };
 
 struct SetGamutMapping {

@@ -39,7 +39,7 @@ struct Document {
     std::optional<EffectLevels> levels;  ///< of effects one by one; none: the quality's
     std::string bench = "default";       ///< the simulated bench; a shipped name or a file
     std::string calibration;             ///< folder; empty: none, the picture goes out uncorrected
-    double design_white_percentile = 20.0;
+    double design_white_percentile = kDesignWhitePercentile;
     GamutMapping gamut_mapping = GamutMapping::strict;  ///< the same for all looks
     /// What names of paints mean: shared and never changed. Not part of the document's text; null:
     /// no name means anything.
