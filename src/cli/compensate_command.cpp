@@ -9,7 +9,7 @@
 #include "compensation/compensation.h"
 #include "core/error.h"
 #include "core/image_io.h"
-#include "jobs/target_picture.h"
+#include "jobs/render/target_picture.h"
 #include "scene/mockup_mask.h"
 
 namespace livery {

@@ -7,7 +7,7 @@
 
 #include "core/worker.h"
 #include "jobs/picture.h"
-#include "jobs/render.h"
+#include "jobs/render/render.h"
 #include "live/low_priority.h"
 
 namespace livery {

@@ -17,7 +17,7 @@
 #include "radiance/packed_fragments.h"
 #include "radiance/shading.h"
 #include "radiance/smooth_runs.h"
-#include "radiance/subsurface_inputs.h"
+#include "radiance/subsurface/subsurface_inputs.h"
 #include "scene/frame_plan.h"
 #include "scene/scene.h"
 

@@ -5,7 +5,7 @@
 
 #include "core/progress.h"
 #include "radiance/light/interreflection.h"
-#include "radiance/light/subsurface_transport.h"
+#include "radiance/subsurface/subsurface_transport.h"
 #include "radiance/surface_map.h"
 #include "scene/effects.h"
 #include "scene/product.h"

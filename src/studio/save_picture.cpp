@@ -11,7 +11,7 @@
 
 #include "core/image_io.h"
 #include "gl/read_back.h"
-#include "jobs/render.h"
+#include "jobs/render/render.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/user_folders.h"
 #include "studio/look_files.h"

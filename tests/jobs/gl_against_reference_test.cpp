@@ -11,7 +11,7 @@
 
 #include "core/worst_error.h"
 #include "gl/context.h"
-#include "jobs/render.h"
+#include "jobs/render/render.h"
 #include "reference/path_tracer.h"
 #include "scene/library.h"
 #include "support/direct_levels.h"

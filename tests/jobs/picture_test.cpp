@@ -6,8 +6,8 @@
 
 #include "core/colour.h"
 #include "core/image_io.h"
-#include "jobs/render.h"
-#include "jobs/target_picture.h"
+#include "jobs/render/render.h"
+#include "jobs/render/target_picture.h"
 #include "support/temporary_folder.h"
 
 namespace livery {

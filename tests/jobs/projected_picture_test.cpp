@@ -1,5 +1,5 @@
 // Pictures that the path tracer lights a product with: what files hold, and what is seen of them.
-#include "jobs/projected_picture.h"
+#include "jobs/render/projected_picture.h"
 
 #include <limits>
 
@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "core/image_io.h"
-#include "jobs/render.h"
+#include "jobs/render/render.h"
 #include "support/small_meshes.h"
 #include "support/temporary_folder.h"
 

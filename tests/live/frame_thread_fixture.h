@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "gl/context.h"
-#include "jobs/render.h"
+#include "jobs/render/render.h"
 #include "jobs/synthetic_calibration.h"
 #include "live/frame_lane.h"
 #include "live/frame_thread.h"

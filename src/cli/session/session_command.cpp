@@ -8,7 +8,7 @@
 #include "cli/session/seat_report.h"
 #include "core/error.h"
 #include "jobs/export_product.h"
-#include "jobs/render.h"
+#include "jobs/render/render.h"
 #include "live/projector_setup.h"
 #include "scene/library.h"
 #include "session/look_exchange.h"

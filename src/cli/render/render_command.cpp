@@ -8,9 +8,9 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "cli/frame_options.h"
+#include "cli/render/frame_options.h"
 #include "core/colour.h"
-#include "jobs/projected_picture.h"
+#include "jobs/render/projected_picture.h"
 
 namespace livery {
 

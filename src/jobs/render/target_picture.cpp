@@ -1,4 +1,4 @@
-#include "jobs/target_picture.h"
+#include "jobs/render/target_picture.h"
 
 #include "core/channels.h"
 #include "core/colour.h"

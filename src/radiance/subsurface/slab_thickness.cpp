@@ -1,4 +1,4 @@
-#include "radiance/light/slab_thickness.h"
+#include "radiance/subsurface/slab_thickness.h"
 
 #include <algorithm>
 #include <array>

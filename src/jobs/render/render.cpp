@@ -1,4 +1,4 @@
-#include "jobs/render.h"
+#include "jobs/render/render.h"
 
 #include <algorithm>
 #include <chrono>

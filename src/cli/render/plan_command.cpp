@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "cli/frame_options.h"
+#include "cli/render/frame_options.h"
 #include "ledger/budget.h"
 
 namespace livery {

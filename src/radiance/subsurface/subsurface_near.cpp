@@ -1,4 +1,4 @@
-#include "radiance/light/subsurface_near.h"
+#include "radiance/subsurface/subsurface_near.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "radiance/light/subsurface_transport.h"
+#include "radiance/subsurface/subsurface_transport.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/parallel.h"
-#include "radiance/light/slab_thickness.h"
+#include "radiance/subsurface/slab_thickness.h"
 
 namespace livery {
 

@@ -12,7 +12,7 @@
 
 #include "appearance/subsurface/translucent_material.h"
 #include "radiance/glints.h"
-#include "radiance/light/subsurface_transport.h"
+#include "radiance/subsurface/subsurface_transport.h"
 #include "radiance/surface_map.h"
 #include "scene/look.h"
 

@@ -13,7 +13,7 @@
 
 #include "core/progress.h"
 #include "radiance/light/interreflection.h"
-#include "radiance/light/subsurface_kernel.h"
+#include "radiance/subsurface/subsurface_kernel.h"
 #include "tracing/tracer.h"
 
 namespace livery {

@@ -1,4 +1,4 @@
-#include "jobs/projected_picture.h"
+#include "jobs/render/projected_picture.h"
 
 #include <algorithm>
 #include <cmath>

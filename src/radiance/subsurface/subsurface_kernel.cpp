@@ -1,4 +1,4 @@
-#include "radiance/light/subsurface_kernel.h"
+#include "radiance/subsurface/subsurface_kernel.h"
 
 #include <algorithm>
 #include <array>

@@ -1,11 +1,11 @@
-#include "radiance/subsurface_inputs.h"
+#include "radiance/subsurface/subsurface_inputs.h"
 
 #include <algorithm>
 
 #include "appearance/subsurface/translucent_paint.h"
 #include "core/colour.h"
-#include "radiance/light/slab_thickness.h"
-#include "radiance/light/subsurface_near.h"
+#include "radiance/subsurface/slab_thickness.h"
+#include "radiance/subsurface/subsurface_near.h"
 
 namespace livery {
 

@@ -7,7 +7,7 @@
 
 #include "cli/command.h"
 #include "cli/design_white.h"
-#include "jobs/render.h"
+#include "jobs/render/render.h"
 #include "ledger/budget.h"
 #include "scene/frame_plan.h"
 

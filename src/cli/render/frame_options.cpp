@@ -1,4 +1,4 @@
-#include "cli/frame_options.h"
+#include "cli/render/frame_options.h"
 
 #include <cmath>
 #include <cstdint>

@@ -9,7 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include "radiance/glints.h"
-#include "radiance/light/subsurface_kernel.h"
+#include "radiance/subsurface/subsurface_kernel.h"
 #include "radiance/surface_map.h"
 
 namespace livery {
