@@ -20,6 +20,7 @@
 #include "radiance/subsurface/subsurface_near.h"
 #include "radiance/subsurface/subsurface_transport.h"
 #include "reference/path_tracer.h"
+#include "scene/library.h"
 #include "support/small_meshes.h"
 #include "tracing/ray_counters.h"
 
@@ -517,6 +518,36 @@ TEST(SubsurfacePicture, ShowsAsMuchOfClearBallsAsWalks) {
         std::printf("    %-24s %.3f of what walks find\n", name, by_nodes / by_walks);
         // Where it leaves is diffusion's guess; ten times as much is what this is about
         EXPECT_NEAR(by_nodes / by_walks, 1.0, 0.35) << name;
+    }
+}
+
+/// Faces that cover one another, seams and rims put nodes in one place: none of what is made of
+/// distances between them may be no number.
+TEST(SubsurfaceTransport, IsFiniteOnAllPartsOfTheShippedProducts) {
+    const TranslucentMaterial marble = medium_named("marble");
+    for (const char* name : {"car", "sphere", "player"}) {
+        const auto product = find_product(name);
+        const Tracer tracer(product->mesh);
+        for (std::size_t part = 0; part < product->mesh.parts.size(); ++part) {
+            SCOPED_TRACE(std::string(name) + " " + product->mesh.parts[part].name);
+            const float reach_mm = kernel_reach_mm(marble);
+            const SubsurfaceTransport transport =
+                solve_transport(product->mesh, tracer, part, reach_mm, {200, true});
+            const float most = *std::max_element(transport.curvature_per_mm.begin(),
+                                                 transport.curvature_per_mm.end());
+            const SubsurfaceKernel kernel =
+                subsurface_kernel(marble, reach_mm, transport.near_mm, transport.slabs_mm, most);
+            const std::vector<glm::vec3> even(transport.area_mm2.size(), glm::vec3(1.0f));
+            const LeavingLight leaving = leaving_at_nodes(transport, kernel, even);
+            for (std::size_t i = 0; i < even.size(); ++i) {
+                // The most that nodes a twentieth of near_mm apart can tell
+                ASSERT_LT(std::abs(transport.curvature_per_mm[i]), 40.1f / transport.near_mm) << i;
+                for (int c = 0; c < 3; ++c) {
+                    const float left = leaving.from_afar[i][c] + leaving.near_share[i][c];
+                    ASSERT_TRUE(left >= 0.0f && left <= 1.0001f) << i << ": " << left;
+                }
+            }
+        }
     }
 }
 

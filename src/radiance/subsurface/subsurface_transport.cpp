@@ -171,6 +171,7 @@ void find_others(const Tracer& tracer,
         std::vector<std::uint16_t> code, through_code;
     };
     constexpr std::size_t kAtATime = 256;
+    constexpr float kTold = 0.05f;  // nearer nodes tell rounding, and no curvature
     std::vector<Found> found((nodes.size() + kAtATime - 1) / kAtATime);
     transport.first.assign(nodes.size() + 1, 0);
     transport.through_first.assign(nodes.size() + 1, 0);
@@ -212,7 +213,9 @@ void find_others(const Tracer& tracer,
                         through_air(tracer, nodes, i, j, distance, thickness)) {
                         return;
                     }
-                    if (glm::dot(nodes.normal(i), nodes.normal(j)) > 0.0f) {
+                    // Where faces meet or cover one another nodes may lie in one place
+                    if (distance > kTold * transport.near_mm &&
+                        glm::dot(nodes.normal(i), nodes.normal(j)) > 0.0f) {
                         // A chord of a ball leaves its tangent plane by length^2 / (2 radius)
                         const float weight = transport.area_mm2[j] / distance;
                         bent -= weight * 2.0f * glm::dot(nodes.normal(i), way) / square;
@@ -346,7 +349,7 @@ LeavingLight leaving_at_nodes(const SubsurfaceTransport& transport,
                 area_mm2 += transport.area_mm2[j];
             }
             leaving.from_afar[i] = shares.far * glm::mix(sum / glm::max(all, glm::vec3(1e-20f)),
-                                                         anywhere / area_mm2,
+                                                         anywhere / std::max(area_mm2, 1e-20f),
                                                          shares.anywhere);
             leaving.near_share[i] = shares.near;
         }
