@@ -14,6 +14,13 @@ namespace {
 
 constexpr int kSwaps = 5;
 
+/// The truth draws flakes as the smooth lobe that many of them are: pictures with single flakes in
+/// them would show nothing else.
+EffectLevels comparable(EffectLevels levels, const AccuracyScene& scene) {
+    if (calls_for(scene.scene, Effect::glints)) levels[Effect::glints] = 0;
+    return levels;
+}
+
 }  // namespace
 
 std::vector<AccuracyRow> rows_to_measure(const std::vector<AccuracyScene>& scenes) {
@@ -25,7 +32,8 @@ std::vector<AccuracyRow> rows_to_measure(const std::vector<AccuracyScene>& scene
             row.effect = kQualityRows;
             row.level = to_string(quality);
             row.index = static_cast<int>(quality);
-            row.levels = levels_of(quality);
+            row.levels = comparable(levels_of(quality), scene);
+            row.called_for = !scene.only;
         }
         for (const EffectInfo& info : effect_table()) {
             for (std::size_t k = 0; k < info.levels.size(); ++k) {
@@ -34,9 +42,10 @@ std::vector<AccuracyRow> rows_to_measure(const std::vector<AccuracyScene>& scene
                 row.effect = info.name;
                 row.level = info.levels[k].name;
                 row.index = static_cast<int>(k);
-                row.levels = dearest_levels();
+                row.levels = comparable(dearest_levels(), scene);
                 row.levels[info.effect] = row.index;
-                row.called_for = calls_for(scene.scene, info.effect);
+                row.called_for = calls_for(scene.scene, info.effect) &&
+                                 scene.only.value_or(info.effect) == info.effect;
             }
         }
     }

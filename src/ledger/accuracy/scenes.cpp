@@ -92,6 +92,7 @@ void add_translucent(std::vector<AccuracyScene>& scenes, const Progress& progres
                                  kHeight_px / kTranslucentSmaller);
             scene.scene = make_scene(product, look, bench.eye_mm, nullptr);
             scene.fewer_samples = kTranslucentFewer;
+            scene.only = Effect::subsurface;
         }
     }
 }
@@ -99,7 +100,11 @@ void add_translucent(std::vector<AccuracyScene>& scenes, const Progress& progres
 }  // namespace
 
 AccuracyScene resized(const AccuracyScene& scene, int width, int height) {
-    return {scene.name, scene.scene, resized(scene.view, width, height), scene.fewer_samples};
+    return {scene.name,
+            scene.scene,
+            resized(scene.view, width, height),
+            scene.fewer_samples,
+            scene.only};
 }
 
 std::vector<AccuracyScene> accuracy_scenes(bool quick, const Progress& progress) {

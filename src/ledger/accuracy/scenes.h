@@ -2,10 +2,12 @@
 // lights, on the whole car, and a sphere.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/progress.h"
+#include "scene/effects.h"
 #include "scene/scene.h"
 #include "scene/view.h"
 
@@ -16,6 +18,8 @@ struct AccuracyScene {
     Scene scene;
     View view;
     int fewer_samples = 1;  ///< a pixel, in its truth, than in others': by that factor
+    /// What it alone is for: its truth is too coarse to judge others by.
+    std::optional<Effect> only{};
 };
 
 /// `quick`: one look on the car in one light.
