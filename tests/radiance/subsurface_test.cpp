@@ -42,18 +42,6 @@ Scene shadowed_ball(const Material& paint) {
     return scene;
 }
 
-void add_box(Mesh& mesh, glm::vec3 low, glm::vec3 high) {
-    const auto at = [&](int x, int y, int z) {
-        return glm::vec3(x ? high.x : low.x, y ? high.y : low.y, z ? high.z : low.z);
-    };
-    add_quad(mesh, at(0, 1, 1), at(1, 1, 1), at(1, 1, 0), at(0, 1, 0));
-    add_quad(mesh, at(0, 0, 0), at(1, 0, 0), at(1, 0, 1), at(0, 0, 1));
-    add_quad(mesh, at(0, 0, 1), at(1, 0, 1), at(1, 1, 1), at(0, 1, 1));
-    add_quad(mesh, at(1, 0, 1), at(1, 0, 0), at(1, 1, 0), at(1, 1, 1));
-    add_quad(mesh, at(1, 0, 0), at(0, 0, 0), at(0, 1, 0), at(1, 1, 0));
-    add_quad(mesh, at(0, 0, 0), at(0, 0, 1), at(0, 1, 1), at(0, 1, 0));
-}
-
 /// 60 by 60 mm, from y = 0 up.
 Mesh plate_mesh(float thickness_mm) {
     Mesh mesh;

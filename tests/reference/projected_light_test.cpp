@@ -131,15 +131,7 @@ TEST(ProjectedLight, IsHiddenByWhatStandsBeforeItAndNotByWhatStandsBehind) {
 /// profile over the lit one.
 TEST(ProjectedLight, SpreadsFromAnEdgeInATranslucentBlock) {
     Mesh mesh;
-    const auto at = [](int x, int y, int z) {
-        return glm::vec3(x ? 60 : -60, y ? 0 : -60, z ? 60 : -60);
-    };
-    add_quad(mesh, at(0, 1, 1), at(1, 1, 1), at(1, 1, 0), at(0, 1, 0));
-    add_quad(mesh, at(0, 0, 0), at(1, 0, 0), at(1, 0, 1), at(0, 0, 1));
-    add_quad(mesh, at(0, 0, 1), at(1, 0, 1), at(1, 1, 1), at(0, 1, 1));
-    add_quad(mesh, at(1, 0, 1), at(1, 0, 0), at(1, 1, 0), at(1, 1, 1));
-    add_quad(mesh, at(1, 0, 0), at(0, 0, 0), at(0, 1, 0), at(1, 1, 0));
-    add_quad(mesh, at(0, 0, 0), at(0, 0, 1), at(0, 1, 1), at(0, 1, 0));
+    add_box(mesh, {-60.0f, -60.0f, -60.0f}, {60.0f, 0.0f, 60.0f});
     TranslucentMaterial medium = read_translucent_material("marble");
     const Scene scene = scene_of(mesh, translucent_paint(medium), {0, 800, 0.001});
     ImageF picture = even_picture(0.0f);

@@ -37,6 +37,19 @@ inline Mesh floor_mesh(float half_mm) {
     return mesh;
 }
 
+/// Appends a closed box.
+inline void add_box(Mesh& mesh, glm::vec3 low, glm::vec3 high) {
+    const auto at = [&](int x, int y, int z) {
+        return glm::vec3(x ? high.x : low.x, y ? high.y : low.y, z ? high.z : low.z);
+    };
+    add_quad(mesh, at(0, 1, 1), at(1, 1, 1), at(1, 1, 0), at(0, 1, 0));
+    add_quad(mesh, at(0, 0, 0), at(1, 0, 0), at(1, 0, 1), at(0, 0, 1));
+    add_quad(mesh, at(0, 0, 1), at(1, 0, 1), at(1, 1, 1), at(0, 1, 1));
+    add_quad(mesh, at(1, 0, 1), at(1, 0, 0), at(1, 1, 0), at(1, 1, 1));
+    add_quad(mesh, at(1, 0, 0), at(0, 0, 0), at(0, 1, 0), at(1, 1, 0));
+    add_quad(mesh, at(0, 0, 0), at(0, 0, 1), at(0, 1, 1), at(0, 1, 0));
+}
+
 /// A box without its lid, inside outward: side 2, open above.
 inline Mesh open_box() {
     Mesh mesh;
