@@ -154,9 +154,8 @@ Command render_command() {
           {}},
          {"--projects",
           "FILE",
-          "reference: picture (.exr: light, .png: sRGB) that the projector lights the product "
-          "with, "
-          "in the place of the look's lights; seen from the eye, or --camera",
+          "reference: picture (.exr: light, .png: sRGB) that a projector throws on the product in "
+          "the place of the look's lights; seen from the eye, or --camera",
           &arguments->projects,
           false,
           {}},

@@ -83,12 +83,12 @@ void SubsurfaceInputs::solve(const Wanted& wanted,
         const auto transport =
             transports_->of(mesh_, tracer_, p, of.reach_mm, wanted.detail, progress);
         if (of.kernel.near_mm != std::min(transport->near_mm, of.reach_mm)) {
-            const std::vector<float>& bent = transport->curvature_per_mm;
-            of.kernel = subsurface_kernel(medium,
-                                          of.reach_mm,
-                                          transport->near_mm,
-                                          transport->slabs_mm,
-                                          *std::max_element(bent.begin(), bent.end()));
+            float most_bent_per_mm = 0.0f;
+            for (const float one : transport->curvature_per_mm) {
+                most_bent_per_mm = std::max(most_bent_per_mm, one);
+            }
+            of.kernel = subsurface_kernel(
+                medium, of.reach_mm, transport->near_mm, transport->slabs_mm, most_bent_per_mm);
         }
         const EnteredMedium entered{
             medium.eta, mean_free_paths_mm(medium), transport->curvature_per_mm};
