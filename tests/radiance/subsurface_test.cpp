@@ -1,9 +1,6 @@
-// Light that leaves translucent parts beside where it entered: against what must be kept, and
-// against walks.
+// Light that leaves translucent parts beside where it entered: against what must be kept.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
 #include <gtest/gtest.h>
 
@@ -11,61 +8,18 @@
 #include "appearance/subsurface/exact_totals.h"
 #include "appearance/subsurface/translucent_paint.h"
 #include "core/colour.h"
-#include "core/statistics.h"
 #include "gl/context.h"
-#include "radiance/photon_picture.h"
 #include "radiance/renderer.h"
-#include "radiance/scenes.h"
 #include "radiance/subsurface/slab_thickness.h"
 #include "radiance/subsurface/subsurface_near.h"
 #include "radiance/subsurface/subsurface_transport.h"
-#include "reference/path_tracer.h"
+#include "radiance/translucent_scenes.h"
 #include "scene/library.h"
 #include "support/small_meshes.h"
 #include "tracing/ray_counters.h"
 
 namespace livery {
 namespace {
-
-TranslucentMaterial medium_named(const char* name) { return read_translucent_material(name); }
-
-/// A ball of 50 mm across, the disc that throws an edge of shadow on it, and a lamp.
-Scene shadowed_ball(const Material& paint) {
-    Mesh mesh = make_sphere({0, 0, 0}, 25.0, 96, "ball");
-    append(mesh, make_sphere({-25.0, 130.0, 20.0}, 25.0, 48, "block"), "");
-    Scene scene = scene_of(std::move(mesh), paint);
-    Material black;
-    black.diffuse = glm::dvec3(0.0);
-    scene.part_materials[1] = black;
-    scene.lights = {light_from({0.0, 1.0, 0.15}, 0.01)};
-    scene.eye_in_world_mm = {60.0, 250.0, 500.0};
-    return scene;
-}
-
-/// 60 by 60 mm, from y = 0 up.
-Mesh plate_mesh(float thickness_mm) {
-    Mesh mesh;
-    add_box(mesh, {-30.0f, 0.0f, -30.0f}, {30.0f, thickness_mm, 30.0f});
-    mesh.parts.resize(1);
-    mesh.triangle_part.assign(mesh.triangles.size(), 0);
-    return mesh;
-}
-
-/// A plate of 2 mm, lit from behind along its normal; something stands in the light of one half.
-Scene shadowed_plate(const Material& paint) {
-    Mesh mesh = plate_mesh(2.0f);
-    add_box(mesh, {-60.0f, -12.0f, -60.0f}, {0.0f, -10.0f, 60.0f});
-    mesh.parts.resize(2);
-    const std::size_t own = plate_mesh(2.0f).triangles.size();
-    mesh.triangle_part.assign(own, 0);
-    mesh.triangle_part.resize(mesh.triangles.size(), 1);
-    Scene scene = scene_of(std::move(mesh), paint);
-    scene.part_materials[1] = Material{};
-    scene.part_materials[1].diffuse = glm::dvec3(0.0);
-    scene.lights = {light_from({0.0, -1.0, 0.0}, 0.05)};
-    scene.eye_in_world_mm = {0.0, 400.0, 100.0};
-    return scene;
-}
 
 TEST(SubsurfaceTransport, CoversThePartAndGivesBackWhatEnters) {
     const Mesh mesh = make_sphere({0, 0, 0}, 25.0, 96, "ball");
@@ -213,167 +167,6 @@ TEST(SubsurfaceTransport, DoesNotGoThroughTheAir) {
     EXPECT_LT(left, all / 50);
 }
 
-struct Differences {
-    double median = 0.0, p95 = 0.0;
-};
-/// CIEDE2000 at the design white, of the pixels that both cover by half or more.
-Differences compared(const ImageF& drawn, const ImageF& truth) {
-    const glm::dvec3 white = xyz_from_working() * glm::dvec3(1.0);
-    std::vector<double> found;
-    for (int y = 0; y < truth.height; ++y) {
-        for (int x = 0; x < truth.width; ++x) {
-            const float *a = drawn.pixel(x, y), *b = truth.pixel(x, y);
-            if (a[3] < 0.5f || b[3] < 0.5f) continue;
-            const auto lab = [&](const float* p) {
-                return lab_from_xyz(xyz_from_working() * glm::dvec3(p[0], p[1], p[2]), white);
-            };
-            found.push_back(ciede2000(lab(a), lab(b)));
-        }
-    }
-    return {median(found), quantile(found, 0.95)};
-}
-
-ImageF drawn_at(const Scene& scene, const View& view, int level) {
-    const HeadlessContext context(GlDevice::software);
-    EffectLevels levels = levels_of(Quality::high);
-    levels[Effect::subsurface] = level;
-    RadianceRenderer renderer(std::make_shared<const FrameGeometry>(scene.product, view),
-                              false,
-                              ShadingDevice::processor);
-    FramePlan plan = plan_frame(scene, levels, FrameStage::radiance);
-    EXPECT_EQ(find_pass(plan, PassKind::subsurface) != nullptr, level > 0);
-    renderer.render(scene, plan);
-    return renderer.read_back();
-}
-
-/// Of each of two pictures; docs/subsurface.md says of how many it has figures.
-std::size_t photons() {
-    const char* wanted = std::getenv("LIVERY_SUBSURFACE_PHOTONS");
-    return static_cast<std::size_t>(wanted ? std::max(64, std::atoi(wanted)) : 200'000);
-}
-
-/// Sum over columns, along the shadow's edge, of the difference of green light over that of the
-/// truth: noise adds little to it.
-double off_by(const ImageF& drawn, const ImageF& truth) {
-    double apart = 0.0, all = 0.0;
-    for (int x = 0; x < truth.width; ++x) {
-        double column = 0.0;
-        for (int y = 0; y < truth.height; ++y) {
-            const auto t = static_cast<double>(truth.at(x, y, 1));
-            column += static_cast<double>(drawn.at(x, y, 1)) - t;
-            all += t;
-        }
-        apart += std::abs(column);
-    }
-    return apart / all;
-}
-
-/// What the boundary alone mirrors of the lamp.
-ImageF mirrored_alone(Scene scene, const View& view) {
-    TranslucentMaterial black = *scene.part_materials[0].medium;
-    black.sigma_s_prime_per_mm = glm::dvec3(0.0);
-    scene.part_materials[0].medium = std::make_shared<const TranslucentMaterial>(black);
-    return drawn_at(scene, view, 0);
-}
-
-/// The mean of two independent pictures by photons, and half of their difference, which is what it
-/// may err by itself.
-struct PhotonTruth {
-    ImageF picture;
-    Differences floor;
-};
-PhotonTruth photon_truth(const Scene& scene, const View& view, double around_mm) {
-    const ImageF mirrored = mirrored_alone(scene, view);
-    ImageF one = photon_picture(scene, view, around_mm, photons(), 1);
-    ImageF two = photon_picture(scene, view, around_mm, photons(), 2);
-    ImageF mean = one;
-    for (std::size_t k = 0; k < mean.values.size(); ++k) {
-        if (k % 4 == 3) continue;
-        one.values[k] += mirrored.values[k];
-        two.values[k] += mirrored.values[k];
-        mean.values[k] = 0.5f * (one.values[k] + two.values[k]);
-    }
-    const Differences apart = compared(one, two);
-    return {mean, {0.5 * apart.median, 0.5 * apart.p95}};
-}
-
-/// With the truth's own noise taken off, as far as that adds up as squares.
-double without(double found, double floor) {
-    return std::sqrt(std::max(0.0, found * found - floor * floor));
-}
-
-struct PictureCase {
-    const char* name;
-    Scene scene;
-    View view;
-    double around_mm;
-};
-std::vector<PictureCase> cases_of(const char* medium) {
-    const Material paint = translucent_paint(medium_named(medium));
-    return {{"ball of 50 mm",
-             shadowed_ball(paint),
-             look_at({0, 90, 10}, {0, 24.6, 4}, 0.36, 12, 12),
-             25.5},
-            {"2 mm plate lit from behind",
-             shadowed_plate(paint),
-             look_at({0, 200, 1}, {0, 2, 0}, 0.12, 12, 12),
-             43.0}};
-}
-
-/// The edge of a shadow in pixels of 2 mm.
-TEST(SubsurfacePicture, IsNearPhotonsAndAlbedoAloneIsNot) {
-    for (const char* name : {"marble", "white pvc", "skim milk"}) {
-        for (const PictureCase& one : cases_of(name)) {
-            SCOPED_TRACE(one.name);
-            const PhotonTruth truth = photon_truth(one.scene, one.view, one.around_mm);
-            double off[3] = {};
-            for (int level = 0; level < 3; ++level) {
-                const ImageF drawn = drawn_at(one.scene, one.view, level);
-                const Differences found = compared(drawn, truth.picture);
-                off[level] = off_by(drawn, truth.picture);
-                std::printf(
-                    "    %-10s %-27s %-10s CIEDE2000 median %.2f, 95%% %.2f (truth %.2f, %.2f; "
-                    "without it %.2f, %.2f); columns %.1f%% off\n",
-                    name,
-                    one.name,
-                    effect_info(Effect::subsurface).levels[static_cast<std::size_t>(level)].name,
-                    found.median,
-                    found.p95,
-                    truth.floor.median,
-                    truth.floor.p95,
-                    without(found.median, truth.floor.median),
-                    without(found.p95, truth.floor.p95),
-                    100.0 * off[level]);
-            }
-            // Noise that is left in the columns' sums is 1%
-            EXPECT_LT(off[1], 0.7 * off[0]) << name;
-            EXPECT_LT(off[2], 0.7 * off[0]) << name;
-            EXPECT_LT(off[2], 0.08) << name;
-        }
-    }
-}
-
-/// Photons from the lamp and walks from the eye share the medium and the boundary, and nothing of
-/// how a picture comes of them.
-TEST(SubsurfacePicture, PhotonsShowWhatWalksFromTheEyeDo) {
-    const PictureCase one = cases_of("marble").front();
-    const PhotonTruth truth = photon_truth(one.scene, one.view, one.around_mm);
-    ReferenceOptions options;
-    options.samples_per_pixel = 64;
-    const ImageF walked = trace_reference(one.scene, one.view, options).radiance_working;
-    for (int c = 0; c < 3; ++c) {
-        double by_photons = 0.0, by_walks = 0.0;
-        for (int y = 0; y < walked.height; ++y) {
-            for (int x = 0; x < walked.width; ++x) {
-                by_photons += static_cast<double>(truth.picture.at(x, y, c));
-                by_walks += static_cast<double>(walked.at(x, y, c));
-            }
-        }
-        // 9000 walks, a quarter of which come back with light
-        EXPECT_NEAR(by_photons / by_walks, 1.0, 0.03) << c;
-    }
-}
-
 /// Even light from behind: as much comes through a plate as adding and doubling says.
 TEST(SubsurfaceTransport, LetsThroughWhatIsExact) {
     const Mesh mesh = plate_mesh(2.0f);
@@ -483,29 +276,6 @@ TEST(SubsurfaceTransport, BallsOfAllShippedMediaGiveBackNoMoreThanScatters) {
             for (int c = 0; c < 3; ++c) ASSERT_NEAR(total[c], before[c], 0.02f) << curvature;
             before = total;
         }
-    }
-}
-
-/// How much light comes back from a ball that is a mean free path across, and from one that is ten.
-TEST(SubsurfacePicture, ShowsAsMuchOfClearBallsAsWalks) {
-    const View view = look_at({0, 90, 10}, {0, 0, 0}, 0.9, 24, 24);
-    for (const char* name : {"bleach", "gatorade", "white grapefruit juice"}) {
-        Scene scene = shadowed_ball(translucent_paint(medium_named(name)));
-        scene.lights = {light_from({0.3, 1.0, 0.15}, 0.01)};
-        const ImageF mirrored = mirrored_alone(scene, view);
-        ReferenceOptions options;
-        options.samples_per_pixel = 256;
-        const ImageF walked = trace_reference(scene, view, options).radiance_working;
-        const ImageF drawn = drawn_at(scene, view, 1);
-        double by_walks = 0.0, by_nodes = 0.0;
-        for (std::size_t k = 0; k < drawn.values.size(); ++k) {
-            if (k % 4 == 3) continue;
-            by_walks += static_cast<double>(walked.values[k] - mirrored.values[k]);
-            by_nodes += static_cast<double>(drawn.values[k] - mirrored.values[k]);
-        }
-        std::printf("    %-24s %.3f of what walks find\n", name, by_nodes / by_walks);
-        // Where it leaves is diffusion's guess; ten times as much is what this is about
-        EXPECT_NEAR(by_nodes / by_walks, 1.0, 0.35) << name;
     }
 }
 
