@@ -91,6 +91,11 @@ void project(const std::string& picture,
             "--calibration DIR");
     }
     if (!from_camera) {
+        const auto [low, high] = bounds_of(mesh);
+        if (request.scene.eye_in_world_mm == 0.5 * (low + high)) {
+            throw std::invalid_argument(
+                "--eye: found the middle of the product, expected a place to see it from");
+        }
         request.view = view_of_all(
             mesh, request.scene.eye_in_world_mm, request.view.width, request.view.height);
     }
