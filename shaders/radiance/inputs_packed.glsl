@@ -63,13 +63,18 @@ float not_negative(float value) {
     return IS_NAN(value) ? value : max(value, 0.0);
 }
 
+// One without a share need not be there.
+vec3 share_of(float share, int layer) {
+    return share == 0.0 ? vec3(0.0) : share * mirror_layer_here(layer);
+}
+
 // Environment over a mirror lobe, between four layers. Their cubic may fall short of nothing beside
 // a lamp.
 vec3 mirrored_here(vec4 layers, float alpha) {
     int first = int(layers.x);
-    vec3 sum = (1.0 - layers.y - layers.z - layers.w) * mirror_layer_here(first) +
-               layers.y * mirror_layer_here(first + 1) + layers.z * mirror_layer_here(first + 2) +
-               layers.w * mirror_layer_here(first + 3);
+    vec3 sum = share_of(1.0 - layers.y - layers.z - layers.w, first) +
+               share_of(layers.y, first + 1) + share_of(layers.z, first + 2) +
+               share_of(layers.w, first + 3);
     return u_mirror_unit * vec3(not_negative(sum.x), not_negative(sum.y), not_negative(sum.z));
 }
 

@@ -65,16 +65,6 @@ void add_milliseconds(FramePlan& plan, const FramePlan& more, bool add_passes) {
     }
 }
 
-bool covers(const std::vector<MirrorLayers>& solved, const Scene& scene) {
-    const std::vector<MirrorLayers> worn = mirror_layers_of(scene);
-    return std::equal(
-        worn.begin(),
-        worn.end(),
-        solved.begin(),
-        solved.end(),
-        [](const auto& of_part, const auto& known) { return (of_part & ~known).none(); });
-}
-
 /// What a paint's program depends on.
 struct ProgramOf {
     ReflectanceModel model = ReflectanceModel::lambert;
@@ -174,8 +164,7 @@ void FrameLane::solve(const FrameDescription& description,
 
 void FrameLane::note_mirrors() {
     for (std::size_t k = 0; k < lights_.size(); ++k) {
-        mirrors_[k] =
-            lights_[k].renderer ? lights_[k].renderer->mirrored() : std::vector<MirrorLayers>();
+        mirrors_[k] = lights_[k].renderer ? lights_[k].renderer->mirrored() : SolvedMirror();
     }
 }
 
@@ -270,7 +259,7 @@ bool can_draw(const SolveKeys& solved,
         if (!same_pose(*solved[0], *keys[side])) return false;
         try {
             const std::size_t light = nearest_of(solved, keys, side);
-            if (!covers(mirrors[light], side_of(description, side))) return false;
+            if (!mirrors[light].covers(side_of(description, side))) return false;
         } catch (const std::invalid_argument&) {
             continue;  // a paint that cannot be: drawing it says why
         }

@@ -34,8 +34,8 @@ class GeometryCache {
     std::shared_ptr<const FrameGeometry> newest_;
 };
 
-/// Of each light that is solved, of each part, which layers of what it mirrors are.
-using SolvedMirrors = std::array<std::vector<MirrorLayers>, 2>;
+/// Of each light that is solved.
+using SolvedMirrors = std::array<SolvedMirror, 2>;
 
 /// Whether a lane that has solved this can draw the description without solving more: the same
 /// pose, and all that its paints mirror.

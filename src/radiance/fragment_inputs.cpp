@@ -357,7 +357,8 @@ void FragmentInputs::solve_mirror(const Scene& scene,
                         exchanged_.at_nodes.sent,
                         exchanged_.version);
     // Who keeps light between parts draws with what was mirrored behind other light of it, too
-    const auto worn = mirror_.missing(light, mirror_layers_of(scene), !keep_exchange);
+    const auto worn =
+        mirror_.missing(light, mirror_layers_of(scene, light.mixing()), !keep_exchange);
     const bool filtered = mirror_filtered(environment, light.nodes);
     if (filtered) (light.nodes == kNoNodes ? look_up_of_ : layered_) = environment;
     clock.run(PassKind::environment_filter, !filtered, [&] {
@@ -381,11 +382,12 @@ void FragmentInputs::solve_mirror(const Scene& scene,
     });
 }
 
-std::vector<MirrorLayers> FragmentInputs::mirrored() const {
-    std::vector<MirrorLayers> layers(mesh_.parts.size(), MirrorLayers().set());
-    const std::vector<MirrorLayers> missing = mirror_.missing(mirror_.light(), layers, false);
-    for (std::size_t p = 0; p < layers.size(); ++p) layers[p] &= ~missing[p];
-    return layers;
+SolvedMirror FragmentInputs::mirrored() const {
+    SolvedMirror solved{mirror_.light().mixing(), {}};
+    solved.of_part.assign(mesh_.parts.size(), MirrorLayers().set());
+    const auto missing = mirror_.missing(mirror_.light(), solved.of_part, false);
+    for (std::size_t p = 0; p < missing.size(); ++p) solved.of_part[p] &= ~missing[p];
+    return solved;
 }
 
 }  // namespace livery

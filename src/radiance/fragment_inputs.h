@@ -108,7 +108,7 @@ class FragmentInputs {
     Changed upload(const Scene& scene, StageClock& clock);
     /// Of each part, the layers of what it mirrors that are solved in the last solve()'s light; all
     /// where that has no environment.
-    std::vector<MirrorLayers> mirrored() const;
+    SolvedMirror mirrored() const;
     const ShadingInputs& shading() const { return shading_; }
     int layers_made() const { return layers_made_; }
 

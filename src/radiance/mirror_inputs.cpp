@@ -332,6 +332,7 @@ MirrorInputs::Uploaded MirrorInputs::upload(ShadingDevice device,
     if (light_.nodes == kNoNodes) spare_texels_ = std::move(solved_texels_);
     solved_texels_.clear();
     shading.mirror_unit = unit_;
+    shading.mirror_mixing = light_.mixing();
     return done;
 }
 

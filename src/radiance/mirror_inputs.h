@@ -15,6 +15,7 @@
 #include "radiance/light/mirror_hits.h"
 #include "radiance/light/mirror_lobes.h"
 #include "radiance/light/mirror_look_up.h"
+#include "radiance/light/mirror_quadrature.h"
 #include "radiance/light/mirror_visibility.h"
 #include "radiance/light/sky_visibility.h"
 #include "radiance/packed_fragments.h"
@@ -37,6 +38,9 @@ class MirrorInputs {
         glm::dvec3 eye_mm{0.0};
         int nodes = 0;  ///< a ring (mirror_rings); 0 or kNoNodes: nothing is hidden
         bool operator==(const Light&) const = default;
+        MirrorMixing mixing() const {
+            return nodes == kNoNodes ? MirrorMixing::linear : MirrorMixing::cubic;
+        }
     };
     using LayersOfParts = std::vector<MirrorLayers>;
 

@@ -334,7 +334,7 @@ Program& RasterPreview::State::ready(const Scene& scene,
                          over,
                          relief != nullptr,
                          glints});
-    set_paint(program, material, scene.exposure_ev, measured);
+    set_paint(program, material, scene.exposure_ev, MirrorMixing::cubic, measured);
     set_view(program);
     program.set("u_eye_mm", glm::vec3(scene.eye_in_world_mm));
     if (count > 0) {

@@ -355,7 +355,7 @@ void RadianceRenderer::solve(const Scene& whole,
     state_->solve(scene, plan, clock, silent, exchanged);
 }
 
-std::vector<MirrorLayers> RadianceRenderer::mirrored() const { return state_->inputs.mirrored(); }
+SolvedMirror RadianceRenderer::mirrored() const { return state_->inputs.mirrored(); }
 
 void RadianceRenderer::prepare(const Scene& whole,
                                FramePlan& plan,

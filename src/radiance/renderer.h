@@ -52,7 +52,7 @@ class RadianceRenderer {
 
     /// Of each part, what it mirrors that is solved, in the light of the last solve(); all of it
     /// where that has no environment.
-    std::vector<MirrorLayers> mirrored() const;
+    SolvedMirror mirrored() const;
 
     /// Everything that render() would need for this scene, programs included, without drawing.
     void prepare(const Scene& scene,

@@ -34,8 +34,8 @@ std::string shipped_text(const char* file) {
 }
 
 /// The first of four lobes and the shares of those after it.
-glm::vec4 mirror_layers(float alpha) {
-    const MirrorMix mix = mirror_mix(static_cast<double>(alpha));
+glm::vec4 mirror_layers(float alpha, MirrorMixing mixing) {
+    const MirrorMix mix = mirror_mix(static_cast<double>(alpha), mixing);
     return {static_cast<float>(mix.first), mix.share[1], mix.share[2], mix.share[3]};
 }
 
@@ -50,7 +50,7 @@ float exposure_of(double exposure_ev, std::span<const float> numbers) {
                 : std::numeric_limits<float>::quiet_NaN();
 }
 
-PaintUniforms uniforms_of(const Material& material, double exposure_ev) {
+PaintUniforms uniforms_of(const Material& material, double exposure_ev, MirrorMixing mixing) {
     PaintUniforms u;
     u.paint = model_info(material.model).prepared.of(parameters_of(material));
     u.exposure = exposure_of(exposure_ev, u.paint.numbers);
@@ -59,7 +59,7 @@ PaintUniforms uniforms_of(const Material& material, double exposure_ev) {
         std::size_t of = lobe;
         while (!reads_layers(u.paint, of)) of = (of + 1) % u.paint.lobe_slopes.size();
         const glm::vec2 slopes = u.paint.lobe_slopes[of];
-        u.lobe_layers.at(lobe) = mirror_layers(std::sqrt(slopes.x * slopes.y));
+        u.lobe_layers.at(lobe) = mirror_layers(std::sqrt(slopes.x * slopes.y), mixing);
     }
     return u;
 }
@@ -96,14 +96,16 @@ void tabulate_weights(float lobe_alpha,
 
 }  // namespace
 
-AnyModelUniforms any_model_uniforms_of(const Material& material, double exposure_ev) {
+AnyModelUniforms any_model_uniforms_of(const Material& material,
+                                       double exposure_ev,
+                                       MirrorMixing mixing) {
     const PaintBsdf bsdf = bsdf_of(material);
     AnyModelUniforms u;
     u.exposure = static_cast<float>(std::exp2(exposure_ev));
     u.paint = bsdf.parameters;
     u.measured = bsdf.measured;
     u.lobe_alpha = lobe_alpha(bsdf);
-    u.base_layers = mirror_layers(u.lobe_alpha);
+    u.base_layers = mirror_layers(u.lobe_alpha, mixing);
     tabulate_weights(
         u.lobe_alpha,
         [&](float cosine) { return environment_weights(bsdf, cosine); },
@@ -152,8 +154,9 @@ constexpr unsigned kArtworkUnit = 9;
 void set_any_paint(Program& program,
                    const Material& material,
                    double exposure_ev,
+                   MirrorMixing mixing,
                    MeasuredTextures& measured) {
-    AnyModelUniforms u = any_model_uniforms_of(material, exposure_ev);
+    AnyModelUniforms u = any_model_uniforms_of(material, exposure_ev, mixing);
     program.set("u_exposure", u.exposure);
     program.set("u_sky_weight", std::span<const glm::vec3>(u.sky_weight));
     program.set("u_mirror_weight", std::span<const glm::vec3>(u.mirror_weight));
@@ -189,11 +192,12 @@ void set_any_paint(Program& program,
 void set_paint(Program& program,
                const Material& material,
                double exposure_ev,
+               MirrorMixing mixing,
                MeasuredTextures& measured) {
     if (!has_own_shading(material.model)) {
-        return set_any_paint(program, material, exposure_ev, measured);
+        return set_any_paint(program, material, exposure_ev, mixing, measured);
     }
-    const PaintUniforms u = uniforms_of(material, exposure_ev);
+    const PaintUniforms u = uniforms_of(material, exposure_ev, mixing);
     program.set("u_exposure", u.exposure);
     program.set("u_lobe_layers", std::span<const glm::vec4>(u.lobe_layers));
     const float* at = u.paint.numbers.data();
@@ -303,7 +307,7 @@ Program& ShadingPrograms::ready(const Material& material,
     const int lights = std::get<1>(key);
     Program& program = program_for(key);
     drawn_.insert(key);
-    set_paint(program, material, exposure_ev, measured_);
+    set_paint(program, material, exposure_ev, inputs.mirror_mixing, measured_);
     if (model_info(material.model).same_from_all_sides) {
         program.set("u_lit", 0);
         inputs.lit.texture().bind(0);

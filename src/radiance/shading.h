@@ -18,6 +18,7 @@
 #include "gl/program.h"
 #include "radiance/lanes/input_layers.h"
 #include "radiance/lanes/lane_shading.h"
+#include "radiance/light/mirror_lobes.h"
 #include "radiance/measured_textures.h"
 #include "scene/artwork_coats.h"
 #include "scene/look.h"
@@ -34,9 +35,10 @@ struct ShadingInputs {
         mirror;  ///< kMirrorLayers: environment over the mirror lobes, how much of it grazes
     InputLayers places;        ///< for glints: position, side of a pixel's square there, in mm
     float mirror_unit = 1.0f;  ///< radiance of a value of 1 in `mirror`
-    std::vector<glm::vec3> light_irradiance;  ///< one a layer of `lights`, facing it
-    std::vector<float> light_radius2;         ///< half of the disc's angle, squared
-    double product_scale = 1.0;               ///< Product's
+    MirrorMixing mirror_mixing = MirrorMixing::cubic;  ///< that `mirror` has the lobes for
+    std::vector<glm::vec3> light_irradiance;           ///< one a layer of `lights`, facing it
+    std::vector<float> light_radius2;                  ///< half of the disc's angle, squared
+    double product_scale = 1.0;                        ///< Product's
 };
 
 /// Where a shading program finds its fragments' inputs.
@@ -65,7 +67,7 @@ struct PaintUniforms {
     PreparedPaint paint;
     std::array<glm::vec4, kMostLobes> lobe_layers{};  ///< u_lobe_layers
 };
-PaintUniforms uniforms_of(const Material& material, double exposure_ev);
+PaintUniforms uniforms_of(const Material& material, double exposure_ev, MirrorMixing mixing);
 /// 2^EV. No number if one of what a paint was prepared to is none: all that it covers must end
 /// black and counted, whatever the formulas' clamps would make of it.
 float exposure_of(double exposure_ev, std::span<const float> numbers);
@@ -80,7 +82,9 @@ struct AnyModelUniforms {
     glm::vec4 base_layers{};
     float lobe_alpha = 1.0f;
 };
-AnyModelUniforms any_model_uniforms_of(const Material& material, double exposure_ev);
+AnyModelUniforms any_model_uniforms_of(const Material& material,
+                                       double exposure_ev,
+                                       MirrorMixing mixing);
 /// Its weights of light from all around, with nothing rounded but the paint's own numbers.
 struct EnvironmentWeights {
     std::array<glm::dvec3, kEnvironmentWeights> sky{}, mirror{};
@@ -94,6 +98,7 @@ void set_coat(Program& program, const ArtworkCoat& coat);
 void set_paint(Program& program,
                const Material& material,
                double exposure_ev,
+               MirrorMixing mixing,
                MeasuredTextures& measured);
 
 /// Compiles on first use.

@@ -40,7 +40,7 @@ void count_work(const Scene& whole, const FrameCounts& counts, FramePlan& plan) 
     set(PassKind::subsurface, translucent);
     set(PassKind::environment_filter, static_cast<double>(kFilterTexels));
     double mirroring = 0.0;
-    const std::vector<MirrorLayers> mirrored = mirror_layers_of(scene);
+    const std::vector<MirrorLayers> mirrored = mirror_layers_of(scene, MirrorMixing::cubic);
     for (std::size_t p = 0; p < mirrored.size(); ++p) {
         if (mirrored[p].any()) mirroring += of_part[p];
     }

@@ -127,8 +127,10 @@ std::vector<std::pair<std::string, Spoil>> spoils(const Material& material) {
     all.push_back({"sky", [](LooseFragments& f) { f.sky[kSpoiled].x = kNan; }});
     const ModelInfo& info = model_info(model);
     if (!info.mirrors()) return all;
-    const float first = has_own_shading(model) ? uniforms_of(material, 0.0).lobe_layers[0].x
-                                               : any_model_uniforms_of(material, 0.0).base_layers.x;
+    constexpr MirrorMixing kCubic = MirrorMixing::cubic;
+    const float first = has_own_shading(model)
+                            ? uniforms_of(material, 0.0, kCubic).lobe_layers[0].x
+                            : any_model_uniforms_of(material, 0.0, kCubic).base_layers.x;
     const auto lobe = static_cast<std::size_t>(first) + 1;
     all.push_back({"mirror", [lobe](LooseFragments& f) { f.mirror[lobe][kSpoiled].z = kNan; }});
     if (!has_own_shading(model)) return all;
@@ -199,7 +201,7 @@ TEST_F(NoNumber, InAUniformEndsBlackAndCountedEverywhere) {
 TEST_F(NoNumber, InAPaintIsRefusedOrTakesTheExposureWithIt) {
     Material material = paint(ReflectanceModel::ggx, false);
     material.alpha.x = std::nan("");
-    EXPECT_THROW(uniforms_of(material, 0.0), std::invalid_argument);
+    EXPECT_THROW(uniforms_of(material, 0.0, MirrorMixing::cubic), std::invalid_argument);
     // What a model might make of sound parameters
     const std::vector<float> sound{0.5f, 1.0f}, spoiled{0.5f, kNan, 1.0f};
     EXPECT_EQ(exposure_of(1.0, sound), 2.0f);

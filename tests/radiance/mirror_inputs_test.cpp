@@ -53,7 +53,7 @@ TEST_P(MirrorInputs, TheWornRoughnessesLookAsIfAllWereSolved) {
         FramePlan ahead = plan(scene, quality);
         plan_ahead(ahead);
         all.prepare(scene, ahead);
-        for (const MirrorLayers& of_part : all.mirrored()) EXPECT_TRUE(of_part.all());
+        for (const MirrorLayers& of_part : all.mirrored().of_part) EXPECT_TRUE(of_part.all());
         for (const Material& paint : paints()) {
             SCOPED_TRACE(::testing::Message() << model_info(paint.model).name << " "
                                               << paint.alpha.x << " " << to_string(quality));
@@ -108,9 +108,9 @@ TEST_P(MirrorInputs, OnlyWhatIsReadIsSolved) {
     RadianceRenderer renderer = renderer_of(scene, test_view(64, 48));
     FramePlan its_plan = plan(scene);
     renderer.render(scene, its_plan);
-    EXPECT_TRUE(renderer.mirrored()[0].none());
+    EXPECT_TRUE(renderer.mirrored().of_part[0].none());
     // Lobes of .12 to .34; what grazes of .17 and of .24
-    EXPECT_EQ(renderer.mirrored()[1].to_string(), "011000111100000000");
+    EXPECT_EQ(renderer.mirrored().of_part[1].to_string(), "011000111100000000");
     const auto& begin = renderer.surface_map().part_begin;
     EXPECT_EQ(find_pass(its_plan, PassKind::reflection_occlusion)->work_items,
               mirror_rays(16) * static_cast<double>(begin[2] - begin[1]));
@@ -122,13 +122,14 @@ TEST_P(MirrorInputs, ALobeThatReflectsNothingAsksForNothing) {
     Material solid = paint_of(ReflectanceModel::clearcoat, 0.4);
     solid.f0 = glm::dvec3(0.0);
     Scene scene = lit_by_the_studio(solid, paint_of(ReflectanceModel::lambert, 0.5));
-    const MirrorLayers layers = mirror_layers_of(solid);
+    const MirrorLayers layers = mirror_layers_of(solid, MirrorMixing::cubic);
     const ImageF rough = draw(scene, view);
     scene.part_materials[0].alpha = glm::dvec2(0.05);
-    EXPECT_EQ(mirror_layers_of(scene.part_materials[0]), layers);
+    EXPECT_EQ(mirror_layers_of(scene.part_materials[0], MirrorMixing::cubic), layers);
     expect_same(draw(scene, view), rough);
     scene.part_materials[0].f0 = glm::dvec3(0.04);
-    EXPECT_GT(mirror_layers_of(scene.part_materials[0]).count(), layers.count());
+    EXPECT_GT(mirror_layers_of(scene.part_materials[0], MirrorMixing::cubic).count(),
+              layers.count());
 }
 
 TEST_P(MirrorInputs, ASwapAddsWhatIsMissing) {
@@ -151,7 +152,7 @@ TEST_P(MirrorInputs, ASwapAddsWhatIsMissing) {
     scene.eye_in_world_mm.x += 60.0;
     its_plan = plan(scene);
     renderer.render(scene, its_plan);
-    EXPECT_EQ(renderer.mirrored(), mirror_layers_of(scene));
+    EXPECT_EQ(renderer.mirrored().of_part, mirror_layers_of(scene, MirrorMixing::cubic));
     expect_same(draw(scene, view), renderer.read_back());
 }
 
@@ -163,13 +164,13 @@ TEST_P(MirrorInputs, ArtworkMirrorsToo) {
     artwork.part = 1;
     artwork.material = paint_of(ReflectanceModel::clearcoat, 0.05);
     scene.artwork = {artwork};
-    const std::vector<MirrorLayers> layers = mirror_layers_of(scene);
+    const std::vector<MirrorLayers> layers = mirror_layers_of(scene, MirrorMixing::cubic);
     EXPECT_TRUE(layers[0].none());
-    EXPECT_EQ(layers[1], mirror_layers_of(artwork.material));
+    EXPECT_EQ(layers[1], mirror_layers_of(artwork.material, MirrorMixing::cubic));
     RadianceRenderer renderer = renderer_of(scene, view);
     FramePlan its_plan = plan(scene);
     renderer.render(scene, its_plan);
-    EXPECT_EQ(renderer.mirrored(), layers);
+    EXPECT_EQ(renderer.mirrored().of_part, layers);
 }
 
 }  // namespace

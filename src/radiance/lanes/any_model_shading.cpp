@@ -71,12 +71,16 @@ struct FragmentValues {
     glm::vec4 eye_here() const { return four(job.eye); }
     glm::vec4 light_here(int k) const { return four(job.lights[k]); }
     glm::vec3 sky_here() const { return job.sky ? three(job.sky) : glm::vec3(0.0f); }
+    /// One without a share need not be there.
+    glm::vec3 share_of(float share, const std::uint16_t* layer) const {
+        return share == 0.0f ? glm::vec3(0.0f) : share * three(layer);
+    }
     glm::vec3 mirrored_here(const glm::vec4& layers, float) const {
         if (!job.mirror) return glm::vec3(0.0f);
         const std::uint16_t* const* first = job.mirror + static_cast<int>(layers.x);
         const float left = 1.0f - layers.y - layers.z - layers.w;
-        const glm::vec3 sum = left * three(first[0]) + layers.y * three(first[1]) +
-                              layers.z * three(first[2]) + layers.w * three(first[3]);
+        const glm::vec3 sum = share_of(left, first[0]) + share_of(layers.y, first[1]) +
+                              share_of(layers.z, first[2]) + share_of(layers.w, first[3]);
         return job.mirror_unit * max(sum, glm::vec3(0.0f));
     }
 };

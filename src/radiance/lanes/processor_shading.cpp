@@ -78,7 +78,7 @@ void ProcessorShading::shade(const Material& material,
     std::function<void(const LaneJob&)> shade_blocks;
     PaintUniforms uniforms;
     if (has_own_shading(material.model)) {
-        uniforms = uniforms_of(material, exposure_ev);
+        uniforms = uniforms_of(material, exposure_ev, inputs.mirror_mixing);
         job.exposure = uniforms.exposure;
         job.prepared = uniforms.paint.numbers.data();
         job.lobe_layers = &uniforms.lobe_layers[0].x;
@@ -90,7 +90,8 @@ void ProcessorShading::shade(const Material& material,
         }
         shade_blocks = functions.of(model.prepared.type, environment, glints);
     } else {
-        shade_blocks = [&model, any = any_model_uniforms_of(material, exposure_ev)](
+        shade_blocks = [&model,
+                        any = any_model_uniforms_of(material, exposure_ev, inputs.mirror_mixing)](
                            const LaneJob& some) { shade_any_model(some, model, any); };
     }
     job.shaded = shaded_.data();

@@ -91,8 +91,11 @@ struct LooseFragment {
         if (fragments.sky.empty()) return glm::dvec3(0.0);
         const auto first = static_cast<std::size_t>(layers.x);
         const double left = 1.0 - layers.y - layers.z - layers.w;
-        const glm::dvec3 sum = left * of_layer(first) + layers.y * of_layer(first + 1) +
-                               layers.z * of_layer(first + 2) + layers.w * of_layer(first + 3);
+        const auto share_of = [&](double share, std::size_t layer) {
+            return share == 0.0 ? glm::dvec3(0.0) : share * of_layer(layer);
+        };
+        const glm::dvec3 sum = share_of(left, first) + share_of(layers.y, first + 1) +
+                               share_of(layers.z, first + 2) + share_of(layers.w, first + 3);
         return static_cast<double>(fragments.mirror_unit) * max(sum, glm::dvec3(0.0));
     }
 };
@@ -112,7 +115,8 @@ struct PreparedInDouble : LooseFragment, SourceInDouble {
         : LooseFragment(its_fragments) {
         u_exposure = std::exp2(exposure_ev);
         u_paint = paint;
-        const PaintUniforms in_float = uniforms_of(material, exposure_ev);
+        const PaintUniforms in_float =
+            uniforms_of(material, exposure_ev, its_fragments.mirror_mixing);
         std::copy(in_float.lobe_layers.begin(), in_float.lobe_layers.end(), u_lobe_layers);
         glints = !its_fragments.lights.empty() && has_glints(material);
         u_glint_density =
@@ -152,7 +156,8 @@ struct AnyModelInDouble : LooseFragment {
         : LooseFragment(its_fragments),
           model(model_info(material.model)),
           u_exposure(std::exp2(exposure_ev)) {
-        const AnyModelUniforms in_float = any_model_uniforms_of(material, exposure_ev);
+        const AnyModelUniforms in_float =
+            any_model_uniforms_of(material, exposure_ev, its_fragments.mirror_mixing);
         measured = in_float.measured;
         u_paint = widened(in_float.paint);
         u_base_layers = in_float.base_layers;

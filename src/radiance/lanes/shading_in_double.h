@@ -10,6 +10,7 @@
 #include <glm/vec4.hpp>
 
 #include "appearance/material.h"
+#include "radiance/light/mirror_lobes.h"
 #include "radiance/light/mirror_quadrature.h"
 
 namespace livery {
@@ -25,6 +26,7 @@ struct LooseFragments {
     std::vector<glm::vec3> sky;                  ///< empty: no environment
     std::array<std::vector<glm::vec3>, kMirrorLayers> mirror;
     float mirror_unit = 1.0f;
+    MirrorMixing mirror_mixing = MirrorMixing::cubic;
     std::vector<glm::vec4> places;  ///< for glints
     double product_scale = 1.0;
 

@@ -10,10 +10,15 @@
 namespace livery {
 namespace {
 
-/// The four lobes that one in between is mixed of.
-void add_mix(double alpha, MirrorLayers& layers) {
-    const auto first = static_cast<std::size_t>(mirror_mix(alpha).first);
-    for (std::size_t k = first; k < first + MirrorMix().share.size(); ++k) layers.set(k);
+/// Nearer to a tabulated lobe than a thousandth of its roughness, a paint has that one's.
+constexpr double kSameLobe = 1e-3;
+
+/// Those that one in between is mixed of.
+void add_mix(double alpha, MirrorMixing mixing, MirrorLayers& layers) {
+    const MirrorMix mix = mirror_mix(alpha, mixing);
+    for (std::size_t k = 0; k < mix.share.size(); ++k) {
+        if (mix.share[k] != 0.0f) layers.set(static_cast<std::size_t>(mix.first) + k);
+    }
 }
 
 /// Those that grazing_fresnel() of layers.glsl interpolates between.
@@ -30,7 +35,7 @@ void add_half_angle(float alpha, MirrorLayers& layers) {
 
 }  // namespace
 
-MirrorMix mirror_mix(double alpha) {
+MirrorMix mirror_mix(double alpha, MirrorMixing mixing) {
     // Cubic in the logarithm, which treats a lobe's core (1 / alpha^2) and its tail (alpha^2)
     // alike: linear, both would be up to 6% too bright. Linear before the second and after the last
     // but one, where a cubic would extrapolate.
@@ -42,13 +47,22 @@ MirrorMix mirror_mix(double alpha) {
     const std::size_t first = std::clamp<std::size_t>(below, 1, last - 2) - 1;
     MirrorMix mix;
     mix.first = static_cast<int>(first);
-    const bool inside = below > 0 && below + 1 < last;
+    for (const std::size_t k : {below, below + 1}) {
+        if (!(std::abs(x - of(k)) <= kSameLobe)) continue;  // nor what is no number
+        mix.share[k - first] = 1.0f;
+        return mix;
+    }
+    if (mixing == MirrorMixing::linear || below == 0 || below + 1 == last) {
+        const auto share = static_cast<float>((x - of(below)) / (of(below + 1) - of(below)));
+        // Who reads the shares takes the first for what the others leave: it must be none
+        mix.share[below - first] = 1.0f - share;
+        mix.share[below + 1 - first] = 1.0f - mix.share[below - first];
+        return mix;
+    }
     for (std::size_t k = first; k < first + mix.share.size(); ++k) {
-        if (!inside && (k < below || k > below + 1)) continue;
         double share = 1.0;
         for (std::size_t j = first; j < first + mix.share.size(); ++j) {
-            if (j == k || (!inside && (j < below || j > below + 1))) continue;
-            share *= (x - of(j)) / (of(k) - of(j));
+            if (j != k) share *= (x - of(j)) / (of(k) - of(j));
         }
         mix.share[k - first] = static_cast<float>(share);
     }
@@ -61,7 +75,7 @@ bool reads_layers(const PreparedPaint& paint, std::size_t lobe) {
            std::find(paint.reflects.begin(), paint.reflects.end(), true) == paint.reflects.end();
 }
 
-MirrorLayers mirror_layers_of(const Material& paint) {
+MirrorLayers mirror_layers_of(const Material& paint, MirrorMixing mixing) {
     const ModelInfo& model = model_info(paint.model);
     MirrorLayers layers;
     if (!model.mirrors()) return layers;
@@ -70,7 +84,7 @@ MirrorLayers mirror_layers_of(const Material& paint) {
         const float measured = paint.measured ? paint.measured->lobe_alpha : 1.0f;
         const bool is_formula = paint.model != ReflectanceModel::measured;
         const float alpha = is_formula ? lobe_alpha(model, parameters_of(paint)) : measured;
-        add_mix(static_cast<double>(alpha), layers);
+        add_mix(static_cast<double>(alpha), mixing, layers);
         return layers;
     }
     const PreparedPaint prepared = model.prepared.of(parameters_of(paint));
@@ -84,22 +98,33 @@ MirrorLayers mirror_layers_of(const Material& paint) {
         any_under_coat = any_under_coat || lobe != kCoat;
         const glm::vec2 slopes = prepared.lobe_slopes[lobe];
         const float alpha = std::sqrt(slopes.x * slopes.y);
-        add_mix(static_cast<double>(alpha), layers);
+        add_mix(static_cast<double>(alpha), mixing, layers);
         if (!flakes || lobe == kCoat) add_half_angle(alpha, layers);
     }
     if (coated && any_under_coat) layers.set(kMirrorLayers - 1);
     return layers;
 }
 
-std::vector<MirrorLayers> mirror_layers_of(const Scene& scene) {
+std::vector<MirrorLayers> mirror_layers_of(const Scene& scene, MirrorMixing mixing) {
     std::vector<MirrorLayers> of_part;
-    for (const Material& paint : scene.part_materials) of_part.push_back(mirror_layers_of(paint));
+    for (const Material& paint : scene.part_materials) {
+        of_part.push_back(mirror_layers_of(paint, mixing));
+    }
     for (const PartArtwork& artwork : scene.artwork) {
         for (const ArtworkCoat& coat : coats_of(artwork)) {
-            of_part[artwork.part] |= mirror_layers_of(coat.material);
+            of_part[artwork.part] |= mirror_layers_of(coat.material, mixing);
         }
     }
     return of_part;
+}
+
+bool SolvedMirror::covers(const Scene& scene) const {
+    const std::vector<MirrorLayers> worn = mirror_layers_of(scene, mixing);
+    return std::equal(worn.begin(),
+                      worn.end(),
+                      of_part.begin(),
+                      of_part.end(),
+                      [](const auto& asked, const auto& known) { return (asked & ~known).none(); });
 }
 
 }  // namespace livery
