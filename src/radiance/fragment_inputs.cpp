@@ -90,7 +90,7 @@ void FragmentInputs::use(const SurfaceMap& map) {
 
 const SmoothRuns& FragmentInputs::runs(Runs which) {
     // What a fragment mirrors is traced by its neighbours, of which columns would leave out half
-    constexpr SmoothRuns::Limits kDragged{8, 4, 4.0}, kRows{4, 1};
+    constexpr SmoothRuns::Limits kDragged{8, 4, 4.0, 4}, kRows{4, 1};
     std::optional<SmoothRuns>& of = runs_[static_cast<std::size_t>(which)];
     if (!of) {
         of.emplace(*map_,
@@ -196,8 +196,10 @@ void FragmentInputs::solve_sky(const Scene& scene,
                                 *scene.environment,
                                 filtered_,
                                 occluded ? &*sky_visibility_ : nullptr,
+                                sky_rays.joints_only ? Hidden::share : Hidden::light,
                                 runs(Runs::dragged));
-        sky_made_ = {scene.environment, occluded ? sky_visibility_->rays.first : 0};
+        const bool draft = !occluded || sky_rays.joints_only;
+        sky_made_ = {scene.environment, draft ? rays : sky_visibility_->rays.first};
         ++arriving_version_;
         sky_stale_ = diffuse_light_stale_ = true;
     });

@@ -1,5 +1,6 @@
 #include "radiance/smooth_runs.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -35,21 +36,28 @@ std::vector<std::uint32_t> whole_fragments(const SurfaceMap& map) {
 }  // namespace
 
 SmoothRuns::SmoothRuns(const SurfaceMap& map, const Limits& limits) : runs_(map.fragments.size()) {
-    for (const std::uint32_t longest : {limits.longest_px, limits.highest_px}) {
+    for (const std::uint32_t longest : {limits.longest_px, limits.highest_px, limits.beside_px}) {
         check_argument(longest >= 1 && longest <= 128 && std::has_single_bit(longest),
                        fmt::format("runs of {} pixels, expected a power of 2 up to 128", longest));
     }
     const auto least_cosine = static_cast<float>(std::cos(glm::radians(limits.turn_deg)));
-    find_columns(map, limits.highest_px, least_cosine);
+    Columns found(runs_.size());
+    find_columns(map, limits.highest_px, least_cosine, found);
     find_rows(map, limits.longest_px, least_cosine);
+    find_beside(map, limits.beside_px, least_cosine, found);
+    for (std::size_t i = 0; i < runs_.size(); ++i) {
+        if (runs_[i].before == kInColumn) columns_.push_back(found[i]);
+    }
 }
 
-void SmoothRuns::find_columns(const SurfaceMap& map, std::uint32_t highest, float least_cosine) {
+void SmoothRuns::find_columns(const SurfaceMap& map,
+                              std::uint32_t highest,
+                              float least_cosine,
+                              Columns& found) {
     if (highest < 2) return;
     const std::vector<std::uint32_t> of_pixel = whole_fragments(map);
     const auto width = static_cast<std::uint32_t>(map.width);
     const auto height = static_cast<std::uint32_t>(map.height);
-    std::vector<Column> found(runs_.size());
     for (std::uint32_t length = highest; length >= 2; length /= 2) {
         parallel_for(runs_.size(), 4096, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
@@ -72,9 +80,6 @@ void SmoothRuns::find_columns(const SurfaceMap& map, std::uint32_t highest, floa
                 }
             }
         });
-    }
-    for (std::size_t i = 0; i < runs_.size(); ++i) {
-        if (runs_[i].before == kInColumn) columns_.push_back(found[i]);
     }
 }
 
@@ -110,6 +115,36 @@ void SmoothRuns::find_rows(const SurfaceMap& map, std::uint32_t longest, float l
                 }
             }
         });
+    }
+}
+
+void SmoothRuns::find_beside(const SurfaceMap& map,
+                             std::uint32_t side,
+                             float least_cosine,
+                             Columns& found) {
+    if (side < 2) return;
+    const auto width = static_cast<std::uint32_t>(map.width);
+    /// Of each block of a band, who has a value of its own: fragments come by part, then by pixel.
+    std::vector<std::vector<std::uint32_t>> own(width / side + 1);
+    std::uint32_t part = kNone, band = kNone;
+    for (std::size_t i = 0; i < runs_.size(); ++i) {
+        if (!is_end(i)) continue;
+        const Fragment& f = map.fragments[i];
+        if (f.part != part || f.pixel / width / side != band) {
+            part = f.part;
+            band = f.pixel / width / side;
+            for (auto& of_block : own) of_block.clear();
+        }
+        std::vector<std::uint32_t>& here = own[f.pixel % width / side];
+        const auto alike = std::find_if(here.begin(), here.end(), [&](std::uint32_t other) {
+            return glm::dot(f.normal, map.fragments[other].normal) > least_cosine;
+        });
+        if (f.coverage == 1.0f || alike == here.end()) {
+            here.push_back(static_cast<std::uint32_t>(i));
+        } else {
+            runs_[i].before = kInColumn;
+            found[i] = {static_cast<std::uint32_t>(i), *alike, *alike, 0.0f};
+        }
     }
 }
 

@@ -14,13 +14,17 @@ namespace livery {
 
 /// Of each fragment, which two its value lies between: in its row, or in its column between two
 /// rows of which the same is true. They and all between them are whole pixels of one part, whose
-/// normals turn by less than some degrees, so that no reflection moves by more than twice that.
+/// normals turn by less than some degrees, so that no reflection moves by more than twice that. A
+/// fragment that shares its pixel may take its value from one of its part beside it.
 class SmoothRuns {
   public:
     /// From end to end, powers of 2 up to 128; 1: none.
     struct Limits {
         std::uint32_t longest_px = 4, highest_px = 2;
         double turn_deg = 1.0;
+        /// Fragments that share their pixel look for another one in a block of such a side; 1:
+        /// none.
+        std::uint32_t beside_px = 1;
     };
     explicit SmoothRuns(const SurfaceMap& map) : SmoothRuns(map, Limits()) {}
     SmoothRuns(const SurfaceMap& map, const Limits& limits);
@@ -32,7 +36,8 @@ class SmoothRuns {
         std::size_t first = 0, second = 0;
         float share = 0.0f;
     };
-    /// Those of columns lie between what rows have: one after the other.
+    /// Those of columns lie between what rows have: one after the other. What has its value from
+    /// beside counts as one of a column.
     enum class Line { row, column };
     static constexpr std::array<Line, 2> kLines{Line::row, Line::column};
     /// `from(fragment, between)` for each one from `begin` to `end` that lies in such a line.
@@ -55,8 +60,14 @@ class SmoothRuns {
         std::uint32_t fragment = 0, above = 0, below = 0;
         float share = 0.0f;
     };
-    void find_columns(const SurfaceMap& map, std::uint32_t highest, float least_cosine);
+    /// By fragment, those that runs_ says are in a column.
+    using Columns = std::vector<Column>;
+    void find_columns(const SurfaceMap& map,
+                      std::uint32_t highest,
+                      float least_cosine,
+                      Columns& found);
     void find_rows(const SurfaceMap& map, std::uint32_t longest, float least_cosine);
+    void find_beside(const SurfaceMap& map, std::uint32_t side, float least_cosine, Columns& found);
 
     std::vector<Run> runs_;
     std::vector<Column> columns_;  ///< in the fragments' order

@@ -216,7 +216,8 @@ void count_passes(benchmark::State& state, const std::map<std::string, double>& 
 }
 
 /// A light, an eye or an environment that the mouse drags, as a draft shows it: what a lane solves
-/// and draws for each of its steps, until the projector's texture is there.
+/// and draws for each of its steps, until the projector's texture is there. The mouse begins on a
+/// picture that is finished.
 template <typename Move>
 void drag(benchmark::State& state, const Move& move) {
     HeadlessContext context(GlDevice::automatic);
@@ -230,6 +231,7 @@ void drag(benchmark::State& state, const Move& move) {
     description.setup = setup;
     FrameLane lane(std::make_shared<GeometryCache>());
     int step = 0;
+    lane.solve(description, levels_of(Quality::normal), {}, {});
     const auto next = [&] {
         move(description.scene, 0.02 * ++step);
         lane.solve(description, levels_of(description.quality), {}, {});

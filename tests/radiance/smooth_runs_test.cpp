@@ -1,6 +1,7 @@
 // Fragments whose values are taken from others: which, from which, and in which order.
 #include "radiance/smooth_runs.h"
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -118,6 +119,44 @@ TEST(SmoothRuns, LeaveAFewFragmentsOfAnEvenSurface) {
     EXPECT_THROW(SmoothRuns(map, {3, 1}), std::invalid_argument);
     EXPECT_THROW(SmoothRuns(map, {4, 256}), std::invalid_argument);
     EXPECT_THROW(SmoothRuns(map, {4, 0}), std::invalid_argument);
+    EXPECT_THROW(SmoothRuns(map, {4, 1, 1.0, 3}), std::invalid_argument);
+}
+
+TEST(SmoothRuns, FragmentsThatShareAPixelTakeTheirNeighbours) {
+    // Two parts, each with an edge of fragments that are not whole; those of one fold away.
+    SurfaceMap map;
+    map.width = 16;
+    map.height = 8;
+    for (std::uint16_t part = 0; part < 2; ++part) {
+        for (std::uint32_t pixel = 0; pixel < 16 * 8; ++pixel) {
+            const std::uint32_t x = pixel % 16;
+            if (x / 8 != part) continue;
+            Fragment& f = map.fragments.emplace_back();
+            f.pixel = pixel;
+            f.part = part;
+            f.coverage = x % 8 == 3 ? 0.5f : 1.0f;
+            f.normal = {0.0f, 0.0f, 1.0f};
+            if (part == 1 && f.coverage < 1.0f) f.normal = {0.6f, 0.0f, 0.8f};
+        }
+    }
+    const SmoothRuns runs(map, {1, 1, 4.0, 4});
+    std::array<std::size_t, 2> beside{};
+    for (const SmoothRuns::Line line : SmoothRuns::kLines) {
+        runs.between(line, 0, map.fragments.size(), [&](std::size_t i, auto at) {
+            EXPECT_EQ(at.first, at.second);
+            EXPECT_TRUE(runs.is_end(at.first));
+            const Fragment &f = map.fragments[i], &other = map.fragments[at.first];
+            EXPECT_LT(f.coverage, 1.0f);
+            EXPECT_EQ(f.part, other.part);
+            EXPECT_EQ(f.pixel % 16 / 4, other.pixel % 16 / 4);
+            EXPECT_EQ(f.pixel / 16 / 4, other.pixel / 16 / 4);
+            EXPECT_EQ(f.normal, other.normal);
+            ++beside[f.part];
+        });
+    }
+    // Of the edge that folds away one in each block is asked
+    EXPECT_EQ(beside[0], 8u);
+    EXPECT_EQ(beside[1], 6u);
 }
 
 }  // namespace

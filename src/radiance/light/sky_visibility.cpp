@@ -169,6 +169,13 @@ float SkyVisibility::openness(std::size_t fragment) const {
            static_cast<float>(std::popcount(blocked[fragment])) / static_cast<float>(rays.first);
 }
 
+float SkyVisibility::openness_again(std::size_t at) const {
+    int hidden = 0;
+    const std::uint32_t begin = more_begin[at], end = more_begin[at + 1];
+    for (std::uint32_t word = begin; word < end; ++word) hidden += std::popcount(more[word]);
+    return 1.0f - static_cast<float>(hidden) / (64.0f * static_cast<float>(end - begin));
+}
+
 SkyVisibility solve_sky_visibility(const Mesh& mesh,
                                    const Tracer& tracer,
                                    const SurfaceMap& map,
@@ -227,12 +234,13 @@ std::vector<glm::vec3> sky_at_fragments(const Mesh& mesh,
                                         const Environment& environment,
                                         const FilteredEnvironment& filtered,
                                         const SkyVisibility* visibility,
+                                        Hidden by,
                                         const SmoothRuns& runs) {
     const auto scale = static_cast<float>(environment.scale);
     const SpherePlaces places(environment);
     const SphereStack diffuse({&filtered.diffuse, 1});
     const auto lookup = [&](const ImageF& light) {
-        return visibility ? SphereStack({&light, 1}) : SphereStack();
+        return visibility && by == Hidden::light ? SphereStack({&light, 1}) : SphereStack();
     };
     const SphereStack around_few = lookup(filtered.blurred);
     const SphereStack around_many = lookup(filtered.hardly_blurred);
@@ -265,6 +273,21 @@ std::vector<glm::vec3> sky_at_fragments(const Mesh& mesh,
         });
     }
     if (!visibility) return result;
+    if (by == Hidden::share) {
+        parallel_for(result.size(), 4096, [&](std::size_t begin, std::size_t end) {
+            const std::vector<std::uint32_t>& again = visibility->again;
+            auto looked = std::lower_bound(again.begin(), again.end(), begin);
+            for (std::size_t i = begin; i < end; ++i) {
+                if (looked != again.end() && *looked == i) {
+                    const auto at = static_cast<std::size_t>(looked++ - again.begin());
+                    result[i] *= visibility->openness_again(at);
+                } else if (visibility->blocked[i] != 0) {
+                    result[i] *= visibility->openness(i);
+                }
+            }
+        });
+        return result;
+    }
     parallel_for(result.size(), 1024, [&](std::size_t begin, std::size_t end) {
         std::vector<glm::vec3> directions(sky.count());
         for (std::size_t i = begin; i < end; ++i) {

@@ -40,6 +40,8 @@ struct SkyVisibility {
 
     /// The share of the first directions that meet nothing.
     float openness(std::size_t fragment) const;
+    /// The same of the directions that a fragment looked in again, by its place in `again`.
+    float openness_again(std::size_t at) const;
 };
 SkyVisibility solve_sky_visibility(const Mesh& mesh,
                                    const Tracer& tracer,
@@ -48,14 +50,17 @@ SkyVisibility solve_sky_visibility(const Mesh& mesh,
                                    const SkyRays& rays,
                                    const Progress& progress = {});
 
+/// What is hidden of the light from all around: what comes from those directions, or, in a tenth of
+/// the time and for what is dragged, as large a share of all light as of all directions.
+enum class Hidden { light, share };
 /// What a white diffuser at each fragment sends under the environment: the exact unoccluded value
-/// less the mean over the blocked directions. Without `visibility`, unoccluded. `runs` are the
-/// map's.
+/// less what is hidden. Without `visibility`, unoccluded. `runs` are the map's.
 std::vector<glm::vec3> sky_at_fragments(const Mesh& mesh,
                                         const SurfaceMap& map,
                                         const Environment& environment,
                                         const FilteredEnvironment& filtered,
                                         const SkyVisibility* visibility,
+                                        Hidden hidden,
                                         const SmoothRuns& runs);
 
 /// The shading normal of a fragment's k-th sub-sample, on the seen side.
