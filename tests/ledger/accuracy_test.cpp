@@ -247,6 +247,11 @@ TEST(AccuracyFront, IsWhatNothingBeatsInBoth) {
         levels[k].p95 = p95[k];
     }
     EXPECT_EQ(front_of(levels), (std::vector<bool>{true, true, false, false, true}));
+    // Half of the scenes may compare, fewer may not
+    for (std::size_t k = 0; k < levels.size(); ++k) levels[k].scenes = k == 1 ? 3 : 8;
+    EXPECT_EQ(front_of(levels), (std::vector<bool>{true, false, true, false, true}));
+    levels[1].scenes = 4;
+    EXPECT_EQ(front_of(levels), (std::vector<bool>{true, true, false, false, true}));
 }
 
 }  // namespace

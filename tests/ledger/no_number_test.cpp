@@ -128,10 +128,14 @@ std::vector<std::pair<std::string, Spoil>> spoils(const Material& material) {
     const ModelInfo& info = model_info(model);
     if (!info.mirrors()) return all;
     constexpr MirrorMixing kCubic = MirrorMixing::cubic;
-    const float first = has_own_shading(model)
-                            ? uniforms_of(material, 0.0, kCubic).lobe_layers[0].x
-                            : any_model_uniforms_of(material, 0.0, kCubic).base_layers.x;
-    const auto lobe = static_cast<std::size_t>(first) + 1;
+    const glm::vec4 read = has_own_shading(model)
+                               ? uniforms_of(material, 0.0, kCubic).lobe_layers[0]
+                               : any_model_uniforms_of(material, 0.0, kCubic).base_layers;
+    // One that is read: the others may be absent
+    const auto lobe = static_cast<std::size_t>(read.x) + (read.y != 0.0f   ? 1u
+                                                          : read.z != 0.0f ? 2u
+                                                          : read.w != 0.0f ? 3u
+                                                                           : 0u);
     all.push_back({"mirror", [lobe](LooseFragments& f) { f.mirror[lobe][kSpoiled].z = kNan; }});
     if (!has_own_shading(model)) return all;
     for (std::size_t k = kMirrorAlphas.size(); k < kMirrorLayers; ++k) {

@@ -141,11 +141,17 @@ std::vector<AccuracyLevel> levels_of(const AccuracyLedger& ledger) {
 }
 
 std::vector<bool> front_of(const std::vector<AccuracyLevel>& levels) {
+    int most = 0;
+    for (const AccuracyLevel& level : levels) most = std::max(most, level.scenes);
+    // The worst of two scenes is no match for the worst of sixteen
+    const auto compares = [&](const AccuracyLevel& level) { return 2 * level.scenes >= most; };
     std::vector<bool> on_front;
     for (const AccuracyLevel& level : levels) {
         on_front.push_back(
+            compares(level) &&
             std::none_of(levels.begin(), levels.end(), [&](const AccuracyLevel& other) {
-                return other.solve_ms <= level.solve_ms && other.p95 <= level.p95 &&
+                return compares(other) && other.solve_ms <= level.solve_ms &&
+                       other.p95 <= level.p95 &&
                        (other.solve_ms < level.solve_ms || other.p95 < level.p95);
             }));
     }

@@ -49,7 +49,7 @@ struct AccuracyLevel {
 };
 std::vector<AccuracyLevel> levels_of(const AccuracyLedger& ledger);
 /// Of each level, whether nothing takes as little time for a new light and errs as little at the
-/// 95th percentile.
+/// 95th percentile. Levels of effects that less than half of the scenes call for stand aside.
 std::vector<bool> front_of(const std::vector<AccuracyLevel>& levels);
 
 std::vector<LedgerEffect> effects_of(const AccuracyLedger& ledger);
