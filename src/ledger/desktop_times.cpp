@@ -10,6 +10,9 @@
 #include <string>
 #include <thread>
 
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
 #include "appearance/material_library.h"
 #include "core/error.h"
 #include "core/shuffle.h"
@@ -74,10 +77,16 @@ class Finished {
         newest_ = std::move(frame);
         changed_.notify_all();
     }
-    /// Of this number or a later one. Throws what the frame's problem says.
-    FramePointer wait_for(std::uint64_t number, const Progress& progress) {
+    /// Of this number or a later one, and as it is `wanted`. Throws what the frame's problem says.
+    FramePointer wait_for(
+        std::uint64_t number,
+        const Progress& progress,
+        const std::function<bool(const FinishedFrame&)>& wanted = [](const FinishedFrame&) {
+            return true;
+        }) {
         std::unique_lock lock(mutex_);
-        while (!newest_ || newest_->number < number) {
+        while (!newest_ || newest_->number < number ||
+               (newest_->problem.empty() && !wanted(*newest_))) {
             progress.check_stop();
             changed_.wait_for(lock, std::chrono::milliseconds(200));
         }
@@ -151,14 +160,29 @@ struct MeasuredDesktop {
           }) {}
 
     int look() const { return session.document().looks.front().id; }
-    FrameDescription description(const std::shared_ptr<const Environment>& loaded) {
+    /// Asks for a scene's frame; its number.
+    std::uint64_t show(const Scene& scene, Clock::time_point asked_at) {
         FrameDescription frame;
         frame.number = ++number;
-        frame.scene = scene_of(session.document(), look(), product, loaded);
+        frame.scene = scene;
         frame.setup = setup;
         frame.library = session.document().library;
-        frame.asked_at = Clock::now();
-        return frame;
+        frame.asked_at = asked_at;
+        thread.show(std::move(frame));
+        return number;
+    }
+    /// Its frame in its own light and for its own eye: one in another comes before.
+    FramePointer wait_for_light_of(const Scene& scene, const Progress& progress) {
+        return finished.wait_for(number, progress, [&](const FinishedFrame& frame) {
+            return frame.scene.eye_in_world_mm == scene.eye_in_world_mm &&
+                   frame.scene.lights == scene.lights &&
+                   frame.scene.environment == scene.environment;
+        });
+    }
+    /// The newest, with nothing left to solve.
+    FramePointer settled(const Progress& progress) {
+        return finished.wait_for(
+            number, progress, [](const FinishedFrame& frame) { return frame.unfinished.empty(); });
     }
     void wait_until_idle(const Progress& progress) {
         while (!thread.is_idle()) {
@@ -190,20 +214,55 @@ struct Swaps {
             const auto body = static_cast<std::size_t>(part_index(*desktop.product, "body"));
             scene.part_materials[body] = paint;
             change(k, scene);
-            FrameDescription frame;
-            frame.number = ++desktop.number;
-            frame.scene = scene;
-            frame.setup = desktop.setup;
-            frame.library = desktop.session.document().library;
-            frame.asked_at = start;
-            desktop.thread.show(std::move(frame));
-            const FramePointer shown = desktop.finished.wait_for(desktop.number, progress);
+            const std::uint64_t number = desktop.show(scene, start);
+            const FramePointer shown = desktop.finished.wait_for(number, progress);
             ms.push_back(milliseconds(shown->done_at - start));
             std::this_thread::sleep_for(std::chrono::milliseconds(60));
         }
         return ms;
     }
 };
+
+/// What the mouse drags of a finished picture, step by step: the time from each to its frame, and
+/// from the last one to the frame with nothing left to solve.
+void measure_drags(MeasuredDesktop& desktop,
+                   Scene scene,
+                   LedgerEffect& steps,
+                   LedgerEffect& let_go,
+                   const Progress& progress) {
+    const Scene before = scene;
+    const auto measure = [&](const char* what, const std::function<void()>& move) {
+        constexpr int kSteps = 40;
+        progress.update(0.0, fmt::format("timing what is dragged: {}", what));
+        std::vector<double> ms;
+        Clock::time_point start;
+        for (int k = 0; k < kSteps; ++k) {
+            move();
+            start = Clock::now();
+            desktop.show(scene, start);
+            const FramePointer shown = desktop.wait_for_light_of(scene, progress);
+            ms.push_back(milliseconds(shown->done_at - start));
+        }
+        steps.levels.push_back(waited_level_of(what, ms));
+        let_go.levels.push_back(
+            waited_level_of(what, {milliseconds(desktop.settled(progress)->done_at - start)}));
+    };
+    measure("exposure", [&] { scene.exposure_ev += 0.01; });
+    measure("eye", [&] { scene.eye_in_world_mm.x += 20.0; });
+    measure("light", [&] {
+        glm::dvec3& to_light = scene.lights.front().direction;
+        to_light = glm::normalize(to_light + glm::dvec3(0.005, 0.0, 0.0));
+    });
+    measure("environment", [&] {
+        auto turned = std::make_shared<Environment>(*scene.environment);
+        turned->rotation_rad += 0.02;
+        scene.environment = std::move(turned);
+    });
+    desktop.show(before, Clock::now());
+    desktop.wait_for_light_of(before, progress);
+    desktop.settled(progress);
+    desktop.wait_until_idle(progress);
+}
 
 /// One of each finish that the shipped looks have.
 std::vector<Material> usual_paints(const PaintLibrary& library) {
@@ -246,17 +305,18 @@ std::vector<LedgerEffect> measure_desktop(GlDevice device, const Progress& progr
     const auto start = Clock::now();
     MeasuredDesktop desktop(device, folder / "session.livery", folder / "calibration");
     Swaps swaps{desktop, usual_paints(*desktop.session.document().library), {}};
-    FrameDescription first = desktop.description(nullptr);
-    swaps.scene = first.scene;
-    desktop.thread.show(std::move(first));
+    swaps.scene = scene_of(desktop.session.document(), desktop.look(), desktop.product, nullptr);
+    desktop.show(swaps.scene, Clock::now());
     FramePointer frame = desktop.finished.wait_for(1, progress);
     start_effect.levels.push_back(waited_level_of("draft", {milliseconds(frame->done_at - start)}));
-    while (!(frame = desktop.finished.wait_for(1, progress))->unfinished.empty()) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
+    frame = desktop.settled(progress);
     whole_effect.levels.push_back(
         waited_level_of("normal", {milliseconds(frame->done_at - start)}));
     desktop.wait_until_idle(progress);
+
+    LedgerEffect drag_effect{"desktop: step of what is dragged to finished frame", {}};
+    LedgerEffect let_go_effect{"desktop: let go to the frame at normal quality", {}};
+    measure_drags(desktop, swaps.scene, drag_effect, let_go_effect, progress);
 
     constexpr int kSwaps = 80;
     const auto nothing = [](int, Scene&) {};
@@ -295,7 +355,7 @@ std::vector<LedgerEffect> measure_desktop(GlDevice device, const Progress& progr
     measure("while the session is saved", {0, {}}, nothing);
     swaps.saving = false;
     measure("while a product loads", {3, [](const Progress&) { find_product("car"); }}, nothing);
-    return {start_effect, whole_effect, swap_effect};
+    return {start_effect, whole_effect, drag_effect, let_go_effect, swap_effect};
 }
 
 }  // namespace livery

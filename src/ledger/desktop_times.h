@@ -1,5 +1,6 @@
 // What a designer waits for, measured without a window: from a paint swap to the finished frame,
-// alone and beside everything that the desktop does in the background.
+// alone and beside everything that the desktop does in the background; and from a step of an eye or
+// a light that is dragged.
 #pragma once
 
 #include <vector>
