@@ -259,7 +259,7 @@ bool can_draw(const SolveKeys& solved,
         if (!same_pose(*solved[0], *keys[side])) return false;
         try {
             const std::size_t light = nearest_of(solved, keys, side);
-            if (!mirrors[light].covers(side_of(description, side))) return false;
+            if (!mirrors[light].serves(side_of(description, side))) return false;
         } catch (const std::invalid_argument&) {
             continue;  // a paint that cannot be: drawing it says why
         }

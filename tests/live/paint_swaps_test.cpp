@@ -1,4 +1,6 @@
 // From any paint of the library to any other: the very next picture, and nothing made for it.
+#include <algorithm>
+#include <cstdlib>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -109,6 +111,42 @@ TEST_P(PaintSwapsOnADevice, CompileAndAllocateNothing) {
         ASSERT_EQ(now.textures, warm.textures);
         ASSERT_EQ(now.passes_run, warm.passes_run + 2 * swaps) << "shading of its part, mixing";
     }
+}
+
+TEST_P(PaintSwapsOnADevice, ADraftLooksUpWhatAPaintMirrorsAsItIsDrawn) {
+    // While another light is solved, which may take seconds, paints are swapped in its draft.
+    HeadlessContext context(GlDevice::software);
+    FrameDescription description;
+    description.scene = scene_of(two_spheres(), paint_of(ReflectanceModel::clearcoat, 0.05));
+    description.scene.environment = sky(0.8);
+    description.setup = setup_of(test_view(128, 96), description.scene);
+    FrameLane lane(std::make_shared<GeometryCache>(), GetParam());
+    lane.solve(description, levels_of(Quality::draft), {}, {});
+    lane.draw(description);
+    for (const double alpha : {0.02, 0.11, 0.3, 0.7}) {
+        SCOPED_TRACE(alpha);
+        for (const ReflectanceModel model : {ReflectanceModel::ggx, ReflectanceModel::car_paint}) {
+            description.scene.part_materials[0] = paint_of(model, alpha);
+            ASSERT_TRUE(lane.can_draw(description));
+            const auto swapped = lane.draw(description);
+            FrameLane anew(std::make_shared<GeometryCache>(), GetParam());
+            anew.solve(description, levels_of(Quality::draft), {}, {});
+            const auto solved = anew.draw(description);
+            const std::vector<std::uint8_t> one = drive_of(*swapped->pictures)->values;
+            const std::vector<std::uint8_t> other = drive_of(*solved->pictures)->values;
+            ASSERT_EQ(one.size(), other.size());
+            int most = 0;
+            for (std::size_t i = 0; i < one.size(); ++i) {
+                most = std::max(most, std::abs(int{one[i]} - int{other[i]}));
+            }
+            // Between which fragments one interpolates depends on all lobes that are looked up
+            EXPECT_LE(most, 1);
+        }
+    }
+    // In better light it would not be there in time
+    lane.solve(description, levels_of(Quality::normal), {}, {});
+    description.scene.part_materials[0] = paint_of(ReflectanceModel::ggx, 0.05);
+    EXPECT_FALSE(lane.can_draw(description));
 }
 
 }  // namespace

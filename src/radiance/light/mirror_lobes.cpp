@@ -118,7 +118,8 @@ std::vector<MirrorLayers> mirror_layers_of(const Scene& scene, MirrorMixing mixi
     return of_part;
 }
 
-bool SolvedMirror::covers(const Scene& scene) const {
+bool SolvedMirror::serves(const Scene& scene) const {
+    if (mixing == MirrorMixing::linear) return true;
     const std::vector<MirrorLayers> worn = mirror_layers_of(scene, mixing);
     return std::equal(worn.begin(),
                       worn.end(),

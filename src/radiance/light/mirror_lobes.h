@@ -65,7 +65,9 @@ struct SolvedMirror {
     MirrorMixing mixing = MirrorMixing::cubic;
     std::vector<MirrorLayers> of_part;
 
-    bool covers(const Scene& scene) const;
+    /// Whether a scene can be drawn with no more than that, or at once: what a draft lacks is
+    /// looked up while it draws.
+    bool serves(const Scene& scene) const;
 };
 
 }  // namespace livery
