@@ -61,12 +61,14 @@ std::optional<BoundaryPoint> PlaneBoundary::first(const glm::dvec3& origin,
                                                   const glm::dvec3& direction,
                                                   double farthest) const {
     const double along = glm::dot(direction, normal_);
-    if (!(along > 0.0)) return std::nullopt;
-    const double distance = std::max(0.0, glm::dot(point_ - origin, normal_) / along);
+    const bool up = along > 0.0;
+    if (!up && !(thickness_mm_ && along < 0.0)) return std::nullopt;
+    const glm::dvec3 on = up ? point_ : point_ - *thickness_mm_ * normal_;
+    const double distance = std::max(0.0, glm::dot(on - origin, normal_) / along);
     if (distance > farthest) return std::nullopt;
     BoundaryPoint at;
     at.position = origin + distance * direction;
-    at.geometric_normal = at.normal = normal_;
+    at.geometric_normal = at.normal = up ? normal_ : -normal_;
     at.distance = distance;
     return at;
 }

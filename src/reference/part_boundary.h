@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "reference/subsurface_walk.h"
 #include "tracing/tracer.h"
@@ -25,12 +26,14 @@ class PartBoundary final : public Boundary {
     std::uint16_t part_;
 };
 
-/// Of a part that is open, and so has no inside: the half space under the plane that touches it
-/// where light enters.
+/// Of a part that is open, and so has no inside: what lies under the plane that touches it where
+/// light enters, a sheet of that thickness or a half space.
 class PlaneBoundary final : public Boundary {
   public:
-    PlaneBoundary(const glm::dvec3& point, const glm::dvec3& normal)
-        : point_(point), normal_(normal) {}
+    PlaneBoundary(const glm::dvec3& point,
+                  const glm::dvec3& normal,
+                  std::optional<double> thickness_mm = {})
+        : point_(point), normal_(normal), thickness_mm_(thickness_mm) {}
     std::optional<BoundaryPoint> first(const glm::dvec3& origin,
                                        const glm::dvec3& direction,
                                        double farthest) const override;
@@ -38,6 +41,7 @@ class PlaneBoundary final : public Boundary {
 
   private:
     glm::dvec3 point_, normal_;
+    std::optional<double> thickness_mm_;
 };
 
 }  // namespace livery

@@ -8,8 +8,8 @@
 #include "appearance/gloss_optics.h"
 #include "appearance/subsurface/translucent_paint.h"
 #include "core/colour.h"
-#include "reference/closed_part.h"
 #include "reference/part_boundary.h"
+#include "tracing/closed_part.h"
 
 namespace livery {
 
@@ -28,19 +28,29 @@ BoundaryPoint onto_surface(BoundaryPoint at,
                            const Mesh& mesh,
                            const Tracer& tracer,
                            const SurfaceEntry& entry) {
-    const double height = glm::distance(at.position, entry.position);
+    const bool other_side = glm::dot(at.geometric_normal, entry.geometric_normal) < 0.0;
+    const double behind_mm = other_side ? part.sheet_mm.value_or(0.0) : 0.0;
+    const glm::dvec3 over = at.position + behind_mm * entry.geometric_normal;
+    const double height = glm::distance(over, entry.position);
     TraceRay ray;
-    ray.origin = glm::vec3(at.position + height * entry.geometric_normal);
+    ray.origin = glm::vec3(over + height * entry.geometric_normal);
     ray.direction = -glm::vec3(entry.geometric_normal);
     ray.t_max = static_cast<float>(2.0 * height);
     const Hit hit = height > 0.0 ? tracer.closest(ray) : Hit{};
-    at.position = entry.position;
-    if (!hit.valid()) return at;
-    const SurfacePoint point = surface_point(mesh, hit);
-    const bool faces = glm::dot(point.geometric_normal, ray.direction) < 0.0f;
-    if (point.part != part.part || !faces) return at;
-    at.position = glm::dvec3(point.position_mm);
-    at.geometric_normal = glm::dvec3(point.geometric_normal);
+    glm::dvec3 position = entry.position, normal = entry.geometric_normal;
+    if (hit.valid()) {
+        const SurfacePoint point = surface_point(mesh, hit);
+        // Whichever side the walk began on
+        const glm::vec3 faces = glm::dot(point.geometric_normal, ray.direction) < 0.0f
+                                    ? point.geometric_normal
+                                    : -point.geometric_normal;
+        if (point.part == part.part) {
+            position = glm::dvec3(point.position_mm);
+            normal = glm::dvec3(faces);
+        }
+    }
+    at.position = position - behind_mm * normal;
+    at.geometric_normal = other_side ? -normal : normal;
     return at;
 }
 
@@ -50,9 +60,11 @@ std::optional<TranslucentPart> translucent_part(const Product& product,
                                                 const Material& material,
                                                 std::size_t part) {
     if (material.model != ReflectanceModel::translucent || !material.medium) return std::nullopt;
-    return TranslucentPart{walk_medium(on_mock_up(*material.medium, product.product_scale)),
+    const TranslucentMaterial medium = on_mock_up(*material.medium, product.product_scale);
+    return TranslucentPart{walk_medium(medium),
                            static_cast<std::uint16_t>(part),
-                           is_closed(product.mesh, part)};
+                           is_closed(product.mesh, part),
+                           medium.thickness_mm};
 }
 
 Material boundary_alone(const Material& translucent) {
@@ -85,7 +97,7 @@ WalkedLight walk_through(const TranslucentPart& part,
     const double narrowed = entering / (eta * eta);
 
     const PartBoundary closed(mesh, tracer, part.part);
-    const PlaneBoundary open(entry.position, entry.geometric_normal);
+    const PlaneBoundary open(entry.position, entry.geometric_normal, part.sheet_mm);
     const Boundary& boundary = part.closed ? static_cast<const Boundary&>(closed) : open;
     const auto on_surface = [&](const BoundaryPoint& at) {
         return part.closed ? at : onto_surface(at, part, mesh, tracer, entry);

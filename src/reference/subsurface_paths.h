@@ -19,7 +19,8 @@ namespace livery {
 struct TranslucentPart {
     WalkMedium medium;
     std::uint16_t part = 0;
-    bool closed = true;  ///< otherwise it is a half space wherever light enters
+    bool closed = true;                ///< otherwise it lies under a plane wherever light enters
+    std::optional<double> sheet_mm{};  ///< how deep an open one is; none: a half space
 };
 /// None for other paints.
 std::optional<TranslucentPart> translucent_part(const Product& product,
@@ -49,7 +50,8 @@ struct WalkedLight {
     glm::dvec3 weight{0.0};                   ///< of its radiance
 };
 /// In by refraction, which leaves out what the boundary mirrors, and out again. What leaves an open
-/// part does so at the surface over the point of its plane, or where it entered if there is none.
+/// part does so at the surface over the point of its plane, or where it entered if there is none;
+/// what leaves a sheet on its other side, as far behind that as it is thick.
 WalkedLight walk_through(const TranslucentPart& part,
                          const Mesh& mesh,
                          const Tracer& tracer,

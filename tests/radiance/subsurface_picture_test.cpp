@@ -158,6 +158,57 @@ TEST(SubsurfacePicture, IsNearPhotonsAndAlbedoAloneIsNot) {
     }
 }
 
+/// A sheet that is modelled by one side looks as the plate that it stands for, from both sides, by
+/// nodes and by walks.
+TEST(SubsurfacePicture, OfAnOpenSheetIsThatOfAPlateAsThick) {
+    Material paint = translucent_paint(medium_named("marble"));
+    const Scene plate = shadowed_plate(paint);
+    TranslucentMaterial two_mm = *paint.medium;
+    two_mm.thickness_mm = 2.0;
+    paint.medium = std::make_shared<const TranslucentMaterial>(two_mm);
+    Scene sheet = shadowed_plate(paint, sheet_mesh(2.0f));
+    const View lit_through = look_at({0, 200, 1}, {0, 2, 0}, 0.12, 12, 12);
+    for (int level = 1; level < 3; ++level) {
+        const Differences apart =
+            compared(drawn_at(sheet, lit_through, level), drawn_at(plate, lit_through, level));
+        std::printf("    sheet and plate, level %d: CIEDE2000 median %.2f, 95%% %.2f\n",
+                    level,
+                    apart.median,
+                    apart.p95);
+        // Nodes lie elsewhere: at the shadow's edge each picture is some 2.8 from photons
+        EXPECT_LT(apart.median, 0.5);
+        EXPECT_LT(apart.p95, 4.0);
+    }
+    ReferenceOptions options;
+    options.samples_per_pixel = 1024;
+    const ImageF of_plate = trace_reference(plate, lit_through, options).radiance_working;
+    const ImageF of_sheet = trace_reference(sheet, lit_through, options).radiance_working;
+    // A column has 12,000 walks
+    EXPECT_LT(off_by(of_sheet, of_plate), 0.05);
+
+    // From its other side, at which the lamp shines
+    sheet.eye_in_world_mm = {0.0, -400.0, 100.0};
+    sheet.lights = {light_from({0.0, 1.0, 0.0}, 0.05)};
+    const View from_below = look_at({0, -9, 1}, {0, 2, 0}, 1.2, 12, 12);
+    const auto mean = [](const ImageF& picture) {
+        double sum = 0.0, covered = 0.0;
+        for (int y = 0; y < picture.height; ++y) {
+            for (int x = 0; x < picture.width; ++x) {
+                const float* p = picture.pixel(x, y);
+                if (p[3] < 0.5f) continue;
+                sum += static_cast<double>(p[1]);
+                covered += 1.0;
+            }
+        }
+        return sum / covered;
+    };
+    const double drawn = mean(drawn_at(sheet, from_below, 1));
+    const double walked = mean(trace_reference(sheet, from_below, options).radiance_working);
+    std::printf("    lit from above, seen from below: %.4f drawn, %.4f walked\n", drawn, walked);
+    EXPECT_GT(walked, 0.05);
+    EXPECT_NEAR(drawn / walked, 1.0, 0.05);
+}
+
 /// Photons from the lamp and walks from the eye share the medium and the boundary, and nothing of
 /// how a picture comes of them.
 TEST(SubsurfacePicture, PhotonsShowWhatWalksFromTheEyeDo) {

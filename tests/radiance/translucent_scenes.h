@@ -35,12 +35,28 @@ inline Mesh plate_mesh(float thickness_mm) {
     return mesh;
 }
 
-/// A plate of 2 mm, lit from behind along its normal; something stands in the light of one half.
-inline Scene shadowed_plate(const Material& paint) {
-    Mesh mesh = plate_mesh(2.0f);
+/// The upper side of such a plate alone.
+inline Mesh sheet_mesh(float height_mm) {
+    Mesh mesh;
+    for (const glm::vec2 corner :
+         {glm::vec2(-30.0f), {-30.0f, 30.0f}, {30.0f, 30.0f}, {30.0f, -30.0f}}) {
+        mesh.positions_mm.emplace_back(corner.x, height_mm, corner.y);
+        mesh.uvs.emplace_back(corner);
+    }
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    mesh.triangle_part = {0, 0};
+    mesh.parts.resize(1);
+    compute_normals(mesh);
+    compute_tangents(mesh);
+    return mesh;
+}
+
+/// A plate of 2 mm, or something of its size, lit from behind along its normal; something stands in
+/// the light of one half.
+inline Scene shadowed_plate(const Material& paint, Mesh mesh = plate_mesh(2.0f)) {
+    const std::size_t own = mesh.triangles.size();
     add_box(mesh, {-60.0f, -12.0f, -60.0f}, {0.0f, -10.0f, 60.0f});
     mesh.parts.resize(2);
-    const std::size_t own = plate_mesh(2.0f).triangles.size();
     mesh.triangle_part.assign(own, 0);
     mesh.triangle_part.resize(mesh.triangles.size(), 1);
     Scene scene = scene_of(std::move(mesh), paint);

@@ -8,10 +8,10 @@
 #include "appearance/subsurface/translucent_paint.h"
 #include "core/colour.h"
 #include "core/parallel.h"
-#include "reference/closed_part.h"
 #include "reference/part_boundary.h"
 #include "reference/scenes.h"
 #include "reference/subsurface_walk.h"
+#include "tracing/closed_part.h"
 
 namespace livery {
 namespace {
@@ -120,6 +120,11 @@ TEST(SubsurfaceWalk, SlabsReturnAndLetThroughTheirExactTotals) {
         material.thickness_mm = 2.0;
         expect_totals(material, walked_totals(material, slab, 2.0, 8000));
     }
+    // A part that is open is a sheet under the plane that touches it
+    const PlaneBoundary sheet({0.0, 2.0, 0.0}, {0.0, 1.0, 0.0}, 2.0);
+    TranslucentMaterial material = read_translucent_material("marble");
+    material.thickness_mm = 2.0;
+    expect_totals(material, walked_totals(material, sheet, 2.0, 8000));
 }
 
 TEST(SubsurfaceWalk, OpenPartsAreToldFromClosedOnes) {

@@ -295,7 +295,8 @@ std::vector<glm::vec3> at_fragments(const Mesh& mesh,
                                     const SurfaceMap& map,
                                     const ExchangeNodes& nodes,
                                     const std::vector<glm::vec3>& at_nodes,
-                                    std::span<const std::uint32_t> place_of) {
+                                    std::span<const std::uint32_t> place_of,
+                                    std::span<const std::uint32_t> behind_of) {
     const ExchangePoints& points = nodes.points;
     const std::vector<glm::vec3> at_points = nodes.at_points(at_nodes);
     std::vector<glm::vec3> result(map.fragments.size(), glm::vec3(0.0f));
@@ -303,16 +304,19 @@ std::vector<glm::vec3> at_fragments(const Mesh& mesh,
         for (std::size_t i = begin; i < end; ++i) {
             const glm::vec3 normal = map.fragments[i].normal;
             float weight = 0.0f;
-            for (std::size_t s = 0; s < kSamplesAFragment; ++s) {
-                const SurfaceSample& sample = map.samples[i * kSamplesAFragment + s];
-                const std::uint32_t triangle =
-                    place_of.empty() ? sample.triangle : place_of[sample.triangle];
-                if (triangle == kNoTriangle) continue;
-                for (const auto& share : points.around(mesh, triangle, sample.barycentric)) {
+            const auto add = [&](std::uint32_t triangle, const glm::vec2& barycentric) {
+                if (triangle == kNoTriangle) return;
+                for (const auto& share : points.around(mesh, triangle, barycentric)) {
                     if (glm::dot(points.normals[share.index], normal) <= 0.0f) continue;
                     result[i] += share.weight * at_points[share.index];
                     weight += share.weight;
                 }
+            };
+            for (std::size_t s = 0; s < kSamplesAFragment; ++s) {
+                const SurfaceSample& sample = map.samples[i * kSamplesAFragment + s];
+                add(place_of.empty() ? sample.triangle : place_of[sample.triangle],
+                    sample.barycentric);
+                if (!behind_of.empty()) add(behind_of[sample.triangle], sample.barycentric);
             }
             if (weight > 0.0f) result[i] /= weight;
         }

@@ -97,12 +97,13 @@ ExchangedLight exchanged_at_nodes(const NodeExchange& exchange,
 
 /// A value of each node at the fragments, of the side that is seen. Where the nodes' mesh is a part
 /// of the fragments', `place_of` says which of its triangles each of theirs is, and kNoTriangle of
-/// the rest, where the value is 0.
+/// the rest, where the value is 0; `behind_of` the same of a copy that faces the other way.
 inline constexpr std::uint32_t kNoTriangle = 0xffffffffu;
 std::vector<glm::vec3> at_fragments(const Mesh& mesh,
                                     const SurfaceMap& map,
                                     const ExchangeNodes& nodes,
                                     const std::vector<glm::vec3>& at_nodes,
-                                    std::span<const std::uint32_t> place_of = {});
+                                    std::span<const std::uint32_t> place_of = {},
+                                    std::span<const std::uint32_t> behind_of = {});
 
 }  // namespace livery

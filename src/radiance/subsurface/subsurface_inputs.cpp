@@ -6,6 +6,7 @@
 #include "core/colour.h"
 #include "radiance/subsurface/slab_thickness.h"
 #include "radiance/subsurface/subsurface_near.h"
+#include "tracing/closed_part.h"
 
 namespace livery {
 
@@ -15,7 +16,8 @@ using Media = std::vector<std::optional<TranslucentMaterial>>;
 
 bool same_medium(const TranslucentMaterial& a, const TranslucentMaterial& b) {
     return a.sigma_a_per_mm == b.sigma_a_per_mm &&
-           a.sigma_s_prime_per_mm == b.sigma_s_prime_per_mm && a.g == b.g && a.eta == b.eta;
+           a.sigma_s_prime_per_mm == b.sigma_s_prime_per_mm && a.g == b.g && a.eta == b.eta &&
+           a.thickness_mm == b.thickness_mm;
 }
 
 bool same_or_none(const std::optional<TranslucentMaterial>& a,
@@ -50,6 +52,19 @@ glm::vec3 mean_free_paths_mm(const TranslucentMaterial& medium) {
     return paths;
 }
 
+/// Of a part that is open, and so as thick as its medium is told to be; none where no light goes so
+/// deep.
+std::optional<float> told_thickness_mm(const Mesh& mesh,
+                                       std::size_t part,
+                                       const TranslucentMaterial& medium,
+                                       float deep_mm) {
+    if (!medium.thickness_mm || !(*medium.thickness_mm < static_cast<double>(deep_mm)) ||
+        is_closed(mesh, part)) {
+        return std::nullopt;
+    }
+    return static_cast<float>(*medium.thickness_mm);
+}
+
 }  // namespace
 
 bool SubsurfaceInputs::stands(const Wanted& wanted) const {
@@ -73,15 +88,17 @@ void SubsurfaceInputs::solve(const Wanted& wanted,
         const TranslucentMaterial& medium = *wanted.media[p];
         if (!kernels_[p] || !same_medium(kernels_[p]->medium, medium)) {
             const float deep_mm = kernel_reach_mm(medium);
-            const auto sheet_mm = sheet_thickness_mm(tracer_, mesh_, p, deep_mm);
+            const auto told_mm = told_thickness_mm(mesh_, p, medium, deep_mm);
+            const auto sheet_mm =
+                told_mm ? told_mm : sheet_thickness_mm(tracer_, mesh_, p, deep_mm);
             const float reach_mm =
                 sheet_mm ? std::min(deep_mm, kernel_reach_mm(medium, sheet_mm)) : deep_mm;
-            kernels_[p] = {medium, shared_reach_mm(reach_mm), {}};
+            kernels_[p] = {medium, shared_reach_mm(reach_mm), told_mm.value_or(0.0f), {}};
         }
         KernelOf& of = *kernels_[p];
         progress.check_stop();
         const auto transport =
-            transports_->of(mesh_, tracer_, p, of.reach_mm, wanted.detail, progress);
+            transports_->of(mesh_, tracer_, p, of.reach_mm, wanted.detail, progress, of.sheet_mm);
         if (of.kernel.near_mm != std::min(transport->near_mm, of.reach_mm)) {
             float most_bent_per_mm = 0.0f;
             for (const float one : transport->curvature_per_mm) {
@@ -107,8 +124,12 @@ void SubsurfaceInputs::solve(const Wanted& wanted,
         }
         const LeavingLight leaving = leaving_at_nodes(*transport, of.kernel, entering, progress);
         const auto at_fragment = [&](const std::vector<glm::vec3>& at_nodes) {
-            return at_fragments(
-                transport->mesh, map, transport->exchange.nodes, at_nodes, transport->place_of);
+            return at_fragments(transport->mesh,
+                                map,
+                                transport->exchange.nodes,
+                                at_nodes,
+                                transport->place_of,
+                                transport->behind_of);
         };
         Part& part = parts[p].emplace(where_it_enters(medium));
         part.spread = true;

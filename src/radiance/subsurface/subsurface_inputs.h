@@ -71,6 +71,7 @@ class SubsurfaceInputs {
     struct KernelOf {
         TranslucentMaterial medium;
         float reach_mm = 0.0f;
+        float sheet_mm = 0.0f;  ///< SubsurfaceTransport's
         SubsurfaceKernel kernel;
     };
     const Mesh& mesh_;

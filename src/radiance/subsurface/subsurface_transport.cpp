@@ -39,6 +39,27 @@ double area_of(const Mesh& mesh) {
     return area;
 }
 
+/// Corners in the same order: a place of a triangle has the same coordinates on both sides.
+void add_other_side(SubsurfaceTransport& transport) {
+    Mesh& mesh = transport.mesh;
+    const std::size_t vertices = mesh.positions_mm.size(), triangles = mesh.triangles.size();
+    for (std::size_t v = 0; v < vertices; ++v) {
+        const glm::vec3 normal = mesh.normals[v], position = mesh.positions_mm[v];
+        mesh.positions_mm.push_back(position - transport.sheet_mm * normal);
+        mesh.normals.push_back(-normal);
+        const glm::vec2 uv = mesh.uvs[v];
+        mesh.uvs.push_back(uv);
+    }
+    for (std::size_t t = 0; t < triangles; ++t) {
+        const glm::uvec3 front = mesh.triangles[t];
+        mesh.triangles.push_back(front + static_cast<std::uint32_t>(vertices));
+    }
+    transport.behind_of = transport.place_of;
+    for (std::uint32_t& triangle : transport.behind_of) {
+        if (triangle != kNoTriangle) triangle += static_cast<std::uint32_t>(triangles);
+    }
+}
+
 void take_part(const Mesh& product, SubsurfaceTransport& transport) {
     Mesh& mesh = transport.mesh;
     std::vector<std::uint32_t> place(product.positions_mm.size(), kNoTriangle);
@@ -59,6 +80,7 @@ void take_part(const Mesh& product, SubsurfaceTransport& transport) {
         transport.place_of[t] = static_cast<std::uint32_t>(mesh.triangles.size());
         mesh.triangles.push_back(corners);
     }
+    if (transport.sheet_mm > 0.0f) add_other_side(transport);
     mesh.triangle_part.assign(mesh.triangles.size(), 0);
     mesh.parts.resize(1);
 }
@@ -124,6 +146,11 @@ bool through_air(const Tracer& tracer,
 void find_slabs(const Tracer& tracer, const Mesh& product, SubsurfaceTransport& transport) {
     const ExchangeNodes& nodes = transport.exchange.nodes;
     std::vector<float> thickness(nodes.size());
+    if (transport.sheet_mm > 0.0f) {
+        transport.slabs_mm = {transport.sheet_mm};
+        transport.slab_of.assign(nodes.size(), 0);
+        return;
+    }
     parallel_for(nodes.size(), 256, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             thickness[i] = slab_thickness_mm(tracer,
@@ -283,15 +310,19 @@ SubsurfaceTransport solve_transport(const Mesh& product,
                                     std::size_t part,
                                     float reach_mm,
                                     const TransportDetail& detail,
-                                    const Progress& progress) {
+                                    const Progress& progress,
+                                    float sheet_mm) {
     SubsurfaceTransport transport;
     transport.part = part;
     transport.reach_mm = reach_mm;
+    transport.sheet_mm = sheet_mm;
     take_part(product, transport);
     const double within = std::numbers::pi * static_cast<double>(reach_mm * reach_mm);
     double cell_mm2 = kCellsCrossed * within / detail.neighbours;
     // What comes through a sheet is as fine as it is thin
-    if (const auto thin = thinnest_slab_mm(tracer, product, part, reach_mm)) {
+    const auto thin = sheet_mm > 0.0f ? std::optional(sheet_mm)
+                                      : thinnest_slab_mm(tracer, product, part, reach_mm);
+    if (thin) {
         const auto own = static_cast<double>(*thin);
         cell_mm2 = std::clamp(own * own, cell_mm2 / kMoreForSlabs, cell_mm2);
     }
@@ -362,7 +393,7 @@ std::vector<glm::vec3> at_part_nodes(const Mesh& product,
                                      const std::vector<glm::vec3>& at_nodes,
                                      const SubsurfaceTransport& transport) {
     const std::vector<glm::vec3> at_points = nodes.at_points(at_nodes);
-    std::vector<std::uint32_t> of_product(transport.mesh.triangles.size());
+    std::vector<std::uint32_t> of_product(transport.mesh.triangles.size(), kNoTriangle);
     for (std::size_t t = 0; t < transport.place_of.size(); ++t) {
         if (transport.place_of[t] != kNoTriangle) {
             of_product[transport.place_of[t]] = static_cast<std::uint32_t>(t);
@@ -373,6 +404,7 @@ std::vector<glm::vec3> at_part_nodes(const Mesh& product,
     parallel_for(values.size(), 2048, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const std::uint32_t triangle = own.points.within[own.point_of[i]];
+            if (of_product[triangle] == kNoTriangle) continue;
             const glm::uvec3 c = transport.mesh.triangles[triangle];
             const glm::vec3 a = transport.mesh.positions_mm[c.x];
             const glm::vec3 e = transport.mesh.positions_mm[c.y] - a;
@@ -396,13 +428,15 @@ std::shared_ptr<const SubsurfaceTransport> SharedTransports::of(const Mesh& prod
                                                                 std::size_t part,
                                                                 float reach_mm,
                                                                 const TransportDetail& detail,
-                                                                const Progress& progress) {
+                                                                const Progress& progress,
+                                                                float sheet_mm) {
     const std::scoped_lock lock(mutex_);
     Made& made = of_part_[part];
-    if (!made.transport || made.transport->reach_mm != reach_mm || made.detail != detail) {
+    if (!made.transport || made.transport->reach_mm != reach_mm ||
+        made.transport->sheet_mm != sheet_mm || made.detail != detail) {
         made = {detail,
                 std::make_shared<const SubsurfaceTransport>(
-                    solve_transport(product, tracer, part, reach_mm, detail, progress))};
+                    solve_transport(product, tracer, part, reach_mm, detail, progress, sheet_mm))};
     }
     return made.transport;
 }

@@ -29,10 +29,14 @@ struct TransportDetail {
 /// light or of the paint's colour keeps it.
 struct SubsurfaceTransport {
     std::size_t part = 0;
-    Mesh mesh;                            ///< the part's triangles by themselves
-    std::vector<std::uint32_t> place_of;  ///< of each triangle of the product, there; kNoTriangle
-    NodeExchange exchange;                ///< nodes, and what of the sky they do not see
-    std::vector<float> area_mm2;          ///< of each node
+    /// An open part that is a sheet is that thick: behind each of its places the mesh has another
+    /// one, which faces the other way. 0: it is as thick as it is modelled.
+    float sheet_mm = 0.0f;
+    Mesh mesh;                             ///< the part's triangles by themselves
+    std::vector<std::uint32_t> place_of;   ///< of each triangle of the product, there; kNoTriangle
+    std::vector<std::uint32_t> behind_of;  ///< the same of a sheet's other side; of others empty
+    NodeExchange exchange;                 ///< nodes, and what of the sky they do not see
+    std::vector<float> area_mm2;           ///< of each node
     /// Mean curvature of the surface around each node, over its reach, nearer places more: 1 over
     /// the radius of a ball, negative in a hollow.
     std::vector<float> curvature_per_mm;
@@ -57,7 +61,8 @@ SubsurfaceTransport solve_transport(const Mesh& product,
                                     std::size_t part,
                                     float reach_mm,
                                     const TransportDetail& detail,
-                                    const Progress& progress = {});
+                                    const Progress& progress = {},
+                                    float sheet_mm = 0.0f);
 
 /// At each node, per area: what leaves there of light that entered farther off than near_mm or on
 /// the other side, and the share of what enters nearer. Both together give back of even light what
@@ -70,7 +75,8 @@ LeavingLight leaving_at_nodes(const SubsurfaceTransport& transport,
                               std::span<const glm::vec3> entering,
                               const Progress& progress = {});
 
-/// What one mesh's nodes have, at the nodes of a part of it.
+/// What one mesh's nodes have, at the nodes of a part of it; nothing on a sheet's other side, of
+/// which the mesh knows nothing.
 std::vector<glm::vec3> at_part_nodes(const Mesh& product,
                                      const ExchangeNodes& nodes,
                                      const std::vector<glm::vec3>& at_nodes,
@@ -84,7 +90,8 @@ class SharedTransports {
                                                   std::size_t part,
                                                   float reach_mm,
                                                   const TransportDetail& detail,
-                                                  const Progress& progress);
+                                                  const Progress& progress,
+                                                  float sheet_mm = 0.0f);
 
   private:
     struct Made {

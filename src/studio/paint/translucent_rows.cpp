@@ -19,6 +19,7 @@ namespace livery {
 namespace {
 
 constexpr double kShortest_mm = 0.01, kLongest_mm = 100.0;
+constexpr double kThickestSheet_mm = 20.0;
 /// What a typed coefficient may be, per mm.
 constexpr double kMost_per_mm = 1000.0;
 
@@ -35,7 +36,8 @@ struct MediumEdit {
         const TranslucentMaterial& before = *edited.medium;
         const bool same = medium.sigma_a_per_mm == before.sigma_a_per_mm &&
                           medium.sigma_s_prime_per_mm == before.sigma_s_prime_per_mm &&
-                          medium.g == before.g && medium.eta == before.eta;
+                          medium.g == before.g && medium.eta == before.eta &&
+                          medium.thickness_mm == before.thickness_mm;
         if (!same) edited.medium = std::make_shared<const TranslucentMaterial>(medium);
         calls.after_item(name);
     }
@@ -72,6 +74,18 @@ void draw_colour(MediumEdit& edit) {
         }
     }
     edit.after_item("albedo");
+}
+
+void draw_thickness(MediumEdit& edit) {
+    edit.calls.label("Sheet thickness",
+                     "How thick a part is, on the product, of which the mesh has one side alone: "
+                     "light comes through it from behind. 0 is deep. A closed part is as thick as "
+                     "its mesh. Drag, or Ctrl+click to type.");
+    const double before = edit.medium.thickness_mm.value_or(0.0);
+    double mm = before;
+    readable_slider("##sheet-thickness", mm, 0.0, kThickestSheet_mm, "mm", false);
+    if (mm != before) edit.medium.thickness_mm = mm > 0.0 ? std::optional(mm) : std::nullopt;
+    edit.after_item("sheet-thickness");
 }
 
 void draw_coefficients(MediumEdit& edit) {
@@ -123,6 +137,7 @@ void draw_medium_rows(Material& edited, double product_scale, const MediumRowCal
     MediumEdit edit{edited, calls};
     draw_length(edit);
     draw_colour(edit);
+    draw_thickness(edit);
     dim_text(reach_in_words(edited, product_scale));
     name_last_item("medium:reach");
     draw_coefficients(edit);

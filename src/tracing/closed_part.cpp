@@ -1,4 +1,4 @@
-#include "reference/closed_part.h"
+#include "tracing/closed_part.h"
 
 #include <algorithm>
 
