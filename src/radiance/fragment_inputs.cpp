@@ -337,13 +337,28 @@ void FragmentInputs::solve_mirror(const Scene& scene,
     const int nodes = rays_of(plan.levels).mirror;
     const std::shared_ptr<const Environment>& environment =
         sky ? scene.environment : no_environment();
+    const auto any = [](const MirrorInputs::LayersOfParts& layers) {
+        return std::any_of(layers.begin(), layers.end(), [](const auto& of) { return of.any(); });
+    };
+    mirror_.hide_behind(exchanged_.at_nodes.sent.empty() ? nullptr : exchanged_.nodes,
+                        exchanged_.at_nodes.sent,
+                        exchanged_.version);
     MirrorInputs::Light light{
         environment, scene.eye_in_world_mm, hides ? nodes : std::min(nodes, 0)};
+    // Who keeps light between parts, or drags a lamp, draws with what was mirrored behind other
+    // light of it, too
+    const bool draft = light.nodes == kNoNodes;
+    const auto missing_in = [&](const MirrorInputs::Light& in) {
+        return mirror_.missing(in, mirror_layers_of(scene, in.mixing()), !keep_exchange && !draft);
+    };
     const MirrorInputs::Light& made = mirror_.light();
     if (made.environment == light.environment && made.eye_mm == light.eye_mm &&
         enough(made.nodes, light.nodes)) {
-        light.nodes = made.nodes;
+        const MirrorInputs::Light better{light.environment, light.eye_mm, made.nodes};
+        // What is dragged does not wait for what better light lacks
+        if (!draft || !any(missing_in(better))) light = better;
     }
+    const auto worn = missing_in(light);
     const auto solve_layers = [&](const MirrorInputs::LayersOfParts& layers) {
         const SkyVisibility* joints = sky_visibility_ ? &*sky_visibility_ : nullptr;
         if (light.nodes == kNoNodes) {
@@ -352,15 +367,6 @@ void FragmentInputs::solve_mirror(const Scene& scene,
             mirror_.solve(light, layers, filtered_, runs(Runs::fine), joints, progress);
         }
     };
-    const auto any = [](const MirrorInputs::LayersOfParts& layers) {
-        return std::any_of(layers.begin(), layers.end(), [](const auto& of) { return of.any(); });
-    };
-    mirror_.hide_behind(exchanged_.at_nodes.sent.empty() ? nullptr : exchanged_.nodes,
-                        exchanged_.at_nodes.sent,
-                        exchanged_.version);
-    // Who keeps light between parts draws with what was mirrored behind other light of it, too
-    const auto worn =
-        mirror_.missing(light, mirror_layers_of(scene, light.mixing()), !keep_exchange);
     const bool filtered = mirror_filtered(environment, light.nodes);
     if (filtered) (light.nodes == kNoNodes ? look_up_of_ : layered_) = environment;
     clock.run(PassKind::environment_filter, !filtered, [&] {

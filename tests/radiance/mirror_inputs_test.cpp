@@ -4,6 +4,7 @@
 #include "appearance/model_table.h"
 #include "radiance/light/mirror_quadrature.h"
 #include "radiance/renderer_fixture.h"
+#include "tracing/ray_counters.h"
 
 namespace livery {
 namespace {
@@ -100,6 +101,40 @@ TEST_P(MirrorInputs, APaintWaitsForNoLightBetweenParts) {
     EXPECT_EQ(solved(coated, LightBetweenParts::kept), 0.0);
     EXPECT_GT(solved(coated, LightBetweenParts::solved), 0.0);
     EXPECT_EQ(solved(coated, LightBetweenParts::solved), 0.0);
+}
+
+// A lamp that is dragged changes what parts send into one another's mirrors, and a paint that comes
+// meanwhile may have other lobes: neither may take the seconds that a finished picture takes.
+TEST_P(MirrorInputs, ADraftWaitsForNoMirror) {
+    const View view = test_view(48, 36);
+    Scene scene = lit_by_the_studio(paint_of(ReflectanceModel::ggx, 0.2),
+                                    paint_of(ReflectanceModel::ggx, 0.2));
+    scene.lights = {light_from({0.4, 0.8, 0.5}, 0.05)};
+    const auto new_renderer = [&] {
+        return RadianceRenderer(
+            std::make_shared<const FrameGeometry>(scene.product, view), true, GetParam());
+    };
+    RadianceRenderer renderer = new_renderer();
+    const auto render_with = [&](RadianceRenderer& with, Quality quality) {
+        FramePlan its_plan = plan_frame(scene, quality, FrameStage::radiance);
+        with.render(scene, its_plan);
+        return its_plan;
+    };
+    const auto render = [&](Quality quality) { return render_with(renderer, quality); };
+    ASSERT_NE(find_pass(render(Quality::normal), PassKind::interreflection), nullptr);
+    scene.lights = {light_from({0.6, 0.7, 0.5}, 0.05)};
+    EXPECT_EQ(*find_pass(render(Quality::draft), PassKind::mirrored_environment)->ms, 0.0);
+    EXPECT_EQ(renderer.mirrored().mixing, MirrorMixing::cubic);
+    scene.part_materials[0] = paint_of(ReflectanceModel::ggx, 0.025);
+    const RayCounters before = ray_counters();
+    render(Quality::draft);
+    EXPECT_EQ(renderer.mirrored().mixing, MirrorMixing::linear);
+    EXPECT_EQ(ray_counters() - before, RayCounters());
+    // And nothing of it stays
+    render(Quality::normal);
+    RadianceRenderer anew = new_renderer();
+    render_with(anew, Quality::normal);
+    expect_same(anew.read_back(), renderer.read_back());
 }
 
 TEST_P(MirrorInputs, OnlyWhatIsReadIsSolved) {
