@@ -60,7 +60,9 @@ PassId cost_key(const PassId& pass) {
 
 int cost_level(const PassId& pass, const EffectLevels& levels) {
     const auto effect = effect_of(pass);
-    return effect ? levels[*effect] : 0;
+    // Where lamps alone are mirrored a black environment is filtered, which takes as long
+    const int at_least = pass == PassKind::environment_filter ? 1 : 0;
+    return effect ? std::max(levels[*effect], at_least) : 0;
 }
 
 const PassCost* find_cost(const std::vector<PassCost>& costs,

@@ -97,6 +97,14 @@ TEST(PassCosts, AreThoseOfTheLevel) {
     EXPECT_FALSE(predicted_time(plan).complete);
 }
 
+TEST(PassCosts, ABlackEnvironmentIsFilteredAsALitOne) {
+    const std::vector<PassCost> costs{{PassKind::environment_filter, 1, 90.0, 0.0, 1000.0, {}}};
+    EffectLevels levels = levels_of(Quality::normal);
+    levels[Effect::environment] = 0;
+    EXPECT_EQ(find_cost(costs, PassKind::environment_filter, levels), &costs[0]);
+    EXPECT_EQ(find_cost(costs, PassKind::environment_irradiance, levels), nullptr);
+}
+
 TEST(PassCosts, ALevelThatIsNoneIsNamed) {
     EXPECT_TRUE(fails_with(
         [] {
