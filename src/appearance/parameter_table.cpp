@@ -291,6 +291,7 @@ std::vector<double> reflectance_numbers(const Material& material) {
         }
         numbers.push_back(medium.g);
         numbers.push_back(medium.eta);
+        numbers.push_back(medium.thickness_mm.value_or(0.0));
     }
     return numbers;
 }

@@ -35,6 +35,9 @@ TEST(TranslucentPaint, IsReadAndWritten) {
     TranslucentMaterial other = *wax.medium;
     other.sigma_a_per_mm.y *= 1.01;
     EXPECT_FALSE(same_reflectance(wax, translucent_paint(other, 0.1)));
+    TranslucentMaterial sheet = *wax.medium;
+    sheet.thickness_mm = 2.0;
+    EXPECT_FALSE(same_reflectance(wax, translucent_paint(sheet, 0.1)));
 }
 
 TEST(TranslucentPaint, IsRefusedWithFieldAndRange) {
