@@ -37,7 +37,9 @@ EffectErrors errors_of(const std::vector<AccuracyRow>& rows) {
         auto& levels = scene->at_level[static_cast<std::size_t>(info->effect)];
         if (row.index != static_cast<int>(levels.size())) continue;  // one before it is missing
         levels.push_back(row.error.p95);
-        if (levels.size() == info->levels.size()) scene->dearest = row.error.p95;
+        // Only glints' own rows are drawn with single flakes, which the truth has not
+        const bool whole = levels.size() == info->levels.size();
+        if (whole && info->effect != Effect::glints) scene->dearest = row.error.p95;
     }
     std::erase_if(errors, [](const SceneErrors& scene) { return !is_whole(scene); });
     return errors;

@@ -257,5 +257,26 @@ TEST(EffectErrors, OfRowsThatLackALevelAreLeftOut) {
     EXPECT_EQ(error_added(errors[0], Effect::film, 0), 0.0) << "not called for there";
 }
 
+TEST(EffectErrors, SingleFlakesAreNoErrorOfTheOthers) {
+    // Without a truth of their own they are far from it, and would hide every choice.
+    std::vector<AccuracyRow> rows;
+    for (const Effect effect : {Effect::sub_samples, Effect::glints}) {
+        const EffectInfo& info = effect_info(effect);
+        for (std::size_t level = 0; level < info.levels.size(); ++level) {
+            AccuracyRow& row = rows.emplace_back();
+            row.scene = "flakes";
+            row.effect = info.name;
+            row.index = static_cast<int>(level);
+            row.error.p95 = effect == Effect::glints && level > 0 ? 14.0 : 3.0 - 0.5 * row.index;
+        }
+    }
+    const EffectErrors errors = errors_of(rows);
+    ASSERT_EQ(errors.size(), 1u);
+    EXPECT_EQ(errors[0].dearest, 2.0);
+    for (const SceneErrors& shipped : known_effect_errors()) {
+        EXPECT_LE(shipped.dearest, 2.0) << shipped.scene << ": what the ledger says of `high`";
+    }
+}
+
 }  // namespace
 }  // namespace livery
