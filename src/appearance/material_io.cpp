@@ -6,6 +6,7 @@
 #include "appearance/material_json.h"
 #include "appearance/measured/measured_paint.h"
 #include "appearance/model_table.h"
+#include "appearance/subsurface/scattering_medium.h"
 #include "appearance/subsurface/translucent_paint.h"
 #include "core/error.h"
 #include "core/json.h"
@@ -86,7 +87,7 @@ glm::dvec3 read_coefficients(const JsonReader& value) {
 
 void read_medium(const JsonReader& reader, Material& material) {
     if (!reader.is_object()) reader.fail(reader.found(), "an object");
-    reader.allow_only({"sigma_a_per_mm", "sigma_s_per_mm", "g", "eta", "alpha"});
+    reader.allow_only({"sigma_a_per_mm", "sigma_s_per_mm", "g", "eta", "thickness_mm", "alpha"});
     TranslucentMaterial medium;
     medium.name = material.name;
     medium.provenance = material.provenance;
@@ -94,6 +95,9 @@ void read_medium(const JsonReader& reader, Material& material) {
     if (reader.has("g")) medium.g = reader["g"].number_between(-0.9999, 0.9999);
     medium.sigma_s_prime_per_mm = read_coefficients(reader["sigma_s_per_mm"]) * (1.0 - medium.g);
     medium.eta = reader["eta"].number_between(kLeastEta, kLargestEta);
+    if (reader.has("thickness_mm")) {
+        medium.thickness_mm = reader["thickness_mm"].number_between(1e-9, kThickest_mm);
+    }
     double alpha = kSmoothAlpha;
     if (reader.has("alpha")) {
         const ParameterInfo& info = parameter_info("alpha");
@@ -106,10 +110,12 @@ void read_medium(const JsonReader& reader, Material& material) {
 
 Json json_of_medium(const Material& material) {
     const TranslucentMaterial& medium = *material.medium;
-    return {{"sigma_a_per_mm", json_from(medium.sigma_a_per_mm)},
-            {"sigma_s_per_mm", json_from(medium.sigma_s_prime_per_mm / (1.0 - medium.g))},
-            {"g", medium.g},
-            {"eta", medium.eta}};
+    Json json{{"sigma_a_per_mm", json_from(medium.sigma_a_per_mm)},
+              {"sigma_s_per_mm", json_from(medium.sigma_s_prime_per_mm / (1.0 - medium.g))},
+              {"g", medium.g},
+              {"eta", medium.eta}};
+    if (medium.thickness_mm) json["thickness_mm"] = *medium.thickness_mm;
+    return json;
 }
 
 /// A file of a medium alone (translucent_material.h) is a paint, too.

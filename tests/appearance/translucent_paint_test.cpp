@@ -37,7 +37,10 @@ TEST(TranslucentPaint, IsReadAndWritten) {
     EXPECT_FALSE(same_reflectance(wax, translucent_paint(other, 0.1)));
     TranslucentMaterial sheet = *wax.medium;
     sheet.thickness_mm = 2.0;
-    EXPECT_FALSE(same_reflectance(wax, translucent_paint(sheet, 0.1)));
+    const Material thin = translucent_paint(sheet, 0.1);
+    EXPECT_FALSE(same_reflectance(wax, thin));
+    write_material_file(folder / "thin.json", thin);
+    EXPECT_TRUE(same_reflectance(read_paint_file(folder / "thin.json"), thin));
 }
 
 TEST(TranslucentPaint, IsRefusedWithFieldAndRange) {
@@ -57,6 +60,7 @@ TEST(TranslucentPaint, IsRefusedWithFieldAndRange) {
     refuses("0.004, 0.02]", "-0.1, 0.02]", "sigma_a_per_mm");
     refuses("0.004, 0.02]", "0.02]", "sigma_a_per_mm");
     refuses("\"alpha\": 0.1", "\"alpha\": 2", "alpha");
+    refuses("\"alpha\": 0.1", "\"thickness_mm\": 0", "thickness_mm");
     refuses("\"alpha\": 0.1", "\"f0\": 0.04", "f0");
 }
 

@@ -25,6 +25,9 @@ struct TranslucentMaterial {
     std::string provenance;
 };
 
+/// Whether light goes the same ways in both, whatever their surfaces and names.
+bool same_medium(const TranslucentMaterial& a, const TranslucentMaterial& b);
+
 /// What one channel, 0 to 2, is made of.
 ScatteringMedium medium_of(const TranslucentMaterial& material, int channel);
 

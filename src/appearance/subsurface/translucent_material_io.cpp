@@ -28,6 +28,12 @@ Json json_of(const glm::dvec3& coefficients) {
 
 }  // namespace
 
+bool same_medium(const TranslucentMaterial& a, const TranslucentMaterial& b) {
+    return a.sigma_a_per_mm == b.sigma_a_per_mm &&
+           a.sigma_s_prime_per_mm == b.sigma_s_prime_per_mm && a.g == b.g && a.eta == b.eta &&
+           a.thickness_mm == b.thickness_mm;
+}
+
 ScatteringMedium medium_of(const TranslucentMaterial& material, int channel) {
     check_argument(channel >= 0 && channel < 3, "medium_of: a channel from 0 to 2");
     return {material.sigma_a_per_mm[channel],

@@ -14,12 +14,6 @@ namespace {
 
 using Media = std::vector<std::optional<TranslucentMaterial>>;
 
-bool same_medium(const TranslucentMaterial& a, const TranslucentMaterial& b) {
-    return a.sigma_a_per_mm == b.sigma_a_per_mm &&
-           a.sigma_s_prime_per_mm == b.sigma_s_prime_per_mm && a.g == b.g && a.eta == b.eta &&
-           a.thickness_mm == b.thickness_mm;
-}
-
 bool same_or_none(const std::optional<TranslucentMaterial>& a,
                   const std::optional<TranslucentMaterial>& b) {
     return a.has_value() == b.has_value() && (!a || same_medium(*a, *b));

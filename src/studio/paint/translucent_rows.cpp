@@ -33,12 +33,9 @@ struct MediumEdit {
         const glm::dvec3 none(0.0), most(kMost_per_mm);
         medium.sigma_a_per_mm = glm::clamp(medium.sigma_a_per_mm, none, most);
         medium.sigma_s_prime_per_mm = glm::clamp(medium.sigma_s_prime_per_mm, none, most);
-        const TranslucentMaterial& before = *edited.medium;
-        const bool same = medium.sigma_a_per_mm == before.sigma_a_per_mm &&
-                          medium.sigma_s_prime_per_mm == before.sigma_s_prime_per_mm &&
-                          medium.g == before.g && medium.eta == before.eta &&
-                          medium.thickness_mm == before.thickness_mm;
-        if (!same) edited.medium = std::make_shared<const TranslucentMaterial>(medium);
+        if (!same_medium(medium, *edited.medium)) {
+            edited.medium = std::make_shared<const TranslucentMaterial>(medium);
+        }
         calls.after_item(name);
     }
 };
