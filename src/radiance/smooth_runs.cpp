@@ -44,7 +44,9 @@ SmoothRuns::SmoothRuns(const SurfaceMap& map, const Limits& limits) : runs_(map.
     Columns found(runs_.size());
     find_columns(map, limits.highest_px, least_cosine, found);
     find_rows(map, limits.longest_px, least_cosine);
-    find_beside(map, limits.beside_px, least_cosine, found);
+    const auto beside_cosine =
+        static_cast<float>(std::cos(glm::radians(limits.turn_deg / limits.beside_px)));
+    find_beside(map, limits.beside_px, beside_cosine, found);
     for (std::size_t i = 0; i < runs_.size(); ++i) {
         if (runs_[i].before == kInColumn) columns_.push_back(found[i]);
     }

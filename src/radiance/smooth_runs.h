@@ -22,8 +22,8 @@ class SmoothRuns {
     struct Limits {
         std::uint32_t longest_px = 4, highest_px = 2;
         double turn_deg = 1.0;
-        /// Fragments that share their pixel look for another one in a block of such a side; 1:
-        /// none.
+        /// Fragments that share their pixel look for another one in a block of such a side, of
+        /// which nothing lies on the other side: normals turn by as much less. 1: none.
         std::uint32_t beside_px = 1;
     };
     explicit SmoothRuns(const SurfaceMap& map) : SmoothRuns(map, Limits()) {}
