@@ -129,17 +129,18 @@ void draw_start(Studio& studio) {
         ids.push_back(look->id);
     }
     if (names.size() < 2) dim_text("A vote needs at least two looks.");
-    if (!studio.setup || !studio.setup->table) {
+    const bool loading = !studio.setup;
+    if (!loading && !studio.setup->table) {
         warning_text("No calibration is in use: people would judge colours that are not right.");
     }
     draw_seats_before_vote(studio);
     draw_presentation_setup(studio, ids);
     ImGui::SameLine();
-    begin_disabled(names.size() < 2);
+    // What is voted on must be known to be corrected or not.
+    begin_disabled(names.size() < 2 || loading);
     if (ImGui::Button("Vote at once", {-FLT_MIN, em(2.4f)})) {
-        const std::string calibration = studio.setup && studio.setup->calibration
-                                            ? studio.setup->calibration->id
-                                            : std::string();
+        const std::string calibration =
+            studio.setup->calibration ? studio.setup->calibration->id : std::string();
         RoundSetup setup{names, calibration};
         setup.asks_least = presenting_settings(studio).asks_least && names.size() > 2;
         setup.scales = scales_asked(presenting_settings(studio));
@@ -150,7 +151,9 @@ void draw_start(Studio& studio) {
     }
     name_last_item("ballot:start");
     end_disabled();
-    tooltip("In this window, without a presentation: whoever votes looks at what they like.");
+    tooltip(loading ? "The calibration is being loaded."
+                    : "In this window, without a presentation: whoever votes looks at what they "
+                      "like.");
     draw_phones(studio);
     ImGui::Spacing();
     draw_earlier_rounds(studio);

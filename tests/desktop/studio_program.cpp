@@ -150,6 +150,15 @@ void StudioProgram::wait_for_state(const std::string& name, const Json& value) {
         fmt::format("{} is {} instead of {}\n{}", name, state(name).dump(), value.dump(), words()));
 }
 
+glm::ivec2 StudioProgram::point_at(const std::string& name) {
+    glm::ivec2 at = middle(item(name));
+    for (;;) {
+        desktop_.move_pointer(at.x, at.y);
+        const glm::ivec2 before = std::exchange(at, middle(item(name)));
+        if (at == before) return at;
+    }
+}
+
 void StudioProgram::hover(const std::string& name) {
     const glm::ivec2 at = middle(item(name));
     // From one pixel away, so that there is a motion even when the pointer was there already.
@@ -158,14 +167,14 @@ void StudioProgram::hover(const std::string& name) {
 }
 
 void StudioProgram::click(const std::string& name) {
-    const glm::ivec2 at = middle(item(name));
+    const glm::ivec2 at = point_at(name);
     const int before = state("clicks");
     desktop_.click(at.x, at.y);
     wait_until_taken("clicks", before + 1);
 }
 
 void StudioProgram::double_click(const std::string& name) {
-    const glm::ivec2 at = middle(item(name));
+    const glm::ivec2 at = point_at(name);
     const int before = state("clicks");
     desktop_.double_click(at.x, at.y);
     wait_until_taken("clicks", before + 2);

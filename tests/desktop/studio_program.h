@@ -78,6 +78,9 @@ class StudioProgram {
   private:
     nlohmann::json map() const;
     void scroll_to_paint(const std::string& name);
+    /// Moves the pointer to an item's middle, and after it until it stays there: a picture that
+    /// comes in may move what is about to be clicked.
+    glm::ivec2 point_at(const std::string& name);
     /// Until the window shows what came of input: its counter has reached `value`, and two more
     /// frames put everything in its place. Not that anything came of it.
     void wait_until_taken(const std::string& counter, int value);
