@@ -60,6 +60,17 @@ TEST(SuggestedAnswers, GltfSaysItsUnitAndWhatIsUp) {
     EXPECT_EQ(suggested_answers(facts).answers.up, UpAxis::plus_y);
 }
 
+TEST(SuggestedAnswers, AUnitThatWasSaidStands) {
+    const MeshFacts facts = facts_of(box({180, 60, 75}), "car.obj");
+    const SuggestedAnswers suggested = suggested_answers(facts, LengthUnit::cm);
+    EXPECT_EQ(suggested.answers.unit, LengthUnit::cm);
+    EXPECT_NE(suggested.unit_why.find("cm"), std::string::npos) << suggested.unit_why;
+    EXPECT_TRUE(suggested.answers.mesh_is_product) << "1.8 m";
+    EXPECT_EQ(
+        suggested_answers(facts_of(box({180, 60, 75}), "car.glb"), LengthUnit::mm).answers.unit,
+        LengthUnit::mm);
+}
+
 TEST(ProductAnswers, ScalesHaveWords) {
     EXPECT_EQ(scale_text(1.0), "real size");
     EXPECT_EQ(scale_text(25.0), "1:25 model");
@@ -240,6 +251,25 @@ TEST_F(OneWindow, AProductFileHasAnsweredAll) {
     ASSERT_TRUE(shell_.next_session);
     EXPECT_EQ(shell_.next_session->session.document().product, file.string());
     EXPECT_EQ(shell_.next_session->product->product_scale, 4.0);
+}
+
+TEST_F(OneWindow, AUnitThatIsGivenWithAFileIsItsWhateverItSays) {
+    write_box("car.ply");
+    const auto file = folder_.write(
+        "car.product.json",
+        R"({"format_version": 1, "mesh": "car.ply", "unit": "cm", "product_scale": 4})");
+    begin_new_session(shell_, file, {}, LengthUnit::in);
+    finish_work();
+    start_creating(shell_);
+    finish_work();
+    ASSERT_TRUE(shell_.next_session) << shell_.new_session->problem;
+    EXPECT_EQ(shell_.next_session->session.document().product_unit, LengthUnit::in);
+    const Bounds bounds = bounds_of(shell_.next_session->product->mesh);
+    EXPECT_NEAR(bounds.high.x - bounds.low.x, 4.6 * 25.4, 1e-3);
+
+    begin_new_session(shell_, folder_ / "car.ply", {}, LengthUnit::mm);
+    finish_work();
+    EXPECT_EQ(shell_.new_session->answers.unit, LengthUnit::mm);
 }
 
 TEST_F(OneWindow, WhatCannotBeReadSaysSoOnThePage) {

@@ -25,12 +25,12 @@ struct Read {
     bool is_product_file = false;
 };
 
-Read read_given(const std::filesystem::path& file) {
+Read read_given(const std::filesystem::path& file, std::optional<LengthUnit> unit) {
     Read read;
     read.projector = uncorrected_setup(Document{}.bench)->view;
     read.is_product_file = has_suffix_of(file, {".json"});
     if (read.is_product_file) {
-        Product product = load_product(file);
+        Product product = load_product(file, unit);
         read.mesh = std::move(product.mesh);
         read.facts = facts_of(read.mesh, file);
         read.samples = mesh_samples(read.mesh);
@@ -42,7 +42,7 @@ Read read_given(const std::filesystem::path& file) {
     read.mesh = load_mesh(file, nullptr, LengthUnit::mm);
     read.facts = facts_of(read.mesh, file);
     read.samples = mesh_samples(read.mesh);
-    read.suggested = suggested_answers(read.facts);
+    read.suggested = suggested_answers(read.facts, unit);
     return read;
 }
 
@@ -72,6 +72,7 @@ void create(Shell& shell, NewSession& asked) {
     asked.stage = NewSession::Stage::creating;
     const auto answered = std::make_shared<NewSession>();
     answered->given = asked.given;
+    answered->unit = asked.unit;
     answered->facts = asked.facts;
     answered->answers = asked.answers;
     answered->is_product_file = asked.is_product_file;
@@ -125,8 +126,9 @@ OpenedSession create_session(const NewSession& asked) {
                         text_of(product_file_of(asked.facts, asked.answers, name), product_file));
     }
     try {
-        auto product = find_product(product_file.string());
-        return {Session::open(asked.session, product_file.string()), std::move(product)};
+        const auto unit = asked.is_product_file ? asked.unit : std::nullopt;
+        auto product = find_product(product_file.string(), unit);
+        return {Session::open(asked.session, product_file.string(), unit), std::move(product)};
     } catch (...) {
         std::error_code error;
         if (!asked.is_product_file) std::filesystem::remove(product_file, error);
@@ -136,17 +138,19 @@ OpenedSession create_session(const NewSession& asked) {
 
 void begin_new_session(Shell& shell,
                        const std::filesystem::path& file,
-                       const std::filesystem::path& session) {
+                       const std::filesystem::path& session,
+                       std::optional<LengthUnit> unit) {
     const std::uint64_t number = ++shell.new_sessions;
     if (shell.new_session) shell.closed_page = std::move(shell.new_session);
     shell.new_session = std::make_unique<NewSession>();
     shell.new_session->number = number;
     shell.new_session->given = std::filesystem::absolute(file).lexically_normal();
+    shell.new_session->unit = unit;
     if (!session.empty()) shell.new_session->session = std::filesystem::absolute(session);
     const auto page = [&shell, number] { return page_of(shell, number); };
     shell.studio.background->run(
-        [page, given = shell.new_session->given](const Progress&) -> Background::Then {
-            const auto read = std::make_shared<Read>(read_given(given));
+        [page, given = shell.new_session->given, unit](const Progress&) -> Background::Then {
+            const auto read = std::make_shared<Read>(read_given(given, unit));
             return [page, read] {
                 NewSession* asked = page();
                 if (!asked) return;

@@ -31,9 +31,10 @@ struct OpenedSession {
 struct NewSession {
     enum class Stage { reading, unreadable, asking, creating };
     Stage stage = Stage::reading;
-    std::filesystem::path given;  ///< a mesh, or a product file
-    std::uint64_t number = 0;     ///< what was asked for another page is not for this one
-    std::string problem;          ///< why there is no session yet; empty: nobody tried
+    std::filesystem::path given;     ///< a mesh, or a product file
+    std::optional<LengthUnit> unit;  ///< said with it
+    std::uint64_t number = 0;        ///< what was asked for another page is not for this one
+    std::string problem;             ///< why there is no session yet; empty: nobody tried
 
     std::shared_ptr<const Mesh> mesh;  ///< shared with the thread that draws its picture
     MeshFacts facts;
@@ -64,10 +65,12 @@ std::filesystem::path product_file_beside(const std::filesystem::path& session);
 OpenedSession create_session(const NewSession& asked);
 
 /// Opens the page with a mesh or product file, which is read in the background. Without a file for
-/// the session one is suggested, in the user's folder.
+/// the session one is suggested, in the user's folder. A unit is that of the file's numbers,
+/// whatever the file says.
 void begin_new_session(Shell& shell,
                        const std::filesystem::path& file,
-                       const std::filesystem::path& session = {});
+                       const std::filesystem::path& session = {},
+                       std::optional<LengthUnit> unit = {});
 /// Asks for the file by the dialog first.
 void ask_for_product(Shell& shell);
 void draw_new_session(Shell& shell);  ///< once a frame

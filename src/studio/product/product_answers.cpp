@@ -42,7 +42,7 @@ MeshFacts facts_of(const Mesh& mesh_in_mm, const std::filesystem::path& file) {
     return facts;
 }
 
-SuggestedAnswers suggested_answers(const MeshFacts& facts) {
+SuggestedAnswers suggested_answers(const MeshFacts& facts, std::optional<LengthUnit> said) {
     SuggestedAnswers suggested;
     ProductAnswers& answers = suggested.answers;
     answers.part_names = facts.parts;
@@ -63,6 +63,10 @@ SuggestedAnswers suggested_answers(const MeshFacts& facts) {
         suggested.up_why = fmt::format("The file does not say. It is lower along {} than along {}.",
                                        z_up ? "z" : "y",
                                        z_up ? "y" : "z");
+    }
+    if (said) {
+        answers.unit = *said;
+        suggested.unit_why = fmt::format("It was opened as in {}.", to_string(*said));
     }
     const double size_mm = longest(size) * mm_per(answers.unit);
     if (size_mm < kLargestMockUp_mm) {

@@ -38,8 +38,9 @@ struct SuggestedAnswers {
     std::string unit_why, up_why, scale_why;
 };
 /// The unit is glTF's or guess_unit()'s; up is glTF's y, else the shorter of y and z; a mesh of
-/// half a metre or more is the product, and the model the largest usual one below 200 mm.
-SuggestedAnswers suggested_answers(const MeshFacts& facts);
+/// half a metre or more is the product, and the model the largest usual one below 200 mm. A unit
+/// that was said stands.
+SuggestedAnswers suggested_answers(const MeshFacts& facts, std::optional<LengthUnit> said = {});
 
 /// Turned by another right angle, its front with it.
 void turn(ProductAnswers& answers);

@@ -70,8 +70,9 @@ std::filesystem::path session_file(const DesktopOptions& options) {
 Session open_session(const DesktopOptions& options) {
     const auto file = session_file(options);
     const std::string product = options.product.empty() ? "car" : options.product;
+    const auto unit = options.new_product.empty() ? options.unit : std::nullopt;
     try {
-        Session session = Session::open(file, product, options.unit);
+        Session session = Session::open(file, product, unit);
         if (!options.product.empty() && session.document().product != product_reference(product)) {
             throw Refused(fmt::format("the session {} shows the product {}, not {}",
                                       file.string(),
@@ -82,7 +83,7 @@ Session open_session(const DesktopOptions& options) {
         return session;
     } catch (const FileError& error) {
         log_line(LogLevel::error, std::string("session: ") + error.what());
-        return Session::unsaved(new_document(product, options.unit), error.what());
+        return Session::unsaved(new_document(product, unit), error.what());
     }
 }
 
@@ -234,7 +235,7 @@ class Desktop {
             });
         }
         if (!options_.new_product.empty())
-            begin_new_session(shell_, options_.new_product, options_.new_session);
+            begin_new_session(shell_, options_.new_product, options_.new_session, options_.unit);
         frames_to_draw_ = kFramesAfterInput;
     }
 

@@ -16,7 +16,7 @@ enum class ShadingDevice;
 struct DesktopOptions {
     std::filesystem::path session;        ///< empty: the one in the user's folder
     std::string product;                  ///< empty: the session's; for a new session "car"
-    std::optional<LengthUnit> unit;       ///< of the product's file, for a new session
+    std::optional<LengthUnit> unit;       ///< of the (new) product's numbers, for a new session
     std::filesystem::path new_product;    ///< begins a new session with it; empty: none
     std::filesystem::path new_session;    ///< where that is saved; empty: a place is suggested
     std::optional<double> ui_scale;       ///< instead of the screen's and the user's own
