@@ -88,10 +88,7 @@ void StudioProgram::scroll_to_paint(const std::string& name) {
     }
 }
 
-Rectangle StudioProgram::item(const std::string& name) {
-    if (name.starts_with("paint:") && has_item("swatches") && !has_item(name)) {
-        scroll_to_paint(name);
-    }
+Rectangle StudioProgram::steady_item(const std::string& name) const {
     const auto look = [&]() -> Rectangle {
         const Json map = this->map();
         const auto& items = map["items"];
@@ -101,12 +98,20 @@ Rectangle StudioProgram::item(const std::string& name) {
         const auto window = map["window"].get<std::vector<int>>();
         return {window[0] + at[0], window[1] + at[1], at[2], at[3]};
     };
+    const Rectangle before = look();
+    sleep_ms(30);
+    const Rectangle now = look();
+    return now == before ? now : Rectangle{};
+}
+
+Rectangle StudioProgram::item(const std::string& name) {
+    if (name.starts_with("paint:") && has_item("swatches") && !has_item(name)) {
+        scroll_to_paint(name);
+    }
     Rectangle found;
     const auto steady = [&] {
-        const Rectangle before = look();
-        sleep_ms(30);
-        found = look();
-        return found.width > 0 && found == before;
+        found = steady_item(name);
+        return found.width > 0;
     };
     if (!wait_until(steady, patience)) {
         throw std::runtime_error(fmt::format("no \"{}\" in the window, only: {}\n{}",
@@ -154,8 +159,16 @@ glm::ivec2 StudioProgram::point_at(const std::string& name) {
     glm::ivec2 at = middle(item(name));
     for (;;) {
         desktop_.move_pointer(at.x, at.y);
-        const glm::ivec2 before = std::exchange(at, middle(item(name)));
-        if (at == before) return at;
+        // What opens where it is pointed at has no place of its own any more.
+        Rectangle now;
+        const auto known = [&] {
+            now = steady_item(name);
+            const Json map = this->map();
+            return now.width > 0 ||
+                   (map["state"]["at_rest"].get<bool>() && !map["items"].contains(name));
+        };
+        if (!wait_until(known, patience) || now.width <= 0 || middle(now) == at) return at;
+        at = middle(now);
     }
 }
 

@@ -78,6 +78,8 @@ class StudioProgram {
   private:
     nlohmann::json map() const;
     void scroll_to_paint(const std::string& name);
+    /// Of a window at rest, which two looks agree on; empty where there is none.
+    Rectangle steady_item(const std::string& name) const;
     /// Moves the pointer to an item's middle, and after it until it stays there: a picture that
     /// comes in may move what is about to be clicked.
     glm::ivec2 point_at(const std::string& name);
