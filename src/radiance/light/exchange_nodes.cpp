@@ -233,6 +233,60 @@ void find_nearby(const NodeCells& cells, ExchangeNodes& nodes) {
     }
 }
 
+/// On the side of the shading normal: the surface itself hides what lies under it.
+glm::vec3 off_surface(const Mesh& mesh,
+                      std::size_t triangle,
+                      const glm::vec3& place,
+                      const glm::vec3& normal) {
+    const glm::uvec3 c = mesh.triangles[triangle];
+    const glm::vec3 a = mesh.positions_mm[c.x];
+    const glm::vec3 across = glm::cross(mesh.positions_mm[c.y] - a, mesh.positions_mm[c.z] - a);
+    const float twice_area = glm::length(across);
+    const glm::vec3 outward = twice_area > 0.0f ? across / twice_area : normal;
+    return offset_origin(place, glm::dot(outward, normal) < 0.0f ? -outward : outward);
+}
+
+/// What of a triangle of points is nearest to one of its corners.
+struct Third {
+    std::size_t triangle = 0;  ///< of the mesh
+    std::uint32_t point = 0;
+    glm::vec3 middle_mm{0.0f};
+    double area_mm2 = 0.0;
+};
+template <typename Visit>
+void for_each_third(const Mesh& mesh, const ExchangePoints& points, const Visit& visit) {
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const glm::uvec3 c = mesh.triangles[t];
+        const glm::dvec3 a(mesh.positions_mm[c.x]);
+        const double whole = 0.5 * glm::length(glm::cross(glm::dvec3(mesh.positions_mm[c.y]) - a,
+                                                          glm::dvec3(mesh.positions_mm[c.z]) - a));
+        const int n = points.steps[t];
+        const auto add = [&](const glm::uvec3& corners) {
+            for (int k = 0; k < 3; ++k) {
+                const auto at = [&](int corner) {
+                    return points.positions_mm[corners[(k + corner) % 3]];
+                };
+                visit({t,
+                       corners[k],
+                       (22.0f * at(0) + 7.0f * (at(1) + at(2))) / 36.0f,
+                       whole / (3.0 * n * n)});
+            }
+        };
+        if (n == 1) {
+            add(c);
+            continue;
+        }
+        const auto point = [&](int i, int j) { return points.grid[t] + place_in_grid(n, i, j); };
+        for (int j = 0; j < n; ++j) {
+            for (int i = 0; i + j < n; ++i) {
+                add({point(i, j), point(i + 1, j), point(i, j + 1)});
+                if (i + j + 2 > n) continue;
+                add({point(i + 1, j), point(i + 1, j + 1), point(i, j + 1)});
+            }
+        }
+    }
+}
+
 }  // namespace
 
 ExchangeNodes exchange_nodes(const Mesh& mesh) {
@@ -252,34 +306,35 @@ ExchangeNodes exchange_nodes(const Mesh& mesh, double apart_mm) {
 
 std::vector<float> node_areas_mm2(const Mesh& mesh, const ExchangeNodes& nodes) {
     std::vector<double> areas(nodes.size(), 0.0);
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        const glm::uvec3 c = mesh.triangles[t];
-        const glm::dvec3 a(mesh.positions_mm[c.x]);
-        const double whole = 0.5 * glm::length(glm::cross(glm::dvec3(mesh.positions_mm[c.y]) - a,
-                                                          glm::dvec3(mesh.positions_mm[c.z]) - a));
-        const int n = nodes.points.steps[t];
-        const double third = whole / (3.0 * n * n);
-        const auto add = [&](std::uint32_t point) { areas[nodes.node_of[point]] += third; };
-        if (n == 1) {
-            for (int k = 0; k < 3; ++k) add(c[k]);
-            continue;
-        }
-        const auto point = [&](int i, int j) {
-            return nodes.points.grid[t] + place_in_grid(n, i, j);
-        };
-        for (int j = 0; j < n; ++j) {
-            for (int i = 0; i + j < n; ++i) {
-                for (const std::uint32_t p : {point(i, j), point(i + 1, j), point(i, j + 1)})
-                    add(p);
-                if (i + j + 2 > n) continue;
-                for (const std::uint32_t p :
-                     {point(i + 1, j), point(i + 1, j + 1), point(i, j + 1)}) {
-                    add(p);
-                }
-            }
-        }
-    }
+    for_each_third(mesh, nodes.points, [&](const Third& third) {
+        areas[nodes.node_of[third.point]] += third.area_mm2;
+    });
     return {areas.begin(), areas.end()};
+}
+
+std::vector<glm::vec3> ray_origins_mm(const Mesh& mesh,
+                                      const ExchangeNodes& nodes,
+                                      std::span<const float> areas_mm2,
+                                      std::size_t count) {
+    std::vector<glm::vec3> origins(nodes.size() * count);
+    for (std::size_t i = 0; i < origins.size(); ++i) {
+        origins[i] = nodes.ray_origin_mm(mesh, i / count);
+    }
+    std::vector<double> passed_mm2(nodes.size(), 0.0);
+    std::vector<std::size_t> found(nodes.size(), 0);
+    for_each_third(mesh, nodes.points, [&](const Third& third) {
+        const std::uint32_t node = nodes.node_of[third.point];
+        passed_mm2[node] += third.area_mm2;
+        const double apart_mm2 = static_cast<double>(areas_mm2[node]) / static_cast<double>(count);
+        std::size_t& next = found[node];
+        if (!((static_cast<double>(next) + 0.5) * apart_mm2 < passed_mm2[node])) return;
+        const glm::vec3 origin =
+            off_surface(mesh, third.triangle, third.middle_mm, nodes.points.normals[third.point]);
+        while (next < count && (static_cast<double>(next) + 0.5) * apart_mm2 < passed_mm2[node]) {
+            origins[node * count + next++] = origin;
+        }
+    });
+    return origins;
 }
 
 glm::vec3 ExchangeNodes::ray_origin_mm(const Mesh& mesh, std::size_t node) const {
@@ -292,12 +347,7 @@ glm::vec3 ExchangeNodes::ray_origin_mm(const Mesh& mesh, std::size_t node) const
     const glm::vec3 inward = (corner[0] + corner[1] + corner[2]) / 3.0f - place;
     const float length = glm::length(inward);
     if (length > 0.0f) place += std::min(1.0f, kInside * points.apart_mm / length) * inward;
-    const glm::vec3 normal = points.normals[point];
-    const glm::vec3 across = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
-    const float twice_area = glm::length(across);
-    // The surface itself hides what lies under it
-    const glm::vec3 outward = twice_area > 0.0f ? across / twice_area : normal;
-    return offset_origin(place, glm::dot(outward, normal) < 0.0f ? -outward : outward);
+    return off_surface(mesh, points.within[point], place, points.normals[point]);
 }
 
 std::vector<glm::vec3> ExchangeNodes::at_points(const std::vector<glm::vec3>& at_nodes) const {
@@ -314,11 +364,13 @@ std::vector<glm::vec3> ExchangeNodes::at_points(const std::vector<glm::vec3>& at
     return values;
 }
 
-std::vector<glm::vec3> ExchangeNodes::sharpened(const std::vector<glm::vec3>& at_nodes) const {
+std::vector<glm::vec3> ExchangeNodes::sharpened(const std::vector<glm::vec3>& at_nodes,
+                                                float blur) const {
     const std::vector<glm::vec3> blurred = at_points(at_nodes);
     std::vector<glm::vec3> values(at_nodes.size());
     for (std::size_t i = 0; i < values.size(); ++i) {
-        values[i] = glm::max(2.0f * at_nodes[i] - blurred[point_of[i]], glm::vec3(0.0f));
+        const glm::vec3 lost = at_nodes[i] - blurred[point_of[i]];
+        values[i] = glm::max(at_nodes[i] + blur * lost, glm::vec3(0.0f));
     }
     return values;
 }

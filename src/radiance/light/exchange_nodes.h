@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -61,8 +62,10 @@ struct ExchangeNodes {
     /// Of each point, from a value of each node.
     std::vector<glm::vec3> at_points(const std::vector<glm::vec3>& at_nodes) const;
     /// Interpolation blurs: values of which it gives `at_nodes` where they lie, but for the fourth
-    /// order, of what is smooth (Van Cittert's first step). Never below 0.
-    std::vector<glm::vec3> sharpened(const std::vector<glm::vec3>& at_nodes) const;
+    /// order, of what is smooth (Van Cittert's first step). Never below 0. What else has blurred
+    /// them is taken off as well: `blur` is the variance of all over that of interpolation.
+    std::vector<glm::vec3> sharpened(const std::vector<glm::vec3>& at_nodes,
+                                     float blur = 1.0f) const;
 };
 
 /// Nodes are a hundredth of the mesh's diagonal apart, or farther where that would make too many
@@ -73,5 +76,11 @@ ExchangeNodes exchange_nodes(const Mesh& mesh, double apart_mm);
 
 /// Of each node, the area of the surface that is nearest to its points: all add up to the mesh's.
 std::vector<float> node_areas_mm2(const Mesh& mesh, const ExchangeNodes& nodes);
+/// Where rays start that ask for all of that area: `count` of each node, as far apart as areas go,
+/// off the surface.
+std::vector<glm::vec3> ray_origins_mm(const Mesh& mesh,
+                                      const ExchangeNodes& nodes,
+                                      std::span<const float> areas_mm2,
+                                      std::size_t count);
 
 }  // namespace livery

@@ -28,7 +28,6 @@ namespace {
 /// Rays in all, and of a node.
 constexpr std::size_t kRays = 2'000'000;
 constexpr int kFewestRays = 16, kMostRays = 64;
-constexpr int kNodeRaysALight = 8;
 
 /// Light that is left of the first bounce's, below which no further one is followed.
 constexpr float kNothingLeft = 1e-3f;
@@ -209,6 +208,7 @@ std::vector<glm::vec3> direct_at_nodes(const Mesh& mesh,
         around = SphereStack({&filtered.blurred, 1});
         scale = static_cast<float>(environment->scale);
     }
+    const std::span origins(exchange.lamp_origins_mm);
     std::vector<glm::vec3> direct(nodes.size(), glm::vec3(0.0f));
     parallel_for(direct.size(), 512, [&](std::size_t begin, std::size_t end) {
         progress.check_stop();
@@ -218,8 +218,12 @@ std::vector<glm::vec3> direct_at_nodes(const Mesh& mesh,
             for (std::size_t l = 0; l < lamps.size(); ++l) {
                 const float cosine = glm::dot(n, lamps[l].direction);
                 if (cosine <= 0.0f || lamps[l].radiance == glm::vec3(0.0f)) continue;
-                const float open = disc_openness(
-                    tracer, nodes.ray_origin_mm(mesh, i), n, lights[l], kNodeRaysALight, i);
+                const float open =
+                    origins.empty()
+                        ? disc_openness(
+                              tracer, nodes.ray_origin_mm(mesh, i), n, lights[l], kLampRays, i)
+                        : disc_openness(
+                              tracer, origins.subspan(i * kLampRays, kLampRays), lights[l], i);
                 direct[i] +=
                     open * (medium ? working * (lamps[l].radiance_rec709 *
                                                 entering_of_lamp(

@@ -27,7 +27,11 @@ struct NodeExchange {
     std::vector<std::uint64_t> blocked;  ///< bit k: direction k meets the product
     /// Nodes that each one sees from their outside, one a ray, from `first` on.
     std::vector<std::uint32_t> first, seen;
+    /// kLampRays of each node, from all over what it stands for; empty: they start at its place.
+    std::vector<glm::vec3> lamp_origins_mm;
 };
+/// Rays of a node toward each lamp.
+inline constexpr std::size_t kLampRays = 8;
 NodeExchange solve_node_exchange(const Mesh& mesh,
                                  const Tracer& tracer,
                                  const Progress& progress = {});

@@ -81,18 +81,27 @@ float disc_openness(const Tracer& tracer,
                     const DirectionalLight& light,
                     int ray_count,
                     std::size_t seed) {
+    const std::vector<glm::vec3> origins(
+        static_cast<std::size_t>(light.angle_rad > 0.0 ? ray_count : 1),
+        offset_origin(position_mm, normal));
+    return disc_openness(tracer, origins, light, seed);
+}
+
+float disc_openness(const Tracer& tracer,
+                    std::span<const glm::vec3> origins_mm,
+                    const DirectionalLight& light,
+                    std::size_t seed) {
     const glm::vec3 centre(glm::normalize(light.direction));
-    std::vector<glm::vec3> directions(
-        static_cast<std::size_t>(light.angle_rad > 0.0 ? ray_count : 1), centre);
+    std::vector<glm::vec3> directions(origins_mm.size(), centre);
     if (light.angle_rad > 0.0) {
         DiscDirections(centre, cap_of(light), directions.size())
             .turned(turn_of_seed(seed), directions);
     }
     int open = 0;
-    for (const glm::vec3& direction : directions) {
+    for (std::size_t k = 0; k < directions.size(); ++k) {
         TraceRay ray;
-        ray.origin = offset_origin(position_mm, normal);
-        ray.direction = direction;
+        ray.origin = origins_mm[k];
+        ray.direction = directions[k];
         if (!tracer.occluded(ray)) ++open;
     }
     return static_cast<float>(open) / static_cast<float>(directions.size());

@@ -44,6 +44,12 @@ float disc_openness(const Tracer& tracer,
                     int ray_count,
                     std::size_t seed);
 
+/// The same of a surface: a ray from each of those places, which lie off it.
+float disc_openness(const Tracer& tracer,
+                    std::span<const glm::vec3> origins_mm,
+                    const DirectionalLight& light,
+                    std::size_t seed);
+
 /// Where rays from a fragment start: its first sub-samples, moved off the surface on the seen side.
 void ray_origins(const Mesh& mesh,
                  const SurfaceMap& map,

@@ -319,11 +319,11 @@ SubsurfaceTransport solve_transport(const Mesh& product,
     take_part(product, transport);
     const double within = std::numbers::pi * static_cast<double>(reach_mm * reach_mm);
     double cell_mm2 = kCellsCrossed * within / detail.neighbours;
-    // What comes through a sheet is as fine as it is thin
+    // What comes through a sheet is as fine as it is thin, which takes two nodes to tell
     const auto thin = sheet_mm > 0.0f ? std::optional(sheet_mm)
                                       : thinnest_slab_mm(tracer, product, part, reach_mm);
     if (thin) {
-        const auto own = static_cast<double>(*thin);
+        const double own = 0.5 * static_cast<double>(*thin);
         cell_mm2 = std::clamp(own * own, cell_mm2 / kMoreForSlabs, cell_mm2);
     }
     // What is nearer than nodes is gathered over fragments, which takes long over centimetres
@@ -337,6 +337,9 @@ SubsurfaceTransport solve_transport(const Mesh& product,
                                             kPlaceSkyRays,
                                             progress);
     transport.area_mm2 = node_areas_mm2(transport.mesh, transport.exchange.nodes);
+    // Else the edge of a shadow would lie where nodes do
+    transport.exchange.lamp_origins_mm =
+        ray_origins_mm(transport.mesh, transport.exchange.nodes, transport.area_mm2, kLampRays);
     find_slabs(tracer, product, transport);
     find_others(tracer, detail, transport, progress);
     return transport;
