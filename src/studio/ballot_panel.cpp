@@ -132,6 +132,7 @@ void draw_start(Studio& studio) {
     const bool loading = !studio.setup;
     if (!loading && !studio.setup->table) {
         warning_text("No calibration is in use: people would judge colours that are not right.");
+        name_last_item("ballot:uncorrected");
     }
     draw_seats_before_vote(studio);
     draw_presentation_setup(studio, ids);

@@ -15,6 +15,7 @@ TEST_F(Panels, ABallotIsFilledByTheLettersThatItShows) {
     use_scale(1.0f);
     Studio studio = make_studio();
     studio.ballots = std::make_unique<BallotStore>(home_ / "ballots.sqlite");
+    studio.setup = std::make_shared<const ProjectorSetup>();
     EXPECT_EQ(ballot_letters(studio), 0u);
     click(studio, draw_ballot, "ballot:start");
     ItemPlaces places = frames(studio, draw_ballot, 2);
@@ -55,10 +56,26 @@ TEST_F(Panels, ABallotIsFilledByTheLettersThatItShows) {
     EXPECT_EQ(studio.shown_look, studio.session.document().looks[1].id);
 }
 
+/// Until it is read nobody knows whether there is one: no warning, and no round that would be kept
+/// as not corrected.
+TEST_F(Panels, NoVoteBeginsBeforeTheCalibrationIsKnown) {
+    use_scale(1.0f);
+    Studio studio = make_studio();
+    studio.ballots = std::make_unique<BallotStore>(home_ / "ballots.sqlite");
+    EXPECT_FALSE(frames(studio, draw_ballot, 2).contains("ballot:uncorrected"));
+    click(studio, draw_ballot, "ballot:start");
+    EXPECT_TRUE(studio.ballots->rounds().empty());
+    studio.setup = std::make_shared<const ProjectorSetup>();
+    EXPECT_TRUE(frames(studio, draw_ballot, 2).contains("ballot:uncorrected"));
+    click(studio, draw_ballot, "ballot:start");
+    EXPECT_EQ(studio.ballots->rounds().size(), 1u);
+}
+
 TEST_F(Panels, TheBallotFollowsWhatPhonesDo) {
     use_scale(1.0f);
     Studio studio = make_studio();
     studio.ballots = std::make_unique<BallotStore>(home_ / "ballots.sqlite");
+    studio.setup = std::make_shared<const ProjectorSetup>();
     BallotStore phones(home_ / "ballots.sqlite");
     const int session = phones.open_session(), seat = phones.join(session, "a phone's", 9);
     click(studio, draw_ballot, "ballot:start");
