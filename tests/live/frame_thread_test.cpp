@@ -469,7 +469,7 @@ TEST_F(FrameThreadTest, IdleMeansThatNothingIsDone) {
 
 TEST_P(FrameThreadOnADevice, ManySwapsUseAFewTextures) {
     // A dozen would be used up in twenty.
-    const int swaps = thorough() ? 1000 : 60;
+    const int swaps = thorough() ? 1000 : 200;
     start();
     ASSERT_TRUE(gallery_.whole(show()));
     std::set<unsigned> textures;
