@@ -317,9 +317,6 @@ std::vector<glm::vec3> ray_origins_mm(const Mesh& mesh,
                                       std::span<const float> areas_mm2,
                                       std::size_t count) {
     std::vector<glm::vec3> origins(nodes.size() * count);
-    for (std::size_t i = 0; i < origins.size(); ++i) {
-        origins[i] = nodes.ray_origin_mm(mesh, i / count);
-    }
     std::vector<double> passed_mm2(nodes.size(), 0.0);
     std::vector<std::size_t> found(nodes.size(), 0);
     for_each_third(mesh, nodes.points, [&](const Third& third) {
@@ -334,6 +331,10 @@ std::vector<glm::vec3> ray_origins_mm(const Mesh& mesh,
             origins[node * count + next++] = origin;
         }
     });
+    // What rounding has left, and nodes without area
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        while (found[i] < count) origins[i * count + found[i]++] = nodes.ray_origin_mm(mesh, i);
+    }
     return origins;
 }
 
