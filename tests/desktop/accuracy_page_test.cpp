@@ -20,16 +20,16 @@ TEST_F(AccuracyPageTest, MeasuresBesideTheMockUpAndStops) {
     ASSERT_TRUE(projector_shows(first));
     program->click("menu:View");
     program->click("menu:accuracy-page");
-    EXPECT_TRUE(wait_until([&] { return program->has_item("accuracy:chart"); }, 60s));
+    EXPECT_TRUE(wait_until([&] { return program->has_item("accuracy:chart"); }));
     EXPECT_TRUE(program->has_item("accuracy:quality:draft"));
     program->click("accuracy:measure");
-    ASSERT_TRUE(wait_until([&] { return program->has_item("accuracy:stop"); }, 60s));
+    ASSERT_TRUE(wait_until([&] { return program->has_item("accuracy:stop"); }));
     desktop->press_key("2");
     EXPECT_TRUE(projector_shows(second)) << "looks are shown while it measures";
     program->click("accuracy:stop");
     EXPECT_TRUE(wait_until([&] { return program->has_item("accuracy:measure"); }, 120s));
     program->press_key("Escape");
-    EXPECT_TRUE(wait_until([&] { return !program->has_item("accuracy:chart"); }, 60s));
+    EXPECT_TRUE(wait_until([&] { return !program->has_item("accuracy:chart"); }));
 }
 
 }  // namespace

@@ -117,17 +117,15 @@ class CameraBeforeMonitor : public TwoMonitors {
     /// Waits until the column says something with these words in it.
     ::testing::AssertionResult says(const std::string& words) {
         std::string said;
-        const bool right = wait_until(
-            [&] {
-                said = says();
-                return said.find(words) != std::string::npos;
-            },
-            patience);
+        const bool right = wait_until([&] {
+            said = says();
+            return said.find(words) != std::string::npos;
+        });
         if (right) return ::testing::AssertionSuccess();
         return ::testing::AssertionFailure() << "it says \"" << said << "\", not " << words;
     }
     bool photographed(int count) {
-        return wait_until([&] { return room->camera().photographs() >= count; }, patience);
+        return wait_until([&] { return room->camera().photographs() >= count; });
     }
     /// Photographs of the capture that are on the disk.
     int kept() const {
@@ -183,10 +181,10 @@ class CameraBeforeMonitor : public TwoMonitors {
     /// well as that of the bench itself.
     void expect_as_direct() {
         const std::string before = document.calibration;
-        ASSERT_TRUE(wait_until([&] { return program->has_item("accept"); }, patience)) << says();
+        ASSERT_TRUE(wait_until([&] { return program->has_item("accept"); })) << says();
         EXPECT_EQ(program->state("calibration"), before) << "nobody has accepted the new one";
         program->click("accept");
-        ASSERT_TRUE(wait_until([&] { return program->state("calibration") != before; }, patience));
+        ASSERT_TRUE(wait_until([&] { return program->state("calibration") != before; }));
         document.calibration = program->state("calibration").get<std::string>();
         EXPECT_EQ(says(), "");
         expect_close(read_calibration(document.calibration));
@@ -315,7 +313,7 @@ TEST_F(CameraBeforeMonitor, FirstSessionInTheWindowTakesFivePresses) {
     std::printf("    wizard %.1f s, of which capture %.1f s\n", wizard_s, photographing_s);
     EXPECT_EQ(program->state("calibration"), before) << "nobody has accepted the new one";
     program->click("accept");
-    ASSERT_TRUE(wait_until([&] { return program->state("calibration") != before; }, patience));
+    ASSERT_TRUE(wait_until([&] { return program->state("calibration") != before; }));
     const auto accepted = program->state("calibration").get<std::string>();
     const ErrorStatistics off = off_its_place(accepted, room->bench());
     std::printf("    picture off its place %.3f / %.3f px\n", off.median, off.p95);
@@ -326,10 +324,10 @@ TEST_F(CameraBeforeMonitor, FirstSessionInTheWindowTakesFivePresses) {
 
     // The next day, and back.
     program->click("look-for-drift");
-    ASSERT_TRUE(wait_until([&] { return program->has_item("drift"); }, patience)) << says();
+    ASSERT_TRUE(wait_until([&] { return program->has_item("drift"); })) << says();
     EXPECT_NE(program->state("capture_drift"), "Bad");
     program->click("revert");
-    ASSERT_TRUE(wait_until([&] { return program->state("calibration") == before; }, patience));
+    ASSERT_TRUE(wait_until([&] { return program->state("calibration") == before; }));
     EXPECT_EQ(program->quit(), 0) << program->words();
 }
 

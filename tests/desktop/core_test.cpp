@@ -98,12 +98,10 @@ TEST_F(Core, SwapsPaintsInOpenGl) {
     EXPECT_TRUE(projector_shows(drive_with_body("solid green")));
     // Light between parts of another paint comes a moment later.
     program->wait_for_state("unfinished", "");
-    ASSERT_TRUE(wait_until(
-        [&] {
-            return program->state("shown_number") == program->state("asked_number") &&
-                   program->state("unfinished") == "";
-        },
-        60s));
+    ASSERT_TRUE(wait_until([&] {
+        return program->state("shown_number") == program->state("asked_number") &&
+               program->state("unfinished") == "";
+    }));
     const Image8 shown = projector_picture();
     const std::filesystem::path file = studio->folder / "sent.png";
     desktop->press_key("ctrl+s");
@@ -112,7 +110,7 @@ TEST_F(Core, SwapsPaintsInOpenGl) {
     desktop->press_key("ctrl+a");
     desktop->type(file.string());
     program->click("file-dialog:ok");
-    EXPECT_TRUE(wait_until([&] { return std::filesystem::exists(file); }, 60s));
+    EXPECT_TRUE(wait_until([&] { return std::filesystem::exists(file); }));
     const Image8 shown_after = projector_picture();
     EXPECT_EQ(program->quit(), 0);
     // Of the pictures before and after, if another one was finished while the dialog was filled in

@@ -85,7 +85,7 @@ TEST_F(LibraryFiles, AreLeftAloneWhileSomebodyClicks) {
     start_watched();
     pick_projector();
     program->click("part:body");
-    ASSERT_TRUE(wait_until([&] { return program->has_item("paint:tile"); }, 60s));
+    ASSERT_TRUE(wait_until([&] { return program->has_item("paint:tile"); }));
     EXPECT_GT(calls_on("solid-red.json"), 0) << "the calls are not seen";
     EXPECT_GT(calls_on("house red.json"), 0);
     EXPECT_GT(calls_on("tile.csv"), 0);
@@ -124,7 +124,7 @@ TEST_F(LibraryFiles, AreLeftAloneWhileSomebodyClicks) {
                                           "--session",
                                           studio->session_file().string()});
     EXPECT_EQ(again.exit_code, 0) << again.err;
-    EXPECT_TRUE(wait_until([&] { return program->has_item("paint:house blue"); }, 60s));
+    EXPECT_TRUE(wait_until([&] { return program->has_item("paint:house blue"); }));
     EXPECT_EQ(program->quit(), 0);
 }
 

@@ -89,8 +89,7 @@ TEST_F(Looks, HoldsBAndWipes) {
                fraction_different(columns(seen, middle + near, a.width),
                                   columns(b, middle + near, a.width)) < 0.002;
     };
-    EXPECT_TRUE(wait_until(is_split, std::chrono::seconds(30)))
-        << saved(projector_picture(), "wipe");
+    EXPECT_TRUE(wait_until(is_split)) << saved(projector_picture(), "wipe");
     desktop->press_key("w");
     EXPECT_TRUE(projector_shows(a));
 }

@@ -78,10 +78,10 @@ class OwnProduct : public TwoMonitors {
     }
     bool is_told(const std::string& words) {
         return wait_until(
-            [&] { return program->state("notices").dump().find(words) != std::string::npos; }, 60s);
+            [&] { return program->state("notices").dump().find(words) != std::string::npos; });
     }
     bool goes_on_with(const std::filesystem::path& file) {
-        return wait_until([&] { return made_session() == file; }, 60s);
+        return wait_until([&] { return made_session() == file; });
     }
     void open(const std::filesystem::path& file) {
         program->press_key("ctrl+o");
@@ -154,7 +154,7 @@ TEST_F(OwnProduct, AMeshOnTheCommandLineBeginsANewSession) {
     start();
     const auto kept = studio->session_file();
     start_program({write_scan(20).string()});
-    ASSERT_TRUE(wait_until([&] { return program->state("new_session") == "asking"; }, 60s));
+    ASSERT_TRUE(wait_until([&] { return program->state("new_session") == "asking"; }));
     program->press_key("Escape");
     program->wait_for_state("new_session", "closed");
     EXPECT_EQ(made_session(), kept);
@@ -167,7 +167,7 @@ TEST_F(OwnProduct, AMeshOnTheCommandLineBeginsANewSession) {
     how.more_arguments = {write_scan(20).string()};
     studio->program = std::make_unique<StudioProgram>(*desktop, how);
     program = studio->program.get();
-    ASSERT_TRUE(wait_until([&] { return program->state("new_session") == "asking"; }, 60s));
+    ASSERT_TRUE(wait_until([&] { return program->state("new_session") == "asking"; }));
     EXPECT_FALSE(std::filesystem::exists(how.session));
     program->click("new-session:front:+x");
     program->click("new-session:turn");
@@ -194,7 +194,7 @@ TEST_F(OwnProduct, NothingRunsBehindThePageOfAMeshAndWhatRunsIsNotStoppedUnasked
     use(running);
     const auto scan = write_scan(20);
     start_program({scan.string()});
-    ASSERT_TRUE(wait_until([&] { return program->state("new_session") == "asking"; }, 60s));
+    ASSERT_TRUE(wait_until([&] { return program->state("new_session") == "asking"; }));
     program->wait_for_state("new_session_pictured", true);
     program->wait_for_state("busy", false);
     sleep_ms(1500);
@@ -235,7 +235,7 @@ TEST_F(OwnProduct, NothingRunsBehindThePageOfAMeshAndWhatRunsIsNotStoppedUnasked
     EXPECT_EQ(program->state("calibrating"), true);
     program->click("new-session:create");
     program->click("question:ok");
-    ASSERT_TRUE(wait_until([&] { return made_session().filename() == "carscan.livery"; }, 60s));
+    ASSERT_TRUE(wait_until([&] { return made_session().filename() == "carscan.livery"; }));
     EXPECT_EQ(program->quit(), 0);
 }
 
@@ -250,7 +250,7 @@ TEST_F(OwnProduct, AScanOfAMillionTrianglesIsOnTheMockUpInAFewClicks) {
     program->click("menu:File");
     program->click("menu:new-session");
     type_into_dialog(scan);
-    ASSERT_TRUE(wait_until([&] { return program->state("new_session") == "asking"; }, 60s))
+    ASSERT_TRUE(wait_until([&] { return program->state("new_session") == "asking"; }))
         << program->state("new_session_says");
     std::cout << "the scan is read after " << seconds() << " s\n";
     program->wait_for_state("new_session_pictured", true);
@@ -261,14 +261,14 @@ TEST_F(OwnProduct, AScanOfAMillionTrianglesIsOnTheMockUpInAFewClicks) {
     desktop->press_key("ctrl+a");
     desktop->type("body");
     program->click("new-session:create");
-    ASSERT_TRUE(wait_until([&] { return made_session().filename() == "carscan.livery"; }, 60s));
+    ASSERT_TRUE(wait_until([&] { return made_session().filename() == "carscan.livery"; }));
     std::cout << "its session is open after " << seconds() << " s\n";
-    ASSERT_TRUE(wait_until([&] { return program->state("shown_number") != 0; }, 60s));
-    EXPECT_TRUE(wait_until([&] { return projector_is_lit(); }, 60s));
+    ASSERT_TRUE(wait_until([&] { return program->state("shown_number") != 0; }));
+    EXPECT_TRUE(wait_until([&] { return projector_is_lit(); }));
     std::cout << "it is on the mock-up after " << seconds() << " s and "
               << program->state("clicks").get<int>() - clicks_before << " clicks\n";
     EXPECT_TRUE(program->has_item("part:body"));
-    EXPECT_TRUE(wait_until([&] { return program->state("preview_number") != 0; }, 60s));
+    EXPECT_TRUE(wait_until([&] { return program->state("preview_number") != 0; }));
     std::cout << "and in the window after " << seconds() << " s\n";
     sleep_ms(1000);
     saved(desktop->read(desktop->operator_area()), "window");

@@ -44,7 +44,7 @@ TEST_F(ProjectedCode, StandsBesideTheMockUpUntilItIsUntickedOrTheLooksAreFrozen)
     const Image8 before = projector_picture();
     const std::string address = let_phones_vote();
     EXPECT_EQ(read_code(before), "");
-    EXPECT_TRUE(wait_until([&] { return read_panel() == address; }, 20s))
+    EXPECT_TRUE(wait_until([&] { return read_panel() == address; }))
         << saved(desktop->read(desktop->operator_area()), "operator");
     EXPECT_EQ(read_code(projector_picture()), "") << "nobody has ticked it";
 
@@ -52,13 +52,11 @@ TEST_F(ProjectedCode, StandsBesideTheMockUpUntilItIsUntickedOrTheLooksAreFrozen)
     program->click("phones:project-qr");
     program->move_away();
     Image8 seen;
-    ASSERT_TRUE(wait_until(
-        [&] {
-            seen = projector_picture();
-            return read_code(seen) == address;
-        },
-        20s))
-        << "read \"" << read_code(seen) << "\" from " << saved(seen, "seen");
+    ASSERT_TRUE(wait_until([&] {
+        seen = projector_picture();
+        return read_code(seen) == address;
+    })) << "read \""
+        << read_code(seen) << "\" from " << saved(seen, "seen");
     EXPECT_TRUE(testing::BallotPhone(address).has_seat()) << "whoever scans it is in";
 
     // The mock-up is grey, as if there were no code: each pixel that it lights is its own.
@@ -82,12 +80,12 @@ TEST_F(ProjectedCode, StandsBesideTheMockUpUntilItIsUntickedOrTheLooksAreFrozen)
     // --- unticked, everything is as it was ---
     program->click("phones:project-qr");
     program->move_away();
-    EXPECT_TRUE(wait_until([&] { return projector_picture().values == before.values; }, 20s))
+    EXPECT_TRUE(wait_until([&] { return projector_picture().values == before.values; }))
         << saved(projector_picture(), "seen");
 
     // --- it does not stay while looks are judged ---
     program->click("phones:project-qr");
-    EXPECT_TRUE(wait_until([&] { return read_code(projector_picture()) == address; }, 20s));
+    EXPECT_TRUE(wait_until([&] { return read_code(projector_picture()) == address; }));
     present_paused();
     EXPECT_TRUE(projector_shows_frame(kWhiteFrame));
     EXPECT_EQ(read_code(projector_picture()), "");
@@ -105,7 +103,7 @@ TEST_F(ProjectedCode, StandsBesideTheMockUpUntilItIsUntickedOrTheLooksAreFrozen)
 
     // A server that has stopped is nothing to scan.
     program->click("phones:project-qr");
-    EXPECT_TRUE(wait_until([&] { return read_code(projector_picture()) == address; }, 20s));
+    EXPECT_TRUE(wait_until([&] { return read_code(projector_picture()) == address; }));
     program->click("phones:stop");
     EXPECT_TRUE(projector_shows(look));
     EXPECT_EQ(read_code(projector_picture()), "");

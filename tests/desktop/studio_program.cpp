@@ -56,7 +56,7 @@ StudioProgram::StudioProgram(Desktop& desktop, const StudioStart& start) : deskt
     options.output = folder_ / "output";
     process_ = std::make_unique<ChildProcess>(options);
     const bool up = wait_until(
-        [&] { return std::filesystem::exists(folder_ / "map") || !process_->running(); }, patience);
+        [&] { return std::filesystem::exists(folder_ / "map") || !process_->running(); });
     if (!up || !process_->running()) {
         throw std::runtime_error("the desktop program showed no window:\n" + words());
     }
@@ -113,7 +113,7 @@ Rectangle StudioProgram::item(const std::string& name) {
         found = steady_item(name);
         return found.width > 0;
     };
-    if (!wait_until(steady, patience)) {
+    if (!wait_until(steady)) {
         throw std::runtime_error(fmt::format("no \"{}\" in the window, only: {}\n{}",
                                              name,
                                              fmt::join(items_starting_with(""), ", "),
@@ -150,7 +150,7 @@ Json StudioProgram::state(const std::string& name) {
 }
 
 void StudioProgram::wait_for_state(const std::string& name, const Json& value) {
-    if (wait_until([&] { return state(name) == value; }, patience)) return;
+    if (wait_until([&] { return state(name) == value; })) return;
     throw std::runtime_error(
         fmt::format("{} is {} instead of {}\n{}", name, state(name).dump(), value.dump(), words()));
 }
@@ -167,7 +167,7 @@ glm::ivec2 StudioProgram::point_at(const std::string& name) {
             return now.width > 0 ||
                    (map["state"]["at_rest"].get<bool>() && !map["items"].contains(name));
         };
-        if (!wait_until(known, patience) || now.width <= 0 || middle(now) == at) return at;
+        if (!wait_until(known) || now.width <= 0 || middle(now) == at) return at;
         at = middle(now);
     }
 }
@@ -193,6 +193,12 @@ void StudioProgram::double_click(const std::string& name) {
     wait_until_taken("clicks", before + 2);
 }
 
+void StudioProgram::drag(glm::ivec2 from, glm::ivec2 to) {
+    const int before = state("clicks");
+    desktop_.drag(from, to);
+    wait_until_taken("clicks", before + 1);
+}
+
 void StudioProgram::press_key(const std::string& keys) {
     const int before = state("keys");
     desktop_.press_key(keys);
@@ -216,8 +222,8 @@ void StudioProgram::wait_until_taken(const std::string& counter, int value) {
     const auto shown = [&] { return state("frame") >= frame + 2 || state("at_rest") == true; };
     // A click may end the program.
     const auto ended = [&] { return !process_->running(); };
-    const bool done = wait_until([&] { return taken() || ended(); }, patience) &&
-                      wait_until([&] { return shown() || ended(); }, patience);
+    const bool done = wait_until([&] { return taken() || ended(); }) &&
+                      wait_until([&] { return shown() || ended(); });
     if (!done) {
         throw std::runtime_error(
             fmt::format("the window does not take input: {} {} of {}, frame {} of {}\n{}",

@@ -18,9 +18,6 @@
 
 namespace livery {
 
-/// On two cores that others use as well.
-inline constexpr auto patience = std::chrono::seconds(60);
-
 /// A line of the program's `--trace`.
 struct TraceLine {
     double t_s = 0.0;
@@ -62,9 +59,10 @@ class StudioProgram {
     void wait_for_state(const std::string& name, const nlohmann::json& value);
 
     void hover(const std::string& name);
-    /// A click, a key and a notch are done when the window has drawn what came of them.
+    /// A click, a drag, a key and a notch are done when the window has drawn what came of them.
     void click(const std::string& name);
     void double_click(const std::string& name);
+    void drag(glm::ivec2 from, glm::ivec2 to);
     void press_key(const std::string& keys);
     /// Turns the wheel with the pointer at a place of the desktop.
     void scroll(glm::ivec2 at, int notches);

@@ -128,12 +128,10 @@ void TwoMonitors::TearDownTestSuite() { shared_studio.reset(); }
 
 ::testing::AssertionResult TwoMonitors::projector_shows(const Image8& wanted) {
     Image8 seen;
-    wait_until(
-        [&] {
-            seen = projector_picture();
-            return fraction_different(seen, wanted, level_tolerance) <= pixels_that_may_differ;
-        },
-        patience);
+    wait_until([&] {
+        seen = projector_picture();
+        return fraction_different(seen, wanted, level_tolerance) <= pixels_that_may_differ;
+    });
     return same(seen, wanted);
 }
 
@@ -154,12 +152,10 @@ Rgb TwoMonitors::painted_colour() {
 
 ::testing::AssertionResult TwoMonitors::operator_sees(const std::string& hue) {
     Rgb seen;
-    const bool right = wait_until(
-        [&] {
-            seen = painted_colour();
-            return has_hue(seen, hue);
-        },
-        patience);
+    const bool right = wait_until([&] {
+        seen = painted_colour();
+        return has_hue(seen, hue);
+    });
     if (right) return ::testing::AssertionSuccess();
     return ::testing::AssertionFailure()
            << "the operator sees " << seen << " instead of " << hue << ": "

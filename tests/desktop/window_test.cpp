@@ -30,12 +30,12 @@ TEST_F(OperatorsWindow, ComesBackWhenTheProgramIsStartedAgain) {
     DesktopOptions options;
     options.window_manager = true;
     start(options);
-    ASSERT_TRUE(wait_until([&] { return is_seen(); }, 60s));
+    ASSERT_TRUE(wait_until([&] { return is_seen(); }));
     desktop->minimise_active_window();
-    ASSERT_TRUE(wait_until([&] { return !is_seen(); }, 60s));
+    ASSERT_TRUE(wait_until([&] { return !is_seen(); }));
     const ProgramRun second = start_again();
     EXPECT_EQ(second.exit_code, 0) << second.err;
-    EXPECT_TRUE(wait_until([&] { return is_seen(); }, 60s));
+    EXPECT_TRUE(wait_until([&] { return is_seen(); }));
     // It has the keyboard, too.
     desktop->press_key("F6");
     program->wait_for_state("view", "eye");

@@ -39,10 +39,12 @@ class ChildProcess {
     std::optional<int> exit_code_;
 };
 
+/// Long enough for slow cores that others use as well: only what fails takes it.
+inline constexpr auto patience = std::chrono::minutes(3);
+
 /// Asks again every few milliseconds until `condition` holds; its last answer.
 template <typename Condition>
-bool wait_until(Condition&& condition,
-                std::chrono::milliseconds timeout = std::chrono::seconds(10));
+bool wait_until(Condition&& condition, std::chrono::milliseconds timeout = patience);
 
 /// The last lines of a text file, for a failure's message.
 std::string tail_of(const std::filesystem::path& file, std::size_t lines = 20);
