@@ -193,6 +193,7 @@ glm::vec3 PathScene::light_along(const glm::vec3& direction, float reflectance_p
 
 bool PathScene::pass_through(const TranslucentPart& part,
                              const Vertex& vertex,
+                             float channel,
                              Random random,
                              glm::vec3& throughput,
                              glm::vec3& sum,
@@ -202,8 +203,13 @@ bool PathScene::pass_through(const TranslucentPart& part,
     entry.geometric_normal = glm::dvec3(vertex.geometric_normal);
     entry.normal = glm::dvec3(vertex.world_from_local[2]);
     entry.toward_eye = glm::dvec3(vertex.world_from_local * vertex.wo);
-    const WalkedLight walked =
-        walk_through(part, mesh_, tracer_, {lights_, options_.projected.get()}, entry, random);
+    const WalkedLight walked = walk_through(part,
+                                            mesh_,
+                                            tracer_,
+                                            {lights_, options_.projected.get()},
+                                            entry,
+                                            static_cast<double>(channel),
+                                            random);
     sum += throughput * glm::vec3(walked.of_lamps);
     if (!walked.left) return false;
     throughput *= glm::vec3(walked.weight);
@@ -245,7 +251,9 @@ glm::vec3 PathScene::radiance(SurfacePoint point,
         const bool enters = inside && !(u.z < vertex.chance);
         if (enters) {
             throughput *= 1.0f / (1.0f - vertex.chance);
-            if (!pass_through(*inside, vertex, numbers.independent(b), throughput, sum, ray)) {
+            const float channel = (u.z - vertex.chance) / (1.0f - vertex.chance);
+            if (!pass_through(
+                    *inside, vertex, channel, numbers.independent(b), throughput, sum, ray)) {
                 return sum;
             }
         } else {

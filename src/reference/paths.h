@@ -45,6 +45,7 @@ class PathScene {
     /// lamps send through it, times `throughput`.
     bool pass_through(const TranslucentPart& part,
                       const Vertex& vertex,
+                      float channel,
                       Random random,
                       glm::vec3& throughput,
                       glm::vec3& sum,

@@ -86,6 +86,7 @@ WalkedLight walk_through(const TranslucentPart& part,
                          const Tracer& tracer,
                          const WalkLamps& lights,
                          const SurfaceEntry& entry,
+                         double channel,
                          Random& random) {
     WalkedLight light;
     const double eta = part.medium.eta;
@@ -145,6 +146,7 @@ WalkedLight walk_through(const TranslucentPart& part,
         boundary,
         boundary.inside_of(start),
         direction,
+        channel,
         lights.discs.empty() && !lights.projected ? nullptr : &lamps,
         [&](const glm::dvec3& weight, const glm::dvec3& irradiance) {
             light.of_lamps += narrowed * (working * weight) * irradiance;

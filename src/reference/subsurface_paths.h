@@ -51,12 +51,14 @@ struct WalkedLight {
 };
 /// In by refraction, which leaves out what the boundary mirrors, and out again. What leaves an open
 /// part does so at the surface over the point of its plane, or where it entered if there is none;
-/// what leaves a sheet on its other side, as far behind that as it is thick.
+/// what leaves a sheet on its other side, as far behind that as it is thick. `channel`:
+/// walk_inside()'s.
 WalkedLight walk_through(const TranslucentPart& part,
                          const Mesh& mesh,
                          const Tracer& tracer,
                          const WalkLamps& lights,
                          const SurfaceEntry& entry,
+                         double channel,
                          Random& random);
 
 }  // namespace livery

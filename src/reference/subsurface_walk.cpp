@@ -174,6 +174,7 @@ WalkResult walk_inside(const WalkMedium& medium,
                        const Boundary& boundary,
                        glm::dvec3 origin,
                        glm::dvec3 direction,
+                       double channel,
                        const WalkLights* lights,
                        const std::function<void(const glm::dvec3&, const glm::dvec3&)>& add,
                        Random& random) {
@@ -182,7 +183,8 @@ WalkResult walk_inside(const WalkMedium& medium,
     constexpr double kDark = 9.5;
     SpectralWeight weight;
     glm::dvec3 last_normal = -direction;
-    const double sigma = medium.sigma_t[static_cast<int>(random.below(3))];
+    double arrives = 1.0;  // of a light that was asked for last
+    const double sigma = medium.sigma_t[std::clamp(static_cast<int>(3.0 * channel), 0, 2)];
     const double least = std::min({medium.sigma_t.x, medium.sigma_t.y, medium.sigma_t.z});
     const double seen = least > 0.0 ? kDark / least : kEverywhere;
     for (int scatterings = 0; scatterings < kMostScatterings;) {
@@ -213,15 +215,20 @@ WalkResult walk_inside(const WalkMedium& medium,
         }
         ++scatterings;
         origin += free * direction;
-        if (lights) {
+        // Deep inside one light in eight is asked for: the last one says how much comes there
+        constexpr double kSurelyAbove = 1.0 / 16.0, kRarest = 1.0 / 8.0;
+        const double asking = std::clamp(arrives / kSurelyAbove, kRarest, 1.0);
+        if (lights && random.uniform() < asking) {
+            arrives = 0.0;
             lights->each(origin, random, [&](const ArrivingLight& light) {
                 const auto found =
                     refracted_to(origin, light, medium, boundary, *lights, last_normal, seen);
                 if (!found) return;
                 last_normal = found->normal;
+                const glm::dvec3 left_of_it = glm::exp(-found->distance * medium.sigma_t);
+                arrives = std::max(arrives, largest(left_of_it));
                 const double turned = phase(medium.g, glm::dot(found->travel, -direction));
-                add(weight.carried * glm::exp(-found->distance * medium.sigma_t) *
-                        (found->flux * turned),
+                add(weight.carried * left_of_it * (found->flux * turned / asking),
                     found->irradiance);
             });
         }

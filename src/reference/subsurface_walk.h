@@ -71,13 +71,15 @@ struct WalkResult {
 /// `direction`) and irradiance: lights without a size are found through the boundary by Newton-like
 /// steps toward the refracted ray (Walter, Zhao, Holzschuch and Bala 2009), focused as the normals
 /// around say. Distances are sampled for one channel, and weighed for all by the balance heuristic
-/// (Wilkie, Nawaz, Droske, Weidlich and Hanika 2014). `lights` may be null. Never more than a
-/// hundred thousand scatterings.
+/// (Wilkie, Nawaz, Droske, Weidlich and Hanika 2014). `channel`, uniform in [0, 1), says which: a
+/// walk is nearly all of that colour, and a pixel's are best shared out evenly. `lights` may be
+/// null. Never more than a hundred thousand scatterings.
 WalkResult walk_inside(
     const WalkMedium& medium,
     const Boundary& boundary,
     glm::dvec3 origin,
     glm::dvec3 direction,
+    double channel,
     const WalkLights* lights,
     const std::function<void(const glm::dvec3& weight, const glm::dvec3& irradiance)>& add,
     Random& random);

@@ -75,8 +75,14 @@ inline ImageF photon_picture(const Scene& scene,
         BoundaryPoint start;
         start.position = glm::dvec3(in.position_mm);
         start.geometric_normal = glm::dvec3(in.geometric_normal);
-        const WalkResult walked =
-            walk_inside(medium, boundary, boundary.inside_of(start), *inward, nullptr, {}, random);
+        const WalkResult walked = walk_inside(medium,
+                                              boundary,
+                                              boundary.inside_of(start),
+                                              *inward,
+                                              random.uniform(),
+                                              nullptr,
+                                              {},
+                                              random);
         // The eye does not look into what goes straight through
         if (!walked.left || glm::dot(walked.direction, way) > 0.9999) return;
         // Seen from the view, shaded for the eye

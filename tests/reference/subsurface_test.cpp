@@ -57,8 +57,14 @@ Totals walked_totals(const TranslucentMaterial& material,
             BoundaryPoint start;
             start.position = {0.1, top_mm, 0.2};
             start.geometric_normal = {0.0, 1.0, 0.0};
-            results[k] = walk_inside(
-                medium, boundary, boundary.inside_of(start), {0.0, -1.0, 0.0}, nullptr, {}, random);
+            results[k] = walk_inside(medium,
+                                     boundary,
+                                     boundary.inside_of(start),
+                                     {0.0, -1.0, 0.0},
+                                     random.uniform(),
+                                     nullptr,
+                                     {},
+                                     random);
         }
     });
     Totals totals;

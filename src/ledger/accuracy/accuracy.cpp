@@ -38,6 +38,7 @@ AccuracyLedger measure_accuracy(const AccuracyOptions& options, const Progress& 
     const std::vector<AccuracyScene> scenes = accuracy_scenes(options.quick, progress);
     TruthOptions truths;
     const int samples = options.quick ? kQuickSamples : kFullSamples;
+    truths.samples_per_pixel = samples;
     truths.seed = options.seed;
     truths.folder = options.folder / "truths";
     const std::filesystem::path kept = options.folder / "rows";
@@ -59,7 +60,6 @@ AccuracyLedger measure_accuracy(const AccuracyOptions& options, const Progress& 
         const Progress part = progress.part(begin, end);
         const bool own = k % static_cast<std::size_t>(options.shards) ==
                          static_cast<std::size_t>(options.shard - 1);
-        truths.samples_per_pixel = samples / scene.fewer_samples;
         // The hash alone is asked for first: a scene whose rows are all there is not traced.
         const std::string hash = truth_hash(scene, truths);
         std::vector<const AccuracyRow*> of_scene;

@@ -6,6 +6,7 @@
 #include "compensation/compensation.h"
 #include "compensation/shown.h"
 #include "core/pictures/colour_differences.h"
+#include "core/pictures/square_means.h"
 #include "core/statistics.h"
 #include "jobs/synthetic_calibration.h"
 #include "ledger/accuracy/chain_steps.h"
@@ -32,18 +33,11 @@ AccuracyScene car_in(const std::string& paint) {
 }
 
 /// Means over squares whose pixels are all covered; coverage 0 elsewhere.
-ImageF means_of(const ImageF& shown, int side_px) {
-    ImageF means(shown.width / side_px, shown.height / side_px, 4);
-    const float share = 1.0f / static_cast<float>(side_px * side_px);
-    for (int y = 0; y < means.height * side_px; ++y) {
-        for (int x = 0; x < means.width * side_px; ++x) {
-            for (int c = 0; c < 4; ++c) {
-                means.at(x / side_px, y / side_px, c) += share * shown.at(x, y, c);
-            }
-        }
-    }
+ImageF whole_means(const ImageF& shown, int side_px) {
+    ImageF means = square_means(shown, side_px);
+    const float least = 1.0f - 0.5f / static_cast<float>(side_px * side_px);
     for (std::size_t i = 3; i < means.values.size(); i += 4) {
-        means.values[i] = means.values[i] > 1.0f - 0.5f * share ? 1.0f : 0.0f;
+        means.values[i] = means.values[i] > least ? 1.0f : 0.0f;
     }
     return means;
 }
@@ -80,8 +74,8 @@ std::vector<float> drive_errors(const CompensationTable& table,
                                 const Image8& drive,
                                 const ImageF& exact,
                                 int side_px) {
-    return colour_differences(means_of(shown_by(table, drive), side_px),
-                              means_of(shown_by(table, exact), side_px));
+    return colour_differences(whole_means(shown_by(table, drive), side_px),
+                              whole_means(shown_by(table, exact), side_px));
 }
 
 double compensation_ms(const CompensationTable& table, const ImageF& wanted) {

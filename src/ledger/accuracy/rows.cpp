@@ -4,6 +4,7 @@
 #include <chrono>
 #include <map>
 
+#include "core/pictures/square_means.h"
 #include "core/statistics.h"
 #include "radiance/renderer.h"
 #include "scene/frame_plan.h"
@@ -85,8 +86,8 @@ AccuracyRow RowMeasurement::measured(const AccuracyRow& row, const Progress& pro
         if (effect && effect_info(*effect).name == row.effect) result.own_ms += ms;
     }
     result.fragments = static_cast<double>(renderer.surface_map().fragments.size());
-    const std::vector<float> apart =
-        colour_differences(renderer.read_back(), s.truth.radiance_working);
+    const std::vector<float> apart = colour_differences(
+        square_means(renderer.read_back(), s.scene.mean_px), s.truth.radiance_working);
     result.error = statistics_of(apart);
     result.p99 = static_cast<double>(quantile(apart, 0.99));
     result.floor_median = s.truth.floor.median;

@@ -11,8 +11,8 @@ namespace livery {
 namespace {
 
 constexpr int kWidth_px = 640, kHeight_px = 400;
-/// Pictures' sides, and samples a pixel.
-constexpr int kTranslucentSmaller = 4, kTranslucentFewer = 4;
+/// Pictures' sides, and those of the squares over which they are compared.
+constexpr int kTranslucentSmaller = 4, kTranslucentMean_px = 4;
 
 struct NamedLook {
     const char* name;
@@ -73,8 +73,9 @@ std::vector<std::pair<const char*, std::function<void(Look&)>>> lights() {
 }
 
 /// Marble at its own size, where light goes through what is as large as a hand: a ball, and the
-/// shell of the player. Walks in it are hundreds of scatterings long, so that pictures are smaller
-/// and coarser.
+/// shell of the player. Walks in it are hundreds of scatterings long, so that pictures are smaller;
+/// and each is nearly of one channel, which leaves pixels noisy. Squares of which one is as wide as
+/// blue light spreads show what spreads as well.
 void add_translucent(std::vector<AccuracyScene>& scenes, const Progress& progress) {
     for (const std::string name : {"sphere", "player"}) {
         const auto product = find_product(name);
@@ -83,6 +84,8 @@ void add_translucent(std::vector<AccuracyScene>& scenes, const Progress& progres
             progress.check_stop();
             Look look = find_look_for("solid-red", product->mesh);
             const std::string part = name == "player" ? "shell" : look.parts.begin()->first;
+            // Which mirror nothing that a coarse picture could not show
+            for (auto& other : look.parts) other.second = "tyre rubber";
             look.parts[part] = "marble";
             light(look);
             AccuracyScene& scene = scenes.emplace_back();
@@ -91,7 +94,7 @@ void add_translucent(std::vector<AccuracyScene>& scenes, const Progress& progres
                                  kWidth_px / kTranslucentSmaller,
                                  kHeight_px / kTranslucentSmaller);
             scene.scene = make_scene(product, look, bench.eye_mm, nullptr);
-            scene.fewer_samples = kTranslucentFewer;
+            scene.mean_px = kTranslucentMean_px;
             scene.only = Effect::subsurface;
         }
     }
@@ -100,11 +103,7 @@ void add_translucent(std::vector<AccuracyScene>& scenes, const Progress& progres
 }  // namespace
 
 AccuracyScene resized(const AccuracyScene& scene, int width, int height) {
-    return {scene.name,
-            scene.scene,
-            resized(scene.view, width, height),
-            scene.fewer_samples,
-            scene.only};
+    return {scene.name, scene.scene, resized(scene.view, width, height), scene.mean_px, scene.only};
 }
 
 std::vector<AccuracyScene> accuracy_scenes(bool quick, const Progress& progress) {

@@ -17,7 +17,7 @@ struct AccuracyScene {
     std::string name;  ///< "car, pearl, overcast"
     Scene scene;
     View view;
-    int fewer_samples = 1;  ///< a pixel, in its truth, than in others': by that factor
+    int mean_px = 1;  ///< pictures are compared in means over squares of such a side
     /// What it alone is for: its truth is too coarse to judge others by.
     std::optional<Effect> only{};
 };

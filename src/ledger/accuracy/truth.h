@@ -20,11 +20,12 @@ struct TruthOptions {
 };
 
 struct Truth {
-    std::string hash;         ///< of everything that it depends on
-    ImageF radiance_working;  ///< mean of two independent pictures, R, G, B, coverage
-    ErrorStatistics floor;    ///< half of the CIEDE2000 between the two: what the mean may err by
-    double p99 = 0.0;         ///< the same
-    double seconds = 0.0;     ///< that tracing took; 0 where they were kept
+    std::string hash;  ///< of everything that it depends on
+    /// Mean of two independent pictures, R, G, B, coverage, in the scene's squares.
+    ImageF radiance_working;
+    ErrorStatistics floor;  ///< half of the CIEDE2000 between the two: what the mean may err by
+    double p99 = 0.0;       ///< the same
+    double seconds = 0.0;   ///< that tracing took; 0 where they were kept
 };
 /// Throws FileError where the folder cannot be written; what lies there damaged is traced again.
 Truth truth_of(const AccuracyScene& scene,

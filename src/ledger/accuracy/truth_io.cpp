@@ -13,6 +13,7 @@
 #include "core/image_io.h"
 #include "core/parallel.h"
 #include "core/paths.h"
+#include "core/pictures/square_means.h"
 #include "core/statistics.h"
 #include "core/worst_error.h"
 #include "ledger/accuracy/truth.h"
@@ -133,6 +134,8 @@ std::string truth_hash(const AccuracyScene& scene, const TruthOptions& options) 
                  1.0 * options.samples_per_pixel,
                  static_cast<double>(options.seed),
                  1.0 * kReferenceBounces});
+    // By pixels, as those that are kept since before there were squares
+    if (scene.mean_px != 1) add_numbers(hasher, {1.0 * scene.mean_px});
     return hasher.hex();
 }
 
@@ -156,6 +159,7 @@ Truth truth_of(const AccuracyScene& scene, const TruthOptions& options, const Pr
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         if (!file.empty()) keep(file, *pictures);
     }
+    for (ImageF& picture : *pictures) picture = square_means(picture, scene.mean_px);
     std::vector<float> apart = colour_differences((*pictures)[0], (*pictures)[1]);
     for (float& difference : apart) difference *= 0.5f;
     truth.floor = statistics_of(apart);
