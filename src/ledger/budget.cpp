@@ -130,6 +130,20 @@ void each_combination(const std::array<bool, kEffects>& called, const Visit& vis
     from(from, 0);
 }
 
+/// With one effect at another level, and along with it what the renderer has only together: many
+/// nodes of mirrors have rays, few have none.
+EffectLevels moved(EffectLevels levels, Effect effect, int level) {
+    levels[effect] = level;
+    int& nodes = levels[Effect::mirrored_environment];
+    int& rays = levels[Effect::reflected_occlusion];
+    if (effect == Effect::mirrored_environment) rays = level < kMirrorsWithRays ? 0 : 1;
+    if (effect == Effect::reflected_occlusion) {
+        nodes =
+            level == 0 ? std::min(nodes, kMirrorsWithRays - 1) : std::max(nodes, kMirrorsWithRays);
+    }
+    return levels;
+}
+
 LevelPrice price_of(const PriceList& list, const EffectLevels& levels, int level) {
     return {level, time_of(list, levels), error_of(list, levels)};
 }
@@ -196,15 +210,10 @@ PricedFrame priced(const PriceList& list, const EffectLevels& levels) {
         if (info.effect == Effect::interreflection && level == 0) {
             price.bound = exchange_bound(list.scene).de00;
         }
-        EffectLevels other = levels;
         if (level + 1 < static_cast<int>(info.levels.size())) {
-            other[info.effect] = level + 1;
-            price.next = price_of(list, other, level + 1);
+            price.next = price_of(list, moved(levels, info.effect, level + 1), level + 1);
         }
-        if (level > 0) {
-            other[info.effect] = 0;
-            price.off = price_of(list, other, 0);
-        }
+        if (level > 0) price.off = price_of(list, moved(levels, info.effect, 0), 0);
     }
     return frame;
 }

@@ -9,15 +9,24 @@ namespace livery {
 
 namespace {
 
+/// With no level missing, of all effects or of one alone.
 bool is_whole(const SceneErrors& errors) {
+    std::size_t effects = 0;
     for (std::size_t e = 0; e < kEffects; ++e) {
         const auto& levels = errors.at_level[e];
-        if (!levels.empty() && levels.size() != effect_table()[e].levels.size()) return false;
+        if (levels.empty()) continue;
+        if (levels.size() != effect_table()[e].levels.size()) return false;
+        ++effects;
     }
-    return !errors.at_level[static_cast<std::size_t>(Effect::sub_samples)].empty();
+    return is_of_all_effects(errors) || effects == 1;
 }
 
 }  // namespace
+
+bool is_of_all_effects(const SceneErrors& errors) {
+    // Which every scene calls for
+    return !errors.at_level[static_cast<std::size_t>(Effect::sub_samples)].empty();
+}
 
 EffectErrors errors_of(const std::vector<AccuracyRow>& rows) {
     EffectErrors errors;
@@ -58,8 +67,19 @@ std::optional<double> error_of(const EffectErrors& errors,
                                const std::array<bool, kEffects>& called_for) {
     std::optional<double> worst;
     const bool environment = levels[Effect::environment] > 0;
+    double of_their_own = 0.0;
+    for (const EffectInfo& info : effect_table()) {
+        if (!called_for[static_cast<std::size_t>(info.effect)]) continue;
+        double added = 0.0;
+        for (const SceneErrors& scene : errors) {
+            if (is_of_all_effects(scene)) continue;
+            added = worse_of(added, error_added(scene, info.effect, levels[info.effect]));
+        }
+        of_their_own += added;
+    }
     for (const SceneErrors& scene : errors) {
-        double squared = scene.dearest * scene.dearest;
+        if (!is_of_all_effects(scene)) continue;
+        double squared = scene.dearest * scene.dearest + of_their_own;
         // Both say how exactly the environment is mirrored: one's loss is the other's
         double mirrored = 0.0;
         for (const EffectInfo& info : effect_table()) {

@@ -13,7 +13,8 @@
 
 namespace livery {
 
-/// Of one scene of the ledger, CIEDE2000 at the 95th percentile of its pixels.
+/// Of one scene of the ledger, CIEDE2000 at the 95th percentile of its pixels. A scene that is for
+/// one effect alone has that effect's levels and no others.
 struct SceneErrors {
     std::string scene;
     double dearest = 0.0;  ///< every effect at its last level
@@ -21,6 +22,9 @@ struct SceneErrors {
     std::array<std::vector<double>, kEffects> at_level;
 };
 using EffectErrors = std::vector<SceneErrors>;
+
+/// Whether it has the levels of whatever it calls for, and is not for one effect alone.
+bool is_of_all_effects(const SceneErrors& errors);
 
 /// Of those scenes whose rows are all there.
 EffectErrors errors_of(const std::vector<AccuracyRow>& rows);
@@ -30,8 +34,9 @@ EffectErrors errors_of(const std::vector<AccuracyRow>& rows);
 /// no truth, since the path tracer draws them as a smooth lobe: what they change counts.
 double error_added(const SceneErrors& errors, Effect effect, int level);
 
-/// Of the levels, in the scene of the ledger where it is largest; effects that `called_for` denies
-/// add nothing. None without a scene that calls for as much.
+/// Of the levels, in the scene of the ledger where it is largest, and on top of it what each effect
+/// that has scenes of its own adds most there; effects that `called_for` denies add nothing. None
+/// without a scene.
 std::optional<double> error_of(const EffectErrors& errors,
                                const EffectLevels& levels,
                                const std::array<bool, kEffects>& called_for);
@@ -40,7 +45,8 @@ std::filesystem::path effect_errors_file();  ///< in the user's folder
 void write_effect_errors(const std::filesystem::path& file, const EffectErrors& errors);
 /// Throws FileError for a malformed text.
 EffectErrors parse_effect_errors(const std::string& text, const std::filesystem::path& file);
-/// What was measured here, else what was shipped: errors hardly depend on the machine.
+/// What was measured here, if it tells of as many effects as there are, else what was shipped:
+/// errors hardly depend on the machine.
 EffectErrors known_effect_errors();
 
 }  // namespace livery

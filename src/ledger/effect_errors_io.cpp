@@ -7,6 +7,20 @@
 
 namespace livery {
 
+namespace {
+
+bool tells_of_every_effect(const EffectErrors& errors) {
+    for (std::size_t e = 0; e < kEffects; ++e) {
+        const bool told = std::any_of(errors.begin(), errors.end(), [&](const SceneErrors& one) {
+            return !one.at_level[e].empty();
+        });
+        if (!told) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
 std::filesystem::path effect_errors_file() { return user_folder() / "effect-errors.json"; }
 
 void write_effect_errors(const std::filesystem::path& file, const EffectErrors& errors) {
@@ -61,6 +75,7 @@ EffectErrors parse_effect_errors(const std::string& text, const std::filesystem:
 }
 
 EffectErrors known_effect_errors() {
+    const std::filesystem::path shipped = shipped_path("assets/ledger/effect-errors.json");
     std::error_code error;
     std::filesystem::path file;
     try {
@@ -68,10 +83,12 @@ EffectErrors known_effect_errors() {
     } catch (const FileError&) {
         // No home folder to keep one in
     }
-    if (file.empty() || !std::filesystem::exists(file, error)) {
-        file = shipped_path("assets/ledger/effect-errors.json");
+    if (!file.empty() && std::filesystem::exists(file, error)) {
+        EffectErrors measured = parse_effect_errors(read_text_file(file), file);
+        // An earlier version's knows less: what it has no error of would cost nothing to leave out
+        if (tells_of_every_effect(measured)) return measured;
     }
-    return parse_effect_errors(read_text_file(file), file);
+    return parse_effect_errors(read_text_file(shipped), shipped);
 }
 
 }  // namespace livery

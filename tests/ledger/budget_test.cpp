@@ -203,6 +203,33 @@ TEST(PricedFrames, AddUpAndSayWhatTheNextLevelBuys) {
     EXPECT_NE(text.find("at most, by the parts' albedos"), std::string::npos) << text;
 }
 
+// Few nodes have no rays: with one of the two alone nothing would be bought.
+TEST(PricedFrames, MoveTheNodesOfMirrorsAndTheirRaysTogether) {
+    Scene scene = matt_box();
+    scene.part_materials[0].model = ReflectanceModel::car_paint;
+    const PriceList list = list_of(scene);
+    EffectLevels few = levels_of(Quality::normal);
+    few[Effect::mirrored_environment] = kMirrorsWithRays - 1;
+    few[Effect::reflected_occlusion] = 0;
+    EffectLevels many = few;
+    many[Effect::mirrored_environment] = kMirrorsWithRays;
+    many[Effect::reflected_occlusion] = 1;
+    ASSERT_GT(time_of(list, many).all_ms, time_of(list, few).all_ms);
+    const auto price = [&](const EffectLevels& levels, Effect effect) {
+        return priced(list, levels).effects.at(static_cast<std::size_t>(effect));
+    };
+    for (const Effect effect : {Effect::mirrored_environment, Effect::reflected_occlusion}) {
+        SCOPED_TRACE(effect_info(effect).name);
+        const auto next = price(few, effect).next;
+        ASSERT_TRUE(next);
+        EXPECT_EQ(next->time.all_ms, time_of(list, many).all_ms);
+        EXPECT_EQ(next->error, error_of(list, many));
+    }
+    const auto off = price(many, Effect::reflected_occlusion).off;
+    ASSERT_TRUE(off);
+    EXPECT_EQ(off->time.all_ms, time_of(list, few).all_ms);
+}
+
 // Shipped for machines where no accuracy suite has run.
 TEST(EffectErrors, ThatAreShippedRankTheQualities) {
     const EffectErrors errors = known_effect_errors();
@@ -219,6 +246,61 @@ TEST(EffectErrors, ThatAreShippedRankTheQualities) {
     EXPECT_GT(of(Quality::draft), of(Quality::normal));
     EXPECT_GT(of(Quality::normal), of(Quality::high));
     EXPECT_FALSE(error_of({}, levels_of(Quality::high), called).has_value());
+}
+
+// What no scene tells of would cost nothing to leave out.
+TEST(EffectErrors, ThatAreShippedTellOfEveryEffect) {
+    const EffectErrors errors = known_effect_errors();
+    for (const EffectInfo& info : effect_table()) {
+        const int last = static_cast<int>(info.levels.size()) - 1;
+        EffectLevels without = dearest_levels();
+        without[info.effect] = 0;
+        std::array<bool, kEffects> called{};
+        called.fill(true);
+        EXPECT_GT(*error_of(errors, without, called),
+                  1.01 * *error_of(errors, dearest_levels(), called))
+            << info.name << " " << info.levels.front().name << " beside "
+            << info.levels[static_cast<std::size_t>(last)].name;
+    }
+}
+
+TEST(EffectErrors, OfAnEffectWithScenesOfItsOwnComeOnTop) {
+    EffectErrors errors = halving_errors();
+    errors[0].at_level[static_cast<std::size_t>(Effect::subsurface)].clear();
+    SceneErrors& marble = errors.emplace_back();
+    marble.scene = "marble";
+    marble.dearest = 3.0;
+    marble.at_level[static_cast<std::size_t>(Effect::subsurface)] = {5.0, 3.5, 3.0};
+    std::array<bool, kEffects> called{};
+    called.fill(true);
+    EffectLevels levels = dearest_levels();
+    EXPECT_DOUBLE_EQ(*error_of(errors, levels, called), kDearest) << "nothing of the scene's own";
+    levels[Effect::subsurface] = 0;
+    EXPECT_DOUBLE_EQ(*error_of(errors, levels, called), std::sqrt(kDearest * kDearest + 16.0));
+    levels[Effect::subsurface] = 1;
+    EXPECT_DOUBLE_EQ(*error_of(errors, levels, called), std::sqrt(kDearest * kDearest + 3.25));
+    called[static_cast<std::size_t>(Effect::subsurface)] = false;
+    EXPECT_DOUBLE_EQ(*error_of(errors, levels, called), kDearest);
+    EXPECT_FALSE(error_of({marble}, levels, called).has_value());
+}
+
+TEST(EffectErrors, OfASceneForOneEffectAreKeptWhole) {
+    const EffectInfo& info = effect_info(Effect::subsurface);
+    std::vector<AccuracyRow> rows;
+    for (std::size_t level = 0; level < info.levels.size(); ++level) {
+        AccuracyRow& row = rows.emplace_back();
+        row.scene = "marble";
+        row.effect = info.name;
+        row.index = static_cast<int>(level);
+        row.error.p95 = 5.0 - row.index;
+    }
+    const EffectErrors errors = errors_of(rows);
+    ASSERT_EQ(errors.size(), 1u);
+    EXPECT_FALSE(is_of_all_effects(errors[0]));
+    EXPECT_EQ(errors[0].at_level[static_cast<std::size_t>(Effect::subsurface)],
+              (std::vector<double>{5.0, 4.0, 3.0}));
+    rows.pop_back();
+    EXPECT_TRUE(errors_of(rows).empty());
 }
 
 TEST(EffectErrors, ComeBackAsTheyWereWritten) {
@@ -274,6 +356,7 @@ TEST(EffectErrors, SingleFlakesAreNoErrorOfTheOthers) {
     ASSERT_EQ(errors.size(), 1u);
     EXPECT_EQ(errors[0].dearest, 2.0);
     for (const SceneErrors& shipped : known_effect_errors()) {
+        if (!is_of_all_effects(shipped)) continue;
         EXPECT_LE(shipped.dearest, 2.0) << shipped.scene << ": what the ledger says of `high`";
     }
 }
