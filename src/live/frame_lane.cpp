@@ -347,8 +347,10 @@ std::shared_ptr<FinishedFrame> FrameLane::draw_picture(const FrameDescription& d
 
 FramePlan FrameLane::plan_side(const FrameDescription& description, std::size_t index) const {
     const std::size_t light = nearest_of(solved_, keys_of(description), index);
-    FramePlan plan =
-        plan_frame(scene_of(description, index), solved_[light]->levels, FrameStage::projector);
+    const Scene scene = scene_of(description, index);
+    FramePlan plan = plan_frame(scene, solved_[light]->levels, FrameStage::projector);
+    // Also of a picture that is there already: what it shows has its price
+    lights_[light].renderer->count_work(scene, plan);
     PlannedPass& pass = *find_pass(plan, PassKind::compensation);
     const auto& table = description.setup->table;
     if (!table) pass.why = "without a calibration the frame goes out as sRGB";

@@ -129,8 +129,8 @@ std::string quality_text(Studio& studio, Quality quality) {
                             milliseconds(cost->solve_ms),
                             milliseconds(cost->frame_ms));
         if (cost->error)
-            text +=
-                fmt::format(" Off by CIEDE2000 {:.2g} or less on 95% of the car.", *cost->error);
+            text += fmt::format(" Off by CIEDE2000 {:.2g} or less on 95% of the product.",
+                                *cost->error);
     } else if (!costs) {
         text += " What it costs here is not known: run livery bench --suite speed.";
     }

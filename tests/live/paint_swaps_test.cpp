@@ -113,6 +113,27 @@ TEST_P(PaintSwapsOnADevice, CompileAndAllocateNothing) {
     }
 }
 
+// Budgets are made by the frame that was told last, drawn or not.
+TEST_P(PaintSwapsOnADevice, APictureThatIsThereAlreadySaysWhatItTakes) {
+    HeadlessContext context(GlDevice::software);
+    FrameDescription description;
+    description.scene = scene_of(two_spheres(), paint_of(ReflectanceModel::clearcoat, 0.05));
+    description.scene.environment = sky(0.8);
+    description.setup = setup_of(test_view(128, 96), description.scene);
+    FrameLane lane(std::make_shared<GeometryCache>(), GetParam());
+    lane.solve(description, levels_of(description.quality), {}, {});
+    const FramePlan drawn = lane.draw(description)->plan;
+    const FramePlan again = lane.draw(description)->plan;
+    ASSERT_EQ(again.passes.size(), drawn.passes.size());
+    int told = 0;
+    for (std::size_t k = 0; k < drawn.passes.size(); ++k) {
+        EXPECT_EQ(again.passes[k].work_items, drawn.passes[k].work_items)
+            << to_string(drawn.passes[k].id);
+        told += drawn.passes[k].work_items > 0.0 ? 1 : 0;
+    }
+    EXPECT_GT(told, 4);
+}
+
 TEST_P(PaintSwapsOnADevice, ADraftLooksUpWhatAPaintMirrorsAsItIsDrawn) {
     // While another light is solved, which may take seconds, paints are swapped in its draft.
     HeadlessContext context(GlDevice::software);
