@@ -80,13 +80,18 @@ INSTANTIATE_TEST_SUITE_P(Devices,
                              return device.param == ShadingDevice::gl ? "OpenGl" : "Processor";
                          });
 
-TEST_P(PaintSwapsOnADevice, CompileAndAllocateNothing) {
-    HeadlessContext context(GlDevice::software);
+FrameDescription glossy_spheres() {
     FrameDescription description;
     description.scene = scene_of(two_spheres(), paint_of(ReflectanceModel::clearcoat, 0.05));
-    description.scene.lights = {light_from({0.4, 0.8, 0.5}, 3.0 * kDegree_rad)};
     description.scene.environment = sky(0.8);
     description.setup = setup_of(test_view(128, 96), description.scene);
+    return description;
+}
+
+TEST_P(PaintSwapsOnADevice, CompileAndAllocateNothing) {
+    HeadlessContext context(GlDevice::software);
+    FrameDescription description = glossy_spheres();
+    description.scene.lights = {light_from({0.4, 0.8, 0.5}, 3.0 * kDegree_rad)};
     description.library = read_paint_library();
     FrameLane lane(std::make_shared<GeometryCache>(), GetParam());
     lane.solve(description, levels_of(description.quality), {}, {});
@@ -116,10 +121,7 @@ TEST_P(PaintSwapsOnADevice, CompileAndAllocateNothing) {
 // Budgets are made by the frame that was told last, drawn or not.
 TEST_P(PaintSwapsOnADevice, APictureThatIsThereAlreadySaysWhatItTakes) {
     HeadlessContext context(GlDevice::software);
-    FrameDescription description;
-    description.scene = scene_of(two_spheres(), paint_of(ReflectanceModel::clearcoat, 0.05));
-    description.scene.environment = sky(0.8);
-    description.setup = setup_of(test_view(128, 96), description.scene);
+    FrameDescription description = glossy_spheres();
     FrameLane lane(std::make_shared<GeometryCache>(), GetParam());
     lane.solve(description, levels_of(description.quality), {}, {});
     const FramePlan drawn = lane.draw(description)->plan;
@@ -137,10 +139,7 @@ TEST_P(PaintSwapsOnADevice, APictureThatIsThereAlreadySaysWhatItTakes) {
 TEST_P(PaintSwapsOnADevice, ADraftLooksUpWhatAPaintMirrorsAsItIsDrawn) {
     // While another light is solved, which may take seconds, paints are swapped in its draft.
     HeadlessContext context(GlDevice::software);
-    FrameDescription description;
-    description.scene = scene_of(two_spheres(), paint_of(ReflectanceModel::clearcoat, 0.05));
-    description.scene.environment = sky(0.8);
-    description.setup = setup_of(test_view(128, 96), description.scene);
+    FrameDescription description = glossy_spheres();
     FrameLane lane(std::make_shared<GeometryCache>(), GetParam());
     lane.solve(description, levels_of(Quality::draft), {}, {});
     lane.draw(description);
