@@ -51,6 +51,10 @@ TEST_F(SeatsWindow, ASeatThatIsDraggedMovesTheHighlightsAndUndoBringsThemBack) {
     EXPECT_LT(after.eye_mm.x, before.eye_mm.x - 50.0);
     EXPECT_GT(after.eye_mm.z, before.eye_mm.z + 50.0);
     EXPECT_EQ(after.eye_mm.y, before.eye_mm.y);
+    // Where it was let go, however few frames the way there had; it stands on steps of 10 mm.
+    const glm::ivec2 got_to = middle(program->item("plan:seat:4"));
+    EXPECT_NEAR(got_to.x, fourth.x - 40, 2);
+    EXPECT_NEAR(got_to.y, fourth.y + 30, 2);
     EXPECT_TRUE(projector_shows(drive_for(after.eye_mm)));
     EXPECT_FALSE(projector_shows_now(at_four));
 

@@ -48,10 +48,14 @@ TEST(InputQueue, APressComesAFrameAfterTheMoveToIt) {
     queue.push(pointer(500));
     queue.push(of(Kind::button, 0, true));
     EXPECT_EQ(portions(queue), (std::vector<std::size_t>{2, 1}));
-    // What is let go is let go where the pointer got to.
+}
+
+TEST(InputQueue, WhatIsDraggedGetsToWhereItIsLetGo) {
+    InputQueue queue;
     queue.push(pointer(510));
+    queue.push(pointer(520));
     queue.push(of(Kind::button, 0, false));
-    EXPECT_EQ(portions(queue), (std::vector<std::size_t>{2}));
+    EXPECT_EQ(portions(queue), (std::vector<std::size_t>{2, 1}));
 }
 
 TEST(InputQueue, AQuickKeyIsDownInOneFrame) {

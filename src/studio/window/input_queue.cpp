@@ -26,9 +26,9 @@ struct Portion {
                 return buttons.empty() && keys.empty() && !wheel;
             case Kind::button:
                 // Things that may overlap (tabs) take a press only when the pointer was over them
-                // in the frame before.
-                return !buttons.contains(event.code) && keys.empty() && !wheel &&
-                       !(moved && event.down);
+                // in the frame before, and what is dragged follows only while it is held: it would
+                // stay short of where it is let go.
+                return !buttons.contains(event.code) && keys.empty() && !wheel && !moved;
             case Kind::wheel:
                 return buttons.empty();
             case Kind::key:
