@@ -315,5 +315,48 @@ TEST(SubsurfacePicture, ShowsAsMuchOfClearBallsAsWalks) {
     }
 }
 
+/// A ball of marble with a cavity, its wall 2 mm thick: through the lit half light gets into the
+/// cavity, and out of it through the other half.
+TEST(SubsurfacePicture, OfAHollowBallIsLitFromWithin) {
+    Mesh mesh = make_sphere({0, 0, 0}, 25.0, 64, "ball");
+    Mesh cavity = make_sphere({0, 0, 0}, 23.0, 64, "ball");
+    for (glm::uvec3& corners : cavity.triangles) std::swap(corners.y, corners.z);
+    for (glm::vec3& normal : cavity.normals) normal = -normal;
+    append(mesh, cavity, "");
+    mesh.parts.resize(1);
+    std::fill(mesh.triangle_part.begin(), mesh.triangle_part.end(), std::uint16_t{0});
+    Scene scene = scene_of(std::move(mesh), translucent_paint(medium_named("marble")));
+    scene.lights = {light_from({0.0, 1.0, 0.0}, 0.01)};
+    scene.eye_in_world_mm = {300.0, 0.0, 0.0};
+    const View view = look_at({120, 0, 0}, {0, 0, 0}, 0.42, 16, 16);
+    ReferenceOptions options;
+    options.samples_per_pixel = 256;
+    const ImageF walked = trace_reference(scene, view, options).radiance_working;
+    const auto sums = [](const ImageF& picture) {
+        glm::dvec2 sum(0.0);  // of the lit half and of the other
+        for (int y = 0; y < picture.height; ++y) {
+            for (int x = 0; x < picture.width; ++x) {
+                const float* p = picture.pixel(x, y);
+                sum[2 * y < picture.height ? 0 : 1] += static_cast<double>(p[3] * p[1]);
+            }
+        }
+        return sum;
+    };
+    const glm::dvec2 truth = sums(walked);
+    for (int level = 1; level < 3; ++level) {
+        const glm::dvec2 found = sums(drawn_at(scene, view, level)) / truth;
+        std::printf(
+            "    hollow ball, level %d: %.3f of what walks find where it is lit, %.3f from "
+            "within\n",
+            level,
+            found[0],
+            found[1]);
+        // Half of the picture is 20,000 walks; what comes twice through the wall errs twice
+        EXPECT_NEAR(found[0], 1.0, 0.05);
+        EXPECT_NEAR(found[1], 1.0, 0.1);
+    }
+    EXPECT_GT(truth[1], 0.1 * truth[0]);
+}
+
 }  // namespace
 }  // namespace livery

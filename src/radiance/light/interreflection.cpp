@@ -56,22 +56,6 @@ std::uint32_t node_of(const Mesh& mesh, const ExchangeNodes& nodes, const Hit& h
 
 float brightest(const glm::vec3& v) { return std::max({v.x, v.y, v.z}); }
 
-/// Of all nodes: the mean over its rays of what is sent by those that it sees.
-void gather(const NodeExchange& exchange,
-            std::span<const glm::vec3> sent,
-            std::vector<glm::vec3>& gathered) {
-    const float share = 1.0f / static_cast<float>(exchange.rays);
-    parallel_for(gathered.size(), 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            glm::vec3 sum(0.0f);
-            for (std::size_t k = exchange.first[i]; k < exchange.first[i + 1]; ++k) {
-                sum += sent[exchange.seen[k]];
-            }
-            gathered[i] = share * sum;
-        }
-    });
-}
-
 }  // namespace
 
 NodeExchange solve_node_exchange(const Mesh& mesh, const Tracer& tracer, const Progress& progress) {
@@ -272,15 +256,31 @@ std::vector<glm::vec3> albedo_at_nodes(const Scene& scene, const ExchangeNodes& 
     return albedo;
 }
 
+std::vector<glm::vec3> gathered_at_nodes(const NodeExchange& exchange,
+                                         std::span<const glm::vec3> sent) {
+    std::vector<glm::vec3> gathered(sent.size());
+    const float share = 1.0f / static_cast<float>(exchange.rays);
+    parallel_for(gathered.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            glm::vec3 sum(0.0f);
+            for (std::size_t k = exchange.first[i]; k < exchange.first[i + 1]; ++k) {
+                sum += sent[exchange.seen[k]];
+            }
+            gathered[i] = share * sum;
+        }
+    });
+    return gathered;
+}
+
 ExchangedLight exchanged_at_nodes(const NodeExchange& exchange,
                                   std::span<const glm::vec3> direct,
                                   std::span<const glm::vec3> albedo,
                                   int bounces) {
-    std::vector<glm::vec3> sent(direct.size()), gathered(direct.size()), sum(direct.size());
+    std::vector<glm::vec3> sent(direct.size()), sum(direct.size());
     for (std::size_t i = 0; i < sent.size(); ++i) sent[i] = albedo[i] * direct[i];
     float first = 0.0f;
     for (int bounce = 0; bounce < bounces; ++bounce) {
-        gather(exchange, sent, gathered);
+        const std::vector<glm::vec3> gathered = gathered_at_nodes(exchange, sent);
         float largest = 0.0f;
         for (std::size_t i = 0; i < sum.size(); ++i) {
             sum[i] += gathered[i];

@@ -99,6 +99,10 @@ ExchangedLight exchanged_at_nodes(const NodeExchange& exchange,
                                   std::span<const glm::vec3> albedo,
                                   int bounces);
 
+/// On a white diffuser at each node, what it sends of the light that nodes send.
+std::vector<glm::vec3> gathered_at_nodes(const NodeExchange& exchange,
+                                         std::span<const glm::vec3> sent);
+
 /// A value of each node at the fragments, of the side that is seen. Where the nodes' mesh is a part
 /// of the fragments', `place_of` says which of its triangles each of theirs is, and kNoTriangle of
 /// the rest, where the value is 0; `behind_of` the same of a copy that faces the other way.

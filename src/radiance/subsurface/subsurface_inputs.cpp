@@ -63,6 +63,52 @@ std::optional<float> told_thickness_mm(const Mesh& mesh,
     return static_cast<float>(*medium.thickness_mm);
 }
 
+/// Light between parts takes what enters a part for leaving where it does. What in truth leaves
+/// elsewhere, as on the other side of a wall, may come back to the part, as often as that adds
+/// anything: a `share` of it enters, and the boundary mirrors the rest. Adds to `leaving` what
+/// leaves again; returned is all that enters, nothing where no light comes back.
+std::vector<glm::vec3> returned_to_itself(const Mesh& mesh,
+                                          const NodeExchange& exchange,
+                                          const SubsurfaceTransport& transport,
+                                          const SubsurfaceKernel& kernel,
+                                          const std::vector<glm::vec3>& entering,
+                                          LeavingLight& leaving,
+                                          float share,
+                                          const Progress& progress) {
+    constexpr int kMostTimes = 32;
+    const auto brightest = [](const glm::vec3& v) { return std::max({v.x, v.y, v.z}); };
+    constexpr float kNothing = 3e-3f;  // of the brightest place: less than anybody sees
+    std::vector<glm::vec3> sent(entering.size()), all;
+    float most = 0.0f;
+    for (std::size_t i = 0; i < sent.size(); ++i) {
+        const glm::vec3 leaves = leaving.from_afar[i] + leaving.near_share[i] * entering[i];
+        most = std::max(most, brightest(leaves));
+        sent[i] = leaves - kernel.total * entering[i];
+    }
+    for (int time = 0; time < kMostTimes; ++time) {
+        const auto back = at_part_nodes(
+            mesh,
+            exchange.nodes,
+            gathered_at_nodes(exchange, from_part_nodes(transport, sent, mesh, exchange.nodes)),
+            transport);
+        std::vector<glm::vec3> more(back.size());
+        float largest = 0.0f;
+        for (std::size_t i = 0; i < more.size(); ++i) {
+            more[i] = share * back[i];
+            largest = std::max(largest, brightest(glm::abs(more[i])));
+        }
+        if (!(largest > kNothing * most)) break;
+        const LeavingLight added = leaving_at_nodes(transport, kernel, more, progress);
+        all.resize(more.size(), glm::vec3(0.0f));
+        for (std::size_t i = 0; i < more.size(); ++i) {
+            all[i] += more[i];
+            leaving.from_afar[i] += added.from_afar[i];
+            sent[i] = added.from_afar[i] + added.near_share[i] * more[i] + (1.0f - share) * back[i];
+        }
+    }
+    return all;
+}
+
 }  // namespace
 
 bool SubsurfaceInputs::stands(const Wanted& wanted) const {
@@ -120,7 +166,12 @@ void SubsurfaceInputs::solve(const Wanted& wanted,
             const auto more = at_part_nodes(mesh_, exchange->nodes, between, *transport);
             for (std::size_t i = 0; i < more.size(); ++i) entering[i] += share * more[i];
         }
-        const LeavingLight leaving = leaving_at_nodes(*transport, of.kernel, entering, progress);
+        LeavingLight leaving = leaving_at_nodes(*transport, of.kernel, entering, progress);
+        std::vector<glm::vec3> returned;
+        if (exchange) {
+            returned = returned_to_itself(
+                mesh_, *exchange, *transport, of.kernel, entering, leaving, share, progress);
+        }
         const auto at_fragment = [&](const std::vector<glm::vec3>& at_nodes) {
             return at_fragments(transport->mesh,
                                 map,
@@ -140,6 +191,11 @@ void SubsurfaceInputs::solve(const Wanted& wanted,
         std::vector<glm::vec3> at_own;
         for (std::size_t i = map.part_begin[p]; i < map.part_begin[p + 1]; ++i) {
             at_own.push_back(entering_at(i, entered, share, curvature[i].x));
+        }
+        if (!returned.empty()) {
+            const std::vector<glm::vec3> more = at_fragment(returned);
+            for (std::size_t k = 0; k < at_own.size(); ++k)
+                at_own[k] += more[map.part_begin[p] + k];
         }
         progress.check_stop();
         const std::vector<glm::vec3> nearby = entering_nearby(map, pixels, p, of.kernel, at_own);

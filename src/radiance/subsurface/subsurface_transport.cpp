@@ -122,6 +122,7 @@ class ReachCells {
 /// Whether light could go the straight way: a little under the surface at both ends, and never out
 /// of it. What is nearly flat between has no air in it.
 bool through_air(const Tracer& tracer,
+                 const Mesh& mesh,
                  const ExchangeNodes& nodes,
                  std::size_t i,
                  std::size_t j,
@@ -136,8 +137,9 @@ bool through_air(const Tracer& tracer,
     }
     TraceRay ray;
     const float under = std::min(kUnder * distance, kUnder * thickness);
-    ray.origin = nodes.position_mm(i) - under * n;
-    ray.direction = nodes.position_mm(j) - under * m - ray.origin;
+    // At an edge they would lie within the faces that meet there
+    ray.origin = nodes.ray_origin_mm(mesh, i) - under * n;
+    ray.direction = nodes.ray_origin_mm(mesh, j) - under * m - ray.origin;
     ray.t_max = 1.0f;
     return tracer.occluded(ray);
 }
@@ -237,7 +239,7 @@ void find_others(const Tracer& tracer,
                     if (square >= transport.reach_mm * transport.reach_mm) return;
                     const float distance = std::sqrt(square);
                     if (detail.rejects_air &&
-                        through_air(tracer, nodes, i, j, distance, thickness)) {
+                        through_air(tracer, transport.mesh, nodes, i, j, distance, thickness)) {
                         return;
                     }
                     // Where faces meet or cover one another nodes may lie in one place
@@ -295,6 +297,40 @@ glm::vec3 mean_of(const NodeLists& lists,
         all += weight;
     }
     return sum / glm::max(all, glm::vec3(1e-20f));
+}
+
+struct NodesOf {
+    const Mesh& mesh;
+    const ExchangeNodes& nodes;
+};
+/// Of what nodes of one mesh have, at those of another; `from_of` says which triangle of the one
+/// each of the other's is, kNoTriangle where there is none, and nothing.
+std::vector<glm::vec3> at_other_nodes(const NodesOf& from,
+                                      const std::vector<glm::vec3>& at_nodes,
+                                      const NodesOf& to,
+                                      std::span<const std::uint32_t> from_of) {
+    const std::vector<glm::vec3> at_points = from.nodes.at_points(at_nodes);
+    std::vector<glm::vec3> values(to.nodes.size(), glm::vec3(0.0f));
+    parallel_for(values.size(), 2048, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::uint32_t triangle = to.nodes.points.within[to.nodes.point_of[i]];
+            if (from_of[triangle] == kNoTriangle) continue;
+            const glm::uvec3 c = to.mesh.triangles[triangle];
+            const glm::vec3 a = to.mesh.positions_mm[c.x];
+            const glm::vec3 e = to.mesh.positions_mm[c.y] - a;
+            const glm::vec3 f = to.mesh.positions_mm[c.z] - a;
+            const glm::vec3 p = to.nodes.position_mm(i) - a;
+            const float ee = glm::dot(e, e), ef = glm::dot(e, f), ff = glm::dot(f, f);
+            const float all = ee * ff - ef * ef;
+            if (!(all > 0.0f)) continue;
+            const glm::vec2 at((ff * glm::dot(p, e) - ef * glm::dot(p, f)) / all,
+                               (ee * glm::dot(p, f) - ef * glm::dot(p, e)) / all);
+            for (const auto& share : from.nodes.points.around(from.mesh, from_of[triangle], at)) {
+                values[i] += share.weight * at_points[share.index];
+            }
+        }
+    });
+    return values;
 }
 
 }  // namespace
@@ -395,35 +431,22 @@ std::vector<glm::vec3> at_part_nodes(const Mesh& product,
                                      const ExchangeNodes& nodes,
                                      const std::vector<glm::vec3>& at_nodes,
                                      const SubsurfaceTransport& transport) {
-    const std::vector<glm::vec3> at_points = nodes.at_points(at_nodes);
     std::vector<std::uint32_t> of_product(transport.mesh.triangles.size(), kNoTriangle);
     for (std::size_t t = 0; t < transport.place_of.size(); ++t) {
         if (transport.place_of[t] != kNoTriangle) {
             of_product[transport.place_of[t]] = static_cast<std::uint32_t>(t);
         }
     }
-    const ExchangeNodes& own = transport.exchange.nodes;
-    std::vector<glm::vec3> values(own.size(), glm::vec3(0.0f));
-    parallel_for(values.size(), 2048, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const std::uint32_t triangle = own.points.within[own.point_of[i]];
-            if (of_product[triangle] == kNoTriangle) continue;
-            const glm::uvec3 c = transport.mesh.triangles[triangle];
-            const glm::vec3 a = transport.mesh.positions_mm[c.x];
-            const glm::vec3 e = transport.mesh.positions_mm[c.y] - a;
-            const glm::vec3 f = transport.mesh.positions_mm[c.z] - a;
-            const glm::vec3 p = own.position_mm(i) - a;
-            const float ee = glm::dot(e, e), ef = glm::dot(e, f), ff = glm::dot(f, f);
-            const float all = ee * ff - ef * ef;
-            if (!(all > 0.0f)) continue;
-            const glm::vec2 at((ff * glm::dot(p, e) - ef * glm::dot(p, f)) / all,
-                               (ee * glm::dot(p, f) - ef * glm::dot(p, e)) / all);
-            for (const auto& share : nodes.points.around(product, of_product[triangle], at)) {
-                values[i] += share.weight * at_points[share.index];
-            }
-        }
-    });
-    return values;
+    return at_other_nodes(
+        {product, nodes}, at_nodes, {transport.mesh, transport.exchange.nodes}, of_product);
+}
+
+std::vector<glm::vec3> from_part_nodes(const SubsurfaceTransport& transport,
+                                       const std::vector<glm::vec3>& at_nodes,
+                                       const Mesh& product,
+                                       const ExchangeNodes& nodes) {
+    return at_other_nodes(
+        {transport.mesh, transport.exchange.nodes}, at_nodes, {product, nodes}, transport.place_of);
 }
 
 std::shared_ptr<const SubsurfaceTransport> SharedTransports::of(const Mesh& product,

@@ -82,6 +82,12 @@ std::vector<glm::vec3> at_part_nodes(const Mesh& product,
                                      const std::vector<glm::vec3>& at_nodes,
                                      const SubsurfaceTransport& transport);
 
+/// What the nodes of a part have, at nodes of the whole mesh; nothing on its other parts.
+std::vector<glm::vec3> from_part_nodes(const SubsurfaceTransport& transport,
+                                       const std::vector<glm::vec3>& at_nodes,
+                                       const Mesh& product,
+                                       const ExchangeNodes& nodes);
+
 /// Solved by whoever asks first, for all who draw the same mesh; the last few are kept.
 class SharedTransports {
   public:
