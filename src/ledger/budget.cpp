@@ -94,9 +94,11 @@ Times total_of(const TimesByLevel& times,
                const EffectLevels& levels,
                const std::array<bool, kEffects>& called) {
     Times sum = times.rest;
+    const bool mirrors = has_what_is_mirrored(levels, called);
     for (const EffectInfo& info : effect_table()) {
         if (!called[index_of(info.effect)]) continue;
         if (levels[Effect::environment] == 0 && is_of_environment(info.effect)) continue;
+        if (!mirrors && is_of_environment(info.effect)) continue;
         const Times& own =
             times.own[index_of(info.effect)][static_cast<std::size_t>(levels[info.effect])];
         sum.first_frame_ms += own.first_frame_ms;
@@ -167,6 +169,7 @@ PriceList make_price_list(const Scene& scene,
           std::pair(PassKind::reflection_occlusion, Effect::reflected_occlusion)}) {
         if (!find_pass(plan, pass)) list.called_for[index_of(effect)] = false;
     }
+    list.errors = errors_like(std::move(list.errors), list.called_for);
     return list;
 }
 

@@ -54,6 +54,7 @@ struct PriceList {
     EffectErrors errors;
     std::array<bool, kEffects> called_for{};
 };
+/// Of the errors it keeps those of scenes that have an environment as this one.
 PriceList make_price_list(const Scene& scene,
                           FrameStage stage,
                           FrameCounts areas,

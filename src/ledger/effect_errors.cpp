@@ -28,6 +28,28 @@ bool is_of_all_effects(const SceneErrors& errors) {
     return !errors.at_level[static_cast<std::size_t>(Effect::sub_samples)].empty();
 }
 
+EffectErrors errors_like(EffectErrors errors, const std::array<bool, kEffects>& called_for) {
+    constexpr auto kEnvironment = static_cast<std::size_t>(Effect::environment);
+    const auto unlike = [&](const SceneErrors& scene) {
+        return is_of_all_effects(scene) &&
+               scene.at_level[kEnvironment].empty() == called_for[kEnvironment];
+    };
+    const bool any = std::any_of(errors.begin(), errors.end(), [&](const SceneErrors& scene) {
+        return is_of_all_effects(scene) && !unlike(scene);
+    });
+    if (any) std::erase_if(errors, unlike);
+    return errors;
+}
+
+bool has_what_is_mirrored(const EffectLevels& levels,
+                          const std::array<bool, kEffects>& called_for) {
+    const bool sky = called_for[static_cast<std::size_t>(Effect::environment)] &&
+                     levels[Effect::environment] > 0;
+    const bool parts = called_for[static_cast<std::size_t>(Effect::interreflection)] &&
+                       levels[Effect::interreflection] > 0;
+    return sky || parts;
+}
+
 EffectErrors errors_of(const std::vector<AccuracyRow>& rows) {
     EffectErrors errors;
     for (const AccuracyRow& row : rows) {
@@ -67,6 +89,7 @@ std::optional<double> error_of(const EffectErrors& errors,
                                const std::array<bool, kEffects>& called_for) {
     std::optional<double> worst;
     const bool environment = levels[Effect::environment] > 0;
+    const bool mirrors = environment && has_what_is_mirrored(levels, called_for);
     double of_their_own = 0.0;
     for (const EffectInfo& info : effect_table()) {
         if (!called_for[static_cast<std::size_t>(info.effect)]) continue;
@@ -87,7 +110,8 @@ std::optional<double> error_of(const EffectErrors& errors,
             const double added = error_added(scene, info.effect, levels[info.effect]);
             const bool of_mirrors = info.effect == Effect::mirrored_environment ||
                                     info.effect == Effect::reflected_occlusion;
-            if (!environment && (of_mirrors || info.effect == Effect::occlusion)) continue;
+            if (!environment && info.effect == Effect::occlusion) continue;
+            if (!mirrors && of_mirrors) continue;
             if (of_mirrors) {
                 mirrored = std::max(mirrored, added);
             } else {

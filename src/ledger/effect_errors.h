@@ -26,6 +26,13 @@ using EffectErrors = std::vector<SceneErrors>;
 /// Whether it has the levels of whatever it calls for, and is not for one effect alone.
 bool is_of_all_effects(const SceneErrors& errors);
 
+/// Without those of scenes that have an environment where the effects that are called for tell of
+/// none, or the other way about; all of them, where no others are known. Scenes for one effect
+/// alone remain.
+EffectErrors errors_like(EffectErrors errors, const std::array<bool, kEffects>& called_for);
+/// Whether a scene at those levels has anything but lamps for mirrors to show.
+bool has_what_is_mirrored(const EffectLevels& levels, const std::array<bool, kEffects>& called_for);
+
 /// Of those scenes whose rows are all there.
 EffectErrors errors_of(const std::vector<AccuracyRow>& rows);
 

@@ -231,6 +231,49 @@ TEST(PricedFrames, MoveTheNodesOfMirrorsAndTheirRaysTogether) {
 }
 
 // Shipped for machines where no accuracy suite has run.
+/// Where mirrors have parts alone to show they lose less than where they show a sky, and nothing
+/// where parts send no light.
+TEST(EffectErrors, AreThoseOfScenesThatHaveAnEnvironmentAsOnesOwn) {
+    EffectErrors errors = halving_errors();
+    SceneErrors& lamps = errors.emplace_back(errors.front());
+    lamps.scene = "lamps";
+    lamps.dearest = 1.0;
+    for (const Effect effect : {Effect::environment, Effect::occlusion}) {
+        lamps.at_level[static_cast<std::size_t>(effect)].clear();
+    }
+    std::array<bool, kEffects> called_for{};
+    const auto call_for = [&](Effect effect, bool called) {
+        called_for[static_cast<std::size_t>(effect)] = called;
+    };
+    for (const Effect effect : {Effect::environment,
+                                Effect::mirrored_environment,
+                                Effect::reflected_occlusion,
+                                Effect::interreflection}) {
+        call_for(effect, true);
+    }
+    const EffectErrors under_a_sky = errors_like(errors, called_for);
+    ASSERT_EQ(under_a_sky.size(), 1u);
+    EXPECT_EQ(under_a_sky.front().scene, "one");
+    call_for(Effect::environment, false);
+    const EffectErrors under_lamps = errors_like(errors, called_for);
+    ASSERT_EQ(under_lamps.size(), 1u);
+    EXPECT_EQ(under_lamps.front().scene, "lamps");
+    // Those of another kind of scene are better than none
+    EXPECT_EQ(errors_like({errors.front()}, called_for).size(), 1u);
+
+    EffectLevels levels = dearest_levels();
+    levels[Effect::interreflection] = 0;
+    EXPECT_FALSE(has_what_is_mirrored(levels, called_for));
+    EXPECT_TRUE(has_what_is_mirrored(dearest_levels(), called_for));
+    EffectLevels no_mirrors = levels;
+    no_mirrors[Effect::mirrored_environment] = no_mirrors[Effect::reflected_occlusion] = 0;
+    EXPECT_EQ(error_of(under_lamps, levels, called_for),
+              error_of(under_lamps, no_mirrors, called_for));
+    no_mirrors[Effect::interreflection] = levels[Effect::interreflection] = 1;
+    EXPECT_LT(error_of(under_lamps, levels, called_for),
+              error_of(under_lamps, no_mirrors, called_for));
+}
+
 TEST(EffectErrors, ThatAreShippedRankTheQualities) {
     const EffectErrors errors = known_effect_errors();
     const auto scene = std::find_if(errors.begin(), errors.end(), [](const SceneErrors& one) {

@@ -60,8 +60,12 @@ std::vector<NamedLook> looks() {
     return all;
 }
 
+struct NamedLight {
+    const char* name;
+    std::function<void(Look&)> put_in;
+};
 /// The studio as shipped; and a grey sky with a low sun.
-std::vector<std::pair<const char*, std::function<void(Look&)>>> lights() {
+std::vector<NamedLight> lights() {
     return {{"studio", [](Look&) {}}, {"overcast", [](Look& look) {
                                            look.environment.file =
                                                "assets/environments/overcast.hdr";
@@ -70,6 +74,10 @@ std::vector<std::pair<const char*, std::function<void(Look&)>>> lights() {
                                            sun.angle_rad = 0.0093;
                                            look.lights = {sun};
                                        }}};
+}
+/// Where mirrors show parts and nothing else.
+NamedLight lamps_alone() {
+    return {"lamps alone", [](Look& look) { look.environment.file.clear(); }};
 }
 
 /// Marble at its own size, where light goes through what is as large as a hand: a ball, and the
@@ -113,7 +121,9 @@ std::vector<AccuracyScene> accuracy_scenes(bool quick, const Progress& progress)
         const auto product = find_product(product_name);
         const BenchDescription bench = read_bench_file(*bench_of_shipped_product(product_name));
         const View view = resized(bench.projector.view, kWidth_px, kHeight_px);
-        for (const auto& [light_name, light] : lights()) {
+        std::vector<NamedLight> all_lights = lights();
+        if (product_name == "car") all_lights.push_back(lamps_alone());
+        for (const auto& [light_name, light] : all_lights) {
             std::shared_ptr<const Environment> environment;
             for (const NamedLook& one : looks()) {
                 progress.check_stop();

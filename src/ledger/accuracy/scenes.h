@@ -1,5 +1,5 @@
 // What the price of accuracy is measured on: looks that together call for every effect, in two
-// lights, on the whole car, and a sphere.
+// lights on the whole car and a sphere, and under lamps alone on the car.
 #pragma once
 
 #include <optional>
