@@ -64,9 +64,10 @@ std::optional<float> told_thickness_mm(const Mesh& mesh,
 }
 
 /// Light between parts takes what enters a part for leaving where it does. What in truth leaves
-/// elsewhere, as on the other side of a wall, may come back to the part, as often as that adds
-/// anything: a `share` of it enters, and the boundary mirrors the rest. Adds to `leaving` what
-/// leaves again; returned is all that enters, nothing where no light comes back.
+/// elsewhere, as on the other side of a wall, may come back to the part: a `share` of it enters,
+/// and the boundary mirrors the rest. From wall to wall it is followed as if it left where it
+/// enters, for it is even by then. Adds to `leaving` what leaves of it in the end; returned is all
+/// that enters, nothing where no light comes back.
 std::vector<glm::vec3> returned_to_itself(const Mesh& mesh,
                                           const NodeExchange& exchange,
                                           const SubsurfaceTransport& transport,
@@ -76,8 +77,8 @@ std::vector<glm::vec3> returned_to_itself(const Mesh& mesh,
                                           float share,
                                           const Progress& progress) {
     constexpr int kMostTimes = 32;
-    const auto brightest = [](const glm::vec3& v) { return std::max({v.x, v.y, v.z}); };
     constexpr float kNothing = 3e-3f;  // of the brightest place: less than anybody sees
+    const auto brightest = [](const glm::vec3& v) { return std::max({v.x, v.y, v.z}); };
     std::vector<glm::vec3> sent(entering.size()), all;
     float most = 0.0f;
     for (std::size_t i = 0; i < sent.size(); ++i) {
@@ -86,26 +87,24 @@ std::vector<glm::vec3> returned_to_itself(const Mesh& mesh,
         sent[i] = leaves - kernel.total * entering[i];
     }
     for (int time = 0; time < kMostTimes; ++time) {
+        progress.check_stop();
         const auto back = at_part_nodes(
             mesh,
             exchange.nodes,
             gathered_at_nodes(exchange, from_part_nodes(transport, sent, mesh, exchange.nodes)),
             transport);
-        std::vector<glm::vec3> more(back.size());
         float largest = 0.0f;
-        for (std::size_t i = 0; i < more.size(); ++i) {
-            more[i] = share * back[i];
-            largest = std::max(largest, brightest(glm::abs(more[i])));
-        }
+        for (const glm::vec3& one : back) largest = std::max(largest, brightest(glm::abs(one)));
         if (!(largest > kNothing * most)) break;
-        const LeavingLight added = leaving_at_nodes(transport, kernel, more, progress);
-        all.resize(more.size(), glm::vec3(0.0f));
-        for (std::size_t i = 0; i < more.size(); ++i) {
-            all[i] += more[i];
-            leaving.from_afar[i] += added.from_afar[i];
-            sent[i] = added.from_afar[i] + added.near_share[i] * more[i] + (1.0f - share) * back[i];
+        all.resize(back.size(), glm::vec3(0.0f));
+        for (std::size_t i = 0; i < back.size(); ++i) {
+            all[i] += share * back[i];
+            sent[i] = (share * leaving.even_share[i] + 1.0f - share) * back[i];
         }
     }
+    if (all.empty()) return all;
+    const LeavingLight added = leaving_at_nodes(transport, kernel, all, progress);
+    for (std::size_t i = 0; i < all.size(); ++i) leaving.from_afar[i] += added.from_afar[i];
     return all;
 }
 

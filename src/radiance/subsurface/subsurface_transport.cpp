@@ -388,6 +388,7 @@ LeavingLight leaving_at_nodes(const SubsurfaceTransport& transport,
     std::vector<glm::vec3> power(entering.size());
     for (std::size_t i = 0; i < power.size(); ++i) power[i] = transport.area_mm2[i] * entering[i];
     LeavingLight leaving{std::vector<glm::vec3>(entering.size()),
+                         std::vector<glm::vec3>(entering.size()),
                          std::vector<glm::vec3>(entering.size())};
     const NodeLists own{transport.first, transport.other, transport.code};
     const NodeLists behind{transport.through_first, transport.through, transport.through_code};
@@ -397,6 +398,7 @@ LeavingLight leaving_at_nodes(const SubsurfaceTransport& transport,
             if (transport.slab_of[i] != SubsurfaceTransport::kDeep) {
                 const SlabKernel& slab = kernel.slabs[transport.slab_of[i]];
                 leaving.near_share[i] = slab.near_share;
+                leaving.even_share[i] = slab.near_share + slab.far_share;
                 leaving.from_afar[i] =
                     slab.far_share *
                         mean_of(own, i, transport.area_mm2, slab.far_per_mm2, entering) +
@@ -422,6 +424,7 @@ LeavingLight leaving_at_nodes(const SubsurfaceTransport& transport,
                                                          anywhere / std::max(area_mm2, 1e-20f),
                                                          shares.anywhere);
             leaving.near_share[i] = shares.near;
+            leaving.even_share[i] = shares.near + shares.far;
         }
     });
     return leaving;

@@ -66,9 +66,10 @@ SubsurfaceTransport solve_transport(const Mesh& product,
 
 /// At each node, per area: what leaves there of light that entered farther off than near_mm or on
 /// the other side, and the share of what enters nearer. Both together give back of even light what
-/// a body as bent there does (total_at()), or a slab as thin.
+/// a body as bent there does (total_at()), or a slab as thin: of what enters on the same side
+/// `even_share`.
 struct LeavingLight {
-    std::vector<glm::vec3> from_afar, near_share;
+    std::vector<glm::vec3> from_afar, near_share, even_share;
 };
 LeavingLight leaving_at_nodes(const SubsurfaceTransport& transport,
                               const SubsurfaceKernel& kernel,
