@@ -94,11 +94,11 @@ Times total_of(const TimesByLevel& times,
                const EffectLevels& levels,
                const std::array<bool, kEffects>& called) {
     Times sum = times.rest;
-    const bool mirrors = has_what_is_mirrored(levels, called);
+    const bool environment =
+        levels[Effect::environment] > 0 && has_what_is_mirrored(levels, called);
     for (const EffectInfo& info : effect_table()) {
         if (!called[index_of(info.effect)]) continue;
-        if (levels[Effect::environment] == 0 && is_of_environment(info.effect)) continue;
-        if (!mirrors && is_of_environment(info.effect)) continue;
+        if (!environment && is_of_environment(info.effect)) continue;
         const Times& own =
             times.own[index_of(info.effect)][static_cast<std::size_t>(levels[info.effect])];
         sum.first_frame_ms += own.first_frame_ms;

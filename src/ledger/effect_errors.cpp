@@ -88,8 +88,8 @@ std::optional<double> error_of(const EffectErrors& errors,
                                const EffectLevels& levels,
                                const std::array<bool, kEffects>& called_for) {
     std::optional<double> worst;
-    const bool environment = levels[Effect::environment] > 0;
-    const bool mirrors = environment && has_what_is_mirrored(levels, called_for);
+    const bool environment =
+        levels[Effect::environment] > 0 && has_what_is_mirrored(levels, called_for);
     double of_their_own = 0.0;
     for (const EffectInfo& info : effect_table()) {
         if (!called_for[static_cast<std::size_t>(info.effect)]) continue;
@@ -110,8 +110,7 @@ std::optional<double> error_of(const EffectErrors& errors,
             const double added = error_added(scene, info.effect, levels[info.effect]);
             const bool of_mirrors = info.effect == Effect::mirrored_environment ||
                                     info.effect == Effect::reflected_occlusion;
-            if (!environment && info.effect == Effect::occlusion) continue;
-            if (!mirrors && of_mirrors) continue;
+            if (!environment && (of_mirrors || info.effect == Effect::occlusion)) continue;
             if (of_mirrors) {
                 mirrored = std::max(mirrored, added);
             } else {
