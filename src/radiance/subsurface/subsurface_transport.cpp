@@ -299,6 +299,14 @@ glm::vec3 mean_of(const NodeLists& lists,
     return sum / glm::max(all, glm::vec3(1e-20f));
 }
 
+/// A wall that is bent lets less through from its larger side than a plane one, and more from its
+/// smaller: by the root of the areas' ratio each, so that what goes either way between two places
+/// is the same. Of the transmittance, that part is given back on the larger side.
+float slab_bend(float curvature_per_mm, float thickness_mm) {
+    constexpr float kMost = 0.5f;  // to first order
+    return std::clamp(curvature_per_mm * thickness_mm, -kMost, kMost);
+}
+
 struct NodesOf {
     const Mesh& mesh;
     const ExchangeNodes& nodes;
@@ -397,12 +405,13 @@ LeavingLight leaving_at_nodes(const SubsurfaceTransport& transport,
         for (std::size_t i = begin; i < end; ++i) {
             if (transport.slab_of[i] != SubsurfaceTransport::kDeep) {
                 const SlabKernel& slab = kernel.slabs[transport.slab_of[i]];
+                const float bend = slab_bend(transport.curvature_per_mm[i], slab.thickness_mm);
+                const glm::vec3 far = slab.far_share + bend * slab.through_share;
                 leaving.near_share[i] = slab.near_share;
-                leaving.even_share[i] = slab.near_share + slab.far_share;
+                leaving.even_share[i] = slab.near_share + far;
                 leaving.from_afar[i] =
-                    slab.far_share *
-                        mean_of(own, i, transport.area_mm2, slab.far_per_mm2, entering) +
-                    slab.through_share *
+                    far * mean_of(own, i, transport.area_mm2, slab.far_per_mm2, entering) +
+                    (1.0f - bend) * slab.through_share *
                         mean_of(behind, i, transport.area_mm2, slab.through_per_mm2, entering);
                 continue;
             }
