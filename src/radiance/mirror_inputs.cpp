@@ -1,6 +1,7 @@
 #include "radiance/mirror_inputs.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <utility>
@@ -156,21 +157,29 @@ void MirrorInputs::solve_part(const PartSolve& how,
                               const MirroredBy& mirrored_by,
                               const Progress& progress) const {
     const std::size_t first = layout_.part_begin[how.part], count = layout_.fragments(how.part);
+    const auto put = [&](std::size_t i, const MirroredLight& mirrored) {
+        // Who does not ask which lobes are hidden dims those of a joint like its diffuse light
+        const bool joint = how.joints && map_->fragments[i].coverage < 1.0f;
+        const float scale = (joint ? how.joints->openness(i) : 1.0f) * how.unit;
+        for (Texels& to : texels) {
+            const float share = to.layer < kMirrorAlphas.size() ? scale : 1.0f;
+            const glm::vec3 value = share * mirrored[to.layer];
+            store(Texel{value.x, value.y, value.z, 0.0f}, to.values, i - first);
+        }
+    };
+    /// `each(ask)` of a stretch's fragments, of which none waits for another's light.
     const auto solve = [&](const auto& each) {
         progress.check_stop();
+        std::vector<std::size_t> asked;
+        each([&](std::size_t i) { asked.push_back(i); });
         auto mirrored_at = mirrored_by();
-        each([&](std::size_t i) {
-            const std::size_t k = i - first;
-            const MirroredLight mirrored = mirrored_at(i, k);
-            // Who does not ask which lobes are hidden dims those of a joint like its diffuse light
-            const bool joint = how.joints && map_->fragments[i].coverage < 1.0f;
-            const float scale = (joint ? how.joints->openness(i) : 1.0f) * how.unit;
-            for (Texels& to : texels) {
-                const float share = to.layer < kMirrorAlphas.size() ? scale : 1.0f;
-                const glm::vec3 value = share * mirrored[to.layer];
-                store(Texel{value.x, value.y, value.z, 0.0f}, to.values, k);
-            }
-        });
+        std::array<MirroredLight, kNodeBlock> light;
+        for (std::size_t k = 0; k < asked.size(); k += kNodeBlock) {
+            const std::span<const std::size_t> some =
+                std::span(asked).subspan(k, std::min(kNodeBlock, asked.size() - k));
+            mirrored_at(some, light);
+            for (std::size_t n = 0; n < some.size(); ++n) put(some[n], light[n]);
+        }
     };
     const auto differ = [&](std::size_t one, std::size_t other) {
         return std::any_of(texels.begin(), texels.end(), [&](const Texels& to) {
@@ -239,14 +248,19 @@ void MirrorInputs::solve(const Light& light,
         }
         const std::span<float> values(kept.values);
         const auto mirrored_by = [&] {
-            return [&, scratch = MirroredEnvironment::Scratch()](std::size_t i,
-                                                                 std::size_t k) mutable {
-                if (values.empty()) return environment.at_fragment(i, lobes, scratch, {}, false);
-                return environment.at_fragment(i,
-                                               lobes,
-                                               scratch,
-                                               values.subspan(k * sums_each, sums_each),
-                                               std::exchange(kept.known[k], 1) != 0);
+            return [&, scratch = MirroredEnvironment::Scratch()](
+                       std::span<const std::size_t> some,
+                       std::array<MirroredLight, kNodeBlock>& found) mutable {
+                for (std::size_t n = 0; n < some.size(); ++n) {
+                    const std::size_t k = some[n] - layout_.part_begin[part];
+                    std::span<float> own;
+                    bool sums_known = false;
+                    if (!values.empty()) {
+                        own = values.subspan(k * sums_each, sums_each);
+                        sums_known = std::exchange(kept.known[k], 1) != 0;
+                    }
+                    found[n] = environment.at_fragment(some[n], lobes, scratch, own, sums_known);
+                }
             };
         };
         solve_part({part, runs, hides ? kEven : kDragged, hides ? nullptr : joints, 1.0f / unit},
@@ -266,7 +280,6 @@ void MirrorInputs::look_up(const Light& light,
                            const SkyVisibility* joints,
                            const Progress& progress) {
     const float unit = unit_of(light, environment.largest());
-    const MirrorLookUp::In in(environment, *light.environment, light.eye_mm);
     kept_.clear();
     even_.resize(layers.size());
     std::vector<Texels> all = texels_for(layers);
@@ -274,10 +287,16 @@ void MirrorInputs::look_up(const Light& light,
     for (std::size_t part = 0; part < layers.size(); ++part) {
         const std::span<Texels> texels = texels_of(all, part);
         if (texels.empty()) continue;
-        const MirrorLobes lobes(layers[part]);
+        const MirrorLookUp::In in(
+            environment, *light.environment, light.eye_mm, MirrorLobes(layers[part]));
         const auto mirrored_by = [&] {
-            return [&](std::size_t i, std::size_t) {
-                return in.at_fragment(map_->fragments[i], lobes);
+            return [&](std::span<const std::size_t> some,
+                       std::array<MirroredLight, kNodeBlock>& found) {
+                std::array<const Fragment*, kNodeBlock> fragments;
+                for (std::size_t n = 0; n < some.size(); ++n) {
+                    fragments[n] = &map_->fragments[some[n]];
+                }
+                in.at_fragments(std::span(fragments).first(some.size()), found);
             };
         };
         solve_part({part, runs, kDragged, joints, 1.0f / unit}, texels, mirrored_by, progress);

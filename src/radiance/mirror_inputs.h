@@ -126,8 +126,8 @@ class MirrorInputs {
         const SkyVisibility* joints = nullptr;  ///< guesses what is hidden; null: it is known
         float unit = 1.0f;
     };
-    /// `mirrored_by()` gives what is asked for each fragment of a stretch, by its index and its
-    /// place in the part.
+    /// `mirrored_by()` makes what finds the light of some fragments, kNodeBlock at most: by their
+    /// indices, into as many places.
     template <typename MirroredBy>
     void solve_part(const PartSolve& how,
                     std::span<Texels> texels,

@@ -59,11 +59,41 @@ struct MirrorSumJob {
     float* sums = nullptr;   ///< kNodeLists of each lobe
 };
 
+/// Pictures of the whole sphere and of one size, texel beside texel of four floats.
+struct SphereTexels {
+    const float* texels = nullptr;
+    int width = 0, height = 0;
+    int count = 0;  ///< of pictures
+};
+
+/// What kNodeBlock fragments mirror by one look-up a lobe (light/mirror_look_up.h).
+struct MirrorLookUpJob {
+    SphereTexels sharp, wide;      ///< those of the latter follow the former
+    float turns = 0.0f;            ///< of the environment about +y, and half of one
+    float alpha2_of_first = 0.0f;  ///< squared slope parameter of the second of all pictures
+    /// Lists of X, Y, Z to the eye and of the mean normal, then of what widens every lobe.
+    const float* fragments = nullptr;
+    struct Lobe {
+        float alpha2 = 0.0f;
+        float toward_mirrored = 1.0f;  ///< how far from the normal to the mirrored eye it is seen
+        bool leans = false;            ///< no farther than that
+        const float* correction = nullptr;  ///< by the root of the cosine, kCorrections of them
+    };
+    static constexpr int kCorrections = 33;
+    const Lobe* lobes = nullptr;
+    int lobe_count = 0;
+    float* light = nullptr;  ///< R, G, B and one more of each fragment, lobe by lobe
+};
+inline constexpr std::size_t kLookUpLists = 7;
+inline constexpr int kMostLookUps = 14;
+
 using MirrorSum = void (*)(const MirrorSumJob&);
+using MirrorLookUps = void (*)(const MirrorLookUpJob&);
 /// The best that this processor has, first; "portable" is always the last.
 struct MirrorSums {
     const char* instruction_set;
     MirrorSum sum;
+    MirrorLookUps look_up;
 };
 const MirrorSums& best_mirror_sums();
 std::size_t mirror_sums_available();

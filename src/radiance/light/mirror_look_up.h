@@ -2,10 +2,13 @@
 // where sums over a lobe's nodes (mirrored_environment.h) would come too late.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <span>
 
 #include <glm/vec3.hpp>
 
+#include "radiance/lanes/mirror_sums.h"
 #include "radiance/light/environment_filter.h"
 #include "radiance/light/mirrored_environment.h"
 #include "radiance/light/sphere_lookup.h"
@@ -25,28 +28,30 @@ class MirrorLookUp {
     /// Of the environment's brightest texel, in its own units.
     float largest() const { return largest_; }
 
-    /// As MirroredEnvironment gives it; how much of the light grazes is taken to be as of even
-    /// light. `environment` is the one that was filtered, turned and scaled as it may be.
+    /// What lobes mirror for one eye. `environment` is the one that was filtered, turned and scaled
+    /// as it may be.
     class In {
       public:
-        In(const MirrorLookUp& layers, const Environment& environment, glm::dvec3 eye_mm);
-        MirroredLight at_fragment(const Fragment& fragment, const MirrorLobes& lobes) const;
+        In(const MirrorLookUp& layers,
+           const Environment& environment,
+           glm::dvec3 eye_mm,
+           const MirrorLobes& lobes,
+           const MirrorSums& with = best_mirror_sums());
+        /// Of kNodeBlock fragments at most: as MirroredEnvironment gives it, but that light is
+        /// taken to graze as even light does, and layers that are not asked for are ones.
+        void at_fragments(std::span<const Fragment* const> fragments,
+                          std::array<MirroredLight, kNodeBlock>& light) const;
 
       private:
-        const MirrorLookUp& layers_;
-        SpherePlaces places_;
+        std::array<std::size_t, kMirrorAlphas.size()> layers_{};  ///< of each lobe
+        std::array<MirrorLookUpJob::Lobe, kMirrorAlphas.size()> lobes_{};
+        MirrorLookUpJob job_;
+        MirrorLookUps look_up_;
         float scale_;
-        glm::dvec3 eye_mm_;
+        glm::vec3 eye_mm_;
     };
 
   private:
-    /// Where a lobe of this squared slope parameter lies among the layers.
-    static float layer_of(float alpha2);
-    glm::vec3 between(float layer,
-                      const SphereStack::Footprint& sharp,
-                      const SphereStack::Footprint& wide) const;
-
-    std::size_t sharp_count_ = 0;
     SphereStack sharp_, wide_;
     float largest_ = 0.0f;
 };

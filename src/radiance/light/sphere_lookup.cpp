@@ -27,6 +27,11 @@ SphereStack::SphereStack(std::span<const ImageF> pictures)
     });
 }
 
+SphereTexels SphereStack::texels() const {
+    return {
+        reinterpret_cast<const float*>(texels_.data()), width_, height_, static_cast<int>(count_)};
+}
+
 GaussianLayers::Pairs::Pairs(std::span<const ImageF> pictures)
     : width_(pictures.front().width),
       height_(pictures.front().height),

@@ -56,6 +56,8 @@ class SphereStack {
         }
     };
     Footprint at(const glm::vec2& uv) const;
+    /// For many look-ups at once (lanes/mirror_sums.h).
+    SphereTexels texels() const;
 
   private:
     int width_ = 0, height_ = 0;
