@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <glm/geometric.hpp>
@@ -194,6 +195,17 @@ TEST(SphereLookup, PlacesAreThoseOfTheExactFunction) {
             ASSERT_FALSE(HasFailure()) << d.x << " " << d.y << " " << d.z;
         }
     }
+}
+
+TEST(SphereLookup, OfNoPlaceIsNoNumber) {
+    const ImageF picture(8, 4, 3, 1.0f);
+    const SphereStack stack({&picture, 1});
+    constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+    for (const glm::vec2 place : {glm::vec2(kNone, 0.5f), glm::vec2(0.5f, kNone)}) {
+        EXPECT_TRUE(std::isnan(stack.at(place).in(0)[0]));
+    }
+    EXPECT_FLOAT_EQ(stack.at({0.0f, 0.0f}).in(0)[0], 1.0f);
+    EXPECT_FLOAT_EQ(stack.at({0.999f, 1.0f}).in(0)[0], 1.0f);
 }
 
 /// What a sum over one node sees along a direction, under a Gaussian of that variance.

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -105,6 +106,33 @@ TEST(MirrorLookUp, IsTheFilteredPictureOfEachLobeWithEveryInstructionSet) {
                     EXPECT_EQ(light[n][k], glm::vec3(1.0f));
                 }
             }
+        }
+    }
+}
+
+TEST(MirrorLookUp, OfWhatIsNoNumberIsNone) {
+    const Environment environment = sky();
+    const MirrorLookUp look_up(filter_environment(environment, {true, false, false, false}));
+    const MirrorLobes lobes(MirrorLayers((1u << kMirrorAlphas.size()) - 1u));
+    constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+    std::array<Fragment, 4> fragments;
+    for (Fragment& f : fragments) f.normal = {0.0f, 0.0f, 1.0f};
+    fragments[0].normal.y = kNone;
+    fragments[1].position_mm = {100.0f, 200.0f, 300.0f};  // where the eye is
+    fragments[2].normal_variance = -kNone;
+    const std::array<const Fragment*, 4> all{
+        &fragments[0], &fragments[1], &fragments[2], &fragments[3]};
+    for (std::size_t set = 0; set < mirror_sums_available(); ++set) {
+        SCOPED_TRACE(mirror_sums_available(set).instruction_set);
+        const MirrorLookUp::In in(
+            look_up, environment, {100.0, 200.0, 300.0}, lobes, mirror_sums_available(set));
+        std::array<MirroredLight, kNodeBlock> light;
+        in.at_fragments(all, light);
+        for (std::size_t lobe = 0; lobe < kMirrorAlphas.size(); ++lobe) {
+            for (std::size_t n = 0; n < 3; ++n) {
+                EXPECT_TRUE(std::isnan(light[n][lobe].x)) << "fragment " << n << ", lobe " << lobe;
+            }
+            EXPECT_GT(light[3][lobe].x, 0.0f);
         }
     }
 }

@@ -29,16 +29,19 @@ LIVERY_LANE_FUNCTION void aim_lobe(const MirrorLookUpJob& job,
     const LaneWords bits = reinterpret_cast<LaneWords>(ratio);
     const LaneWords mantissa = (bits & 0x007fffff) | 0x3f800000;
     const LaneWords none{}, last = LaneWords{} + (job.sharp.count + job.wide.count - 2);
-    const LaneWords below = ratio < 1.0f ? none : (bits >> 23) - 126;
+    const LaneWords octave = (bits >> 23) - 126;
+    const LaneWords below = octave > none ? octave : none;
     const Lanes share = ratio < 1.0f ? sqrt(ratio) : reinterpret_cast<Lanes>(mantissa) - 1.0f;
     to.share = below > last ? lanes_of(1.0f) : share;
+    to.share = ratio == ratio ? to.share : ratio;
     to.below = below > last ? last : below;
 
     constexpr int kIntervals = MirrorLookUpJob::kCorrections - 1;
     const Lanes at = root * static_cast<float>(kIntervals);
     const LaneWords last_interval = LaneWords{} + (kIntervals - 1);
     const LaneWords whole = whole_of(at);
-    const LaneWords first = whole > last_interval ? last_interval : whole;
+    const LaneWords positive = whole > none ? whole : none;
+    const LaneWords first = positive > last_interval ? last_interval : positive;
     Lanes low, high;
     for (std::size_t k = 0; k < kLanes; ++k) {
         low[k] = lobe.correction[first[k]];

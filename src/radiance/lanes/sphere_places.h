@@ -53,7 +53,11 @@ LIVERY_LANE_FUNCTION void find_footprints(const Lanes2& uv,
                                           Footprints& to) {
     const LaneWords one = LaneWords{} + 1, none{};
     const Lanes x = uv.x * width - 0.5f, y = uv.y * height - 0.5f;
-    const LaneWords column = whole_of(x + 1.0f) - one, row = whole_of(y + 1.0f) - one;
+    // What is no number is read somewhere within, and stays none
+    const auto below = [&](Lanes v) {
+        return whole_of(v > -1.0f ? v + 1.0f : lanes_of(0.0f)) - one;
+    };
+    const LaneWords column = below(x), row = below(y);
     const Lanes fx = x - __builtin_convertvector(column, Lanes);
     const Lanes fy = y - __builtin_convertvector(row, Lanes);
     const LaneWords columns = whole_of(width), last = whole_of(height) - one;

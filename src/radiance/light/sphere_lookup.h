@@ -127,8 +127,10 @@ inline glm::vec2 SpherePlaces::of(const glm::vec3& d) const {
 inline SphereStack::Footprint SphereStack::at(const glm::vec2& uv) const {
     const float x = uv.x * static_cast<float>(width_) - 0.5f;
     const float y = uv.y * static_cast<float>(height_) - 0.5f;
-    // Neither is under -1; std::floor is a call where the processor may be any
-    const int column = static_cast<int>(x + 1.0f) - 1, row = static_cast<int>(y + 1.0f) - 1;
+    // std::floor is a call where the processor may be any. What is no number is read somewhere
+    // within, and stays none
+    const auto below = [](float v) { return v > -1.0f ? static_cast<int>(v + 1.0f) - 1 : -1; };
+    const int column = below(x), row = below(y);
     const float fx = x - static_cast<float>(column), fy = y - static_cast<float>(row);
     const auto wrapped = [&](int c) {
         return static_cast<std::size_t>(c < 0 ? c + width_ : c >= width_ ? c - width_ : c);
