@@ -381,12 +381,20 @@ void FragmentInputs::solve_mirror(const Scene& scene,
         light,
         MirrorInputs::LayersOfParts(scene.part_materials.size(), MirrorLayers().set()),
         false);
-    clock.run(mirrored_ahead_pass(), any(others), [&] {
-        if (!mirror_filtered(environment, light.nodes))
-            filter_for_mirror(environment, light.nodes, progress);
-        if (mirror_.lacks_visibility(light, others))
-            mirror_.trace(light, others, runs(Runs::of_rows), progress);
-        solve_layers(others);
+    const bool drag_ready = mirror_filtered(environment, kNoNodes) &&
+                            runs_[static_cast<std::size_t>(Runs::dragged)].has_value();
+    clock.run(mirrored_ahead_pass(), any(others) || !drag_ready, [&] {
+        if (any(others)) {
+            if (!mirror_filtered(environment, light.nodes))
+                filter_for_mirror(environment, light.nodes, progress);
+            if (mirror_.lacks_visibility(light, others))
+                mirror_.trace(light, others, runs(Runs::of_rows), progress);
+            solve_layers(others);
+        }
+        // The first step of a drag looks up what is filtered already
+        if (!mirror_filtered(environment, kNoNodes))
+            filter_for_mirror(environment, kNoNodes, progress);
+        runs(Runs::dragged);
     });
 }
 

@@ -352,9 +352,10 @@ void plan_ahead(FramePlan& plan) {
     const bool environment = find_pass(plan, PassKind::environment_irradiance) != nullptr;
     if (skipped == plan.skipped.end() || (!environment && !parts_send_light(plan))) return;
     plan.skipped.erase(skipped);
-    plan_pass(plan,
-              mirrored_ahead_pass(),
-              "other parts may mirror next, and parts at other roughnesses: solved while idle");
+    plan_pass(
+        plan,
+        mirrored_ahead_pass(),
+        "other parts or roughnesses may mirror next, or the eye be dragged: solved while idle");
 }
 
 const PlannedPass* find_pass(const FramePlan& plan, const PassId& id) {

@@ -71,6 +71,33 @@ TEST_P(MirrorInputs, TheWornRoughnessesLookAsIfAllWereSolved) {
     }
 }
 
+TEST_P(MirrorInputs, ADragBeginsWithWhatWasFilteredAhead) {
+    const View view = test_view(48, 36);
+    Scene scene = lit_by_the_studio(paint_of(ReflectanceModel::ggx, 0.2), {});
+    RadianceRenderer renderer = renderer_of(scene, view);
+    FramePlan ahead = plan(scene, Quality::normal);
+    plan_ahead(ahead);
+    renderer.prepare(scene, ahead);
+    const auto expect_no_filter = [&] {
+        FramePlan draft = plan(scene, Quality::draft);
+        renderer.render(scene, draft);
+        EXPECT_EQ(*find_pass(draft, PassKind::environment_filter)->ms, 0.0);
+        EXPECT_GT(*find_pass(draft, PassKind::mirrored_environment)->ms, 0.0);
+    };
+    scene.eye_in_world_mm.x += 100.0;
+    expect_no_filter();
+    auto turned = std::make_shared<Environment>(*scene.environment);
+    turned->rotation_rad += 0.1;
+    scene.environment = std::move(turned);
+    expect_no_filter();
+    // Once it is there, nothing is done for it again
+    FramePlan again = plan(scene, Quality::draft);
+    plan_ahead(again);
+    renderer.prepare(scene, again);
+    renderer.prepare(scene, again);
+    EXPECT_EQ(*find_pass(again, mirrored_ahead_pass())->ms, 0.0);
+}
+
 // What a paint sends to other parts is mirrored by them. A paint that comes then wears lobes that
 // were solved before that, and is to be seen at once.
 TEST_P(MirrorInputs, APaintWaitsForNoLightBetweenParts) {
