@@ -48,24 +48,27 @@ mkdir -p "$build/found"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 export LIVERY_HOME=$work/home
-failed=0
-printf '%-16s %9s %9s %8s   seed %s\n' target runs 'runs/s' seconds "$seed"
-for target in "$@"; do
-    log=$work/$target.log
+
+# One target's runs, and a row of the table.
+fuzz() {
+    local target=$1 log=$work/$1.log begin=$EPOCHREALTIME failed=0
     mkdir -p "$work/$target"
-    cat "$here/dictionaries/hard.dict" "$(dictionary_of "$target")" >"$work/dictionary"
-    begin=$(date +%s.%N)
-    if ! "$build/bin/fuzz_$target" -runs="$runs" -seed="$seed" -max_len="$(longest_of "$target")" -timeout=10 \
+    cat "$here/dictionaries/hard.dict" "$(dictionary_of "$target")" >"$work/$target.dict"
+    "$build/bin/fuzz_$target" -runs="$runs" -seed="$seed" -max_len="$(longest_of "$target")" -timeout=10 \
         -rss_limit_mb=2048 -malloc_limit_mb=1024 -print_final_stats=1 \
-        -artifact_prefix="$build/found/$target-" -dict="$work/dictionary" \
-        "$work/$target" "$here/corpus/$target" >"$log" 2>&1; then
-        failed=1
+        -artifact_prefix="$build/found/$target-" -dict="$work/$target.dict" \
+        "$work/$target" "$here/corpus/$target" >"$log" 2>&1 || failed=1
+    if [ $failed -ne 0 ]; then
         echo "fuzz: $target failed; its input is in $build/found:" >&2
         tail -n 60 "$log" >&2
     fi
-    end=$(date +%s.%N)
-    awk -v name="$target" -v seconds="$(echo "$end $begin" | awk '{print $1 - $2}')" '
+    awk -v name="$target" -v begin="$begin" -v end="$EPOCHREALTIME" '
         /^stat::number_of_executed_units/ { n = $2 }
-        END { printf "%-16s %9d %9.0f %8.1f\n", name, n, n / seconds, seconds }' "$log"
-done
-exit $failed
+        END { s = end - begin; printf "%-16s %9d %9.0f %8.1f\n", name, n, n / s, s }' "$log"
+    return $failed
+}
+
+printf '%-16s %9s %9s %8s   seed %s\n' target runs 'runs/s' seconds "$seed"
+export -f fuzz dictionary_of longest_of
+export here build runs seed work
+printf '%s\n' "$@" | xargs -P "$(nproc)" -I{} bash -c 'fuzz {}'
