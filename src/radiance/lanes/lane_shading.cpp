@@ -7,7 +7,7 @@ namespace livery {
 namespace avx2 {
 LaneFunctions functions(const char* instruction_set);
 }
-namespace portable {
+namespace portable_four {
 LaneFunctions functions(const char* instruction_set);
 }
 
@@ -18,7 +18,7 @@ std::vector<LaneFunctions> find_available() {
 #if defined(__x86_64__)
     if (__builtin_cpu_supports("avx2")) list.push_back(avx2::functions("avx2"));
 #endif
-    list.push_back(portable::functions("portable"));
+    list.push_back(portable_four::functions("portable"));
     return list;
 }
 

@@ -1,6 +1,7 @@
-// Eight floats at once, with the names that the shared reflectance source uses. For the
-// lane_shading units only: each compiles it for one instruction set, into a namespace of its own,
-// and includes no header whose inline functions the rest of the program shares.
+// Several floats at once (LIVERY_LANE_COUNT, eight unless a unit says four), with the names that
+// the shared reflectance source uses. For the units of several instruction sets only: each compiles
+// it for one, into a namespace of its own, and includes no header whose inline functions the rest
+// of the program shares.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +16,10 @@
 
 namespace livery::LIVERY_LANES {
 
-inline constexpr std::size_t kLanes = 8;
+#ifndef LIVERY_LANE_COUNT
+#define LIVERY_LANE_COUNT 8
+#endif
+inline constexpr std::size_t kLanes = LIVERY_LANE_COUNT;
 
 using Lanes = float __attribute__((vector_size(4 * kLanes)));
 using LaneWords = std::int32_t __attribute__((vector_size(4 * kLanes)));
@@ -33,7 +37,7 @@ LIVERY_LANE_FUNCTION Lanes load(const float* from) {
 /// Half floats, not negative, and NaN. Small ones go through integers: a thread may flush
 /// denormals.
 LIVERY_LANE_FUNCTION Lanes load_halves(const std::uint16_t* from) {
-#if defined(__F16C__)
+#if defined(__F16C__) && LIVERY_LANE_COUNT == 8
     __m128i halves;
     std::memcpy(&halves, from, sizeof halves);
     return reinterpret_cast<Lanes>(_mm256_cvtph_ps(halves));
@@ -57,8 +61,10 @@ LIVERY_LANE_FUNCTION Lanes clamp(Lanes x, Lanes low, Lanes high) { return min(ma
 LIVERY_LANE_FUNCTION Lanes mix(Lanes a, Lanes b, Lanes t) { return a + t * (b - a); }
 
 LIVERY_LANE_FUNCTION Lanes sqrt(Lanes x) {
-#if defined(__AVX__)
+#if defined(__AVX__) && LIVERY_LANE_COUNT == 8
     return reinterpret_cast<Lanes>(_mm256_sqrt_ps(reinterpret_cast<__m256>(x)));
+#elif defined(__SSE2__) && LIVERY_LANE_COUNT == 4
+    return reinterpret_cast<Lanes>(_mm_sqrt_ps(reinterpret_cast<__m128>(x)));
 #else
     float values[kLanes];
     std::memcpy(values, &x, sizeof x);
