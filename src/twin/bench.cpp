@@ -5,12 +5,9 @@
 #include <optional>
 
 #include <fmt/format.h>
-#include <glm/geometric.hpp>
 
 #include "core/error.h"
 #include "core/random.h"
-#include "tracing/tracer.h"
-#include "twin/interreflection.h"
 #include "twin/mishaps.h"
 #include "twin/projector_light.h"
 #include "twin/received.h"
@@ -20,20 +17,12 @@ namespace livery {
 
 namespace {
 
-constexpr double kGatherCellMm = 6.0;
-constexpr int kGatherRays = 256;
-
 /// A picture as it stands on the mock-up; what the camera sees of it is computed when first asked
 /// for.
 struct LitPicture {
     ImageF light;
     ImageF camera_units_per_s;  ///< empty: not yet asked for
 };
-
-double reference_distance_mm(const View& projector, const Mesh& mesh) {
-    const Bounds bounds = bounds_of(mesh);
-    return glm::distance(centre_in_world(projector), 0.5 * (bounds.low + bounds.high));
-}
 
 void check_view(const View& view, const char* what) {
     check_argument(view.width > 1 && view.height > 1 && view.width <= 16384 && view.height <= 16384,
@@ -45,10 +34,8 @@ void check_view(const View& view, const char* what) {
 struct Bench::State {
     BenchDescription description;
     std::shared_ptr<const Product> product;
-    Mesh mesh;  ///< the product's with what stands around it
-    SurfaceSet surfaces;
+    std::shared_ptr<const LightTransport> light;
     Receivers camera;
-    Gathers gathers;
     Observer observer;  ///< of the projector's pixels
     std::optional<BenchEye> eye;
     ImageF camera_ambient;  ///< empty: no ambient light
@@ -59,7 +46,7 @@ struct Bench::State {
     std::uint32_t photographs = 0;
     double default_exposure_s = 0.0, exposure_s = 0.0;
 
-    void trace(EyePicture eye_picture, const Progress& progress);
+    void fold_spectra();
     ImageF observed(const Observer& by, const Image8& drive) const;
     double metered_exposure_s() const;
     ImageF camera_light(LitPicture& picture);
@@ -69,65 +56,33 @@ struct Bench::State {
     ImageF optics(ImageF units_per_s, double shift_px) const;
 };
 
-void Bench::State::trace(EyePicture eye_picture, const Progress& progress) {
-    const Tracer tracer(mesh);
-    const View& projector = description.projector.view;
-    const TracedWorld world{mesh,
-                            product->mesh.parts.size(),
-                            tracer,
-                            surfaces,
-                            description,
-                            reference_distance_mm(projector, product->mesh)};
-    progress.update(0.0, "tracing the bench's camera");
-    camera.paths = trace_camera(world, progress);
-    progress.update(0.4, "tracing the bench's projector");
-    ObservedPaths seen = trace_projector(world, progress);
-    camera.width = description.camera.view.width;
-    camera.height = description.camera.view.height;
-    camera.factors = fold(description, surfaces, camera_sensor(description));
+void Bench::State::fold_spectra() {
+    const SurfaceSet surfaces =
+        make_surfaces(description, with_surroundings(product->mesh, description));
+    camera = {&light->camera, fold(description, surfaces, camera_sensor(description))};
     const Factors eye_factors = fold(description, surfaces, observer_sensor());
-
-    // Light between parts. The eye's picture takes no part in choosing the places, so that the
-    // photographs are the same with it and without.
-    GatherPlaces places(kGatherCellMm);
-    const auto blend = [&](const LightPaths& paths) {
-        return description.mockup.interreflection ? places.blend(paths)
-                                                  : std::vector<Gathers::Blend>();
-    };
-    if (description.mockup.interreflection) {
-        progress.update(0.7, "tracing light between parts");
-        places.add(camera.paths);
-        places.add(seen.paths);
-        gathers = places.gather(world, kGatherRays, progress);
-        camera.blends = blend(camera.paths);
-    }
+    const View& projector = description.projector.view;
     const ImageF dark =
         light_from_drive(description.projector, Image8(projector.width, projector.height, 3));
-    auto blends = blend(seen.paths);
-    observer = make_observer(std::move(seen), eye_factors, std::move(blends), gathers, dark);
-    if (eye_picture == EyePicture::traced) {
-        progress.update(0.9, "tracing the eye's picture");
-        const View view = eye_view(description.eye_mm, projector, product->mesh);
-        ObservedPaths paths = trace_eye(world, view, progress);
-        blends = blend(paths.paths);
-        eye = BenchEye{
-            view, make_observer(std::move(paths), eye_factors, std::move(blends), gathers, dark)};
+    observer = make_observer(light->projector, eye_factors, light->gathers, dark);
+    if (light->eye) {
+        eye = BenchEye{*light->eye_view,
+                       make_observer(*light->eye, eye_factors, light->gathers, dark)};
     }
     if (description.ambient > 0.0) camera_ambient = receive_ambient(camera);
     if (has_room_light(description.mishaps)) {
         BenchDescription lit = description;
         lit.ambient = 1.0;
-        Factors own = fold(lit, surfaces, camera_sensor(description));
-        std::swap(own, camera.factors);
-        room_light = receive_ambient(camera);
-        std::swap(own, camera.factors);
+        room_light =
+            receive_ambient({&light->camera, fold(lit, surfaces, camera_sensor(description))});
     }
-    progress.update(1.0, "tracing done");
 }
 
 ImageF Bench::State::observed(const Observer& by, const Image8& drive) const {
-    return observe(
-        by, gathers, light_from_drive(description.projector, drive), description.ambient > 0.0);
+    return observe(by,
+                   light->gathers,
+                   light_from_drive(description.projector, drive),
+                   description.ambient > 0.0);
 }
 
 ImageF Bench::State::optics(ImageF units_per_s, double shift_px) const {
@@ -141,7 +96,8 @@ ImageF Bench::State::optics(ImageF units_per_s, double shift_px) const {
 
 double Bench::State::metered_exposure_s() const {
     const Image8 white(description.projector.view.width, description.projector.view.height, 3, 255);
-    ImageF units = receive_all(camera, gathers, light_from_drive(description.projector, white));
+    ImageF units =
+        receive_all(camera, light->gathers, light_from_drive(description.projector, white));
     for (std::size_t k = 0; k < camera_ambient.values.size(); ++k) {
         units.values[k] += camera_ambient.values[k];
     }
@@ -163,7 +119,7 @@ void Bench::State::show(const Image8& drive) {
 
 ImageF Bench::State::camera_light(LitPicture& picture) {
     if (picture.camera_units_per_s.empty()) {
-        picture.camera_units_per_s = receive_all(camera, gathers, picture.light);
+        picture.camera_units_per_s = receive_all(camera, light->gathers, picture.light);
     }
     ImageF units = picture.camera_units_per_s;
 
@@ -193,11 +149,11 @@ Photograph Bench::State::photograph(double wanted_exposure_s) {
     if (wanted_exposure_s > 0.0) exposure_s = wanted_exposure_s;
     const bool late = photographs_of_shown < description.projector.latency_photographs;
     Photograph photograph;
-    const ImageF light = camera_light(late ? before : shown);
+    const ImageF seen = camera_light(late ? before : shown);
     photograph.image = develop(
         description.camera,
-        light,
-        true_exposure_s(exposure_s, description.camera, light, description.mishaps, photographs),
+        seen,
+        true_exposure_s(exposure_s, description.camera, seen, description.mishaps, photographs),
         description.seed,
         photographs);
     photograph.exposure_s = exposure_s;
@@ -211,38 +167,63 @@ Photograph Bench::State::photograph(double wanted_exposure_s) {
 
 glm::dvec3 Bench::State::measure_xyz(glm::dvec2 pixel) const {
     const Receivers& seen = observer.receivers;
-    const bool inside =
-        pixel.x >= 0.0 && pixel.y >= 0.0 && pixel.x < seen.width && pixel.y < seen.height;
-    const auto index =
-        inside ? static_cast<std::uint32_t>(pixel.y) * static_cast<std::uint32_t>(seen.width) +
-                     static_cast<std::uint32_t>(pixel.x)
-               : 0u;
-    const auto& receiver = seen.paths.receiver;
+    const bool inside = pixel.x >= 0.0 && pixel.y >= 0.0 && pixel.x < seen.traced->width &&
+                        pixel.y < seen.traced->height;
+    const auto index = inside ? static_cast<std::uint32_t>(pixel.y) *
+                                        static_cast<std::uint32_t>(seen.traced->width) +
+                                    static_cast<std::uint32_t>(pixel.x)
+                              : 0u;
+    const auto& receiver = seen.traced->paths.receiver;
     const auto found = std::lower_bound(receiver.begin(), receiver.end(), index);
     check_argument(
         inside && found != receiver.end() && *found == index,
         fmt::format(
             "bench: projector pixel {}, {} lights nothing of the mock-up", pixel.x, pixel.y));
     const auto i = static_cast<std::size_t>(found - receiver.begin());
-    const auto bounced = bounced_light(gathers, seen.factors, shown.light);
+    const auto bounced = bounced_light(light->gathers, seen.factors, shown.light);
     return glm::dvec3(receive(seen, bounced, shown.light, i) + receive_ambient(seen, i));
 }
 
-Bench::Bench(const BenchDescription& description,
-             std::shared_ptr<const Product> product,
-             const Progress& progress,
-             EyePicture eye_picture)
-    : state_(std::make_unique<State>()) {
+namespace {
+
+void check_bench(const BenchDescription& description, const Product* product) {
     check_argument(product != nullptr && !product->mesh.triangles.empty(), "bench: no mock-up");
     check_view(description.projector.view, "a projector");
     check_view(description.camera.view, "a camera");
     check_argument(description.samples_a_side >= 1 && description.samples_a_side <= 16,
                    fmt::format("bench: {} samples a side", description.samples_a_side));
+}
+
+std::shared_ptr<const LightTransport> checked_and_traced(const BenchDescription& description,
+                                                         const Product* product,
+                                                         EyePicture eye_picture,
+                                                         const Progress& progress) {
+    check_bench(description, product);
+    return trace_light(description, *product, eye_picture, progress);
+}
+
+}  // namespace
+
+Bench::Bench(const BenchDescription& description,
+             std::shared_ptr<const Product> product,
+             const Progress& progress,
+             EyePicture eye_picture)
+    : Bench(description,
+            product,
+            checked_and_traced(description, product.get(), eye_picture, progress)) {}
+
+Bench::Bench(const BenchDescription& description,
+             std::shared_ptr<const Product> product,
+             std::shared_ptr<const LightTransport> light)
+    : state_(std::make_unique<State>()) {
+    check_bench(description, product.get());
+    const EyePicture eye_picture = light->eye ? EyePicture::traced : EyePicture::none;
+    check_argument(light->made_of == key_of_transport(description, *product, eye_picture),
+                   "bench: light that was traced for another geometry");
     state_->description = description;
     state_->product = std::move(product);
-    state_->mesh = with_surroundings(state_->product->mesh, description);
-    state_->surfaces = make_surfaces(description, state_->mesh);
-    state_->trace(eye_picture, progress);
+    state_->light = std::move(light);
+    state_->fold_spectra();
     state_->default_exposure_s = description.camera.exposure_s > 0.0 ? description.camera.exposure_s
                                                                      : state_->metered_exposure_s();
     state_->exposure_s = state_->default_exposure_s;

@@ -10,12 +10,10 @@
 #include "scene/product.h"
 #include "scene/view.h"
 #include "twin/description.h"
+#include "twin/light_transport.h"
 #include "twin/observer.h"
 
 namespace livery {
-
-/// Whether the observer's own picture is traced besides what each projector pixel lights.
-enum class EyePicture { none, traced };
 
 /// The observer's picture: each pixel what the eye sees in one direction, whichever projector
 /// pixels light it. What the audience sees is judged here: light that falls on another place of
@@ -34,6 +32,11 @@ class Bench {
           std::shared_ptr<const Product> product,
           const Progress& progress = {},
           EyePicture eye_picture = EyePicture::none);
+    /// The same on light that was traced before. Throws std::invalid_argument also where that was
+    /// of another geometry (key_of_transport()).
+    Bench(const BenchDescription& description,
+          std::shared_ptr<const Product> product,
+          std::shared_ptr<const LightTransport> light);
     ~Bench();
     Bench(const Bench&) = delete;
     Bench& operator=(const Bench&) = delete;

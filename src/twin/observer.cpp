@@ -13,22 +13,20 @@
 
 namespace livery {
 
-Observer make_observer(ObservedPaths paths,
+Observer make_observer(const TracedObserver& traced,
                        Factors factors,
-                       std::vector<Gathers::Blend> blends,
                        const Gathers& gathers,
                        const ImageF& dark) {
     Observer observer;
-    const int width = paths.lit.width, height = paths.lit.height;
-    observer.receivers = {
-        width, height, std::move(paths.paths), std::move(blends), std::move(factors)};
-    observer.truth.lit = std::move(paths.lit);
-    observer.truth.edge = std::move(paths.edge);
-    observer.truth.seen_by_eye = std::move(paths.seen_by_eye);
+    const int width = traced.receivers.width, height = traced.receivers.height;
+    observer.receivers = {&traced.receivers, std::move(factors)};
+    observer.truth.lit = traced.lit;
+    observer.truth.edge = traced.edge;
+    observer.truth.seen_by_eye = traced.seen_by_eye;
     observer.truth.black_xyz = observe(observer, gathers, dark, true);
     observer.truth.primary_xyz = ImageF(width, height, 9);
     observer.clear_xyz = ImageF(width, height, 3);
-    const LightPaths& lists = observer.receivers.paths;
+    const LightPaths& lists = observer.receivers.traced->paths;
     parallel_for(lists.receiver.size(), 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t pixel = lists.receiver[i];
@@ -62,7 +60,7 @@ ImageF observe(const Observer& observer,
 
 Image8 reachable(const Observer& observer, const ImageF& wanted_xyz, double clear_strength) {
     const ObserverTruth& truth = observer.truth;
-    const auto& receiver = observer.receivers.paths.receiver;
+    const auto& receiver = observer.receivers.traced->paths.receiver;
     check_argument(wanted_xyz.width == truth.lit.width && wanted_xyz.height == truth.lit.height &&
                        wanted_xyz.channels == 3,
                    fmt::format("bench: a wanted picture of {}x{}x{} where {}x{} pixels are seen",
@@ -112,8 +110,8 @@ Image8 reachable(const Observer& observer, const ImageF& wanted_xyz, double clea
 }
 
 Image8 mostly_lit_by(const Observer& observer, const Image8& mask) {
-    const LightPaths& paths = observer.receivers.paths;
-    Image8 answer(observer.receivers.width, observer.receivers.height, 1);
+    const LightPaths& paths = observer.receivers.traced->paths;
+    Image8 answer(observer.receivers.traced->width, observer.receivers.traced->height, 1);
     for (std::size_t i = 0; i < paths.receiver.size(); ++i) {
         double all = 0.0, from_mask = 0.0;
         for (std::uint32_t t = paths.term_begin[i]; t < paths.term_begin[i + 1]; ++t) {

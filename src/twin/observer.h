@@ -24,11 +24,9 @@ struct Observer {
     ImageF clear_xyz;  ///< the clear segment at 1, as primary_xyz
 };
 
-/// From the paths on; `blends` as the bench's interreflection has them, empty without. `dark` is
-/// the projector's light at drive 0.
-Observer make_observer(ObservedPaths paths,
+/// From the paths on, which outlive it. `dark` is the projector's light at drive 0.
+Observer make_observer(const TracedObserver& traced,
                        Factors factors,
-                       std::vector<Gathers::Blend> blends,
                        const Gathers& gathers,
                        const ImageF& dark);
 

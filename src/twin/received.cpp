@@ -31,12 +31,12 @@ glm::vec3 sum_terms(const PathTerm* term,
 
 template <typename Body>
 ImageF picture(const Receivers& receivers, const Body& reading_of) {
-    ImageF image(receivers.width, receivers.height, 3);
-    parallel_for(receivers.paths.receiver.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    const std::vector<std::uint32_t>& pixels = receivers.traced->paths.receiver;
+    ImageF image(receivers.traced->width, receivers.traced->height, 3);
+    parallel_for(pixels.size(), 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const glm::vec3 reading = reading_of(i);
-            float* out =
-                image.values.data() + 3 * static_cast<std::size_t>(receivers.paths.receiver[i]);
+            float* out = image.values.data() + 3 * static_cast<std::size_t>(pixels[i]);
             for (int c = 0; c < 3; ++c) out[c] = reading[c];
         }
     });
@@ -70,14 +70,15 @@ glm::vec3 receive(const Receivers& receivers,
                   const std::vector<glm::vec3>& bounced,
                   const ImageF& light,
                   std::size_t i) {
-    const LightPaths& paths = receivers.paths;
+    const LightPaths& paths = receivers.traced->paths;
     glm::vec3 reading = sum_terms(
         paths.terms.data() + paths.term_begin[i],
         paths.terms.data() + paths.term_begin[i + 1],
         light.values.data(),
         [&](std::uint16_t surface) -> auto& { return receivers.factors.direct[surface]; });
-    if (receivers.blends.empty()) return reading;
-    const Gathers::Blend& blend = receivers.blends[i];
+    const std::vector<Gathers::Blend>& blends = receivers.traced->blends;
+    if (blends.empty()) return reading;
+    const Gathers::Blend& blend = blends[i];
     const std::size_t surfaces = receivers.factors.bounce.size();
     for (std::uint32_t c = paths.cover_begin[i]; c < paths.cover_begin[i + 1]; ++c) {
         const CoverTerm& cover = paths.covers[c];
@@ -95,7 +96,7 @@ ImageF receive_all(const Receivers& receivers, const Gathers& gathers, const Ima
 }
 
 glm::vec3 receive_ambient(const Receivers& receivers, std::size_t i) {
-    const LightPaths& paths = receivers.paths;
+    const LightPaths& paths = receivers.traced->paths;
     glm::dvec3 reading(0.0);
     for (std::uint32_t c = paths.cover_begin[i]; c < paths.cover_begin[i + 1]; ++c) {
         reading += static_cast<double>(paths.covers[c].share) *

@@ -6,16 +6,13 @@
 #include <glm/vec3.hpp>
 
 #include "twin/factors.h"
-#include "twin/interreflection.h"
-#include "twin/light_paths.h"
+#include "twin/light_transport.h"
 
 namespace livery {
 
-/// Everything fixed about one kind of receiver. Without interreflection `blends` is empty.
+/// Everything fixed about one kind of receiver.
 struct Receivers {
-    int width = 0, height = 0;
-    LightPaths paths;
-    std::vector<Gathers::Blend> blends;
+    const TracedReceivers* traced = nullptr;  ///< outlives this
     Factors factors;
 };
 

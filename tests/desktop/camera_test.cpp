@@ -23,6 +23,7 @@
 #include "session/commands.h"
 #include "session/session.h"
 #include "session/small_session.h"
+#include "support/kept_light.h"
 #include "support/monitor_bench.h"
 #include "support/run_program.h"
 
@@ -61,7 +62,7 @@ struct DirectCalibrations {
 };
 const DirectCalibrations& directly() {
     static const DirectCalibrations made = [] {
-        Bench bench(description(), small_bench_product());
+        Bench bench = testing::bench_on_kept_light(description(), small_bench_product());
         BenchPorts ports = bench.ports();
         ports.measure_xyz = {};  // Nobody in the window has a colorimeter either.
         const auto calibrate = [&] {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "session/small_session.h"
+#include "support/kept_light.h"
 #include "twin/spectra.h"
 
 namespace livery {
@@ -41,14 +42,14 @@ void expect_additive_and_quiet(const Judged& judged) {
     } while (false)
 
 Refusal refusal_of_bench(const BenchDescription& description, int shots = 1) {
-    Bench bench(description, small_bench_product());
+    Bench bench = testing::bench_on_kept_light(description, small_bench_product());
     return refusal_of([&] { calibrate_live(bench.ports(), live_options(description, shots)); });
 }
 
 template <typename Damage>
 std::string file_error_of(const Damage& damage) {
     const BenchDescription description = small_bench_description();
-    Bench bench(description, small_bench_product());
+    Bench bench = testing::bench_on_kept_light(description, small_bench_product());
     try {
         calibrate_live(damaged(bench, damage), live_options(description));
     } catch (const FileError& error) {
@@ -61,7 +62,7 @@ std::string file_error_of(const Damage& damage) {
 // ---- Projectors -------------------------------------------------------------------------------
 
 TEST(BenchHazards, CleanAdditiveProjectorMeetsTheTargets) {
-    const Judged judged = session_on(small_bench_description());
+    const Judged& judged = clean_session();
     expect_within(judged, kClean);
     expect_additive_and_quiet(judged);
     EXPECT_EQ(judged.live.calibration.xyz_origin, "primaries");
@@ -69,7 +70,7 @@ TEST(BenchHazards, CleanAdditiveProjectorMeetsTheTargets) {
 }
 
 TEST(BenchHazards, EightShotsAreNoWorseThanOne) {
-    const Judged one = session_on(small_bench_description());
+    const Judged& one = clean_session();
     const Judged eight = session_on(small_bench_description(), 8);
     expect_within(eight, kClean);
     EXPECT_LE(eight.comparison.interior.median, one.comparison.interior.median + 0.01);
@@ -101,7 +102,7 @@ TEST(BenchHazards, WhiteSegmentIsDetectedAndCorrected) {
 TEST(BenchHazards, PaperModeRefusesAWhiteSegment) {
     BenchDescription description = small_bench_description();
     description.projector.white_segment = 0.8;
-    Bench bench(description, small_bench_product());
+    Bench bench = testing::bench_on_kept_light(description, small_bench_product());
     LiveOptions options = live_options(description);
     options.colour.mode = ColourMode::paper;
     const Refusal refusal = refusal_of([&] { calibrate_live(bench.ports(), options); });
@@ -113,7 +114,7 @@ TEST(BenchHazards, PaperModeRefusesAWhiteSegment) {
 // for it in simulation with one shot.
 TEST(BenchHazards, PaperModeWorksAtItsOwnDrives) {
     const BenchDescription description = small_bench_description();
-    Bench bench(description, small_bench_product());
+    Bench bench = testing::bench_on_kept_light(description, small_bench_product());
     LiveOptions options = live_options(description);
     options.colour.mode = ColourMode::paper;
     options.colour.dark_drive = 64;
@@ -290,7 +291,7 @@ TEST(BenchHazards, MissingMockupIsRefused) {
     description.camera.exposure_s = 0.01;  // there is nothing to meter
     auto away = std::make_shared<Product>(*small_bench_product());
     for (glm::vec3& position : away->mesh.positions_mm) position.x += 3000.0f;
-    Bench bench(description, away);
+    Bench bench = testing::bench_on_kept_light(description, away);
     const Refusal refusal =
         refusal_of([&] { calibrate_live(bench.ports(), live_options(description)); });
     EXPECT_HAS(refusal.why, "sees no light of the projector");
@@ -370,7 +371,7 @@ TEST(BenchHazards, CameraThatKeepsAWrongExposureIsRefused) {
     for (const double peak : {0.08, 3.0}) {
         BenchDescription description = small_bench_description();
         description.camera.metered_peak = peak;
-        Bench bench(description, small_bench_product());
+        Bench bench = testing::bench_on_kept_light(description, small_bench_product());
         BenchPorts ports = bench.ports();
         ports.photograph = [take = ports.photograph](double) { return take(0.0); };
         const Refusal refusal =
@@ -393,7 +394,7 @@ TEST(BenchHazards, CameraThatCannotTellTwoChannelsApartIsRefused) {
 TEST(BenchHazards, NotANumberIsMaskedWhereItIs) {
     const BenchDescription description = small_bench_description();
     for (const int from : {0, 49}) {  // in all photographs; in those of the colours
-        Bench bench(description, small_bench_product());
+        Bench bench = testing::bench_on_kept_light(description, small_bench_product());
         const BenchPorts ports = damaged(bench, [from](Photograph& photograph, int number) {
             for (int y = 130; number >= from && y < 150; ++y)
                 for (int x = 200; x < 230; ++x)
@@ -436,7 +437,7 @@ TEST(BenchHazards, PhotographOfAnotherSizeIsNamed) {
 TEST(BenchHazards, StopIsObeyedWithinOnePhotograph) {
     const BenchDescription description = small_bench_description();
     for (const int at : {2, 25, 52}) {
-        Bench bench(description, small_bench_product());
+        Bench bench = testing::bench_on_kept_light(description, small_bench_product());
         std::atomic<bool> stop{false};
         int taken = 0;
         const BenchPorts ports = damaged(bench, [&](Photograph&, int number) {

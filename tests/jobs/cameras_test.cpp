@@ -21,6 +21,7 @@
 #include "support/bad_disk.h"
 #include "support/dng.h"
 #include "support/jpeg.h"
+#include "support/kept_light.h"
 #include "support/message_of.h"
 #include "support/mjpeg_server.h"
 #include "support/ptpip_camera.h"
@@ -41,7 +42,8 @@ using testing::small_bench_product;
 class FilmedBench {
   public:
     explicit FilmedBench(const BenchDescription& description)
-        : bench(description, small_bench_product()), ports_(bench.ports()) {
+        : bench(testing::bench_on_kept_light(description, small_bench_product())),
+          ports_(bench.ports()) {
         show(Image8(description.projector.view.width, description.projector.view.height, 3));
     }
     void show(const Image8& drive) {
@@ -113,7 +115,7 @@ TEST(Cameras, AVideoCameraCalibratesAsTheBenchDoes) {
     EXPECT_GT(live.calibration.valid_fraction, 0.85);
     const Comparison& seen = judged(filmed.bench, std::move(live)).comparison;
 
-    Bench direct(small_bench_description(), small_bench_product());
+    Bench direct = testing::bench_on_kept_light(small_bench_description(), small_bench_product());
     const Comparison& best =
         judged(direct, calibrate_live(direct.ports(), live_options(description))).comparison;
     // Eight bits against fourteen: a step at a tenth of white is 3% of it, of which the noise of
@@ -131,7 +133,7 @@ TEST(Cameras, ATetheredCameraCalibratesAsTheBenchDoes) {
     const TemporaryFolder home;
     ::setenv("HOME", home.path().c_str(), 1);  // libgphoto2 writes there
     const BenchDescription description = small_bench_description();
-    Bench bench(description, small_bench_product());
+    Bench bench = testing::bench_on_kept_light(description, small_bench_product());
     const BenchPorts on_bench = bench.ports();
     on_bench.show(Image8(description.projector.view.width, description.projector.view.height, 3));
     std::mutex mutex;
@@ -155,7 +157,7 @@ TEST(Cameras, ATetheredCameraCalibratesAsTheBenchDoes) {
     LiveResult live = calibrate_recorded(recording, ports, live_options(description));
     print_times(recording, live);
     const Comparison& seen = judged(bench, std::move(live)).comparison;
-    Bench direct(description, small_bench_product());
+    Bench direct = testing::bench_on_kept_light(description, small_bench_product());
     const Comparison& best =
         judged(direct, calibrate_live(direct.ports(), live_options(description))).comparison;
     // The same numbers but for the nearest shutter speed and rounding: the camera's noise.
@@ -168,7 +170,7 @@ TEST(Cameras, ACameraThatGivesOnlyJpegShowsItsCurve) {
     ::setenv("HOME", home.path().c_str(), 1);  // libgphoto2 writes there
     ::setenv("LIVERY_HOME", home.path().c_str(), 1);
     const BenchDescription description = small_bench_description();
-    Bench bench(description, small_bench_product());
+    Bench bench = testing::bench_on_kept_light(description, small_bench_product());
     const BenchPorts on_bench = bench.ports();
     std::mutex mutex;
     // A picture style of its own, that is not sRGB

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "session/small_session.h"
+#include "support/kept_light.h"
 #include "tracing/tracer.h"
 #include "twin/place.h"
 
@@ -55,7 +56,7 @@ TEST(EyeComparison, AWrongPoseCostsWhatItCostsInTheRoom) {
     const BenchDescription description = small_bench_description();
     const auto product = small_bench_product();
     const Tracer tracer(product->mesh);
-    Bench bench(description, product, {}, EyePicture::traced);
+    Bench bench = testing::bench_on_kept_light(description, product, EyePicture::traced);
     const ColourCalibration calibration =
         calibrate_live(bench.ports(), live_options(description)).calibration;
     const double white_y = design_white_luminance(calibration, 20.0, bench.truth().lit);
@@ -107,7 +108,8 @@ TEST(EyeComparison, AWrongPoseCostsWhatItCostsInTheRoom) {
 
 TEST(EyeComparison, CountsWhatIsPredictedAndWhatIsMasked) {
     const BenchDescription description = small_bench_description();
-    Bench bench(description, small_bench_product(), {}, EyePicture::traced);
+    Bench bench =
+        testing::bench_on_kept_light(description, small_bench_product(), EyePicture::traced);
     ColourCalibration calibration;
     calibration.width = description.projector.view.width;
     calibration.height = description.projector.view.height;

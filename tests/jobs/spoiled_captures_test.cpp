@@ -10,6 +10,7 @@
 #include "calibration/colour/colour.h"
 #include "calibration/correspondence/patterns.h"
 #include "session/small_session.h"
+#include "support/kept_light.h"
 
 namespace livery {
 namespace {
@@ -34,7 +35,7 @@ const std::vector<RoledPhotograph>& photographs() {
         description.projector.leak = 0.001;
         description.camera.flare = 0.003;
         description.ambient = 0.006;
-        Bench bench(description, testing::small_bench_product());
+        Bench bench = testing::bench_on_kept_light(description, testing::small_bench_product());
         const BenchPorts ports = bench.ports();
         std::vector<RoledPhotograph> result;
         for (const Pattern& pattern : all_patterns()) {

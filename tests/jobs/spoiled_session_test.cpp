@@ -7,6 +7,7 @@
 
 #include "calibration/correspondence/patterns.h"
 #include "session/small_session.h"
+#include "support/kept_light.h"
 
 namespace livery {
 namespace {
@@ -31,7 +32,7 @@ int number_of(const std::string& role) {
     static const std::map<std::string, int> numbers = [] {
         std::map<std::string, int> found;
         const BenchDescription description = small_bench_description();
-        Bench bench(description, small_bench_product());
+        Bench bench = testing::bench_on_kept_light(description, small_bench_product());
         int taken = 0;
         BenchPorts ports = bench.ports();
         ports.photograph = [&, take = ports.photograph](double exposure_s) {
@@ -65,7 +66,7 @@ TEST_P(SpoiledSession, IsToldTheCauseAndThePicture) {
     BenchDescription description = small_bench_description();
     const int from = *mishap.from ? number_of(mishap.from) : 0;
     description.mishaps = {{mishap.kind, from, mishap.once ? from : 1'000'000, mishap.size}};
-    Bench bench(description, small_bench_product());
+    Bench bench = testing::bench_on_kept_light(description, small_bench_product());
     const std::string said = said_of(bench.ports(), description);
     std::printf("    %s\n", said.c_str());
     for (const char* part : mishap.said)
@@ -158,7 +159,7 @@ INSTANTIATE_TEST_SUITE_P(Mishaps,
 // A slip that is accepted may take what the published targets (0.5, 1.5) leave over a clean session
 // (0.3, 1.0): its picture is named, and its light brought to that of the others.
 TEST(AcceptedSlips, CostLessThanTheTargetsLeave) {
-    const testing::Judged clean = testing::session_on(small_bench_description());
+    const testing::Judged& clean = testing::clean_session();
     struct Slip {
         const char* role;
         double size;
@@ -209,7 +210,7 @@ TEST(ExchangedPictures, AreNamedInALiveSession) {
     for (const Case& one :
          {Case{"gray-row-3", "gray-row-4", "gray-row-3 and gray-row-4 are exchanged"},
           Case{"red", "green", "red and green are swapped"}}) {
-        Bench bench(description, small_bench_product());
+        Bench bench = testing::bench_on_kept_light(description, small_bench_product());
         BenchPorts ports = bench.ports();
         ports.show = [&, show = ports.show](const Image8& drive) {
             if (drive.values == of(one.a).values) return show(of(one.b));

@@ -18,6 +18,7 @@
 #include "support/dng.h"
 #include "support/exif.h"
 #include "support/jpeg.h"
+#include "support/kept_light.h"
 #include "support/message_of.h"
 #include "support/temporary_folder.h"
 
@@ -35,7 +36,7 @@ struct Card {
 
     Card() {
         const BenchDescription description = small_bench_description();
-        Bench bench(description, small_bench_product());
+        Bench bench = testing::bench_on_kept_light(description, small_bench_product());
         const BenchPorts ports = bench.ports();
         const View& view = description.projector.view;
         std::vector<Pattern> patterns = geometry_patterns(view.width, view.height);

@@ -14,6 +14,7 @@
 #include "scene/mockup_mask.h"
 #include "session/small_session.h"
 #include "support/file_error.h"
+#include "support/kept_light.h"
 #include "support/temporary_folder.h"
 #include "twin/bench.h"
 
@@ -189,7 +190,7 @@ TEST_F(ProjectorSetupTest, WithoutCalibrationItIsTheBenchsProjectorAndSaysWhy) {
 TEST_F(ProjectorSetupTest, CalibrationsOfTheBenchAreKeptNewestFirst) {
     EXPECT_TRUE(kept_calibrations().empty());
     const auto product = testing::small_bench_product();
-    Bench bench(testing::small_bench_description(), product);
+    Bench bench = testing::bench_on_kept_light(testing::small_bench_description(), product);
     const auto made = calibrate_on_bench(bench, product, {});
     const auto setup = load_setup(made, 20.0, product->mesh);
     EXPECT_GT(setup->calibration->valid_fraction, 0.9);
@@ -206,7 +207,7 @@ TEST_F(ProjectorSetupTest, CalibrationsOfTheBenchAreKeptNewestFirst) {
 
 TEST_F(ProjectorSetupTest, AStoppedCalibrationLeavesNothingBehind) {
     const auto product = testing::small_bench_product();
-    Bench bench(testing::small_bench_description(), product);
+    Bench bench = testing::bench_on_kept_light(testing::small_bench_description(), product);
     std::atomic<bool> stop{false};
     Progress progress;
     progress.stop = &stop;
@@ -219,7 +220,7 @@ TEST_F(ProjectorSetupTest, AFolderThatCannotBeMadeIsSaidBeforeTheWork) {
     std::filesystem::create_directories(user_folder());
     std::ofstream(user_folder() / "calibrations") << "a file";
     const auto product = testing::small_bench_product();
-    Bench bench(testing::small_bench_description(), product);
+    Bench bench = testing::bench_on_kept_light(testing::small_bench_description(), product);
     Progress progress;
     progress.report = [](double, std::string_view) { FAIL() << "work began"; };
     EXPECT_TRUE(fails_with([&] { calibrate_on_bench(bench, product, progress); },

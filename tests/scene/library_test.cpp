@@ -6,31 +6,13 @@
 
 #include <gtest/gtest.h>
 
-#include "core/paths.h"
 #include "support/file_error.h"
 #include "support/temporary_folder.h"
-#include "twin/description.h"
 
 namespace livery {
 namespace {
 
 namespace fs = std::filesystem;
-
-TEST(Library, EveryShippedProductStandsOnABenchOfItsOwn) {
-    int products = 0;
-    for (const auto& entry : fs::directory_iterator(shipped_path("assets"))) {
-        if (entry.path().extension() != ".json") continue;
-        ++products;
-        const std::string name = entry.path().stem().string();
-        const auto bench = bench_of_shipped_product(name);
-        ASSERT_TRUE(bench) << name;
-        const BenchDescription description = read_bench_file(*bench);
-        EXPECT_EQ(fs::path(description.product).stem(), name) << "bench " << *bench;
-    }
-    EXPECT_GE(products, 3);
-    EXPECT_FALSE(bench_of_shipped_product("teapot"));
-    EXPECT_FALSE(bench_of_shipped_product(""));
-}
 
 TEST(Library, SaysWhichNamesThereAre) {
     EXPECT_TRUE(fails_with([] { find_product("teapot"); },

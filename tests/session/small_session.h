@@ -18,6 +18,7 @@
 #include "core/random.h"
 #include "jobs/comparison.h"
 #include "scene/library.h"
+#include "support/kept_light.h"
 #include "twin/bench.h"
 
 namespace livery::testing {
@@ -128,8 +129,14 @@ inline Judged judged(const Bench& bench, LiveResult live, const Image8* mockup =
 
 /// A new bench of that description, calibrated and judged.
 inline Judged session_on(const BenchDescription& description, int shots = 1) {
-    Bench bench(description, small_bench_product());
+    Bench bench = testing::bench_on_kept_light(description, small_bench_product());
     return judged(bench, calibrate_live(bench.ports(), live_options(description, shots)));
+}
+
+/// The small bench with no nuisance, calibrated and judged once for all tests.
+inline const Judged& clean_session() {
+    static const Judged judged = session_on(small_bench_description());
+    return judged;
 }
 
 /// The ports of a bench whose photographs `damage` changes; it gets their number.

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "support/dng.h"
+#include "support/kept_light.h"
 
 namespace livery::testing {
 
@@ -17,7 +18,7 @@ MonitorBench::MonitorBench(const Desktop& desktop,
                            std::shared_ptr<const Product> product)
     : area_(desktop.projector_area()),
       screen_(desktop.display()),
-      bench_(description, std::move(product)),
+      bench_(bench_on_kept_light(description, std::move(product))),
       ports_(bench_.ports()),
       camera_([this](const PtpSettings& settings) { return photograph(settings); }) {
     const View& projector = description.projector.view;

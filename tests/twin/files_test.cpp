@@ -9,6 +9,7 @@
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/paths.h"
+#include "scene/library.h"
 #include "small_bench.h"
 #include "twin/painted_sphere.h"
 
@@ -70,6 +71,22 @@ void expect_refused(const Read& read,
         EXPECT_NE(error.expected().find(expected), std::string::npos) << error.what();
         EXPECT_NE(std::string(error.what()).find(error.file().string()), std::string::npos);
     }
+}
+
+TEST(BenchFile, EveryShippedProductStandsOnOneOfItsOwn) {
+    int products = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(shipped_path("assets"))) {
+        if (entry.path().extension() != ".json") continue;
+        ++products;
+        const std::string name = entry.path().stem().string();
+        const auto bench = bench_of_shipped_product(name);
+        ASSERT_TRUE(bench) << name;
+        const BenchDescription description = read_bench_file(*bench);
+        EXPECT_EQ(std::filesystem::path(description.product).stem(), name) << "bench " << *bench;
+    }
+    EXPECT_GE(products, 3);
+    EXPECT_FALSE(bench_of_shipped_product("teapot"));
+    EXPECT_FALSE(bench_of_shipped_product(""));
 }
 
 TEST_F(Files, EveryShippedBenchReadsAndStandsAsDocumented) {

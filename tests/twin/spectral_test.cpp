@@ -59,15 +59,15 @@ TEST(Spectral, FoldedFactorsEqualTheSumOverAllBands) {
     const TracedWorld world{mesh, mesh.parts.size(), tracer, surfaces, bench, 450.0};
 
     for (const auto& sensor : {camera_sensor(bench), observer_sensor()}) {
-        Receivers receivers;
-        receivers.width = bench.camera.view.width;
-        receivers.height = bench.camera.view.height;
-        receivers.paths = trace_camera(world, {});
-        receivers.factors = fold(bench, surfaces, sensor);
+        TracedReceivers traced;
+        traced.width = bench.camera.view.width;
+        traced.height = bench.camera.view.height;
+        traced.paths = trace_camera(world, {});
+        const Receivers receivers{&traced, fold(bench, surfaces, sensor)};
         GatherPlaces places(6.0);
-        places.add(receivers.paths);
+        places.add(traced.paths);
         const Gathers gathers = places.gather(world, 64, {});
-        receivers.blends = places.blend(receivers.paths);
+        traced.blends = places.blend(traced.paths);
         Image8 drive(96, 72, 3);
         Random random(3);
         for (auto& value : drive.values) value = static_cast<std::uint8_t>(random.below(256));
@@ -76,7 +76,7 @@ TEST(Spectral, FoldedFactorsEqualTheSumOverAllBands) {
 
         const auto lights = scaled_lights(bench.projector.spectra);
         const Spectrum ambient = scaled_ambient(bench);
-        const LightPaths& paths = receivers.paths;
+        const LightPaths& paths = traced.paths;
         const auto spectrum_of = [&](const PathTerm& term) {
             Spectrum spectrum{};
             for (std::size_t k = 0; k < spectrum.size(); ++k) {
@@ -95,7 +95,7 @@ TEST(Spectral, FoldedFactorsEqualTheSumOverAllBands) {
                 for (std::size_t k = 0; k < power.size(); ++k) power[k] += one[k];
             }
             Spectrum bounced{};
-            const Gathers::Blend& blend = receivers.blends[i];
+            const Gathers::Blend& blend = traced.blends[i];
             for (std::size_t b = 0; b < 8; ++b) {
                 if (blend.weight[b] == 0.0f) continue;
                 for (auto t = gathers.begin[blend.place[b]]; t < gathers.begin[blend.place[b] + 1];
