@@ -1,6 +1,7 @@
 #include "calibration/geometry/choose_model.h"
 
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -10,17 +11,23 @@ namespace livery {
 
 namespace {
 
-/// Empty where the model fails for one of them.
+/// Errors of each sight by the solution without it, found from `whole`, that of all. Empty where
+/// the model fails for one of them.
 std::vector<double> held_out(std::span<const BoardSight> sights,
                              PictureSize camera,
                              PictureSize projector,
-                             LensModel model) {
+                             LensModel model,
+                             const PairSolution& whole) {
     std::vector<double> errors;
     for (std::size_t out = 0; out < sights.size(); ++out) {
         std::vector<BoardSight> rest(sights.begin(), sights.end());
-        rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(out));
+        PairSolution start = whole;
+        const auto place = static_cast<std::ptrdiff_t>(out);
+        rest.erase(rest.begin() + place);
+        start.camera_from_board.erase(start.camera_from_board.begin() + place);
         try {
-            const auto error = held_out_px(solve_pair(rest, camera, projector, model), sights[out]);
+            const auto error =
+                held_out_px(solve_pair(rest, camera, projector, model, &start), sights[out]);
             if (!error) return {};
             errors.push_back(*error);
         } catch (const Refused&) {
@@ -39,8 +46,16 @@ ChosenModel choose_model(std::span<const BoardSight> sights,
         throw Refused(fmt::format("{} poses of the board, too few to leave one out", sights.size()),
                       "photograph the board in five or more poses, tilted differently");
     ChosenModel best;
+    std::optional<PairSolution> smaller;
     for (const LensModel model : {LensModel::k1, LensModel::k1_k2, LensModel::all_five}) {
-        const std::vector<double> errors = held_out(sights, camera, projector, model);
+        PairSolution whole;
+        try {
+            whole = solve_pair(sights, camera, projector, model, smaller ? &*smaller : nullptr);
+        } catch (const Refused&) {
+            continue;  // as where it fails without one of them
+        }
+        if (!smaller) smaller = whole;
+        const std::vector<double> errors = held_out(sights, camera, projector, model, whole);
         if (errors.empty()) continue;
         double squares = 0.0;
         for (const double e : errors) squares += e * e / static_cast<double>(errors.size());
@@ -49,11 +64,11 @@ ChosenModel choose_model(std::span<const BoardSight> sights,
         best.model = model;
         best.held_out_px = errors;
         best.held_out_rms_px = rms;
+        best.solution = whole;
     }
     if (best.held_out_px.empty())
         throw Refused("no lens model fits all poses but one and foretells that one",
                       "tilt the board by 20 to 40 degrees, to all four sides");
-    best.solution = solve_pair(sights, camera, projector, best.model);
     return best;
 }
 

@@ -217,6 +217,38 @@ std::vector<BoardsState> starts(std::span<const BoardSight> sights,
     return all;
 }
 
+Lens lens_of(const View& view) {
+    Lens lens{view.focal_px.x, view.focal_px.y, view.principal_px.x, view.principal_px.y};
+    std::copy(view.distortion.begin(), view.distortion.end(), lens.begin() + 4);
+    return lens;
+}
+
+BoardsState state_of(const PairSolution& solution) {
+    BoardsState state;
+    state.camera = lens_of(solution.camera);
+    state.projector = lens_of(solution.projector);
+    state.stereo = pose_from(solution.projector.view_from_world);
+    for (const Rigid3& pose : solution.camera_from_board) state.boards.push_back(pose_from(pose));
+    return state;
+}
+
+/// From several starts, by the smallest model; no boards where none leads to lenses.
+BoardsState best_of_starts(std::span<const BoardSight> sights,
+                           PictureSize camera,
+                           PictureSize projector) {
+    BoardsState best;
+    for (BoardsState& start : starts(sights, camera, projector)) {
+        ceres::Problem problem;
+        build(problem, start, sights, camera, projector, LensModel::k1);
+        double cost = 0.0;
+        if (solve(problem, 60, cost) && cost < best.cost) {
+            best = start;
+            best.cost = cost;
+        }
+    }
+    return best;
+}
+
 void check_sights(std::span<const BoardSight> sights) {
     for (const BoardSight& sight : sights)
         check_argument(sight.board_mm.size() >= 8 &&
@@ -278,18 +310,12 @@ void check_focal(const char* who, double focal_px, double error_px) {
 PairSolution solve_pair(std::span<const BoardSight> sights,
                         PictureSize camera,
                         PictureSize projector,
-                        LensModel model) {
+                        LensModel model,
+                        const PairSolution* near) {
     check_sights(sights);
-    BoardsState best;
-    for (BoardsState& start : starts(sights, camera, projector)) {
-        ceres::Problem problem;
-        build(problem, start, sights, camera, projector, LensModel::k1);
-        double cost = 0.0;
-        if (solve(problem, 60, cost) && cost < best.cost) {
-            best = start;
-            best.cost = cost;
-        }
-    }
+    check_argument(!near || near->camera_from_board.size() == sights.size(),
+                   "a solution to begin at has a pose for each sight");
+    BoardsState best = near ? state_of(*near) : best_of_starts(sights, camera, projector);
     if (best.boards.empty())
         throw Refused("no start leads to lenses that explain the boards",
                       "check the size of the board and of its squares");
@@ -349,8 +375,7 @@ PairSolution solve_pair(std::span<const BoardSight> sights,
 
 std::optional<double> held_out_px(const PairSolution& solution, const BoardSight& sight) {
     const View& lens = solution.camera;
-    Lens values{lens.focal_px.x, lens.focal_px.y, lens.principal_px.x, lens.principal_px.y};
-    std::copy(lens.distortion.begin(), lens.distortion.end(), values.begin() + 4);
+    Lens values = lens_of(lens);
     Pose board = pose_from(
         pose_of(homography(sight.board_mm, sight.camera_px), lens.focal_px.x, lens.principal_px));
     ceres::Problem problem;

@@ -42,11 +42,13 @@ struct PictureSize {
 /// Bundle adjustment of both lenses, the pose between them and the board's poses together, with a
 /// Huber loss; from several starts, because the projector's principal point may lie outside its
 /// picture. Throws Refused for fewer than three poses, for boards that are all parallel and where
-/// a focal length's standard error exceeds 5% of it.
+/// a focal length's standard error exceeds 5% of it. `near`: a solution for the same sights, by a
+/// smaller model or together with others, to begin at in place of the several starts.
 PairSolution solve_pair(std::span<const BoardSight> sights,
                         PictureSize camera,
                         PictureSize projector,
-                        LensModel model);
+                        LensModel model,
+                        const PairSolution* near = nullptr);
 
 /// RMS distance in the projector of a sight that was not fitted: the camera finds the board's pose
 /// alone, its points are projected. Nothing where a point falls behind a lens.
