@@ -8,14 +8,13 @@
 #if defined(__SANITIZE_THREAD__)
 #include <sanitizer/tsan_interface.h>
 #endif
-#include <sys/resource.h>
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
-#include <unistd.h>
 
 #include "core/error.h"
+#include "core/thread_priority.h"
 
 namespace livery {
 
@@ -32,8 +31,7 @@ void lower_helper() {
     thread_local bool lowered = false;
     if (lowered || !helpers_give_way.load(std::memory_order_relaxed)) return;
     lowered = true;
-    // On Linux a "process" here is a thread; 0 is the calling one.
-    ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 10);
+    set_nice_of_this_thread(10);
 }
 
 // What TBB promises and the thread sanitizer cannot see, because TBB is not instrumented: all that
