@@ -6,15 +6,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include "core/worst_error.h"
 #include "gl/context.h"
 #include "jobs/render/render.h"
-#include "reference/path_tracer.h"
 #include "scene/library.h"
 #include "support/direct_levels.h"
+#include "support/kept_truth.h"
 #include "support/radiance_error.h"
 #include "tracing/tracer.h"
 #include "twin/description.h"
@@ -90,8 +91,13 @@ RadianceError error_of(const std::string& bench_name,
     ReferenceOptions options;
     options.bounces = 0;  // as direct_levels()
     options.samples_per_pixel = samples_for(light);
-    const ReferenceResult truth = trace_reference(scene, request.view, options);
-    const RadianceError error = radiance_error(drawn.radiance_working, truth.radiance_working);
+    const ImageF truth = testing::kept_truth(
+        fmt::format(
+            "{}-{}-{}", bench_name, paint.name, light == Light::lamps ? "lamps" : "environment"),
+        scene,
+        request.view,
+        options);
+    const RadianceError error = radiance_error(drawn.radiance_working, truth);
     std::printf("%s, %s, alpha %.2f, %s: median %.4f, 90%% %.4f, 99%% %.4f over %zu pixels\n",
                 bench_name.c_str(),
                 paint.name.c_str(),
@@ -270,9 +276,10 @@ TEST(GlAgainstReference, RegionsOfTheCarInAnEnvironment) {
             options.samples_per_pixel = region.name == "wheels" ? 2048 : 256;
             const glm::ivec2 corner = region.corner_px;
             const ImageF truth =
-                trace_reference(
-                    scene, cropped(view, corner.x, corner.y, kWindow.x, kWindow.y), options)
-                    .radiance_working;
+                testing::kept_truth("car-" + region.name + "-" + paint.name,
+                                    scene,
+                                    cropped(view, corner.x, corner.y, kWindow.x, kWindow.y),
+                                    options);
             double sum = 0.0, true_sum = 0.0;
             for (const glm::ivec2& at : region.pixels_px) {
                 for (int c = 0; c < 3; ++c) {
@@ -293,12 +300,8 @@ TEST(GlAgainstReference, RegionsOfTheCarInAnEnvironment) {
     }
 }
 
-struct Pictures {
-    ImageF drawn, truth;
-};
-
 /// In the first shipped look's light: a lamp 3 degrees wide from above in the studio.
-Pictures draw_both(const Material& paint, const View& view, Quality quality, int samples) {
+Scene quarter_scene(const Material& paint) {
     const auto product = find_product("car");
     Look look = find_look("solid-red");
     look.parts.clear();
@@ -309,20 +312,25 @@ Pictures draw_both(const Material& paint, const View& view, Quality quality, int
     scene.lights[0].direction = glm::normalize(glm::dvec3(-0.45, 0.75, 0.55));
     scene.lights[0].radiance_rec709 = glm::dvec3(1.0);
     scene.lights[0].angle_rad = 0.05236;
+    return scene;
+}
 
+ImageF draw(const Scene& scene, const View& view, Quality quality) {
     RenderRequest request;
     request.scene = scene;
     request.view = view;
     request.gl_device = GlDevice::software;
     request.quality = quality;
     request.levels = direct_levels(quality);
-    Pictures pictures;
-    pictures.drawn = render_frame(request).radiance_working;
+    return render_frame(request).radiance_working;
+}
+
+ImageF truth_of(const Scene& scene, const View& view, int samples) {
     ReferenceOptions options;
     options.bounces = 0;  // as direct_levels()
     options.samples_per_pixel = samples;
-    pictures.truth = trace_reference(scene, view, options).radiance_working;
-    return pictures;
+    return testing::kept_truth(
+        "car-quarter-" + scene.part_materials.front().name, scene, view, options);
 }
 
 double brightest_channel(const ImageF& image, int x, int y) {
@@ -336,18 +344,20 @@ TEST(GlAgainstReference, NoFalseLineOnTheShouldersCrease) {
     // may be brighter than the brightest of the truth beside it by more than a tenth of design
     // white, this file's limit for single pixels.
     const View view = cropped(quarter_view(), 160, 155, 112, 40);
+    const Scene scene = quarter_scene(coated(0.02));
+    const ImageF truth = truth_of(scene, view, 64);
     for (const Quality quality : {Quality::draft, Quality::normal}) {
-        const Pictures seen = draw_both(coated(0.02), view, quality, 64);
+        const ImageF drawn = draw(scene, view, quality);
         double worst = 0.0;
         for (int y = 1; y + 1 < view.height; ++y) {
             for (int x = 1; x + 1 < view.width; ++x) {
                 double around = 0.0;
                 for (int j = -1; j <= 1; ++j) {
                     for (int i = -1; i <= 1; ++i) {
-                        around = std::max(around, brightest_channel(seen.truth, x + i, y + j));
+                        around = std::max(around, brightest_channel(truth, x + i, y + j));
                     }
                 }
-                worst = worse_of(worst, brightest_channel(seen.drawn, x, y) - around);
+                worst = worse_of(worst, brightest_channel(drawn, x, y) - around);
             }
         }
         std::printf(
@@ -361,19 +371,20 @@ TEST(GlAgainstReference, JointsAreDarkInADraftToo) {
     // beside it, or as they are where the four rays of a pixel pass the joint by. It shone there
     // while it let the whole environment into the joint.
     const View view = cropped(quarter_view(), 156, 182, 22, 16);
-    const Pictures seen = draw_both(coated(0.02), view, Quality::draft, 64);
+    const Scene scene = quarter_scene(coated(0.02));
+    const ImageF drawn = draw(scene, view, Quality::draft), truth = truth_of(scene, view, 64);
     double sum = 0.0;
     for (int y = 0; y < view.height; ++y) {
         constexpr int kBeside = 5;
         int joint = kBeside;
         for (int x = kBeside; x < view.width - kBeside; ++x) {
-            if (brightest_channel(seen.truth, x, y) < brightest_channel(seen.truth, joint, y)) {
+            if (brightest_channel(truth, x, y) < brightest_channel(truth, joint, y)) {
                 joint = x;
             }
         }
-        const double beside = 0.5 * (brightest_channel(seen.drawn, joint - kBeside, y) +
-                                     brightest_channel(seen.drawn, joint + kBeside, y));
-        const double share = brightest_channel(seen.drawn, joint, y) / beside;
+        const double beside = 0.5 * (brightest_channel(drawn, joint - kBeside, y) +
+                                     brightest_channel(drawn, joint + kBeside, y));
+        const double share = brightest_channel(drawn, joint, y) / beside;
         EXPECT_LT(share, 1.01) << "row " << y;
         sum += share / view.height;
     }
@@ -389,9 +400,10 @@ TEST(GlAgainstReference, WheelsHaveNoPepper) {
     matte.name = "matte";
     matte.diffuse = glm::dvec3(0.5);
     const View view = cropped(quarter_view(), 366, 240, 110, 18);
-    const ImageF truth = draw_both(matte, view, Quality::draft, 1024).truth;
+    const Scene scene = quarter_scene(matte);
+    const ImageF truth = truth_of(scene, view, 1024);
     for (const Quality quality : {Quality::normal, Quality::high}) {
-        const ImageF drawn = draw_both(matte, view, quality, 1).drawn;
+        const ImageF drawn = draw(scene, view, quality);
         std::vector<double> errors;
         for (int y = 0; y < view.height; ++y) {
             for (int x = 0; x < view.width; ++x) {
