@@ -11,6 +11,7 @@
 #include "live/contexts.h"
 #include "live/orbit.h"
 #include "scene/library.h"
+#include "support/kept_light.h"
 #include "support/temporary_folder.h"
 #include "twin/bench.h"
 #include "twin/pixel_rays.h"
@@ -162,7 +163,7 @@ TEST_F(OnTheBench, ThePhotographIsTheObserversTruthForNeutralSurfaces) {
     BenchDescription description = read_bench_file(bench_);
     description.camera.view = description.projector.view;  // the same side
     description.eye_mm = centre_in_world(description.projector.view);
-    Bench bench(description, car_);
+    Bench bench = testing::bench_on_kept_light(description, car_);
     const auto drive = drive_of(200, 120, 60);
     bench.ports().show(*drive);
     const ImageF photographed =
@@ -339,6 +340,10 @@ TEST_F(OnTheBench, EndsAtAnyMoment) {
         watched.thread->photograph(1, drive_of(255, 255, 255), kEye_mm, 0.5);
         if (ms % 2 == 0) watched.thread->start_calibration();
         std::this_thread::sleep_for(std::chrono::milliseconds(ms));
+        watched.thread.reset();
+        const std::size_t calls = watched.calibrations.all().size();
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        EXPECT_EQ(watched.calibrations.all().size(), calls) << "called back after its end";
     }
 }
 

@@ -502,6 +502,8 @@ TEST_P(FrameThreadOnADevice, EndsAtAnyMoment) {
         }
         thread_.reset();
         gallery_.clear();
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        EXPECT_TRUE(gallery_.all().empty()) << "a frame after its end";
     }
 }
 

@@ -1,6 +1,7 @@
 // The path tracer beside a window: what it hands over, when it stops, and what it says of failures.
 #include "live/reference_thread.h"
 
+#include <atomic>
 #include <chrono>
 #include <memory>
 #include <mutex>
@@ -89,8 +90,14 @@ TEST(ReferenceThread, SaysWhyNothingCameAndGoesOn) {
 }
 
 TEST(ReferenceThread, EndsInTheMiddle) {
-    ReferenceThread thread([] {});
-    thread.trace(request_of(1));
+    std::atomic<int> calls{0};
+    {
+        ReferenceThread thread([&] { ++calls; });
+        thread.trace(request_of(1));
+    }
+    const int at_its_end = calls;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    EXPECT_EQ(calls, at_its_end) << "called back after its end";
 }
 
 }  // namespace
