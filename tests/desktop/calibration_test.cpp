@@ -28,7 +28,7 @@ class Calibrations : public TwoMonitors {
 
 TEST_F(Calibrations, OneOfPhotographsAsksForItsProjectorAndIsNotReplaced) {
     // As `livery calibrate color` leaves it when it is not told of the projector.
-    const fs::path prepared = prepared_calibration();
+    const fs::path prepared = prepared_calibration(kFullProjector_px);
     auto running = std::make_shared<RunningStudio>();
     const fs::path loaded = running->folder / "loaded", camera = running->folder / "camera.json";
     fs::copy(prepared, loaded, fs::copy_options::recursive);
@@ -36,7 +36,7 @@ TEST_F(Calibrations, OneOfPhotographsAsksForItsProjectorAndIsNotReplaced) {
     // A first start: nothing was calibrated, so the program begins to by itself.
     ::setenv("LIVERY_HOME", (running->folder / "home").c_str(), 1);
     Session::open(running->session_file());
-    running->desktop = std::make_unique<Desktop>();
+    running->desktop = std::make_unique<Desktop>(DesktopOptions{.projector_px = kFullProjector_px});
     use(running);
     start_program();
     program->wait_for_state("calibrating", true);

@@ -137,8 +137,8 @@ class Bench {
 void run() {
     const TemporaryFolder folder;
     const auto session = folder / "session.livery";
-    prepare_session(session, Quality::normal);
-    Desktop desktop;
+    prepare_session(session, Quality::normal, kFullProjector_px);
+    Desktop desktop({.projector_px = kFullProjector_px});
     {
         // A designer's second day: the projector is known, shaders are compiled.
         Bench first(desktop, session);

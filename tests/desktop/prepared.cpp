@@ -9,17 +9,18 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include "core/colour.h"
-#include "core/hash.h"
+#include "cli/render/frame_options.h"
 #include "core/image_io.h"
 #include "core/paths.h"
 #include "live/projector_setup.h"
 #include "live/vote_frames.h"
 #include "scene/frame_plan.h"
+#include "scene/library.h"
 #include "session/commands.h"
 #include "session/look_exchange.h"
 #include "session/session.h"
-#include "support/run_program.h"
+#include "support/temporary_folder.h"
+#include "twin/bench.h"
 
 namespace livery {
 namespace {
@@ -59,12 +60,6 @@ fs::path cache_folder() {
     return folder;
 }
 
-std::string hash_of(const std::string& text) {
-    Hasher hasher;
-    hasher.add(text);
-    return hasher.hex();
-}
-
 }  // namespace
 
 Image8 read_png(const fs::path& file) {
@@ -80,78 +75,62 @@ Image8 read_png(const fs::path& file) {
     return picture;
 }
 
-fs::path prepared_calibration() {
+fs::path prepared_calibration(glm::ivec2 projector_px) {
     const CacheLock lock;
     // The folder's name is in this file once the calibration is complete.
-    const fs::path done = cache_folder() / "calibration";
+    const fs::path done =
+        cache_folder() / fmt::format("calibration-{}x{}", projector_px.x, projector_px.y);
     if (!fs::exists(done)) {
         const auto product =
             std::make_shared<const Product>(load_product(shipped_path("assets/car.json")));
-        const fs::path folder = calibrate_on_bench("default", product, {});
-        write_text_file(done, folder.string());
+        BenchDescription description = read_bench_file("default");
+        View &projector = description.projector.view, &camera = description.camera.view;
+        const double scale = static_cast<double>(projector_px.x) / projector.width;
+        projector = resized(projector, projector_px.x, projector_px.y);
+        camera = resized(camera,
+                         static_cast<int>(std::lround(scale * camera.width)),
+                         static_cast<int>(std::lround(scale * camera.height)));
+        Bench bench(description, product);
+        write_text_file(done, calibrate_on_bench(bench, product, {}).string());
     }
     return read_text_file(done);
 }
 
-Document prepare_session(const fs::path& file, Quality quality) {
+Document prepare_session(const fs::path& file, Quality quality, glm::ivec2 projector_px) {
     Session session = Session::open(file);
     session.execute(SetQuality{quality});
-    session.execute(SetCalibration{prepared_calibration().string()});
+    session.execute(SetCalibration{prepared_calibration(projector_px).string()});
     return session.document();
 }
 
 namespace {
 
-/// What the command line draws of a look, kept with the build; the picture's file.
-fs::path rendered(const Document& document,
-                  int look_id,
-                  const std::string& stage,
-                  const std::string& suffix) {
+/// What `livery render` draws of a look.
+RenderedFrame rendered(const Document& document, int look_id, const std::string& stage) {
     const TemporaryFolder folder;
-    const fs::path look_file = folder / "look.json";
-    const auto files = export_look(document, look_id, look_file);
-    const std::vector<std::string> options = {
-        "--calibration",
-        document.calibration,
-        "--quality",
-        to_string(document.quality),
-        "--eye",
-        fmt::format("{},{},{}", document.eye_mm.x, document.eye_mm.y, document.eye_mm.z),
-        "--design-white",
-        fmt::format("{}", document.design_white_percentile),
-        "--gamut",
-        to_string(document.gamut_mapping)};
-    std::string key = stage;
-    for (const auto& file : files) key += read_text_file(file);
-    for (const auto& option : options) key += option;
-    const CacheLock lock;
-    const fs::path picture = cache_folder() / (hash_of(key) + suffix);
-    if (!fs::exists(picture)) {
-        std::vector<std::string> arguments = {
-            "render", "--stage", stage, "--look", look_file.string(), "--out", picture.string()};
-        arguments.insert(arguments.end(), options.begin(), options.end());
-        const ProgramRun run = run_program(LIVERY_PROGRAM, arguments);
-        if (run.exit_code != 0) throw std::runtime_error("livery render: " + run.err);
-    }
-    return picture;
+    FrameArguments arguments;
+    arguments.look = (folder / "look.json").string();
+    export_look(document, look_id, arguments.look);
+    arguments.calibration = document.calibration;
+    arguments.quality = to_string(document.quality);
+    arguments.eye =
+        fmt::format("{},{},{}", document.eye_mm.x, document.eye_mm.y, document.eye_mm.z);
+    arguments.design_white = document.design_white_percentile;
+    arguments.gamut = to_string(document.gamut_mapping);
+    arguments.stage = stage;
+    ResolvedFrame frame = resolve_frame(arguments, {});
+    frame.request.compensation = &frame.compensation.value();
+    return render_frame(frame.request);
 }
 
 }  // namespace
 
 Image8 expected_drive(const Document& document, int look_id) {
-    return read_png(rendered(document, look_id, "projector", ".png"));
+    return rendered(document, look_id, "projector").drive;
 }
 
 Image8 expected_grey(const Document& document, int look_id) {
-    ImageF wanted = read_image(rendered(document, look_id, "radiance", ".exr")).image;
-    // The file has Rec.709 over black.
-    for (std::size_t i = 0; i < wanted.pixel_count(); ++i) {
-        float* v = &wanted.values[4 * i];
-        if (v[3] <= 0.0f) continue;
-        const glm::dvec3 working =
-            working_from_rec709() * (glm::dvec3(v[0], v[1], v[2]) / static_cast<double>(v[3]));
-        for (int c = 0; c < 3; ++c) v[c] = static_cast<float>(working[c]);
-    }
+    const ImageF wanted = rendered(document, look_id, "radiance").radiance_working;
     const Product product = load_product(shipped_path("assets/car.json"));
     const auto setup = load_setup(document.calibration,
                                   document.design_white_percentile,

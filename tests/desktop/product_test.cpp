@@ -190,7 +190,7 @@ TEST_F(OwnProduct, NothingRunsBehindThePageOfAMeshAndWhatRunsIsNotStoppedUnasked
     ::setenv("LIVERY_HOME", (running->folder / "home").c_str(), 1);
     Session::open(first);
     Session::open(second);
-    running->desktop = std::make_unique<Desktop>();
+    running->desktop = std::make_unique<Desktop>(DesktopOptions{.projector_px = kFullProjector_px});
     use(running);
     const auto scan = write_scan(20);
     start_program({scan.string()});

@@ -79,8 +79,10 @@ TEST_F(Projector, IsPickedByItsNumberAndRemembered) {
     EXPECT_TRUE(projector_is_black());
     // Large numbers on every monitor, for a moment.
     program->click("show-numbers");
-    EXPECT_TRUE(wait_until(
-        [&] { return fraction_different(projector_picture(), Image8(1280, 800, 3), 40) > 0.005; }));
+    EXPECT_TRUE(wait_until([&] {
+        const Image8 seen = projector_picture();
+        return fraction_different(seen, Image8(seen.width, seen.height, 3), 40) > 0.005;
+    }));
     program->move_away();
     EXPECT_TRUE(projector_is_black());
     pick_projector();
@@ -105,8 +107,9 @@ TEST_F(Projector, UnpluggedItIsNowhereAndPluggedInItIsBack) {
     ASSERT_GT(signature.size(), 20u);
     ASSERT_TRUE(signature.is_in(projector_picture()));
 
-    ScreenWatch watch(
-        *desktop, {0, 0, 1280, 800}, [&](const Image8& screen) { return signature.is_in(screen); });
+    ScreenWatch watch(*desktop, desktop->operator_area(), [&](const Image8& screen) {
+        return signature.is_in(screen);
+    });
     for (int times = 0; times < 3; ++times) {
         desktop->unplug_projector();
         for (int i = 0; i < 40; ++i) {

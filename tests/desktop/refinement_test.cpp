@@ -23,7 +23,7 @@ bool lies_between(const Image8& picture, const Image8& one, const Image8& other)
     return true;
 }
 
-TEST_F(RefinementTest, FadesInTheLevelsOfHigh) {
+TEST_F(RefinementTest, NightlyFadesInTheLevelsOfHigh) {
     refines = true;
     start();
     const Image8 draft = drive_of_place(0);

@@ -26,7 +26,7 @@ class Photographer {
   public:
     Photographer(const fs::path& folder, glm::ivec2 size_px, double ui_scale)
         : folder_(folder), size_px_(size_px), desktop_({size_px, {1280, 800}, false}) {
-        document_ = prepare_session(home_ / "session.livery", Quality::normal);
+        document_ = prepare_session(home_ / "session.livery", Quality::normal, kFullProjector_px);
         program_ = std::make_unique<StudioProgram>(
             desktop_, StudioStart{home_ / "session.livery", size_px, ui_scale, {}});
     }

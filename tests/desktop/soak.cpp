@@ -335,8 +335,8 @@ bool judge(const std::vector<Round>& rounds) {
 /// Exit code.
 int run(double minutes) {
     const TemporaryFolder folder;
-    prepare_session(folder / "session.livery", Quality::normal);
-    Desktop desktop;
+    prepare_session(folder / "session.livery", Quality::normal, kFullProjector_px);
+    Desktop desktop({.projector_px = kFullProjector_px});
     Soak soak(desktop, folder.path());
     std::cout << "| round | minutes | MiB | swapped MiB | descriptors | threads | mappings | X "
                  "server MiB | paint median ms | 95% | shown |\n"

@@ -13,7 +13,7 @@
 namespace livery {
 namespace {
 
-using Json = nlohmann::json;
+using nlohmann::json;
 
 std::string text_of(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
@@ -26,11 +26,11 @@ void keep_refining(const StudioStart& start) {
     const std::filesystem::path file =
         (home == start.environment.end() ? user_folder() : std::filesystem::path(home->second)) /
         "desktop.json";
-    Json json = {{"format_version", 1}, {"settings", Json::object()}};
-    if (std::filesystem::exists(file)) json = Json::parse(text_of(file));
-    json["settings"]["refine-while-still"] = start.refines ? "yes" : "no";
+    json kept = {{"format_version", 1}, {"settings", json::object()}};
+    if (std::filesystem::exists(file)) kept = json::parse(text_of(file));
+    kept["settings"]["refine-while-still"] = start.refines ? "yes" : "no";
     make_output_folder(file.parent_path());
-    write_text_file(file, json.dump());
+    write_text_file(file, kept.dump());
 }
 
 }  // namespace
@@ -71,7 +71,7 @@ int StudioProgram::quit() {
     return *code;
 }
 
-Json StudioProgram::map() const { return Json::parse(text_of(folder_ / "map")); }
+json StudioProgram::map() const { return json::parse(text_of(folder_ / "map")); }
 
 void StudioProgram::scroll_to_paint(const std::string& name) {
     // At the list's very edge the pointer is on no swatch, which would be tried on.
@@ -90,7 +90,7 @@ void StudioProgram::scroll_to_paint(const std::string& name) {
 
 Rectangle StudioProgram::steady_item(const std::string& name) const {
     const auto look = [&]() -> Rectangle {
-        const Json map = this->map();
+        const json map = this->map();
         const auto& items = map["items"];
         // What was done may still move it, although the projector shows it already.
         if (!map["state"]["at_rest"].get<bool>() || !items.contains(name)) return {};
@@ -123,7 +123,7 @@ Rectangle StudioProgram::item(const std::string& name) {
 }
 
 std::map<std::string, Rectangle> StudioProgram::items() {
-    const Json map = this->map();
+    const json map = this->map();
     const auto window = map["window"].get<std::vector<int>>();
     std::map<std::string, Rectangle> found;
     for (const auto& [name, place] : map["items"].items()) {
@@ -137,19 +137,19 @@ bool StudioProgram::has_item(const std::string& name) { return map()["items"].co
 
 std::vector<std::string> StudioProgram::items_starting_with(const std::string& prefix) {
     std::vector<std::string> names;
-    const Json map = this->map();
+    const json map = this->map();
     for (const auto& [name, place] : map["items"].items()) {
         if (name.starts_with(prefix)) names.push_back(name);
     }
     return names;
 }
 
-Json StudioProgram::state(const std::string& name) {
-    const Json map = this->map();
-    return map.contains("state") && map["state"].contains(name) ? map["state"][name] : Json();
+json StudioProgram::state(const std::string& name) {
+    const json map = this->map();
+    return map.contains("state") && map["state"].contains(name) ? map["state"][name] : json();
 }
 
-void StudioProgram::wait_for_state(const std::string& name, const Json& value) {
+void StudioProgram::wait_for_state(const std::string& name, const json& value) {
     if (wait_until([&] { return state(name) == value; })) return;
     throw std::runtime_error(
         fmt::format("{} is {} instead of {}\n{}", name, state(name).dump(), value.dump(), words()));
@@ -163,7 +163,7 @@ glm::ivec2 StudioProgram::point_at(const std::string& name) {
         Rectangle now;
         const auto known = [&] {
             now = steady_item(name);
-            const Json map = this->map();
+            const json map = this->map();
             return now.width > 0 ||
                    (map["state"]["at_rest"].get<bool>() && !map["items"].contains(name));
         };
@@ -246,7 +246,7 @@ std::vector<TraceLine> StudioProgram::trace() const {
     std::vector<TraceLine> lines;
     std::ifstream stream(folder_ / "trace");
     for (std::string text; std::getline(stream, text);) {
-        const Json line = Json::parse(text, nullptr, false);
+        const json line = json::parse(text, nullptr, false);
         if (line.is_discarded()) break;  // being written, or cut off by a kill
         lines.push_back({line["t_s"], line["event"], line["number"], line.value("what", "")});
     }

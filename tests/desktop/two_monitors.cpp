@@ -51,7 +51,8 @@ void TwoMonitors::use(std::shared_ptr<RunningStudio> running) {
 
 void TwoMonitors::start(const DesktopOptions& options, const std::vector<std::string>& arguments) {
     auto running = std::make_shared<RunningStudio>();
-    running->document = prepare_session(running->session_file());
+    running->document =
+        prepare_session(running->session_file(), Quality::draft, options.projector_px);
     // The user's settings outlive a session: nobody has picked a projector yet.
     std::filesystem::remove(user_folder() / "desktop.json");
     running->desktop = std::make_unique<Desktop>(options);
