@@ -15,6 +15,7 @@
 #include "scene/mockup_mask.h"
 #include "session/small_session.h"
 #include "support/file_error.h"
+#include "support/kept_light.h"
 #include "support/temporary_folder.h"
 
 namespace livery {
@@ -26,7 +27,8 @@ using testing::small_bench_product;
 
 struct Room {
     explicit Room(BenchDescription description = small_bench_description())
-        : bench(description, small_bench_product()), ports(bench.ports()) {
+        : bench(testing::bench_on_kept_light(description, small_bench_product())),
+          ports(bench.ports()) {
         run.folder = folder / "run";
         run.request = request_of(description, small_bench_product());
         const TakePhotograph take = ports.photograph;
@@ -53,10 +55,30 @@ struct Room {
     int photographs = 0;
 };
 
+/// A room in which geometry and colours were found, as that left it; found once for all tests.
+struct FoundRoom : Room {
+    FoundRoom() : all_photographs(first().photographs) {
+        const StagedCalibration& found = first().run;
+        std::filesystem::copy(found.folder, run.folder, std::filesystem::copy_options::recursive);
+        run.room = found.room;
+        run.made = found.made;
+    }
+    int all_photographs;
+
+  private:
+    static const Room& first() {
+        static const auto found = [] {
+            auto room = std::make_unique<Room>();
+            room->find();
+            return room;
+        }();
+        return *found;
+    }
+};
+
 TEST(StagedCalibration, KeepsEachStageAndDoesOneAnewAlone) {
-    Room room;
-    room.find();
-    const int all = room.photographs;
+    FoundRoom room;
+    const int all = room.all_photographs;
     EXPECT_TRUE(room.run.made->room);
     EXPECT_LE(all,
               expected_photographs(room.run.request, CalibrationStage::geometry) +
@@ -85,12 +107,15 @@ TEST(StagedCalibration, KeepsEachStageAndDoesOneAnewAlone) {
 }
 
 TEST(StagedCalibration, GoesOnWhereItWasStopped) {
-    Room room;
-    room.find();
-    const int all = room.photographs;
-    for (const int stop_at : {10, all - 8}) {
-        SCOPED_TRACE(stop_at);
-        forget(room.run, CalibrationStage::geometry);
+    FoundRoom room;
+    // At the geometry's tenth photograph of all, and at the colours' tenth.
+    for (const auto stage : {CalibrationStage::geometry, CalibrationStage::colour}) {
+        SCOPED_TRACE(static_cast<int>(stage));
+        constexpr int stop_at = 10;
+        const int all = stage == CalibrationStage::geometry
+                            ? room.all_photographs
+                            : expected_photographs(room.run.request, CalibrationStage::colour);
+        forget(room.run, stage);
         room.forget_memory();
         BenchPorts cut = room.ports;
         int taken = 0;
@@ -109,9 +134,13 @@ TEST(StagedCalibration, GoesOnWhereItWasStopped) {
 }
 
 TEST(StagedCalibration, IsCheckedWithColoursThatNothingWasFittedTo) {
-    Room room;
-    EXPECT_THROW(check_colours(room.run, room.ports, {}), std::invalid_argument);
-    room.find();
+    EXPECT_THROW(
+        [] {
+            Room room;
+            check_colours(room.run, room.ports, {});
+        }(),
+        std::invalid_argument);
+    FoundRoom room;
     check_colours(room.run, room.ports, {});
     ASSERT_EQ(room.run.check->colours.size(), 4u);
     // The bench's camera at this size has one pixel or two a projector pixel; .5 and 2 are asked of
@@ -134,8 +163,7 @@ TEST(StagedCalibration, IsCheckedWithColoursThatNothingWasFittedTo) {
 }
 
 TEST(StagedCalibration, TellsALaterDayWhatChanged) {
-    Room room;
-    room.find();
+    FoundRoom room;
     const CalibrationOrigin origin = origin_of(*room.run.made, room.run.request);
     const auto folder = room.folder / "kept";
     write_setup(folder, room.run.made->calibration, *room.run.made->projector);
@@ -191,8 +219,7 @@ TEST(StagedCalibration, RefusesWhatMovedAfterTheGeometry) {
 }
 
 TEST(StagedCalibration, IsComparedWithAnother) {
-    Room room;
-    room.find();
+    FoundRoom room;
     const ColourCalibration& one = room.run.made->calibration;
     const View& view = *room.run.made->projector;
     const Mesh& mesh = small_bench_product()->mesh;
@@ -219,8 +246,7 @@ TEST(StagedCalibration, IsComparedWithAnother) {
 
 // What the stages leave is a captures folder for `livery calibrate color`.
 TEST(StagedCalibration, LeavesFoldersThatAnybodyCanCalibrateFrom) {
-    Room room;
-    room.find();
+    FoundRoom room;
     CapturedCalibrationRequest request;
     request.captures = room.run.folder / "colour";
     request.map = room.run.folder / "colour" / "map.exr";

@@ -101,6 +101,38 @@ std::vector<std::string> violations(const std::filesystem::path& source, const R
     return found;
 }
 
+/// What .ci/nightly alone runs: "Suite.NightlyTest", and "suite `name`" for whole executables.
+Names nightly_tests(const std::filesystem::path& source) {
+    static const std::regex test(R"(\nTEST(?:_F|_P)?\(\s*(\w+),\s*(\w*Nightly\w*)\))"),
+        suite(R"((?:livery_test\(|NAME )(\w+) (?:ALL_NIGHTLY|CONFIGURATIONS nightly))");
+    Names found;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(source / "tests")) {
+        const bool is_cmake = entry.path().filename() == "CMakeLists.txt";
+        if (!is_cmake && entry.path().extension() != ".cpp") continue;
+        const std::string text = text_of(entry.path());
+        for (std::sregex_iterator it(text.begin(), text.end(), is_cmake ? suite : test), end;
+             it != end;
+             ++it) {
+            found.insert(is_cmake ? "suite " + it->str(1) : it->str(1) + "." + it->str(2));
+        }
+    }
+    return found;
+}
+
+/// The same as tests/README.md names them, in the first column of its table.
+Names nightly_rows(const std::filesystem::path& source) {
+    static const std::regex row(R"(\n\| (suite )?`(\w+(?:\.\w*Nightly\w*)?)` \|)");
+    const std::string all = text_of(source / "tests/README.md");
+    const std::string text =
+        all.substr(all.find("## Tests of the night"),
+                   all.find("## Tests that can fail") - all.find("## Tests of the night"));
+    Names found;
+    for (std::sregex_iterator it(text.begin(), text.end(), row), end; it != end; ++it) {
+        if (it->str(2) != "test") found.insert(it->str(1) + it->str(2));
+    }
+    return found;
+}
+
 /// Every name that two files of src/ give to types of their own, a file's private ones too: "Name:
 /// a.cpp b.h". Members of a type have that type's name before them.
 std::vector<std::string> names_given_twice(const std::filesystem::path& source) {
@@ -248,6 +280,12 @@ TEST(Layering, NoTwoTypesHaveOneName) {
 TEST(Layering, NoFolderIsCrowded) {
     const auto found = crowded_folders(kSource);
     EXPECT_TRUE(found.empty()) << joined(found);
+}
+
+TEST(Nightly, TheReadmeNamesAllThatRunsAtNight) {
+    const auto tests = nightly_tests(kSource);
+    EXPECT_GT(tests.size(), 5u);
+    EXPECT_EQ(tests, nightly_rows(kSource));
 }
 
 TEST(Errors, NoneIsDeafToNan) {
