@@ -5,7 +5,11 @@
 #include <stdexcept>
 #include <string>
 
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 #include <glm/geometric.hpp>
 
 #include "core/error.h"
@@ -39,6 +43,57 @@ class FlushDenormals {
 };
 
 constexpr std::size_t kPacket = 8;
+
+#if RTC_VERSION_MAJOR >= 4  // takes arguments after the rays
+
+void intersect(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &ray); }
+
+void intersect_neighbours(RTCScene scene, const int* valid, RTCRayHit8& rays) {
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    rtcIntersect8(valid, scene, &rays, &arguments);
+}
+
+void occlude(RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &ray); }
+
+void occlude(RTCScene scene, const int* valid, RTCRay8& rays, RayOrder order) {
+    RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    if (order == RayOrder::neighbours) arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    rtcOccluded8(valid, scene, &rays, &arguments);
+}
+
+#else  // takes a context before them
+
+RTCIntersectContext context_of(RayOrder order) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    if (order == RayOrder::neighbours) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    return context;
+}
+
+void intersect(RTCScene scene, RTCRayHit& ray) {
+    RTCIntersectContext context = context_of(RayOrder::scattered);
+    rtcIntersect1(scene, &context, &ray);
+}
+
+void intersect_neighbours(RTCScene scene, const int* valid, RTCRayHit8& rays) {
+    RTCIntersectContext context = context_of(RayOrder::neighbours);
+    rtcIntersect8(valid, scene, &context, &rays);
+}
+
+void occlude(RTCScene scene, RTCRay& ray) {
+    RTCIntersectContext context = context_of(RayOrder::scattered);
+    rtcOccluded1(scene, &context, &ray);
+}
+
+void occlude(RTCScene scene, const int* valid, RTCRay8& rays, RayOrder order) {
+    RTCIntersectContext context = context_of(order);
+    rtcOccluded8(valid, scene, &context, &rays);
+}
+
+#endif
 
 RTCRay embree_ray(const TraceRay& ray) {
     RTCRay out{};
@@ -173,9 +228,7 @@ Hit Tracer::closest(const TraceRay& ray) const {
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.primID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(state_->scene, &context, &query);
+    intersect(state_->scene, query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
     return {query.hit.primID, query.ray.tfar, {query.hit.u, query.hit.v}};
 }
@@ -184,25 +237,20 @@ bool Tracer::occluded(const TraceRay& ray) const {
     tracing_detail::count_occluded(1);
     const FlushDenormals flush;
     RTCRay query = embree_ray(ray);
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded1(state_->scene, &context, &query);
+    occlude(state_->scene, query);
     return query.tfar < 0.0f;  // Embree writes minus infinity
 }
 
 void Tracer::closest(std::span<const TraceRay> rays, std::span<Hit> hits) const {
     check_argument(rays.size() == hits.size(), "closest: as many hits as rays are needed");
     tracing_detail::count_closest(rays.size());
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     for_each_packet(rays.size(), [&](std::size_t first, std::size_t count, const int* valid) {
         RTCRayHit8 packet;
         for (std::size_t lane = 0; lane < kPacket; ++lane) {
             set_lane(packet.ray, lane, rays[first + std::min(lane, count - 1)]);
             forget_hit(packet, lane);
         }
-        rtcIntersect8(valid, state_->scene, &context, &packet);
+        intersect_neighbours(state_->scene, valid, packet);
         read_hits(packet, hits.subspan(first, count));
     });
 }
@@ -213,9 +261,6 @@ void Tracer::closest_from(const glm::vec3& origin,
     check_argument(directions.size() == hits.size(),
                    "closest_from: as many hits as directions are needed");
     tracing_detail::count_closest(directions.size());
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     RTCRayHit8 packet{};
     for (std::size_t lane = 0; lane < kPacket; ++lane) {
         TraceRay ray;
@@ -232,7 +277,7 @@ void Tracer::closest_from(const glm::vec3& origin,
             packet.ray.tfar[lane] = TraceRay{}.t_max;
             forget_hit(packet, lane);
         }
-        rtcIntersect8(valid, state_->scene, &context, &packet);
+        intersect_neighbours(state_->scene, valid, packet);
         read_hits(packet, hits.subspan(first, count));
     });
 }
@@ -242,16 +287,12 @@ void Tracer::occluded(std::span<const TraceRay> rays,
                       RayOrder order) const {
     check_argument(rays.size() == blocked.size(), "occluded: as many answers as rays are needed");
     tracing_detail::count_occluded(rays.size());
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = order == RayOrder::neighbours ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
-                                                  : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     for_each_packet(rays.size(), [&](std::size_t first, std::size_t count, const int* valid) {
         RTCRay8 packet;
         for (std::size_t lane = 0; lane < kPacket; ++lane) {
             set_lane(packet, lane, rays[first + std::min(lane, count - 1)]);
         }
-        rtcOccluded8(valid, state_->scene, &context, &packet);
+        occlude(state_->scene, valid, packet, order);
         for (std::size_t lane = 0; lane < count; ++lane) {
             blocked[first + lane] = packet.tfar[lane] < 0.0f ? 1 : 0;
         }

@@ -256,16 +256,19 @@ TEST(Layering, PlantedIncludesAreFound) {
                  "#include <vector>\n#include \"core/image.h\"\n#include \"twin/bench.h\"\n"
                  "#include \"calibration/correspondence/gray_code.h\"\n#  include "
                  "\"compensation/gpu_pass.h\"\n");
-    folder.write("src/core/b.h", "#include \"mesh/mesh.h\"\n#include <embree3/rtcore.h>\n");
+    folder.write("src/core/b.h",
+                 "#include \"mesh/mesh.h\"\n#include <embree3/rtcore.h>\n"
+                 "#include <embree4/rtcore.h>\n");
     folder.write("src/core/c.cpp", "#include \"c.h\"\n#include <OpenImageIO/imageio.h>\n");
     const auto found = violations(folder.path(), rules);
     const auto text = joined(found);
-    EXPECT_EQ(found.size(), 6u) << text;
+    EXPECT_EQ(found.size(), 7u) << text;
     for (const char* part :
          {"twin/a.cpp:4: twin may not include calibration/correspondence/gray_code.h",
           "twin/a.cpp:5: twin may not include compensation/gpu_pass.h",
           "core/b.h:1: core may not include mesh/mesh.h",
           "core/b.h:2: <embree3/rtcore.h> stays in tracing",
+          "core/b.h:3: <embree4/rtcore.h> stays in tracing",
           "core/c.cpp:1: c.h is not named from its folder",
           "core/c.cpp:2: <OpenImageIO/imageio.h> stays in core/pictures/image_io"}) {
         EXPECT_NE(text.find(part), std::string::npos) << part << " not in\n" << text;
