@@ -7,6 +7,7 @@
 #include <imgui_internal.h>
 
 #include "core/log.h"
+#include "studio/kit/imgui_versions.h"
 #include "studio/kit/theme.h"
 #include "studio/paint/library_panel.h"
 #include "studio/presenting/presenting.h"
@@ -36,7 +37,7 @@ bool pointer_moved(const Studio& studio) {
 /// An arrow key led to the item, as opposed to focus that was given back to it.
 bool was_led_to(unsigned item) {
     const ImGuiContext& g = *ImGui::GetCurrentContext();
-    return g.NavJustMovedToId == item && (g.NavMoveFlags & ImGuiNavMoveFlags_Tabbing) == 0;
+    return g.NavJustMovedToId == item && (g.NavMoveFlags & kMovedByTabbing) == 0;
 }
 
 }  // namespace

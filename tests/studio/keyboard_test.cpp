@@ -14,6 +14,7 @@
 #include "core/paths.h"
 #include "scene/library.h"
 #include "studio/kit/file_dialog.h"
+#include "studio/kit/imgui_versions.h"
 #include "studio/kit/tab_order.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
@@ -42,8 +43,6 @@ class Keyboard : public ::testing::Test {
         io.DisplaySize = {1280.0f, 800.0f};
         io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
         io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
-        for (int key = 0; key < ImGuiKey_COUNT; ++key) io.KeyMap[key] = key;
-        io.KeyMap[ImGuiKey_Space] = ImGuiKey_Enter;  // as in the program's window
         apply_theme(1.0f);
         unsigned char* pixels = nullptr;
         int width = 0, height = 0;
@@ -87,9 +86,9 @@ class Keyboard : public ::testing::Test {
         return focused_now_;
     }
     void press(ImGuiKey key) {
-        ImGui::GetIO().KeysDown[key] = true;
+        hold_key(key, true);
         frame();
-        ImGui::GetIO().KeysDown[key] = false;
+        hold_key(key, false);
         frames(2);
     }
     void type(const std::string& text) {

@@ -9,6 +9,7 @@
 #include <imgui.h>
 
 #include "scene/library.h"
+#include "studio/kit/imgui_versions.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
 #include "studio/studio.h"
@@ -52,8 +53,6 @@ class Panels : public ::testing::TestWithParam<float> {
         ImGui::GetIO().IniFilename = nullptr;
         ImGui::GetIO().DisplaySize = {2000.0f, 4000.0f};
         ImGui::GetIO().BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
-        // As the window's backend has them.
-        for (int key = 0; key < ImGuiKey_COUNT; ++key) ImGui::GetIO().KeyMap[key] = key;
     }
     ~Panels() override { ImGui::DestroyContext(); }
 
@@ -122,9 +121,9 @@ class Panels : public ::testing::TestWithParam<float> {
         frames(studio, draw, 2);
     }
     void press(Studio& studio, DrawPanel draw, ImGuiKey key) {
-        ImGui::GetIO().KeysDown[key] = true;
+        hold_key(key, true);
         frame(studio, draw);
-        ImGui::GetIO().KeysDown[key] = false;
+        hold_key(key, false);
         frame(studio, draw);
     }
 

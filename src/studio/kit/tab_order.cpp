@@ -6,6 +6,8 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
+#include "studio/kit/imgui_versions.h"
+
 namespace livery {
 
 namespace {
@@ -68,7 +70,7 @@ void note_tab_stop(const std::string& name) {
     stop.name = name;
     stop.window = window;
     stop.layer = window->DC.NavLayerCurrent;
-    stop.focus_scope = window->DC.NavFocusScopeIdCurrent;
+    stop.focus_scope = current_focus_scope();
     stop.rectangle = item.NavRect;
     stop.rectangle.Translate({-window->Pos.x, -window->Pos.y});
     stop.is_field = (item.InFlags & ImGuiItemFlags_Inputable) != 0;

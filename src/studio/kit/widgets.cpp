@@ -302,6 +302,8 @@ void* imgui_texture(unsigned name) {
     return reinterpret_cast<void*>(static_cast<std::uintptr_t>(name));
 }
 
-bool was_pressed(int imgui_key) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(imgui_key)); }
+bool was_pressed(int imgui_key) {
+    return ImGui::IsKeyPressed(ImGui::GetKeyIndex(static_cast<ImGuiKey>(imgui_key)));
+}
 
 }  // namespace livery

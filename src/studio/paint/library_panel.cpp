@@ -14,6 +14,7 @@
 #include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
+#include "studio/kit/imgui_versions.h"
 #include "studio/kit/tab_order.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
@@ -347,7 +348,7 @@ void follow_keys(Studio& studio, const Target& target, const std::vector<SwatchC
             state.cursor_moved = true;
         }
     }
-    const bool enter = was_pressed(ImGuiKey_Enter) || was_pressed(ImGuiKey_KeyPadEnter);
+    const bool enter = was_pressed(ImGuiKey_Enter) || was_pressed(kKeypadEnter);
     if (enter) {
         // Enter in the search takes the first that was found.
         if (!at && state.searching && !cells.empty() && !state.search.empty()) at = 0;

@@ -9,6 +9,7 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
+#include "studio/kit/imgui_versions.h"
 #include "studio/kit/theme.h"
 #include "studio/window/trace.h"
 
@@ -118,19 +119,15 @@ struct ImGuiWindow::State {
             case Kind::key:
                 if (!event.down && !is_modifier_key(event.code)) ++handed_out.keys;
                 if (filter(event)) break;
-                ImGui_ImplGlfw_KeyCallback(window.native(),
-                                           event.code,
-                                           event.scancode,
-                                           event.down ? GLFW_PRESS : GLFW_RELEASE,
-                                           event.modifiers);
+                hand_in_key(
+                    window.native(), event.code, event.scancode, event.down, event.modifiers);
                 break;
             case Kind::character:
                 io.AddInputCharacter(static_cast<unsigned>(event.code));
                 break;
             case Kind::focus:
                 filter(event);
-                io.AddFocusEvent(event.down);
-                if (!event.down) std::fill(std::begin(io.KeysDown), std::end(io.KeysDown), false);
+                hand_in_focus(event.down);
                 break;
         }
     }
@@ -148,8 +145,7 @@ ImGuiWindow::ImGuiWindow(Window& window, const HandedOut& before) : state_(new S
     io.ConfigWindowsMoveFromTitleBarOnly = true;
     ImGui_ImplGlfw_InitForOpenGL(native, false);
     ImGui_ImplOpenGL3_Init("#version 450 core");
-    // Space is held to compare; items are pressed with Enter.
-    io.KeyMap[ImGuiKey_Space] = GLFW_KEY_ENTER;
+    begin_input();  // Space is held to compare
     glfwSetWindowUserPointer(native, &state_->queue);
     glfwSetCursorPosCallback(native, on_pointer);
     glfwSetMouseButtonCallback(native, on_button);
@@ -184,15 +180,14 @@ void ImGuiWindow::use_scale(float scale) {
 std::chrono::steady_clock::time_point ImGuiWindow::begin_frame(const KeyFilter& filter) {
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
-    ImGuiIO& io = ImGui::GetIO();
     double newest_s = 0.0;
     for (const InputEvent& event : state_->queue.take()) {
         state_->feed(event, filter);
         newest_s = event.time_s;
     }
     // The backend asks what the pointer does now; we go by what was told, in its order.
-    io.MousePos = state_->pointer;
-    std::copy(state_->buttons.begin(), state_->buttons.end(), io.MouseDown);
+    hand_in_pointer(state_->pointer);
+    std::copy(state_->buttons.begin(), state_->buttons.end(), ImGui::GetIO().MouseDown);
     ImGui::NewFrame();
     return newest_s > 0.0 ? time_of(newest_s) : std::chrono::steady_clock::now();
 }
