@@ -16,6 +16,9 @@ std::string glfw_error() {
 }  // namespace
 
 WindowSystem::WindowSystem() {
+#ifdef GLFW_PLATFORM  // GLFW 3.4 prefers Wayland, where no program may place its windows.
+    glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
+#endif
     if (!glfwInit()) {
         throw std::runtime_error("no window can be opened: " + glfw_error() +
                                  ". Is DISPLAY set? Without a display every command but the "
