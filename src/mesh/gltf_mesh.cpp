@@ -55,11 +55,12 @@ std::map<int, int> variants_of(const GltfFile& gltf,
     const auto extension = primitive.extensions.find(kVariantsExtension);
     if (extension == primitive.extensions.end()) return materials;
     const tinygltf::Value& mappings = extension->second.Get("mappings");
-    for (int m = 0; m < static_cast<int>(mappings.Size()); ++m) {
-        const tinygltf::Value& variants = mappings.Get(m).Get("variants");
-        for (int k = 0; k < static_cast<int>(variants.Size()); ++k) {
-            const int variant = variants.Get(k).GetNumberAsInt();
-            const int material = mappings.Get(m).Get("material").GetNumberAsInt();
+    for (std::size_t m = 0; m < mappings.Size(); ++m) {
+        const tinygltf::Value& mapping = item(mappings, m);
+        const tinygltf::Value& variants = mapping.Get("variants");
+        for (std::size_t k = 0; k < variants.Size(); ++k) {
+            const int variant = item(variants, k).GetNumberAsInt();
+            const int material = mapping.Get("material").GetNumberAsInt();
             if (materials.try_emplace(variant, material).second) continue;
             gltf.fail(
                 fmt::format(
@@ -145,8 +146,8 @@ std::vector<std::string> variant_names(const tinygltf::Model& model) {
     if (extension == model.extensions.end()) return names;
     const tinygltf::Value& variants = extension->second.Get("variants");
     UniqueNames unique;
-    for (int k = 0; k < static_cast<int>(variants.Size()); ++k) {
-        const std::string name = printable(variants.Get(k).Get("name").Get<std::string>(), 60);
+    for (std::size_t k = 0; k < variants.Size(); ++k) {
+        const std::string name = printable(item(variants, k).Get("name").Get<std::string>(), 60);
         names.push_back(unique.take(name.empty() ? fmt::format("variant {}", k) : name));
     }
     return names;
