@@ -39,14 +39,67 @@ Image8 picture_of(const Board& board, int px_per_square) {
     return picture;
 }
 
+#if CV_VERSION_MAJOR > 4 || CV_VERSION_MINOR >= 7
+
+cv::Ptr<cv::aruco::Dictionary> dictionary() {
+    return cv::makePtr<cv::aruco::Dictionary>(
+        cv::aruco::getPredefinedDictionary(cv::aruco::DICT_ARUCO_ORIGINAL));
+}
+
+cv::Ptr<cv::aruco::CharucoBoard> layout_of(const Board& board) {
+    const auto layout =
+        cv::makePtr<cv::aruco::CharucoBoard>(cv::Size(board.columns + 1, board.rows + 1),
+                                             static_cast<float>(board.square_mm),
+                                             static_cast<float>(board.marker_mm),
+                                             *dictionary());
+    // Ours are the boards of OpenCV 4.6, which differ in even numbers of rows.
+    layout->setLegacyPattern(true);
+    return layout;
+}
+
+cv::Mat drawn_marker(int number) {
+    cv::Mat drawn;
+    cv::aruco::generateImageMarker(*dictionary(), number, 7, drawn, 1);
+    return drawn;
+}
+
+cv::Mat drawn_board(const cv::aruco::CharucoBoard& layout, const cv::Size& size_px, int margin_px) {
+    cv::Mat drawn;
+    layout.generateImage(size_px, drawn, margin_px, 1);
+    return drawn;
+}
+
+#else
+
 cv::Ptr<cv::aruco::Dictionary> dictionary() {
     return cv::aruco::getPredefinedDictionary(cv::aruco::DICT_ARUCO_ORIGINAL);
 }
 
+cv::Ptr<cv::aruco::CharucoBoard> layout_of(const Board& board) {
+    return cv::aruco::CharucoBoard::create(board.columns + 1,
+                                           board.rows + 1,
+                                           static_cast<float>(board.square_mm),
+                                           static_cast<float>(board.marker_mm),
+                                           dictionary());
+}
+
+cv::Mat drawn_marker(int number) {
+    cv::Mat drawn;
+    cv::aruco::drawMarker(dictionary(), number, 7, drawn, 1);
+    return drawn;
+}
+
+cv::Mat drawn_board(cv::aruco::CharucoBoard& layout, const cv::Size& size_px, int margin_px) {
+    cv::Mat drawn;
+    layout.draw(size_px, drawn, margin_px, 1);
+    return drawn;
+}
+
+#endif
+
 TEST(Charuco, MarkersAreThoseOfTheArucoOriginalDictionary) {
     for (int number = 0; number < kMarkers; ++number) {
-        cv::Mat drawn;
-        cv::aruco::drawMarker(dictionary(), number, 7, drawn, 1);
+        const cv::Mat drawn = drawn_marker(number);
         const MarkerCells cells = marker_cells(number);
         for (int row = 0; row < 5; ++row)
             for (int column = 0; column < 5; ++column)
@@ -67,11 +120,7 @@ TEST(Charuco, OpenCVReadsTheSameBoard) {
                             picture.width,
                             CV_8UC1,
                             const_cast<unsigned char*>(picture.values.data()));
-        const auto layout = cv::aruco::CharucoBoard::create(board.columns + 1,
-                                                            board.rows + 1,
-                                                            static_cast<float>(board.square_mm),
-                                                            static_cast<float>(board.marker_mm),
-                                                            dictionary());
+        const auto layout = layout_of(board);
         std::vector<std::vector<cv::Point2f>> markers;
         std::vector<int> numbers;
         cv::aruco::detectMarkers(image, dictionary(), markers, numbers);
@@ -82,8 +131,7 @@ TEST(Charuco, OpenCVReadsTheSameBoard) {
         EXPECT_EQ(ids.size(), static_cast<std::size_t>(board.columns * board.rows));
 
         // And what it draws is read as what we draw.
-        cv::Mat drawn;
-        layout->draw({picture.width, picture.height}, drawn, 60, 1);
+        const cv::Mat drawn = drawn_board(*layout, {picture.width, picture.height}, 60);
         Image8 its_own(drawn.cols, drawn.rows, 1);
         std::copy(drawn.begin<unsigned char>(), drawn.end<unsigned char>(), its_own.values.begin());
         const auto of_its_own = find_charuco(its_own, board);
