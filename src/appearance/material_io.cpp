@@ -20,7 +20,8 @@ namespace {
 constexpr int kFormatVersion = 1;
 constexpr std::size_t kLargestMaterial_bytes = std::size_t{1} << 20u;
 
-const ModelInfo& read_model(const JsonReader& reader) {
+const ModelInfo& read_model(const JsonReader& material) {
+    const JsonReader reader = material["model"];
     const std::string name = reader.text();
     if (const ModelInfo* model = find_model(name)) return *model;
     reader.fail(fmt::format("'{}'", name), "one of " + model_names());
@@ -158,7 +159,7 @@ Material read_material(const JsonReader& reader) {
     if (material.name.empty()) reader["name"].fail("empty text", "a name");
     if (reader.has("family")) material.family = reader["family"].text();
     if (reader.has("provenance")) material.provenance = reader["provenance"].text();
-    const ModelInfo& model = read_model(reader["model"]);
+    const ModelInfo& model = read_model(reader);
     material.model = model.model;
     const JsonReader parameters = reader["parameters"];
     if (model.model == ReflectanceModel::measured) {

@@ -236,7 +236,7 @@ const std::vector<ParameterInfo>& parameter_table() {
     return table;
 }
 
-const ParameterInfo& parameter_info(const std::string& name) {
+const ParameterInfo& parameter_info(std::string_view name) {
     const auto& table = parameter_table();
     const auto found = std::find_if(
         table.begin(), table.end(), [&](const ParameterInfo& info) { return info.name == name; });

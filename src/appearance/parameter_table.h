@@ -4,6 +4,7 @@
 
 #include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "appearance/bsdf_source.h"
@@ -42,7 +43,7 @@ struct ParameterInfo {
 /// Every parameter of every model, in the order of files and panels.
 const std::vector<ParameterInfo>& parameter_table();
 /// Throws std::invalid_argument for a name that no model has.
-const ParameterInfo& parameter_info(const std::string& name);
+const ParameterInfo& parameter_info(std::string_view name);
 
 /// The numbers of a material's parameter; what lies beyond its last one is 0.
 glm::dvec3 value_of(const ParameterInfo& parameter, const Material& material);

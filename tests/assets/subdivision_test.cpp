@@ -1,6 +1,7 @@
 // The limit surface against what is known of Catmull-Clark surfaces.
 #include "subdivision.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 

@@ -1,6 +1,7 @@
 // Boards in photographs: found where they are, and what spoils them named with the way out.
 #include "calibration/geometry/board_sight.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include <gtest/gtest.h>

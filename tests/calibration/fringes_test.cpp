@@ -1,5 +1,6 @@
 #include "calibration/correspondence/fringes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>

@@ -1,5 +1,6 @@
 #include "calibration/preflight.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numeric>

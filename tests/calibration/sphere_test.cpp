@@ -1,5 +1,6 @@
 // A sphere's outline and reflectance, from pictures made here by formulas of their own.
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>

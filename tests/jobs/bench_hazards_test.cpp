@@ -1,6 +1,7 @@
 // Everything that can go wrong on a bench, one hazard a test: photographs of the simulated bench ->
 // calibration -> corrected picture -> observer. Asserted is the safe behaviour: the error stays
 // bounded, or a warning, a mask or a refusal says what is wrong.
+#include <algorithm>
 #include <atomic>
 #include <limits>
 

@@ -1,5 +1,6 @@
 // Whole calibrations through cameras as they are: over the network, with the simulated bench in
 // front of their lenses.
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>

@@ -2,6 +2,7 @@
 // lacks something, holds too much or shows other pictures.
 #include "jobs/captured_calibration.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 

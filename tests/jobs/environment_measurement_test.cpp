@@ -2,6 +2,7 @@
 // limits are what was asked for before anything was measured: 3% of the irradiance of every
 // surface, 1 degree of a lamp's direction.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numbers>

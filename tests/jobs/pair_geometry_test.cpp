@@ -1,6 +1,7 @@
 // `calibrate geometry` without its command line: real photographs of a board, and what is refused.
 #include "jobs/pair_geometry.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 

@@ -1,5 +1,6 @@
 // livery measure brdf, from photographs with noise to a paint.
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 

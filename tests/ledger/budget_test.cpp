@@ -1,6 +1,7 @@
 // The levels for a budget: of all that fit, the least error, at the least cost.
 #include "ledger/budget.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 

@@ -1,5 +1,6 @@
 #include "live/capture_thread.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <thread>

@@ -1,5 +1,6 @@
 // What becomes of the pictures in glTF's materials.
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>

@@ -1,5 +1,6 @@
 #include "radiance/direct_oracle.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 

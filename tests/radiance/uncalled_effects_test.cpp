@@ -1,6 +1,7 @@
 // What a scene does not call for costs nothing: for every effect, a scene that calls for all others
 // is drawn as it is and with the effect struck out, so that nothing could call it. What OpenGL and
 // Embree were asked for is counted at their calls.
+#include <algorithm>
 #include <functional>
 #include <numbers>
 

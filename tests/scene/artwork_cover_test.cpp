@@ -1,5 +1,6 @@
 #include "scene/artwork_cover.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 

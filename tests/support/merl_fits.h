@@ -4,7 +4,9 @@
 #pragma once
 
 #include <filesystem>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -41,11 +43,11 @@ glm::dvec3 evaluate(const AbcFit& fit, glm::dvec3 wi, glm::dvec3 wo);
 
 /// The one of that name. Throws std::invalid_argument.
 template <typename Fit>
-const Fit& fit_named(const std::vector<Fit>& fits, const std::string& name) {
+const Fit& fit_named(const std::vector<Fit>& fits, std::string_view name) {
     for (const Fit& fit : fits) {
         if (fit.name == name) return fit;
     }
-    throw std::invalid_argument("no material '" + name + "'");
+    throw std::invalid_argument("no material '" + std::string(name) + "'");
 }
 
 /// As a file of measurements would have them: `theta_h` by `theta_d` by `phi_d` pairs of directions

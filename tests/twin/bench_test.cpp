@@ -1,6 +1,8 @@
 // The geometry of light and the promises of a bench without nuisances.
 #include "twin/bench.h"
 
+#include <algorithm>
+
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 #include <opencv2/calib3d.hpp>

@@ -1,6 +1,8 @@
 // Spectral paints: the model band by band, and what a painted sphere sends to the eye.
 #include "twin/painted_sphere.h"
 
+#include <algorithm>
+
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 

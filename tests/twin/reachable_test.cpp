@@ -1,4 +1,6 @@
 // reachable() against a search over all that the projector can do.
+#include <algorithm>
+
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 

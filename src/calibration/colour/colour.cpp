@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <string_view>
+
+#include <fmt/format.h>
 
 #include "calibration/colour/camera_xyz.h"
 #include "calibration/colour/colour_report.h"
@@ -30,16 +33,20 @@ constexpr std::uint32_t kBlock_px = 16;   // the largest blocks of gray-levels
 constexpr float kUnknownScatter = 0.01f;  // of the scattered light's square: 10%
 
 const Pattern& pattern_of(const std::vector<Pattern>& patterns,
-                          const std::string& role,
+                          std::string_view role,
                           const ColourSamples& samples) {
     const auto found = std::find_if(
         patterns.begin(), patterns.end(), [&](const Pattern& p) { return p.role == role; });
-    check_argument(found != patterns.end(), "no pattern given for the photograph of " + role);
+    check_argument(found != patterns.end(),
+                   fmt::format("no pattern given for the photograph of {}", role));
     check_argument(found->drive.channels == 3 && found->drive.width == samples.width &&
                        found->drive.height == samples.height,
-                   "the pattern " + role + " is " + std::to_string(found->drive.width) + "x" +
-                       std::to_string(found->drive.height) + ", the map is " +
-                       std::to_string(samples.width) + "x" + std::to_string(samples.height));
+                   fmt::format("the pattern {} is {}x{}, the map is {}x{}",
+                               role,
+                               found->drive.width,
+                               found->drive.height,
+                               samples.width,
+                               samples.height));
     return *found;
 }
 

@@ -60,12 +60,12 @@ struct Canvas {
 
 Image8 averaged(const Canvas& canvas, glm::ivec2 size_px) {
     Image8 picture(size_px.x, size_px.y, 4);
-    constexpr int kAll = kSamples * kSamples;
+    constexpr int kSamplesOfPixel = kSamples * kSamples;
     for (int y = 0; y < size_px.y; ++y) {
         for (int x = 0; x < size_px.x; ++x) {
             float sum = 0.0f;
             int there = 0;
-            for (int k = 0; k < kAll; ++k) {
+            for (int k = 0; k < kSamplesOfPixel; ++k) {
                 const int row = y * kSamples + k / kSamples, column = x * kSamples + k % kSamples;
                 const float grey = canvas.grey[static_cast<std::size_t>(row) *
                                                    static_cast<std::size_t>(canvas.size.x) +
@@ -82,7 +82,7 @@ Image8 averaged(const Canvas& canvas, glm::ivec2 size_px) {
                 picture.values[at + c] = static_cast<std::uint8_t>(
                     std::lround(255.0f * std::pow(std::min(mean, 1.0f), 1.0f / 2.2f)));
             }
-            picture.values[at + 3] = static_cast<std::uint8_t>(255 * there / kAll);
+            picture.values[at + 3] = static_cast<std::uint8_t>(255 * there / kSamplesOfPixel);
         }
     }
     return picture;

@@ -2,6 +2,7 @@
 // noise.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <string>

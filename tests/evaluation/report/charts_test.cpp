@@ -1,5 +1,6 @@
 // The charts: their words are whole, and what they show is what the figures say.
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>

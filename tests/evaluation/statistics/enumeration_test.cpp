@@ -1,5 +1,6 @@
 // Small rounds of which every set of ballots can be gone through.
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <map>

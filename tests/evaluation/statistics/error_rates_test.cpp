@@ -1,5 +1,6 @@
 // How often the verdicts are wrong, over drawn rounds in which it is known that they are.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
