@@ -10,7 +10,7 @@ namespace livery {
 namespace {
 
 std::string small_bench_camera(const TemporaryFolder& folder) {
-    return "bench:" + testing::small_bench_file(folder).string();
+    return "bench:" + testing::small_bench_file(folder.path()).string();
 }
 
 TEST(Capture, OnTheSimulatedBench) {

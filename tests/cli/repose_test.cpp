@@ -22,7 +22,7 @@ void bump(const std::filesystem::path& bench_file, double shift_mm) {
 
 TEST(Repose, FindsABumpedMockUpAgain) {
     const TemporaryFolder folder;
-    const auto bench = testing::small_bench_file(folder);
+    const auto bench = testing::small_bench_file(folder.path());
     const std::string camera = "bench:" + bench.string();
     const std::string monday = (folder / "monday").string(),
                       tuesday = (folder / "tuesday").string();

@@ -63,7 +63,7 @@ struct CaptureRoom {
         context.release();
         capture = std::make_unique<CaptureThread>(context, [] {});
         setup.camera = {CameraChoice::Kind::bench,
-                        testing::small_bench_file(home.folder()).string()};
+                        testing::small_bench_file(home.folder().path()).string()};
         setup.product = find_product("car");
         capture->use(setup);
         wait_until(*capture, [](const CaptureView& view) { return view.live != nullptr; });

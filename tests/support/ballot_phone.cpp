@@ -54,6 +54,14 @@ int BallotPhone::vote(int round, int best, int second) {
     return ask("PUT", "/ballot", ballot.dump()).status;
 }
 
+int BallotPhone::rate(int round, int look, const std::vector<std::optional<int>>& steps) {
+    nlohmann::json answer = {{"round", round}, {"look", look}, {"steps", nlohmann::json::array()}};
+    for (const auto& step : steps) {
+        answer["steps"].push_back(step ? nlohmann::json(*step) : nlohmann::json());
+    }
+    return ask("PUT", "/scales", answer.dump()).status;
+}
+
 int BallotPhone::port_of(const std::string& url) {
     if (!url.starts_with(kHost)) throw std::runtime_error("no address on loopback: " + url);
     return std::stoi(url.substr(std::string(kHost).size()));

@@ -1,7 +1,9 @@
 // An evaluator's phone without a screen: a cookie, and requests as the page sends them.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -19,6 +21,8 @@ class BallotPhone {
     nlohmann::json state();
     /// The status of the answer: 200 where the ballot is kept.
     int vote(int round, int best, int second);
+    /// The same for a look's steps on the round's scales; nothing: left open, or taken back.
+    int rate(int round, int look, const std::vector<std::optional<int>>& steps);
     /// The server has come back elsewhere; the seat is the same.
     void move_to(const std::string& url) { port_ = port_of(url); }
 

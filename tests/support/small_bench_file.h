@@ -6,11 +6,12 @@
 
 #include "core/json.h"
 #include "core/paths.h"
-#include "support/temporary_folder.h"
-
 namespace livery::testing {
 
-inline std::filesystem::path small_bench_file(const TemporaryFolder& folder) {
+/// `projector`, `camera`: the shares of their pixels a side that are left.
+inline std::filesystem::path small_bench_file(const std::filesystem::path& folder,
+                                              double projector = 0.25,
+                                              double camera = 0.25) {
     Json bench = read_json_file(shipped_path("calibration/default.json"));
     const auto shrink = [](Json& view, double factor) {
         for (const char* size : {"width", "height"})
@@ -19,8 +20,8 @@ inline std::filesystem::path small_bench_file(const TemporaryFolder& folder) {
             view["matrix"][k] = view["matrix"][k].get<double>() * factor;
         for (auto& place : view["at_px"]) place = place.get<double>() * factor;
     };
-    shrink(bench["projector"], 0.25);
-    shrink(bench["camera"], 0.25);
+    shrink(bench["projector"], projector);
+    shrink(bench["camera"], camera);
     bench["name"] = "small";
     const auto file = folder / "small.json";
     write_json_file(file, bench);
