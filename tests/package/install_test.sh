@@ -13,8 +13,10 @@ for file in bin/livery bin/livery-ballots lib/livery/livery_image_io.so lib/live
     share/livery/assets/car.glb share/livery/assets/looks/solid-red.json \
     share/livery/shaders/compensation/correct.comp share/livery/calibration/default.json \
     share/man/man1/livery.1 share/applications/livery.desktop share/mime/packages/livery.xml \
+    share/metainfo/invalid.livery.livery.metainfo.xml \
     share/icons/hicolor/scalable/apps/livery.svg share/icons/hicolor/48x48/apps/livery.png \
-    share/doc/livery/README.md share/doc/livery/LICENSE share/doc/livery/docs/commands.md; do
+    share/doc/livery/README.md share/doc/livery/CHANGELOG.md share/doc/livery/LICENSE \
+    share/doc/livery/docs/commands.md; do
     [ -s "$prefix/$file" ] || fail "not installed: $file"
 done
 links=$(find "$prefix" -type l)
@@ -31,6 +33,15 @@ if command -v desktop-file-validate >/dev/null; then
     desktop-file-validate "$prefix/share/applications/livery.desktop" || fail "the desktop entry"
 else
     skip "desktop-file-validate is not there"
+fi
+if command -v appstreamcli >/dev/null; then
+    # The whole tree: whether the names of the metadata, the desktop entry and the icon fit, too.
+    appstreamcli validate-tree --no-net "$prefix" >"$work/out" 2>&1 || {
+        fail "what software centres show"
+        cat "$work/out" >&2
+    }
+else
+    skip "appstreamcli is not there"
 fi
 # What a file manager makes of the files that the program opens: their kind, and who opens that.
 if command -v update-mime-database >/dev/null && command -v update-desktop-database >/dev/null &&
