@@ -9,8 +9,15 @@ function(compress file)
 endfunction()
 
 compress(${share}/man/man1/livery.1)
-configure_file(${CMAKE_CURRENT_LIST_DIR}/changelog ${doc}/changelog.Debian COPYONLY)
+# Its newest entry is of the package that this is.
+file(READ ${CMAKE_CURRENT_LIST_DIR}/changelog changelog)
+string(REGEX REPLACE "^livery \\([^)]+\\) unstable;"
+    "livery (${CPACK_PACKAGE_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}) ${CPACK_LIVERY_SUITE};"
+    changelog "${changelog}")
+file(WRITE ${doc}/changelog.Debian "${changelog}")
 compress(${doc}/changelog.Debian)
+file(RENAME ${doc}/CHANGELOG.md ${doc}/changelog)
+compress(${doc}/changelog)
 # The licence is in the copyright file.
 configure_file(${CMAKE_CURRENT_LIST_DIR}/copyright ${doc}/copyright COPYONLY)
 file(REMOVE ${doc}/LICENSE)

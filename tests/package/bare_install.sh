@@ -1,15 +1,25 @@
 #!/bin/bash
-# By hand, as root: a fresh Debian 12 in a folder of its own, the package installed there with apt,
-# and the program used as on a new machine. Takes about ten minutes and 2 GB.
+# By hand, as root: a fresh Debian 12 (bookworm) or 13 (trixie) in a folder of its own, that release's
+# package installed there with apt, and the program used as on a new machine. Takes about ten minutes
+# and 2 GB.
 #
-#   bare_install.sh livery_VERSION_amd64.deb [FOLDER]      FOLDER is made anew, and removed at the end
+#   bare_install.sh SUITE livery_VERSION_amd64.deb [FOLDER]    FOLDER is made anew, and removed at the end
 #
 # Needs debootstrap. The mirror and apt's settings are this machine's.
 set -euo pipefail
 export LC_ALL=C
 
-package=$(realpath "$1")
-root=${2:-$(mktemp -d /tmp/livery-bare.XXXXXX)}
+suite=${1:-} package=${2:-}
+case $suite in
+    bookworm) release=deb12 ;;
+    trixie) release=deb13 ;;
+    *) echo "bare_install: found suite \"$suite\", expected bookworm or trixie" >&2; exit 2 ;;
+esac
+case $package in
+    *~"$release"u*.deb) package=$(realpath -e "$package") ;;
+    *) echo "bare_install: found package \"$package\", expected one of $release for $suite" >&2; exit 2 ;;
+esac
+root=${3:-$(mktemp -d /tmp/livery-bare.XXXXXX)}
 [ "$(id -u)" -eq 0 ] || { echo "bare_install: this needs root" >&2; exit 2; }
 mirror=$(grep -rhoE 'https?://[^ ]+/debian/?( |$)' /etc/apt/sources.list /etc/apt/sources.list.d 2>/dev/null |
     head -1) || true
@@ -23,15 +33,17 @@ clean_up() {
 }
 trap clean_up EXIT
 
-echo "bare_install: a bare system in $root"
+echo "bare_install: a bare $suite in $root"
 mkdir -p "$root"
-debootstrap --variant=minbase bookworm "$root" ${mirror:+"$mirror"} >/dev/null
+debootstrap --variant=minbase "$suite" "$root" ${mirror:+"$mirror"} >/dev/null
 mount -t proc proc "$root/proc"
 mount --rbind --make-rslave /dev "$root/dev"
 cp /etc/resolv.conf "$root/etc/"
 cp /etc/apt/apt.conf.d/99* "$root/etc/apt/apt.conf.d/" 2>/dev/null || true
 if [ -f /etc/apt/sources.list.d/debian.sources ]; then
-    cp /etc/apt/sources.list.d/debian.sources "$root/etc/apt/sources.list.d/"
+    here=$(. /etc/os-release && echo "$VERSION_CODENAME")
+    sed "s/\b$here\b/$suite/g" /etc/apt/sources.list.d/debian.sources \
+        >"$root/etc/apt/sources.list.d/debian.sources"
     rm -f "$root/etc/apt/sources.list"
 fi
 cp "$package" "$root/tmp/livery.deb"
