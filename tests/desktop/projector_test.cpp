@@ -143,8 +143,10 @@ TEST_F(Projector, UnpluggedItIsNowhereAndPluggedInItIsBack) {
                              << (seen.wrong ? saved(seen.first_wrong, "leak") : "");
 }
 
+// As large as the operator's: a smaller one would leave part of the operator's window where it is.
 TEST_F(Projector, FollowsItsMonitorToAnotherPlace) {
-    use_shared();
+    start({.projector_px = kFullProjector_px});
+    pick_projector();
     const Image8 a = drive_of_place(0);
     for (const auto side : {Desktop::Side::left, Desktop::Side::below, Desktop::Side::right}) {
         desktop->plug_projector(side);
