@@ -234,7 +234,7 @@ MeasuredSamples parse_measured_csv(const std::string& text, const std::filesyste
             // A negative channel of Rec.709 is only a saturated colour; a negative X, Y or Z is no
             // light at all.
             const glm::dvec3 xyz = xyz_from_rec709() * glm::dvec3(row[0], row[1], row[2]);
-            row = {xyz.x, xyz.y, xyz.z};
+            for (int c = 0; c < 3; ++c) row[static_cast<std::size_t>(c)] = xyz[c];
             const double rounding = 1e-4 * *std::max_element(row.begin(), row.end());
             for (double& value : row) {
                 if (value < 0.0 && value >= -rounding) value = 0.0;
