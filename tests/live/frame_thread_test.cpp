@@ -468,8 +468,8 @@ TEST_F(FrameThreadTest, IdleMeansThatNothingIsDone) {
 }
 
 TEST_P(FrameThreadOnADevice, ManySwapsUseAFewTextures) {
-    // A dozen would be used up in twenty.
-    const int swaps = thorough() ? 1000 : 200;
+    // A dozen would be used up in twenty; a texture lost once in a while shows in a thousand.
+    const int swaps = thorough() ? 1000 : 60;
     start();
     ASSERT_TRUE(gallery_.whole(show()));
     std::set<unsigned> textures;
