@@ -36,10 +36,13 @@ else
 fi
 if command -v appstreamcli >/dev/null; then
     # The whole tree: whether the names of the metadata, the desktop entry and the icon fit, too.
-    appstreamcli validate-tree --no-net "$prefix" >"$work/out" 2>&1 || {
+    # AppStream 1.0 warns where there is no home page, as the project has none; 0.16 does not.
+    appstreamcli validate-tree --no-net "$prefix" >"$work/out" 2>&1 || true
+    if ! grep -q '^invalid\.livery\.livery\.metainfo\.xml' "$work/out" ||
+        grep -E '^ *[EW]:' "$work/out" | grep -v url-homepage-missing >"$work/err"; then
         fail "what software centres show"
         cat "$work/out" >&2
-    }
+    fi
 else
     skip "appstreamcli is not there"
 fi
