@@ -82,11 +82,6 @@ void GltfFile::fail(std::string field, std::string found, std::string expected) 
     throw FileError(path, std::move(field), std::move(found), std::move(expected));
 }
 
-const tinygltf::Value& item(const tinygltf::Value& array, std::size_t index) {
-    // Value::Get() takes an int in tinygltf 2.7 and a std::size_t in 2.9.
-    return array.Get<tinygltf::Value::Array>().at(index);
-}
-
 bool GltfFile::has_view(const tinygltf::Accessor& accessor) const {
     return static_cast<std::size_t>(accessor.bufferView) + 1 < model.bufferViews.size();
 }

@@ -69,9 +69,6 @@ struct GltfElementRule {
     std::vector<int> component_types;  ///< 5126 is float
 };
 
-/// Of an array within an extension.
-const tinygltf::Value& item(const tinygltf::Value& array, std::size_t index);
-
 /// Reads accessors, each once; sparse ones and those without a buffer view (zeros) included.
 class GltfAccessors {
   public:

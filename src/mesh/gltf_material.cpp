@@ -81,9 +81,9 @@ glm::dvec3 dielectric_f0(const GltfFile& gltf, std::size_t index) {
     glm::dvec3 f0(root * root);
     const tinygltf::Value& specular = extension(material, "KHR_materials_specular");
     if (specular.Has("specularColorFactor")) {
-        const tinygltf::Value& colour = specular.Get("specularColorFactor");
+        const auto& colour = specular.Get("specularColorFactor").Get<tinygltf::Value::Array>();
         for (int c = 0; c < 3; ++c)
-            f0[c] *= item(colour, static_cast<std::size_t>(c)).GetNumberAsDouble();
+            f0[c] *= colour.at(static_cast<std::size_t>(c)).GetNumberAsDouble();
     }
     return glm::min(f0, glm::dvec3(1.0)) * number_or(specular, "specularFactor", 1.0);
 }

@@ -54,13 +54,12 @@ std::map<int, int> variants_of(const GltfFile& gltf,
     std::map<int, int> materials;
     const auto extension = primitive.extensions.find(kVariantsExtension);
     if (extension == primitive.extensions.end()) return materials;
-    const tinygltf::Value& mappings = extension->second.Get("mappings");
-    for (std::size_t m = 0; m < mappings.Size(); ++m) {
-        const tinygltf::Value& mapping = item(mappings, m);
-        const tinygltf::Value& variants = mapping.Get("variants");
-        for (std::size_t k = 0; k < variants.Size(); ++k) {
-            const int variant = item(variants, k).GetNumberAsInt();
-            const int material = mapping.Get("material").GetNumberAsInt();
+    const auto& mappings = extension->second.Get("mappings").Get<tinygltf::Value::Array>();
+    for (std::size_t m = 0; m < mappings.size(); ++m) {
+        const auto& variants = mappings[m].Get("variants").Get<tinygltf::Value::Array>();
+        for (std::size_t k = 0; k < variants.size(); ++k) {
+            const int variant = variants[k].GetNumberAsInt();
+            const int material = mappings[m].Get("material").GetNumberAsInt();
             if (materials.try_emplace(variant, material).second) continue;
             gltf.fail(
                 fmt::format(
@@ -144,10 +143,10 @@ std::vector<std::string> variant_names(const tinygltf::Model& model) {
     std::vector<std::string> names;
     const auto extension = model.extensions.find(kVariantsExtension);
     if (extension == model.extensions.end()) return names;
-    const tinygltf::Value& variants = extension->second.Get("variants");
+    const auto& variants = extension->second.Get("variants").Get<tinygltf::Value::Array>();
     UniqueNames unique;
-    for (std::size_t k = 0; k < variants.Size(); ++k) {
-        const std::string name = printable(item(variants, k).Get("name").Get<std::string>(), 60);
+    for (std::size_t k = 0; k < variants.size(); ++k) {
+        const std::string name = printable(variants[k].Get("name").Get<std::string>(), 60);
         names.push_back(unique.take(name.empty() ? fmt::format("variant {}", k) : name));
     }
     return names;
