@@ -89,7 +89,7 @@ TEST_F(Core, DoesTheSameInFullSizeUnderAWindowManager) {
 // As on a graphics card, in software: nothing of the mock-up's picture passes the processor until
 // it is saved.
 TEST_F(Core, SwapsPaintsInOpenGl) {
-    start({}, {"--shading", "opengl"});
+    start(small_projector(), {"--shading", "opengl"});
     pick_projector();
     ASSERT_TRUE(projector_shows(drive_of_place(0)));
     program->click("part:body");

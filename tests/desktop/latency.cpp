@@ -138,7 +138,7 @@ void run() {
     const TemporaryFolder folder;
     const auto session = folder / "session.livery";
     prepare_session(session, Quality::normal, kFullProjector_px);
-    Desktop desktop({.projector_px = kFullProjector_px});
+    Desktop desktop;
     {
         // A designer's second day: the projector is known, shaders are compiled.
         Bench first(desktop, session);

@@ -38,7 +38,7 @@ class LibraryFiles : public TwoMonitors {
     }
     /// A program of this test's own user, whose calls on the library's files are written down.
     void start_watched() {
-        DesktopOptions options;
+        DesktopOptions options = small_projector();
         options.window_manager = true;
         start(options);
         studio->program.reset();

@@ -37,7 +37,7 @@ class NudgeWindow : public TwoMonitors {
             Session session = Session::open(running->session_file());
             session.execute(SetCalibration{folder.string()});
         }
-        running->desktop = std::make_unique<Desktop>();
+        running->desktop = std::make_unique<Desktop>(small_projector());
         use(running);
         start_program();
         pick_projector();

@@ -336,7 +336,7 @@ bool judge(const std::vector<Round>& rounds) {
 int run(double minutes) {
     const TemporaryFolder folder;
     prepare_session(folder / "session.livery", Quality::normal, kFullProjector_px);
-    Desktop desktop({.projector_px = kFullProjector_px});
+    Desktop desktop;
     Soak soak(desktop, folder.path());
     std::cout << "| round | minutes | MiB | swapped MiB | descriptors | threads | mappings | X "
                  "server MiB | paint median ms | 95% | shown |\n"

@@ -76,7 +76,7 @@ void TwoMonitors::start_at_home(const std::string& settings) {
     home = running->folder / "home";
     make_output_folder(home);
     write_text_file(home / "desktop.json", settings);
-    running->desktop = std::make_unique<Desktop>();
+    running->desktop = std::make_unique<Desktop>(small_projector());
     use(running);
     start_program_at_home();
 }

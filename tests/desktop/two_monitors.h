@@ -31,10 +31,18 @@ struct RunningStudio {
 /// Saves what was seen where the log of a test run can point to it; the file.
 std::string saved(const Image8& picture, const std::string& name);
 
+/// A desktop with the projector of prepare_session().
+inline DesktopOptions small_projector() {
+    DesktopOptions options;
+    options.projector_px = kSmallProjector_px;
+    return options;
+}
+
 class TwoMonitors : public ::testing::Test {
   protected:
     /// A program of the test's own; the projector is not picked yet.
-    void start(const DesktopOptions& options = {}, const std::vector<std::string>& arguments = {});
+    void start(const DesktopOptions& options = small_projector(),
+               const std::vector<std::string>& arguments = {});
     void start_program(const std::vector<std::string>& arguments = {});
     /// The same in a home of its own with these settings (JSON): ballots are the user's. What is
     /// expected of pictures is made in another one.

@@ -27,7 +27,7 @@ class OperatorsWindow : public TwoMonitors {
 };
 
 TEST_F(OperatorsWindow, ComesBackWhenTheProgramIsStartedAgain) {
-    DesktopOptions options;
+    DesktopOptions options = small_projector();
     options.window_manager = true;
     start(options);
     ASSERT_TRUE(wait_until([&] { return is_seen(); }));

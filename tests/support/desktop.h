@@ -36,8 +36,8 @@ double fraction_different(const Image8& a, const Image8& b, int tolerance = 2);
 
 struct DesktopOptions {
     glm::ivec2 operator_px{1280, 800};
-    glm::ivec2 projector_px{640, 400};  ///< to the right of the operator's
-    bool window_manager = false;        ///< openbox
+    glm::ivec2 projector_px{1280, 800};  ///< to the right of the operator's
+    bool window_manager = false;         ///< openbox
 };
 
 /// Starts Xorg's dummy driver on a free display and makes that DISPLAY of this process while it

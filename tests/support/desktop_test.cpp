@@ -14,10 +14,10 @@ namespace {
 TEST(TestDesktop, HasTwoMonitorsAndAMouse) {
     Desktop desktop;
     EXPECT_EQ(desktop.operator_area(), (Rectangle{0, 0, 1280, 800}));
-    EXPECT_EQ(desktop.projector_area(), (Rectangle{1280, 0, 640, 400}));
+    EXPECT_EQ(desktop.projector_area(), (Rectangle{1280, 0, 1280, 800}));
     desktop.plug_projector(Desktop::Side::left);
-    EXPECT_EQ(desktop.projector_area(), (Rectangle{0, 0, 640, 400}));
-    EXPECT_EQ(desktop.operator_area(), (Rectangle{640, 0, 1280, 800}));
+    EXPECT_EQ(desktop.projector_area(), (Rectangle{0, 0, 1280, 800}));
+    EXPECT_EQ(desktop.operator_area(), (Rectangle{1280, 0, 1280, 800}));
     desktop.unplug_projector();
     EXPECT_FALSE(desktop.projector_plugged());
     EXPECT_THROW(desktop.projector_area(), std::logic_error);
