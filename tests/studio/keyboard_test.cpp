@@ -38,6 +38,7 @@ class Keyboard : public ::testing::Test {
         setenv("LIVERY_HOME", (home_.path() / "livery").c_str(), 1);
         setenv("HOME", home_.path().c_str(), 1);
         ImGui::CreateContext();
+        begin_keys();
         ImGuiIO& io = ImGui::GetIO();
         io.IniFilename = nullptr;
         io.DisplaySize = {1280.0f, 800.0f};

@@ -50,6 +50,7 @@ class Panels : public ::testing::TestWithParam<float> {
     Panels() {
         setenv("LIVERY_HOME", home_.path().c_str(), 1);
         ImGui::CreateContext();
+        begin_keys();
         ImGui::GetIO().IniFilename = nullptr;
         ImGui::GetIO().DisplaySize = {2000.0f, 4000.0f};
         ImGui::GetIO().BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;

@@ -44,6 +44,7 @@ void hand_in_focus(bool focused) { ImGui::GetIO().AddFocusEvent(focused); }
 
 void hand_in_pointer(const ImVec2& at) { ImGui::GetIO().AddMousePosEvent(at.x, at.y); }
 
+void begin_keys() {}
 void hold_key(ImGuiKey key, bool down) { ImGui::GetIO().AddKeyEvent(key, down); }
 
 #else
@@ -64,12 +65,12 @@ void hand_in_focus(bool focused) {
 
 void hand_in_pointer(const ImVec2& at) { ImGui::GetIO().MousePos = at; }
 
-void hold_key(ImGuiKey key, bool down) {
+void begin_keys() {
     ImGuiIO& io = ImGui::GetIO();
-    io.KeyMap[key] = key;
-    if (key == ImGuiKey_Enter) io.KeyMap[ImGuiKey_Space] = key;
-    io.KeysDown[key] = down;
+    for (int key = 0; key < ImGuiKey_COUNT; ++key) io.KeyMap[key] = key;
+    io.KeyMap[ImGuiKey_Space] = ImGuiKey_Enter;  // as begin_input()
 }
+void hold_key(ImGuiKey key, bool down) { ImGui::GetIO().KeysDown[key] = down; }
 
 #endif
 

@@ -29,7 +29,8 @@ void hand_in_focus(bool focused);
 /// After the backend's frame, which hands in where the pointer is by now.
 void hand_in_pointer(const ImVec2& at);
 
-/// Presses or releases a key without a window.
+/// Without a window: once, after the context is made; then a key is pressed or released.
+void begin_keys();
 void hold_key(ImGuiKey key, bool down);
 
 }  // namespace livery
