@@ -163,6 +163,7 @@ struct ProjectorScreen::Implementation {
     /// What the projector's thread knows about its window's content.
     struct Canvas {
         WindowBlit blit;
+        glm::ivec2 window_px{0};  ///< of the last frame
         Picture drawn;
         Fence read;  ///< reached when the device has read `drawn` and `coming`
 
@@ -269,6 +270,12 @@ struct ProjectorScreen::Implementation {
     }
 
     void draw(const Work& work, Canvas& canvas) {
+        if (std::exchange(canvas.window_px, work.window_px) != work.window_px) {
+            // Mesa's software renderer learns of a window's new size when it swaps: the frame
+            // before is drawn in the old size, and partly or wholly outside.
+            canvas.blit.black(work.window_px);
+            window->swap();
+        }
         if (draw_fade(work, canvas)) return;
         Picture next = canvas.coming ? std::exchange(canvas.coming, nullptr) : work.picture;
         if (next && next != canvas.drawn && next->ready && !next->ready->wait_for(kPatience_s)) {

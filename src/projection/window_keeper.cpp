@@ -179,6 +179,7 @@ struct WindowKeeper::Implementation {
         }
         const std::uint32_t above = XCB_STACK_MODE_ABOVE;
         xcb_configure_window(x.get(), window, XCB_CONFIG_WINDOW_STACK_MODE, &above);
+        xcb_flush(x.get());
     }
 
     /// Where the window belongs now, or why nowhere.
@@ -298,6 +299,9 @@ struct WindowKeeper::Implementation {
                 }
                 if (cover != is_covered) set_cover(cover);
                 bool look = answering != answered;
+                // Before the events are taken: flushing reads, too, and what is read then does
+                // not end poll() below.
+                xcb_flush(x.get());
                 while (const XReply<xcb_generic_event_t> event{xcb_poll_for_event(x.get())}) {
                     look = handle(*event) || look;
                 }
@@ -309,7 +313,6 @@ struct WindowKeeper::Implementation {
                     caught_up.notify_all();
                     continue;  // reading replies may have queued events
                 }
-                xcb_flush(x.get());
                 std::array<pollfd, 2> sources = {
                     pollfd{xcb_get_file_descriptor(x.get()), POLLIN, 0},
                     pollfd{doorbell.descriptor(), POLLIN, 0}};

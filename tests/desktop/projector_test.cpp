@@ -87,9 +87,7 @@ TEST_F(Projector, IsPickedByItsNumberAndRemembered) {
     EXPECT_TRUE(projector_is_black());
     sleep_ms(500);  // the numbers' windows give the focus back
     pick_projector();
-    EXPECT_TRUE(projector_shows(drive_of_place(0)))
-        << "projector: " << program->state("projector") << "\n"
-        << program->words();
+    EXPECT_TRUE(projector_shows(drive_of_place(0))) << program->words();
     EXPECT_TRUE(window_is_on_operators_monitor());
     EXPECT_FALSE(Signature(projector_picture()).is_in(desktop->read(desktop->operator_area())));
 

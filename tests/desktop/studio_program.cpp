@@ -149,6 +149,15 @@ json StudioProgram::state(const std::string& name) {
     return map.contains("state") && map["state"].contains(name) ? map["state"][name] : json();
 }
 
+std::string StudioProgram::words() const {
+    std::string said = tail_of(folder_ / "output", 40);
+    if (const auto file = folder_ / "map"; std::filesystem::exists(file)) {
+        const json map = json::parse(text_of(file));
+        if (map.contains("state")) said += map["state"].dump();
+    }
+    return said;
+}
+
 void StudioProgram::wait_for_state(const std::string& name, const json& value) {
     if (wait_until([&] { return state(name) == value; })) return;
     throw std::runtime_error(

@@ -70,8 +70,8 @@ class StudioProgram {
     void move_away();
 
     std::vector<TraceLine> trace() const;
-    /// What the program and its driver said, for a failure's message.
-    std::string words() const { return tail_of(folder_ / "output", 40); }
+    /// What the program and its driver said and the window's state, for a failure's message.
+    std::string words() const;
 
   private:
     nlohmann::json map() const;

@@ -57,6 +57,24 @@ TEST_P(ProjectorScreenTest, ShowsEveryPixelOfThePictureAsItIs) {
     EXPECT_NE(stage.on_projector(), colour_at(expected, 640, 400));
 }
 
+/// The window is made in another size. What is drawn first is all that is drawn: nothing else comes
+/// that would put a wrong picture right.
+TEST(ProjectorScreenOfAnotherSize, IsFilledByItsFirstFrame) {
+    const Stage small(false, {640, 400});
+    const auto expected = unlike_anywhere(640, 400);
+    for (int times = 0; times < 10; ++times) {
+        ProjectorScreen screen(small.share);
+        screen.present(small.picture(7, expected));
+        screen.use_monitor(Desktop::projector_output);
+        EXPECT_TRUE(wait_until(
+            [&] {
+                return small.desktop.read(small.desktop.projector_area()).values == expected.values;
+            },
+            std::chrono::seconds(5)))
+            << times << ": " << screen.shown().frames << " frames";
+    }
+}
+
 TEST_P(ProjectorScreenTest, FollowsTheProjectorToEitherSideOfTheOperator) {
     ProjectorScreen screen(stage.share);
     screen.present(stage.plain(1, kMagenta));

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <map>
 #include <memory>
+#include <tuple>
 #include <vector>
 
 #include "gl/check.h"
@@ -15,14 +16,14 @@
 
 namespace livery {
 
-/// Two monitors of 1280x800, the projector on the right. Starting a server costs more than most
+/// A monitor of 1280x800 and the projector on the right. Starting a server costs more than most
 /// tests, so it serves the next one, too.
-inline Desktop& shared_desktop(bool window_manager) {
-    static std::map<bool, std::unique_ptr<Desktop>> desktops;
-    auto& desktop = desktops[window_manager];
+inline Desktop& shared_desktop(bool window_manager, glm::ivec2 projector_px) {
+    static std::map<std::tuple<bool, int, int>, std::unique_ptr<Desktop>> desktops;
+    auto& desktop = desktops[{window_manager, projector_px.x, projector_px.y}];
     if (!desktop) {
         desktop =
-            std::make_unique<Desktop>(DesktopOptions{{1280, 800}, {1280, 800}, window_manager});
+            std::make_unique<Desktop>(DesktopOptions{{1280, 800}, projector_px, window_manager});
     }
     ::setenv("DISPLAY", desktop->display().c_str(), 1);
     desktop->plug_projector();
@@ -36,8 +37,8 @@ struct Stage {
     WindowSystem window_system;
     Window share;
 
-    explicit Stage(bool window_manager = false)
-        : desktop(shared_desktop(window_manager)), share(invisible()) {
+    explicit Stage(bool window_manager = false, glm::ivec2 projector_px = {1280, 800})
+        : desktop(shared_desktop(window_manager, projector_px)), share(invisible()) {
         share.make_current();
         set_gl_checks(true);
     }
