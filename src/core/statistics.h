@@ -6,14 +6,15 @@
 #include <concepts>
 #include <cstddef>
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace livery {
 
 /// Value at a fraction in [0, 1] of the sorted values, the nearest of them; 0 for none. What is no
-/// number counts as larger than all that are. Takes a copy to reorder.
+/// number counts as larger than all that are. Reorders the values.
 template <typename T>
-T quantile(std::vector<T> values, double fraction) {
+T quantile_in_place(std::span<T> values, double fraction) {
     if (values.empty()) return T{};
     const auto rank =
         static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1) + 0.5);
@@ -24,6 +25,12 @@ T quantile(std::vector<T> values, double fraction) {
     }
     std::nth_element(values.begin(), values.begin() + rank, end);
     return values[static_cast<std::size_t>(rank)];
+}
+
+/// The same of a copy.
+template <typename T>
+T quantile(std::vector<T> values, double fraction) {
+    return quantile_in_place(std::span<T>(values), fraction);
 }
 
 template <typename T>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include <glm/geometric.hpp>
 
@@ -87,19 +88,26 @@ CaptureSummary summary_of(const RoledPhotograph& capture, int block) {
 
 /// Mean over (2 reach + 1)^2, the border held.
 ImageF blurred(const ImageF& image, int reach) {
-    ImageF rows(image.width, image.height, 1), out = rows;
-    const auto pass = [&](const ImageF& from, ImageF& to, bool along_x) {
-        for (int y = 0; y < image.height; ++y)
-            for (int x = 0; x < image.width; ++x) {
-                float sum = 0.0f;
-                for (int k = -reach; k <= reach; ++k)
-                    sum += along_x ? from.at(std::clamp(x + k, 0, image.width - 1), y)
-                                   : from.at(x, std::clamp(y + k, 0, image.height - 1));
-                to.at(x, y) = sum / static_cast<float>(2 * reach + 1);
-            }
-    };
-    pass(image, rows, true);
-    pass(rows, out, false);
+    const int width = image.width, height = image.height;
+    const auto count = static_cast<float>(2 * reach + 1);
+    ImageF rows(width, height, 1), out = rows;
+    std::vector<float> held(static_cast<std::size_t>(width + 2 * reach));
+    for (int y = 0; y < height; ++y) {
+        for (int x = -reach; x < width + reach; ++x)
+            held[static_cast<std::size_t>(x + reach)] = image.at(std::clamp(x, 0, width - 1), y);
+        float* const row = rows.pixel(0, y);
+        for (int k = 0; k <= 2 * reach; ++k)
+            for (int x = 0; x < width; ++x) row[x] += held[static_cast<std::size_t>(x + k)];
+        for (int x = 0; x < width; ++x) row[x] /= count;
+    }
+    for (int y = 0; y < height; ++y) {
+        float* const row = out.pixel(0, y);
+        for (int k = -reach; k <= reach; ++k) {
+            const float* const from = rows.pixel(0, std::clamp(y + k, 0, height - 1));
+            for (int x = 0; x < width; ++x) row[x] += from[x];
+        }
+        for (int x = 0; x < width; ++x) row[x] /= count;
+    }
     return out;
 }
 
@@ -125,27 +133,30 @@ float bilinear(const ImageF& image, float x, float y) {
 /// Gauss-Newton from `start`.
 glm::vec2 refine(const ImageF& still, const ImageF& moved, const Image8& mask, glm::vec2 start) {
     constexpr int kBorder = 6;
+    struct Row {
+        float x, y, value, gx, gy, e;
+    };
+    std::vector<Row> rows;
+    for (int y = kBorder; y + kBorder < still.height; ++y)
+        for (int x = kBorder; x + kBorder < still.width; ++x)
+            if (mask.at(x, y))
+                rows.push_back({static_cast<float>(x),
+                                static_cast<float>(y),
+                                still.at(x, y),
+                                0.5f * (still.at(x + 1, y) - still.at(x - 1, y)),
+                                0.5f * (still.at(x, y + 1) - still.at(x, y - 1)),
+                                0.0f});
+    if (rows.size() < 64) return glm::vec2(std::numeric_limits<float>::quiet_NaN());
+    std::vector<float> sizes(rows.size());
     glm::vec2 d = start;
     for (int round = 0; round < 6; ++round) {
-        struct Row {
-            float gx, gy, e;
-        };
-        std::vector<Row> rows;
-        std::vector<float> sizes;
-        for (int y = kBorder; y + kBorder < still.height; ++y)
-            for (int x = kBorder; x + kBorder < still.width; ++x) {
-                if (!mask.at(x, y)) continue;
-                const float gx = 0.5f * (still.at(x + 1, y) - still.at(x - 1, y));
-                const float gy = 0.5f * (still.at(x, y + 1) - still.at(x, y - 1));
-                const float e =
-                    bilinear(moved, static_cast<float>(x) + d.x, static_cast<float>(y) + d.y) -
-                    still.at(x, y);
-                rows.push_back({gx, gy, e});
-                sizes.push_back(std::abs(e));
-            }
-        if (rows.size() < 64) return glm::vec2(std::numeric_limits<float>::quiet_NaN());
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            Row& r = rows[i];
+            r.e = bilinear(moved, r.x + d.x, r.y + d.y) - r.value;
+            sizes[i] = std::abs(r.e);
+        }
         // What does not fit (a shadow's border, a silhouette) counts less: Geman and McClure.
-        const float scale = 3.0f * median(sizes) + 1e-4f;
+        const float scale = 3.0f * quantile_in_place(std::span<float>(sizes), 0.5) + 1e-4f;
         double xx = 0, xy = 0, yy = 0, xe = 0, ye = 0;
         for (const Row& r : rows) {
             const float q = 1.0f / (1.0f + r.e * r.e / (scale * scale));
@@ -166,17 +177,34 @@ glm::vec2 refine(const ImageF& still, const ImageF& moved, const Image8& mask, g
     return d;
 }
 
-double misfit(const ImageF& still, const ImageF& moved, const Image8& mask, glm::vec2 d) {
-    std::vector<float> sizes;
+/// The whole step, up to 4 blocks, after which most of the two agrees.
+glm::vec2 nearest_step(const ImageF& still, const ImageF& moved, const Image8& mask) {
+    constexpr int kReach = 4;
+    std::vector<std::size_t> blocks;  // every second one
     for (int y = 6; y + 6 < still.height; y += 2)
         for (int x = 6; x + 6 < still.width; x += 2)
-            if (mask.at(x, y))
-                sizes.push_back(std::abs(
-                    bilinear(moved, static_cast<float>(x) + d.x, static_cast<float>(y) + d.y) -
-                    still.at(x, y)));
-    double sum = 0.0;
-    for (const float size : sizes) sum += std::min(size, 0.3f);
-    return sizes.empty() ? 0.0 : sum / static_cast<double>(sizes.size());
+            if (mask.at(x, y)) blocks.push_back(still.index(x, y));
+    // A sum that is above `most` is not finished
+    const auto misfit = [&](int dx, int dy, double most) {
+        const float* const there = moved.values.data() + dy * moved.width + dx;
+        double sum = 0.0;
+        for (const std::size_t i : blocks) {
+            sum += static_cast<double>(std::min(std::abs(there[i] - still.values[i]), 0.3f));
+            if (sum >= most) break;
+        }
+        return sum;
+    };
+    glm::vec2 nearest(0.0f);
+    double best = misfit(0, 0, std::numeric_limits<double>::infinity());
+    for (int y = -kReach; y <= kReach; ++y)
+        for (int x = -kReach; x <= kReach; ++x) {
+            const double here = misfit(x, y, 0.98 * best);
+            if (here < 0.98 * best) {
+                best = here;
+                nearest = glm::vec2(x, y);
+            }
+        }
+    return nearest;
 }
 
 }  // namespace
@@ -189,19 +217,8 @@ CaptureSummary summarise(const RoledPhotograph& photograph) {
 
 glm::vec2 displacement(const ImageF& still, const ImageF& moved, const Image8& mask) {
     const ImageF a = texture_of(still), b = texture_of(moved);
-    // Nearest whole step first, so that the fit starts within a block of the answer
-    constexpr int kReach = 4;
-    glm::vec2 start(0.0f);
-    double best = misfit(a, b, mask, start);
-    for (int y = -kReach; y <= kReach; ++y)
-        for (int x = -kReach; x <= kReach; ++x) {
-            const double here = misfit(a, b, mask, glm::vec2(x, y));
-            if (here < 0.98 * best) {
-                best = here;
-                start = glm::vec2(x, y);
-            }
-        }
-    return refine(a, b, mask, start);
+    // So that the fit starts within a block of the answer
+    return refine(a, b, mask, nearest_step(a, b, mask));
 }
 
 }  // namespace livery

@@ -5,8 +5,10 @@
 #include <cctype>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "core/statistics.h"
 
 namespace livery {
@@ -45,20 +47,25 @@ struct Shares {
     std::vector<double> spread;                  ///< median distance from the median
 };
 
-/// Of each value, the one at a fraction of the photographs' sorted ones.
-std::vector<float> quantiles(const std::vector<Glimpse>& photographs, double fraction) {
-    std::vector<float> result(photographs.front().values.size()), values(photographs.size());
-    for (std::size_t i = 0; i < result.size(); ++i) {
-        for (std::size_t k = 0; k < values.size(); ++k) values[k] = photographs[k].values[i];
-        result[i] = quantile(values, fraction);
-    }
-    return result;
+/// Of each value, those at two fractions of the photographs' sorted ones.
+std::array<std::vector<float>, 2> quantiles(const std::vector<Glimpse>& photographs,
+                                            std::array<double, 2> fractions) {
+    const std::size_t count = photographs.front().values.size();
+    std::array<std::vector<float>, 2> results{std::vector<float>(count), std::vector<float>(count)};
+    parallel_for(count, 4096, [&](std::size_t begin, std::size_t end) {
+        std::vector<float> values(photographs.size());
+        for (std::size_t i = begin; i < end; ++i) {
+            for (std::size_t k = 0; k < values.size(); ++k) values[k] = photographs[k].values[i];
+            for (std::size_t f = 0; f < 2; ++f)
+                results[f][i] = quantile_in_place(std::span<float>(values), fractions[f]);
+        }
+    });
+    return results;
 }
 
 Shares shares_of(const std::vector<Glimpse>& photographs) {
     // Every pixel is lit in about half of the stripes, whatever else somebody photographed.
-    const std::vector<float> black = quantiles(photographs, 0.15);
-    const std::vector<float> white = quantiles(photographs, 0.75);
+    const auto [black, white] = quantiles(photographs, {0.15, 0.75});
     std::vector<float> light(white.size() / 3);
     for (std::size_t i = 0; i < light.size(); ++i)
         for (std::size_t c = 0; c < 3; ++c) light[i] += white[3 * i + c] - black[3 * i + c];
