@@ -243,9 +243,10 @@ bool encode_picture(const char* format,
         }
         spec.alpha_channel = -1;
     }
-    // A picture is written while somebody waits: deflate's quick levels lose a tenth of the size.
+    // A picture is written while somebody waits. Deflate's quick levels lose a tenth of the size;
+    // photographs' floats take PIZ a third of deflate's time at the same size.
     spec.attribute("png:compressionLevel", 2);
-    spec.attribute("compression", "zip:2");
+    spec.attribute("compression", "piz");
     std::vector<unsigned char> bytes;
     OIIO::Filesystem::IOVecOutput memory(bytes);
     output->set_ioproxy(&memory);
