@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -13,6 +14,7 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "scene/artwork_relief.h"
+#include "support/kept_truth.h"
 #include "tracing/tracer.h"
 
 namespace livery {
@@ -183,6 +185,13 @@ ImageF direct_light(const Scene& scene, const View& view, const OracleOptions& o
         }
     });
     return image;
+}
+
+ImageF kept_direct_light(const Scene& scene, const View& view, const OracleOptions& options) {
+    return testing::kept_picture(
+        "direct",
+        testing::text_of(scene, view) + fmt::format("{} {}", options.side, options.sky_samples),
+        [&] { return direct_light(scene, view, options); });
 }
 
 }  // namespace livery

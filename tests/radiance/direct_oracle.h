@@ -15,5 +15,7 @@ struct OracleOptions {
 /// R, G, B, coverage; shares only the reflectance source with the renderer. Each ray through a
 /// pixel takes its own stratified point of each light's disc and its own shadow ray.
 ImageF direct_light(const Scene& scene, const View& view, const OracleOptions& options = {});
+/// The same from a file: support/kept_truth.h. Of scenes without artwork.
+ImageF kept_direct_light(const Scene& scene, const View& view, const OracleOptions& options);
 
 }  // namespace livery

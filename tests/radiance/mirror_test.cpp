@@ -133,7 +133,7 @@ double green(const ImageF& image, std::size_t pixel) {
 
 ImageF truth_of(Subject& subject, const Material& paint, const OracleOptions& options) {
     for (Material& material : subject.scene.part_materials) material = paint;
-    return direct_light(subject.scene, subject.view, options);
+    return kept_direct_light(subject.scene, subject.view, options);
 }
 
 /// Of the sum over pixels, relative.
@@ -343,8 +343,7 @@ TEST_P(Mirror, NarrowLobesKeepTheEdgesOfWhatTheyMirror) {
     }
     subject.scene.environment = std::make_shared<const Environment>(half);
     for (const double alpha : {0.01, 0.03}) {
-        for (Material& m : subject.scene.part_materials) m = mirror_of(alpha);
-        const ImageF truth = direct_light(subject.scene, subject.view, {4, 4});
+        const ImageF truth = truth_of(subject, mirror_of(alpha), {4, 4});
         const auto steepest = [&](const ImageF& image) {
             std::vector<double> steps;
             for (const std::size_t i : subject.pixels) {

@@ -55,7 +55,7 @@ TEST_P(Renderer, DirectLightAgreesWithBruteForce) {
         scene.part_materials[1].film_nm = 320.0;  // where there are flakes
         scene.lights = {light_from({0.5, 0.8, 0.6}, 3.0 * kDegree_rad),
                         light_from({-0.9, 0.3, 0.5}, 0.0, 0.3)};
-        const ImageF truth = direct_light(scene, view, {12, 0});
+        const ImageF truth = kept_direct_light(scene, view, {12, 0});
         const RadianceError error = radiance_error(draw(scene, view), truth);
         print(fmt::format("{} alpha {}", model_info(model).name, alpha), error);
         EXPECT_LT(error.median, 0.001);
@@ -75,7 +75,7 @@ TEST_P(Renderer, EnvironmentLightAgreesWithBruteForce) {
         Scene scene = scene_of(two_spheres(), paint_of(model, alpha));
         scene.part_materials[1].film_nm = 320.0;  // where there are flakes
         scene.environment = studio();
-        const ImageF truth = direct_light(scene, view, {6, 24});
+        const ImageF truth = kept_direct_light(scene, view, {6, 24});
         for (const Quality quality : {Quality::draft, Quality::normal, Quality::high}) {
             const RadianceError error = radiance_error(draw(scene, view, quality), truth);
             print(fmt::format("{} alpha {} {}", model_info(model).name, alpha, to_string(quality)),

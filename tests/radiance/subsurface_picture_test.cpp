@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "appearance/subsurface/subsurface_profile.h"
@@ -15,6 +16,7 @@
 #include "radiance/renderer.h"
 #include "radiance/translucent_scenes.h"
 #include "reference/path_tracer.h"
+#include "support/kept_truth.h"
 
 namespace livery {
 namespace {
@@ -90,8 +92,13 @@ struct PhotonTruth {
 };
 PhotonTruth photon_truth(const Scene& scene, const View& view, double around_mm) {
     const ImageF mirrored = mirrored_alone(scene, view);
-    ImageF one = photon_picture(scene, view, around_mm, photons(), 1);
-    ImageF two = photon_picture(scene, view, around_mm, photons(), 2);
+    const auto by_photons = [&](std::uint64_t seed) {
+        return testing::kept_picture(
+            "photons",
+            testing::text_of(scene, view) + fmt::format("{} {} {}", around_mm, photons(), seed),
+            [&] { return photon_picture(scene, view, around_mm, photons(), seed); });
+    };
+    ImageF one = by_photons(1), two = by_photons(2);
     ImageF mean = one;
     for (std::size_t k = 0; k < mean.values.size(); ++k) {
         if (k % 4 == 3) continue;
@@ -243,8 +250,8 @@ TEST(SubsurfacePicture, OfAnOpenSheetIsThatOfAPlateAsThick) {
     }
     ReferenceOptions options;
     options.samples_per_pixel = 1024;
-    const ImageF of_plate = trace_reference(plate, lit_through, options).radiance_working;
-    const ImageF of_sheet = trace_reference(sheet, lit_through, options).radiance_working;
+    const ImageF of_plate = testing::kept_truth("walks", plate, lit_through, options);
+    const ImageF of_sheet = testing::kept_truth("walks", sheet, lit_through, options);
     // A column has 12,000 walks
     EXPECT_LT(off_by(of_sheet, of_plate), 0.05);
 
@@ -265,7 +272,7 @@ TEST(SubsurfacePicture, OfAnOpenSheetIsThatOfAPlateAsThick) {
         return sum / covered;
     };
     const double drawn = mean(drawn_at(sheet, from_below, 1));
-    const double walked = mean(trace_reference(sheet, from_below, options).radiance_working);
+    const double walked = mean(testing::kept_truth("walks", sheet, from_below, options));
     std::printf("    lit from above, seen from below: %.4f drawn, %.4f walked\n", drawn, walked);
     EXPECT_GT(walked, 0.05);
     EXPECT_NEAR(drawn / walked, 1.0, 0.05);
@@ -278,7 +285,7 @@ TEST(SubsurfacePicture, PhotonsShowWhatWalksFromTheEyeDo) {
     const PhotonTruth truth = photon_truth(one.scene, one.view, one.around_mm);
     ReferenceOptions options;
     options.samples_per_pixel = 64;
-    const ImageF walked = trace_reference(one.scene, one.view, options).radiance_working;
+    const ImageF walked = testing::kept_truth("walks", one.scene, one.view, options);
     for (int c = 0; c < 3; ++c) {
         double by_photons = 0.0, by_walks = 0.0;
         for (int y = 0; y < walked.height; ++y) {
@@ -301,7 +308,7 @@ TEST(SubsurfacePicture, ShowsAsMuchOfClearBallsAsWalks) {
         const ImageF mirrored = mirrored_alone(scene, view);
         ReferenceOptions options;
         options.samples_per_pixel = 256;
-        const ImageF walked = trace_reference(scene, view, options).radiance_working;
+        const ImageF walked = testing::kept_truth("walks", scene, view, options);
         const ImageF drawn = drawn_at(scene, view, 1);
         double by_walks = 0.0, by_nodes = 0.0;
         for (std::size_t k = 0; k < drawn.values.size(); ++k) {
@@ -331,7 +338,7 @@ TEST(SubsurfacePicture, OfAHollowBallIsLitFromWithin) {
     const View view = look_at({120, 0, 0}, {0, 0, 0}, 0.42, 16, 16);
     ReferenceOptions options;
     options.samples_per_pixel = 256;
-    const ImageF walked = trace_reference(scene, view, options).radiance_working;
+    const ImageF walked = testing::kept_truth("walks", scene, view, options);
     const auto sums = [](const ImageF& picture) {
         glm::dvec2 sum(0.0);  // of the lit half and of the other
         for (int y = 0; y < picture.height; ++y) {

@@ -70,24 +70,6 @@ std::string text_of(const View& view) {
     return text + six(view.view_from_world.translation);
 }
 
-std::string hash_of(const Scene& scene, const View& view, const ReferenceOptions& options) {
-    std::string text = text_of(scene.product->mesh) + text_of(view) + six(scene.eye_in_world_mm) +
-                       six(scene.exposure_ev);
-    if (scene.environment) text += text_of(*scene.environment);
-    for (const Material& material : scene.part_materials) text += json_of(material).dump();
-    for (const DirectionalLight& light : scene.lights)
-        text += six(light.direction) + six(light.radiance_rec709) + six(light.angle_rad);
-    text += fmt::format("{} {} {} {} {}",
-                        options.samples_per_pixel,
-                        options.bounces,
-                        options.seed,
-                        options.shade_for_eye,
-                        static_cast<int>(options.sampling));
-    Hasher hasher;
-    hasher.add(text);
-    return hasher.hex().substr(0, 12);
-}
-
 /// To the eleven bits of a half float.
 float rounded(float value) {
     int exponent = 0;
@@ -121,29 +103,53 @@ void compare(const std::string& file, const ImageF& kept, const ImageF& traced) 
 
 }  // namespace
 
-ImageF kept_truth(const std::string& name,
-                  const Scene& scene,
-                  const View& view,
-                  const ReferenceOptions& options) {
-    const std::filesystem::path file =
-        std::filesystem::path(LIVERY_TEST_DATA) / "truths" /
-        fmt::format("{}-{}.exr", name, hash_of(scene, view, options));
+std::string text_of(const Scene& scene, const View& view) {
+    std::string text = text_of(scene.product->mesh) + text_of(view) + six(scene.eye_in_world_mm) +
+                       six(scene.exposure_ev);
+    if (scene.environment) text += text_of(*scene.environment);
+    for (const Material& material : scene.part_materials) text += json_of(material).dump();
+    for (const DirectionalLight& light : scene.lights)
+        text += six(light.direction) + six(light.radiance_rec709) + six(light.angle_rad);
+    return text;
+}
+
+ImageF kept_picture(const std::string& name,
+                    const std::string& depends_on,
+                    const std::function<ImageF()>& make) {
+    Hasher hasher;
+    hasher.add(depends_on);
+    const std::filesystem::path file = std::filesystem::path(LIVERY_TEST_DATA) / "truths" /
+                                       fmt::format("{}-{}.exr", name, hasher.hex().substr(0, 12));
     const char* asked = std::getenv("LIVERY_TRUTHS");
     const std::string how = asked ? asked : "";
     if (how == "write") {
-        ImageF traced = trace_reference(scene, view, options).radiance_working;
-        for (float& value : traced.values) value = rounded(value);
+        ImageF made = make();
+        for (float& value : made.values) value = rounded(value);
         std::filesystem::create_directories(file.parent_path());
-        write_exr(file, traced);
-        return traced;
+        write_exr(file, made);
+        return made;
     }
     if (!std::filesystem::exists(file))
         throw std::runtime_error(file.string() +
                                  ": no such file; LIVERY_TRUTHS=write and this test write it");
     ImageF kept = read_image(file).image;
-    if (how == "check")
-        compare(file.string(), kept, trace_reference(scene, view, options).radiance_working);
+    if (how == "check") compare(file.string(), kept, make());
     return kept;
+}
+
+ImageF kept_truth(const std::string& name,
+                  const Scene& scene,
+                  const View& view,
+                  const ReferenceOptions& options) {
+    const std::string sampling = fmt::format("{} {} {} {} {}",
+                                             options.samples_per_pixel,
+                                             options.bounces,
+                                             options.seed,
+                                             options.shade_for_eye,
+                                             static_cast<int>(options.sampling));
+    return kept_picture(name, text_of(scene, view) + sampling, [&] {
+        return trace_reference(scene, view, options).radiance_working;
+    });
 }
 
 }  // namespace livery::testing
