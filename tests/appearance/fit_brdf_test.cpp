@@ -101,7 +101,7 @@ TEST(FitBrdf, AllModelsAreRankedAndTheTrueOneIsFound) {
     std::vector<double> told;
     Progress progress;
     progress.report = [&](double fraction, std::string_view) { told.push_back(fraction); };
-    const auto fits = fit_all_models(fit_samples(truth, everywhere, {36, 10, 10}), truth, progress);
+    const auto fits = fit_all_models(fit_samples(truth, everywhere, {24, 8, 8}), truth, progress);
     EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
     EXPECT_LT(told.front(), 0.01);
     EXPECT_GT(told.back(), 0.9);

@@ -51,12 +51,6 @@ const std::vector<std::string> kSolidPaints{
     "dark-blue-paint", "dark-red-paint", "light-red-paint", "purple-paint", "yellow-paint"};
 const std::vector<std::string> kSolidPaintsOfTheOtherSet{"orange-paint", "white-paint"};
 
-/// All, or the first few of them.
-std::vector<std::string> chosen(std::vector<std::string> names, std::size_t few) {
-    if (!thorough()) names.resize(few);
-    return names;
-}
-
 void print(const std::string& name, const BrdfFit& fit) {
     std::printf("    %-24s CIEDE2000 %.2f, 95%% %.1f, log error %.3f, albedo %.2f, %.1f s\n",
                 name.c_str(),
@@ -121,7 +115,7 @@ TEST(FitCarPaint, GivesBackThePaintThatMadeTheSamples) {
 
 // Colours of a film repeat with its thickness, so it is found among many or not at all. The model's
 // own film, through noise of 2%: what is left is the noise's.
-TEST(FitCarPaint, FindsTheFilmThatMadeTheColours) {
+TEST(FitCarPaint, NightlyFindsTheFilmThatMadeTheColours) {
     std::vector<std::pair<double, double>> films{{180.0, 2.3}};
     if (thorough()) films.emplace_back(420.0, 1.8);
     for (const auto& [nm, eta] : films) {
@@ -164,7 +158,7 @@ TEST(FitCarPaint, ComesNearEffectPaints) {
     EXPECT_LE(differences[differences.size() / 2], 1.2);
 }
 
-TEST(FitCarPaint, ComesNearSolidPaints) {
+TEST(FitCarPaint, NightlyComesNearSolidPaints) {
     LIVERY_NEEDS_REFERENCE_DATA(data);
     const auto tables = read_sgd_fits(data / "materials/sgd_bagher2012_merl.csv");
     const auto others = read_abc_fits(data / "materials/abc_low2012_merl.csv");
@@ -178,7 +172,7 @@ TEST(FitCarPaint, ComesNearSolidPaints) {
 
 // Its samples differ by 23% with light and eye exchanged (docs/materials.md), which no such model
 // does.
-TEST(FitCarPaint, MeasuredMetallicPaint) {
+TEST(FitCarPaint, NightlyMeasuredMetallicPaint) {
     LIVERY_NEEDS_REFERENCE_DATA(data);
     EXPECT_LE(fit_of_file(data / "paint" / "cayman.brdf").difference.de00_mean, 3.5);
 }

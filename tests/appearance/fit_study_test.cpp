@@ -23,13 +23,6 @@
 namespace livery {
 namespace {
 
-/// All, or the first few.
-template <typename Value>
-std::vector<Value> chosen(std::vector<Value> all, std::size_t few) {
-    if (!thorough()) all.resize(std::min(few, all.size()));
-    return all;
-}
-
 ReflectanceFunction value_of(const MeasuredReflectance& measured) {
     return [&](const glm::dvec3& wi, const glm::dvec3& wo) { return evaluate(measured, wi, wo); };
 }
@@ -79,7 +72,7 @@ MeasuredSamples chosen_of(const MeasuredSamples& all, const std::vector<bool>& c
 }
 
 // The two halves' fits are as far from the half that they have not seen.
-TEST(FitStudy, HalvesOfMeasuredPaints) {
+TEST(FitStudy, NightlyHalvesOfMeasuredPaints) {
     LIVERY_NEEDS_REFERENCE_DATA(data);
     for (const std::string& name :
          chosen<std::string>({"cayman", "garnet_red", "krylon_blue"}, 1)) {
@@ -115,7 +108,7 @@ BrdfFit best_fit(const EffectLacquer& lacquer, const MeasuredSamples& directions
 }
 
 // What paints that are kept for judging should come to: a mean of 2.5, 8 for 95%.
-TEST(FitStudy, Pearls) {
+TEST(FitStudy, NightlyPearls) {
     LIVERY_NEEDS_REFERENCE_DATA(data);
     const MeasuredSamples directions = read_spectral_samples(data / "paint" / "cayman.brdf");
     const std::vector<EffectLacquer> lacquers{
@@ -160,7 +153,7 @@ TEST(FitStudy, Pearls) {
 
 // Whose colours turn around half of the circle, out of a black that GGX's tails do not leave: never
 // without a film, and nearer than the best of them comes without one.
-TEST(FitStudy, ColourShifts) {
+TEST(FitStudy, NightlyColourShifts) {
     LIVERY_NEEDS_REFERENCE_DATA(data);
     const MeasuredSamples directions = read_spectral_samples(data / "paint" / "cayman.brdf");
     const std::vector<EffectLacquer> lacquers{
@@ -190,7 +183,7 @@ TEST(FitStudy, ColourShifts) {
 }
 
 // Bright diffuse plastics under a polished surface: the white ones reach a diffuse albedo of 1.
-TEST(FitStudy, Acrylics) {
+TEST(FitStudy, NightlyAcrylics) {
     LIVERY_NEEDS_REFERENCE_DATA(data);
     const auto sgd = read_sgd_fits(data / "materials/sgd_bagher2012_merl.csv");
     const auto abc = read_abc_fits(data / "materials/abc_low2012_merl.csv");

@@ -41,7 +41,7 @@ void expect_enough_nodes(const char* name, const MeasuredReflectance& measured) 
     }
 }
 
-TEST(MeasuredStudy, PaintsOnGridsOfSeveralSizes) {
+TEST(MeasuredStudy, NightlyPaintsOnGridsOfSeveralSizes) {
     LIVERY_NEEDS_REFERENCE_DATA(data);
     for (const char* name : {"garnet_red", "cayman", "krylon_blue"}) {
         const auto file = data / "paint" / (std::string(name) + ".brdf");

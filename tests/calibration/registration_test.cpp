@@ -23,6 +23,7 @@ namespace {
 
 using testing::add_rectangle;
 using testing::bench_world;
+using testing::half_size_world;
 using testing::roughened;
 using testing::traced_sight;
 using World = testing::BenchWorld;
@@ -111,12 +112,12 @@ void expect_registered(const World& world, const char* name) {
 }
 
 TEST(Registration, FindsTheCar) { expect_registered(bench_world("default"), "car"); }
-TEST(Registration, FindsThePlayer) { expect_registered(bench_world("player"), "player"); }
+TEST(Registration, NightlyFindsThePlayer) { expect_registered(bench_world("player"), "player"); }
 TEST(Registration, FindsTheSphereUpToItsTurns) {
-    expect_registered(bench_world("sphere"), "sphere");
+    expect_registered(half_size_world("sphere"), "sphere");
 }
 
-TEST(Registration, FindsTheTrucks) {
+TEST(Registration, NightlyFindsTheTrucks) {
     LIVERY_NEEDS_REFERENCE_DATA(data);
     for (const char* name : {"vehicle-truck-green", "vehicle-truck-red"}) {
         const auto file = data / "meshes" / (std::string(name) + ".glb");
@@ -140,18 +141,19 @@ World turned_world(World world, const glm::dvec3& axis_angle, const glm::dvec3& 
 
 TEST(Registration, FindsWhatIsTurnedAnyWayAndStandsOnNothing) {
     Random random(3);
-    for (int k = 0; k < 3; ++k) {
+    const int turns = thorough() ? 3 : 1;
+    for (int k = 0; k < turns; ++k) {
         const glm::dvec3 axis(random.normal(), random.normal(), random.normal());
         const glm::dvec3 axis_angle = glm::normalize(axis) * (1.0 + 2.0 * random.uniform());
-        const World world = turned_world(bench_world("default"),
+        const World world = turned_world(half_size_world("default"),
                                          axis_angle,
                                          {20.0 * random.normal(), 10.0 * random.normal(), 0.0});
         expect_registered(world, "car, turned");
     }
 }
 
-TEST(Registration, BeginsSixtyDegreesAndTenCentimetresOffToo) {
-    const World world = bench_world("default");
+TEST(Registration, NightlyBeginsSixtyDegreesAndTenCentimetresOffToo) {
+    const World world = half_size_world("default");
     const Given given = given_of(world, 0.01, 2);
     RegistrationOptions options;
     const Rigid3 truth = world.camera.view_from_world;
@@ -182,20 +184,21 @@ std::string refusal(const World& world, const Mesh& mesh) {
 }
 
 TEST(Registration, RefusesTheMeshOfAnotherProduct) {
-    const World car = bench_world("default"), player = bench_world("player");
+    const World car = half_size_world("default"), player = half_size_world("player");
     EXPECT_NE(refusal(car, player.product).find("does not fit"), std::string::npos);
+    if (!thorough()) return;
     EXPECT_NE(refusal(player, car.product).find("does not fit"), std::string::npos);
 }
 
 TEST(Registration, RefusesTheMirrorImage) {
     // A car is its own mirror image but for what stands at one side of it.
-    Mesh product = bench_world("default").product;
+    Mesh product = half_size_world("default").product;
     append(product, make_sphere({20.0, 30.0, 30.0}, 16.0, 24, "lump"), "");
     Mesh mirrored = product;
     for (glm::vec3& place : mirrored.positions_mm) place.z = -place.z;
     for (glm::vec3& normal : mirrored.normals) normal.z = -normal.z;
     for (glm::uvec3& triangle : mirrored.triangles) std::swap(triangle.y, triangle.z);
-    const World world = bench_world("default", product);
+    const World world = half_size_world("default", product);
     EXPECT_NE(refusal(world, mirrored).find("mirror image"), std::string::npos);
     EXPECT_EQ(refusal(world, product), "");
 }
@@ -222,7 +225,7 @@ Mesh box(glm::vec3 side) {
 }
 
 TEST(Registration, NamesASymmetricProduct) {
-    const World world = bench_world("default", box({120.0f, 50.0f, 60.0f}));
+    const World world = half_size_world("default", box({120.0f, 50.0f, 60.0f}));
     const Registration found = registered(world, world.product, 0.0, 1, "box");
     ASSERT_FALSE(found.equal_motions.empty());
     EXPECT_NE(found.warnings.at(0).find("symmetric"), std::string::npos);
@@ -264,7 +267,7 @@ Mesh bottle() {
 }
 
 TEST(Registration, NamesASurfaceOfRevolution) {
-    const World world = bench_world("default", bottle());
+    const World world = half_size_world("default", bottle());
     const Registration found = registered(world, roughened(world.product, 0.03), 0.01, 1, "bottle");
     ASSERT_EQ(found.free.count, 1);
     EXPECT_GT(std::abs(found.free.axis.y), 0.9999);
@@ -284,24 +287,24 @@ TEST(Registration, RefusesTwoPosesThatFitAlike) {
     // What tells the ends apart lies below, where neither projector nor camera sees it.
     Mesh product = box({120.0f, 50.0f, 60.0f});
     append(product, make_sphere({-35.0, 8.0, 0.0}, 20.0, 24, "foot"), "");
-    World world = bench_world("default", product);
+    World world = half_size_world("default", product);
     world.all = product;
     EXPECT_NE(refusal(world, product).find("fit alike"), std::string::npos);
 }
 
 // What rougher meshes and lenses that are farther off cost: docs/registration.md has the rows.
-TEST(Registration, LosesLittleByARoughMeshOrAWrongLens) {
-    const World world = bench_world("default");
+TEST(Registration, NightlyLosesLittleByARoughMeshOrAWrongLens) {
+    const World world = half_size_world("default");
     struct Row {
         double mesh_rms_mm, lens_off;
         double median_px = 0.5, p95_px = 1.0;  // the goals, where they are reached
     };
-    std::vector<Row> rows{Row{0.3, 0.01, 1.0, 1.5}, Row{0.03, 0.03}};
-    if (thorough()) {
-        rows.insert(rows.end(),
-                    {Row{0.0, 0.0}, Row{0.1, 0.01}, Row{1.0, 0.01, 8.0, 15.0}, Row{0.03, 0.02}});
-    }
-    for (const Row& row : rows) {
+    for (const Row& row : {Row{0.3, 0.01, 1.0, 1.5},
+                           Row{0.03, 0.03},
+                           Row{0.0, 0.0},
+                           Row{0.1, 0.01},
+                           Row{1.0, 0.01, 8.0, 15.0},
+                           Row{0.03, 0.02}}) {
         const Given given = given_of(world, row.lens_off, 1);
         const Registration found =
             register_scan(roughened(world.product, row.mesh_rms_mm), given.projector, given.sights);
@@ -320,8 +323,8 @@ TEST(Registration, LosesLittleByARoughMeshOrAWrongLens) {
 }
 
 // From a second position of the camera the same pose, better held.
-TEST(Registration, MergesPositionsOfTheCamera) {
-    const World world = bench_world("default");
+TEST(Registration, NightlyMergesPositionsOfTheCamera) {
+    const World world = half_size_world("default");
     Given given = given_of(world, 0.01, 1);
     const Registration one = register_scan(world.product, given.projector, given.sights);
     View other = world.camera;
@@ -342,7 +345,7 @@ TEST(Registration, MergesPositionsOfTheCamera) {
 }
 
 TEST(Registration, FindsTheScaleWhereItIsFree) {
-    const World world = bench_world("default");
+    const World world = half_size_world("default");
     const Given given = given_of(world, 0.0, 1);
     Mesh larger = world.product;
     for (glm::vec3& place : larger.positions_mm) place *= 1.03f;

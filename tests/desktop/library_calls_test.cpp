@@ -14,7 +14,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr int kClicks = 200, kBetweenClicks_ms = 60;
+constexpr int kClicks = 60, kBetweenClicks_ms = 60;
 
 class LibraryFiles : public TwoMonitors {
   protected:

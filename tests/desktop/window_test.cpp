@@ -79,13 +79,10 @@ TEST_F(OperatorsWindow, NoButtonsOverlapInItsLeastSize) {
 
 TEST_F(OperatorsWindow, IsWorkedWithTheKeysAlone) {
     use_shared();
-    const auto tab_to = [&](const std::string& name) {
-        for (int k = 0; k < 200 && program->state("focused") != name; ++k) {
-            program->press_key("Tab");
-        }
-        return program->state("focused") == name;
-    };
-    ASSERT_TRUE(tab_to("part:body"));
+    // test_studio goes through every panel by Tab.
+    for (int k = 0; k < 200 && program->state("focused") != "part:body"; ++k)
+        program->press_key("Tab");
+    ASSERT_EQ(program->state("focused"), "part:body");
     program->press_key("Return");
     program->press_key("ctrl+Tab");
     program->wait_for_state("open_tab", 1);
@@ -97,13 +94,6 @@ TEST_F(OperatorsWindow, IsWorkedWithTheKeysAlone) {
     desktop->type("solid red");
     program->press_key("Return");
     EXPECT_TRUE(projector_shows(wears));
-    program->press_key("Escape");
-    ASSERT_TRUE(tab_to("tab:Light"));
-    program->press_key("Return");
-    program->wait_for_state("open_tab", 3);
-    ASSERT_TRUE(tab_to("tab:Paints"));
-    program->press_key("Return");
-    program->wait_for_state("open_tab", 0);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "core/paths.h"
 #include "support/reference_data.h"
 #include "support/temporary_folder.h"
+#include "support/thorough.h"
 
 namespace livery {
 namespace {
@@ -80,6 +81,7 @@ TEST(PairGeometry, SaysOfEachFolderWhyItIsNotUsed) {
     PairGeometryRequest flat = real_poses(data, 4);
     flat.board.square_mm = 0.0;
     EXPECT_THROW(find_pair_geometry(flat), std::invalid_argument);
+    if (!thorough()) return;
     // The same pose four times: nothing tells the focal lengths.
     PairGeometryRequest same = real_poses(data, 1);
     for (int k = 0; k < 3; ++k) same.captures.push_back(same.captures.front());
@@ -111,7 +113,7 @@ void write_pose(const std::filesystem::path& folder, const testing::BoardScene& 
 // Five poses of a board of 75 mm, and one with squares of 60 mm. Corners lie within .2 px (the
 // camera's edges) and a third of a pixel (the projector's whole pixels), sixty of them a pose: lens
 // and distance to a percent, a pose left out to half a pixel.
-TEST(PairGeometry, OfSimulatedBoardsLeavesOutTheOneOfAnotherSize) {
+TEST(PairGeometry, NightlyOfSimulatedBoardsLeavesOutTheOneOfAnotherSize) {
     const TemporaryFolder folder;
     PairGeometryRequest request;
     request.projector_px = {256, 192};

@@ -77,7 +77,7 @@ TEST(SphereMeasurement, AMattePaintIsRecovered) {
     EXPECT_NEAR(fit.material.diffuse_roughness, 0.5, 0.05);
 }
 
-TEST(SphereMeasurement, AGlossySolidPaintIsRecovered) {
+TEST(SphereMeasurement, NightlyAGlossySolidPaintIsRecovered) {
     const SphereBench bench(solid_paint(), 512);
     const SphereMeasurement report = bench.measure();
     const MeasuredReflectance measured = bench.measured();
@@ -134,7 +134,7 @@ TEST(SphereMeasurement, TheOutlineRepairsAWrongSphere) {
     EXPECT_LT(report.reflectance.residual_median, 0.03);
 }
 
-TEST(SphereMeasurement, FlareAndSaturationAreLeftOut) {
+TEST(SphereMeasurement, NightlyFlareAndSaturationAreLeftOut) {
     CameraDescription camera = noisy_camera();
     camera.flare = 0.01;
     SphereBench bench(solid_paint(), 320, camera);

@@ -34,6 +34,15 @@ inline BenchWorld bench_world(const std::string& bench_name,
     return world;
 }
 
+/// With a quarter of the pixels.
+inline BenchWorld half_size_world(const std::string& bench_name,
+                                  std::optional<Mesh> product = std::nullopt) {
+    BenchWorld world = bench_world(bench_name, std::move(product));
+    for (View* view : {&world.projector, &world.camera})
+        *view = resized(*view, view->width / 2, view->height / 2);
+    return world;
+}
+
 struct DrawnErrors {
     double median_px = 0.0, p95_px = 0.0;
 };
