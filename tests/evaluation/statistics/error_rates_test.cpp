@@ -90,7 +90,7 @@ void print(const char* name, int rounds, const Rates& found) {
                 found.winner);
 }
 
-TEST(ErrorRates, WithoutAnyPreference) {
+TEST(ErrorRates, NightlyWithoutAnyPreference) {
     constexpr int rounds = 10000;
     struct Case {
         const char* name;
@@ -129,7 +129,7 @@ TEST(ErrorRates, OfTheExactTestIsAtMostItsLevel) {
     }
 }
 
-TEST(ErrorRates, BetweenTwoThatAreEquallyGood) {
+TEST(ErrorRates, NightlyBetweenTwoThatAreEquallyGood) {
     constexpr int rounds = 1000;
     for (const double others : {0.1, 0.01}) {
         const Rates found = rates({1.0, 1.0, others, others}, 10, false, rounds);

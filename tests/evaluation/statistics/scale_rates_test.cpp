@@ -34,7 +34,7 @@ std::vector<ScaleAnswers> drawn_answers(int evaluators, Random& random) {
     return answers;
 }
 
-TEST(ScaleErrorRates, AFamilyOfScalesIsCalledDifferentInFivePercentAtMost) {
+TEST(ScaleErrorRates, NightlyAFamilyOfScalesIsCalledDifferentInFivePercentAtMost) {
     constexpr int rounds = 2000;
     // Three standard errors of a rate of .05 in 2000 rounds
     const double most = 0.05 + 3.0 * std::sqrt(0.05 * 0.95 / rounds);
@@ -62,7 +62,7 @@ TEST(ScaleErrorRates, AFamilyOfScalesIsCalledDifferentInFivePercentAtMost) {
 
 /// Plain percentiles of ten evaluators would hold the truth in about 90%; fewer than eight are
 /// given no interval, since the expanded ones of six hold it in 91%.
-TEST(ScaleErrorRates, IntervalsOfMeansHoldAboutAsOftenAsTheySay) {
+TEST(ScaleErrorRates, NightlyIntervalsOfMeansHoldAboutAsOftenAsTheySay) {
     constexpr int rounds = 2000;
     for (const int evaluators : {8, 10, 24}) {
         // The truth, from many
