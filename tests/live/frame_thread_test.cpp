@@ -210,6 +210,7 @@ TEST_F(FrameThreadTest, SolvingTellsHowFarItIs) {
 }
 
 TEST_P(FrameThreadOnADevice, WipeShowsEachLookInItsColumns) {
+    leave_out_light_between_parts();
     for (const bool same_light : {true, false}) {
         Scene right = description_.scene;
         paint(right, 0, ReflectanceModel::ggx, {0.1, 0.1, 0.7});
@@ -296,6 +297,7 @@ TEST_P(FrameThreadOnADevice, AnotherCalibrationOfTheSameProjectorOnlyCorrectsAga
 
 // Both scenes of a comparison go through one map: that of the setup.
 TEST_P(FrameThreadOnADevice, MapsTheGamutOfEverySceneAlike) {
+    leave_out_light_between_parts();
     start();
     description_.scene.exposure_ev = 2.0;  // much of it out of reach
     const auto clipped = gallery_.whole(show());
@@ -321,6 +323,7 @@ TEST_P(FrameThreadOnADevice, MapsTheGamutOfEverySceneAlike) {
 
 // Whoever holds a frame has its picture, whatever both lanes have drawn since.
 TEST_P(FrameThreadOnADevice, HeldFramesKeepTheirPictures) {
+    leave_out_light_between_parts();
     auto preserving = std::make_shared<ProjectorSetup>(*description_.setup);
     preserving->table =
         bake(synthetic_calibration(
@@ -470,6 +473,7 @@ TEST_F(FrameThreadTest, IdleMeansThatNothingIsDone) {
 TEST_P(FrameThreadOnADevice, ManySwapsUseAFewTextures) {
     // A dozen would be used up in twenty; a texture lost once in a while shows in a thousand.
     const int swaps = thorough() ? 1000 : 60;
+    leave_out_light_between_parts();
     start();
     ASSERT_TRUE(gallery_.whole(show()));
     std::set<unsigned> textures;

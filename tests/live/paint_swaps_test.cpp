@@ -84,7 +84,7 @@ FrameDescription glossy_spheres() {
     FrameDescription description;
     description.scene = scene_of(two_spheres(), paint_of(ReflectanceModel::clearcoat, 0.05));
     description.scene.environment = sky(0.8);
-    description.setup = setup_of(test_view(128, 96), description.scene);
+    description.setup = setup_of(test_view(64, 48), description.scene);
     return description;
 }
 
