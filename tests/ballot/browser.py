@@ -19,7 +19,7 @@ def find_browser():
     for name in PROGRAMS:
         if path := shutil.which(name):
             return path
-    return None
+    sys.exit(f"none of {', '.join(PROGRAMS)} is installed")
 
 
 class Browser:

@@ -30,11 +30,7 @@ def vote(tab, favourite, numbers):
 def main():
     url, count, seed = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
     numbers = random.Random(seed)
-    program = find_browser()
-    if not program:
-        print("no Chromium")
-        sys.exit(77)
-    browser = Browser(program)
+    browser = Browser(find_browser())
     try:
         phones = [browser.phone() for _ in range(count)]
         longest = 0.0

@@ -27,7 +27,7 @@ std::string read_back(const ZBar& reader, const QrCode& code) {
 
 TEST(QrCodes, AreReadByOthers) {
     const ZBar reader;
-    if (!reader.is_there()) GTEST_SKIP() << "no libzbar.so.0";
+    ASSERT_TRUE(reader.is_there()) << "libzbar.so.0 is not installed";
     for (const std::string& text : {std::string("http://192.168.178.123:8470/join/"
                                                 "0123456789abcdef0123456789abcdef"),
                                     std::string("https://livery.local/"),
