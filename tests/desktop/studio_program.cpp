@@ -47,9 +47,11 @@ StudioProgram::StudioProgram(Desktop& desktop, const StudioStart& start) : deskt
                          "--trace",
                          (folder_ / "trace").string(),
                          "--size",
-                         fmt::format("{}x{}", start.size_px.x, start.size_px.y),
-                         "--ui-scale",
-                         fmt::format("{}", start.ui_scale)};
+                         fmt::format("{}x{}", start.size_px.x, start.size_px.y)};
+    if (start.ui_scale) {
+        options.arguments.insert(options.arguments.end(),
+                                 {"--ui-scale", fmt::format("{}", *start.ui_scale)});
+    }
     options.arguments.insert(
         options.arguments.end(), start.more_arguments.begin(), start.more_arguments.end());
     options.environment = start.environment;

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,7 @@ struct TraceLine {
 struct StudioStart {
     std::filesystem::path session;
     glm::ivec2 size_px{1280, 800};
-    double ui_scale = 1.0;
+    std::optional<double> ui_scale = 1.0;  ///< none: the screen's and the user's
     std::vector<std::string> more_arguments = {};
     std::map<std::string, std::string> environment = {};  ///< on top of the test's own
     /// The mock-up's picture gets finer by itself; else it stays as the document has its levels.

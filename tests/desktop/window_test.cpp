@@ -1,5 +1,6 @@
 // The operator's window among other windows, by its keys alone, and in its least size.
 #include <algorithm>
+#include <cmath>
 
 #include <gtest/gtest.h>
 
@@ -74,6 +75,35 @@ TEST_F(OperatorsWindow, NoButtonsOverlapInItsLeastSize) {
             }
         }
     }
+    EXPECT_EQ(program->quit(), 0);
+}
+
+TEST_F(OperatorsWindow, TakesLargerAndSmallerText) {
+    start();
+    studio->program.reset();
+    StudioStart how;
+    how.session = studio->session_file();
+    how.ui_scale.reset();
+    studio->program = std::make_unique<StudioProgram>(*desktop, how);
+    program = studio->program.get();
+    pick_projector();
+    const double usual = program->state("scale");
+    const auto becomes = [&](double scale) {
+        return wait_until(
+            [&] { return std::abs(program->state("scale").get<double>() - scale) < 0.01; });
+    };
+    const int height_px = program->item("part:body").height;
+    for (const double larger : {1.1, 1.21}) {
+        program->press_key("ctrl+equal");
+        EXPECT_TRUE(becomes(usual * larger));
+    }
+    EXPECT_GT(program->item("part:body").height, height_px);
+    EXPECT_TRUE(projector_shows(drive_of_place(0)));
+    program->press_key("ctrl+minus");
+    EXPECT_TRUE(becomes(usual * 1.1));
+    program->press_key("ctrl+0");
+    EXPECT_TRUE(becomes(usual));
+    EXPECT_EQ(program->item("part:body").height, height_px);
     EXPECT_EQ(program->quit(), 0);
 }
 

@@ -173,8 +173,11 @@ ImGuiWindow::~ImGuiWindow() {
 void ImGuiWindow::use_scale(float scale) {
     if (scale == state_->scale) return;
     state_->scale = scale;
+    const bool had_fonts = ImGui::GetIO().Fonts->TexID != ImTextureID{};
     apply_theme(scale);
+    if (!had_fonts) return;  // the backend makes the first ones by itself, and no others
     ImGui_ImplOpenGL3_DestroyFontsTexture();
+    ImGui_ImplOpenGL3_CreateFontsTexture();
 }
 
 std::chrono::steady_clock::time_point ImGuiWindow::begin_frame(const KeyFilter& filter) {
