@@ -27,6 +27,9 @@ constexpr Modifier kModifiers[] = {
 
 ImGuiID current_focus_scope() { return ImGui::GetCurrentFocusScope(); }
 
+void begin_overlapped_item() { ImGui::SetNextItemAllowOverlap(); }
+void end_overlapped_item() {}
+
 void begin_input() { ImGui::GetIO().ConfigInputTrickleEventQueue = false; }
 
 void hand_in_key(GLFWwindow* window, int key, int scancode, bool down, int modifiers) {
@@ -50,6 +53,9 @@ void hold_key(ImGuiKey key, bool down) { ImGui::GetIO().AddKeyEvent(key, down); 
 #else
 
 ImGuiID current_focus_scope() { return ImGui::GetFocusScope(); }
+
+void begin_overlapped_item() {}
+void end_overlapped_item() { ImGui::SetItemAllowOverlap(); }
 
 void begin_input() { ImGui::GetIO().KeyMap[ImGuiKey_Space] = GLFW_KEY_ENTER; }
 

@@ -20,6 +20,10 @@ inline constexpr int kMovedByTabbing = ImGuiNavMoveFlags_Tabbing;
 /// Of the items that are being drawn.
 ImGuiID current_focus_scope();
 
+/// Around an item on which later ones may lie and take its clicks.
+void begin_overlapped_item();
+void end_overlapped_item();
+
 /// Once, after the backend's start. Enter presses items, Space does not; each frame takes all input
 /// that was handed in before it.
 void begin_input();

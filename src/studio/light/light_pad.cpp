@@ -9,6 +9,7 @@
 #include <imgui_internal.h>
 
 #include "scene/frame_plan.h"
+#include "studio/kit/imgui_versions.h"
 #include "studio/kit/theme.h"
 #include "studio/light/light_values.h"
 #include "studio/studio.h"
@@ -87,8 +88,9 @@ void light_pad(std::vector<DirectionalLight>& lights,
         const float reach = em(0.7f);
         ImGui::PushID(static_cast<int>(i));
         ImGui::SetCursorScreenPos({at.x - reach, at.y - reach});
-        ImGui::SetItemAllowOverlap();
+        begin_overlapped_item();
         ImGui::InvisibleButton("dot", {2.0f * reach, 2.0f * reach});
+        end_overlapped_item();
         if (ImGui::IsItemActive() && ImGui::IsMouseDragging(ImGuiMouseButton_Left, 1.0f)) {
             lights[i].direction = direction_of(angles_from_pad(pad.under(ImGui::GetIO().MousePos)));
             ImGui::MarkItemEdited(ImGui::GetItemID());

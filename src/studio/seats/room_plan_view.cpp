@@ -10,6 +10,7 @@
 #include <imgui_internal.h>
 
 #include "live/projector_setup.h"
+#include "studio/kit/imgui_versions.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
 #include "studio/kit/widgets.h"
@@ -310,8 +311,9 @@ void draw_room_plan(Studio& studio, std::vector<EyeSeat>& seats, float width) {
         low, {low.x + std::floor(width), low.y + std::floor(width / kAspect)}, state.extent};
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImVec2 size(plan.high.x - plan.low.x, plan.high.y - plan.low.y);
+    begin_overlapped_item();
     ImGui::InvisibleButton("plan", size);
-    ImGui::SetItemAllowOverlap();
+    end_overlapped_item();
     name_last_item("plan");
     handle_background(studio, plan);
     list.AddRectFilled(
