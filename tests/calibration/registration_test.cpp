@@ -28,6 +28,12 @@ using testing::roughened;
 using testing::traced_sight;
 using World = testing::BenchWorld;
 
+/// Half the bench's size; the whole at night.
+World sized_world(const char* bench, std::optional<Mesh> product = std::nullopt) {
+    return thorough() ? bench_world(bench, std::move(product))
+                      : half_size_world(bench, std::move(product));
+}
+
 /// A truck from the reference data, as long as the car and on the ground.
 Mesh truck(const std::filesystem::path& file) {
     Mesh mesh = load_mesh(file);
@@ -114,7 +120,7 @@ void expect_registered(const World& world, const char* name) {
 TEST(Registration, FindsTheCar) { expect_registered(bench_world("default"), "car"); }
 TEST(Registration, NightlyFindsThePlayer) { expect_registered(bench_world("player"), "player"); }
 TEST(Registration, FindsTheSphereUpToItsTurns) {
-    expect_registered(half_size_world("sphere"), "sphere");
+    expect_registered(sized_world("sphere"), "sphere");
 }
 
 TEST(Registration, NightlyFindsTheTrucks) {
@@ -145,7 +151,7 @@ TEST(Registration, FindsWhatIsTurnedAnyWayAndStandsOnNothing) {
     for (int k = 0; k < turns; ++k) {
         const glm::dvec3 axis(random.normal(), random.normal(), random.normal());
         const glm::dvec3 axis_angle = glm::normalize(axis) * (1.0 + 2.0 * random.uniform());
-        const World world = turned_world(half_size_world("default"),
+        const World world = turned_world(sized_world("default"),
                                          axis_angle,
                                          {20.0 * random.normal(), 10.0 * random.normal(), 0.0});
         expect_registered(world, "car, turned");
@@ -153,7 +159,7 @@ TEST(Registration, FindsWhatIsTurnedAnyWayAndStandsOnNothing) {
 }
 
 TEST(Registration, NightlyBeginsSixtyDegreesAndTenCentimetresOffToo) {
-    const World world = half_size_world("default");
+    const World world = bench_world("default");
     const Given given = given_of(world, 0.01, 2);
     RegistrationOptions options;
     const Rigid3 truth = world.camera.view_from_world;
@@ -184,7 +190,7 @@ std::string refusal(const World& world, const Mesh& mesh) {
 }
 
 TEST(Registration, RefusesTheMeshOfAnotherProduct) {
-    const World car = half_size_world("default"), player = half_size_world("player");
+    const World car = sized_world("default"), player = sized_world("player");
     EXPECT_NE(refusal(car, player.product).find("does not fit"), std::string::npos);
     if (!thorough()) return;
     EXPECT_NE(refusal(player, car.product).find("does not fit"), std::string::npos);
@@ -192,13 +198,13 @@ TEST(Registration, RefusesTheMeshOfAnotherProduct) {
 
 TEST(Registration, RefusesTheMirrorImage) {
     // A car is its own mirror image but for what stands at one side of it.
-    Mesh product = half_size_world("default").product;
+    Mesh product = sized_world("default").product;
     append(product, make_sphere({20.0, 30.0, 30.0}, 16.0, 24, "lump"), "");
     Mesh mirrored = product;
     for (glm::vec3& place : mirrored.positions_mm) place.z = -place.z;
     for (glm::vec3& normal : mirrored.normals) normal.z = -normal.z;
     for (glm::uvec3& triangle : mirrored.triangles) std::swap(triangle.y, triangle.z);
-    const World world = half_size_world("default", product);
+    const World world = sized_world("default", product);
     EXPECT_NE(refusal(world, mirrored).find("mirror image"), std::string::npos);
     EXPECT_EQ(refusal(world, product), "");
 }
@@ -225,7 +231,7 @@ Mesh box(glm::vec3 side) {
 }
 
 TEST(Registration, NamesASymmetricProduct) {
-    const World world = half_size_world("default", box({120.0f, 50.0f, 60.0f}));
+    const World world = sized_world("default", box({120.0f, 50.0f, 60.0f}));
     const Registration found = registered(world, world.product, 0.0, 1, "box");
     ASSERT_FALSE(found.equal_motions.empty());
     EXPECT_NE(found.warnings.at(0).find("symmetric"), std::string::npos);
@@ -267,7 +273,7 @@ Mesh bottle() {
 }
 
 TEST(Registration, NamesASurfaceOfRevolution) {
-    const World world = half_size_world("default", bottle());
+    const World world = sized_world("default", bottle());
     const Registration found = registered(world, roughened(world.product, 0.03), 0.01, 1, "bottle");
     ASSERT_EQ(found.free.count, 1);
     EXPECT_GT(std::abs(found.free.axis.y), 0.9999);
@@ -287,14 +293,14 @@ TEST(Registration, RefusesTwoPosesThatFitAlike) {
     // What tells the ends apart lies below, where neither projector nor camera sees it.
     Mesh product = box({120.0f, 50.0f, 60.0f});
     append(product, make_sphere({-35.0, 8.0, 0.0}, 20.0, 24, "foot"), "");
-    World world = half_size_world("default", product);
+    World world = sized_world("default", product);
     world.all = product;
     EXPECT_NE(refusal(world, product).find("fit alike"), std::string::npos);
 }
 
 // What rougher meshes and lenses that are farther off cost: docs/registration.md has the rows.
 TEST(Registration, NightlyLosesLittleByARoughMeshOrAWrongLens) {
-    const World world = half_size_world("default");
+    const World world = bench_world("default");
     struct Row {
         double mesh_rms_mm, lens_off;
         double median_px = 0.5, p95_px = 1.0;  // the goals, where they are reached
@@ -324,7 +330,7 @@ TEST(Registration, NightlyLosesLittleByARoughMeshOrAWrongLens) {
 
 // From a second position of the camera the same pose, better held.
 TEST(Registration, NightlyMergesPositionsOfTheCamera) {
-    const World world = half_size_world("default");
+    const World world = bench_world("default");
     Given given = given_of(world, 0.01, 1);
     const Registration one = register_scan(world.product, given.projector, given.sights);
     View other = world.camera;
@@ -345,7 +351,7 @@ TEST(Registration, NightlyMergesPositionsOfTheCamera) {
 }
 
 TEST(Registration, FindsTheScaleWhereItIsFree) {
-    const World world = half_size_world("default");
+    const World world = sized_world("default");
     const Given given = given_of(world, 0.0, 1);
     Mesh larger = world.product;
     for (glm::vec3& place : larger.positions_mm) place *= 1.03f;

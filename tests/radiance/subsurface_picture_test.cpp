@@ -54,10 +54,11 @@ ImageF drawn_at(const Scene& scene, const View& view, int level) {
     return renderer.read_back();
 }
 
+constexpr std::size_t kPhotons = 200'000;
 /// Of each of two pictures; docs/subsurface.md says of how many it has figures.
 std::size_t photons() {
     const char* wanted = std::getenv("LIVERY_SUBSURFACE_PHOTONS");
-    return static_cast<std::size_t>(wanted ? std::max(64, std::atoi(wanted)) : 200'000);
+    return wanted ? static_cast<std::size_t>(std::max(64, std::atoi(wanted))) : kPhotons;
 }
 
 /// Sum over columns, along the shadow's edge, of the difference of green light over that of the
@@ -93,6 +94,7 @@ struct PhotonTruth {
 PhotonTruth photon_truth(const Scene& scene, const View& view, double around_mm) {
     const ImageF mirrored = mirrored_alone(scene, view);
     const auto by_photons = [&](std::uint64_t seed) {
+        if (photons() != kPhotons) return photon_picture(scene, view, around_mm, photons(), seed);
         return testing::kept_picture(
             "photons",
             testing::text_of(scene, view) + fmt::format("{} {} {}", around_mm, photons(), seed),
