@@ -14,6 +14,7 @@
 #include "core/utf8.h"
 #include "studio/ballot_pages.h"
 #include "studio/ballot_result.h"
+#include "studio/kit/tab_order.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
 #include "studio/kit/widgets.h"
@@ -233,7 +234,7 @@ void draw_vote(Studio& studio, const Round& round) {
     BallotPanelState& state = *studio.panels.ballot;
     heading(fmt::format("Round {}: your ballot", round.id).c_str());
     row_label("Your name", 0.25f);
-    if (std::exchange(state.focus_name, false)) ImGui::SetKeyboardFocusHere();
+    if (std::exchange(state.focus_name, false)) focus_next_field("##name");
     ImGui::SetNextItemWidth(-1.0f);
     ImGui::InputTextWithHint("##name", "Enter to type it", &state.evaluator);
     name_last_item("ballot:name");

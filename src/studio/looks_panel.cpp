@@ -3,6 +3,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "studio/kit/tab_order.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/widgets.h"
 #include "studio/studio.h"
@@ -18,7 +19,7 @@ void draw_name_field(Studio& studio, const SessionLook& look, float width) {
     const bool first = !ImGui::IsPopupOpen("##naming") && typed_name.empty();
     if (first) {
         typed_name = look.look.name;
-        ImGui::SetKeyboardFocusHere();
+        focus_next_field("##name");
     }
     ImGui::SetNextItemWidth(width);
     const bool entered =

@@ -4,12 +4,14 @@
 #include <functional>
 #include <set>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 #include <imgui.h>
 #include <imgui_internal.h>
+#include <imgui_stdlib.h>
 
 #include "core/paths.h"
 #include "scene/library.h"
@@ -177,6 +179,34 @@ TEST_F(Keyboard, ADialogStartsAtHomeThenWhereTheUserLastWas) {
     fs::remove_all(home_ / "cars");
     ask(question(FileQuestion::Kind::open));
     EXPECT_TRUE(frame().contains("file-dialog:top.json"));
+}
+
+TEST_F(Keyboard, AFieldIsTypedInAlsoWhenAnotherItemHasTheKeyboard) {
+    std::string text;
+    bool asked = false;
+    draw_ = [&] {
+        ImGui::Button("above");
+        name_last_item("above");
+        ImGui::BeginChild("below", {300.0f, 200.0f});
+        if (std::exchange(asked, false)) focus_next_field("##field");
+        ImGui::InputText("##field", &text);
+        name_last_item("field");
+        ImGui::EndChild();
+    };
+    frames(2);
+    while (tab() != "above") {
+    }
+    asked = true;
+    frames(3);
+    EXPECT_EQ(focused_now_, "field");
+    type("red");
+    EXPECT_EQ(text, "red");
+    // The field itself loses the keyboard and is asked for again.
+    press(ImGuiKey_Escape);
+    asked = true;
+    frames(3);
+    type("blue");
+    EXPECT_EQ(text, "blue");
 }
 
 TEST_F(Keyboard, ATypedFolderIsEnteredAndATypedNameLiesInTheShownOne) {

@@ -17,6 +17,7 @@
 #include "studio/artwork/artwork_edit.h"
 #include "studio/artwork/artwork_panel.h"
 #include "studio/artwork/artwork_values.h"
+#include "studio/kit/tab_order.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/widgets.h"
 #include "studio/kit/words.h"
@@ -171,7 +172,7 @@ void draw_paint(ArtworkRows& rows) {
     if (!begin_list("Paint", "paint", shown, meaning, ImGuiComboFlags_HeightLarge)) return;
     if (ImGui::IsWindowAppearing()) {
         state.search.clear();
-        ImGui::SetKeyboardFocusHere();
+        focus_next_field("##search");
     }
     ImGui::SetNextItemWidth(-1.0f);
     ImGui::InputTextWithHint("##search", "Name, family or colour", &state.search);

@@ -7,6 +7,7 @@
 #include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
+#include "studio/kit/tab_order.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/user_folders.h"
 #include "studio/kit/widgets.h"
@@ -241,7 +242,7 @@ struct FileDialog::State {
     bool draw_name() {
         const bool picks_folder = question->kind == FileQuestion::Kind::folder;
         row_label(picks_folder ? "Folder" : "Name", 0.12f);
-        if (to_focus) ImGui::SetKeyboardFocusHere();
+        if (to_focus) focus_next_field("##name");
         to_focus = false;
         const bool agreed = ImGui::InputTextWithHint(
             "##name",

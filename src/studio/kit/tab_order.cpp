@@ -44,6 +44,36 @@ bool is_inside(const ImGuiWindow* window, const ImGuiWindow* outer) {
     return false;
 }
 
+/// Gives the keyboard to an item; a field is typed in from the next frame on.
+void focus(const Stop& stop) {
+    ImGuiContext& g = *ImGui::GetCurrentContext();
+    if (g.ActiveId != 0) ImGui::ClearActiveID();
+    ImGui::FocusWindow(stop.window);
+    ImGui::SetNavID(stop.id, stop.layer, stop.focus_scope, stop.rectangle);
+    g.NavDisableHighlight = false;
+    g.NavDisableMouseHover = true;
+    g.NavInputSource = ImGuiInputSource_Keyboard;
+    ImRect on_screen = stop.rectangle;
+    on_screen.Translate(stop.window->Pos);
+    ImGui::ScrollToBringRectIntoView(stop.window, on_screen);
+    if (stop.is_field) {
+        g.NavNextActivateId = stop.id;
+        g.NavNextActivateFlags = ImGuiActivateFlags_PreferInput;
+    }
+}
+
+/// For an item that is being drawn in the current window.
+Stop stop_here(ImGuiID id, ImRect on_screen) {
+    Stop stop;
+    stop.id = id;
+    stop.window = ImGui::GetCurrentWindow();
+    stop.layer = stop.window->DC.NavLayerCurrent;
+    stop.focus_scope = current_focus_scope();
+    stop.rectangle = on_screen;
+    stop.rectangle.Translate({-stop.window->Pos.x, -stop.window->Pos.y});
+    return stop;
+}
+
 }  // namespace
 
 void start_tab_order() {
@@ -65,14 +95,8 @@ void note_tab_stop(const std::string& name) {
     const bool known =
         std::any_of(stops.begin(), stops.end(), [&](const Stop& s) { return s.id == item.ID; });
     if (known) return;
-    Stop stop;
-    stop.id = item.ID;
+    Stop stop = stop_here(item.ID, item.NavRect);
     stop.name = name;
-    stop.window = window;
-    stop.layer = window->DC.NavLayerCurrent;
-    stop.focus_scope = current_focus_scope();
-    stop.rectangle = item.NavRect;
-    stop.rectangle.Translate({-window->Pos.x, -window->Pos.y});
     stop.is_field = (item.InFlags & ImGuiItemFlags_Inputable) != 0;
     stops.push_back(std::move(stop));
 }
@@ -91,7 +115,7 @@ void end_tab_group(std::optional<unsigned> preferred) {
 }
 
 void move_focus(int step) {
-    ImGuiContext& g = *ImGui::GetCurrentContext();
+    const ImGuiContext& g = *ImGui::GetCurrentContext();
     const ImGuiWindow* only = keyboard_window();
     std::vector<Stop*> order;
     for (Stop& stop : stops) {
@@ -106,20 +130,16 @@ void move_focus(int step) {
     const auto count = static_cast<std::ptrdiff_t>(order.size());
     std::ptrdiff_t next = step > 0 ? 0 : count - 1;
     if (now != order.end()) next = (now - order.begin() + step + count) % count;
-    const Stop& stop = *order[static_cast<std::size_t>(next)];
-    if (g.ActiveId != 0) ImGui::ClearActiveID();
-    ImGui::FocusWindow(stop.window);
-    ImGui::SetNavID(stop.id, stop.layer, stop.focus_scope, stop.rectangle);
-    g.NavDisableHighlight = false;
-    g.NavDisableMouseHover = true;
-    g.NavInputSource = ImGuiInputSource_Keyboard;
-    ImRect on_screen = stop.rectangle;
-    on_screen.Translate(stop.window->Pos);
-    ImGui::ScrollToBringRectIntoView(stop.window, on_screen);
-    if (stop.is_field) {
-        g.NavNextActivateId = stop.id;
-        g.NavNextActivateFlags = ImGuiActivateFlags_PreferInput;
-    }
+    focus(*order[static_cast<std::size_t>(next)]);
+}
+
+void focus_next_field(const char* label) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    Stop stop =
+        stop_here(ImGui::GetID(label),
+                  {at.x, at.y, at.x + ImGui::CalcItemWidth(), at.y + ImGui::GetFrameHeight()});
+    stop.is_field = true;
+    focus(stop);
 }
 
 std::string focused_item() {

@@ -21,6 +21,11 @@ void end_tab_group(std::optional<unsigned> preferred);
 /// topmost dialog or list when one is open. A field is typed in at once.
 void move_focus(int step);
 
+/// Before a text field is drawn in the current window with this label: it is typed in from the next
+/// frame on, wherever the keyboard is. (Dear ImGui 1.90's SetKeyboardFocusHere() does nothing while
+/// another item has the keyboard.)
+void focus_next_field(const char* label);
+
 /// Where the keyboard is, by the name of its item; empty: nowhere, or its frame is not shown.
 std::string focused_item();
 

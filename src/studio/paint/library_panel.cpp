@@ -109,7 +109,7 @@ void draw_search(LibraryPanelState& state) {
     const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x -
                             (state.search.empty() ? 0.0f : clear_width + gap));
-    if (state.focus_search) ImGui::SetKeyboardFocusHere();
+    if (state.focus_search) focus_next_field("##search");
     state.focus_search = false;
     state.cursor_rows = 0;
     if (ImGui::InputTextWithHint("##search",

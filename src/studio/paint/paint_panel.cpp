@@ -15,6 +15,7 @@
 #include "appearance/model_table.h"
 #include "core/error.h"
 #include "session/naming.h"
+#include "studio/kit/tab_order.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/widgets.h"
 #include "studio/kit/words.h"
@@ -290,7 +291,7 @@ void draw_save_popup(Studio& studio) {
     }
     dim_text("Keeps the paint in your own library, for every session.");
     row_label("Name", 0.3f);
-    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    if (ImGui::IsWindowAppearing()) focus_next_field("##name");
     const bool entered =
         ImGui::InputText("##name",
                          &state.new_name,
@@ -321,7 +322,7 @@ void draw_rename_popup(Studio& studio) {
     }
     dim_text("The session's own paint, wherever it is worn. Ctrl+Z takes it back.");
     row_label("Name", 0.3f);
-    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    if (ImGui::IsWindowAppearing()) focus_next_field("##name");
     const bool entered =
         ImGui::InputText("##name",
                          &state.other_name,

@@ -14,6 +14,7 @@
 #include "core/error.h"
 #include "studio/kit/background.h"
 #include "studio/kit/file_dialog.h"
+#include "studio/kit/tab_order.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/widgets.h"
 #include "studio/paint/lobe_plot.h"
@@ -166,7 +167,7 @@ void draw_choices(Studio& studio) {
     PaintPortraitState& state = state_of(studio);
     if (ImGui::IsWindowAppearing()) {
         state.search.clear();
-        ImGui::SetKeyboardFocusHere();
+        focus_next_field("##search");
     }
     ImGui::SetNextItemWidth(-1.0f);
     ImGui::InputTextWithHint("##search", "Name, family or colour", &state.search);
