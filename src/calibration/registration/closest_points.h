@@ -1,6 +1,7 @@
 // Iterative closest points: a guess made exact on samples.
 #pragma once
 
+#include "calibration/registration/nearest_sample.h"
 #include "calibration/registration/surface_samples.h"
 #include "scene/view.h"
 

@@ -21,9 +21,8 @@ constexpr int kWantedPairs = 2500;  // correspondences a sight
 constexpr int kRounds = 12;
 
 Rigid3 moved(const double* six, const Rigid3& pose) {
-    return {rotation_of({six[0], six[1], six[2]}) * pose.rotation,
-            rotation_of({six[0], six[1], six[2]}) * pose.translation +
-                glm::dvec3(six[3], six[4], six[5])};
+    const glm::dmat3 turn = rotation_of({six[0], six[1], six[2]});
+    return {turn * pose.rotation, turn * pose.translation + glm::dvec3(six[3], six[4], six[5])};
 }
 
 /// Changes of a lens: focal length (logarithm), principal point, distortion k1.
@@ -49,16 +48,25 @@ struct Given {
     std::vector<Rigid3> camera_from_projector;
     std::vector<View> cameras;  ///< their lenses
 
-    View projector_of(const State& state) const {
-        View view = with_lens(state.projector_lens.data(), projector);
-        view.view_from_world = moved(state.pose.data(), projector.view_from_world);
+    View projector_of(const double* pose, const double* lens) const {
+        View view = with_lens(lens, projector);
+        view.view_from_world = moved(pose, projector.view_from_world);
         return view;
     }
-    View camera_of(const State& state, std::size_t k, const View& in_projector) const {
-        View view = with_lens(state.camera_lens.data(), cameras[k]);
+    View camera_of(const double* stereo,
+                   const double* lens,
+                   std::size_t k,
+                   const View& in_projector) const {
+        View view = with_lens(lens, cameras[k]);
         view.view_from_world =
-            moved(state.stereo[k].data(), camera_from_projector[k]) * in_projector.view_from_world;
+            moved(stereo, camera_from_projector[k]) * in_projector.view_from_world;
         return view;
+    }
+    View projector_of(const State& state) const {
+        return projector_of(state.pose.data(), state.projector_lens.data());
+    }
+    View camera_of(const State& state, std::size_t k, const View& in_projector) const {
+        return camera_of(state.stereo[k].data(), state.camera_lens.data(), k, in_projector);
     }
 };
 
@@ -92,14 +100,8 @@ struct PixelError {
                     const double* camera_lens,
                     const double* scale,
                     double* residual) const {
-        State state;
-        std::copy_n(pose, 6, state.pose.begin());
-        state.stereo.resize(at.sight + 1);
-        std::copy_n(stereo, 6, state.stereo[at.sight].begin());
-        std::copy_n(projector_lens, 4, state.projector_lens.begin());
-        std::copy_n(camera_lens, 4, state.camera_lens.begin());
-        const View projector = given->projector_of(state);
-        const View camera = given->camera_of(state, at.sight, projector);
+        const View projector = given->projector_of(pose, projector_lens);
+        const View camera = given->camera_of(stereo, camera_lens, at.sight, projector);
         const auto pixel = predicted(projector, camera, std::exp(scale[0]), at);
         if (!pixel) return false;
         residual[0] = (pixel->x - at.projector_px.x) / sigma_px;
@@ -319,7 +321,7 @@ PixelRefinement refine_on_pixels(const Mesh& mesh,
         ceres::Problem problem;
         for (const Correspondence& one : found)
             problem.AddResidualBlock(
-                new ceres::NumericDiffCostFunction<PixelError, ceres::CENTRAL, 2, 6, 6, 4, 4, 1>(
+                new ceres::NumericDiffCostFunction<PixelError, ceres::FORWARD, 2, 6, 6, 4, 4, 1>(
                     new PixelError{&given, one, sigma_px}),
                 new ceres::CauchyLoss(2.0),
                 state.pose.data(),

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "calibration/registration/closest_points.h"
+#include "calibration/registration/nearest_sample.h"
 #include "calibration/registration/pair_features.h"
 #include "calibration/registration/rotation.h"
 #include "core/error.h"

@@ -47,23 +47,4 @@ SurfacePlane main_plane(const SurfaceSamples& samples, double spacing_mm);
 /// Squares of the plane on which most of the samples lie.
 std::size_t largest_plane(const SurfaceSamples& samples, double spacing_mm);
 
-/// The nearest sample, by a tree of halved boxes (Bentley 1975).
-class NearestSample {
-  public:
-    explicit NearestSample(const std::vector<glm::dvec3>& points);
-    /// Its index; nothing where none is within `most_mm`.
-    std::optional<std::uint32_t> of(const glm::dvec3& place, double most_mm) const;
-
-  private:
-    void build(std::size_t begin, std::size_t end);
-    void search(std::size_t begin,
-                std::size_t end,
-                const glm::dvec3& place,
-                double& best2,
-                std::uint32_t& best) const;
-    std::vector<glm::dvec3> points_;    ///< in the tree's order
-    std::vector<std::uint32_t> index_;  ///< of the point in that order
-    std::vector<std::uint8_t> axis_;    ///< along which a node's middle parts it
-};
-
 }  // namespace livery

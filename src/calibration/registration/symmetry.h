@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "calibration/registration/nearest_sample.h"
 #include "calibration/registration/surface_samples.h"
 #include "scene/view.h"
 
