@@ -132,6 +132,7 @@ void check_moved(const Evidence& e, Warnings& warnings) {
     if (!e.white) return;
     Image8 mask(e.white->light.width, e.white->light.height, 1);
     for (std::size_t i = 0; i < mask.values.size(); ++i) mask.values[i] = e.lit[i] ? 255 : 0;
+    const std::vector<TextureBlock> white = texture_blocks(e.white->light, mask);
     std::vector<Placed> placed;
     for (const CaptureSummary& c : *e.all) {
         ImageF light;
@@ -148,7 +149,7 @@ void check_moved(const Evidence& e, Warnings& warnings) {
         } else {
             continue;
         }
-        const glm::vec2 d = displacement(e.white->light, light, mask);
+        const glm::vec2 d = displacement(white, light);
         if (std::isfinite(d.x + d.y))
             placed.push_back({c.name, d * static_cast<float>(e.block_px)});
     }

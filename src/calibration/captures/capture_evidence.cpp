@@ -1,6 +1,7 @@
 #include "calibration/captures/capture_evidence.h"
 
 #include <algorithm>
+#include <span>
 
 #include "calibration/colour/colour_report.h"
 #include "core/error.h"
@@ -30,7 +31,8 @@ ImageF reference_of(const Evidence& e) {
         for (std::size_t i = 0; i < reference.values.size(); ++i) {
             for (std::size_t k = 0; k < sums.size(); ++k)
                 sums[k] = e.pairs[k].first->light.values[i] + e.pairs[k].second->light.values[i];
-            reference.values[i] = median(sums) - 2.0f * e.black->light.values[i];
+            reference.values[i] =
+                quantile_in_place(std::span<float>(sums), 0.5) - 2.0f * e.black->light.values[i];
         }
         return reference;
     }

@@ -130,42 +130,34 @@ float bilinear(const ImageF& image, float x, float y) {
            fy * ((1 - fx) * image.at(left, top + 1) + fx * image.at(left + 1, top + 1));
 }
 
+constexpr int kBorder = 6;
+
 /// Gauss-Newton from `start`.
-glm::vec2 refine(const ImageF& still, const ImageF& moved, const Image8& mask, glm::vec2 start) {
-    constexpr int kBorder = 6;
-    struct Row {
-        float x, y, value, gx, gy, e;
-    };
-    std::vector<Row> rows;
-    for (int y = kBorder; y + kBorder < still.height; ++y)
-        for (int x = kBorder; x + kBorder < still.width; ++x)
-            if (mask.at(x, y))
-                rows.push_back({static_cast<float>(x),
-                                static_cast<float>(y),
-                                still.at(x, y),
-                                0.5f * (still.at(x + 1, y) - still.at(x - 1, y)),
-                                0.5f * (still.at(x, y + 1) - still.at(x, y - 1)),
-                                0.0f});
-    if (rows.size() < 64) return glm::vec2(std::numeric_limits<float>::quiet_NaN());
-    std::vector<float> sizes(rows.size());
+glm::vec2 refine(const std::vector<TextureBlock>& still, const ImageF& moved, glm::vec2 start) {
+    constexpr std::size_t kEach = 4;  // of the errors, whose median weighs them
+    if (still.size() < 64) return glm::vec2(std::numeric_limits<float>::quiet_NaN());
+    std::vector<float> errors(still.size()), sizes((still.size() + kEach - 1) / kEach);
     glm::vec2 d = start;
     for (int round = 0; round < 6; ++round) {
-        for (std::size_t i = 0; i < rows.size(); ++i) {
-            Row& r = rows[i];
-            r.e = bilinear(moved, r.x + d.x, r.y + d.y) - r.value;
-            sizes[i] = std::abs(r.e);
+        for (std::size_t i = 0; i < still.size(); ++i) {
+            const auto& at = still[i];
+            errors[i] =
+                bilinear(moved, static_cast<float>(at.x) + d.x, static_cast<float>(at.y) + d.y) -
+                at.value;
         }
+        for (std::size_t k = 0; k < sizes.size(); ++k) sizes[k] = std::abs(errors[k * kEach]);
         // What does not fit (a shadow's border, a silhouette) counts less: Geman and McClure.
         const float scale = 3.0f * quantile_in_place(std::span<float>(sizes), 0.5) + 1e-4f;
         double xx = 0, xy = 0, yy = 0, xe = 0, ye = 0;
-        for (const Row& r : rows) {
-            const float q = 1.0f / (1.0f + r.e * r.e / (scale * scale));
+        for (std::size_t i = 0; i < still.size(); ++i) {
+            const float gx = still[i].gradient_x, gy = still[i].gradient_y, e = errors[i];
+            const float q = 1.0f / (1.0f + e * e / (scale * scale));
             const double w = static_cast<double>(q) * q;
-            xx += w * r.gx * r.gx;
-            xy += w * r.gx * r.gy;
-            yy += w * r.gy * r.gy;
-            xe += w * r.gx * r.e;
-            ye += w * r.gy * r.e;
+            xx += w * gx * gx;
+            xy += w * gx * gy;
+            yy += w * gy * gy;
+            xe += w * gx * e;
+            ye += w * gy * e;
         }
         const double determinant = xx * yy - xy * xy;
         if (!(determinant > 1e-6 * (xx + yy) * (xx + yy)))
@@ -178,18 +170,15 @@ glm::vec2 refine(const ImageF& still, const ImageF& moved, const Image8& mask, g
 }
 
 /// The whole step, up to 4 blocks, after which most of the two agrees.
-glm::vec2 nearest_step(const ImageF& still, const ImageF& moved, const Image8& mask) {
+glm::vec2 nearest_step(const std::vector<TextureBlock>& still, const ImageF& moved) {
     constexpr int kReach = 4;
-    std::vector<std::size_t> blocks;  // every second one
-    for (int y = 6; y + 6 < still.height; y += 2)
-        for (int x = 6; x + 6 < still.width; x += 2)
-            if (mask.at(x, y)) blocks.push_back(still.index(x, y));
-    // A sum that is above `most` is not finished
+    // A sum that is above `most` is not finished.
     const auto misfit = [&](int dx, int dy, double most) {
-        const float* const there = moved.values.data() + dy * moved.width + dx;
         double sum = 0.0;
-        for (const std::size_t i : blocks) {
-            sum += static_cast<double>(std::min(std::abs(there[i] - still.values[i]), 0.3f));
+        for (const auto& at : still) {
+            if ((at.x | at.y) & 1) continue;  // every second one of every second row
+            sum += static_cast<double>(
+                std::min(std::abs(moved.at(at.x + dx, at.y + dy) - at.value), 0.3f));
             if (sum >= most) break;
         }
         return sum;
@@ -215,10 +204,24 @@ CaptureSummary summarise(const RoledPhotograph& photograph) {
     return summary_of(photograph, summary_block_px(photograph.photograph.image.width));
 }
 
-glm::vec2 displacement(const ImageF& still, const ImageF& moved, const Image8& mask) {
-    const ImageF a = texture_of(still), b = texture_of(moved);
+std::vector<TextureBlock> texture_blocks(const ImageF& light, const Image8& mask) {
+    const ImageF texture = texture_of(light);
+    std::vector<TextureBlock> blocks;
+    for (int y = kBorder; y + kBorder < texture.height; ++y)
+        for (int x = kBorder; x + kBorder < texture.width; ++x)
+            if (mask.at(x, y))
+                blocks.push_back({x,
+                                  y,
+                                  texture.at(x, y),
+                                  0.5f * (texture.at(x + 1, y) - texture.at(x - 1, y)),
+                                  0.5f * (texture.at(x, y + 1) - texture.at(x, y - 1))});
+    return blocks;
+}
+
+glm::vec2 displacement(const std::vector<TextureBlock>& still, const ImageF& moved) {
+    const ImageF texture = texture_of(moved);
     // So that the fit starts within a block of the answer
-    return refine(a, b, mask, nearest_step(a, b, mask));
+    return refine(still, texture, nearest_step(still, texture));
 }
 
 }  // namespace livery

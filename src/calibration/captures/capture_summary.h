@@ -30,10 +30,18 @@ struct CaptureSummary {
 int summary_block_px(int picture_width);
 CaptureSummary summarise(const RoledPhotograph& photograph);
 
+/// A block that others are compared with: of the high-passed logarithm of a picture's light.
+struct TextureBlock {
+    int x = 0, y = 0;
+    float value = 0.0f, gradient_x = 0.0f, gradient_y = 0.0f;
+};
+
+/// Those that `mask` (one channel) says count, away from the border.
+std::vector<TextureBlock> texture_blocks(const ImageF& light, const Image8& mask);
+
 /// By how many blocks `moved` is displaced against `still` (content at x in `still` is at x +
 /// result in `moved`): least squares of high-passed logarithms, on which shading and brightness
-/// have no say. `mask` (one channel) says which blocks count. NaN where there is nothing to hold on
-/// to.
-glm::vec2 displacement(const ImageF& still, const ImageF& moved, const Image8& mask);
+/// have no say. NaN where there is nothing to hold on to.
+glm::vec2 displacement(const std::vector<TextureBlock>& still, const ImageF& moved);
 
 }  // namespace livery
