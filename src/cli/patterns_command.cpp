@@ -60,10 +60,13 @@ Command patterns_command() {
         if (arguments->kind != "color") {
             append(patterns, place_patterns(parse_places(arguments->places), size.x, size.y));
         }
+        progress.check_stop();
         if (arguments->kind != "geometry") {
             append(patterns, colour_patterns(size.x, size.y, arguments->dark, arguments->bright));
+            progress.check_stop();
             append(patterns, mosaic_patterns(size.x, size.y, kMosaics));
         }
+        progress.check_stop();
         // White and black again at the end: what moved or changed on the way shows between the two.
         if (arguments->kind == "all") {
             for (Pattern& pattern : geometry_patterns(size.x, size.y)) {

@@ -184,7 +184,7 @@ TEST(Messages, WritingPatternsStopsAtOnce) {
                 LIVERY_PROGRAM,
                 "patterns",
                 "--projector",
-                "3840x2160",
+                "1920x1080",
                 "--out",
                 out.c_str(),
                 nullptr);
