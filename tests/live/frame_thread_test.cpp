@@ -18,17 +18,13 @@
 #include "jobs/picture.h"
 #include "live/frame_lane.h"
 #include "live/frame_thread_fixture.h"
+#include "support/shading_devices.h"
 #include "support/thorough.h"
 
 namespace livery {
 namespace {
 
-INSTANTIATE_TEST_SUITE_P(Devices,
-                         FrameThreadOnADevice,
-                         ::testing::Values(ShadingDevice::gl, ShadingDevice::processor),
-                         [](const auto& device) {
-                             return device.param == ShadingDevice::gl ? "OpenGl" : "Processor";
-                         });
+LIVERY_ON_DEVICES(FrameThreadOnADevice, ShadingDevice::gl, ShadingDevice::processor);
 
 TEST_P(FrameThreadOnADevice, FramesAreRenderFramesOwn) {
     start();

@@ -9,6 +9,7 @@
 #include "core/shuffle.h"
 #include "live/frame_lane.h"
 #include "live/frame_thread_fixture.h"
+#include "support/shading_devices.h"
 
 namespace livery {
 namespace {
@@ -73,12 +74,7 @@ TEST_F(PaintSwaps, EachIsTheVeryNextFrameAndSolvesNothing) {
 
 class PaintSwapsOnADevice : public ::testing::TestWithParam<ShadingDevice> {};
 
-INSTANTIATE_TEST_SUITE_P(Devices,
-                         PaintSwapsOnADevice,
-                         ::testing::Values(ShadingDevice::gl, ShadingDevice::processor),
-                         [](const auto& device) {
-                             return device.param == ShadingDevice::gl ? "OpenGl" : "Processor";
-                         });
+LIVERY_ON_DEVICES(PaintSwapsOnADevice, ShadingDevice::gl, ShadingDevice::processor);
 
 FrameDescription glossy_spheres() {
     FrameDescription description;

@@ -11,6 +11,7 @@
 #include "radiance/renderer_fixture.h"
 #include "scene/artwork_coats.h"
 #include "support/radiance_error.h"
+#include "support/shading_devices.h"
 #include "support/temporary_folder.h"
 
 namespace livery {
@@ -18,12 +19,7 @@ namespace {
 
 using ArtworkFrame = Renderer;
 
-INSTANTIATE_TEST_SUITE_P(Devices,
-                         ArtworkFrame,
-                         ::testing::Values(ShadingDevice::gl, ShadingDevice::processor),
-                         [](const auto& device) {
-                             return device.param == ShadingDevice::gl ? "OpenGl" : "Processor";
-                         });
+LIVERY_ON_DEVICES(ArtworkFrame, ShadingDevice::processor, ShadingDevice::gl);
 
 /// Rings in colours, with holes; values from dark to light along x.
 void write_picture(const std::filesystem::path& file) {

@@ -18,6 +18,7 @@
 #include "radiance/glints_source.h"
 #include "radiance/renderer_fixture.h"
 #include "radiance/shading.h"
+#include "support/shading_devices.h"
 
 namespace livery {
 namespace {
@@ -323,12 +324,7 @@ class RenderedGlints : public Renderer {
     }
 };
 
-INSTANTIATE_TEST_SUITE_P(Devices,
-                         RenderedGlints,
-                         ::testing::Values(ShadingDevice::gl, ShadingDevice::processor),
-                         [](const auto& device) {
-                             return device.param == ShadingDevice::gl ? "OpenGl" : "Processor";
-                         });
+LIVERY_ON_BOTH_DEVICES(RenderedGlints);
 
 TEST_P(RenderedGlints, ShowTheSmoothLobeInTheMean) {
     const View view = test_view(160, 120);

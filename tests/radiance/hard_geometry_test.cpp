@@ -13,6 +13,7 @@
 #include "radiance/lanes/processor_shading.h"
 #include "radiance/renderer_fixture.h"
 #include "radiance/resolve.h"
+#include "support/shading_devices.h"
 
 namespace livery {
 namespace {
@@ -178,12 +179,7 @@ TEST_P(HardGeometry, APictureDoesNotDependOnTheUnit) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices,
-                         HardGeometry,
-                         ::testing::Values(ShadingDevice::gl, ShadingDevice::processor),
-                         [](const auto& device) {
-                             return device.param == ShadingDevice::gl ? "OpenGl" : "Processor";
-                         });
+LIVERY_ON_BOTH_DEVICES(HardGeometry);
 
 TEST(HardCoverage, FragmentsOfAMillionthOfAPixelAreBlackAndNoNumberIsMade) {
     const HeadlessContext context(GlDevice::software);

@@ -6,6 +6,7 @@
 
 #include "gl/context.h"
 #include "radiance/renderer.h"
+#include "support/shading_devices.h"
 #include "support/small_meshes.h"
 #include "tracing/ray_counters.h"
 
@@ -334,9 +335,7 @@ TEST_P(Interreflection, AnotherWallIsMirroredAsIfItHadBeenThereAllAlong) {
     EXPECT_NE(green.values, red.values);
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices,
-                         Interreflection,
-                         ::testing::Values(ShadingDevice::gl, ShadingDevice::processor));
+LIVERY_ON_DEVICES(Interreflection, ShadingDevice::processor, ShadingDevice::gl);
 
 }  // namespace
 }  // namespace livery

@@ -9,6 +9,7 @@
 #include "radiance/raster_preview.h"
 #include "radiance/renderer_fixture.h"
 #include "support/radiance_error.h"
+#include "support/shading_devices.h"
 
 namespace livery {
 namespace {
@@ -35,12 +36,7 @@ Scene lit(const Material& material) {
 
 using RendererOfMeasured = Renderer;
 
-INSTANTIATE_TEST_SUITE_P(Devices,
-                         RendererOfMeasured,
-                         ::testing::Values(ShadingDevice::gl, ShadingDevice::processor),
-                         [](const auto& device) {
-                             return device.param == ShadingDevice::gl ? "OpenGl" : "Processor";
-                         });
+LIVERY_ON_BOTH_DEVICES(RendererOfMeasured);
 
 TEST_P(RendererOfMeasured, LampsShowTheFormulasPicture) {
     const View view = test_view(96, 72);

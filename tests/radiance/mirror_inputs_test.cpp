@@ -4,6 +4,7 @@
 #include "appearance/model_table.h"
 #include "radiance/light/mirror_quadrature.h"
 #include "radiance/renderer_fixture.h"
+#include "support/shading_devices.h"
 #include "tracing/ray_counters.h"
 
 namespace livery {
@@ -11,12 +12,7 @@ namespace {
 
 using MirrorInputs = Renderer;
 
-INSTANTIATE_TEST_SUITE_P(Devices,
-                         MirrorInputs,
-                         ::testing::Values(ShadingDevice::gl, ShadingDevice::processor),
-                         [](const auto& device) {
-                             return device.param == ShadingDevice::gl ? "OpenGl" : "Processor";
-                         });
+LIVERY_ON_DEVICES(MirrorInputs, ShadingDevice::processor, ShadingDevice::gl);
 
 /// Half floats in three places, 2^-11 each.
 void expect_same(const ImageF& one, const ImageF& other) {

@@ -18,6 +18,7 @@
 #include "radiance/renderer_fixture.h"
 #include "scene/look.h"
 #include "scene/product.h"
+#include "support/shading_devices.h"
 #include "support/thorough.h"
 #include "tracing/tracer.h"
 
@@ -171,7 +172,7 @@ class Mirror : public Renderer {
 INSTANTIATE_TEST_SUITE_P(Devices,
                          Mirror,
                          ::testing::Values(ShadingDevice::processor),
-                         [](const auto&) { return "Processor"; });
+                         ::livery::testing::name_of_device);
 
 TEST_P(Mirror, LobesOfAllWidthsAreAsBrightAsTheTruth) {
     // Asked: 1.5% at normal, 1% at high. The truth's seeds are fixed: with twice its samples it

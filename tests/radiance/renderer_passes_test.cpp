@@ -6,18 +6,14 @@
 #include <fmt/format.h>
 
 #include "radiance/renderer_fixture.h"
+#include "support/shading_devices.h"
 
 namespace livery {
 namespace {
 
 using RendererPasses = Renderer;
 
-INSTANTIATE_TEST_SUITE_P(Devices,
-                         RendererPasses,
-                         ::testing::Values(ShadingDevice::gl, ShadingDevice::processor),
-                         [](const auto& device) {
-                             return device.param == ShadingDevice::gl ? "OpenGl" : "Processor";
-                         });
+LIVERY_ON_BOTH_DEVICES(RendererPasses);
 
 TEST_P(RendererPasses, UnchangedSceneRunsNothing) {
     Scene scene = scene_of(two_spheres(), paint_of(ReflectanceModel::clearcoat, 0.05));

@@ -19,16 +19,12 @@
 #include "radiance/renderer_fixture.h"
 #include "radiance/shading.h"
 #include "support/radiance_error.h"
+#include "support/shading_devices.h"
 
 namespace livery {
 namespace {
 
-INSTANTIATE_TEST_SUITE_P(Devices,
-                         Renderer,
-                         ::testing::Values(ShadingDevice::gl, ShadingDevice::processor),
-                         [](const auto& device) {
-                             return device.param == ShadingDevice::gl ? "OpenGl" : "Processor";
-                         });
+LIVERY_ON_DEVICES(Renderer, ShadingDevice::processor, ShadingDevice::gl);
 
 void print(const std::string& name, const RadianceError& e) {
     std::printf("    %-34s median %.5f p90 %.5f p99 %.5f largest %.4f bias %+.5f of %zu pixels\n",

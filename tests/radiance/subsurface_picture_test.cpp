@@ -183,7 +183,7 @@ double beside_an_edge(const SubsurfaceProfile& profile, double distance_mm) {
 }
 
 /// Wherever the edge of a shadow lies between nodes.
-TEST(SubsurfacePicture, TheEdgeOfAShadowIsTheIntegralOfTheProfile) {
+TEST(SubsurfacePicture, NightlyTheEdgeOfAShadowIsTheIntegralOfTheProfile) {
     const TranslucentMaterial medium = medium_named("white pvc");
     const SubsurfaceProfile profile =
         subsurface_profile(SubsurfaceModel::scaled_beam_diffusion, medium_of(medium, 1));

@@ -12,6 +12,7 @@
 #include "core/image_io.h"
 #include "radiance/renderer_fixture.h"
 #include "scene/artwork_coats.h"
+#include "support/shading_devices.h"
 #include "support/temporary_folder.h"
 #include "tracing/ray_counters.h"
 
@@ -20,12 +21,7 @@ namespace {
 
 using UncalledEffects = Renderer;
 
-INSTANTIATE_TEST_SUITE_P(Devices,
-                         UncalledEffects,
-                         ::testing::Values(ShadingDevice::gl, ShadingDevice::processor),
-                         [](const auto& device) {
-                             return device.param == ShadingDevice::gl ? "OpenGl" : "Processor";
-                         });
+LIVERY_ON_BOTH_DEVICES(UncalledEffects);
 
 /// All that a picture cost, by name.
 using Cost = std::vector<std::pair<std::string, std::uint64_t>>;
