@@ -88,7 +88,7 @@ TEST(FitBrdf, IsTheSameEveryTime) {
     EXPECT_EQ(one.material.f0, other.material.f0);
 }
 
-TEST(FitBrdf, AllModelsAreRankedAndTheTrueOneIsFound) {
+TEST(FitBrdf, NightlyAllModelsAreRankedAndTheTrueOneIsFound) {
     Material paint;
     paint.model = ReflectanceModel::ggx;
     paint.diffuse = {0.05, 0.3, 0.1};

@@ -144,7 +144,7 @@ TEST(FitCarPaint, NightlyFindsTheFilmThatMadeTheColours) {
     }
 }
 
-TEST(FitCarPaint, ComesNearEffectPaints) {
+TEST(FitCarPaint, NightlyComesNearEffectPaints) {
     LIVERY_NEEDS_REFERENCE_DATA(data);
     const auto tables = read_sgd_fits(data / "materials/sgd_bagher2012_merl.csv");
     std::vector<double> differences;

@@ -18,7 +18,7 @@
 namespace livery::assets {
 namespace {
 
-TEST(Generation, IsDeterministicAndWhatIsShipped) {
+TEST(Generation, NightlyIsDeterministicAndWhatIsShipped) {
     const auto first = glb_bytes("car", make_car());
     EXPECT_TRUE(first == glb_bytes("car", make_car()));
     EXPECT_TRUE(first == read_text_file(shipped_path("assets/car.glb")));

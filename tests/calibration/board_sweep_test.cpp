@@ -65,7 +65,7 @@ std::vector<double> scores(const PairSolution& found, const PairTruth& t) {
 
 // Of 20 x 14 scores, which share their noise by twenties, 0.3% are expected over 3 and their root
 // mean square at 1; a wrong covariance (a factor of two, a unit) leaves 0.7 to 1.4.
-TEST(BoardSweep, ErrorsAreAsLargeAsTheirStandardErrorsSay) {
+TEST(BoardSweep, NightlyErrorsAreAsLargeAsTheirStandardErrorsSay) {
     std::vector<double> all;
     for (std::uint32_t seed = 1; seed <= 20; ++seed) {
         const PairTruth t = truth();

@@ -196,7 +196,7 @@ TEST(Registration, RefusesTheMeshOfAnotherProduct) {
     EXPECT_NE(refusal(player, car.product).find("does not fit"), std::string::npos);
 }
 
-TEST(Registration, RefusesTheMirrorImage) {
+TEST(Registration, NightlyRefusesTheMirrorImage) {
     // A car is its own mirror image but for what stands at one side of it.
     Mesh product = sized_world("default").product;
     append(product, make_sphere({20.0, 30.0, 30.0}, 16.0, 24, "lump"), "");
@@ -350,7 +350,7 @@ TEST(Registration, NightlyMergesPositionsOfTheCamera) {
     EXPECT_LT(after, before);
 }
 
-TEST(Registration, FindsTheScaleWhereItIsFree) {
+TEST(Registration, NightlyFindsTheScaleWhereItIsFree) {
     const World world = sized_world("default");
     const Given given = given_of(world, 0.0, 1);
     Mesh larger = world.product;

@@ -247,7 +247,7 @@ TEST(Repose, RefusesWhatItCannotFind) {
 
 // Somebody who bumps the mock-up bumps the tripod too. What is around tells, whatever the mock-up
 // does.
-TEST(Repose, RefusesAPairThatMoved) {
+TEST(Repose, NightlyRefusesAPairThatMoved) {
     const World world = half_size_world("default");
     struct Way {
         const char* name;
@@ -290,7 +290,7 @@ TEST(Repose, SaysWhereNothingIsKnownAround) {
 }
 
 // A camera above the projector sees depth in rows.
-TEST(Repose, ShowsRowsToACameraAbove) {
+TEST(Repose, NightlyShowsRowsToACameraAbove) {
     World world = half_size_world("default");
     world.camera = look_at({340.0, 420.0, 300.0}, {0.0, 25.0, 0.0}, 0.24, 864, 576);
     Now now;

@@ -20,7 +20,7 @@ void bump(const std::filesystem::path& bench_file, double shift_mm) {
     write_json_file(bench_file, bench);
 }
 
-TEST(Repose, FindsABumpedMockUpAgain) {
+TEST(Repose, NightlyFindsABumpedMockUpAgain) {
     const TemporaryFolder folder;
     const auto bench = testing::small_bench_file(folder.path());
     const std::string camera = "bench:" + bench.string();

@@ -61,7 +61,7 @@ TEST_F(SeatsCommand, TellsWhatEachSeatMissesAndDrawsIt) {
     EXPECT_TRUE(told["unfair_seats"].is_array());
 }
 
-TEST_F(SeatsCommand, ALookIsDrawnForAnySeat) {
+TEST_F(SeatsCommand, NightlyALookIsDrawnForAnySeat) {
     answer(run_seats(file_, {"--arc", "2"}));
     const auto draw = [&](const std::string& name, std::vector<std::string> more) {
         const auto file = folder_ / name;

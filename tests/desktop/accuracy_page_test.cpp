@@ -12,7 +12,7 @@ using namespace std::chrono_literals;
 
 using AccuracyPageTest = TwoMonitors;
 
-TEST_F(AccuracyPageTest, MeasuresBesideTheMockUpAndStops) {
+TEST_F(AccuracyPageTest, NightlyMeasuresBesideTheMockUpAndStops) {
     start();
     pick_projector();
     const Image8 first = drive_of_place(0), second = drive_of_place(1);

@@ -26,7 +26,7 @@ class Calibrations : public TwoMonitors {
     }
 };
 
-TEST_F(Calibrations, OneOfPhotographsAsksForItsProjectorAndIsNotReplaced) {
+TEST_F(Calibrations, NightlyOneOfPhotographsAsksForItsProjectorAndIsNotReplaced) {
     // As `livery calibrate color` leaves it when it is not told of the projector.
     const fs::path prepared = prepared_calibration(kFullProjector_px);
     auto running = std::make_shared<RunningStudio>();

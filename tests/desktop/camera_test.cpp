@@ -207,7 +207,7 @@ class CameraBeforeMonitor : public TwoMonitors {
     std::filesystem::path home_;
 };
 
-TEST_F(CameraBeforeMonitor, CalibratesAsTheBenchDoes) {
+TEST_F(CameraBeforeMonitor, NightlyCalibratesAsTheBenchDoes) {
     start_program();
     pick_projector();
     connect();
@@ -347,7 +347,7 @@ std::vector<std::vector<std::string>> commands_of(const std::string& page) {
 
 // docs/first-session.md, "In the terminal": every command as it stands there, but for the camera's
 // address and where files lie.
-TEST_F(CameraBeforeMonitor, FirstSessionInTheTerminalIsAsItsPageSays) {
+TEST_F(CameraBeforeMonitor, NightlyFirstSessionInTheTerminalIsAsItsPageSays) {
     const auto& folder = studio->folder;
     folder.write("mockup.ply", ply_bytes(small_bench_product()->mesh));
     folder.write("first.json",
@@ -378,7 +378,7 @@ TEST_F(CameraBeforeMonitor, FirstSessionInTheTerminalIsAsItsPageSays) {
     EXPECT_GT(lit, first.pixel_count() / 50) << "the mock-up is lit";
 }
 
-TEST_F(CameraBeforeMonitor, WhateverHappensOnTheWayLosesOnePhotographAtMost) {
+TEST_F(CameraBeforeMonitor, NightlyWhateverHappensOnTheWayLosesOnePhotographAtMost) {
     const auto taken = [&] { return room->camera().photographs(); };
     start_program();
     pick_projector();

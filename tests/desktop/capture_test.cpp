@@ -8,7 +8,7 @@ namespace {
 
 class CaptureWindow : public TwoMonitors {};
 
-TEST_F(CaptureWindow, ShowsALiveViewAndLeavesNothingBehind) {
+TEST_F(CaptureWindow, NightlyShowsALiveViewAndLeavesNothingBehind) {
     start();
     program->click("menu:Projector");
     program->click("menu:capture");

@@ -72,7 +72,7 @@ TEST_F(Core, SwapsPaintsOnTwoMonitors) {
 }
 
 // As most people have it, every pixel of a common projector too.
-TEST_F(Core, DoesTheSameInFullSizeUnderAWindowManager) {
+TEST_F(Core, NightlyDoesTheSameInFullSizeUnderAWindowManager) {
     DesktopOptions options;
     options.window_manager = true;
     options.projector_px = kFullProjector_px;
@@ -88,7 +88,7 @@ TEST_F(Core, DoesTheSameInFullSizeUnderAWindowManager) {
 
 // As on a graphics card, in software: nothing of the mock-up's picture passes the processor until
 // it is saved.
-TEST_F(Core, SwapsPaintsInOpenGl) {
+TEST_F(Core, NightlySwapsPaintsInOpenGl) {
     start(small_projector(), {"--shading", "opengl"});
     pick_projector();
     ASSERT_TRUE(projector_shows(drive_of_place(0)));

@@ -43,7 +43,7 @@ class RoomMap : public TwoMonitors {
     }
 };
 
-TEST_F(RoomMap, IsChosenFromAFileAndTurnsWhileTheMouseMoves) {
+TEST_F(RoomMap, NightlyIsChosenFromAFileAndTurnsWhileTheMouseMoves) {
     start();
     pick_projector();
     ASSERT_TRUE(projector_shows(drive_of_place(0)));

@@ -79,7 +79,7 @@ class LibraryFiles : public TwoMonitors {
     TemporaryFolder home_;
 };
 
-TEST_F(LibraryFiles, AreLeftAloneWhileSomebodyClicks) {
+TEST_F(LibraryFiles, NightlyAreLeftAloneWhileSomebodyClicks) {
     write_paint("house red");
     write_measured_paint("tile");
     start_watched();

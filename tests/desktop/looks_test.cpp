@@ -202,7 +202,7 @@ TEST_F(Looks, AreShownOnTheMockUpWhilePeopleVote) {
     EXPECT_TRUE(projector_shows(drive_of_place(0)));
 }
 
-TEST_F(Looks, AreShownWithoutAFileThatIsGoneAndTheBarSaysWhatIsShown) {
+TEST_F(Looks, NightlyAreShownWithoutAFileThatIsGoneAndTheBarSaysWhatIsShown) {
     start();
     studio->program.reset();
     const int look = look_at_place(0);

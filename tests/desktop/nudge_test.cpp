@@ -48,7 +48,7 @@ class NudgeWindow : public TwoMonitors {
     View right_, wrong_;
 };
 
-TEST_F(NudgeWindow, PutsAMockUpRightByTheArrowKeys) {
+TEST_F(NudgeWindow, NightlyPutsAMockUpRightByTheArrowKeys) {
     start_off_by({.right_px = 4.0, .down_px = -2.0, .yaw_px = 3.0});
     const std::string before = program->state("calibration");
     const Image8 look = drive_of_place(0);
@@ -99,7 +99,7 @@ TEST_F(NudgeWindow, PutsAMockUpRightByTheArrowKeys) {
     EXPECT_TRUE(projector_shows(look));
 }
 
-TEST_F(NudgeWindow, IsShownOnTheSimulatedMockUpAndKeepsItsKeysToItself) {
+TEST_F(NudgeWindow, NightlyIsShownOnTheSimulatedMockUpAndKeepsItsKeysToItself) {
     use_shared();
     program->click("tab:Calibrate");
     program->click("open-nudge");

@@ -55,7 +55,7 @@ TEST_F(PaintTab, GivesAFinishAnotherColourAndHoldsItAgainstAnother) {
     program->click("tab:Paints");
 }
 
-TEST_F(PaintTab, EditsATranslucentPaintByItsColourAndLength) {
+TEST_F(PaintTab, NightlyEditsATranslucentPaintByItsColourAndLength) {
     use_shared();
     const int look = look_at_place(0);
     const Image8 first = drive_of_place(0), marble = drive_with_body("marble");
@@ -107,7 +107,7 @@ TEST_F(PaintTab, EditsATranslucentPaintByItsColourAndLength) {
     program->click("tab:Paints");
 }
 
-TEST_F(PaintTab, ShowsNothingOnTheMockUpThatNobodyTried) {
+TEST_F(PaintTab, NightlyShowsNothingOnTheMockUpThatNobodyTried) {
     use_shared();
     program->click("paint:solid red");
     ASSERT_TRUE(projector_shows(drive_with_body("solid red")));

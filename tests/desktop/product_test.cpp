@@ -184,7 +184,7 @@ TEST_F(OwnProduct, AMeshOnTheCommandLineBeginsANewSession) {
     EXPECT_EQ(program->quit(), 0);
 }
 
-TEST_F(OwnProduct, NothingRunsBehindThePageOfAMeshAndWhatRunsIsNotStoppedUnasked) {
+TEST_F(OwnProduct, NightlyNothingRunsBehindThePageOfAMeshAndWhatRunsIsNotStoppedUnasked) {
     auto running = std::make_shared<RunningStudio>();
     const auto first = running->session_file(), second = running->folder / "second.livery";
     // A first start: nothing was calibrated.
@@ -240,7 +240,7 @@ TEST_F(OwnProduct, NothingRunsBehindThePageOfAMeshAndWhatRunsIsNotStoppedUnasked
     EXPECT_EQ(program->quit(), 0);
 }
 
-TEST_F(OwnProduct, AScanOfAMillionTrianglesIsOnTheMockUpInAFewClicks) {
+TEST_F(OwnProduct, NightlyAScanOfAMillionTrianglesIsOnTheMockUpInAFewClicks) {
     start_afresh();
     const auto scan = write_scan(708);
     const auto began = std::chrono::steady_clock::now();

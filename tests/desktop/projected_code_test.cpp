@@ -36,7 +36,7 @@ bool is_lit(const Image8& picture, std::size_t pixel) {
     return at[0] != 0 || at[1] != 0 || at[2] != 0;
 }
 
-TEST_F(ProjectedCode, StandsBesideTheMockUpUntilItIsUntickedOrTheLooksAreFrozen) {
+TEST_F(ProjectedCode, NightlyStandsBesideTheMockUpUntilItIsUntickedOrTheLooksAreFrozen) {
     ASSERT_TRUE(reader.is_there()) << "libzbar.so.0 is not installed";
     start_vote(kLongAdapting, 2);
     const Image8 look = drive_of_place(0);

@@ -145,7 +145,7 @@ TEST_F(Projector, UnpluggedItIsNowhereAndPluggedInItIsBack) {
 }
 
 // As large as the operator's: a smaller one would leave part of the operator's window where it is.
-TEST_F(Projector, FollowsItsMonitorToAnotherPlace) {
+TEST_F(Projector, NightlyFollowsItsMonitorToAnotherPlace) {
     start({.projector_px = kFullProjector_px});
     pick_projector();
     const Image8 a = drive_of_place(0);

@@ -73,7 +73,7 @@ TEST_F(Remote, EveryKeyShowsWhatItSays) {
     EXPECT_TRUE(projector_shows_frame(between));
 }
 
-TEST_F(Remote, PauseHoldsEveryPixelAndRepeatGivesAllOfTheTime) {
+TEST_F(Remote, NightlyPauseHoldsEveryPixelAndRepeatGivesAllOfTheTime) {
     start_vote(kQuick, 2);
     present_paused();
     const auto& order = presented.plan.sittings.at(0);

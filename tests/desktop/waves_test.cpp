@@ -43,7 +43,7 @@ class Waves : public PresentedVote {
     std::vector<testing::BallotPhone> phones;
 };
 
-TEST_F(Waves, SeeTheirOwnOrderAndVoteInTheirTurn) {
+TEST_F(Waves, NightlySeeTheirOwnOrderAndVoteInTheirTurn) {
     start_vote(kWavesOfNine, 3);
     const Segment edit = filled_segment();
     EXPECT_EQ(edit.number, 0);

@@ -98,7 +98,7 @@ void print_times(const Recording& recording, const LiveResult& live) {
         100.0 * (live.capture_seconds / theirs - 1.0));
 }
 
-TEST(Cameras, AVideoCameraCalibratesAsTheBenchDoes) {
+TEST(Cameras, NightlyAVideoCameraCalibratesAsTheBenchDoes) {
     const BenchDescription description = filmed_description();
     FilmedBench filmed(description);
     MjpegServer server([&] { return filmed.frame(); }, 60.0);

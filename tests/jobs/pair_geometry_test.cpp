@@ -28,7 +28,7 @@ PairGeometryRequest real_poses(const std::filesystem::path& data, int count) {
 }
 
 // What plain OpenCV reaches on these is measured by test_geometry; 0.7 px is asked of every pose.
-TEST(PairGeometry, OfRealPhotographsUsesAllPosesAndForetellsEach) {
+TEST(PairGeometry, NightlyOfRealPhotographsUsesAllPosesAndForetellsEach) {
     LIVERY_NEEDS_REFERENCE_DATA(data);
     const PairGeometry found = find_pair_geometry(real_poses(data, 4));
     ASSERT_EQ(found.poses.size(), 4u);

@@ -148,9 +148,6 @@ void expect_found_again(const BenchDescription& description,
         EXPECT_EQ(figure.grade, Grade::good) << figure.name << " " << figure.value;
 }
 
-TEST(ReposedCalibration, IsAsGoodAsAnew) {
-    expect_found_again(testing::small_bench_description(), {0.0, 0.05, 0.0}, {6.0, 0.0, -5.0});
-}
 TEST(ReposedCalibration, NightlyIsAsGoodAsAnewForTheCar) {
     expect_found_again(half_size("default"), {0.0, 0.05, 0.0}, {6.0, 0.0, -5.0});
 }

@@ -80,7 +80,7 @@ TEST(RoomPose, NightlyOfASphereTakesItsTurnFromTheFile) {
 }
 
 // Somebody measured the wrong thing: a refusal or a pose that is right, never a wrong one.
-TEST(RoomPose, WithWrongDataSheetsIsRefusedOrRight) {
+TEST(RoomPose, NightlyWithWrongDataSheetsIsRefusedOrRight) {
     const BenchDescription description = half_size("default");
     const auto product = find_product(description.product.string());
     Bench bench = testing::bench_on_kept_light(description, product);

@@ -93,7 +93,7 @@ TEST(Room, LeavesNoBlackSpecksOnSmoothPanels) {
 // Looks light the mock-up alone: what the table threw on it while it was calibrated would be
 // missed. Light between the mock-up's own parts is left, a quarter of what the targets for all
 // nuisances (1.0, 2.5) leave over those for none (0.5, 1.5) at the 95th percentile.
-void expect_no_light_of_the_table(BenchDescription room) {
+TEST(Room, NightlyLightFromTheTableIsNotTakenForTheMockupsOwn) {
     const auto error_of = [](const BenchDescription& description) {
         Bench bench = testing::bench_on_kept_light(description, small_bench_product());
         const Image8 mockup = mockup_mask(small_bench_product()->mesh, description.projector.view);
@@ -101,21 +101,12 @@ void expect_no_light_of_the_table(BenchDescription room) {
         live.calibration = calibrate_through_ports(bench, small_bench_product(), {}).calibration;
         return testing::judged(bench, std::move(live), &mockup).comparison.interior;
     };
+    BenchDescription room = half_size("room");
     const auto with = error_of(room);
     room.mockup.interreflection = false;
     const auto without = error_of(room);
     EXPECT_LE(with.median, without.median + 0.05);
     EXPECT_LE(with.p95, without.p95 + 0.25);
-}
-
-TEST(Room, LightFromTheTableIsNotTakenForTheMockupsOwn) {
-    BenchDescription room = half_size("room");
-    room.projector.view = resized(room.projector.view, 320, 200);
-    room.camera.view = resized(room.camera.view, 432, 288);
-    expect_no_light_of_the_table(room);
-}
-TEST(Room, NightlyLightFromTheTableIsNotTakenForTheMockupsOwn) {
-    expect_no_light_of_the_table(half_size("room"));
 }
 
 // With the mock-up's pixels known, a calibration shows nothing beside them.

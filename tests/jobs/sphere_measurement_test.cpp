@@ -61,7 +61,7 @@ TEST(SphereMeasurement, LambertsReflectanceIsExactToNoise) {
     EXPECT_TRUE(report.notes.empty()) << report.notes.front();
 }
 
-TEST(SphereMeasurement, AMattePaintIsRecovered) {
+TEST(SphereMeasurement, NightlyAMattePaintIsRecovered) {
     const SphereBench bench(matte_paint(), 256);
     const SphereMeasurement report = bench.measure();
     const MeasuredReflectance measured = bench.measured();
@@ -101,7 +101,7 @@ TEST(SphereMeasurement, NightlyAGlossySolidPaintIsRecovered) {
     }
 }
 
-TEST(SphereMeasurement, AMetallicPaintIsRecovered) {
+TEST(SphereMeasurement, NightlyAMetallicPaintIsRecovered) {
     const SphereBench bench(metallic_paint(), 320);
     const SphereMeasurement report = bench.measure();
     const MeasuredReflectance measured = bench.measured();
@@ -120,7 +120,7 @@ TEST(SphereMeasurement, AMetallicPaintIsRecovered) {
     EXPECT_NEAR(fit.material.f0.y, 0.56, 0.015);
 }
 
-TEST(SphereMeasurement, TheOutlineRepairsAWrongSphere) {
+TEST(SphereMeasurement, NightlyTheOutlineRepairsAWrongSphere) {
     SphereBench bench(metallic_paint(), 320);
     bench.manifest["sphere"] = {{"centre_mm", {1.0, -1.0, 0.0}}, {"diameter_mm", 61.0}};
     bench.rewrite();

@@ -159,7 +159,7 @@ INSTANTIATE_TEST_SUITE_P(Mishaps,
 
 // A slip that is accepted may take what the published targets (0.5, 1.5) leave over a clean session
 // (0.3, 1.0): its picture is named, and its light brought to that of the others.
-TEST(AcceptedSlips, CostLessThanTheTargetsLeave) {
+TEST(AcceptedSlips, NightlyCostLessThanTheTargetsLeave) {
     const testing::Judged& clean = testing::clean_session();
     struct Slip {
         const char* role;

@@ -92,7 +92,7 @@ TEST(SpotMeasurement, FindsKnownMediaInPhotographs) {
 }
 
 /// Where the camera stands: what the mean over directions is worth.
-TEST(SpotMeasurement, DependsLittleOnWhereTheCameraStands) {
+TEST(SpotMeasurement, NightlyDependsLittleOnWhereTheCameraStands) {
     for (const double off_deg : {12.0, 30.0, 60.0}) {
         const double off = off_deg / kDegreesPerRadian;
         for (const auto* media : {&kMarbleRgb, &kSkinRgb}) {

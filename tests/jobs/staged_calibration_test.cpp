@@ -106,7 +106,7 @@ TEST(StagedCalibration, KeepsEachStageAndDoesOneAnewAlone) {
     EXPECT_NEAR(room.photographs, all, 6);
 }
 
-TEST(StagedCalibration, GoesOnWhereItWasStopped) {
+TEST(StagedCalibration, NightlyGoesOnWhereItWasStopped) {
     FoundRoom room;
     // At the geometry's tenth photograph of all, and at the colours' tenth.
     for (const auto stage : {CalibrationStage::geometry, CalibrationStage::colour}) {

@@ -195,7 +195,7 @@ void expect_ladders_rise(const std::vector<std::string>& scenes) {
     }
 }
 
-TEST(Ladders, Rise) {
+TEST(Ladders, NightlyRise) {
     expect_ladders_rise({"sphere, pearl with a film, studio", "player, marble, overcast"});
 }
 // With those, scenes that together call for every effect

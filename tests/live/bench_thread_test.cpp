@@ -132,7 +132,7 @@ TEST_F(OnTheBench, PhotographsWhatTheProjectorShows) {
     EXPECT_GT(mean_of(bright->srgb).y, mean_of(black->srgb).y + 40.0);
 }
 
-TEST_F(OnTheBench, PhotographsFromTheEyeAndCalibratesWithItsOwnCamera) {
+TEST_F(OnTheBench, NightlyPhotographsFromTheEyeAndCalibratesWithItsOwnCamera) {
     Watched watched;
     watched.thread->use(bench_, car_);
     const auto photograph_from = [&](std::uint64_t number, const glm::dvec3& eye_mm) {

@@ -195,7 +195,7 @@ TEST(CaptureThread, FindsABumpedMockupAgain) {
     EXPECT_NE(refused.why.find("where everything stood"), std::string::npos) << refused.why;
 }
 
-TEST(CaptureThread, GoesOnAfterItWasStoppedAndPauses) {
+TEST(CaptureThread, NightlyGoesOnAfterItWasStoppedAndPauses) {
     CaptureRoom room;
     room.capture->start(CaptureStep::colour, true);
     wait_until(*room.capture, [](const CaptureView& view) { return view.taken > 20; });

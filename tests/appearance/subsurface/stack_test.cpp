@@ -155,7 +155,7 @@ TEST(MonteCarlo, InLayersIsWithinItsErrorOfExactTotals) {
     }
 }
 
-TEST(BestModel, OfLayersIsAsNearAsItSaysAndNearerThanTheMultipole) {
+TEST(BestModel, NightlyOfLayersIsAsNearAsItSaysAndNearerThanTheMultipole) {
     for (const NamedStack& one : compared_stacks()) {
         const MediumErrors errors = model_errors(one, {20'000, 3});
         ASSERT_EQ(errors.models.size(), 2u);
