@@ -165,13 +165,13 @@ Outcome fit_response(CaptureCommandRun run,
 Outcome capture_with_camera(CaptureCommandRun run,
                             const CameraChoice& choice,
                             const Progress& progress) {
+    if (choice.kind == CameraChoice::Kind::bench && !run.arguments.monitor.empty())
+        throw std::invalid_argument(
+            "--monitor: found with a simulated bench, which has a projector of its own");
     CaptureBench bench = open_capture_bench(choice, run.request().product, progress);
     std::unique_ptr<MonitorProjector> projector;
     std::string shown_on = "its own projector";
     if (bench.show) {
-        if (!run.arguments.monitor.empty())
-            throw std::invalid_argument(
-                "--monitor: found with a simulated bench, which has a projector of its own");
         BenchCalibrationRequest asked = request_of(bench.simulated->description(), bench.product);
         asked.camera_to_xyz = run.request().camera_to_xyz;
         asked.colour_shots = run.request().colour_shots;
