@@ -23,6 +23,7 @@ struct Points {
 
 /// The nearest so far; none beyond what it begins with.
 struct Nearest {
+    using DistanceType = double;
     double squared;
     std::optional<std::uint32_t> index;
     double worstDist() const { return squared; }
