@@ -137,6 +137,33 @@ Names nightly_rows(const std::filesystem::path& source) {
     return found;
 }
 
+/// What the last column of that table says is asked at each change ("Suite.Test", "Suite.Begin*",
+/// "Suite.*"), and no test is.
+std::vector<std::string> day_names_of_no_test(const std::filesystem::path& source) {
+    static const std::regex test(R"(\nTEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\))"),
+        name(R"(`((?:\w+/)?(\w+)\.(\w*)(\*?))`)");
+    std::string tests;  // one a line
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(source / "tests")) {
+        if (entry.path().extension() != ".cpp") continue;
+        const std::string text = text_of(entry.path());
+        for (std::sregex_iterator it(text.begin(), text.end(), test), end; it != end; ++it)
+            if (it->str(2).find("Nightly") == std::string::npos)
+                tests += "\n" + it->str(1) + "." + it->str(2) + "\n";
+    }
+    std::vector<std::string> found;
+    std::istringstream lines(text_of(source / "tests/README.md"));
+    for (std::string line; std::getline(lines, line);) {
+        if (line.find("Nightly") == std::string::npos || !line.starts_with("| `")) continue;
+        const std::string day = line.substr(line.rfind(" | ", line.size() - 3));
+        for (std::sregex_iterator it(day.begin(), day.end(), name), end; it != end; ++it) {
+            const std::string begins = "\n" + it->str(2) + "." + it->str(3);
+            if (tests.find(it->str(4).empty() ? begins + "\n" : begins) == std::string::npos)
+                found.push_back(it->str(1));
+        }
+    }
+    return found;
+}
+
 /// Every name that two files of src/ give to types of their own, a file's private ones too: "Name:
 /// a.cpp b.h". Members of a type have that type's name before them.
 std::vector<std::string> names_given_twice(const std::filesystem::path& source) {
@@ -293,6 +320,8 @@ TEST(Nightly, TheReadmeNamesAllThatRunsAtNight) {
     const auto tests = nightly_tests(kSource);
     EXPECT_GT(tests.size(), 5u);
     EXPECT_EQ(tests, nightly_rows(kSource));
+    const auto none = day_names_of_no_test(kSource);
+    EXPECT_TRUE(none.empty()) << joined(none);
 }
 
 TEST(Errors, NoneIsDeafToNan) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -14,8 +13,6 @@
 namespace livery {
 
 namespace {
-
-constexpr std::size_t kLeaf = 8;
 
 /// Normals within 15 degrees of the plane's count as on it.
 constexpr double kPlaneCosine = 0.966;
