@@ -42,6 +42,32 @@ std::string header(MHD_Connection* connection, const char* name) {
     return value ? value : "";
 }
 
+/// A socket that listens at an address. Ours, since not every version of libmicrohttpd leaves errno
+/// as the reason why it could not listen.
+int listening_socket(const HttpSettings& settings) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(settings.port);
+    if (::inet_pton(AF_INET, settings.address.c_str(), &address.sin_addr) != 1) {
+        throw std::runtime_error("found address " + settings.address + ", expected an IPv4 one");
+    }
+    const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+    // A port that connections of an ended server still hold is free to use.
+    const int reuse = 1;
+    if (socket >= 0 && ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &reuse, sizeof reuse) == 0 &&
+        ::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 &&
+        ::listen(socket, SOMAXCONN) == 0) {
+        return socket;
+    }
+    const int reason = errno;
+    if (socket >= 0) ::close(socket);
+    const std::string place = settings.address + ":" + std::to_string(settings.port);
+    throw std::runtime_error(
+        reason == EADDRINUSE
+            ? "found " + place + " in use, expected a free port; choose another with --port"
+            : "cannot listen on " + place + " (" + std::strerror(reason) + ")");
+}
+
 OpenConnection* open_connection(MHD_Connection* connection) {
     const auto* info = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
     return info ? static_cast<OpenConnection*>(info->socket_context) : nullptr;
@@ -207,12 +233,6 @@ HttpServer::HttpServer(const HttpSettings& settings, Answer answer)
     : state_(std::make_unique<State>()) {
     state_->settings = settings;
     state_->answer = std::move(answer);
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(settings.port);
-    if (::inet_pton(AF_INET, settings.address.c_str(), &address.sin_addr) != 1) {
-        throw std::runtime_error("found address " + settings.address + ", expected an IPv4 one");
-    }
     const HttpLimits& limits = settings.limits;
     const bool tls = !settings.certificate.empty();
     const MHD_OptionItem certificates[] = {
@@ -222,15 +242,14 @@ HttpServer::HttpServer(const HttpSettings& settings, Answer answer)
     const MHD_OptionItem none[] = {{MHD_OPTION_END, 0, nullptr}};
     unsigned flags = MHD_USE_EPOLL;
     if (tls) flags |= MHD_USE_TLS;
-    errno = 0;
     state_->daemon = MHD_start_daemon(flags,
                                       settings.port,
                                       nullptr,
                                       nullptr,
                                       &State::on_request,
                                       state_.get(),
-                                      MHD_OPTION_SOCK_ADDR,
-                                      reinterpret_cast<sockaddr*>(&address),
+                                      MHD_OPTION_LISTEN_SOCKET,
+                                      listening_socket(settings),
                                       MHD_OPTION_CONNECTION_MEMORY_LIMIT,
                                       limits.connection_memory_bytes,
                                       MHD_OPTION_CONNECTION_LIMIT,
@@ -250,18 +269,10 @@ HttpServer::HttpServer(const HttpSettings& settings, Answer answer)
                                       MHD_OPTION_ARRAY,
                                       tls ? certificates : none,
                                       MHD_OPTION_END);
-    const int reason = errno;
-    const std::string place = settings.address + ":" + std::to_string(settings.port);
     if (!state_->daemon) {
-        if (reason == EADDRINUSE) {
-            throw std::runtime_error("found " + place +
-                                     " in use, expected a free port; choose another with --port");
-        }
-        throw std::runtime_error("cannot listen on " + place + " (" +
-                                 (reason != 0 ? std::strerror(reason)
-                                  : tls       ? "certificate and key do not fit"
-                                              : "no reason given") +
-                                 ")");
+        throw std::runtime_error(
+            tls ? "found a certificate and key that do not fit, expected PEM files of both"
+                : "cannot answer requests (libmicrohttpd does not start)");
     }
     const auto* info = MHD_get_daemon_info(state_->daemon, MHD_DAEMON_INFO_BIND_PORT);
     state_->port = info ? info->port : settings.port;

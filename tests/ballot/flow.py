@@ -162,6 +162,7 @@ def failures(server):
     check("--port" in refused("--ballots", file, "--port", str(server.port)), "port in use")
     check("0 to 65535" in refused("--ballots", file, "--port", "x"), "no port")
     check("--key" in refused("--ballots", file, "--certificate", "a.pem"), "a certificate alone")
+    check("PEM" in refused("--ballots", file, "--port", "0", "--certificate", __file__, "--key", __file__), "no certificate")
     check("no folder" in refused("--ballots", str(server.file.parent / "none" / "x"), "--port", "0"), "no folder")
     check("--frob" in refused("--frob"), "unknown option")
 
