@@ -47,14 +47,10 @@ cv::Ptr<cv::aruco::Dictionary> dictionary() {
 }
 
 cv::Ptr<cv::aruco::CharucoBoard> layout_of(const Board& board) {
-    const auto layout =
-        cv::makePtr<cv::aruco::CharucoBoard>(cv::Size(board.columns + 1, board.rows + 1),
-                                             static_cast<float>(board.square_mm),
-                                             static_cast<float>(board.marker_mm),
-                                             *dictionary());
-    // Ours are the boards of OpenCV 4.6, which differ in even numbers of rows.
-    layout->setLegacyPattern(true);
-    return layout;
+    return cv::makePtr<cv::aruco::CharucoBoard>(cv::Size(board.columns + 1, board.rows + 1),
+                                                static_cast<float>(board.square_mm),
+                                                static_cast<float>(board.marker_mm),
+                                                *dictionary());
 }
 
 cv::Mat drawn_marker(int number) {
