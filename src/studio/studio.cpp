@@ -16,7 +16,6 @@ namespace livery {
 
 namespace {
 
-constexpr double kGlow_s = 0.8;
 constexpr double kInfoShown_s = 8.0;
 
 std::string text_of(const Notice& notice) {

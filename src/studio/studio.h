@@ -131,6 +131,8 @@ void keep_shown_looks_valid(Studio& studio);
 void begin_trials(Studio& studio);
 void end_trials(Studio& studio);
 
+constexpr double kGlow_s = 0.8;  ///< how long a part that was clicked is seen on the mock-up
+
 /// Selects a part and lets it glow on the mock-up for a moment.
 void select_part(Studio& studio, int part);
 

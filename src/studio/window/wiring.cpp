@@ -360,6 +360,24 @@ void stop_threads(Shell& shell) {
     studio.panels.lighting->reference = {};
 }
 
+namespace {
+
+/// A part glows for its time from when its picture is drawn, however long that takes.
+void end_glow(Shell& shell) {
+    Studio& studio = shell.studio;
+    if (!studio.glowing_part) return;
+    const bool drawn = !studio.setup || (shell.asked_frame &&
+                                         shell.asked_frame->glowing_part == studio.glowing_part &&
+                                         !is_frame_under_way(shell));
+    if (!drawn) {
+        studio.glowing_until_s = std::max(studio.glowing_until_s, studio.now_s + kGlow_s);
+    } else if (studio.now_s >= studio.glowing_until_s) {
+        studio.glowing_part.reset();
+    }
+}
+
+}  // namespace
+
 void take_results(Shell& shell) {
     Studio& studio = shell.studio;
     studio.background->take_results();
@@ -372,7 +390,7 @@ void take_results(Shell& shell) {
     take_nudge(shell);
     take_traced(shell);
     step_vote_mode(shell);
-    if (studio.glowing_part && studio.now_s >= studio.glowing_until_s) studio.glowing_part.reset();
+    end_glow(shell);
     const auto newest = shell.results->newest_frame();
     if (newest && !newest->problem.empty() && newest->number > shell.problem_number) {
         shell.problem_number = newest->number;
