@@ -9,6 +9,9 @@
 #include <memory>
 #include <vector>
 
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "core/error.h"
@@ -121,10 +124,18 @@ void write_text_file(const std::filesystem::path& file, std::string_view text) {
         if (!stream) fail("cannot write");
         return;
     }
-    auto temporary = file;
-    temporary += ".tmp" + std::to_string(::getpid());
-    std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(temporary.c_str(), "wb"),
-                                                           &std::fclose);
+    // What lies at the name already, a link to elsewhere even, is not written to.
+    std::filesystem::path temporary;
+    int descriptor = -1;
+    for (int attempt = 0; attempt < 16; ++attempt) {
+        temporary = file;
+        temporary += fmt::format(".tmp{}-{}", ::getpid(), attempt);
+        descriptor =
+            ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+        if (descriptor >= 0 || errno != EEXIST) break;
+    }
+    std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(
+        descriptor < 0 ? nullptr : ::fdopen(descriptor, "wb"), &std::fclose);
     if (!stream) fail("cannot create");
     const bool written = std::fwrite(text.data(), 1, text.size(), stream.get()) == text.size() &&
                          std::fflush(stream.get()) == 0 && ::fsync(::fileno(stream.get())) == 0;
@@ -152,6 +163,29 @@ void make_output_folder(const std::filesystem::path& folder) {
         throw FileError(
             folder, "", error ? error.message() : "a file", "a folder that can be made");
     }
+}
+
+void make_private_folder(const std::filesystem::path& folder) {
+    std::error_code error;
+    const bool there = std::filesystem::exists(folder, error);
+    make_output_folder(folder);
+    if (!there) std::filesystem::permissions(folder, std::filesystem::perms::owner_all, error);
+}
+
+void make_private_file(const std::filesystem::path& file) {
+    const int made =
+        ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
+    if (made >= 0) {
+        ::close(made);
+        return;
+    }
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(file, error)) return;
+    std::filesystem::permissions(
+        file,
+        std::filesystem::perms::group_all | std::filesystem::perms::others_all,
+        std::filesystem::perm_options::remove,
+        error);
 }
 
 }  // namespace livery

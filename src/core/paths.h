@@ -40,4 +40,11 @@ void write_text_file(const std::filesystem::path& file, std::string_view text);
 /// Creates a folder for output. Throws FileError when it cannot or when a file stands there.
 void make_output_folder(const std::filesystem::path& folder);
 
+/// The same, where a new one is nobody else's to read.
+void make_private_folder(const std::filesystem::path& folder);
+
+/// Makes an empty file that nobody else may read, or takes others' rights from one that is there.
+/// What cannot be done is left to whoever opens it next.
+void make_private_file(const std::filesystem::path& file);
+
 }  // namespace livery

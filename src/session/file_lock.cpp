@@ -45,7 +45,7 @@ FileLock::FileLock(const std::filesystem::path& file,
     if (unknown) lock_file_ = std::filesystem::absolute(file);
     lock_file_ += ".lock";
     while (true) {
-        descriptor_ = ::open(lock_file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+        descriptor_ = ::open(lock_file_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644);
         if (descriptor_ < 0) {
             throw FileError(file,
                             "",

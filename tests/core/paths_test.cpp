@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "support/bad_disk.h"
 #include "support/file_error.h"
 #include "support/temporary_folder.h"
 
@@ -68,13 +69,30 @@ TEST(TextFile, AFailedWriteLeavesTheOldContent) {
 
 TEST(TextFile, AFullDiskIsReported) {
     const TemporaryFolder folder;
-    // The temporary file's name is known, so it can be made to lead to a device that is full.
-    const auto temporary = folder / ("a.txt.tmp" + std::to_string(::getpid()));
-    std::filesystem::create_symlink("/dev/full", temporary);
     folder.write("a.txt", "old");
-    EXPECT_TRUE(fails_with([&] { write_text_file(folder / "a.txt", std::string(100'000, 'x')); },
-                           {"a.txt", "cannot write: No space left on device"}));
+    {
+        const FullDisk full(50'000);
+        EXPECT_TRUE(
+            fails_with([&] { write_text_file(folder / "a.txt", std::string(100'000, 'x')); },
+                       {"a.txt", "cannot write: File too large"}));
+    }
     EXPECT_EQ(read_text_file(folder / "a.txt"), "old");
+    EXPECT_EQ(count_of_files(folder.path()), 1u) << "a temporary file was left";
+}
+
+TEST(TextFile, IsNotWrittenThroughALinkOfSomebodyElse) {
+    const TemporaryFolder folder;
+    folder.write("precious", "kept");
+    // The name of what is written first can be guessed.
+    for (int attempt = 0; attempt < 3; ++attempt) {
+        std::filesystem::create_symlink(
+            folder / "precious",
+            folder / ("a.txt.tmp" + std::to_string(::getpid()) + "-" + std::to_string(attempt)));
+    }
+    write_text_file(folder / "a.txt", "x");
+    EXPECT_EQ(read_text_file(folder / "a.txt"), "x");
+    EXPECT_EQ(read_text_file(folder / "precious"), "kept");
+    EXPECT_EQ(count_of_files(folder.path()), 5u);
 }
 
 TEST(TextFile, ADeviceIsWrittenToAndNotReplaced) {

@@ -37,7 +37,7 @@ std::string hash_of(const Image8& picture) {
 
 void write_vote_frames(const std::filesystem::path& folder, const VoteFrames& frames) {
     check_argument(!frames.empty(), "write_vote_frames: found no frames");
-    make_output_folder(folder.parent_path());
+    make_private_folder(folder.parent_path());
     FolderReplacement replacement(folder);
     for (const auto& [name, frame] : frames) {
         write_png(replacement.staging() / (name + ".png"), *frame);

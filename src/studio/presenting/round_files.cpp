@@ -49,7 +49,7 @@ RoundDetails write_frozen_looks(const std::filesystem::path& ballots,
     RoundDetails details;
     details.eye = eye;
     details.folder = file.parent_path();
-    make_output_folder(details.folder);
+    make_private_folder(details.folder);
     for (std::size_t k = 0; k < looks.size(); ++k) {
         LookDetails& look = details.looks.emplace_back();
         look.code = round.codes.at(k);
@@ -82,7 +82,7 @@ void write_round_report(Studio& studio, const Round& round) {
             source.made_at = utc_now();
             const ReportDocument document = round_report(source);
             const auto folder = round_details_file(ballots, id).parent_path();
-            make_output_folder(folder);
+            make_private_folder(folder);
             write_text_file(folder / "report.html", html_of(document));
             write_text_file(folder / "report.pdf", pdf_of(document).bytes);
             return [&studio, folder] {
