@@ -335,6 +335,14 @@ Database::~Database() = default;
 
 std::vector<std::vector<DatabaseValue>> Database::run(std::string_view sql,
                                                       const std::vector<DatabaseValue>& values) {
+    std::vector<Row> rows;
+    run_each(sql, values, [&](const Row& row) { rows.push_back(row); });
+    return rows;
+}
+
+void Database::run_each(std::string_view sql,
+                        const std::vector<DatabaseValue>& values,
+                        const std::function<void(const Row&)>& take) {
     sqlite3_stmt* prepared = nullptr;
     int code = sqlite3_prepare_v2(
         state_->handle.get(), sql.data(), static_cast<int>(sql.size()), &prepared, nullptr);
@@ -347,7 +355,6 @@ std::vector<std::vector<DatabaseValue>> Database::run(std::string_view sql,
         code = bind(prepared, static_cast<int>(k) + 1, values[k]);
         if (code != SQLITE_OK) state_->fail(code);
     }
-    std::vector<std::vector<DatabaseValue>> rows;
     state_->steps = 0;
     errno = 0;
     // Where waiting could deadlock, as when two programs make one file, SQLite does not wait but
@@ -360,14 +367,15 @@ std::vector<std::vector<DatabaseValue>> Database::run(std::string_view sql,
         sqlite3_reset(prepared);
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
+    Row row;
     for (; code == SQLITE_ROW; code = sqlite3_step(prepared)) {
-        auto& row = rows.emplace_back();
+        row.clear();
         for (int column = 0; column < sqlite3_column_count(prepared); ++column) {
             row.push_back(value_of(prepared, column));
         }
+        take(row);
     }
     if (code != SQLITE_DONE) state_->fail(code);
-    return rows;
 }
 
 int Database::version() const {

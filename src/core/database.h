@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -40,6 +41,11 @@ class Database {
     /// takes more steps than any of ours throws FileError.
     std::vector<std::vector<DatabaseValue>> run(std::string_view sql,
                                                 const std::vector<DatabaseValue>& values = {});
+    /// The same, a row at a time: of a statement that gives more than memory should hold.
+    using Row = std::vector<DatabaseValue>;
+    void run_each(std::string_view sql,
+                  const std::vector<DatabaseValue>& values,
+                  const std::function<void(const Row&)>& take);
     int version() const;  ///< user_version; 0: new
     void set_version(int version);
     const std::filesystem::path& file() const;

@@ -121,20 +121,20 @@ void append_to_log(Database& database, LogEntry& entry) {
                   entry.hash});
 }
 
-std::vector<LogEntry> read_log(Database& database) {
-    std::vector<LogEntry> entries;
+void read_log(Database& database, const std::function<void(const LogEntry&)>& take) {
+    LogEntry entry;
     std::string previous;
-    for (const auto& row : database.run("SELECT id, at, what, session, round, seat, text, best, "
-                                        "second, least, hash FROM log ORDER BY id")) {
-        LogEntry entry;
-        entry.id = static_cast<int>(entries.size()) + 1;
-        const std::string field = "log entry " + std::to_string(entry.id);
+    const auto read = [&](const Database::Row& row) {
+        ++entry.id;
+        const auto fail = [&](const std::string& found) {
+            fail_ballots(database, "log entry " + std::to_string(entry.id), found);
+        };
         if (const int id = as_int(database, row[0]); id != entry.id) {
-            fail_ballots(database, field, "none: the next is " + std::to_string(id));
+            fail("none: the next is " + std::to_string(id));
         }
         const std::string what = as_text(database, row[2]);
         const auto* const name = std::find(kNames.begin(), kNames.end(), what);
-        if (name == kNames.end()) fail_ballots(database, field, "an entry of another kind");
+        if (name == kNames.end()) fail("an entry of another kind");
         entry.what = static_cast<LogEntry::What>(name - kNames.begin());
         entry.at = as_text(database, row[1]);
         entry.session = as_int(database, row[3]);
@@ -145,12 +145,20 @@ std::vector<LogEntry> read_log(Database& database) {
         entry.second = as_int(database, row[8]);
         entry.least = as_int(database, row[9]);
         entry.hash = as_text(database, row[10]);
-        if (entry.hash != sealed(previous, entry)) {
-            fail_ballots(database, field, "a change since it was written");
-        }
+        if (entry.hash != sealed(previous, entry)) fail("a change since it was written");
         previous = entry.hash;
-        entries.push_back(std::move(entry));
-    }
+        take(entry);
+    };
+    database.run_each(
+        "SELECT id, at, what, session, round, seat, text, best, second, least, hash "
+        "FROM log ORDER BY id",
+        {},
+        read);
+}
+
+std::vector<LogEntry> read_log(Database& database) {
+    std::vector<LogEntry> entries;
+    read_log(database, [&](const LogEntry& entry) { entries.push_back(entry); });
     return entries;
 }
 

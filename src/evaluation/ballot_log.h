@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -47,9 +48,10 @@ std::vector<std::string> log_schema(int format = 4);
 /// Appends, within the caller's transaction, and fills in `id` and `hash`.
 void append_to_log(Database& database, LogEntry& entry);
 
-/// All entries. Throws FileError when one was changed, taken out or put in. The hash finds
-/// accidents and careless hands; somebody who may write the file and knows the program can forge
-/// it.
+/// Every entry, in order. Throws FileError when one was changed, taken out or put in. The hash
+/// finds accidents and careless hands; somebody who may write the file and knows the program can
+/// forge it. One at a time, since a log may be longer than the memory that is given to the server.
+void read_log(Database& database, const std::function<void(const LogEntry&)>& take);
 std::vector<LogEntry> read_log(Database& database);
 
 /// Throws FileError of ballots that are not as Livery wrote them.

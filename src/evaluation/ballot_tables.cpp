@@ -398,7 +398,7 @@ void record(Database& database, LogEntry entry) {
 void check_against_log(Database& database, int format) {
     Books logged;
     const std::string file = database.file().string();
-    for (const LogEntry& entry : read_log(database)) apply(logged, entry, file);
+    read_log(database, [&](const LogEntry& entry) { apply(logged, entry, file); });
     const Books kept = books_of_tables(database, format);
     for (const auto& [id, round] : logged.rounds) {
         const std::string field = "round " + std::to_string(id);

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "core/paths.h"
 #include "core/utc.h"
 #include "evaluation/ballot_log.h"
 #include "evaluation/ballot_rows.h"
@@ -98,6 +99,17 @@ void check_setup(const RoundSetup& setup) {
     }
 }
 
+/// Who voted what is nobody else's to read. SQLite gives its logs the rights of the file.
+const std::filesystem::path& kept_private(const std::filesystem::path& file) {
+    make_private_file(file);
+    for (const char* suffix : {"-wal", "-shm"}) {
+        auto log = file;
+        log += suffix;
+        if (std::filesystem::exists(log)) make_private_file(log);
+    }
+    return file;
+}
+
 }  // namespace
 
 const std::vector<std::string>& ballots_schema() {
@@ -113,7 +125,8 @@ const std::vector<std::string>& ballots_schema() {
 }
 
 BallotStore::BallotStore(const std::filesystem::path& file)
-    : database_(file, Database::Mode::create, kApplicationId, kVersion, ballots_schema()) {
+    : database_(
+          kept_private(file), Database::Mode::create, kApplicationId, kVersion, ballots_schema()) {
     database_.run("PRAGMA foreign_keys = ON");
     Transaction transaction(database_);
     if (database_.version() != kVersion) {

@@ -51,6 +51,26 @@ TEST(Ballots, CountTableThreeOfThePaper) {
     EXPECT_EQ(tally_csv(tally), "design,best,second\r\na,1,0\r\nb,6,3\r\nc,1,2\r\nd,2,5\r\n");
 }
 
+TEST(Ballots, AreNobodyElsesToRead) {
+    const TemporaryFolder folder;
+    const auto file = folder / "votes.livery-ballots";
+    const auto rights = [&](const char* suffix) {
+        auto path = file;
+        path += suffix;
+        return static_cast<unsigned>(std::filesystem::status(path).permissions());
+    };
+    {
+        BallotStore store(file);
+        store.open_round(kDesigns, "1234abcd");
+        EXPECT_EQ(rights(""), 0600u);
+        EXPECT_EQ(rights("-wal"), 0600u);
+    }
+    // A file of a program that left them open.
+    std::filesystem::permissions(file, std::filesystem::perms{0644});
+    const BallotStore store(file);
+    EXPECT_EQ(rights(""), 0600u);
+}
+
 TEST(Ballots, ARoundIsKeptWithItsCircumstances) {
     const TemporaryFolder folder;
     const auto file = folder / "Stimmen für heute.ballots";
