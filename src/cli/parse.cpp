@@ -262,7 +262,9 @@ ParsedCommandLine parse_command_line(const std::vector<std::string>& words,
         return parsed;
     }
     for (const auto& [sub, command] : bound) {
-        if (sub->parsed()) parsed.command = command;
+        if (!sub->parsed()) continue;
+        parsed.command = command;
+        parsed.common.seed_given = sub->get_option("--seed")->count() > 0;
     }
     if (parsed.common.threads < 0 || parsed.common.seed < 0) {
         parsed.command = nullptr;

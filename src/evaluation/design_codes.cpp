@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <random>
 #include <string>
 
 #include "core/error.h"
@@ -61,5 +62,7 @@ std::vector<int> draw_codes(int designs, std::uint64_t seed, int round) {
     } while (static_cast<int>(chosen.size()) < designs);
     return chosen;
 }
+
+int random_seed() { return static_cast<int>(std::random_device()() & 0x3fffffffu); }
 
 }  // namespace livery

@@ -13,4 +13,7 @@ namespace livery {
 /// it meant before. At most 400.
 std::vector<int> draw_codes(int designs, std::uint64_t seed, int round);
 
+/// A seed from the system: of a round whose codes nobody can guess.
+int random_seed();
+
 }  // namespace livery

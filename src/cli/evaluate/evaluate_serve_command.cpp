@@ -17,6 +17,7 @@
 #include "core/error.h"
 #include "evaluation/ballot_process.h"
 #include "evaluation/ballots.h"
+#include "evaluation/design_codes.h"
 #include "evaluation/duel.h"
 #include "evaluation/qr_code.h"
 
@@ -52,11 +53,11 @@ class ServeSession {
   public:
     ServeSession(const ServeArguments& arguments, const CommonOptions& common)
         : arguments_(arguments),
-          seed_(common.seed),
+          seed_(common.seed_given ? std::optional<int>(common.seed) : std::nullopt),
           out_(common.json ? stderr : stdout),
           store_(arguments.ballots) {
         // What cannot be begun is said before anybody joins.
-        if (arguments.duel) next_repeat(store_, duelled_round(), seed_);
+        if (arguments.duel) next_repeat(store_, duelled_round(), seed());
         if (arguments.new_audience && store_.session()) store_.open_session();
         start();
         say(words_for(place()));
@@ -120,7 +121,7 @@ class ServeSession {
             if (shown_code_.empty() || session != shown_session_) show_qr_code(invitation->token);
             shown_code_ = invitation->code;
             shown_session_ = session;
-            say(fmt::format("join code {} {}\n", shown_code_.substr(0, 3), shown_code_.substr(3)));
+            say(fmt::format("join code {} {}\n", shown_code_.substr(0, 4), shown_code_.substr(4)));
         }
         const std::size_t seats = store_.seats(session).size();
         const auto round = store_.open_round();
@@ -196,11 +197,13 @@ class ServeSession {
         say(next_step());
     }
 
+    int seed() const { return seed_ ? *seed_ : random_seed(); }
+
     RoundSetup next_setup() const {
-        if (arguments_.duel) return next_repeat(store_, duelled_round(), seed_);
+        if (arguments_.duel) return next_repeat(store_, duelled_round(), seed());
         RoundSetup setup;
         setup.designs = parse_names("--designs", arguments_.designs);
-        setup.seed = seed_;
+        setup.seed = seed();
         setup.asks_least = arguments_.least;
         setup.scales = scales_of(arguments_);
         setup.presenting = true;
@@ -248,7 +251,7 @@ class ServeSession {
     }
 
     ServeArguments arguments_;
-    int seed_;
+    std::optional<int> seed_;  ///< nothing: each round draws its own
     std::FILE* out_;
     BallotStore store_;
     std::unique_ptr<BallotProcess> server_;
@@ -278,7 +281,7 @@ Command evaluate_serve_command() {
         {"--designs",
          "A,B,C",
          "looks under vote: Enter presents them, lets people vote, locks (default: the window "
-         "does)",
+         "does); their codes are drawn anew each time, but for --seed",
          &arguments->designs,
          false,
          {}},

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <random>
 #include <utility>
 
 #include <GLFW/glfw3.h>
@@ -12,6 +11,7 @@
 #include "core/error.h"
 #include "core/log.h"
 #include "core/utc.h"
+#include "evaluation/design_codes.h"
 #include "evaluation/duel.h"
 #include "evaluation/qr_code.h"
 #include "live/frame_pictures.h"
@@ -36,11 +36,6 @@ using Event = PresentationEvent;
 
 constexpr double kBarStep_s = 0.25, kLook_s = 0.5;
 constexpr int kBarSteps = 40;
-
-int drawn_seed() {
-    std::random_device device;
-    return static_cast<int>(device() & 0x3fffffffu);
-}
 
 void show_what_is_due(Shell& shell);
 
@@ -108,7 +103,7 @@ void begin_presentation(Shell& shell) {
     setup.presenting = true;
     setup.asks_least = settings.asks_least && setup.designs.size() > 2;
     setup.scales = scales_asked(settings);
-    setup.seed = settings.seed.value_or(drawn_seed());
+    setup.seed = settings.seed.value_or(random_seed());
     begin_freezing(shell, std::move(freezing));
 }
 
@@ -116,7 +111,7 @@ void begin_presentation(Shell& shell) {
 void begin_duel(Shell& shell, int round) {
     Studio& studio = shell.studio;
     if (!studio.ballots) return;
-    const int seed = presenting_settings(studio).seed.value_or(drawn_seed());
+    const int seed = presenting_settings(studio).seed.value_or(random_seed());
     Freezing freezing;
     freezing.setup = next_repeat(*studio.ballots, round, seed);
     for (const std::string& name : freezing.setup.designs) {
