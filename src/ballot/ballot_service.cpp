@@ -14,6 +14,8 @@ namespace livery {
 namespace {
 
 constexpr double kCodeLife_s = 600.0;
+constexpr double kTyping_s = 60.0;  ///< a code that has just changed is still good for so long
+constexpr int kMostSeatsOfAll = 400;
 constexpr std::string_view kJoinPath = "/join/";
 
 BallotResponse problem(int status, const std::string& text) {
@@ -28,6 +30,10 @@ BallotResponse wrong_method(const char* allowed) {
         problem(405, std::string("found another method, expected ") + allowed);
     response.allow = allowed;
     return response;
+}
+
+BallotResponse too_many_changes() {
+    return problem(429, "too many changes; this one is sent again in a moment");
 }
 
 BallotResponse page_file(const BallotRequest& request, const char* type, std::string_view text) {
@@ -86,7 +92,11 @@ void BallotService::keep_invitation(double now_s) {
     auto invitation = store_.invitation(*session);
     if (invitation && static_cast<double>(invitation->code_until_s) > now_s) return;
     // The token stays: the QR code may hang on a wall.
-    if (!invitation) invitation = Invitation{random_secret(), "", 0};
+    if (!invitation) {
+        invitation = Invitation{random_secret(), "", 0};
+    } else {
+        last_ = *invitation;
+    }
     invitation->code = random_join_code();
     invitation->code_until_s = static_cast<std::int64_t>(std::ceil(now_s + kCodeLife_s));
     store_.invite(*session, *invitation);
@@ -134,12 +144,12 @@ BallotResponse BallotService::route(const BallotRequest& request, double now_s) 
     if (request.path == "/ballot") {
         if (request.method != "PUT") return wrong_method("PUT");
         if (auto no = refused(request, settings_.names)) return std::move(*no);
-        return take_vote(request);
+        return take_vote(request, now_s);
     }
     if (request.path == "/scales") {
         if (request.method != "PUT") return wrong_method("PUT");
         if (auto no = refused(request, settings_.names)) return std::move(*no);
-        return take_rating(request);
+        return take_rating(request, now_s);
     }
     return problem(404, "nothing is here");
 }
@@ -150,7 +160,12 @@ BallotResponse BallotService::seated(const BallotRequest& request, BallotRespons
     const int session = store_.session().value();
     if (seat_of(request, session) != 0) return response;
     const std::string secret = random_secret();
-    store_.join(session, hash_of_secret(secret), settings_.most_seats);
+    auto& addresses = seated_[session];
+    const int most = addresses.contains(request.client)
+                         ? settings_.most_seats
+                         : std::max(settings_.most_seats, kMostSeatsOfAll);
+    store_.join(session, hash_of_secret(secret), most);
+    addresses.insert(request.client);
     response.cookie = seat_cookie(secret, settings_.names.tls);
     return response;
 }
@@ -176,15 +191,19 @@ BallotResponse BallotService::join_by_token(const BallotRequest& request) {
     }
 }
 
+bool BallotService::is_join_code(const std::string& code, int session, double now_s) {
+    const auto invitation = store_.invitation(session);
+    if (!invitation) return false;
+    const auto fits = [&](const Invitation& shown, double longer_s) {
+        return now_s < static_cast<double>(shown.code_until_s) + longer_s &&
+               same_secret(code, shown.code);
+    };
+    return fits(*invitation, 0.0) || (last_.token == invitation->token && fits(last_, kTyping_s));
+}
+
 BallotResponse BallotService::join_by_code(const BallotRequest& request, double now_s) {
     const std::string code = tidy_join_code(message_in(request.body, parse_join));
-    if (!attempts_.allowed(request.client, now_s)) {
-        return problem(429, "too many wrong codes; wait a minute, or scan the QR code");
-    }
-    const auto invitation = store_.invitation(store_.session().value());
-    if (!invitation || now_s >= static_cast<double>(invitation->code_until_s) ||
-        !same_secret(code, invitation->code)) {
-        attempts_.failed(request.client, now_s);
+    if (!is_join_code(code, store_.session().value(), now_s)) {
         return problem(403, "this code is not the one that is shown now");
     }
     BallotResponse response = seated(request, {});
@@ -249,27 +268,31 @@ Round BallotService::round_under_vote(int session, int id) {
     return *round;
 }
 
-BallotResponse BallotService::take_rating(const BallotRequest& request) {
+BallotResponse BallotService::take_rating(const BallotRequest& request, double now_s) {
     const int session = store_.session().value();
     const int seat = seat_of(request, session);
     if (seat == 0) return problem(401, "found no seat, expected to have joined");
+    if (!changes_.allowed(seat, now_s)) return too_many_changes();
     const RatingMessage rating = message_in(request.body, parse_rating);
     const Round round = round_under_vote(session, rating.round);
     store_.rate(round.id, seat, index_of(round, rating.look), rating.steps);
+    changes_.changed(seat, now_s);
     BallotResponse response;
     response.body = text_of(state_for(request));
     return response;
 }
 
-BallotResponse BallotService::take_vote(const BallotRequest& request) {
+BallotResponse BallotService::take_vote(const BallotRequest& request, double now_s) {
     const int session = store_.session().value();
     const int seat = seat_of(request, session);
     if (seat == 0) return problem(401, "found no seat, expected to have joined");
+    if (!changes_.allowed(seat, now_s)) return too_many_changes();
     const VoteMessage vote = message_in(request.body, parse_vote);
     const Round round = round_under_vote(session, vote.round);
     Choices choices{index_of(round, vote.best), index_of(round, vote.second)};
     if (vote.least) choices.least = index_of(round, *vote.least);
     store_.vote(round.id, seat, choices);
+    changes_.changed(seat, now_s);
     BallotResponse response;
     response.body = text_of(state_for(request));
     return response;

@@ -2,18 +2,22 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <set>
 #include <string>
 
 #include "ballot/ballot_guard.h"
 #include "ballot/ballot_http.h"
 #include "ballot/ballot_messages_io.h"
-#include "ballot/join_attempts.h"
+#include "ballot/change_limit.h"
 #include "evaluation/ballots.h"
 
 namespace livery {
 
 struct BallotServiceSettings {
     ServerNames names;
+    /// A phone at an address that has no seat yet gets one beyond them, too, up to 400: no single
+    /// phone can take them all.
     int most_seats = 40;
 };
 
@@ -22,10 +26,11 @@ struct BallotServiceSettings {
 ///
 ///     GET  /                    the page, with /page.css and /page.js
 ///     GET  /join/TOKEN          from the QR code: a seat, and a redirect to /
-///     POST /join                {"code"}: the same by the six characters
+///     POST /join                {"code"}: the same by the eight characters
 ///     GET  /state               what the page shows
-///     PUT  /ballot              {"round", "best", "second", "least"}: as often as one likes
-///     PUT  /scales              {"round", "look", "steps"}: the same, after the ballot
+///     PUT  /ballot              {"round", "best", "second", "least"}: changed as often as people
+///     do (ChangeLimit) PUT  /scales              {"round", "look", "steps"}: the same, after the
+///     ballot
 class BallotService {
   public:
     /// Opens the file as BallotStore does, and makes its first session where there is none.
@@ -45,15 +50,18 @@ class BallotService {
     BallotResponse join_by_token(const BallotRequest& request);
     BallotResponse join_by_code(const BallotRequest& request, double now_s);
     BallotResponse seated(const BallotRequest& request, BallotResponse response);
-    BallotResponse take_vote(const BallotRequest& request);
-    BallotResponse take_rating(const BallotRequest& request);
+    BallotResponse take_vote(const BallotRequest& request, double now_s);
+    BallotResponse take_rating(const BallotRequest& request, double now_s);
+    bool is_join_code(const std::string& code, int session, double now_s);
     Round round_under_vote(int session, int round);
     PageState state_for(const BallotRequest& request);
     int seat_of(const BallotRequest& request, int session);
 
     BallotStore store_;
     BallotServiceSettings settings_;
-    JoinAttempts attempts_;
+    ChangeLimit changes_;
+    Invitation last_;                              ///< whose code was shown until a moment ago
+    std::map<int, std::set<std::string>> seated_;  ///< addresses that have a seat, by session
 };
 
 }  // namespace livery

@@ -1,9 +1,11 @@
 #include "ballot/http_server.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <list>
+#include <map>
 #include <stdexcept>
 #include <string_view>
 
@@ -27,7 +29,9 @@ Clock::time_point in(double seconds) {
 /// An open connection, from libmicrohttpd's notice that it has begun to that of its end.
 struct OpenConnection {
     int socket = -1;
+    std::string client;
     Clock::time_point deadline;
+    bool asks = false;  ///< between its headers and its answer
     bool cut_off = false;
     std::list<OpenConnection>::iterator place;
 };
@@ -165,9 +169,12 @@ struct HttpServer::State {
             return;
         }
         const auto* info = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
+        const std::string client = client_of(connection);
+        state.make_room_for(client);
         OpenConnection& open = state.connections.emplace_back();
         open.place = std::prev(state.connections.end());
         open.socket = info ? info->connect_fd : -1;
+        open.client = client;
         open.deadline = in(state.settings.limits.headers_s);
         *context = &open;
     }
@@ -181,6 +188,7 @@ struct HttpServer::State {
         // The next request, headers and all.
         if (auto* open = open_connection(connection)) {
             open->deadline = in(static_cast<State*>(self)->settings.limits.idle_s);
+            open->asks = false;
         }
     }
 
@@ -199,6 +207,7 @@ struct HttpServer::State {
                 // Its headers are there.
                 if (auto* open = open_connection(connection)) {
                     open->deadline = in(state.settings.limits.request_s);
+                    open->asks = true;
                 }
                 exchange = new Exchange{request_of(connection, path, method)};
                 *context = exchange;
@@ -221,11 +230,40 @@ struct HttpServer::State {
     void cut_off_the_late() {
         const auto now = Clock::now();
         for (OpenConnection& open : connections) {
-            if (open.cut_off || open.socket < 0 || now < open.deadline) continue;
-            // libmicrohttpd sees its end and closes it.
-            ::shutdown(open.socket, SHUT_RDWR);
-            open.cut_off = true;
+            if (now >= open.deadline) cut_off(open);
         }
+    }
+
+    static void cut_off(OpenConnection& open) {
+        if (open.cut_off || open.socket < 0) return;
+        // libmicrohttpd sees its end and closes it.
+        ::shutdown(open.socket, SHUT_RDWR);
+        open.cut_off = true;
+    }
+
+    /// Who comes is let in: where an address, or all together, would hold too many connections, an
+    /// old one ends. Idle ones first, so that nobody's request is lost to those who only wait.
+    void make_room_for(const std::string& client) {
+        std::map<std::string, unsigned> held;
+        unsigned all = 0;
+        for (const OpenConnection& open : connections) {
+            if (open.cut_off) continue;
+            ++held[open.client];
+            ++all;
+        }
+        std::string from = client;
+        if (held[client] < settings.limits.connections_an_address) {
+            if (all < settings.limits.connections) return;
+            from = std::max_element(held.begin(), held.end(), [](const auto& a, const auto& b) {
+                       return a.second < b.second;
+                   })->first;
+        }
+        OpenConnection* oldest = nullptr;
+        for (OpenConnection& open : connections) {
+            if (open.cut_off || open.client != from) continue;
+            if (!oldest || (oldest->asks && !open.asks)) oldest = &open;
+        }
+        if (oldest) cut_off(*oldest);
     }
 };
 
@@ -253,9 +291,8 @@ HttpServer::HttpServer(const HttpSettings& settings, Answer answer)
                                       MHD_OPTION_CONNECTION_MEMORY_LIMIT,
                                       limits.connection_memory_bytes,
                                       MHD_OPTION_CONNECTION_LIMIT,
-                                      limits.connections,
-                                      MHD_OPTION_PER_IP_CONNECTION_LIMIT,
-                                      limits.connections_an_address,
+                                      // Those that were just cut off are still to be closed.
+                                      limits.connections + 64,
                                       MHD_OPTION_CONNECTION_TIMEOUT,
                                       limits.idle_s,
                                       MHD_OPTION_STRICT_FOR_CLIENT,

@@ -11,7 +11,8 @@
 
 namespace livery {
 
-/// What one client, and all together, may use.
+/// What one client, and all together, may use. A connection beyond them ends an older one, of the
+/// same address or of the address that holds most.
 struct HttpLimits {
     unsigned connections = 512;
     unsigned connections_an_address = 48;  ///< a whole room may sit behind one

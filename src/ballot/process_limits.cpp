@@ -16,7 +16,7 @@ namespace {
 
 constexpr rlim_t kData_bytes = 64u << 20u;
 constexpr rlim_t kFile_bytes = 256u << 20u;
-constexpr rlim_t kFiles = 640;  ///< 512 connections, the database's, and some
+constexpr rlim_t kFiles = 640;  ///< 576 connections, the database's, and some
 
 #if defined(LIVERY_SANITIZED)
 constexpr bool kSanitized = true;  // whose shadow is larger than any limit

@@ -14,7 +14,7 @@ namespace livery {
 namespace {
 
 constexpr std::string_view kCharacters = "23456789BCDFGHJKMNPQRSTVWXZ";
-constexpr std::size_t kCodeLength = 6;
+constexpr std::size_t kCodeLength = 8;
 
 template <std::size_t Count>
 std::array<std::uint8_t, Count> random_bytes() {

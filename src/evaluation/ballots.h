@@ -92,7 +92,7 @@ struct Turn {
     bool operator==(const Turn&) const = default;
 };
 
-/// How phones come in: by the token in the QR code, or by six characters typed in.
+/// How phones come in: by the token in the QR code, or by eight characters typed in.
 struct Invitation {
     std::string token, code;
     std::int64_t code_until_s = 0;  ///< seconds since 1970

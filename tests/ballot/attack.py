@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Attacks the server from nine loopback addresses while twelve honest phones vote from another: memory stays
-bounded, every honest request is answered, and nothing of the attackers' is stored.
+"""Attacks the server from nine loopback addresses and from the one of twelve honest phones, while these vote: memory
+stays bounded, every honest request is answered, and nothing of the attackers' is stored but what a seat may change.
 
     tests/ballot/attack.py build/release/bin/livery-ballots build/release/bin/ballot_operator
     LIVERY_BALLOT_ATTACK_S=60 tests/ballot/attack.py ...       longer (default 8 s; 60 s with LIVERY_THOROUGH)
@@ -17,6 +17,7 @@ from server import Phone, at_once, check, seed_of, serving
 SEATS, CLIENTS, MOST_KB = 12, 64, 64 * 1024
 ATTACKERS = [f"127.0.0.{k}" for k in range(2, 10)]
 STRANGER = "127.0.0.10"
+HONEST = "127.0.0.30"
 seconds = float(os.environ.get("LIVERY_BALLOT_ATTACK_S", "60" if "LIVERY_THOROUGH" in os.environ else "8"))
 seed = seed_of(20261125)
 
@@ -77,7 +78,7 @@ def slow_drip(port, end):
                  head(port, "GET", "/page.js", "\r\n"))[kind]
         attacks.append(Attack(port, source, first, b"x", 0.3 + 0.01 * k))
     # And as many more as an address may hold.
-    attacks += [Attack(port, source, b"G", b"E", 1.0) for source in ATTACKERS for _ in range(60)]
+    attacks += [Attack(port, source, b"G", b"E", 1.0) for source in (*ATTACKERS, HONEST) for _ in range(60)]
     run_for(end, attacks)
 
 
@@ -131,7 +132,7 @@ def forged(port, end, codes, stolen):
                 check(answer[0] == 401, f"{cookie}: {answer[0]}")
             token = f"{chance.getrandbits(128):032x}"
             check(phone.ask("GET", f"/join/{token}")[0] == 403, "a guessed token")
-            check(phone.ask("POST", "/join", {"code": text[:20]})[0] in (403, 429), "a guessed code")
+            check(phone.ask("POST", "/join", {"code": text[:20]})[0] == 403, "a guessed code")
             guesses += 1
         except OSError:
             time.sleep(0.02)  # the address has as many connections as it may
@@ -181,6 +182,20 @@ def mutated(port, end, codes):
     print(f"mutated: {sent} requests, answered {dict(sorted(answers.items()))}")
 
 
+def flood(phone, round_, codes, end):
+    """A seat that changes its ballot as fast as it can, and wrong join codes all the while."""
+    begin, answers = time.monotonic(), {}
+    while time.monotonic() < end:
+        chosen = codes[len(answers) and answers.get(200, 0) % 2:][:2]
+        status = phone.vote(round_, *chosen)[0]
+        answers[status] = answers.get(status, 0) + 1
+        check(phone.ask("POST", "/join", {"code": "22222222"})[0] == 403, "a wrong code")
+    check(answers.keys() <= {200, 429}, f"flood: {answers}")
+    most = 61 + (time.monotonic() - begin) * 30 / 60
+    check(answers[200] <= most, f"flood: {answers}, expected {most:.0f} at most")
+    print(f"flood: answered {answers}")
+
+
 def honest(phone, round_, codes, end, waits, last, steps):
     """Polls about once a second and votes now and then, as the page does."""
     chance = random.Random(phone.seat)
@@ -188,7 +203,7 @@ def honest(phone, round_, codes, end, waits, last, steps):
         begin = time.monotonic()
         phone.state()
         waits.append(time.monotonic() - begin)
-        if chance.random() < 0.5 or phone.seat not in last:
+        if chance.random() < 0.1 or phone.seat not in last:
             choice = tuple(chance.sample(codes, 2))
             begin = time.monotonic()
             status, _, answer = phone.vote(round_, *choice)
@@ -204,8 +219,10 @@ def honest(phone, round_, codes, end, waits, last, steps):
 
 with serving() as server:
     token = server.operator("invitation")["token"]
-    phones = [Phone(server, "127.0.0.30") for _ in range(SEATS)]
-    for phone in phones:
+    Phone.asks_again = True
+    phones = [Phone(server, HONEST) for _ in range(SEATS)]
+    flooder = Phone(server, ATTACKERS[-1])
+    for phone in (*phones, flooder):
         phone.join(token)
     round_ = server.operator("open", "a,b,c,d", "scale=cheap,precious")
     codes = server.operator("show")["rounds"][-1]["codes"]
@@ -214,6 +231,7 @@ with serving() as server:
     end = time.monotonic() + seconds
     attackers = [multiprocessing.Process(target=slow_drip, args=(server.port, end)),
                  multiprocessing.Process(target=endless, args=(server.port, end)),
+                 multiprocessing.Process(target=flood, args=(flooder, round_, codes, end)),
                  multiprocessing.Process(target=forged, args=(server.port, end, codes, phones[0].cookie)),
                  multiprocessing.Process(target=mutated, args=(server.port, end, codes))]
     for attacker in attackers:
@@ -237,10 +255,11 @@ with serving() as server:
     server.operator("lock", round_)
     kept = {int(seat): (codes[best], codes[second], receipt)
             for seat, (best, second, receipt) in server.operator("ballots", round_).items()}
+    check(kept.pop(flooder.seat, None), "a seat that changes too often may still vote")
     check(kept == last, f"kept {kept}, confirmed {last}")
     answered = {int(seat): placed[str(codes[0])][0] for seat, placed in server.operator("ratings", round_).items()}
     check(answered == steps, f"answers kept {answered}, confirmed {steps}")
-    check(server.operator("show")["seats"] == SEATS, "seats that nobody honest took")
+    check(server.operator("show")["seats"] == SEATS + 1, "seats that nobody honest took")
     check(max(open_files) > CLIENTS, f"only {max(open_files)} connections: that was no attack")
     waits.sort()
     print(f"attack: {seconds:.0f} s, {len(waits)} honest requests, all answered; waited "

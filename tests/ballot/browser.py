@@ -125,6 +125,12 @@ class Tab:
         if answer.get("errorText"):
             raise RuntimeError(f"{url}: {answer['errorText']}")
 
+    def leave(self, method, **parameters):
+        """Calls what leaves the page, and waits for another one: the old one could still answer."""
+        self.js("window.left = true")
+        self.call(method, **parameters)
+        self.wait("!window.left && document.readyState === 'complete'", "another page")
+
     def wait(self, expression, what, patience_s=PATIENCE_S):
         end = time.monotonic() + patience_s
         while time.monotonic() < end:

@@ -32,21 +32,21 @@ TEST(Secrets, JoinCodesUseEachCharacterAlike) {
     constexpr int kCodes = 9000;
     for (int k = 0; k < kCodes; ++k) {
         const std::string code = random_join_code();
-        ASSERT_EQ(code.size(), 6u);
+        ASSERT_EQ(code.size(), 8u);
         EXPECT_EQ(tidy_join_code(code), code);
         for (const char c : code) ++counts[c];
     }
     ASSERT_EQ(counts.size(), 27u);
-    // 2000 of each, within six sigma.
+    // 2667 of each, within six sigma.
     for (const auto& [character, count] : counts) {
-        EXPECT_NEAR(count, kCodes * 6 / 27, 6 * 44) << character;
+        EXPECT_NEAR(count, kCodes * 8 / 27, 6 * 51) << character;
         EXPECT_EQ(std::string("0O1ILAEUY").find(character), std::string::npos);
     }
 }
 
 TEST(Secrets, JoinCodesAreTakenAsTheyAreTyped) {
-    EXPECT_EQ(tidy_join_code("k7m-2pq"), "K7M2PQ");
-    EXPECT_EQ(tidy_join_code(" K7M 2PQ "), "K7M2PQ");
+    EXPECT_EQ(tidy_join_code("k7m2-pq34"), "K7M2PQ34");
+    EXPECT_EQ(tidy_join_code(" K7M2 PQ34 "), "K7M2PQ34");
     EXPECT_EQ(tidy_join_code(""), "");
 }
 

@@ -22,14 +22,15 @@ DESIGNS = "red,silver,ivory,blue"
 class Serving(Server):
     """As Server, started by the command."""
 
-    def __init__(self, program, operator, folder, what=("--designs", DESIGNS, "--scale", "cheap,precious")):
-        self.said, self.token, self.what = [], None, what
+    def __init__(self, program, operator, folder, what=("--designs", DESIGNS, "--scale", "cheap,precious"),
+                 seed=("--seed", "7")):
+        self.said, self.token, self.what = [], None, (*what, *seed)
         super().__init__(program, operator, folder)
 
     def start(self):
         self.process = subprocess.Popen(
             [self.program, "evaluate", "serve", "--ballots", str(self.file), "--port", str(self.port),
-             *self.what, "--seed", "7", "--json"],
+             *self.what, "--json"],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         found = self.wait_for(r"The ballots are at http://127\.0\.0\.1:(\d+)/")
         self.port = int(found[1])
@@ -68,7 +69,7 @@ def voted(phone, *vote):
 def whole(server):
     server.wait_for("Only this machine")
     token = server.wait_for(r"join at http://127\.0\.0\.1:\d+/join/([0-9a-f]{32})$")[1]
-    code = server.wait_for(r"join code (\w{3} \w{3})")[1]
+    code = server.wait_for(r"join code (\w{4} \w{4})")[1]
     phones = [Phone(server) for _ in range(3)]
     phones[0].join(token)
     phones[1].join(token)
@@ -171,6 +172,14 @@ def tally_of_the_duel(program, file):
     check(scale["low_word"] == "cheap" and scale["looks"][0]["mean"] == 6 and scale["complete"] == 0, f"{scale}")
 
 
+def seed_drawn(server):
+    server.enter()
+    seed = int(server.wait_for(r"round 1, seed (\d+)")[1])
+    server.enter("q")
+    server.process.communicate(timeout=20)
+    return seed
+
+
 def refusals(program, folder):
     for options, part in ((["--designs", "one"], "at least 2"), (["--interface", "none0"], "none0"),
                           (["--port", "70000"], "70000"), (["--seats", "0"], "--seats"),
@@ -191,6 +200,12 @@ try:
     duel(server, phones)
     tally_of_the_duel(sys.argv[1], server.file)
     refusals(sys.argv[1], folder)
+    # Without --seed each round draws its own, so that codes cannot be guessed.
+    drawn = []
+    for _ in range(2):
+        server = Serving(sys.argv[1], sys.argv[2], tempfile.mkdtemp(dir=folder), ("--designs", DESIGNS), seed=())
+        drawn.append(seed_drawn(server))
+    check(drawn[0] != drawn[1], f"seeds {drawn}")
     print("serve: joined, presented, voted, killed twice, locked; a duel in three repeats")
 finally:
     if server.process.poll() is None:

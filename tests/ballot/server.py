@@ -83,7 +83,9 @@ def serving(*options):
 
 
 class Phone:
-    """A browser's part: a cookie, and a connection that is kept."""
+    """A browser's part: a cookie, and a connection that is kept. `asks_again` is what browsers do where a kept
+    connection has ended meanwhile."""
+    asks_again = False
 
     def __init__(self, server, source="127.0.0.1"):
         self.server, self.source, self.cookie, self.connection = server, source, None, None
@@ -101,6 +103,7 @@ class Phone:
                          "Content-Type": "application/json"})
         sent.update(headers or {})
         sent = {name: text for name, text in sent.items() if text is not None}
+        kept = self.connection is not None
         try:
             if not self.connection:
                 self.connection = http.client.HTTPConnection(
@@ -108,8 +111,10 @@ class Phone:
             self.connection.request(method, path, body, sent)
             answer = self.connection.getresponse()
             text = answer.read().decode()
-        except BaseException:
+        except BaseException as problem:
             self.hang_up()
+            if kept and self.asks_again and isinstance(problem, (ConnectionError, http.client.RemoteDisconnected)):
+                return self.ask(method, path, value, headers)
             raise
         if answer.getheader("Connection", "").lower() == "close":
             self.hang_up()

@@ -233,7 +233,7 @@ TEST_F(BallotServiceTest, ARestartKeepsSeatsTheQrCodeAndVotes) {
     EXPECT_EQ(invitation().code, invited.code);
 }
 
-TEST_F(BallotServiceTest, JoiningByCodeIsRationedAndExpires) {
+TEST_F(BallotServiceTest, ARightCodeIsNeverRefusedAndExpires) {
     const auto join_with = [&](const std::string& code, double now, const std::string& client) {
         BallotRequest asked = request("POST", "/join", "", Json{{"code", code}}.dump());
         asked.client = client;
@@ -243,20 +243,62 @@ TEST_F(BallotServiceTest, JoiningByCodeIsRationedAndExpires) {
     const auto answer = join_with(code, kNow, "a");
     EXPECT_EQ(answer.status, 200);
     EXPECT_TRUE(answer.cookie);
-    for (int k = 0; k < 5; ++k) EXPECT_EQ(join_with("222222", kNow, "b").status, 403);
-    EXPECT_EQ(join_with("222222", kNow, "b").status, 429);
-    EXPECT_EQ(join_with(code, kNow, "b").status, 429) << "right, but one of too many";
-    EXPECT_EQ(join_with(code.substr(0, 3) + "-" + code.substr(3), kNow, "c").status, 200);
-    // Ten minutes later it is another one.
-    EXPECT_EQ(join_with(code, kNow + 601.0, "d").status, 403);
+    for (int client = 0; client < 100; ++client) {
+        EXPECT_EQ(join_with("22222222", kNow, std::to_string(client)).status, 403);
+        EXPECT_EQ(join_with("22222222", kNow, "b").status, 403);
+    }
+    EXPECT_EQ(join_with(code.substr(0, 4) + "-" + code.substr(4), kNow, "b").status, 200);
+    EXPECT_EQ(join_with("", kNow, "g").status, 403);
+    // Ten minutes later it is another one; whoever is typing has a minute more.
+    EXPECT_EQ(join_with(code, kNow + 601.0, "c").status, 403);
     const std::string token = invitation().token;
     service_.keep_invitation(kNow + 601.0);
     EXPECT_NE(invitation().code, code);
     EXPECT_EQ(invitation().token, token) << "the QR code on the wall stays";
-    EXPECT_EQ(join_with(invitation().code, kNow + 602.0, "e").status, 200);
-    EXPECT_EQ(operators_.seats(1).size(), 3u);
-    EXPECT_EQ(join_with(invitation().code, kNow + 602.0, "f").status, 409) << "all seats taken";
-    EXPECT_EQ(join_with("", kNow, "g").status, 403);
+    EXPECT_EQ(join_with(invitation().code, kNow + 602.0, "d").status, 200);
+    EXPECT_EQ(join_with(code, kNow + 659.0, "e").status, 200);
+    EXPECT_EQ(join_with(code, kNow + 660.0, "f").status, 403);
+    EXPECT_EQ(operators_.seats(1).size(), 4u);
+    // The next audience has a code of its own at once.
+    const std::string of_the_first = invitation().code;
+    operators_.open_session();
+    service_.keep_invitation(kNow + 661.0);
+    EXPECT_EQ(join_with(of_the_first, kNow + 662.0, "e").status, 403);
+}
+
+TEST_F(BallotServiceTest, OnePhoneTakesNotAllSeats) {
+    const auto join_from = [&](const std::string& client) {
+        BallotRequest asked = request("GET", "/join/" + invitation().token);
+        asked.client = client;
+        return ask(asked).cookie.has_value();
+    };
+    for (int k = 0; k < 3; ++k) EXPECT_TRUE(join_from("greedy"));
+    for (int k = 0; k < 100; ++k) EXPECT_FALSE(join_from("greedy"));
+    EXPECT_TRUE(join_from("honest"));
+    EXPECT_TRUE(join_from("late"));
+    EXPECT_FALSE(join_from("late")) << "a second phone there needs a free seat";
+    EXPECT_EQ(operators_.seats(1).size(), 5u);
+}
+
+TEST_F(BallotServiceTest, ASeatChangesItsBallotAsOftenAsPeopleDo) {
+    const std::string one = join(), other = join();
+    open();
+    int taken = 0, refused = 0;
+    for (int k = 0; k < 1000; ++k) {
+        const std::string best = k % 2 == 0 ? "907" : "412";
+        const int status =
+            vote(one, R"({"round": 1, "best": )" + best + R"(, "second": 560})").status;
+        (status == 200 ? taken : refused) += 1;
+        if (status != 200) {
+            EXPECT_EQ(status, 429);
+        }
+    }
+    EXPECT_EQ(taken, 60);
+    EXPECT_EQ(refused, 940);
+    EXPECT_EQ(vote(other, R"({"round": 1, "best": 907, "second": 560})").status, 200);
+    const auto later =
+        request("PUT", "/ballot", one, R"({"round": 1, "best": 133, "second": 560})");
+    EXPECT_EQ(ask(later, kNow + 10.0).status, 200);
 }
 
 TEST_F(BallotServiceTest, JoiningClosesWhenARoundBegins) {

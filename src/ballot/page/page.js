@@ -196,7 +196,7 @@ async function answer(step) {
                 if (step !== null && describing && place === from) goTo(place + 1);
                 return;
             }
-            if (told && told.status !== 503) {
+            if (told && told.status !== 503 && told.status !== 429) {
                 one("#scale-problem").textContent = told.json.problem || "Not received.";
                 return;
             }
@@ -343,7 +343,7 @@ async function submitVote() {
                 show(answer.json);
                 return;
             }
-            if (answer && answer.status !== 503) {
+            if (answer && answer.status !== 503 && answer.status !== 429) {
                 one("#vote-problem").textContent = answer.json.problem || "Not received.";
                 return;
             }
