@@ -24,7 +24,7 @@ struct CommonOptions {
     bool json = false;
     int seed = 1;
     bool seed_given = false;  ///< else what must not be guessed draws its own
-    int threads = 0;  ///< 0: all
+    int threads = 0;          ///< 0: all
     std::string data;
     std::string gl = "auto";
 
