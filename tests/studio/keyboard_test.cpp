@@ -181,6 +181,34 @@ TEST_F(Keyboard, ADialogStartsAtHomeThenWhereTheUserLastWas) {
     EXPECT_TRUE(frame().contains("file-dialog:top.json"));
 }
 
+TEST_F(Keyboard, AFieldWhoseTextChangedMeanwhileUndoesNothing) {
+    std::string text;
+    draw_ = [&] {
+        ImGui::InputText("##field", &text);
+        name_last_item("field");
+    };
+    const auto with_ctrl = [&](ImGuiKey key) {
+        hold_ctrl(true);
+        press(key);
+        hold_ctrl(false);
+        frames(2);
+    };
+    click("field");
+    for (const char letter : std::string("long")) type({letter});
+    with_ctrl(ImGuiKey_Z);
+    EXPECT_EQ(text, "lon");
+    with_ctrl(ImGuiKey_Y);
+    EXPECT_EQ(text, "long");
+    ImGui::ClearActiveID();
+    frames(2);
+    // The same field of another dialog, another look or another paint.
+    text.clear();
+    click("field");
+    with_ctrl(ImGuiKey_Z);
+    with_ctrl(ImGuiKey_Y);
+    EXPECT_EQ(text, "");
+}
+
 TEST_F(Keyboard, AFieldIsTypedInAlsoWhenAnotherItemHasTheKeyboard) {
     std::string text;
     bool asked = false;

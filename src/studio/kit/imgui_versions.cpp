@@ -49,6 +49,7 @@ void hand_in_pointer(const ImVec2& at) { ImGui::GetIO().AddMousePosEvent(at.x, a
 
 void begin_keys() {}
 void hold_key(ImGuiKey key, bool down) { ImGui::GetIO().AddKeyEvent(key, down); }
+void hold_ctrl(bool down) { ImGui::GetIO().AddKeyEvent(ImGuiMod_Ctrl, down); }
 
 #else
 
@@ -77,6 +78,7 @@ void begin_keys() {
     io.KeyMap[ImGuiKey_Space] = ImGuiKey_Enter;  // as begin_input()
 }
 void hold_key(ImGuiKey key, bool down) { ImGui::GetIO().KeysDown[key] = down; }
+void hold_ctrl(bool down) { ImGui::GetIO().KeyCtrl = down; }
 
 #endif
 

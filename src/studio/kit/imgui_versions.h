@@ -36,5 +36,6 @@ void hand_in_pointer(const ImVec2& at);
 /// Without a window: once, after the context is made; then a key is pressed or released.
 void begin_keys();
 void hold_key(ImGuiKey key, bool down);
+void hold_ctrl(bool down);
 
 }  // namespace livery

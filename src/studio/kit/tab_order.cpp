@@ -79,6 +79,10 @@ Stop stop_here(ImGuiID id, ImRect on_screen) {
 void start_tab_order() {
     stops.clear();
     group_start.reset();
+    // A field that is left would take up its undo steps again when it is typed in the next time,
+    // and end the program where its text is another one by then.
+    ImGuiContext& g = *ImGui::GetCurrentContext();
+    if (g.ActiveId != g.InputTextState.ID) g.InputTextState.ID = 0;
 }
 
 void note_tab_stop(const std::string& name) {

@@ -7,7 +7,8 @@
 
 namespace livery {
 
-/// Forgets the last frame's; to be called before anything is drawn.
+/// Forgets the last frame's, and the undo steps of a text field that is left; to be called before
+/// anything is drawn.
 void start_tab_order();
 /// The item just drawn is a stop, unless nothing can be done with it; name_last_item() calls this.
 void note_tab_stop(const std::string& name);
