@@ -64,14 +64,14 @@ void draw_view_buttons(Shell& shell) {
 
 void draw_compare_buttons(Shell& shell) {
     Studio& studio = shell.studio;
-    const float width = em(3.6f), gap = ImGui::GetStyle().ItemInnerSpacing.x;
-    const float left = ImGui::GetWindowContentRegionMax().x - 2.0f * width - gap;
+    const float hold = em(5.2f), wipe = em(4.2f), gap = ImGui::GetStyle().ItemInnerSpacing.x;
+    const float left = ImGui::GetWindowContentRegionMax().x - hold - wipe - gap;
     // A line of their own where the column is too narrow for both.
     if (ImGui::GetCursorPosX() + gap > left) ImGui::NewLine();
-    ImGui::SameLine(left);
+    ImGui::SetCursorPosX(std::max(left, ImGui::GetCursorStartPos().x));
     begin_disabled(!studio.compared_look);
     ImGui::PushStyleColor(ImGuiCol_Text, colours::text);
-    toggle_button("Hold B", studio.showing_b, width);
+    toggle_button("Hold Space", studio.showing_b, hold);
     const bool over = ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem);
     if (ImGui::IsItemActivated()) studio.showing_b = true;
     if (ImGui::IsItemDeactivated()) studio.showing_b = false;
@@ -80,14 +80,15 @@ void draw_compare_buttons(Shell& shell) {
         const SessionLook* b = studio.compared_look
                                    ? find_look(studio.session.document(), *studio.compared_look)
                                    : nullptr;
-        tooltip(b ? "While held, shows " + b->look.name + " (Space)" : "Needs a second look.");
+        tooltip(b ? "While it or the space bar is held, shows B: " + b->look.name + "."
+                  : "Shows B, the look to compare with, while held. Needs a second look.");
     }
     ImGui::SameLine(0.0f, ImGui::GetStyle().ItemInnerSpacing.x);
-    if (toggle_button("Wipe", studio.wiping, width)) studio.wiping = !studio.wiping;
+    if (toggle_button("Wipe (W)", studio.wiping, wipe)) studio.wiping = !studio.wiping;
     ImGui::PopStyleColor();
     end_disabled();
     name_last_item("wipe");
-    tooltip("A on the left, B on the right of a line that you can drag (W).");
+    tooltip("A on the left, B on the right of a line that you can drag.");
 }
 
 /// Fitted, in whole pixels, then zoomed about a point of the picture.

@@ -66,10 +66,13 @@ TEST(Actions, ATextFieldKeepsItsKeysButNotBlackAndFreeze) {
     EXPECT_EQ(action_for({GLFW_KEY_F, true, false}, typing)->id, "freeze");
 }
 
-TEST(Actions, ADialogLeavesPlainBlackAndFreezeAndNothingElse) {
+TEST(Actions, ADialogLeavesBlackAndFreezeWithCtrlAndNoSingleLetter) {
     const KeyboardOwner dialog{.dialog = true};
-    EXPECT_EQ(action_for({GLFW_KEY_B, false, false}, dialog)->id, "black");
-    EXPECT_EQ(action_for({GLFW_KEY_F, false, false}, dialog)->id, "freeze");
+    EXPECT_EQ(action_for({GLFW_KEY_B, true, false}, dialog)->id, "black");
+    EXPECT_EQ(action_for({GLFW_KEY_F, true, false}, dialog)->id, "freeze");
+    for (int letter = GLFW_KEY_A; letter <= GLFW_KEY_Z; ++letter) {
+        EXPECT_EQ(action_for({letter, false, false}, dialog), nullptr) << letter;
+    }
     EXPECT_EQ(action_for({GLFW_KEY_N, false, false}, dialog), nullptr);
     EXPECT_EQ(action_for({GLFW_KEY_ESCAPE, false, false}, dialog), nullptr);
 }

@@ -414,6 +414,8 @@ bool run_action(const Action& action, Shell& shell) {
     if (!action.in_presentations && refuse_editing(shell.studio)) return false;
     if (!is_enabled(action, shell)) return false;
     action.run(shell);
+    shell.last_action = action.id;
+    ++shell.actions_run;
     return true;
 }
 
@@ -423,8 +425,8 @@ const Action* action_for(const KeyChord& chord, const KeyboardOwner& owner) {
     for (const Action& action : all_actions()) {
         const auto& chords = action.chords;
         if (std::find(chords.begin(), chords.end(), chord) == chords.end()) continue;
-        if (owner.dialog && !action.in_dialogs) return nullptr;
         const bool letter = !chord.ctrl && chord.key >= GLFW_KEY_A && chord.key <= GLFW_KEY_Z;
+        if (owner.dialog && (letter || !action.in_dialogs)) return nullptr;
         if (owner.ballot_letters > 0) {
             if (!action.in_votes) return nullptr;
             if (letter && static_cast<std::size_t>(chord.key - GLFW_KEY_A) < owner.ballot_letters) {

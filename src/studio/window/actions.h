@@ -28,7 +28,7 @@ struct Action {
     std::function<bool(const Shell&)> checked;        ///< none: not a switch
     std::function<std::string(const Shell&)> detail;  ///< behind the label: what undo would undo
     std::function<void(Shell&)> released;             ///< for what holds while its key is held
-    bool in_dialogs = false;                          ///< its keys also work while a dialog is open
+    bool in_dialogs = false;                          ///< also in dialogs, but for single letters
     bool in_votes = false;          ///< its keys also work while somebody fills a ballot
     bool in_presentations = false;  ///< also while frozen looks are presented and voted on
     bool starts_group = false;      ///< a line above it in the menu

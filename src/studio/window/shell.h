@@ -122,6 +122,8 @@ struct Shell {
     double layout_rests_at_s = 0.0;  ///< 0: it is remembered
     double save_again_at_s = 0.0;    ///< 0: everything is saved, or there is no file
     double user_scale = 1.0;
+    std::string last_action;  ///< id of the last one that ran
+    int actions_run = 0;
     std::optional<double> fixed_scale;  ///< --ui-scale
     std::optional<int> tab_to_open;
     int open_tab = 0;

@@ -5,6 +5,8 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_internal.h>
 
 #include "core/json.h"
 #include "core/paths.h"
@@ -253,6 +255,9 @@ MapState state_of_shell(const Shell& shell) {
     }
     state["phones"] =
         quoted(vote.phones && vote.phones->place() ? url_of(*vote.phones->place()) : "");
+    state["action"] = quoted(shell.last_action);
+    state["actions"] = std::to_string(shell.actions_run);
+    state["dialog"] = text(ImGui::GetTopMostPopupModal() != nullptr);
     state["scale"] = fmt::format("{:.3f}", studio.ui_scale);
     Json notices = Json::array();
     for (const Notice& notice : studio.notices) notices.push_back(notice.what);
