@@ -16,8 +16,8 @@ namespace livery {
 
 struct BallotServiceSettings {
     ServerNames names;
-    /// A phone at an address that has no seat yet gets one beyond them, too, up to 400: no single
-    /// phone can take them all.
+    /// An address that has no seat yet gets one beyond this, up to 400, so that one phone cannot
+    /// take them all.
     int most_seats = 40;
 };
 
@@ -28,9 +28,8 @@ struct BallotServiceSettings {
 ///     GET  /join/TOKEN          from the QR code: a seat, and a redirect to /
 ///     POST /join                {"code"}: the same by the eight characters
 ///     GET  /state               what the page shows
-///     PUT  /ballot              {"round", "best", "second", "least"}: changed as often as people
-///     do (ChangeLimit) PUT  /scales              {"round", "look", "steps"}: the same, after the
-///     ballot
+///     PUT  /ballot              {"round", "best", "second", "least"}; within ChangeLimit
+///     PUT  /scales              {"round", "look", "steps"}: the same, after the ballot
 class BallotService {
   public:
     /// Opens the file as BallotStore does, and makes its first session where there is none.

@@ -41,7 +41,7 @@ constexpr const char* kHelp =
     "  --port N            default 8470; 0: any that is free\n"
     "  --host NAME         a further name of this machine, as \"livery.local\"; may be repeated\n"
     "  --certificate FILE  with --key: PEM files, for HTTPS\n"
-    "  --seats N           phones in a session, 1 to 400 (default 40)\n"
+    "  --seats N           phones, 1 to 400 (default 40), apart from the first at an address\n"
     "  --with-parent       end with the program that started this one\n"
     "  --json              say where it listens as one line of JSON\n"
     "\n"

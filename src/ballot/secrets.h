@@ -12,8 +12,8 @@ std::string random_secret();
 
 /// Eight characters to be read aloud and typed: digits and capitals without those that look or
 /// sound alike, and without vowels, so that no word comes of them. Of 27^8 = 2.8e11 codes, each
-/// good for eleven minutes, 2000 guesses a second find one within two hours with a chance of 5e-5:
-/// wrong codes lock nobody out.
+/// good for eleven minutes, 10,000 guesses a second find one within two hours with a probability of
+/// 3e-4, so wrong codes need not lock anybody out.
 std::string random_join_code();
 
 /// What somebody typed, as random_join_code() writes it: capitals, no spaces nor hyphens.

@@ -41,7 +41,7 @@ class Database {
     /// takes more steps than any of ours throws FileError.
     std::vector<std::vector<DatabaseValue>> run(std::string_view sql,
                                                 const std::vector<DatabaseValue>& values = {});
-    /// The same, a row at a time: of a statement that gives more than memory should hold.
+    /// The same, one row at a time, for results that are not to be held in memory as a whole.
     using Row = std::vector<DatabaseValue>;
     void run_each(std::string_view sql,
                   const std::vector<DatabaseValue>& values,

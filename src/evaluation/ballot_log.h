@@ -50,7 +50,7 @@ void append_to_log(Database& database, LogEntry& entry);
 
 /// Every entry, in order. Throws FileError when one was changed, taken out or put in. The hash
 /// finds accidents and careless hands; somebody who may write the file and knows the program can
-/// forge it. One at a time, since a log may be longer than the memory that is given to the server.
+/// forge it. Entry by entry: a log may be larger than the server's memory limit.
 void read_log(Database& database, const std::function<void(const LogEntry&)>& take);
 std::vector<LogEntry> read_log(Database& database);
 

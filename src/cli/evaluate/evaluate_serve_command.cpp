@@ -321,7 +321,12 @@ Command evaluate_serve_command() {
          {}},
         {"--certificate", "FILE", "with --key: PEM, for HTTPS", &arguments->certificate, false, {}},
         {"--key", "FILE", "the certificate's private key", &arguments->key, false, {}},
-        {"--seats", "N", "most phones, 1 to 400 (default 40)", &arguments->seats, false, {}},
+        {"--seats",
+         "N",
+         "phones, 1 to 400 (default 40), apart from the first one at an address",
+         &arguments->seats,
+         false,
+         {}},
     };
     command.run = [arguments](const CommonOptions& common, const Progress& progress) {
         check_argument(scales_of(*arguments).empty() || !arguments->designs.empty(),

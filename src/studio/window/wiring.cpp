@@ -283,6 +283,20 @@ void ask_for_photograph(Shell& shell) {
         studio.frame->number, drive_of(*shell.photographed), eye_mm, studio.setup->design_white_y);
 }
 
+/// A part glows for its time from when its picture is drawn, however long that takes.
+void end_glow(Shell& shell) {
+    Studio& studio = shell.studio;
+    if (!studio.glowing_part) return;
+    const bool drawn = !studio.setup || (shell.asked_frame &&
+                                         shell.asked_frame->glowing_part == studio.glowing_part &&
+                                         !is_frame_under_way(shell));
+    if (!drawn) {
+        studio.glowing_until_s = std::max(studio.glowing_until_s, studio.now_s + kGlow_s);
+    } else if (studio.now_s >= studio.glowing_until_s) {
+        studio.glowing_part.reset();
+    }
+}
+
 }  // namespace
 
 bool preview_goes_first(const Shell& shell) {
@@ -359,24 +373,6 @@ void stop_threads(Shell& shell) {
     if (shell.results) shell.results->clear();
     studio.panels.lighting->reference = {};
 }
-
-namespace {
-
-/// A part glows for its time from when its picture is drawn, however long that takes.
-void end_glow(Shell& shell) {
-    Studio& studio = shell.studio;
-    if (!studio.glowing_part) return;
-    const bool drawn = !studio.setup || (shell.asked_frame &&
-                                         shell.asked_frame->glowing_part == studio.glowing_part &&
-                                         !is_frame_under_way(shell));
-    if (!drawn) {
-        studio.glowing_until_s = std::max(studio.glowing_until_s, studio.now_s + kGlow_s);
-    } else if (studio.now_s >= studio.glowing_until_s) {
-        studio.glowing_part.reset();
-    }
-}
-
-}  // namespace
 
 void take_results(Shell& shell) {
     Studio& studio = shell.studio;
