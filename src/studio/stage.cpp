@@ -64,14 +64,17 @@ void draw_view_buttons(Shell& shell) {
 
 void draw_compare_buttons(Shell& shell) {
     Studio& studio = shell.studio;
-    const float hold = em(5.2f), wipe = em(4.2f), gap = ImGui::GetStyle().ItemInnerSpacing.x;
-    const float left = ImGui::GetWindowContentRegionMax().x - hold - wipe - gap;
+    // With their keys, as Black and Freeze have theirs.
+    const char *compare = "Compare  Space", *wipe = "Wipe  W";
+    const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
+    const float left =
+        ImGui::GetWindowContentRegionMax().x - button_width(compare) - gap - button_width(wipe);
     // A line of their own where the column is too narrow for both.
     if (ImGui::GetCursorPosX() + gap > left) ImGui::NewLine();
     ImGui::SetCursorPosX(std::max(left, ImGui::GetCursorStartPos().x));
     begin_disabled(!studio.compared_look);
     ImGui::PushStyleColor(ImGuiCol_Text, colours::text);
-    toggle_button("Hold Space", studio.showing_b, hold);
+    chip(compare, studio.showing_b);
     const bool over = ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem);
     if (ImGui::IsItemActivated()) studio.showing_b = true;
     if (ImGui::IsItemDeactivated()) studio.showing_b = false;
@@ -84,7 +87,7 @@ void draw_compare_buttons(Shell& shell) {
                   : "Shows B, the look to compare with, while held. Needs a second look.");
     }
     ImGui::SameLine(0.0f, ImGui::GetStyle().ItemInnerSpacing.x);
-    if (toggle_button("Wipe (W)", studio.wiping, wipe)) studio.wiping = !studio.wiping;
+    if (chip(wipe, studio.wiping)) studio.wiping = !studio.wiping;
     ImGui::PopStyleColor();
     end_disabled();
     name_last_item("wipe");
