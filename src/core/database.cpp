@@ -318,6 +318,8 @@ Database::Database(const std::filesystem::path& file,
                         "at most " + std::to_string(newest_version));
     }
     run("PRAGMA cell_size_check = ON");
+    // Checking an index reads the table all over; SQLite's own 2 MB would read it again and again.
+    run("PRAGMA cache_size = -16000");
     check_schema(schema);
     if (mode == Mode::read_only) {
         run("PRAGMA query_only = 1");
