@@ -14,6 +14,7 @@
 #include <imgui.h>
 
 #include "core/error.h"
+#include "evaluation/design_codes.h"
 #include "studio/ballot_pages.h"
 #include "studio/ballot_result.h"
 #include "studio/kit/theme.h"
@@ -145,6 +146,7 @@ void draw_start(Studio& studio) {
         RoundSetup setup{names, calibration};
         setup.asks_least = presenting_settings(studio).asks_least && names.size() > 2;
         setup.scales = scales_asked(presenting_settings(studio));
+        setup.seed = presenting_settings(studio).seed.value_or(random_seed());
         if (attempted(state, [&] { studio.ballots->open_round(setup); })) {
             read_rounds(studio);
             go_to(state, Page::vote);

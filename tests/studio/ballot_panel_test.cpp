@@ -93,5 +93,20 @@ TEST_F(Panels, TheBallotFollowsWhatPhonesDo) {
     EXPECT_EQ(state.problem, "");
 }
 
+TEST_F(Panels, ARoundAtOnceDrawsItsSeed) {
+    use_scale(1.0f);
+    Studio studio = make_studio();
+    studio.ballots = std::make_unique<BallotStore>(home_ / "ballots.sqlite");
+    studio.setup = std::make_shared<const ProjectorSetup>();
+    BallotStore other(home_ / "ballots.sqlite");
+    for (int round = 1; round <= 2; ++round) {
+        click(studio, draw_ballot, "ballot:start");
+        other.close_round(round);
+        frames(studio, draw_ballot, 2);
+    }
+    const auto rounds = studio.ballots->rounds();
+    EXPECT_NE(rounds.at(0).seed, rounds.at(1).seed);
+}
+
 }  // namespace
 }  // namespace livery
