@@ -8,16 +8,17 @@ uniform vec3 u_view_centre_mm;
 
 uniform sampler2D u_vertices;  // three texels a vertex: position in mm and u, normal and v, tangent
 uniform usampler2D u_corners;  // one a triangle: its vertices, its part
-uniform sampler2D u_sky;       // one a vertex: radiance of a white diffuser; openness
+uniform int u_first_back;      // from a vertex's light to that of its back; 0: none has one
+uniform sampler2D u_sky;       // one a side of a vertex: radiance of a white diffuser; openness
 #if LIGHTS > 0
-uniform sampler2D u_visibility;  // texels of four lights, (LIGHTS + 3) / 4 a vertex
+uniform sampler2D u_visibility;  // texels of four lights, (LIGHTS + 3) / 4 a side
 uniform vec3 u_light_direction[LIGHTS];
 uniform vec3 u_light_radiance[LIGHTS];  // irradiance, facing the light
 uniform float u_light_radius2[LIGHTS];  // half of the disc's angle, squared
 #endif
 
 // The sample, from prepare_sample()
-uvec4 s_corner;
+uvec4 s_corner, s_lit;  // vertices; where their light is
 vec3 s_weight;  // of the corners
 vec3 s_position_mm, s_normal;
 #ifndef LAMBERT
@@ -100,6 +101,7 @@ void prepare_sample() {
     bool from_inside =
         dot(flat_normal, u_view_centre_mm - s_position_mm) * dot(flat_normal, outside) < 0.0;
     s_normal = from_inside ? -outside : outside;
+    s_lit = s_corner + (from_inside ? uint(u_first_back) : 0u);
 
 #if !defined(LAMBERT) || defined(WITH_ARTWORK)
     vec2 step_x = vec2(-(c.y - a.y), b.y - a.y) * -scale / u_samples_a_pixel;
@@ -148,9 +150,9 @@ void prepare_sample() {
 }
 
 vec4 sky_and_openness() {
-    return s_weight.x * texelFetch(u_sky, place_of(s_corner.x), 0) +
-           s_weight.y * texelFetch(u_sky, place_of(s_corner.y), 0) +
-           s_weight.z * texelFetch(u_sky, place_of(s_corner.z), 0);
+    return s_weight.x * texelFetch(u_sky, place_of(s_lit.x), 0) +
+           s_weight.y * texelFetch(u_sky, place_of(s_lit.y), 0) +
+           s_weight.z * texelFetch(u_sky, place_of(s_lit.z), 0);
 }
 
 vec3 sky_here() {
@@ -158,14 +160,14 @@ vec3 sky_here() {
 }
 
 #if LIGHTS > 0
-vec4 visibility_of(uint vertex, int k) {
+vec4 visibility_of(uint side, int k) {
     uint texels = uint(LIGHTS + 3) / 4u;
-    return texelFetch(u_visibility, place_of(vertex * texels + uint(k) / 4u), 0);
+    return texelFetch(u_visibility, place_of(side * texels + uint(k) / 4u), 0);
 }
 float visibility_here(int k) {
-    vec4 visibility = s_weight.x * visibility_of(s_corner.x, k) +
-                      s_weight.y * visibility_of(s_corner.y, k) +
-                      s_weight.z * visibility_of(s_corner.z, k);
+    vec4 visibility = s_weight.x * visibility_of(s_lit.x, k) +
+                      s_weight.y * visibility_of(s_lit.y, k) +
+                      s_weight.z * visibility_of(s_lit.z, k);
     return visibility[k % 4];
 }
 #endif

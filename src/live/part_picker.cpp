@@ -40,8 +40,8 @@ std::optional<PickedPoint> PartPicker::point_at(const View& view, const glm::dve
     const SurfacePoint surface = surface_point(mesh, hit);
     PickedPoint point{
         surface.part, glm::dvec3(surface.position_mm), glm::normalize(glm::dvec3(surface.normal))};
-    // A thin sheet is seen from both sides.
-    if (glm::dot(point.normal, ray.direction) > 0.0) point.normal = -point.normal;
+    // An open surface is seen from both sides.
+    if (glm::dot(surface.geometric_normal, traced.direction) > 0.0f) point.normal = -point.normal;
     return point;
 }
 

@@ -11,6 +11,7 @@
 #include "mesh/because.h"
 #include "mesh/gltf_parts.h"
 #include "mesh/gltf_words.h"
+#include "mesh/mesh_sides.h"
 
 namespace livery {
 
@@ -21,6 +22,9 @@ constexpr std::size_t kMaxCorners = 1u << 24u;
 
 /// Of primitives by nodes, with or without triangles in them.
 constexpr std::size_t kMaxUses = 1u << 17u;
+
+/// Paints that a file may have for a part; configurators have some dozen.
+constexpr std::size_t kMaxVariants = 1024;
 
 using Notes = std::vector<std::string>;
 
@@ -139,11 +143,16 @@ const std::string& first_of(const std::string& a, const std::string& b, const st
     return !a.empty() ? a : !b.empty() ? b : c;
 }
 
-std::vector<std::string> variant_names(const tinygltf::Model& model) {
+std::vector<std::string> variant_names(const GltfFile& gltf) {
     std::vector<std::string> names;
-    const auto extension = model.extensions.find(kVariantsExtension);
-    if (extension == model.extensions.end()) return names;
+    const auto extension = gltf.model.extensions.find(kVariantsExtension);
+    if (extension == gltf.model.extensions.end()) return names;
     const auto& variants = extension->second.Get("variants").Get<tinygltf::Value::Array>();
+    if (variants.size() > kMaxVariants) {
+        gltf.fail(fmt::format("extensions.{}.variants", kVariantsExtension),
+                  fmt::format("{} variants", variants.size()),
+                  fmt::format("at most {}", kMaxVariants));
+    }
     UniqueNames unique;
     for (std::size_t k = 0; k < variants.size(); ++k) {
         const std::string name = printable(variants[k].Get("name").Get<std::string>(), 60);
@@ -187,7 +196,8 @@ Mesh read_gltf(const std::string& bytes, const std::filesystem::path& file, Note
     GltfAccessors accessors(gltf);
     UniqueNames names;
     Mesh mesh;
-    for (const std::string& name : variant_names(model)) mesh.variants.push_back({name, {}});
+    std::vector<bool> said;  // of each vertex: its normal is the file's
+    for (const std::string& name : variant_names(gltf)) mesh.variants.push_back({name, {}});
     for (const auto& [node_index, world_from_node] : nodes) {
         const tinygltf::Node& node = model.nodes[node_index];
         if (node.mesh < 0) continue;
@@ -212,6 +222,8 @@ Mesh read_gltf(const std::string& bytes, const std::filesystem::path& file, Note
                     built,
                     build_primitive(gltf, accessors, primitive, world_from_node, part.name, notes),
                     "");
+                said.resize(mesh.positions_mm.size() + built.positions_mm.size(),
+                            primitive.content.attributes.contains("NORMAL"));
             }
             if (built.triangles.empty()) {
                 notes.push_back(fmt::format("part \"{}\": nothing to show; dropped", part.name));
@@ -229,6 +241,7 @@ Mesh read_gltf(const std::string& bytes, const std::filesystem::path& file, Note
             }
         }
     }
+    if (!mesh.triangles.empty()) settle_sides(mesh, std::move(said), notes);
     if (mesh.triangles.empty()) {
         throw FileError(file, "meshes", "no triangles" + because(notes), "at least one");
     }

@@ -116,6 +116,11 @@ void append(Mesh& mesh, const Mesh& other, const std::string& prefix) {
     const auto extend = [](auto& to, const auto& from) {
         to.insert(to.end(), from.begin(), from.end());
     };
+    if (!mesh.two_sided.empty() || !other.two_sided.empty()) {
+        mesh.two_sided.resize(mesh.triangles.size(), false);
+        extend(mesh.two_sided, other.two_sided);
+        mesh.two_sided.resize(mesh.triangles.size() + other.triangles.size(), false);
+    }
     extend(mesh.positions_mm, other.positions_mm);
     extend(mesh.normals, other.normals);
     extend(mesh.tangents, other.tangents);

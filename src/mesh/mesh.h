@@ -44,9 +44,16 @@ struct Mesh {
     std::vector<glm::vec2> uvs;
     std::vector<glm::uvec3> triangles;
     std::vector<std::uint16_t> triangle_part;  ///< index into parts, one a triangle
+    /// One a triangle: of an open surface, so that light falls on its back as well and who is
+    /// behind it sees that. The inside of a closed one is dark. Empty: all are closed.
+    std::vector<bool> two_sided;
     std::vector<Part> parts;
     std::vector<MeshVariant> variants;
 };
+
+inline bool has_two_sides(const Mesh& mesh, std::uint32_t triangle) {
+    return !mesh.two_sided.empty() && mesh.two_sided[triangle];
+}
 
 struct Bounds {
     glm::dvec3 low{0.0}, high{0.0};

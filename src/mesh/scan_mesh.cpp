@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "mesh/because.h"
+#include "mesh/number_table.h"
 #include "mesh/scan_file.h"
 #include "mesh/surface.h"
 
@@ -28,11 +29,6 @@ constexpr float kAgainst = -0.25f;
 constexpr float kUnitTolerance = 0.01f;
 
 using Notes = std::vector<std::string>;
-
-/// "3 triangles", "1 triangle".
-std::string counted(std::size_t count, const char* one, const char* many) {
-    return fmt::format("{} {}", count, count == 1 ? one : many);
-}
 
 std::vector<glm::vec3> scaled(const ScanFile& scan,
                               const std::filesystem::path& file,
@@ -61,27 +57,6 @@ double longest_side(const std::vector<glm::dvec3>& positions) {
     const glm::dvec3 size = high - low;
     return std::max({size.x, size.y, size.z});
 }
-
-/// Open addressing over the numbers 0, 1, ... of things that the caller keeps.
-class NumberTable {
-  public:
-    explicit NumberTable(std::size_t most)
-        : mask_(std::bit_ceil(2 * most + 1) - 1), slots_(mask_ + 1, Surface::none) {}
-    /// The number of the equal thing that is there, else `next`, which is then there.
-    template <typename Equal>
-    std::uint32_t find_or_add(std::uint64_t hash, std::uint32_t next, const Equal& equal) {
-        hash = (hash ^ (hash >> 32u)) * 0xd6e8feb86659fd93ull;
-        std::size_t slot = (hash ^ (hash >> 32u)) & mask_;
-        for (; slots_[slot] != Surface::none; slot = (slot + 1) & mask_) {
-            if (equal(slots_[slot])) return slots_[slot];
-        }
-        return slots_[slot] = next;
-    }
-
-  private:
-    std::size_t mask_;
-    std::vector<std::uint32_t> slots_;
-};
 
 /// Keeps the triangles of `scan` for which `keep` says so.
 template <typename Keep>
@@ -113,23 +88,8 @@ void drop_useless(ScanFile& scan, Surface& surface) {
         scan.notes.push_back(
             fmt::format("{} without area dropped", counted(flat, "triangle", "triangles")));
     }
-    const auto sorted = [&](std::size_t t) {
-        glm::uvec3 c = surface.triangles[t];
-        if (c.x > c.y) std::swap(c.x, c.y);
-        if (c.y > c.z) std::swap(c.y, c.z);
-        if (c.x > c.y) std::swap(c.x, c.y);
-        return c;
-    };
     // Found before any is dropped: dropping moves them.
-    std::vector<bool> repeats(surface.triangles.size(), false);
-    NumberTable table(surface.triangles.size());
-    for (std::uint32_t t = 0; t < repeats.size(); ++t) {
-        const glm::uvec3 c = sorted(t);
-        const std::uint64_t hash =
-            (std::uint64_t{c.x} * 0x9e3779b97f4a7c15ull) ^ (std::uint64_t{c.y} << 32u) ^ c.z;
-        repeats[t] = table.find_or_add(
-                         hash, t, [&](std::uint32_t other) { return sorted(other) == c; }) != t;
-    }
+    const std::vector<bool> repeats = repeated_triangles(surface);
     const std::size_t repeated =
         drop_triangles(scan, surface, [&](std::size_t t) { return !repeats[t]; });
     if (repeated > 0) {
@@ -138,7 +98,8 @@ void drop_useless(ScanFile& scan, Surface& surface) {
     }
 }
 
-void turn_right(ScanFile& scan, Surface& surface) {
+/// Returns which triangles are of open surfaces.
+std::vector<bool> turn_right(ScanFile& scan, Surface& surface) {
     // A triangle's normals as the file has them, to tell sides by.
     std::vector<glm::vec3> said(scan.triangles.size(), glm::vec3(0.0f));
     for (std::size_t t = 0; t < said.size(); ++t) {
@@ -153,26 +114,8 @@ void turn_right(ScanFile& scan, Surface& surface) {
     for (std::size_t t = 0; t < said.size(); ++t) {
         if (orientation.turned[t]) std::swap(scan.triangles[t][1], scan.triangles[t][2]);
     }
-    if (orientation.against > 0) {
-        scan.notes.push_back(fmt::format("{} wound against their neighbours turned over",
-                                         counted(orientation.against, "triangle", "triangles")));
-    }
-    if (orientation.inward > 0) {
-        scan.notes.push_back(
-            fmt::format("{} facing inward turned outside out ({})",
-                        counted(orientation.inward, "surface", "surfaces"),
-                        counted(orientation.inward_triangles, "triangle", "triangles")));
-    }
-    if (orientation.cavities > 0) {
-        scan.notes.push_back(
-            fmt::format("{} inside others left facing inward: hollow spaces",
-                        counted(orientation.cavities, "closed surface", "closed surfaces")));
-    }
-    if (orientation.one_sided > 0) {
-        scan.notes.push_back(
-            fmt::format("{} of one side only (a Moebius strip) wound as well as it goes",
-                        counted(orientation.one_sided, "surface", "surfaces")));
-    }
+    note_orientation(orientation, scan.notes);
+    return orientation.open;
 }
 
 /// What became of a normal of the file's at any corner; numbers are bits.
@@ -385,12 +328,13 @@ Mesh mesh_of(ScanFile& scan, const std::filesystem::path& file, std::optional<Le
             file, "", "no triangle that has an area" + because(scan.notes), "at least one");
     }
     find_neighbours(surface);
-    turn_right(scan, surface);
+    std::vector<bool> open = turn_right(scan, surface);
     repair_uvs(scan);
     drop_empty_parts(scan);
     Mesh mesh = vertices_of(scan, surface, corner_normals(scan, surface));
     mesh.triangle_part = std::move(scan.triangle_part);
     mesh.parts = std::move(scan.parts);
+    mesh.two_sided = std::move(open);
     compute_tangents(mesh);
     return mesh;
 }

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include <glm/geometric.hpp>
+
+#include "mesh/number_table.h"
 
 namespace livery {
 
@@ -85,6 +88,27 @@ void find_neighbours(Surface& surface) {
             run = stop;
         }
     }
+}
+
+std::vector<bool> repeated_triangles(const Surface& surface) {
+    const std::size_t count = surface.triangles.size();
+    const auto sorted = [&](std::size_t t) {
+        glm::uvec3 c = surface.triangles[t];
+        if (c.x > c.y) std::swap(c.x, c.y);
+        if (c.y > c.z) std::swap(c.y, c.z);
+        if (c.x > c.y) std::swap(c.x, c.y);
+        return c;
+    };
+    std::vector<bool> repeats(count, false);
+    NumberTable table(count);
+    for (std::uint32_t t = 0; t < count; ++t) {
+        const glm::uvec3 c = sorted(t);
+        const std::uint64_t hash =
+            (std::uint64_t{c.x} * 0x9e3779b97f4a7c15ull) ^ (std::uint64_t{c.y} << 32u) ^ c.z;
+        repeats[t] = table.find_or_add(
+                         hash, t, [&](std::uint32_t other) { return sorted(other) == c; }) != t;
+    }
+    return repeats;
 }
 
 glm::dvec3 area_vector(const Surface& surface, std::size_t triangle) {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -26,6 +27,9 @@ std::vector<std::uint32_t> weld(const std::vector<glm::vec3>& points,
 
 void find_neighbours(Surface& surface);
 
+/// Which triangles have the corners of an earlier one, in whatever order.
+std::vector<bool> repeated_triangles(const Surface& surface);
+
 /// Twice the area times the normal.
 glm::dvec3 area_vector(const Surface& surface, std::size_t triangle);
 
@@ -39,12 +43,18 @@ struct Orientation {
     std::size_t inward_triangles = 0;
     std::size_t cavities = 0;   ///< closed ones inside others, which rightly face inward
     std::size_t one_sided = 0;  ///< surfaces that no winding fits (Moebius strips)
+    /// A triangle each: of a surface that encloses nothing, so that both of its sides show.
+    std::vector<bool> open;
 };
 
 /// Winds each connected surface one way and its outside out: a closed one by its volume; an open
-/// one by `normals` (a triangle each, zero where the file has none), by how it bulges, and by how
-/// most of it was wound. Needs neighbours.
+/// one by `normals` (a triangle each, zero where the file has none), else by how it bulges, else by
+/// how most of it was wound. Needs neighbours.
 Orientation orient(Surface& surface, const std::vector<glm::vec3>& normals);
+
+/// What orient() did, for who reads of it. "3 triangles", "1 triangle".
+void note_orientation(const Orientation& orientation, std::vector<std::string>& notes);
+std::string counted(std::size_t count, const char* one, const char* many);
 
 /// For each triangle the normals of its corners, weighted with angles over the triangles around the
 /// corner's point that hang together without an edge sharper than `crease_rad`. Equal corners have

@@ -3,6 +3,7 @@
 #include <optional>
 #include <utility>
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include "mesh/surface.h"
@@ -43,6 +44,7 @@ class Orienter {
     void spread(std::uint32_t first);
     void sum_up();
     bool faces_inward(const Patch& patch) const;
+    bool file_says_inward(const Patch& patch) const;
     /// Area times normal, as the patch winds it.
     glm::dvec3 vector_of(std::size_t triangle) const {
         return (against_[triangle] ? -0.5 : 0.5) * area_vector(surface_, triangle);
@@ -126,11 +128,17 @@ bool Orienter::faces_inward(const Patch& patch) const {
     if (patch.closed && !patch.one_sided) return patch.volume < 0.0;
     const double wound = patch.wound / patch.area, normals = patch.normals / patch.area;
     const double bulge = patch.reach > 0.0 ? patch.flux / patch.reach : 0.0;
-    // Scanners know where they stood: normals and winding that agree are right.
-    if (std::abs(normals) >= kClearVote && wound * normals > 0.0) return normals < 0.0;
-    if (std::abs(bulge) >= (patch.consistent() ? kBulgesClearly : kBulges)) return bulge < 0.0;
     if (std::abs(normals) >= kClearVote) return normals < 0.0;
+    if (std::abs(bulge) >= (patch.consistent() ? kBulgesClearly : kBulges)) return bulge < 0.0;
     return wound < 0.0;
+}
+
+/// Whether the file has a closed surface face inward: by its winding, where that is one, else by
+/// its normals.
+bool Orienter::file_says_inward(const Patch& patch) const {
+    if (patch.consistent()) return patch.volume < 0.0;
+    const double normals = patch.normals / patch.area;
+    return std::abs(normals) >= kClearVote && (normals < 0.0) != (patch.volume < 0.0);
 }
 
 Orientation Orienter::run() {
@@ -151,17 +159,23 @@ Orientation Orienter::run() {
     for (std::uint32_t number = 0; number < patches_.size(); ++number) {
         const Patch& patch = patches_[number];
         if (patch.one_sided) ++result.one_sided;
-        if (!inward[number] || !closed[number] || !patch.consistent()) continue;
+        if (!closed[number] || !file_says_inward(patch)) continue;
         if (!insideness) insideness.emplace(surface_, patch_of_, closed);
         if (!insideness->inside_others(patch.origin, number)) continue;
-        inward[number] = false;
+        inward[number] = !inward[number];
         ++result.cavities;
     }
 
     result.turned.assign(count, false);
+    result.open.assign(count, false);
     std::vector<std::size_t> turned_in(patches_.size(), 0);
     for (std::uint32_t t = 0; t < count; ++t) {
-        result.turned[t] = against_[t] != inward[patch_of_[t]];
+        result.open[t] = !closed[patch_of_[t]];
+        // What no winding fits at least follows its normals.
+        const double agrees = patches_[patch_of_[t]].one_sided
+                                  ? glm::dot(area_vector(surface_, t), glm::dvec3(normals_[t]))
+                                  : 0.0;
+        result.turned[t] = agrees != 0.0 ? agrees < 0.0 : against_[t] != inward[patch_of_[t]];
         if (!result.turned[t]) continue;
         ++turned_in[patch_of_[t]];
         std::swap(surface_.triangles[t].y, surface_.triangles[t].z);
@@ -182,6 +196,33 @@ Orientation Orienter::run() {
 
 Orientation orient(Surface& surface, const std::vector<glm::vec3>& normals) {
     return Orienter(surface, normals).run();
+}
+
+std::string counted(std::size_t count, const char* one, const char* many) {
+    return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+void note_orientation(const Orientation& orientation, std::vector<std::string>& notes) {
+    if (orientation.against > 0) {
+        notes.push_back(fmt::format("{} wound against their neighbours turned over",
+                                    counted(orientation.against, "triangle", "triangles")));
+    }
+    if (orientation.inward > 0) {
+        notes.push_back(
+            fmt::format("{} facing inward turned outside out ({})",
+                        counted(orientation.inward, "surface", "surfaces"),
+                        counted(orientation.inward_triangles, "triangle", "triangles")));
+    }
+    if (orientation.cavities > 0) {
+        notes.push_back(
+            fmt::format("{} inside others left facing inward: hollow spaces",
+                        counted(orientation.cavities, "closed surface", "closed surfaces")));
+    }
+    if (orientation.one_sided > 0) {
+        notes.push_back(
+            fmt::format("{} of one side only (a Moebius strip) wound as well as it goes",
+                        counted(orientation.one_sided, "surface", "surfaces")));
+    }
 }
 
 }  // namespace livery

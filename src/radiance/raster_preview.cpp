@@ -157,6 +157,7 @@ struct RasterPreview::State {
     std::shared_ptr<const VertexLight> light;
     Buffer position_buffer, index_buffer;
     Texture2D vertices, corners, sky, visibility;  ///< as inputs_raster.glsl has them
+    std::size_t first_back = 0;  ///< of a vertex's back less that vertex; 0: none is lit
     VertexArray vertex_array;
     std::vector<PartRange> parts;
     std::shared_ptr<const FilteredEnvironment> uploaded;  ///< that `layers` holds
@@ -374,6 +375,7 @@ Program& RasterPreview::State::ready(const Scene& scene,
     vertices.bind(2);
     program.set("u_corners", 3);
     corners.bind(3);
+    program.set("u_first_back", static_cast<int>(first_back));
     program.set("u_sky", 4);
     sky.bind(4);
     if (relief) textures.set_relief(program, *relief);
@@ -447,9 +449,10 @@ void RasterPreview::render(const Scene& scene, const View& view, const Progress&
 void RasterPreview::take(std::shared_ptr<const VertexLight> light) {
     State& s = *state_;
     check_argument(light != nullptr, "a preview was given no light");
-    const std::size_t vertices = s.product->mesh.positions_mm.size();
-    check_argument(light->sky.size() == vertices,
-                   fmt::format("light at {} vertices for {}", light->sky.size(), vertices));
+    const std::size_t sides = lit_sides(s.product->mesh);
+    check_argument(light->sky.size() == sides,
+                   fmt::format("light at {} sides of vertices for {}", light->sky.size(), sides));
+    s.first_back = sides - s.product->mesh.positions_mm.size();
     if (light == s.light) return;
     s.light = std::move(light);
     s.sky = float_texels(s.light->sky);

@@ -178,10 +178,9 @@ ReferenceResult trace_reference(const Scene& scene,
         ray.direction = glm::vec3(lens_ray->direction);
         const Hit hit = paths.tracer().closest(ray);
         if (!hit.valid()) return estimate.add(nullptr, 0.0);
-        const SurfacePoint point = paths.surface_at(hit);
+        const SurfacePoint point = paths.surface_at(hit, ray.direction);
         const glm::vec3 wo = glm::normalize(eye - point.position_mm);
-        const glm::dvec3 value =
-            exposure * glm::dvec3(paths.radiance(point, ray.direction, wo, numbers));
+        const glm::dvec3 value = exposure * glm::dvec3(paths.radiance(point, wo, numbers));
         estimate.add(&value, glm::dot(weights, value));
     };
 

@@ -87,8 +87,12 @@ PathScene::PathScene(const Scene& scene, const ReferenceOptions& options)
     for (const DirectionalLight& light : scene.lights) lights_.emplace_back(light);
 }
 
-SurfacePoint PathScene::surface_at(const Hit& hit) const {
+SurfacePoint PathScene::surface_at(const Hit& hit, const glm::vec3& ray_direction) const {
     SurfacePoint point = surface_point(mesh_, hit);
+    if (glm::dot(point.geometric_normal, ray_direction) > 0.0f) {
+        point.geometric_normal = -point.geometric_normal;
+        point.normal = -point.normal;
+    }
     const std::optional<PartArtwork>& relief = reliefs_[point.part];
     if (!relief) return point;
     const glm::dvec3 normal(point.normal);
@@ -223,15 +227,7 @@ glm::vec3 PathScene::surroundings_along(const glm::vec3& direction) const {
     return environment_.empty() ? glm::vec3(0.0f) : environment_.along(direction).radiance;
 }
 
-glm::vec3 PathScene::radiance(SurfacePoint point,
-                              const glm::vec3& ray_direction,
-                              glm::vec3 wo,
-                              const PathNumbers& numbers) const {
-    // An open surface shows its inside: the side that is seen is the side that is shaded.
-    if (glm::dot(point.geometric_normal, ray_direction) > 0.0f) {
-        point.geometric_normal = -point.geometric_normal;
-        point.normal = -point.normal;
-    }
+glm::vec3 PathScene::radiance(SurfacePoint point, glm::vec3 wo, const PathNumbers& numbers) const {
     glm::vec3 sum(0.0f), throughput(1.0f);
     for (int bounce = 0;; ++bounce) {
         const auto b = static_cast<std::uint32_t>(bounce);
@@ -280,9 +276,9 @@ glm::vec3 PathScene::radiance(SurfacePoint point,
             if (!(at[PathNumbers::roulette] < survival)) return sum;
             throughput /= survival;
         }
-        point = surface_at(hit);
-        // The inside of a closed product is dark.
-        if (glm::dot(point.geometric_normal, direction) >= 0.0f) return sum;
+        // The inside of a closed surface is dark.
+        if (!has_two_sides(mesh_, hit.triangle) && sees_back(mesh_, hit, direction)) return sum;
+        point = surface_at(hit, direction);
         wo = -direction;
     }
 }

@@ -20,15 +20,12 @@ class PathScene {
   public:
     PathScene(const Scene& scene, const ReferenceOptions& options);
 
-    /// Radiance that leaves `point`, seen along `ray_direction`, toward `wo`.
-    glm::vec3 radiance(SurfacePoint point,
-                       const glm::vec3& ray_direction,
-                       glm::vec3 wo,
-                       const PathNumbers& numbers) const;
+    /// Radiance that leaves `point` on the side of its normals toward `wo`.
+    glm::vec3 radiance(SurfacePoint point, glm::vec3 wo, const PathNumbers& numbers) const;
 
     const Tracer& tracer() const { return tracer_; }
-    /// What was hit, with its relief.
-    SurfacePoint surface_at(const Hit& hit) const;
+    /// What was hit, with its relief, on the side that the ray sees.
+    SurfacePoint surface_at(const Hit& hit, const glm::vec3& ray_direction) const;
 
   private:
     struct Vertex;

@@ -21,6 +21,7 @@ struct SurfacePlace {
     glm::dvec3 position_mm{0.0}, normal{0.0};
     double area_mm2 = 0.0;  ///< that it stands for
     std::size_t part = 0;
+    bool two_sided = false;
 };
 
 glm::dvec3 corner(const Mesh& mesh, std::size_t triangle, int k) {
@@ -50,7 +51,7 @@ std::vector<SurfacePlace> places_on(const Mesh& mesh,
         const auto found = std::upper_bound(up_to.begin(), up_to.end(), at * area);
         const auto index =
             std::min(static_cast<std::size_t>(found - up_to.begin()), triangles.size() - 1);
-        const std::size_t t = triangles[index];
+        const std::uint32_t t = triangles[index];
         const glm::dvec3 outward = area_vector(mesh, t);
         if (!(glm::length(outward) > 0.0)) continue;
         const double u = std::sqrt(random.uniform()), v = random.uniform();
@@ -60,17 +61,20 @@ std::vector<SurfacePlace> places_on(const Mesh& mesh,
         place.normal = glm::normalize(outward);
         place.area_mm2 = area / static_cast<double>(count);
         place.part = mesh.triangle_part[t];
+        place.two_sided = has_two_sides(mesh, t);
     }
     return places;
 }
 
-/// Of a disc of that area (its form factor at a point under it, bounded where both are near).
+/// Of a disc of that area (its form factor at a point under it, bounded where both are near);
+/// negative on the point's back.
 double form_factor(const SurfacePlace& to, const SurfacePlace& from) {
     const glm::dvec3 way = from.position_mm - to.position_mm;
     const double distance2 = glm::dot(way, way);
     const double rises = glm::dot(to.normal, way), falls = -glm::dot(from.normal, way);
-    if (rises <= 0.0 || falls <= 0.0) return 0.0;
-    return rises / distance2 * falls * from.area_mm2 /
+    if (rises == 0.0 || falls == 0.0) return 0.0;
+    if ((rises < 0.0 && !to.two_sided) || (falls < 0.0 && !from.two_sided)) return 0.0;
+    return rises / distance2 * std::abs(falls) * from.area_mm2 /
            (std::numbers::pi * distance2 + from.area_mm2);
 }
 
@@ -94,11 +98,13 @@ PartExchange part_exchange(const Mesh& mesh) {
         std::vector<std::vector<double>> seen(exchange.parts);
         for (const SurfacePlace& receiver :
              places_on(mesh, areas_mm2, of_part[to], kReceiversAPart, random)) {
-            std::vector<double> sum(exchange.parts, 0.0);
-            for (const SurfacePlace& sender : senders)
-                sum[sender.part] += form_factor(receiver, sender);
+            std::vector<double> front(exchange.parts, 0.0), back(exchange.parts, 0.0);
+            for (const SurfacePlace& sender : senders) {
+                const double share = form_factor(receiver, sender);
+                (share < 0.0 ? back : front)[sender.part] += std::abs(share);
+            }
             for (std::size_t from = 0; from < exchange.parts; ++from) {
-                seen[from].push_back(std::min(sum[from], 1.0));
+                seen[from].push_back(std::min(std::max(front[from], back[from]), 1.0));
             }
         }
         for (std::size_t from = 0; from < exchange.parts; ++from) {

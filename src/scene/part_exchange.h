@@ -9,7 +9,7 @@
 namespace livery {
 
 /// Shares of a hemisphere, weighted by the cosine (form factors), with nothing in between: at least
-/// what is seen. A convex mesh has none.
+/// what is seen; of a two-sided place the side that sees more. A closed convex mesh has none.
 struct PartExchange {
     std::size_t parts = 0;
     std::vector<float> share;  ///< parts x parts

@@ -334,6 +334,14 @@ SurfacePoint surface_point(const Mesh& mesh, const Hit& hit) {
     return point;
 }
 
+bool sees_back(const Mesh& mesh, const Hit& hit, const glm::vec3& direction) {
+    const glm::uvec3 corner = mesh.triangles[hit.triangle];
+    const glm::dvec3 a(mesh.positions_mm[corner.x]);
+    const glm::dvec3 outward = glm::cross(glm::dvec3(mesh.positions_mm[corner.y]) - a,
+                                          glm::dvec3(mesh.positions_mm[corner.z]) - a);
+    return glm::dot(outward, glm::dvec3(direction)) >= 0.0;
+}
+
 glm::vec3 offset_origin(const glm::vec3& position, const glm::vec3& geometric_normal) {
     // As in Waechter and Binder, "A fast and robust method for avoiding self-intersection" (2019),
     // a number of representable steps along the normal. Steps are those of the largest coordinate,

@@ -76,6 +76,9 @@ class Tracer {
 
 SurfacePoint surface_point(const Mesh& mesh, const Hit& hit);
 
+/// Whether a ray meets the back of the triangle, or its edge.
+bool sees_back(const Mesh& mesh, const Hit& hit, const glm::vec3& direction);
+
 /// An origin for a ray that leaves the surface without hitting it again: a few float steps of the
 /// largest coordinate along the geometric normal, at least 2 micrometres.
 glm::vec3 offset_origin(const glm::vec3& position, const glm::vec3& geometric_normal);

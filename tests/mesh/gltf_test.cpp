@@ -160,14 +160,20 @@ TEST_F(LoadMesh, OnePartANodeAndMaterialWithNamesThatDiffer) {
     plate.json["materials"] = Json::parse(R"([
         {"name": "red", "pbrMetallicRoughness": {"baseColorFactor": [0.8, 0.1, 0.05, 1]}},
         {"name": "plain"}])");
-    Json second = plate.primitive();
-    plate.primitive()["material"] = 0;
-    second["material"] = 1;
-    plate.json["meshes"][0]["primitives"].push_back(second);
-    plate.json["meshes"][0]["primitives"].push_back(plate.primitive());
-    plate.json["nodes"] =
-        Json::parse(R"([{"name": "wheel", "mesh": 0}, {"name": "wheel", "mesh": 0},
-                                          {"mesh": 0}])");
+    // Side by side: of what lies on something else nothing is kept.
+    const auto beside = [&](float x, int material) {
+        Json primitive = plate.primitive();
+        primitive["attributes"]["POSITION"] =
+            plate.add(Floats{x, 0, 0, x + 1, 0, 0, x + 1, 1, 0, x, 1, 0}, "VEC3", 5126, 4);
+        primitive["material"] = material;
+        return primitive;
+    };
+    Json& primitives = plate.json["meshes"][0]["primitives"];
+    primitives = Json::array({beside(0, 0), beside(2, 1), beside(4, 0)});
+    plate.json["nodes"] = Json::parse(R"([
+        {"name": "wheel", "mesh": 0},
+        {"name": "wheel", "mesh": 0, "translation": [0, 2, 0]},
+        {"mesh": 0, "translation": [0, 4, 0]}])");
     plate.json["scenes"][0]["nodes"] = {0, 1, 2};
     const Mesh mesh = load(plate);
     std::vector<std::string> names;

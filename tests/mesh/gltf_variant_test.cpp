@@ -59,6 +59,8 @@ TEST_F(GltfVariant, PrimitivesThatChangeOtherwiseArePartsOfTheirOwn) {
     GltfBuilder plate = plate_of_day_and_night();
     Json still = plate.primitive();
     still.erase("extensions");
+    still["attributes"]["POSITION"] =
+        plate.add(std::vector<float>{2, 0, 0, 3, 0, 0, 3, 1, 0, 2, 1, 0}, "VEC3", 5126, 4);
     plate.json["meshes"][0]["primitives"].push_back(still);
     const Mesh mesh = load(plate);
     ASSERT_EQ(mesh.parts.size(), 2u);
@@ -124,6 +126,13 @@ TEST_F(GltfVariant, BadOnesAreNamed) {
     plate.json.erase("extensions");
     EXPECT_TRUE(
         fails_with([&] { load(plate); }, {"mappings[0].variants[0]: found 0, expected no index"}));
+}
+
+TEST_F(GltfVariant, MoreThanAnybodyChoosesFromAreRefusedAtOnce) {
+    GltfBuilder plate = plate_of_day_and_night();
+    Json& variants = plate.json["extensions"]["KHR_materials_variants"]["variants"];
+    for (int k = 0; k < 200'000; ++k) variants.push_back({{"name", std::to_string(k)}});
+    EXPECT_TRUE(fails_with([&] { load(plate); }, {"200002 variants", "at most 1024"}));
 }
 
 }  // namespace

@@ -33,6 +33,43 @@ TEST(FurnaceWithInterreflection, AWhiteBoxUnderEvenLightVanishes) {
     }
 }
 
+/// The same quads, those of odd number facing the other way; both sides of all show.
+Mesh with_two_sides(Mesh mesh) {
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        if (t / 2 % 2 == 0) continue;
+        glm::uvec3& corners = mesh.triangles[t];
+        std::swap(corners.y, corners.z);
+        if (t % 2 == 0) continue;
+        for (std::uint32_t k = 0; k < 4; ++k) {
+            glm::vec3& normal = mesh.normals[2 * (t - 1) + k];
+            normal = -normal;
+        }
+    }
+    mesh.two_sided.assign(mesh.triangles.size(), true);
+    return mesh;
+}
+
+TEST(FurnaceWithInterreflection, AWhiteBoxOfSheetsVanishesFromInsideAndOutside) {
+    Scene scene = scene_of(with_two_sides(open_box()), white_diffuse(1.0), {0.0, 20.0, 0.0});
+    scene.environment = uniform_environment(1.0f);
+    ReferenceOptions options;
+    options.samples_per_pixel = 256;
+    options.bounces = 1000;
+    for (const glm::dvec3 from : {glm::dvec3(0, 20, 0), glm::dvec3(15, 9, 12)}) {
+        scene.eye_in_world_mm = from;
+        const View view = look_at(from, {0.0, 1.0, 0.0}, 0.15, 24, 24);
+        const PictureMean mean = mean_of(trace_reference(scene, view, options));
+        EXPECT_NEAR(mean.colour.y, 1.0, 4.0 * mean.standard_error + 1e-4);
+        EXPECT_LT(mean.standard_error, 0.004);
+        // Taken for closed, its backs swallow light: the test can fail.
+        Scene closed = scene;
+        auto product = std::make_shared<Product>(*scene.product);
+        product->mesh.two_sided.clear();
+        closed.product = product;
+        EXPECT_LT(mean_of(trace_reference(closed, view, options)).colour.y, 0.97);
+    }
+}
+
 TEST(FacingPlates, OneBounceIsTheViewFactorOfTheLitRectangle) {
     // A wall from y = 2 to 6 is lit over the top of a lower one that faces it from 4 away and that
     // no light meets directly: one bounce alone, from a rectangle of even radiosity.

@@ -78,6 +78,28 @@ void add_grid(const Mesh& mesh, std::size_t triangle, int steps, ExchangePoints&
     }
 }
 
+/// Points that share their place with those of two-sided triangles, on the other side.
+void add_backs(const Mesh& mesh, ExchangePoints& points) {
+    const std::size_t fronts = points.size();
+    points.back.assign(fronts, ExchangePoints::kNoBack);
+    const auto add = [&](std::uint32_t point) {
+        if (points.back[point] != ExchangePoints::kNoBack) return;
+        points.back[point] = static_cast<std::uint32_t>(points.size());
+        points.positions_mm.push_back(points.positions_mm[point]);
+        points.normals.push_back(-points.normals[point]);
+        points.within.push_back(points.within[point]);
+        points.uvs.push_back(points.uvs[point]);
+        points.part.push_back(points.part[point]);
+    };
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        if (!mesh.two_sided[t]) continue;
+        for (int k = 0; k < 3; ++k) add(mesh.triangles[t][k]);
+        const auto in_grid = static_cast<std::uint32_t>(points_of_grid(points.steps[t]));
+        for (std::uint32_t k = 0; k < in_grid; ++k) add(points.grid[t] + k);
+    }
+    points.back.resize(points.size(), ExchangePoints::kNoBack);
+}
+
 ExchangePoints points_on(const Mesh& mesh, double& apart_mm) {
     ExchangePoints points;
     points.positions_mm = mesh.positions_mm;
@@ -104,6 +126,7 @@ ExchangePoints points_on(const Mesh& mesh, double& apart_mm) {
         points.grid[t] = static_cast<std::uint32_t>(points.size());
         add_grid(mesh, t, steps, points);
     }
+    if (!mesh.two_sided.empty()) add_backs(mesh, points);
     return points;
 }
 

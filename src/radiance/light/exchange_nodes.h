@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
@@ -24,6 +25,10 @@ struct ExchangePoints {
     /// Of each triangle: steps a side, 1 where its corners are its points; the first of its grid.
     std::vector<std::uint16_t> steps;
     std::vector<std::uint32_t> grid;
+    /// The same place on the back of the surface, where that shows; kNoBack elsewhere. Empty: no
+    /// back does.
+    std::vector<std::uint32_t> back;
+    static constexpr std::uint32_t kNoBack = 0xffffffffu;
 
     float apart_mm = 0.0f;  ///< from one node to the next
 
@@ -37,6 +42,11 @@ struct ExchangePoints {
     std::array<Share, 3> around(const Mesh& mesh,
                                 std::uint32_t triangle,
                                 const glm::vec2& barycentric) const;
+    /// A point or its back, whichever lies on the side of `normal`; kNoBack: neither.
+    std::uint32_t on_side(std::uint32_t point, const glm::vec3& normal) const {
+        if (glm::dot(normals[point], normal) > 0.0f) return point;
+        return back.empty() ? kNoBack : back[point];
+    }
 };
 
 /// Points that lie close together, on one part and with normals that differ little, share a node:

@@ -44,14 +44,17 @@ std::vector<glm::vec3> cosine_directions(int count) {
     return directions;
 }
 
-/// The node of one of the points around a hit, as often as that weighs.
-std::uint32_t node_of(const Mesh& mesh, const ExchangeNodes& nodes, const Hit& hit, float chance) {
-    const auto around = nodes.points.around(mesh, hit.triangle, hit.barycentric);
+/// One of the points around a hit, as often as that weighs.
+std::uint32_t point_of(const Mesh& mesh,
+                       const ExchangePoints& points,
+                       const Hit& hit,
+                       float chance) {
+    const auto around = points.around(mesh, hit.triangle, hit.barycentric);
     for (const ExchangePoints::Share& share : around) {
-        if (chance < share.weight) return nodes.node_of[share.index];
+        if (chance < share.weight) return share.index;
         chance -= share.weight;
     }
-    return nodes.node_of[around.back().index];
+    return around.back().index;
 }
 
 float brightest(const glm::vec3& v) { return std::max({v.x, v.y, v.z}); }
@@ -87,13 +90,14 @@ NodeExchange solve_node_exchange(const Mesh& mesh, const Tracer& tracer, const P
                     const Hit hit = tracer.closest(ray);
                     if (!hit.valid()) continue;
                     exchange.blocked[i] |= std::uint64_t{1} << k;
-                    const glm::vec3 facing = surface_point(mesh, hit).geometric_normal;
-                    // The inside of a closed product is dark.
-                    if (glm::dot(facing, ray.direction) >= 0.0f) continue;
+                    const bool behind = sees_back(mesh, hit, ray.direction);
+                    // The inside of a closed surface is dark.
+                    if (behind && !has_two_sides(mesh, hit.triangle)) continue;
                     const auto chance = static_cast<float>(
                         hash_3d(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(k), 31u) *
                         0x1p-32);
-                    seen[block].push_back(node_of(mesh, nodes, hit, chance));
+                    const std::uint32_t point = point_of(mesh, nodes.points, hit, chance);
+                    seen[block].push_back(nodes.node_of[behind ? nodes.points.back[point] : point]);
                 }
                 exchange.first[i + 1] = static_cast<std::uint32_t>(seen[block].size() - before);
             }
@@ -311,8 +315,9 @@ std::vector<glm::vec3> at_fragments(const Mesh& mesh,
             const auto add = [&](std::uint32_t triangle, const glm::vec2& barycentric) {
                 if (triangle == kNoTriangle) return;
                 for (const auto& share : points.around(mesh, triangle, barycentric)) {
-                    if (glm::dot(points.normals[share.index], normal) <= 0.0f) continue;
-                    result[i] += share.weight * at_points[share.index];
+                    const std::uint32_t seen = points.on_side(share.index, normal);
+                    if (seen == ExchangePoints::kNoBack) continue;
+                    result[i] += share.weight * at_points[seen];
                     weight += share.weight;
                 }
             };

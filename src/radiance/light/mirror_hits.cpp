@@ -78,17 +78,15 @@ class HitRays {
     std::uint32_t node_at(const Hit& hit, const glm::vec3& direction) const {
         // Rounded otherwise than when it was traced
         if (!hit.valid()) return MirrorHits::kInside;
-        const glm::uvec3 corners = mesh_.triangles[hit.triangle];
-        const glm::vec3 a = mesh_.positions_mm[corners.x];
-        const glm::vec3 outward =
-            glm::cross(mesh_.positions_mm[corners.y] - a, mesh_.positions_mm[corners.z] - a);
-        if (glm::dot(outward, direction) >= 0.0f) return MirrorHits::kInside;
+        const bool behind = sees_back(mesh_, hit, direction);
+        if (behind && !has_two_sides(mesh_, hit.triangle)) return MirrorHits::kInside;
         const auto around = nodes_.points.around(mesh_, hit.triangle, hit.barycentric);
         const ExchangePoints::Share* nearest = &around[0];
         for (const ExchangePoints::Share& share : around) {
             if (share.weight > nearest->weight) nearest = &share;
         }
-        return nodes_.node_of[nearest->index];
+        const ExchangePoints& points = nodes_.points;
+        return nodes_.node_of[behind ? points.back[nearest->index] : nearest->index];
     }
 
     const Mesh& mesh_;

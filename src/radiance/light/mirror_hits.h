@@ -17,7 +17,7 @@ struct MirrorHits {
     /// Of each fragment, its word's set bits in rising order, from `first` on; then of each that
     /// looks for itself those of its other words, from `first_alone` on.
     std::vector<std::uint32_t> first, first_alone;
-    std::vector<std::uint32_t> nodes;  ///< kInside: the inside of a closed product, which is dark
+    std::vector<std::uint32_t> nodes;  ///< kInside: the inside of a closed surface, which is dark
 };
 
 /// Of all that was traced so far.

@@ -17,6 +17,16 @@ namespace {
 constexpr int kRaysALight = 8;
 constexpr int kSkyRays = 32;
 
+glm::vec3 normal_of_side(const Mesh& mesh, std::size_t side) {
+    const std::size_t vertices = mesh.normals.size();
+    return side < vertices ? mesh.normals[side] : -mesh.normals[side - vertices];
+}
+
+const glm::vec3& position_of_side(const Mesh& mesh, std::size_t side) {
+    const std::size_t vertices = mesh.positions_mm.size();
+    return mesh.positions_mm[side < vertices ? side : side - vertices];
+}
+
 bool same_discs(const std::vector<DirectionalLight>& a, const std::vector<DirectionalLight>& b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), same_disc);
 }
@@ -82,15 +92,21 @@ ImageF diffuse_of(const ImageF& map, const Environment& frame) {
 
 }  // namespace
 
+std::size_t lit_sides(const Mesh& mesh) {
+    const auto& sides = mesh.two_sided;
+    const bool any = std::find(sides.begin(), sides.end(), true) != sides.end();
+    return (any ? 2 : 1) * mesh.positions_mm.size();
+}
+
 std::shared_ptr<const VertexLight> guessed_light(const Product& product,
                                                  const std::vector<DirectionalLight>& lights,
                                                  const Environment* environment) {
-    const std::size_t vertices = product.mesh.positions_mm.size();
+    const std::size_t sides = lit_sides(product.mesh);
     auto guess = std::make_shared<VertexLight>();
     guess->guessed = true;
     guess->lights = lights;
-    guess->visibility.assign(lights.size() * vertices, 1.0f);
-    guess->sky.assign(vertices, glm::vec4(0.0f));
+    guess->visibility.assign(lights.size() * sides, 1.0f);
+    guess->sky.assign(sides, glm::vec4(0.0f));
     if (!environment || environment->radiance_working.empty()) return guess;
     auto small = std::make_shared<Environment>();
     small->rotation_rad = environment->rotation_rad;
@@ -101,8 +117,9 @@ std::shared_ptr<const VertexLight> guessed_light(const Product& product,
     Environment unturned;  // layers are in the map's own frame
     filtered->diffuse = diffuse_of(small->radiance_working, unturned);
     const auto scale = static_cast<float>(environment->scale);
-    for (std::size_t i = 0; i < vertices; ++i) {
-        const glm::dvec2 uv = uv_from_direction(*small, glm::dvec3(product.mesh.normals[i]));
+    for (std::size_t i = 0; i < sides; ++i) {
+        const glm::dvec2 uv =
+            uv_from_direction(*small, glm::dvec3(normal_of_side(product.mesh, i)));
         guess->sky[i] = glm::vec4(scale * sample_sphere(filtered->diffuse, uv), 1.0f);
     }
     guess->filtered = std::move(filtered);
@@ -126,10 +143,25 @@ struct VertexLightSolver::State {
     explicit State(std::shared_ptr<const Product> its_product)
         : product(std::move(its_product)), tracer(product->mesh) {}
 
+    std::vector<float> solve_openness() const;
     std::vector<float> shadows(const std::vector<DirectionalLight>& lights,
                                const Progress& progress) const;
     std::vector<glm::vec4> sky(const Environment& environment, const ImageF& diffuse) const;
 };
+
+std::vector<float> VertexLightSolver::State::solve_openness() const {
+    const Mesh& mesh = product->mesh;
+    const std::size_t sides = lit_sides(mesh);
+    if (sides == mesh.normals.size()) {
+        return ambient_openness(tracer, mesh.positions_mm, mesh.normals, kSkyRays, 1e30f);
+    }
+    std::vector<glm::vec3> positions_mm, normals;
+    for (std::size_t i = 0; i < sides; ++i) {
+        positions_mm.push_back(position_of_side(mesh, i));
+        normals.push_back(normal_of_side(mesh, i));
+    }
+    return ambient_openness(tracer, positions_mm, normals, kSkyRays, 1e30f);
+}
 
 std::vector<float> VertexLightSolver::State::shadows(const std::vector<DirectionalLight>& lights,
                                                      const Progress& progress) const {
@@ -143,16 +175,17 @@ std::vector<float> VertexLightSolver::State::shadows(const std::vector<Direction
             });
         known[k] = static_cast<std::size_t>(found - last->lights.begin());
     }
-    std::vector<float> open(mesh.positions_mm.size() * count);
-    parallel_for(mesh.positions_mm.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    const std::size_t sides = lit_sides(mesh);
+    std::vector<float> open(sides * count);
+    parallel_for(sides, 1024, [&](std::size_t begin, std::size_t end) {
         progress.check_stop();
         for (std::size_t i = begin; i < end; ++i) {
             for (std::size_t k = 0; k < count; ++k) {
                 open[i * count + k] = known[k] < old_count
                                           ? last->visibility[i * old_count + known[k]]
                                           : disc_openness(tracer,
-                                                          mesh.positions_mm[i],
-                                                          mesh.normals[i],
+                                                          position_of_side(mesh, i),
+                                                          normal_of_side(mesh, i),
                                                           lights[k],
                                                           kRaysALight,
                                                           i);
@@ -169,7 +202,8 @@ std::vector<glm::vec4> VertexLightSolver::State::sky(const Environment& environm
     parallel_for(sky.size(), 1024, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const glm::vec3 light = sample_sphere(
-                diffuse, uv_from_direction(environment, glm::dvec3(product->mesh.normals[i])));
+                diffuse,
+                uv_from_direction(environment, glm::dvec3(normal_of_side(product->mesh, i))));
             sky[i] = glm::vec4(scale * openness[i] * light, openness[i]);
         }
     });
@@ -195,12 +229,11 @@ std::shared_ptr<const VertexLight> VertexLightSolver::solve(
     next->visibility = s.shadows(lights, progress);
     next->lights = lights;
     if (!environment) {
-        next->sky.assign(s.product->mesh.positions_mm.size(), glm::vec4(0.0f));
+        next->sky.assign(lit_sides(s.product->mesh), glm::vec4(0.0f));
     } else {
         if (s.openness.empty()) {
             progress.update(0.2, "openness");
-            s.openness = ambient_openness(
-                s.tracer, s.product->mesh.positions_mm, s.product->mesh.normals, kSkyRays, 1e30f);
+            s.openness = s.solve_openness();
         }
         const bool known = last.environment && same_map(*last.environment, *environment);
         next->filtered = known ? last.filtered

@@ -13,12 +13,16 @@
 
 namespace livery {
 
-/// Immutable and shared: solved in one thread, drawn with in another.
+/// How many sides of its vertices a mesh has lit: all fronts, then, where any triangle has two
+/// sides, all backs in the same order.
+std::size_t lit_sides(const Mesh& mesh);
+
+/// Immutable and shared: solved in one thread, drawn with in another. Of each of lit_sides().
 struct VertexLight {
     std::vector<DirectionalLight> lights;            ///< that `visibility` was solved for
     std::shared_ptr<const Environment> environment;  ///< that `sky` was solved for; null: none
-    std::vector<float> visibility;  ///< lights.size() a vertex: share of the disc that it sees
-    std::vector<glm::vec4> sky;     ///< one a vertex: light on a white diffuser; openness
+    std::vector<float> visibility;  ///< lights.size() a side: share of the disc that it sees
+    std::vector<glm::vec4> sky;     ///< one a side: light on a white diffuser; openness
     std::shared_ptr<const FilteredEnvironment> filtered;  ///< mirrored and diffuse; null: none
     bool guessed = false;                                 ///< of guessed_light()
 };
