@@ -134,10 +134,7 @@ void prepare_sample() {
     s_tangent = normalize(tangent.xyz - dot(tangent.xyz, s_normal) * s_normal);
     s_bitangent = sign(tangent.w) * cross(s_normal, s_tangent);
 
-    // Toward the eye, kept above the horizon.
-    vec3 wo = normalize(u_eye_mm - s_position_mm);
-    float cosine = dot(s_normal, wo);
-    s_eye = cosine < 1e-4 ? normalize(wo + (1e-4 - cosine) * s_normal) : wo;
+    s_eye = seen_from(normalize(u_eye_mm - s_position_mm), s_normal);
 
     // Mean squared slope from one sample to the next, as a square footprint has it.
     vec3 dx = normalize(normals * across) - outside;

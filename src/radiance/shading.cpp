@@ -245,7 +245,8 @@ Program make_shading_program(const ShadingKey& key, ShadingSource source) {
         text += shipped_text("radiance/disc.glsl");
     if (glints) text += "#define GLINTS true\n" + shipped_text("radiance/glints.glsl");
     if (raster)
-        text += shipped_text("radiance/mesh_texels.glsl") + shipped_text("radiance/lens.glsl");
+        text += shipped_text("bsdf/seen_from.glsl") + shipped_text("radiance/mesh_texels.glsl") +
+                shipped_text("radiance/lens.glsl");
     text += shipped_text(raster ? "radiance/inputs_raster.glsl" : "radiance/inputs_packed.glsl");
     text += shipped_text("radiance/shade.glsl");
     if (over) {

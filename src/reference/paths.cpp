@@ -9,6 +9,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
+#include "appearance/bsdf_source.h"
 #include "core/error.h"
 #include "core/mutation.h"
 #include "scene/artwork_relief.h"
@@ -49,13 +50,8 @@ struct PathScene::Vertex {
         t = glm::normalize(t);
         world_from_local = glm::mat3(t, point.tangent.w * glm::cross(n, t), n);
 
-        // Seen from below its horizon: the closest direction above
-        constexpr float kLowest = 1e-4f;
-        glm::vec3 outgoing = toward_eye;
-        const float cosine = glm::dot(n, outgoing);
-        if (cosine < kLowest) outgoing = glm::normalize(outgoing + (kLowest - cosine) * n);
-        wo = glm::transpose(world_from_local) * outgoing;
-        wo.z = std::max(wo.z, 0.5f * kLowest);
+        wo = glm::transpose(world_from_local) * f32::seen_from(toward_eye, n);
+        wo.z = std::max(wo.z, 0.5e-4f);
     }
 
     glm::vec3 to_local(const glm::vec3& v) const { return glm::transpose(world_from_local) * v; }

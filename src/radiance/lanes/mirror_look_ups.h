@@ -8,6 +8,16 @@
 namespace livery::LIVERY_LANES {
 namespace {
 
+#define REAL Lanes
+#define VEC3 Lanes3
+#define R(x) lanes_of(x##f)
+#define FN LIVERY_LANE_FUNCTION
+#include "shaders/bsdf/seen_from.glsl"
+#undef REAL
+#undef VEC3
+#undef R
+#undef FN
+
 LIVERY_LANE_FUNCTION Lanes3 unit(const Lanes3& v) { return (1.0f / sqrt(dot(v, v))) * v; }
 
 /// Of one lobe: the two pictures that each lane lies between, and where on them.
@@ -74,10 +84,7 @@ void look_up_lobes(const MirrorLookUpJob& job) {
     const auto list = [&](std::size_t k) { return load(job.fragments + k * kLanes); };
     const Lanes3 normal{list(3), list(4), list(5)};
     const Lanes3 seen = unit({list(0), list(1), list(2)});
-    // As toward_eye() (light/sky_visibility.h)
-    constexpr float kLowest = 1e-4f;
-    const Lanes lifted = max(kLowest - dot(normal, seen), lanes_of(0.0f));
-    const Lanes3 wo = unit(seen + lifted * normal);
+    const Lanes3 wo = seen_from(seen, normal);
     const Lanes cosine = clamp(dot(wo, normal), lanes_of(0.0f), lanes_of(1.0f));
     const Lanes3 mirrored = 2.0f * cosine * normal - wo;
     const Lanes2 uv = place_of(mirrored, job.turns);

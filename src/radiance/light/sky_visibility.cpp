@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "appearance/bsdf_source.h"
 #include "core/error.h"
 #include "core/mutation.h"
 #include "core/parallel.h"
@@ -156,12 +157,8 @@ glm::vec3 sample_normal(const Mesh& mesh,
 }
 
 glm::vec3 toward_eye(const Fragment& fragment, glm::dvec3 eye_mm) {
-    constexpr float kLowest = 1e-4f;
-    const glm::vec3 n = fragment.normal;
     const auto wo = glm::vec3(glm::normalize(eye_mm - glm::dvec3(fragment.position_mm)));
-    const float cosine = glm::dot(n, wo);
-    if (cosine >= kLowest) return wo;
-    return glm::normalize(wo + (kLowest - cosine) * n);
+    return f32::seen_from(wo, fragment.normal);
 }
 
 float SkyVisibility::openness(std::size_t fragment) const {

@@ -69,7 +69,7 @@ glm::vec3 sample_normal(const Mesh& mesh,
                         std::size_t fragment,
                         std::size_t k);
 
-/// Unit direction from a fragment to the eye; kept above the horizon of its normal by 1e-4.
+/// Unit direction from which a fragment is shaded for the eye (shaders/bsdf/seen_from.glsl).
 glm::vec3 toward_eye(const Fragment& fragment, glm::dvec3 eye_mm);
 
 }  // namespace livery
