@@ -116,7 +116,7 @@ std::string design_table(const VoteStatistics& statistics, const std::vector<std
                         statistics.rank_sums[i],
                         statistics.borda[i],
                         statistics.worths[i],
-                        statistics.wins.first[i],
+                        statistics.predicted.first[i],
                         statistics.share_best[i].low,
                         statistics.share_best[i].high);
     }
@@ -169,7 +169,9 @@ std::string pair_lines(const VoteStatistics& statistics, const std::vector<std::
         text +=
             "worths: with half a win and half a loss of each design against a ghost, since a "
             "design "
-            "has no vote or one has all for best\n";
+            "has no vote or one has all for best; were all liked alike, 95% intervals would hold "
+            "in "
+            "about 60% of such rounds\n";
     }
     if (statistics.pairs_expected) {
         text +=
@@ -316,6 +318,8 @@ Json figures_of(const VoteStatistics& statistics, const std::vector<std::string>
     figures["top_two"] = {statistics.top_a, statistics.top_b};
     figures["p_method"] = to_string(statistics.wins.method);
     figures["p_cases"] = statistics.wins.cases;
+    figures["p_first_predictive"] = statistics.predicted.first;
+    figures["p_first_predictive_draws"] = statistics.predicted.cases;
     if (statistics.resampled) figures["resampled"] = json_of(*statistics.resampled);
     figures["power"] = power_of(statistics);
     figures["verdict"] = statistics.words;

@@ -17,4 +17,10 @@ std::string p_text(double p);
 /// "7.2%", "93%", "under 0.1%"; "0%" and "100%" are just that
 std::string percent_text(double share);
 
+/// Measured in drawn rounds (docs/evaluation.md).
+inline constexpr const char* kGhostIntervals =
+    " If the designs are liked alike, that one has no vote is chance, and the 95% intervals hold "
+    "in "
+    "about 60% of such rounds.";
+
 }  // namespace livery

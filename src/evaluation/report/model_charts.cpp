@@ -108,7 +108,8 @@ ReportChart worths_chart(const VoteStatistics& statistics, const ChartRows& rows
         }
         const double place = std::clamp(pair.odds, axis.low, axis.high);
         DrawnDot dot{{axis.at(place), y}, 4.6, kStrongColour};
-        if (pair.excludes_one()) dot = {{axis.at(place), y}, 4.4, kPaperColour, kStrongColour, 1.8};
+        if (told_from_leader(statistics.verdict, rows.order[row]))
+            dot = {{axis.at(place), y}, 4.4, kPaperColour, kStrongColour, 1.8};
         drawing.add(dot);
         drawing.add(DrawnText{{drawing.width, y + 3.1}, figures, kFigureSize, TextAnchor::end});
         chart.alternative += fmt::format("{}{}: {}",
@@ -119,10 +120,11 @@ ReportChart worths_chart(const VoteStatistics& statistics, const ChartRows& rows
     chart.alternative += ".";
     chart.note = fmt::format(
         "For one who prefers {}, so many prefer the other: Plackett and Luce's model, 95% "
-        "profile-likelihood intervals. An interval that reaches 1 does not separate the design "
-        "from {}; those that do not reach it have a hollow mark. Each is a comparison by itself.",
+        "profile-likelihood intervals, each a comparison by itself. Hollow marks are told from {}, "
+        "as the verdict has it.{}",
         name,
-        name);
+        name,
+        statistics.ghost ? kGhostIntervals : "");
     return chart;
 }
 

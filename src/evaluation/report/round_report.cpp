@@ -236,9 +236,10 @@ class ReportBuilder {
         add(record_table(source_));
         say("Verdict: a clear winner needs Friedman's exact p of at most .05, a 95% interval "
             "against "
-            "each other design without 1, the first place in 95% of rounds drawn again, and a "
-            "likelihood ratio that passes by its own law; leading, the first place in three rounds "
-            "of four. Sources: Friedman 1937; Kendall and Babington Smith 1939; Wilson 1927; Luce "
+            "each other design without 1, the first place in 85% of rounds of other evaluators, "
+            "and "
+            "a likelihood ratio that passes by its own law; leading, the first place in two of "
+            "three. Sources: Friedman 1937; Kendall and Babington Smith 1939; Wilson 1927; Luce "
             "1959 and Plackett 1975; Efron 1979; Krippendorff 2004; Turner, van Etten, Firth and "
             "Kosmidis 2020 for the ghost.",
             ParagraphRole::note);

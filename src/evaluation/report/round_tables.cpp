@@ -59,12 +59,15 @@ ReportTable votes_table(const VoteStatistics& statistics, const ChartRows& rows)
 
 ReportTable worths_table(const VoteStatistics& statistics, const ChartRows& rows) {
     ReportTable table{
-        "Worths, and who would be first", {{"Design", false}, {"Worth"}, {"First, by worths"}}, {}};
+        "Worths, and who would be first",
+        {{"Design", false}, {"Worth"}, {"First, of others"}, {"First, were the worths so"}},
+        {}};
     if (statistics.resampled) table.columns.push_back({"First, ballots drawn again"});
     for (const int design : rows.order) {
         const auto k = static_cast<std::size_t>(design);
         std::vector<std::string> row = {rows.labels[k],
                                         fmt::format("{:.3f}", statistics.worths[k]),
+                                        fmt::format("{:.3f}", statistics.predicted.first[k]),
                                         fmt::format("{:.3f}", statistics.wins.first[k])};
         if (statistics.resampled) {
             row.push_back(fmt::format("{:.3f}", statistics.resampled->first[k]));
@@ -77,6 +80,7 @@ ReportTable worths_table(const VoteStatistics& statistics, const ChartRows& rows
         table.note +=
             " They are fitted with half a win and half a loss of each design against a "
             "ghost, since a design has no vote or one has all for best.";
+        table.note += kGhostIntervals;
     }
     if (statistics.pairs_expected) {
         table.note +=
@@ -129,11 +133,11 @@ ReportTable tests_table(const VoteStatistics& statistics, const ChartRows& rows)
                  verdict.rival_p >= 1.0 ? "not asked for" : p_text(verdict.rival_p),
                  "",
                  "drawn at equal worths; a clear winner needs .04"});
-            add({"The leader is first in rounds drawn again",
+            add({"The leader is first in rounds of other evaluators",
                  percent_text(verdict.win_probability),
                  "",
                  "",
-                 statistics.resampled ? "single ballots" : "fitted worths"});
+                 method_text(statistics.predicted.method, statistics.predicted.cases)});
         }
         add({fmt::format("{} and {} are the top two again",
                          label(statistics.top_a),

@@ -109,30 +109,12 @@ ReportChart votes_chart(const VoteStatistics& statistics, const ChartRows& rows)
 }
 
 ReportChart rank_sum_chart(const VoteStatistics& statistics, const ChartRows& rows) {
-    ReportChart chart{"Rank sums: over all pairs at once", "", "", {}};
+    ReportChart chart{"Rank sums", "", "", {}};
     VectorDrawing& drawing = chart.drawing;
-    const bool has_range = statistics.range_threshold.has_value();
-    const ChartFrame frame = begin_rows(drawing, rows, has_range ? 20.0 : 6.0, 44.0);
+    const ChartFrame frame = begin_rows(drawing, rows, 6.0, 44.0);
     const double designs = static_cast<double>(rows.order.size());
     const double evaluators = std::max(1, statistics.evaluators);
     const ChartAxis axis{evaluators, designs * evaluators, frame.left + 8.0, frame.right - 4.0};
-    const double first =
-        *std::min_element(statistics.rank_sums.begin(), statistics.rank_sums.end());
-    if (has_range) {
-        const double end = std::min(axis.high, first + *statistics.range_threshold);
-        DrawnShape band = drawn_box(axis.at(first),
-                                    frame.top,
-                                    axis.at(end) - axis.at(first),
-                                    frame.row_height * frame.rows);
-        band.fill = kFaintColour;
-        drawing.add(band);
-        drawing.add(DrawnText{
-            {axis.at(first), frame.top - 7.0},
-            fmt::format("not told from the first: under {:.1f}", *statistics.range_threshold),
-            8.0,
-            TextAnchor::start,
-            kSoftInkColour});
-    }
     draw_axis(drawing,
               frame,
               axis,
@@ -141,11 +123,11 @@ ReportChart rank_sum_chart(const VoteStatistics& statistics, const ChartRows& ro
     for (std::size_t row = 0; row < rows.order.size(); ++row) {
         const std::size_t k = index_of(rows.order[row]);
         const double sum = statistics.rank_sums[k];
-        const bool within = !has_range || sum - first < *statistics.range_threshold;
+        const bool told = told_from_leader(statistics.verdict, rows.order[row]);
         drawing.add(DrawnLine{
             {frame.left, frame.middle(row)}, {axis.at(sum), frame.middle(row)}, kGridColour, 1.0});
         DrawnDot dot{{axis.at(sum), frame.middle(row)}, 4.6, kStrongColour};
-        if (!within) {
+        if (told) {
             dot.fill = kPaperColour;
             dot.stroke = kStrongColour;
             dot.width = 1.8;
@@ -164,68 +146,44 @@ ReportChart rank_sum_chart(const VoteStatistics& statistics, const ChartRows& ro
               "the places left for each other, added up over the ballots. "
             : "1 for best, 2 for second best and the mean of the places left for each "
               "other, added up over the ballots. ";
-    if (!has_range) {
-        chart.note += "With so few ballots no difference is rare enough to tell two designs apart.";
-    } else if (statistics.friedman_p > 0.05) {
-        chart.note +=
-            "The ballots as a whole show no preference (Friedman), so nothing is told apart, "
-            "however far apart two sums lie.";
-    } else {
-        chart.note += fmt::format(
-            "Two designs whose sums differ by {:.1f} or more are told apart: were all liked alike, "
-            "any pair at all would differ so much in 5% of rounds at most. Hollow marks are told "
-            "from the first.",
-            *statistics.range_threshold);
-    }
+    chart.note += statistics.verdict.kind == VerdictKind::no_preference
+                      ? "The ballots as a whole show no preference (Friedman), so nothing is told "
+                        "apart, however far apart two sums lie."
+                      : "Hollow marks are told from the first, as the verdict has it.";
     return chart;
 }
 
 ReportChart first_chart(const VoteStatistics& statistics, const ChartRows& rows) {
-    ReportChart chart{"Who would be first in another round like this one", "", "", {}};
+    ReportChart chart{"Who would be first in a round of others", "", "", {}};
     VectorDrawing& drawing = chart.drawing;
-    const bool resampled = statistics.resampled.has_value();
-    const ChartFrame frame = begin_rows(drawing, rows, resampled ? 22.0 : 6.0, 92.0);
+    const ChartFrame frame = begin_rows(drawing, rows, 6.0, 92.0);
     const ChartAxis axis{0.0, 1.0, frame.left, frame.right};
     std::vector<ChartTick> ticks;
     for (const int percent : {0, 25, 50, 75, 100}) {
         ticks.push_back({percent / 100.0, fmt::format("{}%", percent)});
     }
     draw_axis(drawing, frame, axis, ticks, "chance to be first by rank sums");
-    if (resampled) {
-        const double x =
-            legend_entry(drawing, frame.left, 9.0, "under the fitted worths", kMiddleColour, false);
-        drawing.add(DrawnDot{{x + 4.0, 6.0}, 3.6, kPaperColour, kStrongColour, 1.6});
-        drawing.add(DrawnText{{x + 13.0, 9.0}, "ballots drawn again", 8.5});
-    }
     for (std::size_t row = 0; row < rows.order.size(); ++row) {
         const std::size_t k = index_of(rows.order[row]);
-        const double chance = statistics.wins.first[k];
+        const double chance = statistics.predicted.first[k];
         const double height = 0.5 * frame.row_height;
         DrawnShape bar = drawn_box(
             frame.left, frame.middle(row) - 0.5 * height, axis.at(chance) - frame.left, height);
         bar.fill = kMiddleColour;
         drawing.add(bar);
-        std::string figures = percent_text(chance);
-        if (resampled) {
-            const double again = statistics.resampled->first[k];
-            drawing.add(DrawnDot{
-                {axis.at(again), frame.middle(row)}, 3.6, kPaperColour, kStrongColour, 1.6});
-            figures += " / " + percent_text(again);
-        }
+        const std::string figures = percent_text(chance);
         drawing.add(DrawnText{
             {drawing.width, frame.middle(row) + 3.1}, figures, kFigureSize, TextAnchor::end});
         chart.alternative += fmt::format("{}{}: {}", row == 0 ? "" : "; ", rows.labels[k], figures);
     }
     chart.alternative += ".";
     chart.note = fmt::format(
-        "Of rounds of {} evaluators: under the fitted worths ({}){}. Where several are first, they "
-        "share it.",
+        "Of rounds of {} other evaluators ({}), with what these ballots leave open of how well the "
+        "designs are liked. Where several are first, they share it. Of designs that are liked "
+        "alike "
+        "it says too much of the one that happens to lead.",
         statistics.evaluators,
-        method_text(statistics.wins.method, statistics.wins.cases),
-        resampled
-            ? fmt::format(", and from the single ballots drawn again ({})",
-                          method_text(statistics.resampled->method, statistics.resampled->cases))
-            : "");
+        method_text(statistics.predicted.method, statistics.predicted.cases));
     return chart;
 }
 

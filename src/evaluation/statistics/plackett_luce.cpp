@@ -62,15 +62,14 @@ Curvature curvature(const LuceData& data, const Vector& theta) {
                 at, theta, data.pairs[static_cast<std::size_t>(i * designs + j)], -1.0, i, j);
         }
     }
-    if (!data.ghost) return at;
+    if (!(data.ghost > 0.0)) return at;
     for (Index i = 0; i < designs; ++i) {
-        // Half a win and half a loss: theta / 2 - ln(1 + e^theta), written so that it cannot
-        // overflow.
+        // A win and a loss: theta - 2 ln(1 + e^theta), written so that it cannot overflow.
         const double far = std::abs(theta[i]);
         const double share = 1.0 / (1.0 + std::exp(-theta[i]));
-        at.value -= 0.5 * far + std::log1p(std::exp(-far));
-        at.gradient[i] += 0.5 - share;
-        at.information(i, i) += share * (1.0 - share);
+        at.value -= data.ghost * (far + 2.0 * std::log1p(std::exp(-far)));
+        at.gradient[i] += data.ghost * (1.0 - 2.0 * share);
+        at.information(i, i) += data.ghost * 2.0 * share * (1.0 - share);
     }
     return at;
 }
@@ -130,7 +129,7 @@ LuceData luce_data(const VoteCounts& counts, const std::vector<RankedBallot>* ba
     data.best.assign(counts.best.begin(), counts.best.end());
     data.second.assign(counts.second.begin(), counts.second.end());
     data.least.assign(counts.least.begin(), counts.least.end());
-    data.ghost = needs_ghost(counts);
+    data.ghost = needs_ghost(counts) ? kGhost : 0.0;
     if (!counts.has_least()) return data;
     if (!ballots) {
         data.pairs = expected_pairs(counts);
@@ -145,8 +144,8 @@ LuceData luce_data(const VoteCounts& counts, const std::vector<RankedBallot>* ba
     return data;
 }
 
-LuceData luce_data(const ExpectedVotes& votes, bool ghost) {
-    return {votes.best, votes.second, votes.least, votes.pairs, ghost};
+LuceData luce_data(const ExpectedVotes& votes) {
+    return {votes.best, votes.second, votes.least, votes.pairs};
 }
 
 LuceFit fit_luce(const LuceData& data,
@@ -167,7 +166,7 @@ LuceFit fit_luce(const LuceData& data,
     int step = 0;
     for (; step < most_steps; ++step) {
         if (at.gradient.cwiseAbs().maxCoeff() <= 1e-9) break;
-        const Vector move = held_together(at, data.ghost).llt().solve(at.gradient);
+        const Vector move = held_together(at, data.ghost > 0.0).llt().solve(at.gradient);
         // No step over more than a factor of e^4: far out the curvature tells nothing of here.
         double part = std::min(1.0, 4.0 / std::max(1e-300, move.cwiseAbs().maxCoeff()));
         bool climbs = false;
@@ -191,7 +190,7 @@ LuceFit fit_luce(const LuceData& data,
     LuceFit fit;
     fit.log_likelihood = at.value;
     const Vector theta = coordinates.theta(free);
-    const double mean = data.ghost ? 0.0 : theta.mean();
+    const double mean = data.ghost > 0.0 ? 0.0 : theta.mean();
     for (Index i = 0; i < designs; ++i) fit.log_worths.push_back(theta[i] - mean);
     return fit;
 }
@@ -214,7 +213,7 @@ double standard_error(const LuceData& data, const LuceFit& fit, int a, int b) {
     for (Index i = 0; i < designs; ++i) theta[i] = fit.log_worths[static_cast<std::size_t>(i)];
     difference[a] = 1.0;
     difference[b] = -1.0;
-    const Matrix information = held_together(curvature(data, theta), data.ghost);
+    const Matrix information = held_together(curvature(data, theta), data.ghost > 0.0);
     return std::sqrt(difference.dot(information.llt().solve(difference)));
 }
 

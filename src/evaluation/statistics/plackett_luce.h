@@ -15,14 +15,16 @@ namespace livery {
 struct LuceData {
     std::vector<double> best, second, least;
     std::vector<double> pairs;  ///< [best * designs + second]; empty without a least
-    /// Half a win and half a loss of each design against one of worth 1 that nobody sees, as the R
-    /// package PlackettLuce does (Turner, van Etten, Firth and Kosmidis 2020).
-    bool ghost = false;
+    /// So many wins and as many losses of each design against one of worth 1 that nobody sees: half
+    /// of each in the R package PlackettLuce (Turner, van Etten, Firth and Kosmidis 2020); 0: none.
+    double ghost = 0.0;
 };
+inline constexpr double kGhost = 0.5;
+
 /// With the pairs that the counts make likely (expected_pairs()) or, where they are known, with
 /// those of the ballots. With the ghost where it is needed.
 LuceData luce_data(const VoteCounts& counts, const std::vector<RankedBallot>* ballots = nullptr);
-LuceData luce_data(const ExpectedVotes& votes, bool ghost);
+LuceData luce_data(const ExpectedVotes& votes);
 
 /// Without it the likelihood has no maximum: a design has no vote, or one has all for best, so that
 /// who won over whom is not strongly connected.

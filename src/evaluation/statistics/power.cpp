@@ -32,7 +32,7 @@ std::optional<int> evaluators_for_power(const BallotLaw& law, int a, int b) {
     // (1.960 + 0.842)^2: the noncentrality at which chi-square's 95% point is passed in 80%.
     constexpr double needed = 7.8489;
     constexpr double unit = 100.0, most = 1e6;
-    const LuceData data = luce_data(expected_votes(law, unit), false);
+    const LuceData data = luce_data(expected_votes(law, unit));
     const double each = deviance(data, fit_luce(data), {a, b, 0.0}) / unit;
     if (!(each * most > needed)) return std::nullopt;
     return static_cast<int>(std::ceil(needed / each));

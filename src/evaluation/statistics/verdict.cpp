@@ -15,7 +15,9 @@ namespace {
 // The law that the rival's p goes by is that of fitted worths: with .05 here, of two that are
 // equally good one was called the winner in up to 6% of drawn rounds.
 constexpr double kRivalLevel = 0.04;
-constexpr double kClear = 0.95, kLeading = 0.75;
+// Of a figure that counts the estimate's error twice: as much as .95 and .75 of one that takes the
+// fitted worths for the true ones.
+constexpr double kClear = 0.85, kLeading = 2.0 / 3.0;
 constexpr double kSameLogWorth = 1e-6;
 
 }  // namespace
@@ -28,6 +30,15 @@ std::vector<int> by_worth(const LuceFit& fit) {
         return worth(a) > worth(b) + kSameLogWorth;
     });
     return order;
+}
+
+bool told_from_leader(const Verdict& verdict, int design) {
+    if (design == verdict.leader) return false;
+    const bool any = verdict.kind == VerdictKind::clear_winner ||
+                     verdict.kind == VerdictKind::leading ||
+                     verdict.kind == VerdictKind::cannot_tell;
+    return any && std::find(verdict.not_apart.begin(), verdict.not_apart.end(), design) ==
+                      verdict.not_apart.end();
 }
 
 const char* to_string(VerdictKind kind) {

@@ -62,13 +62,13 @@ class VerdictWords {
             case VerdictKind::cannot_tell:
                 return cannot_tell();
             case VerdictKind::leading:
-                return fmt::format("{} leads, not separated from {}; {}{}",
-                                   name(verdict_.leader),
-                                   listed(names_of(verdict_.not_apart)),
-                                   what_would_tell(statistics_.evaluators_needed),
-                                   apart());
+                return fmt::format(
+                    "{} leads, not separated from {}, and may be no better; if it is, {}",
+                    name(verdict_.leader),
+                    listed(names_of(verdict_.not_apart)),
+                    what_would_tell(statistics_.evaluators_needed));
             case VerdictKind::clear_winner:
-                return fmt::format("{} is the clear winner{}", name(verdict_.leader), apart());
+                return fmt::format("{} is the clear winner", name(verdict_.leader));
         }
         return "";
     }
@@ -106,30 +106,12 @@ class VerdictWords {
                              statistics_.counts.best[static_cast<std::size_t>(verdict_.rival)] &&
                          statistics_.counts.second[static_cast<std::size_t>(verdict_.leader)] ==
                              statistics_.counts.second[static_cast<std::size_t>(verdict_.rival)];
-        return fmt::format("{} cannot tell {} from {}{}{}{}",
+        return fmt::format("{} cannot tell {} from {}{}{}",
                            these(),
                            name(verdict_.leader),
                            listed(others),
                            tie ? ", which have the same votes" : "",
-                           tie ? "" : "; " + what_would_tell(statistics_.evaluators_needed),
-                           apart());
-    }
-
-    /// What the rank sums tell over all pairs; of one pair all has been said.
-    std::string apart() const {
-        if (statistics_.counts.designs() < 3) return ".";
-        std::vector<std::string> pairs;
-        constexpr std::size_t most = 6;
-        for (const auto& [better, worse] : statistics_.apart) {
-            pairs.push_back(name(better) + " over " + name(worse));
-        }
-        if (pairs.empty()) return ". Over all pairs at once the rank sums tell none apart at 5%.";
-        if (pairs.size() > most) {
-            return fmt::format(". Over all pairs at once the rank sums tell {} of {} apart at 5%.",
-                               pairs.size(),
-                               statistics_.pairs.size());
-        }
-        return ". Over all pairs at once the rank sums tell apart, at 5%: " + listed(pairs) + ".";
+                           tie ? "" : "; " + what_would_tell(statistics_.evaluators_needed));
     }
 
     const VoteStatistics& statistics_;

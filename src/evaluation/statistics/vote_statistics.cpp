@@ -84,7 +84,7 @@ VoteStatistics vote_statistics(const VoteCounts& counts,
     const LuceData data = luce_data(counts, ballots);
     const LuceFit fit = fit_luce(data);
     statistics.worths = worths_of(fit);
-    statistics.ghost = data.ghost;
+    statistics.ghost = data.ghost > 0.0;
     statistics.pairs_expected = counts.has_least() && !ballots;
     if (statistics.evaluators > 0) statistics.pairs = compare_pairs(data, fit);
     const BallotLaw law = ballot_law(statistics.worths, counts.has_least());
@@ -97,13 +97,13 @@ VoteStatistics vote_statistics(const VoteCounts& counts,
         statistics.resampled =
             bootstrap_wins(*ballots, counts.designs(), counts.has_least(), a, b, seed);
     }
-    const WinProbabilities& wins = statistics.resampled ? *statistics.resampled : statistics.wins;
+    statistics.predicted = predicted_wins(data, statistics.evaluators, seed);
     statistics.verdict = judge(
         counts,
         data,
         fit,
         null,
-        [&](int design) { return wins.first[static_cast<std::size_t>(design)]; },
+        [&](int design) { return statistics.predicted.first[static_cast<std::size_t>(design)]; },
         seed);
     add_power(statistics, law);
     statistics.words = words_of(statistics, names);

@@ -40,6 +40,7 @@ struct VoteStatistics {
 
     WinProbabilities wins;  ///< under the fitted worths
     int top_a = 0, top_b = 1;
+    WinProbabilities predicted;                 ///< of a round of other evaluators; `first` alone
     std::optional<WinProbabilities> resampled;  ///< from the ballots, where they are known
 
     struct Power {

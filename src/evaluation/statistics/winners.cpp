@@ -197,6 +197,47 @@ WinProbabilities win_probabilities(const BallotLaw& law,
     return wins;
 }
 
+WinProbabilities predicted_wins(const LuceData& data, int evaluators, std::uint64_t seed) {
+    constexpr std::size_t kFits = 2000, kRounds = 20;
+    const auto designs = static_cast<int>(data.best.size());
+    const bool has_least = !data.least.empty();
+    WinProbabilities wins;
+    wins.method = Method::drawn;
+    wins.cases = static_cast<std::int64_t>(kFits * kRounds);
+    if (evaluators == 0) {
+        wins.first.assign(data.best.size(), 1.0 / designs);
+        return wins;
+    }
+    wins.first.assign(data.best.size(), 0.0);
+    // Whoever leads was the luckiest: a whole win and loss keep the worths from standing out so
+    // far.
+    constexpr double kWholeGhost = 1.0;
+    LuceData with_ghost = data;
+    with_ghost.ghost = kWholeGhost;
+    const BallotLaw law = ballot_law(worths_of(fit_luce(with_ghost)), has_least);
+    const PlaceScores places = reduced_scores(designs, has_least);
+    std::vector<WinProbabilities> parts(kFits, wins);
+    constexpr double share = 1.0 / static_cast<double>(kFits * kRounds);
+    for_draws(kFits, seed, 7, [&](Random& random, std::size_t index) {
+        const std::vector<RankedBallot> again = draw_round(law, evaluators, random);
+        LuceData found = luce_data(count_drawn(again, designs, has_least), &again);
+        found.ghost = kWholeGhost;
+        const BallotLaw likely = ballot_law(worths_of(fit_luce(found)), has_least);
+        for (std::size_t k = 0; k < kRounds; ++k) {
+            std::vector<int> sums(data.best.size(), 0);
+            for (const RankedBallot& ballot : draw_round(likely, evaluators, random)) {
+                const std::vector<int> scores = scores_of(ballot, designs, places);
+                for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += scores[i];
+            }
+            add(parts[index], sums, share, 0, 1);
+        }
+    });
+    for (const WinProbabilities& part : parts) {
+        for (std::size_t i = 0; i < wins.first.size(); ++i) wins.first[i] += part.first[i];
+    }
+    return wins;
+}
+
 WinProbabilities bootstrap_wins(const std::vector<RankedBallot>& ballots,
                                 int designs,
                                 bool has_least,

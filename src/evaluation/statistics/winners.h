@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "evaluation/statistics/ballot_law.h"
+#include "evaluation/statistics/plackett_luce.h"
 #include "evaluation/statistics/rank_sums.h"
 
 namespace livery {
@@ -28,6 +29,12 @@ WinProbabilities win_probabilities(const BallotLaw& law,
                                    int top_b,
                                    std::uint64_t seed,
                                    std::int64_t most_states = 1'000'000);
+
+/// Of a round of as many other evaluators, with what these ballots leave open: the worths are not
+/// known but fitted. From 2000 rounds drawn under the worths fitted with a ghost of weight 1, to
+/// each of which worths are fitted anew, 20 rounds drawn under those: the error of the estimate
+/// counts twice, once as it was made and once as it may be made again. No evaluators: all tie.
+WinProbabilities predicted_wins(const LuceData& data, int evaluators, std::uint64_t seed);
 
 /// Of 10^4 rounds drawn from the ballots, with replacement (Efron 1979).
 WinProbabilities bootstrap_wins(const std::vector<RankedBallot>& ballots,

@@ -1,9 +1,11 @@
 // How often the verdicts are wrong, over drawn rounds in which it is known that they are.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <numeric>
 
 #include <gtest/gtest.h>
 
@@ -42,9 +44,7 @@ class Judge {
         const LuceData data = luce_data(counts);
         const LuceFit fit = fit_luce(data);
         const auto win_probability = [&](int design) {
-            const BallotLaw law = ballot_law(worths_of(fit), counts.has_least());
-            const int evaluators = counts.evaluators();
-            return win_probabilities(law, evaluators, 0, 1, 1)
+            return predicted_wins(data, counts.evaluators(), 1)
                 .first[static_cast<std::size_t>(design)];
         };
         const Verdict verdict = judge(counts, data, fit, null_, win_probability, 1);
@@ -163,6 +163,103 @@ TEST(ErrorRates, WinnersAreFoundWhereThereAreSome) {
     print("one of eight times the worth", 100, found);
     EXPECT_GT(found.winner, 0.3);
     EXPECT_GT(found.preference, 0.9);
+}
+
+/// Log-worths drawn from a normal distribution.
+BallotLaw drawn_law(int designs, double deviation, Random& random) {
+    std::vector<double> worths;
+    for (int i = 0; i < designs; ++i) {
+        const double radius = std::sqrt(-2.0 * std::log(1.0 - random.uniform()));
+        worths.push_back(std::exp(deviation * radius * std::cos(2.0 * M_PI * random.uniform())));
+    }
+    const double sum = std::accumulate(worths.begin(), worths.end(), 0.0);
+    for (double& worth : worths) worth /= sum;
+    return ballot_law(worths, false);
+}
+
+/// Designs liked unalike, whose log-worths have a deviation of 1 or 2: who leads a round of ten or
+/// twenty is said to be first among as many others as often as it is.
+TEST(PredictedWins, NightlyAreTrueAsOftenAsTheySay) {
+    struct Rounds {
+        int designs, evaluators;
+        double deviation;
+    };
+    for (const Rounds& each : {Rounds{4, 10, 1.0}, {4, 20, 1.0}, {4, 10, 2.0}, {3, 8, 1.0}}) {
+        constexpr std::size_t kRounds = 600;
+        std::vector<double> said(kRounds), would_say(kRounds), is(kRounds);
+        for_draws(kRounds, 20261128, 9, [&](Random& random, std::size_t k) {
+            const BallotLaw truth = drawn_law(each.designs, each.deviation, random);
+            const auto ballots = draw_round(truth, each.evaluators, random);
+            const LuceData data = luce_data(count_drawn(ballots, each.designs, false), &ballots);
+            const LuceFit fit = fit_luce(data);
+            const auto leader = static_cast<std::size_t>(by_worth(fit)[0]);
+            said[k] = predicted_wins(data, each.evaluators, k).first[leader];
+            would_say[k] =
+                win_probabilities(ballot_law(worths_of(fit), false), each.evaluators, 0, 1, k)
+                    .first[leader];
+            is[k] = win_probabilities(truth, each.evaluators, 0, 1, k).first[leader];
+        });
+        const auto mean = [](const std::vector<double>& values) {
+            return std::accumulate(values.begin(), values.end(), 0.0) /
+                   static_cast<double>(values.size());
+        };
+        double sure = 0.0, sure_said = 0.0, sure_is = 0.0;
+        for (std::size_t k = 0; k < kRounds; ++k) {
+            if (said[k] < 0.9) continue;
+            sure += 1.0;
+            sure_said += said[k];
+            sure_is += is[k];
+        }
+        std::printf(
+            "    %d designs, %d evaluators, deviation %.0f: said %.3f, true %.3f (of fitted "
+            "worths %.3f); where it says .9 or more: %.3f, true %.3f\n",
+            each.designs,
+            each.evaluators,
+            each.deviation,
+            mean(said),
+            mean(is),
+            mean(would_say),
+            sure_said / sure,
+            sure_is / sure);
+        EXPECT_NEAR(mean(said), mean(is), 0.03);
+        // Of a hundred or two of them: noise of 1.5 points.
+        EXPECT_NEAR(sure_said / sure, sure_is / sure, 0.05);
+    }
+}
+
+/// Rounds of which a design has no vote, or one all for best, are fitted with the ghost: how often
+/// their intervals hold the truth. Where all are liked alike such a round is chance in itself.
+TEST(GhostIntervals, NightlyHoldTheTruthUnlessAllAreLikedAlike) {
+    const auto share_held = [](int evaluators, double deviation) {
+        double pairs = 0.0, held = 0.0;
+        Random random(20261128, 10);
+        for (int round = 0; round < 4000; ++round) {
+            const BallotLaw truth = drawn_law(4, deviation, random);
+            const auto ballots = draw_round(truth, evaluators, random);
+            const VoteCounts counts = count_drawn(ballots, 4, false);
+            if (!needs_ghost(counts)) continue;
+            const LuceData data = luce_data(counts, &ballots);
+            std::array<double, 4> worth{};
+            for (std::size_t k = 0; k < truth.ballots.size(); ++k)
+                worth[static_cast<std::size_t>(truth.ballots[k].best)] += truth.probabilities[k];
+            for (const PairComparison& pair : compare_pairs(data, fit_luce(data))) {
+                const double odds = worth[static_cast<std::size_t>(pair.a)] /
+                                    worth[static_cast<std::size_t>(pair.b)];
+                pairs += 1.0;
+                held += odds >= pair.low && odds <= pair.high ? 1.0 : 0.0;
+            }
+        }
+        std::printf(
+            "    %d evaluators, deviation %.1f: of %.0f intervals with a ghost %.1f%% hold\n",
+            evaluators,
+            deviation,
+            pairs,
+            100.0 * held / pairs);
+        return held / pairs;
+    };
+    for (const int evaluators : {6, 10, 20}) EXPECT_GT(share_held(evaluators, 2.0), 0.93);
+    EXPECT_GT(share_held(8, 1.0), 0.93);
+    EXPECT_LT(share_held(6, 0.0), 0.8) << "they need no warning any more";
 }
 
 }  // namespace

@@ -72,10 +72,9 @@ TEST_F(Table3, TheVerdictSaysNoMore) {
     EXPECT_EQ(statistics_->verdict.kind, VerdictKind::leading);
     EXPECT_EQ(statistics_->verdict.leader, 1);
     EXPECT_EQ(statistics_->verdict.not_apart, (std::vector<int>{3}));
-    EXPECT_EQ(
-        statistics_->words,
-        "(b) leads, not separated from (d); about 40 more evaluators, in a fresh round, would "
-        "tell. Over all pairs at once the rank sums tell apart, at 5%: (b) over (a).");
+    EXPECT_EQ(statistics_->words,
+              "(b) leads, not separated from (d), and may be no better; if it is, about 40 more "
+              "evaluators, in a fresh round, would tell");
 }
 
 TEST_F(Table3, AFreshRoundWouldTellThisOften) {
