@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "capture/camera.h"
+#include "capture/camera_messages.h"
 
 namespace livery {
 
@@ -19,22 +20,15 @@ struct TetheredOptions {
     std::chrono::milliseconds photograph{20000};
 };
 
-struct FoundCamera {
-    std::string model, port;
-    std::string held_by;  ///< programs that have it open, with their numbers; empty: nobody
-};
 /// Those on USB; network cameras must be named. Takes a tenth of a second. Throws CameraFault.
 std::vector<FoundCamera> list_tethered_cameras();
 
 /// Opens it. Photographs are RAW where the camera is set so (linear, camera colours, half the
 /// sensor's resolution each way: one pixel from each square of its colour filter, nothing
 /// interpolated), else JPEG, taken for sRGB; each is deleted from the card when it is here. Every
-/// call runs on a thread of the camera's own: one that does not answer in time is given up, thread
-/// and all, and the next call opens the camera anew. Throws CameraFault.
+/// call is answered by a process of the camera's own (capture/camera_process.h): one that does not
+/// answer in time, or breaks off, is ended, and the next call opens the camera anew. Throws
+/// CameraFault.
 std::unique_ptr<Camera> open_tethered_camera(const TetheredOptions& options);
-
-/// Seconds of a shutter speed as cameras write it: "1/60", "0.1000s", "0.4", "2\"". Negative:
-/// "bulb", "auto" and what else is no time.
-double seconds_of_shutter_speed(const std::string& text);
 
 }  // namespace livery

@@ -16,7 +16,7 @@
 
 #include "capture/transfer.h"
 #include "capture/video_module.h"
-#include "core/module.h"
+#include "core/system/module.h"
 
 namespace livery {
 

@@ -12,11 +12,11 @@
 #include <string_view>
 
 #include "core/error.h"
-#include "core/module.h"
 #include "core/paths.h"
 #include "core/pictures/image_io_module.h"
 #include "core/pictures/png_bytes.h"
 #include "core/pictures/radiance_hdr.h"
+#include "core/system/module.h"
 
 namespace livery {
 

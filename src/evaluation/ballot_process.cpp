@@ -12,12 +12,11 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "core/error.h"
-#include "core/paths.h"
+#include "core/system/start_program.h"
 #include "core/utf8.h"
 
 namespace livery {
@@ -29,9 +28,7 @@ constexpr std::size_t kLongestLine = 4096;
 }  // namespace
 
 BallotProcess::BallotProcess(const BallotProcessOptions& options) {
-    const std::filesystem::path program = executable_folder() / "livery-ballots";
-    std::vector<std::string> words = {program.string(),
-                                      "--json",
+    std::vector<std::string> words = {"--json",
                                       "--with-parent",
                                       "--ballots",
                                       options.ballots.string(),
@@ -46,29 +43,22 @@ BallotProcess::BallotProcess(const BallotProcessOptions& options) {
         words.insert(words.end(), {"--certificate", options.certificate});
     }
     if (!options.key.empty()) words.insert(words.end(), {"--key", options.key});
-    std::vector<char*> arguments;
-    for (std::string& word : words) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-
     // Both of its outputs come here: where it listens, or why it does not.
     std::array<int, 2> pipe{};
     if (::pipe2(pipe.data(), O_CLOEXEC) != 0) {
         throw std::runtime_error(std::string("cannot make a pipe: ") + std::strerror(errno));
     }
-    posix_spawn_file_actions_t actions;
-    ::posix_spawn_file_actions_init(&actions);
-    ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    ::posix_spawn_file_actions_adddup2(&actions, pipe[1], STDOUT_FILENO);
-    ::posix_spawn_file_actions_adddup2(&actions, pipe[1], STDERR_FILENO);
-    const int failure =
-        ::posix_spawn(&id_, program.c_str(), &actions, nullptr, arguments.data(), ::environ);
-    ::posix_spawn_file_actions_destroy(&actions);
-    ::close(pipe[1]);
-    if (failure != 0) {
+    try {
+        id_ = start_program("livery-ballots",
+                            std::move(words),
+                            {{pipe[1], STDOUT_FILENO}, {pipe[1], STDERR_FILENO}},
+                            "the program that serves ballots");
+    } catch (const FileError&) {
         ::close(pipe[0]);
-        id_ = -1;
-        throw FileError(program, "", std::strerror(failure), "the program that serves ballots");
+        ::close(pipe[1]);
+        throw;
     }
+    ::close(pipe[1]);
     words_ = pipe[0];
 }
 

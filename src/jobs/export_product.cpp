@@ -2,7 +2,7 @@
 
 #include "core/error.h"
 #include "core/paths.h"
-#include "mesh/gltf_write.h"
+#include "mesh/gltf/gltf_write.h"
 
 namespace livery {
 

@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "core/paths.h"
-#include "mesh/gltf_file.h"
+#include "mesh/gltf/gltf_file.h"
 #include "mesh/mesh.h"
 #include "mesh/scan_file.h"
 

@@ -7,6 +7,7 @@
 #include "appearance/bsdf_source.h"
 #include "appearance/gloss_optics.h"
 #include "core/random.h"
+#include "core/worst_error.h"
 
 namespace livery {
 namespace {
@@ -45,7 +46,7 @@ TEST(SeenFrom, IsTheEyeWhereItSeesAndAboveTheHorizonWhereNot) {
             EXPECT_LT(glm::distance(from, wo), 1e-9) << cosine;
         }
         const glm::dvec3 in_float(f32::seen_from(glm::vec3(wo), glm::vec3(normal)));
-        worst = std::max(worst, glm::distance(in_float, from));
+        worst = worse_of(worst, glm::distance(in_float, from));
     }
     // Directions have 6e-8 of their own, and the cosine of what faces away thrice that.
     EXPECT_LT(worst, 2e-6);

@@ -1,5 +1,6 @@
 #include "capture/tethered_camera.h"
 
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <stdexcept>
@@ -7,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include "capture/camera_words.h"
 #include "capture/fault_of.h"
-#include "capture/gphoto_settings.h"
 #include "capture/patient_camera.h"
 #include "capture/recording.h"
 #include "core/colour.h"
@@ -155,7 +156,8 @@ TEST_P(TetheredMishaps, AreNamedAndGoneWhenTheyAre) {
     EXPECT_NE(fault.why().find(what.said), std::string::npos) << fault.why();
     EXPECT_NE(fault.why().find(responder.port()), std::string::npos) << "which camera";
     // And again: it stays as it is, it does not hang.
-    EXPECT_EQ(fault_of([&] { camera->photograph(0.2); }).trouble(), what.trouble);
+    const CameraFault again = fault_of([&] { camera->photograph(0.2); });
+    EXPECT_EQ(again.trouble(), what.trouble) << again.why();
     responder.set(PtpMishap::none);
     if (what.trouble == CameraTrouble::refused || what.trouble == CameraTrouble::unusable) {
         // libgphoto2 believes a setting that it has read for two seconds.
@@ -186,6 +188,25 @@ INSTANTIATE_TEST_SUITE_P(
         Mishap{PtpMishap::busy, CameraTrouble::silent, "busy"},
         Mishap{PtpMishap::automatic_exposure, CameraTrouble::refused, "automatic exposure"},
         Mishap{PtpMishap::half_a_file, CameraTrouble::unusable, "cannot be read"}));
+
+TEST(TetheredCamera, ThatEndsItsLibraryIsAskedAgain) {
+    // A file name of 254 characters, all that PTP can say, is longer than libgphoto2's own buffer.
+    std::atomic<int> shots{0};
+    PtpIpCamera responder([&](const PtpSettings& settings) {
+        PtpPicture picture = raw_picture(settings);
+        if (++shots == 2) picture.name = std::string(250, 'x') + ".DNG";
+        return picture;
+    });
+    const auto camera = open_tethered_camera(quick(responder));
+    std::vector<std::string> waits;
+    const TakePhotograph port = patient(*camera, {}, [&](const CaptureWait& wait) {
+        if (!wait.why.empty()) waits.push_back(wait.why);
+    });
+    for (int k = 0; k < 3; ++k) EXPECT_EQ(port(0.25).exposure_s, 0.25) << k;
+    // A libgphoto2 that can hold it gives nothing to wait for.
+    for (const std::string& why : waits)
+        EXPECT_NE(why.find("has ended the camera's library"), std::string::npos) << why;
+}
 
 TEST(TetheredCamera, WarnsOfAutomaticExposureAndAFullCard) {
     PtpIpCamera responder(raw_picture);

@@ -1,5 +1,5 @@
 // Products with looks as glTF, and back.
-#include "mesh/gltf_write.h"
+#include "mesh/gltf/gltf_write.h"
 
 #include <cstring>
 #include <functional>

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "core/random.h"
+#include "mesh/gltf/gltf_write.h"
 #include "mesh/gltf_builder.h"
-#include "mesh/gltf_write.h"
 #include "mesh/mesh_checks.h"
 #include "mesh/ply_write.h"
 #include "scene/library.h"

@@ -8,7 +8,7 @@ set -euo pipefail
 . "$(dirname "$0")/installed.sh"
 
 # --- what lies there ---------------------------------------------------------------------------
-for file in bin/livery bin/livery-ballots lib/livery/livery_image_io.so lib/livery/livery_pdf.so \
+for file in bin/livery bin/livery-ballots bin/livery-camera lib/livery/livery_image_io.so lib/livery/livery_pdf.so \
     share/livery/assets/sample-round/ballots.sqlite share/livery/materials/solid-red.json \
     share/livery/assets/car.glb share/livery/assets/looks/solid-red.json \
     share/livery/shaders/compensation/correct.comp share/livery/calibration/default.json \
@@ -21,7 +21,7 @@ for file in bin/livery bin/livery-ballots lib/livery/livery_image_io.so lib/live
 done
 links=$(find "$prefix" -type l)
 [ -z "$links" ] || fail "links that lead out of the installation: $links"
-for file in bin/livery bin/livery-ballots lib/livery/livery_image_io.so; do
+for file in bin/livery bin/livery-ballots bin/livery-camera lib/livery/livery_image_io.so; do
     for folder in "$source" "$build"; do
         ! grep -qaF "$folder/" "$prefix/$file" || fail "$file names $folder"
     done

@@ -8,8 +8,8 @@
 
 #include "calibration/geometry/board_module.h"
 #include "core/error.h"
-#include "core/module.h"
 #include "core/statistics.h"
+#include "core/system/module.h"
 
 namespace livery {
 

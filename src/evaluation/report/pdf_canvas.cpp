@@ -1,8 +1,8 @@
 #include "evaluation/report/pdf_canvas.h"
 
 #include "core/error.h"
-#include "core/module.h"
 #include "core/paths.h"
+#include "core/system/module.h"
 #include "core/utf8.h"
 
 namespace livery {

@@ -4,7 +4,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "mesh/gltf_parts.h"
+#include "mesh/gltf/gltf_parts.h"
 
 namespace livery {
 

@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "mesh/gltf_parts.h"
+#include "mesh/gltf/gltf_parts.h"
 #include "mesh/surface.h"
 
 namespace livery {

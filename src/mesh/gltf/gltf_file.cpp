@@ -6,8 +6,8 @@
 #include "core/error.h"
 
 #define TINYGLTF_IMPLEMENTATION
-#include "mesh/gltf_container.h"
-#include "mesh/gltf_file.h"
+#include "mesh/gltf/gltf_container.h"
+#include "mesh/gltf/gltf_file.h"
 
 namespace livery {
 

@@ -9,8 +9,8 @@
 #include "core/error.h"
 #include "core/utf8.h"
 #include "mesh/because.h"
-#include "mesh/gltf_parts.h"
-#include "mesh/gltf_words.h"
+#include "mesh/gltf/gltf_parts.h"
+#include "mesh/gltf/gltf_words.h"
 #include "mesh/mesh_sides.h"
 
 namespace livery {

@@ -5,7 +5,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
-#include "mesh/gltf_parts.h"
+#include "mesh/gltf/gltf_parts.h"
 
 namespace livery {
 

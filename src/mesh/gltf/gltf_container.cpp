@@ -1,5 +1,5 @@
 // The bytes of a glTF file: a GLB's chunks, and what its URIs name.
-#include "mesh/gltf_container.h"
+#include "mesh/gltf/gltf_container.h"
 
 #include <algorithm>
 #include <fstream>

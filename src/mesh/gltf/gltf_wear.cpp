@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 #include <glm/common.hpp>
 
-#include "mesh/gltf_parts.h"
-#include "mesh/gltf_words.h"
+#include "mesh/gltf/gltf_parts.h"
+#include "mesh/gltf/gltf_words.h"
 
 namespace livery {
 

@@ -1,13 +1,9 @@
-#include "capture/gphoto_settings.h"
+#include "capture/gphoto/gphoto_settings.h"
 
 #include <algorithm>
-#include <cctype>
-#include <cmath>
 #include <cstdlib>
 
 #include <fmt/format.h>
-
-#include "capture/tethered_camera.h"
 
 namespace livery {
 
@@ -95,48 +91,6 @@ std::optional<int> shots_left(GphotoCamera& gphoto) {
             left = left.value_or(0) + static_cast<int>(stores[k].freeimages);
     std::free(stores);
     return left;
-}
-
-bool is_manual(const std::string& program) {
-    return program.empty() || program == "M" || program.find("anual") != std::string::npos;
-}
-
-bool is_raw_format(const std::string& format) {
-    std::string upper;
-    for (const char c : format)
-        upper += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-    return upper.find("RAW") != std::string::npos || upper.find("NEF") != std::string::npos ||
-           upper.find("DNG") != std::string::npos;
-}
-
-double open_time_s(const CameraSetting& exposure, const std::string& said) {
-    const double said_s = seconds_of_shutter_speed(said);
-    const auto offers = [&](double wanted_s) {
-        constexpr double kRounding = 0.015;
-        return std::any_of(
-            exposure.choices.begin(), exposure.choices.end(), [&](const std::string& choice) {
-                return std::abs(seconds_of_shutter_speed(choice) / wanted_s - 1.0) < kRounding;
-            });
-    };
-    const bool rounded = offers(1.0 / 30.0) && offers(1.0 / 60.0) && offers(1.0 / 125.0);
-    if (!(said_s > 0.0) || !rounded) return said_s;
-    const double steps = offers(1.0 / 45.0) || offers(1.0 / 90.0) ? 2.0 : 3.0;
-    return std::exp2(std::round(steps * std::log2(said_s)) / steps);
-}
-
-std::string nearest_time(const CameraSetting& exposure, double seconds) {
-    std::string best;
-    double least = 1e300;
-    for (const std::string& choice : exposure.choices) {
-        const double time = open_time_s(exposure, choice);
-        if (!(time > 0.0)) continue;
-        const double distance = std::abs(std::log(time / seconds));
-        if (distance < least) {
-            least = distance;
-            best = choice;
-        }
-    }
-    return best;
 }
 
 }  // namespace livery

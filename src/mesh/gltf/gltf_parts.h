@@ -11,7 +11,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 
-#include "mesh/gltf_file.h"
+#include "mesh/gltf/gltf_file.h"
 #include "mesh/mesh.h"
 
 namespace livery {

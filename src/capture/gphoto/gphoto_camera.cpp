@@ -1,20 +1,15 @@
-#include "capture/gphoto_link.h"
+#include "capture/gphoto/gphoto_camera.h"
 
 #include <algorithm>
 #include <cerrno>
-#include <condition_variable>
-#include <deque>
-#include <future>
-#include <mutex>
-#include <optional>
-#include <thread>
+#include <chrono>
+#include <memory>
+#include <string_view>
 #include <utility>
 
 #include <fcntl.h>
 #include <netdb.h>
 #include <poll.h>
-#include <pthread.h>
-#include <signal.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -22,7 +17,6 @@ namespace livery {
 
 namespace {
 
-constexpr auto kGoodbye = std::chrono::seconds(1);
 constexpr int kMostToConnect_ms = 3000;
 
 template <typename T, int (*Free)(T*)>
@@ -48,28 +42,6 @@ std::string port_of_gphoto(const std::string& port) {
     const std::size_t colon = port.find(':', kNetwork.size());
     return colon == std::string::npos ? port : port + port.substr(colon);
 }
-
-/// libgphoto2 2.5.30 closes file 0 where a network camera's connection fails half way: whatever
-/// was opened next would have that number, and would be closed by the next failure. So nothing else
-/// is let into its place.
-class KeepFileZero {
-  public:
-    KeepFileZero() : kept_(::fcntl(0, F_DUPFD_CLOEXEC, 3)) {
-        if (kept_ >= 0) return;
-        const int null = ::open("/dev/null", O_RDWR | O_CLOEXEC);
-        if (null > 0) ::dup2(null, 0);
-        kept_ = null == 0 ? ::fcntl(0, F_DUPFD_CLOEXEC, 3) : null;
-    }
-    ~KeepFileZero() {
-        if (::fcntl(0, F_GETFD) == -1) ::dup2(kept_, 0);
-        ::close(kept_);
-    }
-    KeepFileZero(const KeepFileZero&) = delete;
-    KeepFileZero& operator=(const KeepFileZero&) = delete;
-
-  private:
-    int kept_;
-};
 
 /// Whether somebody answers there: libgphoto2 takes minutes to find out.
 bool is_reachable(const std::string& port) {
@@ -109,7 +81,6 @@ GphotoCamera::GphotoCamera(const std::string& port) : context_(gp_context_new())
             static_cast<GphotoCamera*>(self)->said_ = text;
         },
         this);
-    const KeepFileZero kept;
     try {
         open(port);
     } catch (const GphotoError&) {
@@ -120,7 +91,6 @@ GphotoCamera::GphotoCamera(const std::string& port) : context_(gp_context_new())
 }
 
 GphotoCamera::~GphotoCamera() {
-    const KeepFileZero kept;
     if (is_open_) gp_camera_exit(camera_, context_);
     if (camera_) gp_camera_unref(camera_);
     gp_context_unref(context_);
@@ -165,79 +135,18 @@ void GphotoCamera::open(const std::string& port) {
     CameraAbilities what;
     check(gp_abilities_list_get_abilities(abilities.get(), model, &what));
     check(gp_camera_set_abilities(camera_, what));
+    const auto before = std::chrono::steady_clock::now();
     const int opened = gp_camera_init(camera_, context_);
+    const auto waited = std::chrono::steady_clock::now() - before;
     // A camera that cannot be opened refuses nothing in particular: it is not there.
     if (opened == GP_ERROR)
         throw GphotoError{GP_ERROR_IO, said_.empty() ? "it cannot be opened" : said_};
+    // One on a network that takes a connection and then says nothing for seconds is asleep; one
+    // that hangs up at once is not.
+    if (opened == GP_ERROR_IO && waited > std::chrono::seconds(1))
+        throw GphotoError{GP_ERROR_TIMEOUT, "it takes a connection and says nothing"};
     check(opened);
     is_open_ = true;
-}
-
-using Task = std::packaged_task<void(std::unique_ptr<GphotoCamera>&)>;
-
-/// Kept by the thread as well, so that one that hangs ends by itself.
-struct GphotoLink::Shared {
-    std::string port;
-    std::mutex mutex;
-    std::condition_variable changed;
-    std::deque<Task> jobs;
-    bool stop = false;
-    std::promise<void> gone;
-
-    void serve();
-};
-
-void GphotoLink::Shared::serve() {
-    // libgphoto2 writes to a camera that has hung up; here that is an error, not the program's end.
-    sigset_t pipe;
-    sigemptyset(&pipe);
-    sigaddset(&pipe, SIGPIPE);
-    pthread_sigmask(SIG_BLOCK, &pipe, nullptr);
-    std::unique_ptr<GphotoCamera> camera;
-    std::unique_lock lock(mutex);
-    for (;;) {
-        changed.wait(lock, [&] { return stop || !jobs.empty(); });
-        if (stop) break;
-        auto job = std::move(jobs.front());
-        jobs.pop_front();
-        lock.unlock();
-        job(camera);
-        lock.lock();
-    }
-    lock.unlock();
-    camera.reset();
-    gone.set_value();
-}
-
-GphotoLink::GphotoLink(std::string port) : shared_(std::make_shared<Shared>()) {
-    shared_->port = std::move(port);
-    std::thread([shared = shared_] { shared->serve(); }).detach();
-}
-
-GphotoLink::~GphotoLink() {
-    auto gone = shared_->gone.get_future();
-    {
-        const std::lock_guard lock(shared_->mutex);
-        shared_->stop = true;
-    }
-    shared_->changed.notify_all();
-    gone.wait_for(kGoodbye);
-}
-
-bool GphotoLink::run(std::chrono::milliseconds deadline, std::function<void(GphotoCamera&)> job) {
-    Task task([job = std::move(job), port = shared_->port](std::unique_ptr<GphotoCamera>& camera) {
-        if (!camera) camera = std::make_unique<GphotoCamera>(port);
-        job(*camera);
-    });
-    auto done = task.get_future();
-    {
-        const std::lock_guard lock(shared_->mutex);
-        shared_->jobs.push_back(std::move(task));
-    }
-    shared_->changed.notify_all();
-    if (done.wait_for(deadline) != std::future_status::ready) return false;
-    done.get();
-    return true;
 }
 
 std::vector<std::pair<std::string, std::string>> gphoto_cameras_on_usb() {

@@ -1,10 +1,8 @@
-// libgphoto2 on a thread that may hang. For tethered_camera.cpp alone.
+// A camera as libgphoto2 has it.
 #pragma once
 
-#include <chrono>
-#include <functional>
-#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gphoto2/gphoto2.h>
@@ -17,7 +15,7 @@ struct GphotoError {
     std::string what;
 };
 
-/// A camera as libgphoto2 has it. Everything on one thread; throws GphotoError.
+/// Opened; throws GphotoError. One thread.
 class GphotoCamera {
   public:
     explicit GphotoCamera(const std::string& port);
@@ -38,23 +36,6 @@ class GphotoCamera {
     ::Camera* camera_ = nullptr;
     std::string said_, model_;
     bool is_open_ = false;
-};
-
-/// One camera and its thread.
-class GphotoLink {
-  public:
-    explicit GphotoLink(std::string port);
-    ~GphotoLink();  ///< waits a second for the camera to be let go, then leaves it to the thread
-    GphotoLink(const GphotoLink&) = delete;
-    GphotoLink& operator=(const GphotoLink&) = delete;
-
-    /// Runs it with the camera, which is opened first where it is not. False: not in time; the link
-    /// is of no use any more. What `job` throws comes out here.
-    bool run(std::chrono::milliseconds deadline, std::function<void(GphotoCamera&)> job);
-
-  private:
-    struct Shared;
-    std::shared_ptr<Shared> shared_;
 };
 
 /// Model and port of what is on USB.

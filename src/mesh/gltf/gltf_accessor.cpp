@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "core/error.h"
-#include "mesh/gltf_file.h"
+#include "mesh/gltf/gltf_file.h"
 
 namespace livery {
 

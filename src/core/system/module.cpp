@@ -1,4 +1,4 @@
-#include "core/module.h"
+#include "core/system/module.h"
 
 #include <filesystem>
 #include <string>

@@ -11,7 +11,7 @@
 
 #include "appearance/parameter_table.h"
 #include "core/paths.h"
-#include "mesh/gltf_words.h"
+#include "mesh/gltf/gltf_words.h"
 
 namespace livery {
 

@@ -1,4 +1,4 @@
-#include "mesh/gltf_words.h"
+#include "mesh/gltf/gltf_words.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "mesh/gltf_write.h"
+#include "mesh/gltf/gltf_write.h"
 
 #include <cstring>
 #include <limits>
@@ -11,7 +11,7 @@
 
 #include "appearance/material_json.h"
 #include "core/error.h"
-#include "mesh/gltf_words.h"
+#include "mesh/gltf/gltf_words.h"
 
 namespace livery {
 

@@ -1,4 +1,4 @@
-// The settings of a camera, as libgphoto2 offers them. For tethered_camera.cpp alone.
+// The settings of a camera, as libgphoto2 offers them.
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 #include <string>
 
 #include "capture/camera.h"
-#include "capture/gphoto_link.h"
+#include "capture/gphoto/gphoto_camera.h"
 
 namespace livery {
 
@@ -49,15 +49,5 @@ CameraSetting set_widget(GphotoCamera& gphoto,
                          const std::string& value);
 /// On all cards; none: it does not say.
 std::optional<int> shots_left(GphotoCamera& gphoto);
-/// Of the dial.
-bool is_manual(const std::string& program);
-/// Of its files: RAW, alone or beside a JPEG.
-bool is_raw_format(const std::string& format);
-/// How long the shutter is open where the camera says this; negative: no time. The series 1/30,
-/// 1/60, 1/125 is of exact halves (1/32, 1/64, 1/128), with thirds or halves of a stop between,
-/// said in round numbers that are up to 7% off (ISO 516).
-double open_time_s(const CameraSetting& exposure, const std::string& said);
-/// The offered time nearest to this, in ratio; empty: it offers none.
-std::string nearest_time(const CameraSetting& exposure, double seconds);
 
 }  // namespace livery

@@ -6,8 +6,8 @@
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/utf8.h"
-#include "mesh/gltf_container.h"
-#include "mesh/gltf_parts.h"
+#include "mesh/gltf/gltf_container.h"
+#include "mesh/gltf/gltf_parts.h"
 
 namespace livery {
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <string_view>
 
-#include "mesh/gltf_file.h"
+#include "mesh/gltf/gltf_file.h"
 
 namespace livery {
 
