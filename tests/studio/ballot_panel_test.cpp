@@ -6,6 +6,7 @@
 #include <imgui_internal.h>
 
 #include "studio/panels_fixture.h"
+#include "studio/presenting/presenting.h"
 #include "studio/studio.h"
 
 namespace livery {
@@ -106,6 +107,21 @@ TEST_F(Panels, ARoundAtOnceDrawsItsSeed) {
     }
     const auto rounds = studio.ballots->rounds();
     EXPECT_NE(rounds.at(0).seed, rounds.at(1).seed);
+}
+
+TEST_F(Panels, ADuelIsOfferedAfterBallotsAlone) {
+    use_scale(1.0f);
+    Studio studio = make_studio();
+    studio.ballots = std::make_unique<BallotStore>(home_ / "ballots.sqlite");
+    Round round;
+    round.id = studio.ballots->open_round({"red", "blue"}, "");
+    round.closed = round.voting = true;
+    static Round shown;
+    const DrawPanel draw = [](Studio& its) { draw_duel(its, shown); };
+    shown = round;
+    EXPECT_FALSE(frames(studio, draw, 2).contains("duel:begin"));
+    shown.ballots = 1;
+    EXPECT_TRUE(frames(studio, draw, 2).contains("duel:begin"));
 }
 
 }  // namespace

@@ -277,6 +277,12 @@ void draw_presentation_setup(Studio& studio, const std::vector<int>& looks) {
         plan_in_words(settings, static_cast<int>(looks.size()), static_cast<int>(phones.size()));
     if (!words.empty()) dim_text(words);
     if (settings.waves && !words.empty()) draw_waves_to_come(settings, phones);
+    if (!settings.waves && presenting(studio).phones) {
+        dim_text(phones.empty()       ? "No phone has joined yet."
+                 : phones.size() == 1 ? "1 phone has joined."
+                                      : fmt::format("{} phones have joined.", phones.size()));
+        name_last_item("present:joined");
+    }
     if (looks.size() > static_cast<std::size_t>(kMostDesigns)) {
         warning_text(fmt::format("At most {} looks can be presented.", kMostDesigns));
     }

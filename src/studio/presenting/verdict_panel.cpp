@@ -85,7 +85,8 @@ bool draw_duel(Studio& studio, const Round& round) {
                                .c_str());
         name_last_item("duel:words");
     }
-    if (!round.voting) return told;
+    // Nobody leads a round without ballots.
+    if (!round.voting || (!series && round.ballots == 0)) return told;
     if (ImGui::Button(series ? "Next repeat" : "Duel of the first two", {-FLT_MIN, em(2.4f)})) {
         presenting(studio).duel_wanted = round.id;
     }

@@ -327,17 +327,33 @@ void show_frames_again(Shell& shell) {
     shell.asked_frame.reset();
 }
 
+/// The mock-up in neutral grey, as bright as the mean of what it shows now; nothing before it shows
+/// anything.
+std::optional<Image8> grey_mockup(const Studio& studio) {
+    if (!studio.frame || !studio.frame->pictures || !studio.setup) return std::nullopt;
+    const auto wanted = radiance_of(*studio.frame->pictures);
+    return neutral_drive(*wanted, mean_luminance(*wanted), *studio.setup);
+}
+
+/// While looks are frozen the audience sees none of them. What was there first stays: frames change
+/// from look to look meanwhile.
+void show_grey(Shell& shell) {
+    const std::string key = "grey";
+    if (presenting(shell.studio).picture_key == key) return;
+    show(shell, key, grey_mockup(shell.studio).value_or(nothing(shell)));
+}
+
 /// For people to join, before a round: neutral grey on the mock-up, the code beside it.
 void show_qr_code(Shell& shell) {
     Studio& studio = shell.studio;
     PresentingState& state = presenting(studio);
     const auto& phones = state.phones->place();
-    if (!state.invitation || !phones || !studio.frame || !studio.frame->pictures || !studio.setup)
-        return;
+    if (!state.invitation || !phones) return;
     const std::string key = "qr " + state.invitation->token;
     if (state.picture_key == key) return;
-    const auto wanted = radiance_of(*studio.frame->pictures);
-    Image8 picture = neutral_drive(*wanted, mean_luminance(*wanted), *studio.setup);
+    std::optional<Image8> grey = grey_mockup(studio);
+    if (!grey) return;
+    Image8 picture = std::move(*grey);
     Image8 lit;
     add_lit_pixels(picture, lit);
     const auto place = free_place(lit, 1.0);
@@ -359,7 +375,7 @@ void show_what_is_due(Shell& shell) {
     Studio& studio = shell.studio;
     PresentingState& state = presenting(studio);
     if (!state.presented) {
-        if (state.freezing) return;
+        if (state.freezing) return show_grey(shell);
         if (state.qr_projected && state.phones) return show_qr_code(shell);
         return show_frames_again(shell);
     }
