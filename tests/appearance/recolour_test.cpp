@@ -119,5 +119,24 @@ TEST(Recolour, TakesEveryModel) {
     }
 }
 
+TEST(Recolour, AnotherModelKeepsTheColour) {
+    const glm::dvec3 asked = parse_colour("lab:30,40,20");
+    const Material typed = with_colour(find_material("solid red"), asked).material;
+    const Material plain = find_material("solid green");
+    for (const ModelInfo& model : model_table()) {
+        const Material made = with_model(typed, model.model);
+        EXPECT_EQ(made.model, model.model);
+        EXPECT_EQ(made.name, typed.name);
+        const glm::dvec3 lab = five_angle_lab(made)[kFaceAngle];
+        EXPECT_LE(ciede2000(asked, lab), kColourReached)
+            << model.name << ": " << lab.x << ' ' << lab.y << ' ' << lab.z;
+        const Material other = with_model(plain, model.model);
+        EXPECT_LE(ciede2000(five_angle_lab(plain)[kFaceAngle], five_angle_lab(other)[kFaceAngle]),
+                  kColourReached)
+            << model.name;
+        EXPECT_EQ(other.provenance, plain.provenance) << "nobody asked for a colour";
+    }
+}
+
 }  // namespace
 }  // namespace livery

@@ -178,4 +178,19 @@ Recoloured with_colour(const Material& finish, glm::dvec3 lab10) {
     return result;
 }
 
+Material with_model(const Material& paint, ReflectanceModel model) {
+    Material changed = paint;
+    changed.model = model;
+    const auto has_colour = [](ReflectanceModel one) {
+        return one != ReflectanceModel::measured && one != ReflectanceModel::translucent;
+    };
+    if (!has_colour(paint.model) || !has_colour(model)) return changed;
+    const auto asked = colour_record(paint.provenance);
+    Material made =
+        with_colour(changed, asked ? asked->asked_lab10 : five_angle_lab(paint)[kFaceAngle])
+            .material;
+    if (!asked) made.provenance = paint.provenance;
+    return made;
+}
+
 }  // namespace livery

@@ -24,4 +24,9 @@ inline constexpr double kColourReached = 0.5;  ///< CIEDE2000: side by side nobo
 /// and for a colour that is not finite.
 Recoloured with_colour(const Material& finish, glm::dvec3 lab10);
 
+/// The paint in another model, in the colour that its provenance says was asked for, else in the
+/// one that it has at 45 degrees. What is measured, or goes through a medium, has no colour to
+/// keep.
+Material with_model(const Material& paint, ReflectanceModel model);
+
 }  // namespace livery

@@ -11,6 +11,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "appearance/fit/recolour.h"
 #include "appearance/measured/measured_paint.h"
 #include "appearance/model_table.h"
 #include "core/error.h"
@@ -155,17 +156,22 @@ void draw_model(Studio& studio, const Material& material) {
     const ModelInfo& chosen = model_info(material.model);
     if (ImGui::BeginCombo("##model", chosen.label)) {
         for (const ModelInfo& model : model_table()) {
-            Material changed = material;
-            changed.model = model.model;
             const bool same = model.model == material.model;
             const bool picked = ImGui::Selectable(model.label, same);
             name_last_item(std::string("model:") + model.name);
             tooltip(model.meaning);
             if (same) continue;
-            if (ImGui::IsItemHovered()) {
-                try_out(studio, EditPaint{state.look, state.part_name, changed});
+            if (!picked && !ImGui::IsItemHovered()) continue;
+            if (!state.in_model || state.in_model->model != model.model ||
+                !same_reflectance(state.in_model_of, material)) {
+                state.in_model = with_model(material, model.model);
+                state.in_model_of = material;
             }
-            if (picked) commit_edit(studio, changed);
+            if (picked) {
+                commit_edit(studio, *state.in_model);
+            } else {
+                try_out(studio, EditPaint{state.look, state.part_name, *state.in_model});
+            }
         }
         ImGui::EndCombo();
     }

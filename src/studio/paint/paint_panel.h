@@ -22,6 +22,8 @@ struct PaintPanelState {
     int look = -1, part = -1;
     std::string part_name;             ///< empty: none is chosen
     std::optional<Material> material;  ///< none: the product file's own colour
+    std::optional<Material> in_model;  ///< `in_model_of` in the model that was pointed at last
+    Material in_model_of;
     std::string problem;
     std::string becomes;  ///< the name that the first change gives
     // "Save as new paint"
