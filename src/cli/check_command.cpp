@@ -1,5 +1,6 @@
 // livery check
 
+#include <algorithm>
 #include <memory>
 
 #include <fmt/format.h>
@@ -32,7 +33,14 @@ Command check_command() {
             outcome.text +=
                 fmt::format("{} {}: {}\n", check.ok() ? "ok     " : "PROBLEM", check.kind, file);
             for (const auto& problem : check.problems) outcome.text += "        " + problem + "\n";
-            for (const auto& note : check.notes) outcome.text += "        note: " + note + "\n";
+            constexpr std::size_t most_notes = 20;
+            for (std::size_t k = 0; k < std::min(check.notes.size(), most_notes); ++k) {
+                outcome.text += "        note: " + check.notes[k] + "\n";
+            }
+            if (check.notes.size() > most_notes) {
+                outcome.text += fmt::format("        and {} more notes, which --json has\n",
+                                            check.notes.size() - most_notes);
+            }
             if (!check.ok()) outcome.exit_code = 1;
         }
         outcome.figures = {{"files", list}};

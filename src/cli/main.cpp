@@ -1,5 +1,6 @@
 // The program: parses, runs one command, prints its outcome, and turns every failure into one line.
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -46,6 +47,18 @@ bool has_standard_streams(bool answers) {
         if (::open("/dev/null", O_RDWR) != descriptor) return false;
     }
     return stdout_open || !answers;
+}
+
+/// Names out of other people's files stand in it: what moves a terminal's cursor does not.
+std::string for_terminal(const std::string& text) {
+    std::string shown;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find_first_of("\n\t", at), text.size());
+        shown += printable(std::string_view(text).substr(at, end - at));
+        if (end < text.size()) shown += text[end];
+        at = end + 1;
+    }
+    return shown;
 }
 
 int print(const std::string& text, int exit_code) {
@@ -106,8 +119,9 @@ int run(const std::vector<std::string>& arguments) {
         outcome.exit_code = 1;
     }
     finish_progress_line();
-    if (!parsed.common.json) return print(outcome.text, outcome.exit_code);
-    std::fputs(outcome.text.c_str(), stderr);
+    const std::string text = for_terminal(outcome.text);
+    if (!parsed.common.json) return print(text, outcome.exit_code);
+    std::fputs(text.c_str(), stderr);
     // A file's name need not be UTF-8.
     return print(outcome.figures.dump(2, ' ', false, Json::error_handler_t::replace) + "\n",
                  outcome.exit_code);

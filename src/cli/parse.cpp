@@ -79,8 +79,14 @@ std::string option_lines(const std::vector<Option>& options) {
     return text;
 }
 
+constexpr const char* kOpened[] = {".livery", ".glb", ".gltf", ".ply", ".obj"};
+
 std::string unknown_command(const std::string& name) {
-    return "livery: " + found_expected(name, "a command that livery help lists");
+    const bool opens = std::any_of(std::begin(kOpened), std::end(kOpened), [&](const char* end) {
+        return name.ends_with(end);
+    });
+    return "livery: " + found_expected(name, "a command that livery help lists") +
+           (opens ? "; livery desktop opens a session or a mesh" : "");
 }
 
 /// Whether the words start with a command, or with a group's name and a command of it.

@@ -158,6 +158,29 @@ TEST(Program, CheckSaysWhatIsWrong) {
     EXPECT_NE(files[2]["problems"][0].get<std::string>().find("no such file"), std::string::npos);
 }
 
+TEST(Program, CheckNeitherFloodsNorSteersATerminal) {
+    const TemporaryFolder folder;
+    Json json =
+        Json::parse(R"({"asset": {"version": "2.0"}, "extensionsUsed": [], "scenes": [{}]})");
+    for (int k = 0; k < 500; ++k)
+        json["extensionsUsed"].push_back("EXT_\x1b[2J" + std::to_string(k));
+    const auto file = folder.write("many.gltf", json.dump());
+    const auto named = folder.write("\x1b[31mred.json", "{}");
+    const ProgramRun run = livery_run({"check", file.string(), named.string()});
+    EXPECT_LT(run.out.size(), 6000u) << run.out;
+    EXPECT_EQ(run.out.find('\x1b'), std::string::npos);
+}
+
+TEST(Program, WhoGivesAFileAloneIsToldWhatOpensIt) {
+    for (const char* file : {"roadster.livery", "car.glb"}) {
+        const ProgramRun run = livery_run({file});
+        EXPECT_EQ(run.exit_code, 2);
+        EXPECT_NE(run.err.find("livery desktop opens a session or a mesh"), std::string::npos)
+            << run.err;
+    }
+    EXPECT_EQ(livery_run({"rendre"}).err.find("livery desktop"), std::string::npos);
+}
+
 TEST(Program, ScansAreProductsAndTellWhatWasAssumed) {
     const TemporaryFolder folder;
     const auto scan = folder

@@ -267,6 +267,9 @@ TEST(TallyText, QuotesWhatASpreadsheetWouldTear) {
                          {0, 0, 1, 0}}),
               "design,best,second\r\nplain,1,0\r\n\"with, comma\",2,0\r\n"
               "\"with \"\"quotes\"\"\",3,1\r\n\"two\nlines\",4,0\r\n");
+    // No name is a formula for a spreadsheet; numbers stay numbers.
+    EXPECT_EQ(tally_csv({{"=1+2", "+a", "-b", "@c", "\tx"}, {1, 0, 0, 0, 0}, {0, 1, 0, 0, 0}, {}}),
+              "design,best,second\r\n'=1+2,1,0\r\n'+a,0,1\r\n'-b,0,0\r\n'@c,0,0\r\n'\tx,0,0\r\n");
     EXPECT_EQ(tally_csv({}), "design,best,second\r\n");
     EXPECT_EQ(tally_csv({{"a", "b"}, {1, 2}, {2, 1}, {0, 3}}),
               "design,best,second,least\r\na,1,2,0\r\nb,2,1,3\r\n");
