@@ -251,7 +251,7 @@ void draw_step(Shell& shell, const StepWords& words, bool ready) {
     if (!step.called_for) {
         shown += words.step == CaptureStep::geometry ? ": where it stands is given" : ": not here";
     } else if (now) {
-        mark = "▸";
+        mark = "●";
         colour = colours::accent;
     } else if (step.done) {
         mark = "●";

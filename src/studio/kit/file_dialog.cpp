@@ -17,10 +17,13 @@ namespace livery {
 
 namespace {
 
-constexpr const char* kAnyFolderSetting = "folder";
+/// Where files are read is not where they are saved.
+const char* any_folder_setting(const FileQuestion& question) {
+    return question.kind == FileQuestion::Kind::save ? "folder-saved" : "folder";
+}
 
 std::string folder_setting(const FileQuestion& question) {
-    return std::string(kAnyFolderSetting) + ":" + question.title;
+    return std::string("folder:") + question.title;
 }
 
 /// Drawn, because no font has one in every size.
@@ -70,7 +73,7 @@ struct FileDialog::State {
         const auto or_else = [&](const std::filesystem::path& other) {
             if (where.empty() || !is_folder(where)) where = other;
         };
-        or_else(setting(settings, kAnyFolderSetting));
+        or_else(setting(settings, any_folder_setting(*question)));
         or_else(suggests_folder ? suggested : suggested.parent_path());
         or_else(home_folder());
         enter(where);
@@ -134,7 +137,7 @@ struct FileDialog::State {
         }
         const auto where = (picks_folder ? file : file.parent_path()).string();
         keep_setting(settings, folder_setting(*question), where);
-        keep_setting(settings, kAnyFolderSetting, where);
+        keep_setting(settings, any_folder_setting(*question), where);
         const auto then = question->then;
         question.reset();
         then(file);

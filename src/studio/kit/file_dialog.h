@@ -30,7 +30,8 @@ struct FileQuestion {
 };
 
 /// One at a time; a new question replaces the one before. Starts where a question of this title was
-/// answered last, else where any was, else in the suggested folder, else at home.
+/// answered last, else where any that saves was, or any that opens, else in the suggested folder,
+/// else at home.
 class FileDialog {
   public:
     /// `settings` remembers the folders and must outlive this.

@@ -17,11 +17,12 @@ namespace livery {
 
 namespace {
 
+/// Below 0 lies what sRGB cannot show.
 std::string numbers(const glm::dvec3& colour) {
     return fmt::format("{} {} {}",
-                       readable_number(colour.x),
-                       readable_number(colour.y),
-                       readable_number(colour.z));
+                       readable_number(std::max(colour.x, 0.0)),
+                       readable_number(std::max(colour.y, 0.0)),
+                       readable_number(std::max(colour.z, 0.0)));
 }
 
 int hex_digit(char c) {

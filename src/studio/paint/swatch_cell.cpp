@@ -42,10 +42,11 @@ void draw_swatch_cell(Studio& studio,
 }
 
 void paint_tooltip(const Material& paint) {
-    // Beside the column, so that it hides neither the swatches nor their names.
-    const ImVec2 pointer = ImGui::GetIO().MousePos;
+    // Beside the column and at the bottom: hides neither swatches and their names nor the mock-up.
+    const ImGuiViewport& window = *ImGui::GetMainViewport();
+    const float bottom = window.WorkPos.y + window.WorkSize.y - em(3.0f);
     ImGui::SetNextWindowPos(
-        {ImGui::GetWindowPos().x - em(1.0f), pointer.y}, ImGuiCond_Always, {1.0f, 0.5f});
+        {ImGui::GetWindowPos().x - em(1.0f), bottom}, ImGuiCond_Always, {1.0f, 1.0f});
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(em(22.0f));
     heading(paint.name.c_str());
