@@ -1,5 +1,8 @@
 #include "studio/window/input_queue.h"
 
+#include <string>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 namespace livery {
@@ -23,7 +26,13 @@ InputEvent of(Kind kind, int code, bool down = true) {
 /// How many events each frame takes.
 std::vector<std::size_t> portions(InputQueue& queue) {
     std::vector<std::size_t> sizes;
-    while (!queue.empty()) sizes.push_back(queue.take().size());
+    while (!queue.empty()) {
+        sizes.push_back(0);
+        queue.hand_out([&](const InputEvent&) {
+            ++sizes.back();
+            return EventUse::passed_on;
+        });
+    }
     return sizes;
 }
 
@@ -98,6 +107,46 @@ TEST(InputQueue, TheWheelTurnsWhereThePointerWas) {
     queue.push(of(Kind::wheel, 0));
     queue.push(pointer(10));
     EXPECT_EQ(portions(queue), (std::vector<std::size_t>{1, 1}));
+}
+
+/// What each frame is handed: characters as they are, presses as capitals, releases left out.
+std::vector<std::string> handed_out(InputQueue& queue, char command, char step) {
+    std::vector<std::string> frames;
+    while (!queue.empty()) {
+        frames.emplace_back();
+        queue.hand_out([&](const InputEvent& event) {
+            if (event.kind == Kind::key && !event.down) return EventUse::passed_on;
+            frames.back() += static_cast<char>(event.code);
+            if (event.kind != Kind::key) return EventUse::passed_on;
+            return event.code == command ? EventUse::command
+                   : event.code == step  ? EventUse::step
+                                         : EventUse::passed_on;
+        });
+    }
+    return frames;
+}
+
+TEST(InputQueue, WhatIsTypedAfterACommandIsForWhatItOpens) {
+    // The search of paints has the keyboard a frame after its key, however long that frame takes.
+    InputQueue queue;
+    for (const char c : std::string("/teal")) {
+        const int key = c == '/' ? c : c - 'a' + 'A';
+        queue.push(of(Kind::key, key, true));
+        queue.push(of(Kind::character, c));
+        queue.push(of(Kind::key, key, false));
+    }
+    EXPECT_EQ(handed_out(queue, '/', 0),
+              (std::vector<std::string>{"/", "", "Tt", "Ee", "Aa", "Ll", ""}));
+}
+
+TEST(InputQueue, FiftyStepsTakeOneFrame) {
+    InputQueue queue;
+    for (int k = 0; k < 50; ++k) {
+        queue.push(of(Kind::key, 'Z', true));
+        queue.push(of(Kind::key, 'Z', false));
+    }
+    queue.push(of(Kind::key, 'B', true));
+    EXPECT_EQ(handed_out(queue, 0, 'Z'), (std::vector<std::string>{std::string(50, 'Z') + 'B'}));
 }
 
 }  // namespace

@@ -95,7 +95,7 @@ struct ImGuiWindow::State {
     std::array<bool, 5> buttons{};
     HandedOut handed_out;
 
-    void feed(const InputEvent& event, const KeyFilter& filter) {
+    EventUse feed(const InputEvent& event, const KeyFilter& filter) {
         ImGuiIO& io = ImGui::GetIO();
         using Kind = InputEvent::Kind;
         switch (event.kind) {
@@ -118,7 +118,7 @@ struct ImGuiWindow::State {
                 break;
             case Kind::key:
                 if (!event.down && !is_modifier_key(event.code)) ++handed_out.keys;
-                if (filter(event)) break;
+                if (const EventUse use = filter(event); use != EventUse::passed_on) return use;
                 hand_in_key(
                     window.native(), event.code, event.scancode, event.down, event.modifiers);
                 break;
@@ -130,6 +130,7 @@ struct ImGuiWindow::State {
                 hand_in_focus(event.down);
                 break;
         }
+        return EventUse::passed_on;
     }
 };
 
@@ -184,10 +185,10 @@ std::chrono::steady_clock::time_point ImGuiWindow::begin_frame(const KeyFilter& 
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     double newest_s = 0.0;
-    for (const InputEvent& event : state_->queue.take()) {
-        state_->feed(event, filter);
+    state_->queue.hand_out([&](const InputEvent& event) {
         newest_s = event.time_s;
-    }
+        return state_->feed(event, filter);
+    });
     // The backend asks what the pointer does now; we go by what was told, in its order.
     hand_in_pointer(state_->pointer);
     std::copy(state_->buttons.begin(), state_->buttons.end(), ImGui::GetIO().MouseDown);

@@ -27,8 +27,8 @@ class ImGuiWindow {
 
     void use_scale(float scale);  ///< between frames; cheap when it is the same
 
-    /// Hears of keys and of focus first. True when a key is used up: Dear ImGui does not get it.
-    using KeyFilter = std::function<bool(const InputEvent& key)>;
+    /// Hears of keys and of focus first; Dear ImGui gets what it passes on.
+    using KeyFilter = std::function<EventUse(const InputEvent& key)>;
     /// Hands the next portion of input to Dear ImGui and starts a frame. The newest input's time.
     std::chrono::steady_clock::time_point begin_frame(const KeyFilter& filter);
     void end_frame();  ///< ends the frame; nothing is drawn yet

@@ -61,15 +61,41 @@ struct Portion {
 
 bool is_modifier_key(int key) { return key >= kFirstModifierKey; }
 
-std::vector<InputEvent> InputQueue::take() {
-    std::vector<InputEvent> taken;
-    Portion portion;
-    while (!events_.empty() && portion.has_room_for(events_.front())) {
-        portion.add(events_.front());
-        taken.push_back(events_.front());
+InputEvent InputQueue::next() {
+    const InputEvent event = events_.front();
+    events_.pop_front();
+    return event;
+}
+
+void InputQueue::drop_characters() {
+    while (!events_.empty() && events_.front().kind == InputEvent::Kind::character) {
         events_.pop_front();
     }
-    return taken;
+}
+
+void InputQueue::hand_out(const std::function<EventUse(const InputEvent&)>& feed) {
+    if (frames_to_wait_ > 0) {
+        --frames_to_wait_;
+        return;
+    }
+    Portion portion;
+    std::set<int> stepped;  // keys whose presses were steps
+    while (!events_.empty() && portion.has_room_for(events_.front())) {
+        const InputEvent event = next();
+        const EventUse use = feed(event);
+        const bool is_key = event.kind == InputEvent::Kind::key;
+        if (use == EventUse::step) {
+            stepped.insert(event.code);
+            drop_characters();
+        } else if (use == EventUse::command) {
+            drop_characters();
+            // What it opens is drawn in this frame and has the keyboard from the next one on.
+            frames_to_wait_ = 1;
+            return;
+        } else if (!(is_key && !event.down && stepped.contains(event.code))) {
+            portion.add(event);
+        }
+    }
 }
 
 }  // namespace livery

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <deque>
-#include <vector>
+#include <functional>
 
 namespace livery {
 
@@ -19,6 +19,13 @@ struct InputEvent {
     bool repeated = false;            ///< a held key
 };
 
+/// What became of an event before the window's frame sees it.
+enum class EventUse {
+    passed_on,  ///< the frame takes it
+    command,    ///< it was a command's, which may open something that the next events are for
+    step        ///< a command's that only changes the document or the view: undo, the next look
+};
+
 /// Whether a key of GLFW only changes what others mean: Shift, Ctrl, Alt, Super.
 bool is_modifier_key(int key);
 
@@ -26,11 +33,17 @@ class InputQueue {
   public:
     void push(const InputEvent& event) { events_.push_back(event); }
     bool empty() const { return events_.empty(); }
-    /// The next events that one frame can take.
-    std::vector<InputEvent> take();
+    /// Hands the next events that one frame can take to `feed`, in their order. After a command the
+    /// rest waits until what it opens is there, a frame later, but for its key's own character,
+    /// which is nobody's. Any number of steps are taken in one frame, however slow frames are.
+    void hand_out(const std::function<EventUse(const InputEvent&)>& feed);
 
   private:
+    InputEvent next();
+    void drop_characters();
+
     std::deque<InputEvent> events_;
+    int frames_to_wait_ = 0;
 };
 
 }  // namespace livery

@@ -36,15 +36,15 @@ KeyboardOwner keyboard_owner(const Shell& shell) {
 
 }  // namespace
 
-bool handle_key(Shell& shell, const InputEvent& event) {
+EventUse handle_key(Shell& shell, const InputEvent& event) {
     if (event.kind == InputEvent::Kind::focus) {
         if (!event.down) shell.studio.showing_b = false;
         if (event.down) refresh_library(shell.studio);
-        return false;
+        return EventUse::passed_on;
     }
     if (event.code == GLFW_KEY_TAB && (event.modifiers & ~GLFW_MOD_SHIFT & kRealModifiers) == 0) {
         if (event.down) shell.tab_step = (event.modifiers & GLFW_MOD_SHIFT) != 0 ? -1 : 1;
-        return true;
+        return EventUse::command;
     }
     const KeyChord chord{event.code,
                          (event.modifiers & GLFW_MOD_CONTROL) != 0,
@@ -58,37 +58,40 @@ bool handle_key(Shell& shell, const InputEvent& event) {
                 });
             if (action.released && its_key) action.released(shell);
         }
-        return false;
+        return EventUse::passed_on;
     }
-    if ((event.modifiers & (GLFW_MOD_ALT | GLFW_MOD_SUPER)) != 0) return false;
+    if ((event.modifiers & (GLFW_MOD_ALT | GLFW_MOD_SUPER)) != 0) return EventUse::passed_on;
     const KeyboardOwner owner = keyboard_owner(shell);
     const bool writes =
         owner.text_field || owner.dialog || ImGui::GetCurrentContext()->OpenPopupStack.Size > 0;
-    if (shell.nudge_open && !writes && nudge_key(shell, chord)) return true;
+    if (shell.nudge_open && !writes && nudge_key(shell, chord)) return EventUse::step;
     const bool seats = shell.seats_open && !is_presenting(shell.studio);
-    if (seats && !writes && seats_key(shell, chord)) return true;
-    if (!writes && vote_mode_key(shell, chord, event.repeated)) return true;
+    if (seats && !writes && seats_key(shell, chord)) return EventUse::step;
+    if (!writes && vote_mode_key(shell, chord, event.repeated)) return EventUse::command;
     const Action* action = action_for(chord, owner);
     // Dear ImGui has a meaning of its own for Tab and would use it for its list of windows.
-    if (!action && chord.key == GLFW_KEY_TAB) return true;
-    if (!action) return chord.key == GLFW_KEY_SPACE && !owner.text_field && !owner.dialog;
+    if (!action && chord.key == GLFW_KEY_TAB) return EventUse::command;
+    if (!action) {
+        const bool nobodys = chord.key == GLFW_KEY_SPACE && !owner.text_field && !owner.dialog;
+        return nobodys ? EventUse::step : EventUse::passed_on;
+    }
     // Esc closes an open menu, and that is all it does then.
     ImGuiContext& g = *ImGui::GetCurrentContext();
     if (action->id == "give-up" && !owner.dialog && g.OpenPopupStack.Size > 0) {
         ImGui::ClosePopupToLevel(0, false);
         g.NavDisableHighlight = true;
         g.NavLayer = ImGuiNavLayer_Main;
-        return true;
+        return EventUse::command;
     }
     const bool repeats = action->id == "undo" || action->id == "redo" || action->id == "larger" ||
                          action->id == "smaller" || action->id == "next-look" ||
                          action->id == "previous-look" || action->id == "next-tab" ||
                          action->id == "previous-tab";
-    if (event.repeated && !repeats) return true;
+    if (event.repeated && !repeats) return EventUse::step;
     run_action(*action, shell);
-    if (action->id != "give-up") return true;
+    if (action->id != "give-up") return repeats ? EventUse::step : EventUse::command;
     if (ImGui::IsAnyItemActive()) ImGui::ClearActiveID();
-    return false;  // Panels may have something of their own to give up.
+    return EventUse::passed_on;  // Panels may have something of their own to give up.
 }
 
 }  // namespace livery

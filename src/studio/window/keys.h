@@ -7,8 +7,7 @@ namespace livery {
 
 struct Shell;
 
-/// Runs what a key means; true when it meant something, and Dear ImGui does not get it. Hears of
-/// focus too.
-bool handle_key(Shell& shell, const InputEvent& event);
+/// Runs what a key means; what means nothing Dear ImGui gets. Hears of focus too.
+EventUse handle_key(Shell& shell, const InputEvent& event);
 
 }  // namespace livery
