@@ -28,6 +28,8 @@ struct SkippedPass {
     /// not bounded.
     std::optional<double> error_bound{};
 };
+/// Of paints that no part wears: nothing that this scene could call for.
+inline bool is_of_other_paints(const SkippedPass& pass) { return pass.id.kind == PassKind::shade; }
 
 struct FramePlan {
     Quality quality = Quality::normal;  ///< the nearest to `levels`, or the path tracer's

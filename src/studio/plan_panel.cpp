@@ -141,11 +141,15 @@ void draw_passes(const FramePlan& plan,
 
 void draw_skipped(const FramePlan& plan) {
     ImGui::Spacing();
-    const std::string title = fmt::format("Not run ({})###skipped", plan.skipped.size());
+    const auto count = std::count_if(plan.skipped.begin(),
+                                     plan.skipped.end(),
+                                     [](const auto& pass) { return !is_of_other_paints(pass); });
+    const std::string title = fmt::format("Not run ({})###skipped", count);
     const bool open = section_header(title.c_str());
     name_last_item("skipped-passes");
     if (!open) return;
     for (const SkippedPass& pass : plan.skipped) {
+        if (is_of_other_paints(pass)) continue;
         const std::string name = to_string(pass.id);
         ImGui::TextUnformatted(name.c_str());
         name_last_item("skipped:" + name);

@@ -295,6 +295,7 @@ std::string text_of(const FramePlan& plan) {
         text += fmt::format("runs  {:<30} {:<12} {}\n", to_string(pass.id), cost, pass.why);
     }
     for (const SkippedPass& pass : plan.skipped) {
+        if (is_of_other_paints(pass)) continue;
         const std::string most =
             pass.error_bound ? fmt::format(" (CIEDE2000 {:.1f} at most)", *pass.error_bound) : "";
         text += fmt::format("skips {:<30} {:<12} {}{}\n", to_string(pass.id), "", pass.why, most);
