@@ -313,8 +313,10 @@ Image8 nothing(const Shell& shell) {
 
 void show(Shell& shell, const std::string& key, const Image8& picture) {
     PresentingState& state = presenting(shell.studio);
-    state.picture = projector_picture(picture, next_picture_number());
+    const std::uint64_t number = next_picture_number();
+    state.picture = projector_picture(picture, number);
     state.picture_key = key;
+    shell.trace->write("vote-picture", number, key);
     shell.results->show_instead(state.picture);
 }
 
