@@ -13,6 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "core/error.h"
 #include "core/log.h"
 #include "core/system/start_program.h"
 
@@ -74,6 +75,16 @@ void CameraProcess::start() {
     answers_ = std::exchange(answers.ends[0], -1);
 }
 
+CameraFault CameraProcess::broken_off(const std::string& camera, const std::string& said) {
+    const std::string how = said.empty() ? ended() : said;
+    end();
+    log_line(LogLevel::warning, "livery-camera ended: " + how);
+    return {CameraTrouble::gone,
+            fmt::format("{}: what it said has ended the camera's library ({})", camera, how),
+            "it is started again; if that goes on, switch the camera off and on, and let it name "
+            "its files otherwise"};
+}
+
 std::string CameraProcess::ended() {
     int status = 0;
     ::kill(id_, SIGKILL);  // It may have closed its answers and hang.
@@ -102,17 +113,14 @@ CameraAnswer CameraProcess::ask(const CameraRequest& request, std::chrono::milli
             "wake it, switch its automatic power-off off, take its lens cap off and focus by hand; "
             "if it hangs, switch it off and on");
     }
-    if (!answer) {
-        const std::string how = ended();
-        log_line(LogLevel::warning, "livery-camera ended " + how);
-        throw CameraFault(
-            CameraTrouble::gone,
-            fmt::format(
-                "{}: what it said has ended the camera's library ({})", request.camera, how),
-            "it is started again; if that goes on, switch the camera off and on, and take another "
-            "file name or mode on it");
+    if (!answer) throw broken_off(request.camera, "");
+    CameraAnswer result;
+    try {
+        result = answer_in(*answer);
+    } catch (const FileError& error) {
+        // It has overwritten its own memory.
+        throw broken_off(request.camera, error.what());
     }
-    CameraAnswer result = answer_in(*answer);
     if (!result.fault) return result;
     const CameraTrouble trouble = result.fault->trouble();
     const bool anew = trouble == CameraTrouble::gone || trouble == CameraTrouble::held ||

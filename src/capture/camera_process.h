@@ -27,6 +27,8 @@ class CameraProcess {
 
   private:
     void start();
+    /// Ends it, with what is known of why.
+    CameraFault broken_off(const std::string& camera, const std::string& said);
     /// How it has ended, in words.
     std::string ended();
 

@@ -19,7 +19,6 @@ namespace livery {
 
 namespace {
 
-/// A thousand kilometres: beyond, float coordinates are no longer a product.
 /// Where the file has no normals, edges sharper than this stay edges.
 constexpr double kCrease_deg = 50.0;
 /// A normal this far beyond its triangle's plane (cosine: 105 degrees from the triangle's own)

@@ -116,7 +116,7 @@ class ReportBuilder {
             statistics_.friedman_method == Method::exact ? "exact" : "drawn");
         const Verdict& verdict = statistics_.verdict;
         if (preference && verdict.leader >= 0 && statistics_.evaluators > 1) {
-            text += fmt::format(" {} would be first in {} of rounds like this one.",
+            text += fmt::format(" {} would be first in {} of rounds of as many other evaluators.",
                                 label(verdict.leader),
                                 percent_text(verdict.win_probability));
         }

@@ -60,7 +60,7 @@ ReportTable votes_table(const VoteStatistics& statistics, const ChartRows& rows)
 ReportTable worths_table(const VoteStatistics& statistics, const ChartRows& rows) {
     ReportTable table{
         "Worths, and who would be first",
-        {{"Design", false}, {"Worth"}, {"First, of others"}, {"First, were the worths so"}},
+        {{"Design", false}, {"Worth"}, {"First among others"}, {"First at these worths"}},
         {}};
     if (statistics.resampled) table.columns.push_back({"First, ballots drawn again"});
     for (const int design : rows.order) {

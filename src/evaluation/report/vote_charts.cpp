@@ -154,7 +154,7 @@ ReportChart rank_sum_chart(const VoteStatistics& statistics, const ChartRows& ro
 }
 
 ReportChart first_chart(const VoteStatistics& statistics, const ChartRows& rows) {
-    ReportChart chart{"Who would be first in a round of others", "", "", {}};
+    ReportChart chart{"Who would be first among other evaluators", "", "", {}};
     VectorDrawing& drawing = chart.drawing;
     const ChartFrame frame = begin_rows(drawing, rows, 6.0, 92.0);
     const ChartAxis axis{0.0, 1.0, frame.left, frame.right};

@@ -113,7 +113,7 @@ TEST(HtmlReport, CallsNobodyALeaderWithoutAPreference) {
     EXPECT_NE(even.find("show no preference"), std::string::npos);
     EXPECT_NE(even.find("None is shown"), std::string::npos);
     EXPECT_EQ(even.find("The leader is first"), std::string::npos);
-    EXPECT_EQ(even.find("of rounds like this one."), std::string::npos);
+    EXPECT_EQ(even.find("of rounds of as many other evaluators."), std::string::npos);
     const std::string told = html_of(round_report(source_of(table3(), default_names(4))));
     EXPECT_NE(told.find("The leader is first"), std::string::npos);
 }
