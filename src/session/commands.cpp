@@ -101,16 +101,25 @@ void add_look(Document& document, Look look, std::size_t at) {
     ++document.next_look_id;
 }
 
+void name_anew(const Document& document, Look& look, const std::string& name) {
+    if (name.empty() || name == look.name) return;
+    check_name(name, "the look's name");
+    look.name =
+        free_name(name, [&](const std::string& other) { return has_look_named(document, other); });
+}
+
 void apply(Document& document, const SetPaint& command) {
     Look& look = look_with(document, command.look);
     check_part(document, command.part);
     look.parts[command.part] = known_paint(document, command.paint);
+    name_anew(document, look, command.look_name);
 }
 
 void apply(Document& document, const PaintProduct& command) {
     Look& look = look_with(document, command.look);
     look.parts = {{"*", known_paint(document, command.paint)}};
     look.artwork.clear();
+    name_anew(document, look, command.look_name);
 }
 
 void apply(Document& document, const EditPaint& command) {
@@ -345,6 +354,23 @@ Look portable_look(Look look) {
     for_each_file(look, beside);
     look.file.clear();
     return look;
+}
+
+std::string look_name_after(const Look& look, const std::string& part, const std::string& paint) {
+    const std::string name = without_number(look.name);
+    const auto is_name = [&](const std::string& worn) {
+        return same_paint_name(worn, look.name) || same_paint_name(worn, name) ||
+               same_paint_name(without_number(worn), look.name);
+    };
+    const auto worn = look.parts.find(part);
+    const bool named_after_it =
+        part.empty() ? std::any_of(look.parts.begin(),
+                                   look.parts.end(),
+                                   [&](const auto& one) { return is_name(one.second); })
+                     : worn != look.parts.end() && is_name(worn->second);
+    // A paint's file is no name
+    const bool file = paint.find('/') != std::string::npos;
+    return named_after_it && !file && !same_paint_name(paint, name) ? paint : "";
 }
 
 Document applied(const Document& document, const SessionCommand& command) {

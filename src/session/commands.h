@@ -16,12 +16,19 @@ struct SetPaint {
     int look = 0;
     std::string part;  ///< "*": every part that is not named
     std::string paint;
+    std::string look_name{};  ///< that the look has from now on, made unique; empty: its own
 };
 /// One paint on every part, as a clay model wears it; what parts wore by themselves is taken off.
 struct PaintProduct {
     int look = 0;
     std::string paint;
+    std::string look_name{};  ///< same
 };
+/// For the look_name of both: that of a look which is named after the paint that one of them takes
+/// off, and so would go on telling of another colour; empty for any other. `part` empty: the whole
+/// product.
+std::string look_name_after(const Look& look, const std::string& part, const std::string& paint);
+
 /// Changes a paint's parameters on one part. A paint of the library, or one that other parts and
 /// looks use as well, becomes the session's own under `material.name` with a number behind it.
 struct EditPaint {

@@ -21,17 +21,25 @@ int look_in(const JsonReader& fields) {
 }
 
 Json fields_of(const SetPaint& c) {
-    return {{"look", c.look}, {"part", c.part}, {"paint", c.paint}};
+    Json json = {{"look", c.look}, {"part", c.part}, {"paint", c.paint}};
+    if (!c.look_name.empty()) json["look_name"] = c.look_name;
+    return json;
 }
 void read(const JsonReader& fields, SetPaint& c) {
-    fields.allow_only({"look", "part", "paint"});
+    fields.allow_only({"look", "part", "paint", "look_name"});
     c = {look_in(fields), fields["part"].text(), fields["paint"].text()};
+    if (fields.has("look_name")) c.look_name = fields["look_name"].text();
 }
 
-Json fields_of(const PaintProduct& c) { return {{"look", c.look}, {"paint", c.paint}}; }
+Json fields_of(const PaintProduct& c) {
+    Json json = {{"look", c.look}, {"paint", c.paint}};
+    if (!c.look_name.empty()) json["look_name"] = c.look_name;
+    return json;
+}
 void read(const JsonReader& fields, PaintProduct& c) {
-    fields.allow_only({"look", "paint"});
+    fields.allow_only({"look", "paint", "look_name"});
     c = {look_in(fields), fields["paint"].text()};
+    if (fields.has("look_name")) c.look_name = fields["look_name"].text();
 }
 
 Json fields_of(const EditPaint& c) {

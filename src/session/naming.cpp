@@ -13,16 +13,6 @@ namespace {
 constexpr std::size_t kLongestName = 200;
 constexpr std::size_t kLongestText = 16'384;
 
-/// "solid red 2" -> "solid red"; a name without such a number comes back as it is.
-std::string without_number(const std::string& name) {
-    const auto space = name.find_last_of(' ');
-    if (space == std::string::npos || space == 0 || space + 1 == name.size()) return name;
-    const bool digits = std::all_of(name.begin() + static_cast<std::ptrdiff_t>(space) + 1,
-                                    name.end(),
-                                    [](char c) { return c >= '0' && c <= '9'; });
-    return digits ? name.substr(0, space) : name;
-}
-
 }  // namespace
 
 void check_text(const std::string& text, const std::string& what) {
@@ -42,6 +32,15 @@ void check_name(const std::string& text, const std::string& what) {
                    what + " has " + std::to_string(text.size()) + " bytes; at most " +
                        std::to_string(kLongestName) + " are possible");
     check_text(text, what);
+}
+
+std::string without_number(const std::string& name) {
+    const auto space = name.find_last_of(' ');
+    if (space == std::string::npos || space == 0 || space + 1 == name.size()) return name;
+    const bool digits = std::all_of(name.begin() + static_cast<std::ptrdiff_t>(space) + 1,
+                                    name.end(),
+                                    [](char c) { return c >= '0' && c <= '9'; });
+    return digits ? name.substr(0, space) : name;
 }
 
 std::string free_name(const std::string& name,

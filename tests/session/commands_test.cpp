@@ -41,6 +41,34 @@ std::string worn(const Document& document, int look, const std::string& part) {
     return found && found->look.parts.contains(part) ? found->look.parts.at(part) : "";
 }
 
+TEST(LookNames, FollowThePaintThatTheyAreNamedAfter) {
+    const auto name_of = [](const Document& document) { return document.looks.at(0).look.name; };
+    const auto painted =
+        [&](const Document& before, const std::string& part, const std::string& paint) {
+            const std::string name = look_name_after(before.looks.at(0).look, part, paint);
+            return part.empty() ? applied(before, PaintProduct{1, paint, name})
+                                : applied(before, SetPaint{1, part, paint, name});
+        };
+    ASSERT_EQ(name_of(car()), "blue metallic");
+    // What tells the look's colour: a wheel's paint does not, nor the paint that it has already
+    EXPECT_EQ(name_of(painted(car(), "rims", "solid white")), "blue metallic");
+    EXPECT_EQ(name_of(painted(car(), "body", "blue metallic")), "blue metallic");
+    EXPECT_EQ(name_of(painted(car(), "body", "solid white")), "solid white");
+    EXPECT_EQ(name_of(painted(car(), "", "solid white")), "solid white");
+    // Another look has the name
+    EXPECT_EQ(name_of(painted(car(), "body", "silver metallic")), "silver metallic 2");
+    const Document twice =
+        painted(painted(car(), "body", "silver metallic"), "body", "solid black");
+    EXPECT_EQ(name_of(twice), "solid black");
+    // A name that somebody gave stays, and commands that say nothing change none
+    const Document renamed = applied(car(), RenameLook{1, "the boss's choice"});
+    EXPECT_EQ(name_of(painted(renamed, "body", "solid white")), "the boss's choice");
+    EXPECT_EQ(name_of(applied(car(), SetPaint{1, "body", "solid white"})), "blue metallic");
+    const SessionCommand command = SetPaint{1, "body", "solid white", "solid white"};
+    EXPECT_EQ(text_of(parse_session_command(text_of(command), "a test")), text_of(command));
+    EXPECT_EQ(refusal(SetPaint{1, "body", "solid white", "a\nb"}), refusal(RenameLook{1, "a\nb"}));
+}
+
 TEST(Commands, EachIsTheSameAfterWritingAndReading) {
     const TemporaryFolder folder;
     folder.write("calibration.json", "{}");
