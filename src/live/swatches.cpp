@@ -23,7 +23,7 @@ namespace livery {
 namespace {
 
 /// Grows whenever swatches come to look different.
-constexpr int kSwatchVersion = 3;
+constexpr int kSwatchVersion = 4;
 constexpr double kFov_rad = 0.2;
 
 View swatch_view(const Bounds& bounds, int size_px) {

@@ -17,7 +17,8 @@ namespace livery {
 
 namespace {
 
-constexpr double kBehind = 1.0, kInFront = 1.0 / 3.0;
+/// What absorbs nothing sends T + R = 1 of them: neither end of its wedge may burn out.
+constexpr double kBehind = 0.75, kInFront = 0.25;
 constexpr std::size_t kThicknesses = 13;
 constexpr double kSphereShare = 0.96;  ///< of the square, as the spheres of other paints
 

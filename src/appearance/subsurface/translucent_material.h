@@ -15,8 +15,13 @@ namespace livery {
 /// Slope parameter of a boundary of which nothing is said.
 inline constexpr double kSmoothAlpha = 0.02;
 
+/// Of what is measured and no product is made of, food and drinks above all: listed where it is
+/// asked for.
+inline constexpr const char* kMeasuredMedia = "measured media";
+
 struct TranslucentMaterial {
     std::string name;
+    std::string family = "translucent";
     glm::dvec3 sigma_a_per_mm{0.0}, sigma_s_prime_per_mm{0.0};  ///< linear Rec.709 channels
     double g = 0.0;
     double eta = 1.5;

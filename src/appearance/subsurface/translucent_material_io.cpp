@@ -66,6 +66,7 @@ TranslucentMaterial parse_translucent_material(const std::string& text,
     json.allow_only({"format_version",
                      "kind",
                      "name",
+                     "family",
                      "sigma_a_per_mm",
                      "sigma_s_prime_per_mm",
                      "g",
@@ -78,6 +79,7 @@ TranslucentMaterial parse_translucent_material(const std::string& text,
     }
     TranslucentMaterial material;
     material.name = json["name"].text();
+    if (json.has("family")) material.family = json["family"].text();
     material.sigma_a_per_mm = coefficients(json["sigma_a_per_mm"]);
     material.sigma_s_prime_per_mm = coefficients(json["sigma_s_prime_per_mm"]);
     if (json.has("g")) material.g = json["g"].number_between(-kLargestG, kLargestG);
@@ -104,6 +106,7 @@ void write_translucent_material(const std::filesystem::path& file,
     Json json = {{"format_version", kNewestVersion},
                  {"kind", "translucent"},
                  {"name", material.name},
+                 {"family", material.family},
                  {"sigma_a_per_mm", json_of(material.sigma_a_per_mm)},
                  {"sigma_s_prime_per_mm", json_of(material.sigma_s_prime_per_mm)},
                  {"g", material.g},

@@ -69,7 +69,7 @@ double lost_for(const TranslucentMaterial& medium, double total) {
 Material translucent_paint(const TranslucentMaterial& medium, double alpha) {
     Material paint;
     paint.name = medium.name;
-    paint.family = "translucent";
+    paint.family = medium.family;
     paint.model = ReflectanceModel::translucent;
     paint.alpha = glm::dvec2(alpha);
     paint.provenance = medium.provenance;

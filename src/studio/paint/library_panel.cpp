@@ -14,6 +14,7 @@
 #include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
+#include "appearance/subsurface/translucent_material.h"
 #include "studio/kit/imgui_versions.h"
 #include "studio/kit/tab_order.h"
 #include "studio/kit/theme.h"
@@ -56,8 +57,12 @@ struct Target {
 };
 
 SessionCommand paint_command(const Studio& studio, const Target& target, const std::string& paint) {
-    if (target.is_product) return PaintProduct{studio.shown_look, paint};
-    return SetPaint{studio.shown_look, target.part, paint};
+    const int id = studio.shown_look;
+    const std::string part = target.is_product ? "" : target.part;
+    const SessionLook* look = find_look(studio.session.document(), id);
+    const std::string look_name = look ? look_name_after(look->look, part, paint) : "";
+    if (target.is_product) return PaintProduct{id, paint, look_name};
+    return SetPaint{id, part, paint, look_name};
 }
 
 Target target_of(const Studio& studio) {
@@ -138,10 +143,15 @@ void draw_search(LibraryPanelState& state) {
 /// By name, else by colour; the colour that was searched for.
 std::optional<glm::dvec3> find_in(const LibraryPanelState& state, std::vector<Section>& sections) {
     const auto colour = colour_in(state.search);
+    // Food and drinks answer to their name and family alone
+    const auto left_out = [&](const Section& section, std::size_t k) {
+        return state.family.empty() && (*section.paints)[k].family == kMeasuredMedia;
+    };
     bool named = false;
     if (!colour || !is_marked_colour(state.search)) {
         for (Section& section : sections) {
             for (const std::size_t k : search_paints(*section.paints, state.search, state.family)) {
+                if (state.search.empty() && left_out(section, k)) continue;
                 section.found.push_back({k, 0.0});
                 named = true;
             }
@@ -150,6 +160,8 @@ std::optional<glm::dvec3> find_in(const LibraryPanelState& state, std::vector<Se
     if (!colour || named) return std::nullopt;
     for (Section& section : sections) {
         section.found = find_near_paints(*section.paints, *colour, state.family);
+        std::erase_if(section.found,
+                      [&](const auto& found) { return left_out(section, found.index); });
     }
     return colour;
 }
