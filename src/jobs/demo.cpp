@@ -33,9 +33,11 @@ void judge_looks(DemoResult& result,
     for (const std::string& name : kDemoLooks) {
         progress.update(done / static_cast<double>(kDemoLooks.size()), "judging " + name);
         const Look look = find_look_for(name, part_names(calibrated.product->mesh));
-        const Scene scene = timed(times, "load the looks", [&] {
+        Scene scene = timed(times, "load the looks", [&] {
             return make_scene(calibrated.product, look, description.eye_mm, environment);
         });
+        // Colours are judged. Each flake is a pixel, which a camera and the eye's picture blur
+        for (Material& paint : scene.part_materials) paint.glint_density_per_mm2 = 0.0;
         environment = scene.environment;
         FramePlan plan = plan_frame(scene, Quality::normal, FrameStage::radiance);
         StageTimes shading;

@@ -106,11 +106,11 @@ void write_translucent_material(const std::filesystem::path& file,
     Json json = {{"format_version", kNewestVersion},
                  {"kind", "translucent"},
                  {"name", material.name},
-                 {"family", material.family},
                  {"sigma_a_per_mm", json_of(material.sigma_a_per_mm)},
                  {"sigma_s_prime_per_mm", json_of(material.sigma_s_prime_per_mm)},
                  {"g", material.g},
                  {"eta", material.eta}};
+    if (material.family != TranslucentMaterial{}.family) json["family"] = material.family;
     if (material.thickness_mm) json["thickness_mm"] = *material.thickness_mm;
     if (material.alpha != kSmoothAlpha) json["alpha"] = material.alpha;
     if (!material.provenance.empty()) json["provenance"] = material.provenance;
