@@ -148,15 +148,13 @@ void FrameLane::solve(const FrameDescription& description,
     solved_ = {};
     prepared_ = false;
     sides_ = {};
-    solve_light(0, description.scene, *keys[0], urgency, progress);
-    if (keys[1]) {
-        solve_light(1, *description.wipe_to, *keys[1], urgency, progress);
-    } else {
-        lights_[1] = {};
-        // Its paints may mirror other layers of the light that both have
-        if (description.wipe_to) {
-            solve_light(0, *description.wipe_to, *keys[0], urgency, progress);
-        }
+    const double share = 1.0 / static_cast<double>(side_count(description));
+    solve_light(0, description.scene, *keys[0], urgency, progress.part(0.0, share));
+    if (!keys[1]) lights_[1] = {};
+    if (description.wipe_to) {
+        // Where both have one light, its paints may mirror other layers of it
+        const std::size_t index = keys[1] ? 1 : 0;
+        solve_light(index, *description.wipe_to, *keys[index], urgency, progress.part(share, 1.0));
     }
     solved_ = std::move(keys);
     note_mirrors();
@@ -173,6 +171,7 @@ void FrameLane::solve_light(std::size_t index,
                             const SolveKey& key,
                             std::optional<Urgency> urgency,
                             const Progress& progress) {
+    constexpr double kGeometryShare = 0.3;
     Solved& light = lights_[index];
     FramePlan plan = plan_frame(scene, key.levels, FrameStage::projector);
     const auto serves = [&](const FrameGeometry& geometry) {
@@ -182,17 +181,19 @@ void FrameLane::solve_light(std::size_t index,
     if (!light.renderer || !serves(*light.renderer->geometry())) {
         light = {};
         std::shared_ptr<const FrameGeometry> geometry;
-        run_giving_way(urgency, [&] { geometry = geometries_->get(key, progress); });
+        run_giving_way(
+            urgency, [&] { geometry = geometries_->get(key, progress.part(0.0, kGeometryShare)); });
         light.renderer = std::make_unique<RadianceRenderer>(std::move(geometry), true, device_);
     }
-    run_giving_way(urgency, [&] { light.renderer->solve(scene, plan, progress); });
+    run_giving_way(urgency,
+                   [&] { light.renderer->solve(scene, plan, progress.part(kGeometryShare, 1.0)); });
     if (light.untold) add_milliseconds(plan, *light.untold, false);
     light.untold = std::move(plan);
 }
 
 void FrameLane::prepare(const FrameDescription& description, const Progress& progress) {
-    prepare_mirrors(description, progress);
-    prepare_programs(description, progress);
+    prepare_mirrors(description, progress.part(0.0, 0.5));
+    prepare_programs(description, Progress{{}, progress.stop});
     prepared_ = true;
 }
 
@@ -243,9 +244,11 @@ void FrameLane::prepare_mirrors(const FrameDescription& description, const Progr
         PlannedPass* pass = find_pass(plan, mirrored_ahead_pass());
         if (!pass) continue;
         RadianceRenderer& renderer = *lights_[index].renderer;
-        run_giving_way(Urgency::background, [&] { renderer.solve(scene, plan, progress); });
+        const double from = 0.5 * static_cast<double>(side);
+        run_giving_way(Urgency::background,
+                       [&] { renderer.solve(scene, plan, progress.part(from, from + 0.5)); });
         prepare_passes_.push_back(*pass);
-        renderer.prepare(scene, plan, progress);
+        renderer.prepare(scene, plan, Progress{{}, progress.stop});
     }
     note_mirrors();
 }

@@ -72,6 +72,7 @@ struct FrameJobs {
     };
     std::optional<Task> task;
     std::optional<FrameThread::Solving> solving;
+    Newest told_of;  ///< whose task was told last
 
     std::optional<Task> next_task() const;
     bool front_can_draw(const FrameLane& lane) const;
@@ -80,6 +81,15 @@ struct FrameJobs {
     void note(std::size_t index, const FrameLane& lane) {
         lanes[index] = {lane.solved(), lane.mirrors(), lane.is_prepared()};
     }
+};
+
+/// Of all that a description has to solve, roughly by time: its draft, and within a task what is
+/// solved before what other paints would mirror.
+constexpr double kDraftShare = 0.2, kSolvedShare = 0.8;
+
+/// Which part of that a task tells.
+struct Told {
+    double from = 0.0, to = 1.0;
 };
 
 /// What the back lane should do next, if anything: show a new light, or what a new paint mirrors of
@@ -147,7 +157,7 @@ struct FrameThread::Implementation {
     void run(std::size_t lane);
     Worker<FrameJobs>::Turn next(FrameJobs& jobs, std::size_t index, FrameLane& lane);
     void work_behind(const FrameJobs::Task& task,
-                     bool told,
+                     std::optional<Told> told,
                      std::optional<Urgency> urgency,
                      std::size_t index,
                      FrameLane& lane);
@@ -191,7 +201,7 @@ void FrameThread::Implementation::fail(const Newest& description, const std::exc
 }
 
 void FrameThread::Implementation::work_behind(const FrameJobs::Task& task,
-                                              bool told,
+                                              std::optional<Told> told,
                                               std::optional<Urgency> urgency,
                                               std::size_t index,
                                               FrameLane& lane) {
@@ -202,13 +212,15 @@ void FrameThread::Implementation::work_behind(const FrameJobs::Task& task,
                 jobs.solving = Solving{fraction, std::string(stage)};
             });
         };
+        progress = progress.part(told->from, told->to);
     }
+    const double solved = task.whole ? kSolvedShare : 1.0;
     std::exception_ptr error;
     try {
-        lane.solve(*task.description, task.wanted[0]->levels, urgency, progress);
+        lane.solve(*task.description, task.wanted[0]->levels, urgency, progress.part(0.0, solved));
         // Everything that drawing makes once, before the front is held.
         lane.draw_ahead(*task.description);
-        if (task.whole) lane.prepare(*task.description, progress);
+        if (task.whole) lane.prepare(*task.description, progress.part(solved, 1.0));
     } catch (const Cancelled&) {
     } catch (...) {
         error = std::current_exception();
@@ -284,9 +296,16 @@ Worker<FrameJobs>::Turn FrameThread::Implementation::next(FrameJobs& jobs,
     std::optional<Urgency> urgency;
     if (jobs.last_good) urgency = jobs.task->whole ? Urgency::background : Urgency::watched;
     stop = false;
-    if (told) jobs.solving = Solving{0.0, "starting"};
-    return {[this, task = *jobs.task, told, urgency, index, &lane] {
-        work_behind(task, told, urgency, index, lane);
+    std::optional<Told> range;
+    if (told) {
+        // One count for a draft and what follows it, which never runs backwards
+        const bool follows_draft = jobs.task->whole && jobs.told_of == jobs.task->description;
+        range = {follows_draft ? kDraftShare : 0.0, jobs.task->whole ? 1.0 : kDraftShare};
+        jobs.told_of = jobs.task->description;
+        jobs.solving = Solving{range->from, "starting"};
+    }
+    return {[this, task = *jobs.task, range, urgency, index, &lane] {
+        work_behind(task, range, urgency, index, lane);
     }};
 }
 

@@ -2,6 +2,7 @@
 // kept until the pose, the eye, a light or the environment changes.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -45,7 +46,9 @@ class StageClock {
         if (!planned) return false;
         planned->ms = 0.0;
         if (!stale) return false;
-        if (progress_) progress_->update(place_of(*planned), to_string(pass));
+        // Passes do not all run in the plan's order, and progress never goes back
+        furthest_ = std::max(furthest_, place_of(*planned));
+        if (progress_) progress_->update(furthest_, to_string(pass));
         const double begin = now_ms();
         work();
         planned->ms = now_ms() - begin;
@@ -71,6 +74,7 @@ class StageClock {
 
     FramePlan* plan_;
     const Progress* progress_;
+    double furthest_ = 0.0;
     int passes_run_ = 0;
 };
 

@@ -364,8 +364,9 @@ void RadianceRenderer::prepare(const Scene& whole,
     const Scene scene = at_levels(whole, plan.levels);
     State& s = *state_;
     const CountGl count(s.counters.gl);
-    StageClock clock(plan);
-    s.solve(scene, plan, clock, progress, exchanged);
+    StageClock clock(plan, &progress);
+    const Progress silent{{}, progress.stop};
+    s.solve(scene, plan, clock, silent, exchanged);
     s.upload(scene, clock);
     if (s.device == ShadingDevice::processor) return;
     for (const Material& material : scene.part_materials) {
