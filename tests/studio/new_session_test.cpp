@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <numbers>
 #include <thread>
 
 #include <glm/geometric.hpp>
@@ -142,6 +143,12 @@ TEST(MeshPicture, ShowsTheProductAsItWouldStand) {
     EXPECT_LT(upright.filled, seen.filled);
     EXPECT_GT(upright.filled, 0.05);
     EXPECT_THROW(mesh_picture(mesh, glm::dmat3(1.0), {0, 10}), std::invalid_argument);
+    // From its long side and from its end
+    const auto seen_from = [&](double azimuth_rad) {
+        return seen_in(
+            mesh_picture(mesh, upright_rotation(UpAxis::plus_z, 0), {300, 300}, azimuth_rad));
+    };
+    EXPECT_GT(seen_from(0.5 * std::numbers::pi).filled, 1.2 * seen_from(0.0).filled);
 }
 
 /// The window's state without a window, on a session in a file.

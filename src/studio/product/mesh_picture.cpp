@@ -17,14 +17,14 @@ namespace livery {
 namespace {
 
 constexpr int kSamples = 2;  // a side of a pixel
-constexpr float kAzimuth_rad = 0.6f, kElevation_rad = 0.4f;
+constexpr float kElevation_rad = 0.4f;
 constexpr float kGroundGrey = 0.05f, kDarkest = 0.05f, kLit = 0.33f;
 
 /// Rows: right, up and towards the viewer.
-glm::mat3 view_from_world() {
-    const glm::vec3 towards(std::cos(kElevation_rad) * std::sin(kAzimuth_rad),
+glm::mat3 view_from_world(float azimuth_rad) {
+    const glm::vec3 towards(std::cos(kElevation_rad) * std::sin(azimuth_rad),
                             std::sin(kElevation_rad),
-                            std::cos(kElevation_rad) * std::cos(kAzimuth_rad));
+                            std::cos(kElevation_rad) * std::cos(azimuth_rad));
     const glm::vec3 right = glm::normalize(glm::cross(glm::vec3(0, 1, 0), towards));
     return glm::transpose(glm::mat3(right, glm::cross(towards, right), towards));
 }
@@ -90,10 +90,14 @@ Image8 averaged(const Canvas& canvas, glm::ivec2 size_px) {
 
 }  // namespace
 
-Image8 mesh_picture(const Mesh& mesh, const glm::dmat3& world_from_mesh, glm::ivec2 size_px) {
+Image8 mesh_picture(const Mesh& mesh,
+                    const glm::dmat3& world_from_mesh,
+                    glm::ivec2 size_px,
+                    double azimuth_rad) {
     check_argument(size_px.x > 0 && size_px.y > 0 && size_px.x <= 2048 && size_px.y <= 2048,
                    "mesh_picture: a size of 1 to 2048");
-    const glm::mat3 rotation(world_from_mesh), view = view_from_world();
+    const glm::mat3 rotation(world_from_mesh),
+        view = view_from_world(static_cast<float>(azimuth_rad));
     const glm::mat3 view_from_mesh = view * rotation;
     std::vector<glm::vec3> points;
     points.reserve(mesh.positions_mm.size() + 4);

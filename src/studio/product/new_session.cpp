@@ -7,7 +7,6 @@
 #include "studio/kit/file_places.h"
 #include "studio/kit/user_folders.h"
 #include "studio/look_files.h"
-#include "studio/product/mesh_picture.h"
 #include "studio/product/open_session.h"
 #include "studio/window/shell.h"
 
@@ -206,28 +205,32 @@ void start_creating(Shell& shell) {
 
 void ask_for_mesh_picture(Shell& shell, glm::ivec2 size_px) {
     NewSession& asked = *shell.new_session;
-    const auto wanted = std::pair(asked.answers.up, asked.answers.quarter_turns);
-    if (asked.pictured == wanted || !asked.mesh) return;
+    const MeshPictureKey wanted{
+        asked.answers.up, asked.answers.quarter_turns, asked.azimuth_rad, size_px};
+    if (asked.pictured == wanted || asked.picturing || !asked.mesh) return;
     asked.pictured = wanted;
-    const auto still_wanted = [&shell, number = asked.number, wanted] {
-        const NewSession* page = page_of(shell, number);
-        return page && page->pictured == wanted;
-    };
+    asked.picturing = true;
     shell.studio.background->run(
-        [&shell, mesh = asked.mesh, wanted, size_px, still_wanted](
+        [&shell, mesh = asked.mesh, wanted, number = asked.number](
             const Progress&) -> Background::Then {
             const auto picture = std::make_shared<const Image8>(
-                mesh_picture(*mesh, upright_rotation(wanted.first, wanted.second), size_px));
-            return [&shell, picture, still_wanted] {
-                if (!still_wanted()) return;
+                mesh_picture(*mesh,
+                             upright_rotation(wanted.up, wanted.quarter_turns),
+                             wanted.size_px,
+                             wanted.azimuth_rad));
+            return [&shell, picture, number] {
+                NewSession* page = page_of(shell, number);
+                if (!page) return;
+                page->picturing = false;
                 Texture2D texture(TextureShape{picture->width, picture->height, 0, 1},
                                   TexelFormat::rgba8,
                                   TexelFilter::linear);
                 texture.upload(std::span<const std::uint8_t>(picture->values));
-                shell.new_session->picture = std::move(texture);
+                page->picture = std::move(texture);
             };
         },
-        [&shell](const std::exception_ptr& why) {
+        [&shell, number = asked.number](const std::exception_ptr& why) {
+            if (NewSession* page = page_of(shell, number)) page->picturing = false;
             notify_failure(shell.studio, "The mesh's picture could not be drawn.", why);
         });
 }

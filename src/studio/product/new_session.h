@@ -8,7 +8,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -16,6 +15,7 @@
 #include "gl/handles.h"
 #include "session/session.h"
 #include "studio/product/lit_share.h"
+#include "studio/product/mesh_picture.h"
 #include "studio/product/product_answers.h"
 
 namespace livery {
@@ -26,6 +26,15 @@ struct Shell;
 struct OpenedSession {
     Session session;
     std::shared_ptr<const Product> product;
+};
+
+/// What a picture of the mesh shows.
+struct MeshPictureKey {
+    UpAxis up = UpAxis::plus_y;
+    int quarter_turns = 0;
+    double azimuth_rad = 0.0;
+    glm::ivec2 size_px{0};
+    bool operator==(const MeshPictureKey&) const = default;
 };
 
 struct NewSession {
@@ -47,7 +56,9 @@ struct NewSession {
     bool other_scale = false;       ///< typed, not one of the usual
 
     bool to_open = true;
-    std::optional<std::pair<UpAxis, int>> pictured;  ///< what the picture shows, or will
+    double azimuth_rad = kThreeQuarters_rad;  ///< from where the picture is seen
+    std::optional<MeshPictureKey> pictured;   ///< what the picture shows, or will
+    bool picturing = false;                   ///< the next is asked for when this one is there
     Texture2D picture;
 };
 

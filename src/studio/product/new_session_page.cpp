@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -19,7 +20,14 @@ namespace livery {
 namespace {
 
 constexpr std::array kScales{1.0, 4.0, 10.0, 25.0};
-constexpr float kPictureWidth_em = 22.0f, kPictureHeight_em = 15.0f;
+constexpr float kWidth_em = 74.0f, kQuestionsHeight_em = 25.0f;
+constexpr double kTurn_rad = 2.0 * std::numbers::pi;
+
+/// As large as leaves room for the questions beside it.
+ImVec2 picture_size(float page_width) {
+    const float width = std::floor(std::min(em(31.0f), 0.42f * page_width));
+    return {width, std::floor(0.65f * width)};
+}
 
 /// A choice among the row's others; true when it was pressed.
 bool choice(const std::string& label, bool on, const std::string& name, bool first = false) {
@@ -95,9 +103,14 @@ void draw_front(NewSession& asked) {
                                                                                {"far right", "-z"},
                                                                                {"far left", "-x"},
                                                                                {"not said", ""}}};
+    // Turned by a right angle, the picture has another side there
+    const auto turns =
+        static_cast<std::size_t>(std::floor(asked.azimuth_rad / (0.5 * std::numbers::pi)));
     row("Its front is");
     ImGui::BeginGroup();
-    for (const auto& [label, front] : sides) {
+    for (std::size_t k = 0; k < sides.size(); ++k) {
+        const char* label = sides[k].first;
+        const char* front = k < 4 ? sides[(k + turns) % 4].second : "";
         const std::string name = std::string("front:") + front;
         if (choice(label, asked.answers.front == front, name, label == sides[0].first)) {
             asked.answers.front = front;
@@ -142,7 +155,7 @@ void draw_scale(NewSession& asked) {
     ImGui::EndGroup();
 }
 
-void draw_sizes(const NewSession& asked) {
+void draw_sizes(const NewSession& asked, float width) {
     ImGui::PushFont(heading_font());
     ImGui::TextUnformatted(
         ("On the bench: " + size_text(mock_up_size_mm(asked.facts, asked.answers))).c_str());
@@ -152,7 +165,7 @@ void draw_sizes(const NewSession& asked) {
     const ProductFile product =
         asked.is_product_file ? ProductFile{} : product_file_of(asked.facts, asked.answers, "");
     if (const auto share = lit_share(asked.samples, product, asked.projector)) {
-        ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + em(kPictureWidth_em));
+        ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + width);
         dim_text(lit_share_text(*share));
         name_last_item("new-session:lit");
         ImGui::PopTextWrapPos();
@@ -183,15 +196,26 @@ void draw_parts(NewSession& asked) {
     dim_text("Once it is open: click a part, then a paint.");
 }
 
-void draw_picture(Shell& shell) {
+void draw_picture(Shell& shell, const ImVec2& size) {
     NewSession& asked = *shell.new_session;
-    const ImVec2 size{em(kPictureWidth_em), em(kPictureHeight_em)};
     if (shell.window) {
         ask_for_mesh_picture(shell, {static_cast<int>(size.x), static_cast<int>(size.y)});
     }
     const ImVec2 from = ImGui::GetCursorScreenPos();
-    ImGui::Dummy(size);
+    ImGui::InvisibleButton("##picture", size);
     name_last_item("new-session:picture");
+    if (ImGui::IsItemActive() && ImGui::GetIO().MouseDelta.x != 0.0f) {
+        // Half a turn over its width
+        const double turned = 0.5 * kTurn_rad * static_cast<double>(ImGui::GetIO().MouseDelta.x) /
+                              static_cast<double>(size.x);
+        asked.azimuth_rad -= turned;
+        asked.azimuth_rad -= kTurn_rad * std::floor(asked.azimuth_rad / kTurn_rad);
+    }
+    if (ImGui::IsItemHovered()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+    if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
+        asked.azimuth_rad = kThreeQuarters_rad;
+    }
+    tooltip("Drag to look at it from all sides.");
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImVec2 to{from.x + size.x, from.y + size.y};
     list.AddRectFilled(from, to, IM_COL32(22, 22, 22, 255), em(0.3f));
@@ -229,11 +253,12 @@ void draw_questions(Shell& shell) {
     NewSession& asked = *shell.new_session;
     begin_disabled(asked.stage == NewSession::Stage::creating);
     ImGui::BeginGroup();
-    draw_picture(shell);
-    draw_sizes(asked);
+    const ImVec2 picture = picture_size(ImGui::GetContentRegionAvail().x);
+    draw_picture(shell, picture);
+    draw_sizes(asked, picture.x);
     ImGui::EndGroup();
     ImGui::SameLine(0.0f, em(1.2f));
-    ImGui::BeginChild("questions", {0.0f, em(kPictureHeight_em + 9.0f)}, false);
+    ImGui::BeginChild("questions", {0.0f, em(kQuestionsHeight_em)}, false);
     if (asked.is_product_file) {
         dim_text("The product file says what its mesh is: its unit, its size and how it stands.");
     } else {
@@ -295,7 +320,7 @@ void draw_new_session(Shell& shell) {
     const char* title = "New session###new-session";
     if (std::exchange(asked.to_open, false)) ImGui::OpenPopup(title);
     const ImVec2 window = ImGui::GetMainViewport()->Size;
-    ImGui::SetNextWindowSize({std::min(em(58.0f), 0.96f * window.x), 0.0f});
+    ImGui::SetNextWindowSize({std::min(em(kWidth_em), 0.96f * window.x), 0.0f});
     ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Always, {0.5f, 0.5f});
     if (!ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_NoResize)) return;
     // A notice that comes meanwhile stays behind it.
