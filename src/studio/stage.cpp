@@ -332,7 +332,9 @@ void draw_drawn_view(Shell& shell, const StageFrame& stage) {
     shell.stage.width = static_cast<int>(stage.width);
     shell.stage.height = static_cast<int>(stage.height);
     const auto& preview = shell.studio.preview;
-    if (!preview || preview->texture == 0) {
+    const bool of_view =
+        preview && is_of_view(shell.preview_lag, preview->number, shell.studio.view);
+    if (!of_view || preview->texture == 0) {
         const bool failed = preview && !preview->problem.empty();
         draw_message(stage, failed ? preview->problem : "Drawing the product…");
         return;
@@ -343,7 +345,13 @@ void draw_drawn_view(Shell& shell, const StageFrame& stage) {
         picture = place_picture(stage, preview->size_px.x, preview->size_px.y, {});
     }
     draw_texture(preview->texture, picture);
-    draw_caption(shell, stage, preview->unfinished ? "Light and shadows are being solved." : "");
+    const auto behind_since = behind_since_s(shell.preview_lag, preview->number);
+    const bool behind = behind_since && shell.studio.now_s - *behind_since > kTellsLag_s;
+    draw_caption(shell,
+                 stage,
+                 behind                ? "The last change is still being drawn."
+                 : preview->unfinished ? "Light and shadows are being solved."
+                                       : "");
     draw_placing(shell.studio, stage);
 }
 

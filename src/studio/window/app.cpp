@@ -108,7 +108,7 @@ void tell_drawing_problems(Studio& studio) {
 }
 
 /// The earliest moment at which something on the window changes by itself.
-std::optional<double> next_change_s(const Shell& shell) {
+std::optional<double> next_change_s(Shell& shell) {
     std::optional<double> next;
     const auto consider = [&](double when_s) {
         if (when_s > 0.0 && (!next || when_s < *next)) next = when_s;
@@ -127,6 +127,11 @@ std::optional<double> next_change_s(const Shell& shell) {
     consider(next_refinement_s(shell));
     if (shell.studio.opening) consider(shell.studio.now_s + kOnItsWayToTheScreen_s);
     if (shell.preview_waits_until_s > 0.0) consider(shell.preview_waits_until_s);
+    if (shell.studio.preview) {
+        const auto behind_since = behind_since_s(shell.preview_lag, shell.studio.preview->number);
+        const double told_s = behind_since.value_or(0.0) + kTellsLag_s;
+        if (behind_since && told_s > shell.studio.now_s) consider(told_s);
+    }
     const double spoken_of_s = shell.frame_asked_s + kUnspokenWait_s;
     if (spoken_of_s > shell.studio.now_s) consider(spoken_of_s);
     // A blinking text cursor.

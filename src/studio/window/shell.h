@@ -18,6 +18,7 @@
 #include "studio/kit/question.h"
 #include "studio/product/new_session.h"
 #include "studio/studio.h"
+#include "studio/window/preview_lag.h"
 #include "studio/window/refinement.h"
 #include "studio/window/trace.h"
 
@@ -87,6 +88,7 @@ struct Shell {
     // What was asked for.
     std::optional<FrameKey> asked_frame;
     std::optional<PreviewKey> asked_preview;
+    PreviewLag preview_lag;
     std::optional<SetupKey> asked_setup;
     std::uint64_t frame_number = 0, preview_number = 0;
     Refinement refinement;

@@ -229,7 +229,10 @@ void ask_for_preview(Shell& shell) {
     key.highlighted_part = studio.hovered_part ? studio.hovered_part : studio.glowing_part;
     key.wipe_to = look_to_wipe_to(studio);
     if (key.wipe_to) key.wipe_at = studio.wipe_at;
-    if (shell.asked_preview == key) return;
+    if (shell.asked_preview == key) {
+        shell.preview_lag.held_since.reset();
+        return;
+    }
     // The mock-up goes first where both are drawn by the same processor, but not for long.
     shell.preview_waits_until_s = 0.0;
     const bool same_scene =
@@ -241,6 +244,7 @@ void ask_for_preview(Shell& shell) {
     if (shell.draws_in_software && !same_scene && is_frame_under_way(shell) &&
         studio.now_s < patience_until_s) {
         shell.preview_waits_until_s = patience_until_s;
+        if (!shell.preview_lag.held_since) shell.preview_lag.held_since = studio.now_s;
         return;
     }
     const Document document = shown_document(studio);
@@ -254,6 +258,7 @@ void ask_for_preview(Shell& shell) {
     if (!unread_files(description).empty()) return;
     shell.asked_preview = key;
     description.number = ++shell.preview_number;
+    note_asked(shell.preview_lag, description.number, key.view, studio.now_s);
     description.view = stage_view(shell, eye_in_use_mm(document));
     if (studio.setup) description.projector = studio.setup->view;
     description.highlighted_part = key.highlighted_part;
