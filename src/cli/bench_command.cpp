@@ -127,8 +127,8 @@ Command bench_command() {
     command.options = {
         {"--out",
          "DIR",
-         "also write bench.json and the plots speed.svg and accuracy.svg there, accuracy.csv, "
-         "accuracy.json, chain.csv, and effect-errors.json",
+         "also write bench.json and the plots speed.svg and accuracy.svg there, pass-costs.json, "
+         "accuracy.csv, accuracy.json, chain.csv, and effect-errors.json",
          &arguments->out,
          false,
          {}},
@@ -140,8 +140,9 @@ Command bench_command() {
          {}},
         {"--quick",
          "",
-         "half a minute: the sweep of two sizes and one quality, a hundredth of the inputs, the "
-         "smallest and largest errors; predictions stay",
+         "some minutes at most: the sweep of two sizes and one quality, a hundredth of the inputs, "
+         "the smallest and largest errors; predictions stay. costs: some seconds, in which the "
+         "costs that come with the program are scaled to this machine",
          &arguments->quick,
          false,
          {}},
@@ -161,31 +162,47 @@ Command bench_command() {
          {}},
         {"--suite",
          "NAME",
-         "speed, accuracy (each effect's error beside its time, and the rest of the chain's), "
+         "costs (of passes: what predictions need), speed (those and every other stage), accuracy "
+         "(each effect's error beside its time, and the rest of the chain's), "
          "chain (that rest alone), budget (whether predictions and "
          "chosen levels come true), stability (of what is drawn, where it loses most digits), "
          "geometry (what a wrong pose costs) or all (default speed)",
          &arguments->suite,
          false,
-         {"speed", "stability", "accuracy", "chain", "budget", "geometry", "all"}},
+         {"costs", "speed", "stability", "accuracy", "chain", "budget", "geometry", "all"}},
     };
     command.run = [arguments](const CommonOptions& common, const Progress& progress) {
         const auto wanted = [&](const char* suite) {
             return arguments->suite == suite || arguments->suite == "all";
         };
         // What cannot be written is found before the work.
-        check_argument(arguments->markdown.empty() || arguments->suite != "all",
-                       "--markdown writes one suite's tables: choose one with --suite");
+        check_argument(arguments->markdown.empty() ||
+                           (arguments->suite != "all" && arguments->suite != "costs"),
+                       "--markdown writes one suite's tables: choose one that has some");
+        const std::filesystem::path out = arguments->out;
         const auto kept = pass_costs_file();
-        if (!arguments->out.empty()) make_output_folder(arguments->out);
+        if (!out.empty()) make_output_folder(out);
         if (!arguments->markdown.empty()) check_marked_block(arguments->markdown, "bench");
         const auto seed = static_cast<std::uint64_t>(common.seed);
         Outcome outcome;
         std::string markdown, plot;
+        if (arguments->suite == "costs") {
+            const PassCosts costs = arguments->quick ? measure_machine(common.gl_device(), progress)
+                                                     : measure_costs(common.gl_device(), progress);
+            write_pass_costs(kept, costs);
+            outcome.figures = {{"renderer", costs.renderer},
+                               {"threads", costs.threads},
+                               {"predicted_from", to_string(costs.origin)}};
+            outcome.text =
+                arguments->quick
+                    ? "The costs that come with the program are scaled to this machine.\n"
+                    : fmt::format("{} costs of passes are timed.\n", costs.passes.size());
+            if (!out.empty()) write_pass_costs(out / "pass-costs.json", costs);
+        }
         if (wanted("speed")) {
             const SpeedLedger result =
                 measure_speed(common.gl_device(), arguments->quick, progress);
-            if (!arguments->quick) write_pass_costs(kept, result.renderer, result.pass_costs);
+            if (!arguments->quick) write_pass_costs(kept, costs_of(result));
             outcome.figures = json_of(result);
             outcome.text = text_of(result);
             markdown = markdown_of(result);
@@ -240,8 +257,7 @@ Command bench_command() {
             add(measure_geometry_errors(common.gl_device(), arguments->quick, seed, progress));
         }
         outcome.figures["suite"] = arguments->suite;
-        if (!arguments->out.empty()) {
-            const std::filesystem::path out = arguments->out;
+        if (!out.empty()) {
             write_json_file(out / "bench.json", outcome.figures);
             if (wanted("speed")) write_text_file(out / "speed.svg", plot);
             if (wanted("accuracy")) {

@@ -110,7 +110,7 @@ std::string files() {
            entry(italic("$LIVERY_HOME") + ", " + italic("$XDG_DATA_HOME/livery") + ", " +
                      italic("~/.local/share/livery"),
                  "The user's folder, the first of these that is set: sessions, votes, own paints, "
-                 "calibrations, the log, and the times that the last bench measured.") +
+                 "calibrations, the log, and what passes take on this machine.") +
            entry(italic("PREFIX/share/livery"),
                  "Shipped data, beside the program's own folder: paints, looks, the car, simulated "
                  "benches, shaders.");

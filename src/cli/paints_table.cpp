@@ -39,7 +39,7 @@ Json lab_numbers(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 std::vector<ListedPaint> listed(const std::vector<Material>& paints, const Progress& progress) {
     std::vector<ListedPaint> list(paints.size());
     progress.update(0.0, "figures of paints");
-    const auto costs = known_pass_costs();
+    const std::vector<PassCost> costs = known_pass_costs().passes;
     parallel_for(paints.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             list[i] = {paints[i], paint_figures(paints[i]), paint_cost(paints[i], costs)};
@@ -115,9 +115,9 @@ std::string page_of(const ListedPaint& paint) {
                             material.glint_density_per_mm2,
                             glint_scale_text(material));
     }
-    text += paint.cost.ns_a_pixel ? fmt::format("shading: {:.1f} ns a pixel by the last bench\n",
-                                                *paint.cost.ns_a_pixel)
-                                  : fmt::format("shading: cost unknown, {}\n", paint.cost.why_not);
+    text += paint.cost.ns_a_pixel
+                ? fmt::format("shading: {:.1f} ns a pixel, predicted\n", *paint.cost.ns_a_pixel)
+                : fmt::format("shading: cost unknown, {}\n", paint.cost.why_not);
     if (paint.de00)
         text += fmt::format("CIEDE2000 from the colour asked for: {:.2f}\n", *paint.de00);
     return text;

@@ -255,8 +255,8 @@ EffectLevels levels_within(const PriceList& list, const Budget& budget) {
         fitting.push_back({levels, times, error});
     });
     if (!cheapest) {
-        throw Refused("no budget: the last bench did not time what this scene calls for",
-                      "run livery bench --suite speed anew, or choose --quality");
+        throw Refused("no budget: nobody has timed what this scene calls for",
+                      "run livery bench --suite costs, or choose --quality");
     }
     if (fitting.empty()) {
         throw Refused(fmt::format("no levels fit the budget; the cheapest are predicted to take "

@@ -98,8 +98,8 @@ std::vector<PredictedFrame> predict_and_time(const std::vector<PassCost>& costs,
             frame.scene, FrameStage::radiance, covered_areas(frame.scene, frame.view), costs, {});
         const PredictedTime time = time_of(list, frame.levels);
         if (!time.complete) {
-            throw Refused("the last bench did not time every pass of " + frame.name,
-                          "run livery bench --suite speed anew");
+            throw Refused("nobody has timed every pass of " + frame.name,
+                          "run livery bench --suite costs");
         }
         result.push_back({frame.name, frame.levels, time.all_ms, 0.0});
     }
@@ -212,23 +212,19 @@ BudgetCheck check_budget(GlDevice device,
                          bool quick,
                          std::uint64_t seed,
                          const Progress& progress) {
-    const auto costs = known_pass_costs();
-    if (!costs) {
-        throw Refused("no bench has run on this machine, so no cost is known",
-                      "run livery bench --suite speed");
-    }
+    const std::vector<PassCost> costs = known_pass_costs().passes;
     const HeadlessContext context(device);
     BudgetCheck check;
     check.renderer = context.renderer();
     check.frames =
-        predict_and_time(*costs, quick ? kQuickScenes : kScenes, seed, progress.part(0.0, 0.5));
+        predict_and_time(costs, quick ? kQuickScenes : kScenes, seed, progress.part(0.0, 0.5));
     std::vector<AccuracyScene> scenes = simple_scenes();
     if (quick) scenes.resize(1);
     for (std::size_t k = 0; k < scenes.size(); ++k) {
         const double step = 0.5 / static_cast<double>(scenes.size());
         const double from = 0.5 + step * static_cast<double>(k);
         check.choices.push_back(
-            judge_choice(scenes[k], *costs, seed, progress.part(from, from + step)));
+            judge_choice(scenes[k], costs, seed, progress.part(from, from + step)));
     }
     return check;
 }

@@ -11,11 +11,11 @@
 namespace livery {
 
 struct PaintCost {
-    std::optional<double> ns_a_pixel;  ///< of shading, by the last ledger
+    std::optional<double> ns_a_pixel;  ///< of shading
     std::string why_not;               ///< when it is not known
 };
 
-/// Of any paint of that model, with glints or without; `costs` as known_pass_costs() gives them.
-PaintCost paint_cost(const Material& material, const std::optional<std::vector<PassCost>>& costs);
+/// Of any paint of that model, with glints or without; `costs` as known_pass_costs() has them.
+PaintCost paint_cost(const Material& material, const std::vector<PassCost>& costs);
 
 }  // namespace livery

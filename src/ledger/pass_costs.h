@@ -1,4 +1,4 @@
-// What passes take on this machine, from the last `livery bench --suite speed` here.
+// What passes take: timed on this machine, or shipped with the program and scaled to it.
 #pragma once
 
 #include <filesystem>
@@ -32,18 +32,33 @@ const PassCost* find_cost(const std::vector<PassCost>& costs,
                           const EffectLevels& levels);
 double predicted_ms(const PassCost& cost, double work_items);
 
-/// Where the ledger leaves its costs: the user's folder.
+enum class CostOrigin {
+    shipped,   ///< timed elsewhere, scaled by the number of threads
+    scaled,    ///< shipped ones, times what passes took here beside them
+    measured,  ///< by `livery bench` on this machine
+};
+const char* to_string(CostOrigin origin);
+
+struct PassCosts {
+    std::vector<PassCost> passes;
+    CostOrigin origin = CostOrigin::measured;
+    std::string renderer;
+    int threads = 0;  ///< that they were timed with
+};
+
+/// Where costs of this machine are kept: the user's folder.
 std::filesystem::path pass_costs_file();
-void write_pass_costs(const std::filesystem::path& file,
-                      const std::string& renderer,
-                      const std::vector<PassCost>& costs);
-/// Nothing when `livery bench` never ran on this machine, or only one of a Livery that timed
-/// otherwise. Throws FileError for a malformed file.
-std::optional<std::vector<PassCost>> read_pass_costs(const std::filesystem::path& file);
-/// The same of pass_costs_file(); nothing, too, without a home folder to keep one in.
-std::optional<std::vector<PassCost>> known_pass_costs();
+void write_pass_costs(const std::filesystem::path& file, const PassCosts& costs);
+/// Nothing when there is no such file, or only one of a Livery that timed otherwise. Throws
+/// FileError for a malformed file.
+std::optional<PassCosts> read_pass_costs(const std::filesystem::path& file);
 /// The same of its text.
-std::optional<std::vector<PassCost>> parse_pass_costs(const std::string& text,
-                                                      const std::filesystem::path& file);
+std::optional<PassCosts> parse_pass_costs(const std::string& text,
+                                          const std::filesystem::path& file);
+
+/// Those that come with the program, for as many threads as this machine has.
+PassCosts shipped_pass_costs();
+/// Of pass_costs_file(), else the shipped ones. Throws FileError for a malformed file.
+PassCosts known_pass_costs();
 
 }  // namespace livery

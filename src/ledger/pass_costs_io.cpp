@@ -3,6 +3,7 @@
 #include "appearance/model_table.h"
 #include "core/error.h"
 #include "core/json.h"
+#include "core/parallel.h"
 #include "core/paths.h"
 #include "ledger/pass_costs.h"
 
@@ -81,14 +82,24 @@ double predicted_ms(const PassCost& cost, double work_items) {
     return cost.fixed_ms + (cost.ms - cost.fixed_ms) * work_items / cost.work_items;
 }
 
+const char* to_string(CostOrigin origin) {
+    switch (origin) {
+        case CostOrigin::shipped:
+            return "shipped";
+        case CostOrigin::scaled:
+            return "scaled";
+        case CostOrigin::measured:
+            return "measured";
+    }
+    throw std::invalid_argument("unknown origin of costs");
+}
+
 std::filesystem::path pass_costs_file() { return user_folder() / "bench.json"; }
 
-void write_pass_costs(const std::filesystem::path& file,
-                      const std::string& renderer,
-                      const std::vector<PassCost>& costs) {
+void write_pass_costs(const std::filesystem::path& file, const PassCosts& costs) {
     make_output_folder(file.parent_path());
     Json list = Json::array();
-    for (const PassCost& cost : costs) {
+    for (const PassCost& cost : costs.passes) {
         list.push_back({{"pass", to_string(cost.pass)},
                         {"level", level_name(cost)},
                         {"ms", cost.ms},
@@ -98,33 +109,34 @@ void write_pass_costs(const std::filesystem::path& file,
             list.back()["fragments_per_pixel"] = *cost.fragments_per_pixel;
         }
     }
-    write_json_file(file, {{"format_version", kVersion}, {"renderer", renderer}, {"passes", list}});
+    write_json_file(file,
+                    {{"format_version", kVersion},
+                     {"renderer", costs.renderer},
+                     {"threads", costs.threads},
+                     {"origin", to_string(costs.origin)},
+                     {"passes", list}});
 }
 
-std::optional<std::vector<PassCost>> read_pass_costs(const std::filesystem::path& file) {
+std::optional<PassCosts> read_pass_costs(const std::filesystem::path& file) {
     std::error_code error;
     if (!std::filesystem::exists(file, error)) return std::nullopt;
     return parse_pass_costs(read_text_file(file), file);
 }
 
-std::optional<std::vector<PassCost>> known_pass_costs() {
-    std::filesystem::path file;
-    try {
-        file = pass_costs_file();
-    } catch (const FileError&) {
-        return std::nullopt;
-    }
-    return read_pass_costs(file);
-}
-
-std::optional<std::vector<PassCost>> parse_pass_costs(const std::string& text,
-                                                      const std::filesystem::path& file) {
+std::optional<PassCosts> parse_pass_costs(const std::string& text,
+                                          const std::filesystem::path& file) {
     constexpr double kLongest_ms = 1e9, kMostItems = 1e15;
+    constexpr int kMostThreads = 100'000;
     const Json json = parse_json(text, file);
     const JsonReader reader(file, json);
     reader.require_format_version(kVersion);
     if (reader["format_version"].number() < kVersion) return std::nullopt;
-    std::vector<PassCost> costs;
+    PassCosts costs;
+    if (reader.has("renderer")) costs.renderer = reader["renderer"].text();
+    if (reader.has("threads")) costs.threads = reader["threads"].integer(1, kMostThreads);
+    if (reader.has("origin") && reader["origin"].text() == to_string(CostOrigin::scaled)) {
+        costs.origin = CostOrigin::scaled;
+    }
     const JsonReader passes = reader["passes"];
     for (std::size_t i = 0; i < passes.size(); ++i) {
         const JsonReader entry = passes.at(i);
@@ -142,9 +154,37 @@ std::optional<std::vector<PassCost>> parse_pass_costs(const std::string& text,
         if (!its_level) continue;
         cost.pass = *pass;
         cost.level = *its_level;
-        costs.push_back(cost);
+        costs.passes.push_back(cost);
     }
     return costs;
+}
+
+PassCosts shipped_pass_costs() {
+    const std::filesystem::path file = shipped_path("assets/ledger/pass-costs.json");
+    auto costs = parse_pass_costs(read_text_file(file), file);
+    if (!costs || costs->threads == 0) {
+        throw FileError(file, "", "costs of another version", "those of this one, with threads");
+    }
+    const int threads = thread_count();
+    const double factor = static_cast<double>(costs->threads) / threads;
+    for (PassCost& cost : costs->passes) {
+        cost.ms *= factor;
+        cost.fixed_ms *= factor;
+    }
+    costs->origin = CostOrigin::shipped;
+    costs->threads = threads;
+    return *costs;
+}
+
+PassCosts known_pass_costs() {
+    std::filesystem::path file;
+    try {
+        file = pass_costs_file();
+    } catch (const FileError&) {
+        return shipped_pass_costs();  // no home folder to keep any in
+    }
+    if (auto costs = read_pass_costs(file)) return *costs;
+    return shipped_pass_costs();
 }
 
 }  // namespace livery

@@ -98,7 +98,7 @@ std::string predict_times(FramePlan& plan, const std::vector<PassCost>& costs) {
         if (!cost) {
             const auto effect = effect_of(pass.id);
             pass.unpredicted_because =
-                fmt::format("the last bench did not time {}", to_string(cost_key(pass.id)));
+                fmt::format("nobody has timed {}", to_string(cost_key(pass.id)));
             if (effect) {
                 const EffectInfo& info = effect_info(*effect);
                 const auto level = static_cast<std::size_t>(plan.levels[*effect]);

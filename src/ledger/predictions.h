@@ -1,5 +1,5 @@
-// What a frame will cost on this machine, and how far it will be from the truth: from the last
-// ledger, never from a guess.
+// What a frame will cost on this machine, and how far it will be from the truth: from costs that
+// were timed and errors that were measured.
 #pragma once
 
 #include <array>

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <map>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -17,6 +18,7 @@
 #include "ledger/artwork_times.h"
 #include "ledger/desktop_times.h"
 #include "ledger/first_frame_times.h"
+#include "ledger/machine_speed.h"
 #include "ledger/translucent_times.h"
 #include "radiance/renderer.h"
 #include "scene/library.h"
@@ -351,17 +353,19 @@ void compare_with_reference(SpeedLedger& result,
     }
 }
 
-}  // namespace
-
-SpeedLedger measure_speed(GlDevice device, bool quick, const Progress& progress) {
+SpeedLedger described(const HeadlessContext& context) {
     SpeedLedger result;
     // Zero where the system does not say.
     ::getloadavg(&result.load_before, 1);
-    const HeadlessContext context(device);
     result.renderer = context.renderer();
     result.threads = thread_count();
-    const TimedScene scene = load_scene(result, progress);
-    result.sweep = run_speed_sweep(scene.product, scene.looks, scene.projector, quick, progress);
+    return result;
+}
+
+void time_all_frames(SpeedLedger& result,
+                     const TimedScene& scene,
+                     bool quick,
+                     const Progress& progress) {
     SmallTimes smalls;
     for (const auto& [width, height] : {std::pair(640, 400), std::pair(1280, 800)}) {
         const View view = resized(scene.projector, width, height);
@@ -369,10 +373,18 @@ SpeedLedger measure_speed(GlDevice device, bool quick, const Progress& progress)
             time_frames(result, smalls, scene, view, levels, progress);
         }
     }
-    if (quick) {
-        result.pass_costs.clear();
-        return result;
-    }
+    if (quick) result.pass_costs.clear();
+}
+
+}  // namespace
+
+SpeedLedger measure_speed(GlDevice device, bool quick, const Progress& progress) {
+    const HeadlessContext context(device);
+    SpeedLedger result = described(context);
+    const TimedScene scene = load_scene(result, progress);
+    result.sweep = run_speed_sweep(scene.product, scene.looks, scene.projector, quick, progress);
+    time_all_frames(result, scene, quick, progress);
+    if (quick) return result;
     compare_with_reference(result, scene, progress);
     result.effects.push_back(measure_first_frame(progress));
     // Last: it lowers the priority of helping threads for good.
@@ -380,6 +392,43 @@ SpeedLedger measure_speed(GlDevice device, bool quick, const Progress& progress)
         result.effects.push_back(std::move(desktop));
     }
     return result;
+}
+
+PassCosts costs_of(const SpeedLedger& ledger) {
+    return {ledger.pass_costs, CostOrigin::measured, ledger.renderer, ledger.threads};
+}
+
+PassCosts measure_costs(GlDevice device, const Progress& progress) {
+    const HeadlessContext context(device);
+    SpeedLedger result = described(context);
+    const TimedScene scene = load_scene(result, progress);
+    time_all_frames(result, scene, false, progress);
+    return costs_of(result);
+}
+
+PassCosts measure_machine(GlDevice device, const Progress& progress) {
+    constexpr int kSwaps = 9;
+    const HeadlessContext context(device);
+    const PassCosts shipped = shipped_pass_costs();
+    SpeedLedger unused;
+    const TimedScene scene = load_scene(unused, progress);
+    const View view = resized(scene.projector, 640, 400);
+    const EffectLevels levels = levels_of(Quality::normal);
+    RadianceRenderer renderer(std::make_shared<const FrameGeometry>(
+        scene.product, view, progress, sub_samples_of(levels)));
+    PassRatios ratios;
+    for (int k = 0; k < kSwaps; ++k) {
+        progress.update(static_cast<double>(k) / kSwaps, "drawing");
+        const Scene& look = scene.looks[static_cast<std::size_t>(k) % scene.looks.size()];
+        FramePlan plan = plan_frame(look, levels, FrameStage::radiance);
+        renderer.render(look, plan, progress);
+        add_ratios(ratios, plan, shipped.passes);
+    }
+    const auto scaled = scaled_costs(shipped, ratios);
+    if (!scaled) throw std::logic_error("nothing of the frame was timed");
+    PassCosts costs = *scaled;
+    costs.renderer = context.renderer();
+    return costs;
 }
 
 }  // namespace livery

@@ -1,4 +1,4 @@
-// `livery bench --suite speed`: every stage of the chain timed on this machine.
+// `livery bench --suite speed` and `--suite costs`: every stage of the chain timed on this machine.
 #pragma once
 
 #include <string>
@@ -19,11 +19,19 @@ struct SpeedLedger {
     double covered_fraction = 0.0;  ///< of the 1280x800 picture
     std::vector<LedgerEffect> effects;
     std::vector<SweepPoint> sweep;
-    std::vector<PassCost> pass_costs;  ///< for predictions; of a whole ledger only
+    std::vector<PassCost> pass_costs;  ///< for predictions; empty where `quick`
 };
 
 /// Uses the default bench's projector and the shipped car and looks. Medians over repeats. `quick`:
 /// the sweep of the two smaller sizes and frames of normal quality, in half a minute.
 SpeedLedger measure_speed(GlDevice device, bool quick, const Progress& progress = {});
+
+/// What predictions need of it.
+PassCosts costs_of(const SpeedLedger& ledger);
+/// The same in half the time: only frames are timed.
+PassCosts measure_costs(GlDevice device, const Progress& progress = {});
+
+/// The shipped costs scaled by one small frame and some paint swaps, in seconds.
+PassCosts measure_machine(GlDevice device, const Progress& progress = {});
 
 }  // namespace livery

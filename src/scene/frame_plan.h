@@ -16,7 +16,7 @@ struct PlannedPass {
     std::string why;
     double work_items = 0.0;   ///< fragments, rays or pixels: what its cost is linear in; 0 unknown
     std::optional<double> ms;  ///< measured, after a render
-    std::optional<double> predicted_ms;     ///< from the last bench on this machine
+    std::optional<double> predicted_ms;     ///< from what passes cost
     std::optional<double> predicted_error;  ///< same
     std::string unpredicted_because;        ///< when there is no prediction
 };

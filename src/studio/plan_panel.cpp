@@ -34,7 +34,7 @@ void right_aligned(const std::string& text, const ImVec4& colour) {
     ImGui::TextColored(colour, "%s", text.c_str());
 }
 
-void draw_totals(const Studio& studio, const FinishedFrame& frame) {
+void draw_totals(const Studio& studio, const FinishedFrame& frame, const PassCosts& costs) {
     const MeasuredCosts& measured = studio.panels.plan->measured;
     double predicted = 0.0;
     bool complete = true;
@@ -57,13 +57,9 @@ void draw_totals(const Studio& studio, const FinishedFrame& frame) {
     if (!measured.newest_was_drawn) {
         dim_text("The newest picture was there already: these are the last measured.");
     }
-    if (complete) {
-        dim_text(fmt::format("Predicted from the last bench: {}.", milliseconds(predicted)));
-    } else if (studio.panels.plan->costs) {
-        dim_text("Not predicted: the last bench did not time every pass of this frame.");
-    } else {
-        dim_text("Not predicted: no bench has run here (livery bench --suite speed).");
-    }
+    dim_text(complete
+                 ? fmt::format("Predicted {}: {}.", in_words(costs.origin), milliseconds(predicted))
+                 : "Not predicted: nobody has timed every pass of this frame.");
     if (!studio.panels.plan->problem.empty()) warning_text(studio.panels.plan->problem);
     if (!frame.unfinished.empty()) warning_text(sentence("not final yet: " + frame.unfinished));
     if (!frame.problem.empty()) warning_text(sentence("not drawn: " + frame.problem));
@@ -168,14 +164,9 @@ void draw_plan_panel(Studio& studio) {
     }
     FinishedFrame frame = *studio.frame;
     show_last_measured(studio.panels.plan->measured, frame.plan);
-    if (const auto* costs = bench_costs(studio)) {
-        predict_times(frame.plan, *costs);
-    } else {
-        for (PlannedPass& pass : frame.plan.passes) {
-            pass.unpredicted_because = "no bench has run on this machine";
-        }
-    }
-    draw_totals(studio, frame);
+    const PassCosts& costs = pass_costs(studio);
+    predict_times(frame.plan, costs.passes);
+    draw_totals(studio, frame, costs);
     draw_passes(frame.plan,
                 CostKind::every_frame,
                 "With every paint",

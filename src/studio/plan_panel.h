@@ -7,14 +7,16 @@
 #include <string>
 #include <vector>
 
+#include "ledger/machine_speed.h"
 #include "studio/quality_costs.h"
 
 namespace livery {
 
 struct PlanPanelState {
     MeasuredCosts measured;
-    bool costs_read = false;
-    std::optional<std::vector<PassCost>> costs;
+    std::optional<PassCosts> costs;    ///< as known; none: not read yet
+    std::optional<PassCosts> shipped;  ///< where nobody measured: what frames scale
+    PassRatios ratios;                 ///< of the frames of this run
     EffectErrors errors;
     std::string problem;
     /// Of draft, normal and high, for the frame that was done then.

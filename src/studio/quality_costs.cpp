@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/log.h"
 #include "studio/kit/words.h"
 #include "studio/plan_panel.h"
 
@@ -41,33 +42,67 @@ std::optional<QualityCost> quality_cost(const PriceList& list, Quality quality) 
         time.all_ms - time.swap_ms, time.swap_ms, error_of(list, levels_of(quality))};
 }
 
-const std::vector<PassCost>* bench_costs(Studio& studio) {
+const PassCosts& pass_costs(Studio& studio) {
     PlanPanelState& state = *studio.panels.plan;
-    if (!std::exchange(state.costs_read, true)) {
-        try {
-            state.costs = read_pass_costs(pass_costs_file());
-            state.errors = known_effect_errors();
-        } catch (const FileError& error) {
-            state.problem = error.what();
-        }
+    if (state.costs) return *state.costs;
+    try {
+        state.errors = known_effect_errors();
+    } catch (const FileError& error) {
+        state.problem = error.what();
     }
-    return state.costs ? &*state.costs : nullptr;
+    try {
+        state.costs = known_pass_costs();
+    } catch (const FileError& error) {
+        state.problem = error.what();
+        state.costs = shipped_pass_costs();
+    }
+    if (state.costs->origin != CostOrigin::measured) state.shipped = shipped_pass_costs();
+    return *state.costs;
+}
+
+const char* in_words(CostOrigin origin) {
+    switch (origin) {
+        case CostOrigin::shipped:
+            return "by costs from another machine";
+        case CostOrigin::scaled:
+            return "by costs scaled to what frames took here";
+        case CostOrigin::measured:
+            return "by the last bench here";
+    }
+    throw std::invalid_argument("unknown origin of costs");
 }
 
 std::optional<PriceList> price_list(Studio& studio) {
-    const std::vector<PassCost>* costs = bench_costs(studio);
-    if (!costs || !studio.frame || !studio.frame->scene.product) return std::nullopt;
+    if (!studio.frame || !studio.frame->scene.product) return std::nullopt;
+    const std::vector<PassCost>& costs = pass_costs(studio).passes;
     const FinishedFrame& frame = *studio.frame;
     return make_price_list(frame.scene,
                            FrameStage::projector,
-                           covered_areas(frame.scene, frame.plan, *costs),
-                           *costs,
+                           covered_areas(frame.scene, frame.plan, costs),
+                           costs,
                            studio.panels.plan->errors);
 }
 
-void remember_costs(MeasuredCosts& measured, const FinishedFrame& frame) {
+void scale_costs(Studio& studio, const FramePlan& drawn) {
+    PlanPanelState& state = *studio.panels.plan;
+    if (pass_costs(studio).origin == CostOrigin::measured) return;
+    add_ratios(state.ratios, drawn, state.shipped->passes);
+    if (auto scaled = scaled_costs(*state.shipped, state.ratios)) state.costs = std::move(scaled);
+}
+
+void keep_scaled_costs(const Studio& studio) {
+    const PlanPanelState& state = *studio.panels.plan;
+    if (state.ratios.passes.empty() || state.costs->origin != CostOrigin::scaled) return;
+    try {
+        write_pass_costs(pass_costs_file(), *state.costs);
+    } catch (const FileError& error) {
+        log_line(LogLevel::warning, error.what());
+    }
+}
+
+bool remember_costs(MeasuredCosts& measured, const FinishedFrame& frame) {
     // Not by its number: a frame comes again when more of it is there.
-    if (frame.done_at == measured.frame_done_at) return;
+    if (frame.done_at == measured.frame_done_at) return false;
     measured.frame_done_at = frame.done_at;
     const auto did_something = [](const PlannedPass& pass) {
         return pass.ms.value_or(0.0) >= kNothingToDo_ms;
@@ -86,10 +121,11 @@ void remember_costs(MeasuredCosts& measured, const FinishedFrame& frame) {
         if (!did_something(pass) && !(of_this_frame && pass.ms)) continue;
         measured.pass_ms[{frame.plan.quality, pass.id}] = *pass.ms;
     }
-    if (!measured.newest_was_drawn) return;
+    if (!measured.newest_was_drawn) return true;
     measured.total_ms = frame.ms_total;
     measured.shade_ms = frame.shade_ms;
     measured.compensate_ms = frame.compensate_ms;
+    return true;
 }
 
 void show_last_measured(const MeasuredCosts& measured, FramePlan& plan) {
@@ -120,19 +156,17 @@ std::string quality_text(Studio& studio, Quality quality) {
                 list ? quality_cost(*list, one) : std::nullopt;
         }
     }
-    const std::vector<PassCost>* costs = bench_costs(studio);
     const auto cost = quality == Quality::reference
                           ? std::nullopt
                           : state.of_qualities.at(static_cast<std::size_t>(quality));
     if (cost) {
-        text += fmt::format(" By the last bench here: {} for new light, then {} a paint.",
+        text += fmt::format(" Predicted {}: {} for new light, then {} a paint.",
+                            in_words(pass_costs(studio).origin),
                             milliseconds(cost->solve_ms),
                             milliseconds(cost->frame_ms));
         if (cost->error)
             text += fmt::format(" Off by CIEDE2000 {:.2g} or less on 95% of the product.",
                                 *cost->error);
-    } else if (!costs) {
-        text += " What it costs here is not known: run livery bench --suite speed.";
     }
     return text;
 }

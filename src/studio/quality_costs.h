@@ -27,18 +27,23 @@ struct QualityCost {
     double frame_ms = 0.0;        ///< each paint swap
     std::optional<double> error;  ///< CIEDE2000 at the 95th percentile, by the ledger
 };
-/// At that quality's levels: from the last bench. Nothing when it did not time what the scene calls
-/// for.
+/// At that quality's levels. Nothing where no cost is known of what the scene calls for.
 std::optional<QualityCost> quality_cost(const PriceList& list, Quality quality);
 
-/// The costs of the last bench on this machine, read once with the ledger's errors; null: none, and
-/// `problem` may say why.
-const std::vector<PassCost>* bench_costs(Studio& studio);
+/// Read once, with the ledger's errors: those of the last bench here, else the shipped ones, which
+/// the frames of this run scale. Where the user's file is malformed `problem` says so.
+const PassCosts& pass_costs(Studio& studio);
+/// "by the last bench here", for sentences.
+const char* in_words(CostOrigin origin);
 /// With them, what is known of the frame on the mock-up.
 std::optional<PriceList> price_list(Studio& studio);
 
-/// Once a frame of the window: keeps what the newest frame's passes took.
-void remember_costs(MeasuredCosts& measured, const FinishedFrame& frame);
+/// Once a frame of the window: keeps what the newest frame's passes took. Whether it is new.
+bool remember_costs(MeasuredCosts& measured, const FinishedFrame& frame);
+/// Scales shipped costs by what the passes of a new frame took.
+void scale_costs(Studio& studio, const FramePlan& drawn);
+/// Leaves scaled costs for the command line and the next start. What cannot be written is logged.
+void keep_scaled_costs(const Studio& studio);
 /// Puts the last measured milliseconds in place of those of passes that did not run anew; passes
 /// that never ran have none.
 void show_last_measured(const MeasuredCosts& measured, FramePlan& plan);

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include "appearance/model_table.h"
 #include "ledger/paint_cost.h"
 #include "ledger/predictions.h"
+#include "scene/library.h"
 #include "support/file_error.h"
 #include "support/temporary_folder.h"
 
@@ -11,45 +13,52 @@ namespace {
 TEST(PassCosts, ComeBackAsTheyWereWritten) {
     const TemporaryFolder folder;
     const auto file = folder / "bench.json";
-    EXPECT_EQ(read_pass_costs(file), std::nullopt);
-    write_pass_costs(file, "a renderer", {{PassKind::surface_map, 2, 1.5, 0.5, 1000.0, 1.25}});
-    const auto costs = read_pass_costs(file);
-    ASSERT_TRUE(costs && costs->size() == 1);
-    EXPECT_EQ(costs->at(0).pass, PassId(PassKind::surface_map));
-    EXPECT_EQ(costs->at(0).level, 2);  // by its name
-    EXPECT_EQ(costs->at(0).ms, 1.5);
-    EXPECT_EQ(costs->at(0).fixed_ms, 0.5);
-    EXPECT_EQ(costs->at(0).fragments_per_pixel, 1.25);
+    EXPECT_FALSE(read_pass_costs(file));
+    for (const CostOrigin origin : {CostOrigin::measured, CostOrigin::scaled}) {
+        write_pass_costs(
+            file, {{{PassKind::surface_map, 2, 1.5, 0.5, 1000.0, 1.25}}, origin, "a renderer", 8});
+        const auto costs = read_pass_costs(file);
+        ASSERT_TRUE(costs && costs->passes.size() == 1);
+        EXPECT_EQ(costs->passes[0].pass, PassId(PassKind::surface_map));
+        EXPECT_EQ(costs->passes[0].level, 2);  // by its name
+        EXPECT_EQ(costs->passes[0].ms, 1.5);
+        EXPECT_EQ(costs->passes[0].fixed_ms, 0.5);
+        EXPECT_EQ(costs->passes[0].fragments_per_pixel, 1.25);
+        EXPECT_EQ(costs->origin, origin);
+        EXPECT_EQ(costs->renderer, "a renderer");
+        EXPECT_EQ(costs->threads, 8);
+    }
 }
 
 TEST(PassCosts, OfWholeQualitiesAreNotTakenForThoseOfLevels) {
-    EXPECT_EQ(parse_pass_costs(R"({"format_version": 1, "passes": [
-                  {"pass": "resolve", "quality": "high", "ms": 1, "work_items": 1}]})",
-                               "bench.json"),
-              std::nullopt);
-    EXPECT_EQ(parse_pass_costs(R"({"format_version": 2, "passes": [
-                  {"pass": "resolve", "level": 0, "ms": 1, "work_items": 1}]})",
-                               "bench.json"),
-              std::nullopt);
+    EXPECT_FALSE(parse_pass_costs(R"({"format_version": 1, "passes": [
+                     {"pass": "resolve", "quality": "high", "ms": 1, "work_items": 1}]})",
+                                  "bench.json"));
+    EXPECT_FALSE(parse_pass_costs(R"({"format_version": 2, "passes": [
+                     {"pass": "resolve", "level": 0, "ms": 1, "work_items": 1}]})",
+                                  "bench.json"));
 }
 
 TEST(PassCosts, KnowEveryPassAgain) {
     const TemporaryFolder folder;
     const auto file = folder / "bench.json";
-    std::vector<PassCost> costs;
+    PassCosts costs;
+    costs.threads = 1;
     for (const PassId& pass : {PassId(PassKind::path_tracer),
                                PassId(PassKind::light_visibility),
                                PassId(PassKind::shade, "", ReflectanceModel::lambert),
                                PassId(PassKind::shade, "", ReflectanceModel::car_paint, true),
                                PassId(PassKind::shade, "", ReflectanceModel::measured),
                                PassId(PassKind::compensation)}) {
-        costs.push_back({pass, 0, 1.0, 0.0, 2.0, {}});
+        costs.passes.push_back({pass, 0, 1.0, 0.0, 2.0, {}});
     }
-    write_pass_costs(file, "a renderer", costs);
+    write_pass_costs(file, costs);
     const auto read = read_pass_costs(file);
     ASSERT_TRUE(read);
-    ASSERT_EQ(read->size(), costs.size());
-    for (std::size_t i = 0; i < costs.size(); ++i) EXPECT_EQ(read->at(i).pass, costs[i].pass);
+    ASSERT_EQ(read->passes.size(), costs.passes.size());
+    for (std::size_t i = 0; i < costs.passes.size(); ++i) {
+        EXPECT_EQ(read->passes[i].pass, costs.passes[i].pass);
+    }
 }
 
 TEST(PassCosts, WhatAnotherVersionTimedIsLeftOut) {
@@ -59,8 +68,9 @@ TEST(PassCosts, WhatAnotherVersionTimedIsLeftOut) {
             {"pass": "ambient-occlusion", "level": "gone", "ms": 1, "fixed_ms": 0, "work_items": 1},
             {"pass": "shade:ggx", "level": "", "ms": 2, "fixed_ms": 0, "work_items": 1}]})",
         "bench.json");
-    ASSERT_TRUE(costs && costs->size() == 1);
-    EXPECT_EQ(costs->at(0).pass, PassId(PassKind::shade, "", ReflectanceModel::ggx));
+    ASSERT_TRUE(costs && costs->passes.size() == 1);
+    EXPECT_EQ(costs->passes[0].pass, PassId(PassKind::shade, "", ReflectanceModel::ggx));
+    EXPECT_EQ(costs->origin, CostOrigin::measured);
 }
 
 TEST(PassCosts, DependOnNeitherPartNorLight) {
@@ -126,15 +136,35 @@ TEST(PassCosts, SayWhatAPaintCosts) {
     ASSERT_TRUE(ggx.ns_a_pixel);
     EXPECT_DOUBLE_EQ(*ggx.ns_a_pixel, 3.0);
     EXPECT_TRUE(ggx.why_not.empty());
-    EXPECT_EQ(paint_cost(paint, std::nullopt).why_not, "no bench has run on this machine");
     paint.model = ReflectanceModel::eon;
     const PaintCost eon = paint_cost(paint, costs);
     EXPECT_FALSE(eon.ns_a_pixel);
-    EXPECT_EQ(eon.why_not, "the last bench shaded nothing with eon");
+    EXPECT_EQ(eon.why_not, "nobody has timed eon");
     paint.model = ReflectanceModel::car_paint;
-    EXPECT_EQ(paint_cost(paint, costs).why_not, "the last bench shaded nothing with car-paint");
+    EXPECT_EQ(paint_cost(paint, costs).why_not, "nobody has timed car-paint");
     paint.glint_density_per_mm2 = 100.0;
     EXPECT_DOUBLE_EQ(paint_cost(paint, costs).ns_a_pixel.value_or(0.0), 8.0);
+}
+
+TEST(ShippedCosts, KnowWhateverAShippedLookCallsFor) {
+    const PassCosts shipped = shipped_pass_costs();
+    EXPECT_EQ(shipped.origin, CostOrigin::shipped);
+    const auto product = find_product("car");
+    for (const std::string& name : shipped_looks()) {
+        const Scene scene = make_scene(product, find_look(name), {0.0, 1000.0, 3000.0});
+        for (const Quality quality : {Quality::draft, Quality::normal, Quality::high}) {
+            for (const PlannedPass& pass :
+                 plan_frame(scene, quality, FrameStage::projector).passes) {
+                EXPECT_NE(find_cost(shipped.passes, pass.id, levels_of(quality)), nullptr)
+                    << name << ", " << to_string(quality) << ": " << to_string(pass.id);
+            }
+        }
+    }
+    for (const ModelInfo& info : model_table()) {
+        Material paint;
+        paint.model = info.model;
+        EXPECT_TRUE(paint_cost(paint, shipped.passes).ns_a_pixel) << info.name;
+    }
 }
 
 }  // namespace

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include "core/paths.h"
+#include "studio/panels_fixture.h"
+#include "studio/plan_panel.h"
+
 namespace livery {
 namespace {
 
@@ -66,6 +70,58 @@ TEST(RememberCosts, OfOneFrameAddUpToItsTotal) {
     EXPECT_DOUBLE_EQ(sum, measured.total_ms);
     EXPECT_DOUBLE_EQ(measured.total_ms, 6.0);
     EXPECT_EQ(next.plan.passes[2].ms, 900.0) << "solved once";
+}
+
+using KnownCosts = Panels;
+
+TEST_F(KnownCosts, OnAFreshMachineAreTheShippedOnesUntilFramesScaleThem) {
+    Studio studio = make_studio();
+    const PassCosts shipped = pass_costs(studio);
+    EXPECT_EQ(shipped.origin, CostOrigin::shipped);
+    EXPECT_TRUE(studio.panels.plan->problem.empty());
+    // A frame that took three times as long as the shipped costs say
+    FramePlan drawn =
+        plan_frame(scene_of(studio.session.document(), studio.shown_look, studio.product),
+                   Quality::normal,
+                   FrameStage::projector);
+    for (PlannedPass& pass : drawn.passes) {
+        const PassCost* cost = find_cost(shipped.passes, pass.id, drawn.levels);
+        if (!cost) continue;
+        pass.work_items = cost->work_items;
+        pass.ms = 3.0 * predicted_ms(*cost, pass.work_items);
+    }
+    scale_costs(studio, drawn);
+    const PassCosts& scaled = pass_costs(studio);
+    EXPECT_EQ(scaled.origin, CostOrigin::scaled);
+    for (std::size_t k = 0; k < shipped.passes.size(); ++k) {
+        EXPECT_NEAR(scaled.passes[k].ms, 3.0 * shipped.passes[k].ms, 1e-6 * scaled.passes[k].ms);
+    }
+    // The next start, and the command line, have them
+    keep_scaled_costs(studio);
+    Studio later = make_studio();
+    EXPECT_EQ(pass_costs(later).origin, CostOrigin::scaled);
+    EXPECT_NEAR(pass_costs(later).passes[0].ms, scaled.passes[0].ms, 1e-6);
+}
+
+TEST_F(KnownCosts, MeasuredOnesStayAndAMalformedFileIsSaid) {
+    write_pass_costs(pass_costs_file(),
+                     {{{PassKind::resolve, 0, 1.0, 0.0, 10.0, {}}}, CostOrigin::measured, "r", 2});
+    Studio studio = make_studio();
+    FramePlan drawn;
+    drawn.levels = levels_of(Quality::normal);
+    drawn.passes.resize(1);
+    drawn.passes[0].id = PassKind::resolve;
+    drawn.passes[0].ms = drawn.passes[0].work_items = 1000.0;
+    scale_costs(studio, drawn);
+    EXPECT_EQ(pass_costs(studio).origin, CostOrigin::measured);
+    EXPECT_EQ(pass_costs(studio).passes.at(0).ms, 1.0);
+    keep_scaled_costs(studio);
+    EXPECT_EQ(known_pass_costs().origin, CostOrigin::measured);
+
+    write_text_file(pass_costs_file(), "{");
+    Studio other = make_studio();
+    EXPECT_EQ(pass_costs(other).origin, CostOrigin::shipped);
+    EXPECT_NE(other.panels.plan->problem.find("bench.json"), std::string::npos);
 }
 
 }  // namespace

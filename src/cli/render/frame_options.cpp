@@ -71,7 +71,7 @@ std::vector<Option> frame_options(FrameArguments& arguments) {
          {}},
         {"--budget-ms",
          "N",
-         "levels of each effect with the least error that the last bench predicts within N ms",
+         "levels of each effect with the least error that is predicted within N ms",
          &arguments.budget_ms,
          false,
          {}},
@@ -185,15 +185,10 @@ ResolvedFrame resolve_frame(const FrameArguments& arguments, const CommonOptions
     request.scene = make_scene(product, find_look_for(arguments.look, product->mesh), eye_mm);
 
     if (budgeted) {
-        const auto costs = known_pass_costs();
-        if (!costs) {
-            throw Refused("--budget-ms: no bench has run on this machine, so no cost is known",
-                          "run livery bench --suite speed, or choose --quality");
-        }
         const PriceList list = make_price_list(request.scene,
                                                request.stage,
                                                covered_areas(request.scene, request.view),
-                                               *costs,
+                                               known_pass_costs().passes,
                                                known_effect_errors());
         Budget budget;
         if (arguments.budget_ms > 0.0) budget.first_frame_ms = arguments.budget_ms;

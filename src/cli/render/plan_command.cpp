@@ -1,11 +1,29 @@
 // livery plan
 
 #include <memory>
+#include <string>
 
 #include "cli/render/frame_options.h"
 #include "ledger/budget.h"
 
 namespace livery {
+
+namespace {
+
+std::string origin_text(CostOrigin origin) {
+    switch (origin) {
+        case CostOrigin::shipped:
+            return "Times are those that come with the program, for as many threads as there are "
+                   "here. livery bench --suite costs --quick scales them to this machine.\n";
+        case CostOrigin::scaled:
+            return "Times are those that come with the program, scaled to this machine.\n";
+        case CostOrigin::measured:
+            return "Times are those of the last livery bench on this machine.\n";
+    }
+    return "";
+}
+
+}  // namespace
 
 Command plan_command() {
     const auto arguments = std::make_shared<FrameArguments>();
@@ -19,22 +37,17 @@ Command plan_command() {
         const RenderRequest& request = frame.request;
         FramePlan plan = request.levels ? plan_frame(request.scene, *request.levels, request.stage)
                                         : plan_frame(request.scene, request.quality, request.stage);
-        const auto costs = known_pass_costs();
+        const PassCosts costs = known_pass_costs();
         std::optional<PricedFrame> frame_price = frame.priced;
         std::string note;
-        if (!costs) {
-            note = "no predictions: no bench has run on this machine (livery bench --suite speed)";
-            for (PlannedPass& pass : plan.passes) {
-                pass.unpredicted_because = "no bench has run on this machine";
-            }
-        } else if (plan.quality == Quality::reference) {
-            note = predict_times(plan, *costs);
+        if (plan.quality == Quality::reference) {
+            note = predict_times(plan, costs.passes);
         } else {
             const PriceList list =
                 make_price_list(request.scene,
                                 request.stage,
                                 covered_areas(request.scene, request.view, progress),
-                                *costs,
+                                costs.passes,
                                 known_effect_errors());
             note = predict(plan, list);
             if (!frame_price) frame_price = priced(list, plan.levels);
@@ -44,6 +57,7 @@ Command plan_command() {
         outcome.figures = json_of(plan);
         outcome.figures["ms_total"] = nullptr;
         outcome.figures["predicted_ms_total"] = time.complete ? Json(time.all_ms) : Json(nullptr);
+        outcome.figures["predicted_from"] = to_string(costs.origin);
         if (!note.empty()) outcome.figures["note"] = note;
         outcome.text = text_of(plan);
         if (frame_price) {
@@ -51,6 +65,7 @@ Command plan_command() {
             outcome.figures["predicted_error"] = frame_price->error;
             outcome.text += text_of(*frame_price);
         }
+        outcome.text += origin_text(costs.origin);
         if (!note.empty()) outcome.text += note + "\n";
         tell_design_white(frame, outcome);
         tell_notes(frame.notes, outcome);

@@ -68,8 +68,8 @@ void draw_budget(Studio& studio, const PricedFrame& frame) {
     ratio_slider("##budget", state.budget_s, kLeast_s, kMost_s, "%.2f s");
     name_last_item("budget");
     tooltip(
-        "Chooses the level of each effect for the least visible error in that time, by the last "
-        "bench on this machine. Ctrl+click types.");
+        "Chooses the level of each effect for the least visible error in that time. Ctrl+click "
+        "types.");
     if (ImGui::IsItemDeactivatedAfterEdit()) {
         state.budget_problem.clear();
         try {
@@ -81,8 +81,9 @@ void draw_budget(Studio& studio, const PricedFrame& frame) {
     }
     if (!state.budget_problem.empty()) warning_text(state.budget_problem);
     dim_text(
-        fmt::format("Predicted: {} for new light, then {} a paint; CIEDE2000 {:.2g} or less on "
+        fmt::format("Predicted {}: {} for new light, then {} a paint; CIEDE2000 {:.2g} or less on "
                     "95% of the product.",
+                    in_words(pass_costs(studio).origin),
                     milliseconds(frame.time.all_ms - frame.time.swap_ms),
                     milliseconds(frame.time.swap_ms),
                     frame.error));

@@ -316,7 +316,9 @@ class Desktop {
             give_icon(studio, native);
         }
         save_again_now_and_then(shell_);
-        if (studio.frame) remember_costs(studio.panels.plan->measured, *studio.frame);
+        if (studio.frame && remember_costs(studio.panels.plan->measured, *studio.frame)) {
+            scale_costs(studio, studio.frame->plan);
+        }
         if (shell_.monitor_numbers && studio.now_s >= shell_.monitor_numbers_until_s) {
             shell_.monitor_numbers.reset();
         }
@@ -436,6 +438,7 @@ class Desktop {
         shell_.stage.photograph_texture = {};
         shell_.closed_page.reset();
         shell_.new_session.reset();
+        keep_scaled_costs(shell_.studio);
         shell_.studio.panels = PanelStates();  // their textures go
         imgui_.reset();
     }
