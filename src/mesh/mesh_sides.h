@@ -1,4 +1,4 @@
-// The sides of a mesh's surfaces, whatever the file has wound. Internal to mesh/.
+// The sides of a mesh's surfaces, whatever the file has wound.
 #pragma once
 
 #include <string>

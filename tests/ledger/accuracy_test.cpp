@@ -200,7 +200,9 @@ TEST(Ladders, NightlyRise) {
 }
 // With those, scenes that together call for every effect
 TEST(Ladders, NightlyRiseOnTheCar) {
-    expect_ladders_rise({"car, solid red, studio", "car, satin white, overcast"});
+    expect_ladders_rise({"car, solid red, studio",
+                         "car, satin white, overcast",
+                         "car without windows, solid red, studio"});
 }
 
 AccuracyRow a_row(const std::string& effect, const std::string& level, double ms, double p95) {

@@ -3,6 +3,8 @@
 #include <functional>
 #include <memory>
 
+#include "core/random.h"
+#include "mesh/mesh_sides.h"
 #include "scene/library.h"
 #include "twin/description.h"
 
@@ -13,6 +15,7 @@ namespace {
 constexpr int kWidth_px = 640, kHeight_px = 400;
 /// Pictures' sides, and those of the squares over which they are compared.
 constexpr int kTranslucentSmaller = 4, kTranslucentMean_px = 4;
+constexpr std::uint64_t kOpenCarSeed = 1;
 
 struct NamedLook {
     const char* name;
@@ -108,6 +111,46 @@ void add_translucent(std::vector<AccuracyScene>& scenes, const Progress& progres
     }
 }
 
+/// The car without its windows, as meshes from elsewhere come: every triangle twice, half of them
+/// wound the wrong way. Its shells show both of their sides.
+std::shared_ptr<const Product> open_car() {
+    auto product = std::make_shared<Product>(*find_product("car"));
+    Mesh& mesh = product->mesh;
+    const auto glass = static_cast<std::size_t>(part_index(*product, "glass"));
+    std::vector<glm::uvec3> triangles;
+    std::vector<std::uint16_t> parts;
+    Random random(kOpenCarSeed);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        if (mesh.triangle_part[t] == glass) continue;
+        const glm::uvec3& front = mesh.triangles[t];
+        const glm::uvec3 back(front.x, front.z, front.y);
+        const bool turned = random.below(2) == 0;
+        triangles.push_back(turned ? back : front);
+        triangles.push_back(turned ? front : back);
+        parts.insert(parts.end(), 2, mesh.triangle_part[t]);
+    }
+    mesh.triangles = std::move(triangles);
+    mesh.triangle_part = std::move(parts);
+    settle_sides(mesh, std::vector<bool>(mesh.positions_mm.size(), true), product->notes);
+    product->exchange = part_exchange(mesh);
+    return product;
+}
+
+void add_open(std::vector<AccuracyScene>& scenes, const Progress& progress) {
+    const auto product = open_car();
+    const BenchDescription bench = read_bench_file(*bench_of_shipped_product("car"));
+    for (const auto& [light_name, light] : lights()) {
+        progress.check_stop();
+        Look look = find_look("solid-red");
+        look.parts.erase("glass");
+        light(look);
+        AccuracyScene& scene = scenes.emplace_back();
+        scene.name = std::string("car without windows, solid red, ") + light_name;
+        scene.view = resized(bench.projector.view, kWidth_px, kHeight_px);
+        scene.scene = make_scene(product, look, bench.eye_mm, nullptr);
+    }
+}
+
 }  // namespace
 
 AccuracyScene resized(const AccuracyScene& scene, int width, int height) {
@@ -142,6 +185,7 @@ std::vector<AccuracyScene> accuracy_scenes(bool quick, const Progress& progress)
         }
     }
     add_translucent(scenes, progress);
+    add_open(scenes, progress);
     return scenes;
 }
 
