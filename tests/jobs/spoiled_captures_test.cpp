@@ -89,15 +89,23 @@ void shade(RoledPhotograph& shot) {
         }
 }
 
-void move(RoledPhotograph& shot, int dx, int dy) {
+void move(RoledPhotograph& shot, double dx, double dy) {
     const ImageF from = shot.photograph.image;
     ImageF& to = shot.photograph.image;
+    const int left = static_cast<int>(std::floor(-dx)), top = static_cast<int>(std::floor(-dy));
+    const auto right_share = static_cast<float>(-dx - left),
+               low_share = static_cast<float>(-dy - top);
+    const auto at = [&](int x, int y, int c) {
+        return from.at(std::clamp(x, 0, to.width - 1), std::clamp(y, 0, to.height - 1), c);
+    };
+    const auto across = [&](int x, int y, int c) {
+        return std::lerp(at(x, y, c), at(x + 1, y, c), right_share);
+    };
     for (int y = 0; y < to.height; ++y)
         for (int x = 0; x < to.width; ++x)
-            std::copy_n(from.pixel(std::clamp(x - dx, 0, to.width - 1),
-                                   std::clamp(y - dy, 0, to.height - 1)),
-                        3,
-                        to.pixel(x, y));
+            for (int c = 0; c < 3; ++c)
+                to.at(x, y, c) = std::lerp(
+                    across(x + left, y + top, c), across(x + left, y + top + 1, c), low_share);
 }
 
 /// Photographs that are what they are; in the order in which they were taken.
@@ -256,6 +264,12 @@ const std::vector<Fault> kFaults = {
     {"CameraMovedAtTheColours",
      [](Shots& s) { each_from(s, "dark-gray", [](auto& one) { move(one, 2, 1); }); },
      {"refused: camera, projector or mock-up moved: from bright-gray on"}},
+    {"CameraMovedByOneAndAHalfPixelsAtTheColours",
+     [](Shots& s) { each_from(s, "dark-gray", [](auto& one) { move(one, 1.2, 0.9); }); },
+     {"refused: camera, projector or mock-up moved: from bright-gray on"}},
+    {"CameraMovedByHalfAPixelAtTheColours",
+     [](Shots& s) { each_from(s, "dark-gray", [](auto& one) { move(one, 0.4, 0.3); }); },
+     {"accepted", "camera, projector or mock-up moved: from bright-gray on"}},
     {"LightFlickers",
      [](Shots& shots) {
          Random random(3);
