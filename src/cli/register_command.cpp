@@ -41,7 +41,7 @@ Json figures_of(const RegisteredMockup& mockup) {
             left_out.push_back({{"point", mockup.points[*mockup.by_points->bad].name},
                                 {"off_px", mockup.by_points->bad_px}});
         figures["points"] = {{"view", mockup.picked_in},
-                             {"held_px", mockup.by_points->held_px},
+                             {"held_px", mockup.held_px},
                              {"rms_px", mockup.by_points->rms_px},
                              {"left_out", left_out}};
     }
@@ -83,12 +83,12 @@ std::string text_of(const RegisteredMockup& mockup, const std::string& out) {
     else
         text = fmt::format(
             "registered by {} points in the {}'s picture: {:.2f} px, {:.3f} mm (root mean square); "
-            "held to {:.1f} px\n",
+            "held to {:.1f} px (one standard deviation, at worst, in the projector's picture)\n",
             pose.inliers,
             mockup.picked_in,
             pose.rms_px,
             pose.rms_mm,
-            mockup.by_points->held_px);
+            mockup.held_px);
     if (mockup.by_scan)
         for (const Refined& one : mockup.by_scan->refined.lens)
             text += fmt::format("    {} {:+.5f} +- {:.5f}{}\n",
@@ -250,6 +250,8 @@ Command calibrate_scan_command() {
             write_scan(arguments->out, scan);
             const bool separated = write_separated_light(arguments->out, light);
             const Bounds box = bounds_of(scan.surface);
+            std::vector<std::string> warnings = light.warnings;
+            warnings.insert(warnings.end(), scan.scan.warnings.begin(), scan.scan.warnings.end());
             outcome.figures = {{"points", scan.surface.positions_mm.size()},
                                {"triangles", scan.surface.triangles.size()},
                                {"spacing_mm", scan.spacing_mm},
@@ -258,7 +260,7 @@ Command calibrate_scan_command() {
                                {"gap_px", scan.scan.gap_px},
                                {"separated_light", separated},
                                {"refused", Json::array()},
-                               {"warnings", light.warnings}};
+                               {"warnings", warnings}};
             outcome.text = fmt::format(
                 "{} points, {} triangles, {:.2f} mm apart; the rays of camera and projector pass "
                 "each other by {:.2f} px; wrote {}\n",
@@ -267,7 +269,7 @@ Command calibrate_scan_command() {
                 scan.spacing_mm,
                 scan.scan.gap_px,
                 arguments->out);
-            for (const std::string& warning : light.warnings)
+            for (const std::string& warning : warnings)
                 outcome.text += "warning: " + warning + "\n";
         } catch (const Refused& refused) {
             outcome.figures = {{"points", 0}, {"triangles", 0}};

@@ -148,7 +148,7 @@ PairGeometry from_boards(const PairGeometryRequest& request, const Progress& pro
     ChosenModel chosen;
     for (;;) {
         progress.update(0.9, "fitting lenses and poses");
-        chosen = choose_model(sights, camera, projector);
+        chosen = choose_model(sights, camera, projector, progress);
         const auto worst = static_cast<std::size_t>(
             std::max_element(chosen.held_out_px.begin(), chosen.held_out_px.end()) -
             chosen.held_out_px.begin());

@@ -88,11 +88,12 @@ void remove_plane(Scan& scan) {
 PickedPose picked_pose(const RegistrationRequest& request,
                        const CalibratedPair& pair,
                        const std::vector<MeshPick>& points,
-                       std::string& picked_in) {
+                       std::string& picked_in,
+                       const Progress& progress) {
     const Bounds box = bounds_of(request.product->mesh);
     const auto in = [&](const View& view, const char* name) {
         picked_in = name;
-        return pose_from_points(view, points, box);
+        return pose_from_points(view, points, box, progress);
     };
     if (request.pick_view == PickView::camera) return in(pair.camera, "camera");
     if (request.pick_view == PickView::projector) return in(pair.projector, "projector");
@@ -214,9 +215,13 @@ RegisteredMockup register_mockup(const RegistrationRequest& request, const Progr
     if (!request.points.empty()) {
         progress.update(0.0, "fitting the picked points");
         result.points = read_picked_points(request.points);
-        result.by_points = picked_pose(request, pair, result.points, result.picked_in);
+        result.by_points = picked_pose(request, pair, result.points, result.picked_in, progress);
         const View& view = result.picked_in == "camera" ? pair.camera : pair.projector;
         options.start = inverse(view.view_from_world) * result.by_points->view_from_mesh;
+        result.held_px = held_px(pair.projector,
+                                 pair.projector.view_from_world * inverse(view.view_from_world),
+                                 *result.by_points,
+                                 bounds_of(request.product->mesh));
     }
     MockupPose& pose = result.pose;
     pose.product = request.product_name;

@@ -83,6 +83,7 @@ struct RegisteredMockup {
     View camera, projector;  ///< world: the product's frame
     std::optional<Registration> by_scan;
     std::optional<PickedPose> by_points;
+    double held_px = 0.0;   ///< by_points: as held_px() of the projector's picture
     std::string picked_in;  ///< "camera" or "projector"
     std::vector<MeshPick> points;
 };

@@ -72,6 +72,18 @@ TEST_F(CarScan, LiesOnTheMeshAsFarAsItSays) {
     EXPECT_NEAR(median(relative), 0.674, 0.1);
 }
 
+TEST_F(CarScan, SaysWhatABumpBeforeItLeaves) {
+    EXPECT_TRUE(scan_of(bench_.projector.view, std::span(&sight_, 1)).warnings.empty());
+    Sight bumped = sight_;
+    for (std::size_t k = 1; k < bumped.map.camera_px.values.size(); k += 2) {
+        bumped.map.camera_px.values[k] += 1.5f;
+    }
+    const Scan scan = scan_of(bench_.projector.view, std::span(&bumped, 1));
+    std::printf("    gap %.2f px\n", scan.gap_px);
+    ASSERT_EQ(scan.warnings.size(), 1u);
+    EXPECT_NE(scan.warnings[0].find("moved since the geometry was calibrated"), std::string::npos);
+}
+
 TEST_F(CarScan, FacesOutward) {
     const Scan scan = scan_of(bench_.projector.view, std::span(&sight_, 1));
     const Tracer tracer(mesh_);

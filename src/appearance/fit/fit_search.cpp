@@ -8,6 +8,8 @@
 
 #include <ceres/ceres.h>
 
+#include "core/solve.h"
+
 namespace livery {
 namespace {
 
@@ -132,18 +134,6 @@ class Differentiated : public ceres::CostFunction {
     std::vector<Coordinate> coordinates_;
 };
 
-class StopWhenAsked : public ceres::IterationCallback {
-  public:
-    explicit StopWhenAsked(const Progress& progress) : progress_(progress) {}
-    ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
-        const bool stop = progress_.stop && progress_.stop->load(std::memory_order_relaxed);
-        return stop ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
-    }
-
-  private:
-    const Progress& progress_;
-};
-
 }  // namespace
 
 bool can_be_fitted(const ModelInfo& model) { return !coordinates_of(model).empty(); }
@@ -175,11 +165,7 @@ Found search_from(const ModelInfo& model,
     options.function_tolerance = 1e-6;
     options.num_threads = 1;
     options.logging_type = ceres::SILENT;
-    StopWhenAsked stop(progress);
-    options.callbacks.push_back(&stop);
-    ceres::Solver::Summary summary;
-    ceres::Solve(options, &problem, &summary);
-    progress.check_stop();
+    solved(options, problem, progress);
     const f64::BsdfParameters found = function.parameters(x.data());
     return {found, rms_of(model, residuals, found)};
 }

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/solve.h"
 
 namespace livery {
 
@@ -146,7 +147,8 @@ class ProfileCost : public ceres::CostFunction {
 
 Logarithms search(const std::vector<Weighed>& samples,
                   const ProfileFitOptions& options,
-                  Logarithms x) {
+                  Logarithms x,
+                  const Progress& progress) {
     ProfileCost cost(samples, options);
     ceres::Problem::Options ours;
     ours.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -159,8 +161,7 @@ Logarithms search(const std::vector<Weighed>& samples,
     how.parameter_tolerance = 1e-7;
     how.num_threads = 1;
     how.logging_type = ceres::SILENT;
-    ceres::Solver::Summary summary;
-    ceres::Solve(how, &problem, &summary);
+    solved(how, problem, progress);
     return x;
 }
 
@@ -390,7 +391,7 @@ ProfileFit fit_profile(const std::vector<ProfileSample>& samples,
                                       window.to_mm),
                           "measure six or more radii there");
         }
-        x = search(inside, options, x);
+        x = search(inside, options, x, progress);
     }
 
     const ScatteringMedium medium = medium_of(x, options);

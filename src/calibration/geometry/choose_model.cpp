@@ -17,7 +17,8 @@ std::vector<double> held_out(std::span<const BoardSight> sights,
                              PictureSize camera,
                              PictureSize projector,
                              LensModel model,
-                             const PairSolution& whole) {
+                             const PairSolution& whole,
+                             const Progress& progress) {
     std::vector<double> errors;
     for (std::size_t out = 0; out < sights.size(); ++out) {
         std::vector<BoardSight> rest(sights.begin(), sights.end());
@@ -26,8 +27,9 @@ std::vector<double> held_out(std::span<const BoardSight> sights,
         rest.erase(rest.begin() + place);
         start.camera_from_board.erase(start.camera_from_board.begin() + place);
         try {
-            const auto error =
-                held_out_px(solve_pair(rest, camera, projector, model, &start), sights[out]);
+            const PairSolution without =
+                solve_pair(rest, camera, projector, model, &start, progress);
+            const auto error = held_out_px(without, sights[out]);
             if (!error) return {};
             errors.push_back(*error);
         } catch (const Refused&) {
@@ -41,7 +43,8 @@ std::vector<double> held_out(std::span<const BoardSight> sights,
 
 ChosenModel choose_model(std::span<const BoardSight> sights,
                          PictureSize camera,
-                         PictureSize projector) {
+                         PictureSize projector,
+                         const Progress& progress) {
     if (sights.size() < 4)
         throw Refused(fmt::format("{} poses of the board, too few to leave one out", sights.size()),
                       "photograph the board in five or more poses, tilted differently");
@@ -50,12 +53,14 @@ ChosenModel choose_model(std::span<const BoardSight> sights,
     for (const LensModel model : {LensModel::k1, LensModel::k1_k2, LensModel::all_five}) {
         PairSolution whole;
         try {
-            whole = solve_pair(sights, camera, projector, model, smaller ? &*smaller : nullptr);
+            whole = solve_pair(
+                sights, camera, projector, model, smaller ? &*smaller : nullptr, progress);
         } catch (const Refused&) {
             continue;  // as where it fails without one of them
         }
         if (!smaller) smaller = whole;
-        const std::vector<double> errors = held_out(sights, camera, projector, model, whole);
+        const std::vector<double> errors =
+            held_out(sights, camera, projector, model, whole, progress);
         if (errors.empty()) continue;
         double squares = 0.0;
         for (const double e : errors) squares += e * e / static_cast<double>(errors.size());

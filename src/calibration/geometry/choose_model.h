@@ -19,6 +19,7 @@ struct ChosenModel {
 /// Throws Refused as solve_pair(), for fewer than four sights and where no model foretells all.
 ChosenModel choose_model(std::span<const BoardSight> sights,
                          PictureSize camera,
-                         PictureSize projector);
+                         PictureSize projector,
+                         const Progress& progress = {});
 
 }  // namespace livery

@@ -10,6 +10,7 @@
 #include "calibration/geometry/homography.h"
 #include "calibration/registration/rotation.h"
 #include "core/error.h"
+#include "core/solve.h"
 
 namespace livery {
 
@@ -179,14 +180,13 @@ void build(ceres::Problem& problem,
 }
 
 /// False where no usable step was found.
-bool solve(ceres::Problem& problem, int iterations, double& cost) {
+bool solve(ceres::Problem& problem, int iterations, const Progress& progress, double& cost) {
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::DENSE_QR;
     options.max_num_iterations = iterations;
     options.function_tolerance = 1e-10;
     options.logging_type = ceres::SILENT;
-    ceres::Solver::Summary summary;
-    ceres::Solve(options, &problem, &summary);
+    const ceres::Solver::Summary summary = solved(options, problem, progress);
     cost = summary.final_cost;
     return summary.IsSolutionUsable();
 }
@@ -235,13 +235,14 @@ BoardsState state_of(const PairSolution& solution) {
 /// From several starts, by the smallest model; no boards where none leads to lenses.
 BoardsState best_of_starts(std::span<const BoardSight> sights,
                            PictureSize camera,
-                           PictureSize projector) {
+                           PictureSize projector,
+                           const Progress& progress) {
     BoardsState best;
     for (BoardsState& start : starts(sights, camera, projector)) {
         ceres::Problem problem;
         build(problem, start, sights, camera, projector, LensModel::k1);
         double cost = 0.0;
-        if (solve(problem, 60, cost) && cost < best.cost) {
+        if (solve(problem, 60, progress, cost) && cost < best.cost) {
             best = start;
             best.cost = cost;
         }
@@ -311,18 +312,19 @@ PairSolution solve_pair(std::span<const BoardSight> sights,
                         PictureSize camera,
                         PictureSize projector,
                         LensModel model,
-                        const PairSolution* near) {
+                        const PairSolution* near,
+                        const Progress& progress) {
     check_sights(sights);
     check_argument(!near || near->camera_from_board.size() == sights.size(),
                    "a solution to begin at has a pose for each sight");
-    BoardsState best = near ? state_of(*near) : best_of_starts(sights, camera, projector);
+    BoardsState best = near ? state_of(*near) : best_of_starts(sights, camera, projector, progress);
     if (best.boards.empty())
         throw Refused("no start leads to lenses that explain the boards",
                       "check the size of the board and of its squares");
     check_tilts(best);
     ceres::Problem problem;
     build(problem, best, sights, camera, projector, model);
-    if (!solve(problem, 200, best.cost))
+    if (!solve(problem, 200, progress, best.cost))
         throw Refused("the lenses could not be fitted", "photograph the board in more poses");
 
     PairSolution result;
@@ -382,7 +384,7 @@ std::optional<double> held_out_px(const PairSolution& solution, const BoardSight
     add_points(problem, sight, {lens.width, lens.height}, values, board, nullptr);
     problem.SetParameterBlockConstant(values.data());
     double cost = 0.0;
-    if (!solve(problem, 100, cost)) return std::nullopt;
+    if (!solve(problem, 100, Progress{}, cost)) return std::nullopt;
     const Rigid3 projector_from_board = solution.projector.view_from_world * board.rigid();
     const double rms = rms_px(solution.projector, projector_from_board, sight, true);
     if (std::isnan(rms)) return std::nullopt;

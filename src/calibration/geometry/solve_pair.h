@@ -8,6 +8,7 @@
 
 #include <glm/vec2.hpp>
 
+#include "core/progress.h"
 #include "scene/view.h"
 
 namespace livery {
@@ -48,7 +49,8 @@ PairSolution solve_pair(std::span<const BoardSight> sights,
                         PictureSize camera,
                         PictureSize projector,
                         LensModel model,
-                        const PairSolution* near = nullptr);
+                        const PairSolution* near = nullptr,
+                        const Progress& progress = {});
 
 /// RMS distance in the projector of a sight that was not fitted: the camera finds the board's pose
 /// alone, its points are projected. Nothing where a point falls behind a lens.

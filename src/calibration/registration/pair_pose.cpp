@@ -13,6 +13,7 @@
 #include "calibration/registration/rotation.h"
 #include "core/error.h"
 #include "core/random.h"
+#include "core/solve.h"
 #include "core/statistics.h"
 
 namespace livery {
@@ -200,7 +201,8 @@ struct EpipolarError {
 /// Least squares, its standard deviations in `result`.
 TurnAndShift refined(const TurnAndShift& start,
                      const std::vector<Sighting>& all,
-                     PairPose& result) {
+                     PairPose& result,
+                     const Progress& progress) {
     std::array<double, 3> turn{};
     std::array<double, 2> tilt{};
     const double sigma = 1.4826 * std::max(1e-9, median_distance(essential_of(start), all));
@@ -215,8 +217,7 @@ TurnAndShift refined(const TurnAndShift& start,
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::DENSE_QR;
     options.logging_type = ceres::SILENT;
-    ceres::Solver::Summary summary;
-    ceres::Solve(options, &problem, &summary);
+    solved(options, problem, progress);
 
     ceres::Covariance::Options how;
     how.algorithm_type = ceres::DENSE_SVD;
@@ -310,8 +311,8 @@ PairPose pose_of_pair(const View& camera,
     }
 
     PairPose result;
-    TurnAndShift pose = refined(pose_in_front(best, all), all, result);
-    pose = refined(pose, all, result);
+    TurnAndShift pose = refined(pose_in_front(best, all), all, result, progress);
+    pose = refined(pose, all, result, progress);
     const Eigen::Matrix3d e = essential_of(pose);
     const double off = median_distance(e, all);
     result.median_px = off * camera.focal_px.x;

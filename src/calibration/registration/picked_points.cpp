@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <ceres/ceres.h>
@@ -11,6 +12,7 @@
 
 #include "calibration/registration/rotation.h"
 #include "core/error.h"
+#include "core/solve.h"
 #include "core/worst_error.h"
 
 namespace livery {
@@ -75,7 +77,8 @@ std::optional<Fit> fitted(const View& lens,
                           std::span<const MeshPick> points,
                           const std::vector<std::size_t>& used,
                           const glm::dmat3& start,
-                          bool with_covariance) {
+                          bool with_covariance,
+                          const Progress& progress) {
     const auto count = static_cast<double>(used.size());
     glm::dvec3 middle(0.0);
     glm::dvec2 middle_px(0.0);
@@ -108,8 +111,7 @@ std::optional<Fit> fitted(const View& lens,
     options.linear_solver_type = ceres::DENSE_QR;
     options.max_num_iterations = 60;
     options.logging_type = ceres::SILENT;
-    ceres::Solver::Summary summary;
-    ceres::Solve(options, &problem, &summary);
+    const ceres::Solver::Summary summary = solved(options, problem, progress);
     if (!summary.IsSolutionUsable()) return std::nullopt;
     Fit fit;
     fit.view_from_mesh = pose_of(six);
@@ -130,10 +132,12 @@ std::optional<Fit> fitted(const View& lens,
 /// Every pose that is a minimum, the best first.
 std::vector<Fit> minima(const View& lens,
                         std::span<const MeshPick> points,
-                        const std::vector<std::size_t>& used) {
+                        const std::vector<std::size_t>& used,
+                        const Progress& progress) {
     std::vector<Fit> all;
     for (const glm::dmat3& start : starting_turns())
-        if (const auto fit = fitted(lens, points, used, start, false)) all.push_back(*fit);
+        if (const auto fit = fitted(lens, points, used, start, false, progress))
+            all.push_back(*fit);
     std::sort(
         all.begin(), all.end(), [](const Fit& a, const Fit& b) { return a.squares < b.squares; });
     std::vector<Fit> distinct;
@@ -211,12 +215,13 @@ double distance_px(const View& lens, const Rigid3& view_from_mesh, const MeshPic
 std::optional<std::size_t> bad_click(const View& lens,
                                      std::span<const MeshPick> points,
                                      const std::vector<std::size_t>& used,
-                                     double all_deviation) {
+                                     double all_deviation,
+                                     const Progress& progress) {
     std::optional<std::size_t> bad;
     double best = 0.35 * all_deviation;
     for (const std::size_t k : used) {
         const auto rest = without(used, k);
-        const std::vector<Fit> fits = minima(lens, points, rest);
+        const std::vector<Fit> fits = minima(lens, points, rest, progress);
         if (fits.empty()) continue;
         const double alone = deviation(fits[0].squares, rest.size());
         const double off = distance_px(lens, fits[0].view_from_mesh, points[k]);
@@ -227,48 +232,74 @@ std::optional<std::size_t> bad_click(const View& lens,
     return bad;
 }
 
-/// Largest standard deviation in the picture over the corners of the mesh's box.
-double held(const View& lens, const Fit& fit, const Bounds& box, double sigma_px) {
-    double largest = 0.0;
-    const Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>> covariance(
-        fit.covariance.data());
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 place((corner & 1) ? box.high.x : box.low.x,
-                               (corner & 2) ? box.high.y : box.low.y,
-                               (corner & 4) ? box.high.z : box.low.z);
-        const ClickError error{&lens, fit.view_from_mesh.rotation, place, glm::dvec2(0.0)};
-        const glm::dvec3 t = fit.view_from_mesh.translation;
-        Eigen::Matrix<double, 2, 6> slope;
-        for (int k = 0; k < 6; ++k) {
-            const double step = k < 3 ? 1e-6 : 1e-4;
-            double six[6] = {0.0, 0.0, 0.0, t.x, t.y, t.z}, after[2], before[2];
-            six[k] += step;
-            const bool ahead = error(six, after);
-            six[k] -= 2.0 * step;
-            if (!ahead || !error(six, before)) return 1e9;
-            for (int c = 0; c < 2; ++c) slope(c, k) = (after[c] - before[c]) / (2.0 * step);
-        }
-        const Eigen::Matrix2d spread = slope * covariance * slope.transpose();
-        largest = worse_of(largest, sigma_px * std::sqrt(worse_of(0.0, spread.trace())));
-    }
-    return largest;
+using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+
+/// What was sought turns about the product's origin: x = turn (start m) + t. As it is documented,
+/// both are applied after the pose, to what has turned and moved: t's change less that by the turn.
+std::array<double, 36> applied_after(const Fit& fit, double sigma_px) {
+    Matrix6 change = Matrix6::Identity();
+    const glm::dvec3 t = fit.view_from_mesh.translation;
+    // t x w
+    change(3, 1) = -t.z;
+    change(3, 2) = t.y;
+    change(4, 0) = t.z;
+    change(4, 2) = -t.x;
+    change(5, 0) = -t.y;
+    change(5, 1) = t.x;
+    const Eigen::Map<const Matrix6> sought(fit.covariance.data());
+    std::array<double, 36> covariance{};
+    Eigen::Map<Matrix6>(covariance.data()) =
+        sigma_px * sigma_px * (change * sought * change.transpose());
+    return covariance;
 }
 
 }  // namespace
 
+double held_px(const View& lens,
+               const Rigid3& view_from_picked,
+               const PickedPose& pose,
+               const Bounds& mesh_mm) {
+    View view = lens;
+    view.view_from_world = view_from_picked;
+    const Eigen::Map<const Matrix6> covariance(pose.covariance.data());
+    double largest = 0.0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 place((corner & 1) ? mesh_mm.high.x : mesh_mm.low.x,
+                               (corner & 2) ? mesh_mm.high.y : mesh_mm.low.y,
+                               (corner & 4) ? mesh_mm.high.z : mesh_mm.low.z);
+        const glm::dvec3 seen = pose.view_from_mesh * place;
+        Eigen::Matrix<double, 2, 6> slope;
+        for (int k = 0; k < 6; ++k) {
+            const double step = k < 3 ? 1e-6 : 1e-4;
+            const auto moved = [&](double by) {
+                double six[6] = {};
+                six[k] = by;
+                return project(view, pose_of(six) * seen);
+            };
+            const auto ahead = moved(step), behind = moved(-step);
+            if (!ahead || !behind) return std::numeric_limits<double>::infinity();
+            for (int c = 0; c < 2; ++c) slope(c, k) = ((*ahead)[c] - (*behind)[c]) / (2.0 * step);
+        }
+        const Eigen::Matrix2d spread = slope * covariance * slope.transpose();
+        largest = worse_of(largest, std::sqrt(worse_of(0.0, spread.trace())));
+    }
+    return largest;
+}
+
 PickedPose pose_from_points(const View& lens,
                             std::span<const MeshPick> points,
-                            const Bounds& mesh_mm) {
+                            const Bounds& mesh_mm,
+                            const Progress& progress) {
     PickedPose result;
     std::vector<std::size_t> used = distinct_points(points, mesh_mm);
     const double largest_px = kLargestShare * lens.width;
-    std::vector<Fit> fits = minima(lens, points, used);
+    std::vector<Fit> fits = minima(lens, points, used, progress);
     if (!fits.empty()) {
         const double all = deviation(fits[0].squares, used.size());
-        if (all > 0.5 * kClickSigma_px) result.bad = bad_click(lens, points, used, all);
+        if (all > 0.5 * kClickSigma_px) result.bad = bad_click(lens, points, used, all, progress);
         if (result.bad) {
             used = without(used, *result.bad);
-            fits = minima(lens, points, used);
+            fits = minima(lens, points, used, progress);
         }
     }
     if (fits.empty())
@@ -294,18 +325,17 @@ PickedPose pose_from_points(const View& lens,
                                            fits[1].view_from_mesh.rotation) *
                                       180.0 / std::numbers::pi),
                       "pick points farther apart and at different depths, not all on one face");
-    const auto fit = fitted(lens, points, used, fits[0].view_from_mesh.rotation, true);
+    const auto fit = fitted(lens, points, used, fits[0].view_from_mesh.rotation, true, progress);
     if (!fit) throw Refused("the points do not hold the pose", "pick points farther apart");
     result.view_from_mesh = fit->view_from_mesh;
     if (result.bad) result.bad_px = distance_px(lens, result.view_from_mesh, points[*result.bad]);
-    result.covariance = fit->covariance;
-    for (double& one : result.covariance) one *= sigma_px * sigma_px;
-    result.held_px = held(lens, *fit, mesh_mm, sigma_px);
-    if (result.held_px > largest_px)
+    result.covariance = applied_after(*fit, sigma_px);
+    const double held = held_px(lens, Rigid3{}, result, mesh_mm);
+    if (held > largest_px)
         throw Refused(
             fmt::format("the points hold the mock-up only to {:.0f} px: they lie too near to one "
                         "another or to one plane",
-                        result.held_px),
+                        held),
             "pick points farther apart and at different depths");
     double squares = 0.0, squares_mm = 0.0;
     for (const std::size_t k : used) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/progress.h"
 #include "mesh/mesh.h"
 #include "scene/view.h"
 
@@ -31,9 +32,9 @@ struct PickedPose {
     std::vector<std::size_t> inliers;   ///< indices
     std::optional<std::size_t> bad;     ///< a click that was left out
     double bad_px = 0.0;                ///< how far it lies from its place in this pose
-    /// Rotation vector (rad) and translation (mm), applied on the view's side; row by row.
+    /// Rotation vector (rad) and translation (mm), both applied after the pose, in the view's
+    /// frame; row by row.
     std::array<double, 36> covariance{};
-    double held_px = 0.0;  ///< largest standard deviation of a corner of the mesh's box
 };
 
 inline constexpr std::size_t kLeastPoints = 6;
@@ -45,6 +46,15 @@ inline constexpr std::size_t kLeastPoints = 6;
 /// that agree with no pose.
 PickedPose pose_from_points(const View& view,
                             std::span<const MeshPick> points,
-                            const Bounds& mesh_mm);
+                            const Bounds& mesh_mm,
+                            const Progress& progress = {});
+
+/// What the pose's covariance comes to in the picture of a view, which may be another than that of
+/// the points: the largest standard deviation of the place of a corner of the mesh's box, pixels.
+/// Infinite where one lies behind the view.
+double held_px(const View& lens,
+               const Rigid3& view_from_picked,
+               const PickedPose& pose,
+               const Bounds& mesh_mm);
 
 }  // namespace livery

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
+#include <utility>
 
+#include <Eigen/Dense>
 #include <ceres/ceres.h>
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -11,6 +14,7 @@
 #include "calibration/registration/rotation.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/solve.h"
 #include "core/statistics.h"
 
 namespace livery {
@@ -121,8 +125,10 @@ struct PriorError {
 };
 
 template <std::size_t N>
-void add_prior(ceres::Problem& problem, double* block, const std::array<double, N>& sigma) {
-    problem.AddResidualBlock(
+ceres::ResidualBlockId add_prior(ceres::Problem& problem,
+                                 double* block,
+                                 const std::array<double, N>& sigma) {
+    return problem.AddResidualBlock(
         new ceres::AutoDiffCostFunction<PriorError<N>, static_cast<int>(N), static_cast<int>(N)>(
             new PriorError<N>{sigma}),
         nullptr,
@@ -206,38 +212,94 @@ std::vector<Correspondence> correspondences_of(const Mesh& mesh,
     return result;
 }
 
-void describe(const ceres::Problem& problem,
+/// The last problem: what it sought, and what each residual block is of.
+struct Solved {
+    ceres::Problem* problem = nullptr;
+    std::vector<ceres::ResidualBlockId> pixels, priors;
+    std::vector<int> tile;  ///< of the projector's picture, one a pixel
+    std::vector<std::pair<double*, int>> sought;
+};
+
+/// Tiles across the projector's picture that are taken to err on their own.
+constexpr int kTilesAcross = 12;
+
+/// Of all that is sought, in its order. Neighbouring pixels err together (an edge of a stripe, the
+/// mesh, what the lens's model lacks), so that counting each by itself promises too much: the
+/// sandwich of Liang and Zeger (1986) over tiles, with the priors as they are, and no less than
+/// what independent pixels would give.
+Eigen::MatrixXd covariance_of(const Solved& solved) {
+    ceres::Problem::EvaluateOptions options;
+    options.residual_blocks = solved.pixels;
+    options.residual_blocks.insert(
+        options.residual_blocks.end(), solved.priors.begin(), solved.priors.end());
+    Eigen::Index count = 0;
+    for (const auto& [block, size] : solved.sought) {
+        options.parameter_blocks.push_back(block);
+        count += size;
+    }
+    std::vector<double> residuals;
+    ceres::CRSMatrix jacobian;
+    if (!solved.problem->Evaluate(options, nullptr, &residuals, nullptr, &jacobian)) {
+        throw Refused("the pose has no covariance", "photograph more of the mock-up");
+    }
+    Eigen::MatrixXd information = Eigen::MatrixXd::Zero(count, count), meat = information;
+    std::map<int, Eigen::VectorXd> of_tile;
+    for (int row = 0; row < jacobian.num_rows; ++row) {
+        Eigen::VectorXd slope = Eigen::VectorXd::Zero(count);
+        const auto at = static_cast<std::size_t>(row);
+        for (int k = jacobian.rows[at]; k < jacobian.rows[at + 1]; ++k) {
+            const auto entry = static_cast<std::size_t>(k);
+            slope[jacobian.cols[entry]] = jacobian.values[entry];
+        }
+        information += slope * slope.transpose();
+        if (at / 2 < solved.tile.size()) {
+            const auto tile =
+                of_tile.try_emplace(solved.tile[at / 2], Eigen::VectorXd::Zero(count));
+            tile.first->second += residuals[at] * slope;
+        } else {
+            meat += slope * slope.transpose();
+        }
+    }
+    // Radians, pixels and millimetres: to unit diagonal before it is inverted
+    const Eigen::VectorXd unit = information.diagonal().array().max(1e-300).rsqrt().matrix();
+    const Eigen::MatrixXd scaled = unit.asDiagonal() * information * unit.asDiagonal();
+    const Eigen::MatrixXd inverse = unit.asDiagonal() *
+                                    scaled.completeOrthogonalDecomposition().pseudoInverse() *
+                                    unit.asDiagonal();
+    // Few tiles fit what is sought to their own errors: so many of them count as pixels told
+    // numbers
+    const double told = static_cast<double>(count) - (inverse * meat).trace();
+    const auto tiles = static_cast<double>(of_tile.size());
+    for (const auto& [tile, gradient] : of_tile) {
+        meat += tiles / std::max(tiles - told, 1.0) * gradient * gradient.transpose();
+    }
+    const Eigen::MatrixXd sandwich = inverse * meat * inverse;
+    const Eigen::VectorXd wider =
+        (sandwich.diagonal().array() / inverse.diagonal().array()).max(1.0).sqrt().matrix();
+    return wider.asDiagonal() * inverse * wider.asDiagonal();
+}
+
+void describe(const Solved& solved,
               State& state,
               const LensPrior& prior,
               const LensChange& projector_sigma,
               const LensChange& camera_sigma,
               const std::array<double, 6>& stereo_sigma,
               PixelRefinement& result) {
-    ceres::Covariance::Options options;
-    options.algorithm_type = ceres::DENSE_SVD;
-    options.null_space_rank = -1;
-    ceres::Covariance covariance(options);
-    std::vector<std::pair<const double*, const double*>> blocks;
-    const auto same = [&](const double* block) { blocks.emplace_back(block, block); };
-    same(state.pose.data());
-    if (!prior.lens_fixed) {
-        same(state.projector_lens.data());
-        same(state.camera_lens.data());
-        same(state.stereo.front().data());
-    }
-    if (prior.scale_free) same(state.scale.data());
-    if (!covariance.Compute(blocks, const_cast<ceres::Problem*>(&problem)))
-        throw Refused("the pose has no covariance", "photograph more of the mock-up");
-    covariance.GetCovarianceBlock(state.pose.data(), state.pose.data(), result.covariance.data());
+    const Eigen::MatrixXd covariance = covariance_of(solved);
+    for (int i = 0; i < 6; ++i)
+        for (int k = 0; k < 6; ++k)
+            result.covariance[static_cast<std::size_t>(6 * i + k)] = covariance(i, k);
     const auto tell =
         [&](const double* block, const char* const* names, const double* sigma, int n) {
-            std::vector<double> square(static_cast<std::size_t>(n * n));
-            covariance.GetCovarianceBlock(block, block, square.data());
+            Eigen::Index from = 0;
+            for (const auto& [other, size] : solved.sought) {
+                if (other == block) break;
+                from += size;
+            }
             for (int k = 0; k < n; ++k)
-                result.lens.push_back({names[k],
-                                       block[k],
-                                       std::sqrt(square[static_cast<std::size_t>(k * n + k)]),
-                                       sigma[k]});
+                result.lens.push_back(
+                    {names[k], block[k], std::sqrt(covariance(from + k, from + k)), sigma[k]});
         };
     if (!prior.lens_fixed) {
         constexpr const char* projector[] = {
@@ -319,8 +381,12 @@ PixelRefinement refine_on_pixels(const Mesh& mesh,
                 "light more of the mock-up, and let the camera see what the projector lights");
         sigma_px = std::clamp(1.4826 / 1.4142 * median(errors), 0.02, 5.0);
         ceres::Problem problem;
-        for (const Correspondence& one : found)
-            problem.AddResidualBlock(
+        Solved solved;
+        solved.problem = &problem;
+        for (const Correspondence& one : found) {
+            const glm::ivec2 tile(one.projector_px * (kTilesAcross / double(projector.width)));
+            solved.tile.push_back(tile.y * kTilesAcross + tile.x);
+            solved.pixels.push_back(problem.AddResidualBlock(
                 new ceres::NumericDiffCostFunction<PixelError, ceres::FORWARD, 2, 6, 6, 4, 4, 1>(
                     new PixelError{&given, one, sigma_px}),
                 new ceres::CauchyLoss(2.0),
@@ -328,34 +394,34 @@ PixelRefinement refine_on_pixels(const Mesh& mesh,
                 state.stereo[one.sight].data(),
                 state.projector_lens.data(),
                 state.camera_lens.data(),
-                state.scale.data());
-        add_prior<6>(problem, state.pose.data(), pose_sigma);
-        add_prior<4>(problem, state.projector_lens.data(), projector_sigma);
-        add_prior<4>(problem, state.camera_lens.data(), camera_sigma);
-        for (auto& stereo : state.stereo) {
-            problem.AddParameterBlock(stereo.data(), 6);
-            add_prior<6>(problem, stereo.data(), stereo_sigma);
-            if (prior.lens_fixed) problem.SetParameterBlockConstant(stereo.data());
+                state.scale.data()));
         }
-        add_prior<1>(problem, state.scale.data(), {prior.scale});
-        if (!prior.scale_free) problem.SetParameterBlockConstant(state.scale.data());
-        if (prior.lens_fixed) {
-            problem.SetParameterBlockConstant(state.projector_lens.data());
-            problem.SetParameterBlockConstant(state.camera_lens.data());
-        }
+        // Sought, where it is free, with what is known of it before
+        const auto seek = [&]<std::size_t N>(std::array<double, N>& block,
+                                             const std::array<double, N>& sigma,
+                                             bool free) {
+            problem.AddParameterBlock(block.data(), static_cast<int>(N));
+            if (!free) return problem.SetParameterBlockConstant(block.data());
+            solved.priors.push_back(add_prior<N>(problem, block.data(), sigma));
+            solved.sought.emplace_back(block.data(), static_cast<int>(N));
+        };
+        seek(state.pose, pose_sigma, true);
+        seek(state.projector_lens, projector_sigma, !prior.lens_fixed);
+        seek(state.camera_lens, camera_sigma, !prior.lens_fixed);
+        for (auto& stereo : state.stereo) seek(stereo, stereo_sigma, !prior.lens_fixed);
+        seek(state.scale, std::array{prior.scale}, prior.scale_free);
         ceres::Solver::Options options;
         options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
         options.max_num_iterations = 8;
         options.num_threads = thread_count();
         options.logging_type = ceres::SILENT;
-        ceres::Solver::Summary summary;
-        ceres::Solve(options, &problem, &summary);
+        const ceres::Solver::Summary summary = livery::solved(options, problem, progress);
         within_px = std::max(8.0 * sigma_px, 1.5);
 
         const bool settled =
             round > 3 && summary.initial_cost - summary.final_cost < 1e-4 * summary.initial_cost;
         if (!settled && round + 1 < kRounds) continue;
-        describe(problem, state, prior, projector_sigma, camera_sigma, stereo_sigma, result);
+        describe(solved, state, prior, projector_sigma, camera_sigma, stereo_sigma, result);
         break;
     }
 

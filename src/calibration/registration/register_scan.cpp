@@ -363,6 +363,10 @@ Registration register_scan(const Mesh& mesh,
     Registration result;
     result.free = target.free;
     name_turns(target.free, result.warnings);
+    // Lenses that may give way take it up
+    if (options.prior.lens_fixed) {
+        result.warnings.insert(result.warnings.end(), scan.warnings.begin(), scan.warnings.end());
+    }
     progress.update(0.6, "refining pose and lenses");
     result.refined =
         best_refined(target, haystack, projector, found, options.prior, progress, result);

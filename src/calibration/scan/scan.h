@@ -2,6 +2,8 @@
 #pragma once
 
 #include <span>
+#include <string>
+#include <vector>
 
 #include "calibration/correspondence/gray_code.h"
 #include "core/image.h"
@@ -23,6 +25,8 @@ struct ScanOptions {
     /// Median over which camera and projector no longer stand where the calibration says, in
     /// widths of the camera's picture. A focal length that is 1% off makes a third of it.
     double refused_gap = 0.01;
+    /// Median in camera pixels, and in deviations of the places, from which it is said.
+    double told_gap_px = 0.5, told_gap_sigmas = 2.0;
     double least_angle_rad = 0.02;  ///< between the two rays
     /// Steepest surface against the projector's ray that is still one surface.
     double steepest_rad = 1.40;
@@ -38,6 +42,7 @@ struct Scan {
     double gap_px =
         0.0;  ///< median distance at which the two rays pass, camera pixels; of the worst sight
     double known_fraction = 0.0;  ///< of the projector's pixels
+    std::vector<std::string> warnings;
 };
 
 /// Triangulates every projector pixel: the point of its ray that is nearest to the camera's. A

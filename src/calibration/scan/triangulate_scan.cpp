@@ -186,6 +186,19 @@ double gap_of(Ranges& ranges, const View& camera, const ScanOptions& options) {
     return middle;
 }
 
+/// Rays that meet worse than the photographs are noisy: lenses or poses are not what they were. A
+/// movement along the line between the two lenses moves points in depth, and is not seen here.
+void tell_gap(const Sight& sight, double gap_px, const ScanOptions& options, Scan& scan) {
+    const double sigma_px = sight.map.sigma_px;
+    if (gap_px < options.told_gap_px || gap_px < options.told_gap_sigmas * sigma_px) return;
+    scan.warnings.push_back(fmt::format(
+        "the rays of camera and projector pass each other by {:.2f} camera pixels (median), where "
+        "places are good to {:.2f}: camera or projector may have moved since the geometry was "
+        "calibrated; calibrate it again",
+        gap_px,
+        sigma_px));
+}
+
 }  // namespace
 
 bool on_one_surface(double range_a_mm,
@@ -212,7 +225,9 @@ Scan scan_of(const View& projector, std::span<const Sight> sights, const ScanOpt
                           "switch off mirroring (rear or ceiling projection, a camera's selfie "
                           "picture) in the projector or the camera, and photograph again");
         all.push_back(triangulate(rays, sight, options));
-        scan.gap_px = std::max(scan.gap_px, gap_of(all.back(), sight.camera, options));
+        const double gap_px = gap_of(all.back(), sight.camera, options);
+        scan.gap_px = std::max(scan.gap_px, gap_px);
+        tell_gap(sight, gap_px, options, scan);
     }
     Ranges ranges = merged(all);
     const double pixel_angle = 2.0 / (projector.focal_px.x + projector.focal_px.y);
