@@ -7,6 +7,7 @@
 #include "capture/patient_camera.h"
 #include "core/error.h"
 #include "core/freed_memory.h"
+#include "core/hash.h"
 #include "core/paths.h"
 #include "jobs/capture_run.h"
 #include "live/capture_pictures.h"
@@ -303,6 +304,10 @@ CaptureView CaptureThread::view() const {
     return implementation_->worker.use([](const CaptureJobs& asked) { return asked.view; });
 }
 
-std::filesystem::path CaptureThread::folder() { return user_folder() / "captures" / "last"; }
+std::filesystem::path CaptureThread::folder(const std::string& made_with) {
+    Hasher hasher;
+    hasher.add(made_with);
+    return user_folder() / "captures" / hasher.hex().substr(0, 16);
+}
 
 }  // namespace livery

@@ -138,8 +138,8 @@ class CaptureThread {
     void cancel();                         ///< returns at once
     CaptureView view() const;
 
-    /// Where the photographs of the window's captures lie.
-    static std::filesystem::path folder();
+    /// Where the photographs lie that are taken with this camera and projector.
+    static std::filesystem::path folder(const std::string& made_with);
 
   private:
     struct Implementation;

@@ -194,7 +194,7 @@ void CaptureThread::Implementation::show_steps() {
     if (setup.width == 0 && !bench.simulated) return;
     BenchCalibrationRequest now = request();
     if (!asks_for_the_same(now, run.request)) run = {};
-    run.folder = folder();
+    run.folder = folder(now.made_with);
     run.request = std::move(now);
     const double each_s = times.photographs > 0 ? times.seconds / times.photographs : 0.0;
     publish([&](CaptureView& view) {

@@ -130,7 +130,8 @@ class CameraBeforeMonitor : public TwoMonitors {
     }
     /// Photographs of the capture that are on the disk.
     int kept() const {
-        const Json recording = read_json_file(home_ / "captures" / "last" / "recording.json");
+        const std::filesystem::directory_iterator one(home_ / "captures");
+        const Json recording = read_json_file(one->path() / "recording.json");
         std::size_t count = 0;
         for (const Json& showing : recording["showings"]) count += showing["photographs"].size();
         return static_cast<int>(count);

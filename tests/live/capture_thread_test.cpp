@@ -108,6 +108,39 @@ TEST(CaptureThread, LooksAndCaptures) {
     EXPECT_GT(again.kept_from_before, 25);
 }
 
+TEST(CaptureThread, EachCameraHasPhotographsOfItsOwn) {
+    CaptureRoom room;
+    const auto photograph_some = [&] {
+        room.capture->start(CaptureStep::colour, false);
+        const CaptureView view = wait_until(*room.capture, [](const CaptureView& now) {
+            return now.taken >= 3 || !now.why.empty();
+        });
+        EXPECT_EQ(view.why, "");
+        room.capture->cancel();
+        wait_until(*room.capture, rests);
+    };
+    photograph_some();
+    EXPECT_TRUE(room.capture->view().step(CaptureStep::geometry).can_go_on);
+    CaptureSetup other = room.setup;
+    const auto file = room.home.folder() / "other.json";
+    Json bench = read_json_file(room.setup.camera.what);
+    bench["name"] = "other";
+    write_json_file(file, bench);
+    other.camera.what = file.string();
+    room.capture->use(other);
+    wait_until(*room.capture, [](const CaptureView& view) {
+        return view.camera.find("other") != std::string::npos && rests(view);
+    });
+    EXPECT_FALSE(room.capture->view().step(CaptureStep::geometry).can_go_on);
+    photograph_some();
+    // What the first has stands
+    room.capture->use(room.setup);
+    wait_until(*room.capture, [](const CaptureView& view) {
+        return view.camera.find("small") != std::string::npos && rests(view) &&
+               view.step(CaptureStep::geometry).can_go_on;
+    });
+}
+
 TEST(CaptureThread, ChecksWhatItMadeAndSeesThatNothingMoved) {
     CaptureRoom room;
     room.capture->start(CaptureStep::colour, true);
