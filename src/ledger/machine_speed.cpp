@@ -9,8 +9,6 @@ namespace livery {
 namespace {
 
 constexpr std::size_t kKept = 31;
-/// Passes that find everything done before still take some microseconds.
-constexpr double kNothingToDo_ms = 0.05;
 /// Of work by the shipped costs, before a factor is told from it.
 constexpr double kEnough_ms = 20.0;
 

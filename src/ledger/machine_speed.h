@@ -11,6 +11,9 @@
 
 namespace livery {
 
+/// Passes that find everything done before still take some microseconds.
+inline constexpr double kNothingToDo_ms = 0.05;
+
 /// What passes of drawn frames took, over what the shipped costs say of them.
 struct PassRatios {
     struct OfPass {

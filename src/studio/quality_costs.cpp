@@ -15,9 +15,6 @@ namespace livery {
 
 namespace {
 
-/// Passes that find everything done before still take some microseconds.
-constexpr double kNothingToDo_ms = 0.05;
-
 const char* what_it_does(Quality quality) {
     switch (quality) {
         case Quality::draft:
