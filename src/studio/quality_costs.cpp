@@ -91,6 +91,8 @@ void keep_scaled_costs(const Studio& studio) {
     const PlanPanelState& state = *studio.panels.plan;
     if (state.ratios.passes.empty() || state.costs->origin != CostOrigin::scaled) return;
     try {
+        // A bench may have run meanwhile; and what cannot be read is not ours to replace
+        if (known_pass_costs().origin == CostOrigin::measured) return;
         write_pass_costs(pass_costs_file(), *state.costs);
     } catch (const FileError& error) {
         log_line(LogLevel::warning, error.what());

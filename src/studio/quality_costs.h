@@ -42,7 +42,8 @@ std::optional<PriceList> price_list(Studio& studio);
 bool remember_costs(MeasuredCosts& measured, const FinishedFrame& frame);
 /// Scales shipped costs by what the passes of a new frame took.
 void scale_costs(Studio& studio, const FramePlan& drawn);
-/// Leaves scaled costs for the command line and the next start. What cannot be written is logged.
+/// Leaves scaled costs for the command line and the next start, unless some were measured
+/// meanwhile. A file that cannot be read stays, and what cannot be written is logged.
 void keep_scaled_costs(const Studio& studio);
 /// Puts the last measured milliseconds in place of those of passes that did not run anew; passes
 /// that never ran have none.

@@ -96,6 +96,15 @@ TEST_F(KnownCosts, OnAFreshMachineAreTheShippedOnesUntilFramesScaleThem) {
     for (std::size_t k = 0; k < shipped.passes.size(); ++k) {
         EXPECT_NEAR(scaled.passes[k].ms, 3.0 * shipped.passes[k].ms, 1e-6 * scaled.passes[k].ms);
     }
+    // What a bench measured meanwhile stays, and so does what is no costs file
+    const PassCosts measured{{shipped.passes[0]}, CostOrigin::measured, "r", 2};
+    write_pass_costs(pass_costs_file(), measured);
+    keep_scaled_costs(studio);
+    EXPECT_EQ(known_pass_costs().origin, CostOrigin::measured);
+    write_text_file(pass_costs_file(), "{");
+    keep_scaled_costs(studio);
+    EXPECT_EQ(read_text_file(pass_costs_file()), "{");
+    std::filesystem::remove(pass_costs_file());
     // The next start, and the command line, have them
     keep_scaled_costs(studio);
     Studio later = make_studio();
