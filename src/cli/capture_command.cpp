@@ -299,9 +299,10 @@ Outcome capture_by_hand(CaptureCommandRun run,
     std::vector<std::string> roles;
     for (const Pattern& pattern : patterns) roles.push_back(pattern.role);
     WatchedCaptures watched(choice.what, roles);
-    watched.look();
-    watched.look();
-    if (watched.state().files == 0) show_all(projector, patterns, run.arguments.every_s, progress);
+    const auto before = watched.look_at_what_is_there(std::move(patterns));
+    if (!before.words.empty()) say(before.words);
+    if (!before.still_to_shoot.empty())
+        show_all(projector, before.still_to_shoot, run.arguments.every_s, progress);
     say(fmt::format("copy the {} photographs to {}", roles.size(), choice.what));
     try {
         run.staged.made = calibrate_through_ports(

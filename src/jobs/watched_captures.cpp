@@ -56,6 +56,8 @@ std::string text_of(const WatchedState& state) {
     std::string text = fmt::format("{} of {} photographs", state.found, state.wanted);
     if (!state.missing.empty())
         text += fmt::format("; missing: {}", fmt::join(state.missing, ", "));
+    for (const auto& one : state.out_of_order)
+        text += fmt::format("; {} is out of order and shows {}", one.file, one.role);
     for (const auto& odd : state.odd) text += fmt::format("; {} {}", odd.file, odd.why);
     if (state.exposed_otherwise.empty()) return text;
     text += fmt::format("; {} were exposed otherwise than the others ({}):",
@@ -134,17 +136,21 @@ bool WatchedCaptures::look() {
 std::vector<const WatchedCaptures::NamedFile*> WatchedCaptures::comparable_files(
     WatchedState& state) const {
     std::vector<const NamedFile*> sorted;
-    for (const auto& entry : files_) {
+    std::vector<std::string> names;
+    for (const auto& entry : files_) names.push_back(entry.first);
+    for (const std::size_t place : order_of_names(names)) {
+        const NamedFile& entry = *files_.find(names[place]);
         if (!entry.second.read) continue;
+        if (from_before_.contains(entry.first)) {
+            state.odd.push_back({entry.first, "was there before"});
+            continue;
+        }
         if (entry.second.problem.empty()) {
             sorted.push_back(&entry);
         } else {
             state.odd.push_back({entry.first, entry.second.problem});
         }
     }
-    std::sort(sorted.begin(), sorted.end(), [](const auto* a, const auto* b) {
-        return comes_before(a->first, b->first);
-    });
     // The same file copied twice, under whatever name
     std::map<std::string, std::string> first_with;
     std::erase_if(sorted, [&](const NamedFile* file) {
@@ -201,10 +207,34 @@ void WatchedCaptures::identify_all() {
     const bool many = static_cast<double>(photographs.size()) >=
                       kShareToName * static_cast<double>(roles_.size());
     if (!many) state.missing.clear();
+    for (const auto& one : identified.out_of_order)
+        state.out_of_order.push_back({files[one.photograph]->first, roles_[one.role]});
     for (const auto& odd : identified.odd)
         state.odd.push_back({files[odd.photograph]->first, odd.why});
     state.complete = identified.complete();
     state_ = std::move(state);
+}
+
+WatchedCaptures::FoundBefore WatchedCaptures::look_at_what_is_there(std::vector<Pattern> patterns) {
+    look();
+    look();  // what has not grown since the first
+    FoundBefore result{std::move(patterns), {}};
+    if (files_.empty()) return result;
+    if (static_cast<double>(state_.found) < kShareToName * static_cast<double>(roles_.size())) {
+        for (const auto& [name, file] : files_) from_before_.insert(name);
+        identify_all();
+        result.words =
+            fmt::format("{} files were there before and are passed over", from_before_.size());
+        return result;
+    }
+    std::erase_if(result.still_to_shoot, [this](const Pattern& pattern) {
+        const auto role = std::find(roles_.begin(), roles_.end(), pattern.role);
+        return role != roles_.end() &&
+               !file_of_role_[static_cast<std::size_t>(role - roles_.begin())].empty();
+    });
+    result.words = fmt::format(
+        "{} of the {} photographs were there before and are used", state_.found, state_.wanted);
+    return result;
 }
 
 CapturesFolder WatchedCaptures::captures(int projector_width, int projector_height) const {

@@ -6,11 +6,13 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "calibration/captures/identify.h"
+#include "calibration/correspondence/patterns.h"
 #include "capture/captures_folder.h"
 #include "core/bench_ports.h"
 #include "core/pictures/exposure_settings.h"
@@ -36,6 +38,12 @@ struct WatchedState {
         bool operator==(const OtherExposure&) const = default;
     };
     std::vector<OtherExposure> exposed_otherwise;
+    /// Files that show a picture whose turn it was not: they are used.
+    struct OutOfOrder {
+        std::string file, role;
+        bool operator==(const OutOfOrder&) const = default;
+    };
+    std::vector<OutOfOrder> out_of_order;
     ExposureSettings usual_exposure;  ///< of most files; nothing where none says how
     bool complete = false;
     bool operator==(const WatchedState&) const = default;
@@ -53,6 +61,13 @@ class WatchedCaptures {
     /// again when it is replaced, and forgotten when it is removed. True when the state changed.
     bool look();
     const WatchedState& state() const { return state_; }
+    struct FoundBefore {
+        std::vector<Pattern> still_to_shoot;
+        std::string words;  ///< for people; empty where the folder was
+    };
+    /// Which of the roles' pictures are still to be photographed. Photographs that are there are
+    /// used where most of the pictures are among them, else they are passed over from now on.
+    FoundBefore look_at_what_is_there(std::vector<Pattern> patterns);
 
     /// A camera that knows nothing of pictures but their roles (`turn_to`), which waits for all of
     /// them: `on_state` is called after every look that changed anything. Throws Cancelled.
@@ -80,6 +95,7 @@ class WatchedCaptures {
     std::vector<std::string> roles_;
     std::map<std::string, File> files_;      ///< by name
     std::vector<std::string> file_of_role_;  ///< empty: none
+    std::set<std::string> from_before_;      ///< names of files that are passed over
     WatchedState state_;
 };
 

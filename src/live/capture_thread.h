@@ -84,6 +84,7 @@ struct CaptureView {
     std::optional<double> remaining_s;
     bool paused = false;
     bool waits_for_next = false;  ///< somebody shoots by hand, and says when
+    std::string found_before;     ///< in the folder of a capture by hand, in words
     CaptureWait wait;             ///< what it waits for; empty: nothing
     std::string why, fix;         ///< why the last thing that was asked for failed
     std::array<CaptureStepView, kCaptureSteps> steps;

@@ -198,8 +198,10 @@ void CaptureThread::Implementation::show_steps() {
     run.request = std::move(now);
     const double each_s = times.photographs > 0 ? times.seconds / times.photographs : 0.0;
     publish([&](CaptureView& view) {
+        // Photographs in a folder come from a camera that nobody can look through, all at once
+        view.step(CaptureStep::look).called_for = !is_by_hand();
         view.step(CaptureStep::look).done = !view.step(CaptureStep::look).figures.empty();
-        view.step(CaptureStep::geometry).called_for = finds_room(run.request);
+        view.step(CaptureStep::geometry).called_for = finds_room(run.request) && !is_by_hand();
         view.step(CaptureStep::geometry).done = run.room.has_value();
         view.step(CaptureStep::colour).done = run.made.has_value();
         view.step(CaptureStep::check).called_for =
@@ -228,6 +230,7 @@ void CaptureThread::Implementation::take_step(CaptureStep step,
     if (step == CaptureStep::geometry || step == CaptureStep::colour)
         publish([](CaptureView& view) {
             view.finished.reset();
+            view.found_before.clear();
             view.taken = view.kept_from_before = 0;
         });
     const auto start = CaptureClock::now();
@@ -252,6 +255,7 @@ void CaptureThread::Implementation::take_step(CaptureStep step,
 /// One picture after the other, each until somebody says that it was taken.
 void CaptureThread::Implementation::show_by_hand(const std::vector<Pattern>& patterns) {
     const ShowPicture show = ports().show;
+    if (patterns.empty()) return;
     publish([](CaptureView& view) { view.waits_for_next = true; });
     const Progress told = progress();
     for (std::size_t k = 0; k < patterns.size(); ++k) {
@@ -277,9 +281,9 @@ void CaptureThread::Implementation::capture_by_hand() {
     std::vector<std::string> roles;
     for (const Pattern& pattern : patterns) roles.push_back(pattern.role);
     WatchedCaptures watched(setup.camera.what, roles);
-    watched.look();
-    watched.look();
-    if (watched.state().files == 0) show_by_hand(patterns);
+    const auto before = watched.look_at_what_is_there(std::move(patterns));
+    publish([&](CaptureView& view) { view.found_before = before.words; });
+    show_by_hand(before.still_to_shoot);
     const Progress told = progress();
     told.update(0.0, fmt::format("copy the {} photographs to {}", roles.size(), setup.camera.what));
     const BenchPorts files = watched.ports(told, [&](const WatchedState& state) {

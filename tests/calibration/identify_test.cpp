@@ -145,6 +145,28 @@ TEST(Identify, PassesOverWhatShowsSomethingElse) {
     EXPECT_EQ(found.odd[0].why, "shows none of the pictures that are wanted");
 }
 
+// White and black before all stripes, or what was forgotten photographed at the end.
+TEST(Identify, FindsWhatWasTakenOutOfOrder) {
+    const Shoot truth = shoot();
+    const auto moved = [&](const std::vector<std::string>& late, bool to_the_front) {
+        std::vector<Glimpse> first, rest;
+        for (std::size_t r = 0; r < truth.roles.size(); ++r) {
+            const bool is_late = std::find(late.begin(), late.end(), truth.roles[r]) != late.end();
+            (is_late == to_the_front ? first : rest).push_back(truth.photographs[r]);
+        }
+        first.insert(first.end(), rest.begin(), rest.end());
+        const auto found = identify(first, truth.roles);
+        EXPECT_TRUE(found.complete()) << late.front();
+        EXPECT_TRUE(wrong_roles(found, first, truth).empty()) << late.front();
+        EXPECT_EQ(found.out_of_order.size(), late.size()) << late.front();
+    };
+    moved({"white", "black"}, true);
+    moved({"gray-column-3"}, false);
+    moved({"gray-row-2-inverse"}, false);
+    moved({"gray-column-4", "gray-column-4-inverse"}, false);
+    moved({"red"}, false);
+}
+
 TEST(Identify, TakesAFewAndNone) {
     const Shoot truth = shoot();
     EXPECT_FALSE(identify({}, truth.roles).complete());
@@ -164,6 +186,12 @@ TEST(Identify, OrdersNamesByTheirNumbers) {
     EXPECT_TRUE(comes_before("a", "a1"));
     EXPECT_TRUE(comes_before("IMG_0012.CR2", "IMG_0013.CR2"));
     EXPECT_TRUE(comes_before("12345678901234567890a", "12345678901234567891a"));
+    // A camera counts from 0001 again after 9999
+    EXPECT_EQ(order_of_names({"IMG_0001.CR2", "IMG_0002.CR2", "IMG_9998.CR2", "IMG_9999.CR2"}),
+              (std::vector<std::size_t>{2, 3, 0, 1}));
+    EXPECT_EQ(order_of_names({"IMG_9997.CR2", "IMG_9999.CR2", "IMG_9998.CR2"}),
+              (std::vector<std::size_t>{0, 2, 1}));
+    EXPECT_EQ(order_of_names({"b", "a"}), (std::vector<std::size_t>{1, 0}));
 }
 
 }  // namespace

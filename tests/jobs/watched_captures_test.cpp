@@ -114,6 +114,58 @@ TEST(WatchedCaptures, NamesTheMissingAndTheDoubledOfAnyOrder) {
     EXPECT_EQ(watched.captures(320, 200).captures[gone].file.filename(), card().name(gone));
 }
 
+/// The pictures by their roles alone.
+std::vector<Pattern> pictures() {
+    std::vector<Pattern> patterns;
+    for (const std::string& role : card().roles) patterns.push_back({role, {}});
+    return patterns;
+}
+
+TEST(WatchedCaptures, AsksOnlyForWhatIsNotThereAtTheStart) {
+    const TemporaryFolder here;
+    for (std::size_t k = 0; k < card().roles.size(); ++k)
+        if (k != 2 && k != 9)
+            std::filesystem::copy_file(card().file(k), here.path() / card().name(k));
+    WatchedCaptures watched(here.path(), card().roles);
+    const auto before = watched.look_at_what_is_there(pictures());
+    ASSERT_EQ(before.still_to_shoot.size(), 2u);
+    EXPECT_EQ(before.still_to_shoot[0].role, card().roles[2]);
+    EXPECT_EQ(before.still_to_shoot[1].role, card().roles[9]);
+    EXPECT_EQ(before.words,
+              fmt::format("{} of the {} photographs were there before and are used",
+                          card().roles.size() - 2,
+                          card().roles.size()));
+    // They come last, and are known by what they show
+    std::filesystem::copy_file(card().file(2), here.path() / "DSC_0301.png");
+    std::filesystem::copy_file(card().file(9), here.path() / "DSC_0302.png");
+    look_at_all(watched);
+    EXPECT_TRUE(watched.state().complete) << text_of(watched.state());
+    EXPECT_NE(
+        text_of(watched.state()).find("DSC_0301.png is out of order and shows " + card().roles[2]),
+        std::string::npos)
+        << text_of(watched.state());
+}
+
+TEST(WatchedCaptures, PassesOverAFewFilesOfBefore) {
+    const TemporaryFolder here;
+    for (std::size_t k = 0; k < 5; ++k)
+        std::filesystem::copy_file(card().file(k), here.path() / fmt::format("OLD_{:04}.png", k));
+    WatchedCaptures watched(here.path(), card().roles);
+    const auto before = watched.look_at_what_is_there(pictures());
+    EXPECT_EQ(before.still_to_shoot.size(), card().roles.size());
+    EXPECT_EQ(before.words, "5 files were there before and are passed over");
+    for (std::size_t k = 0; k < card().roles.size(); ++k)
+        std::filesystem::copy_file(card().file(k), here.path() / card().name(k));
+    look_at_all(watched);
+    EXPECT_TRUE(watched.state().complete) << text_of(watched.state());
+    EXPECT_EQ(watched.captures(320, 200).captures[0].file.filename(), card().name(0));
+    EXPECT_EQ(watched.state().odd.size(), 5u);
+    EXPECT_EQ(watched.state().odd[0].why, "was there before");
+    const TemporaryFolder empty;
+    WatchedCaptures fresh(empty.path(), card().roles);
+    EXPECT_EQ(fresh.look_at_what_is_there(pictures()).words, "");
+}
+
 TEST(WatchedCaptures, SaysWhatCannotBeUsed) {
     const TemporaryFolder here;
     WatchedCaptures watched(here.path(), card().roles);

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <span>
 
 #include "core/error.h"
@@ -144,6 +145,105 @@ double own_cost(const Shares& shares, std::size_t photograph, const std::string&
     return part > 0.12 && shares.spread[photograph] > 0.01 ? 0.0 : kWrong;
 }
 
+/// What is missing among what is left over, each by what it shows: stripes beside their inverse,
+/// flat pictures by their light. Others, as levels and mosaics, only where one alone is missing.
+class Leftovers {
+  public:
+    Leftovers(const Shares& shares,
+              const std::vector<std::string>& roles,
+              IdentifiedPhotographs& result)
+        : shares_(shares), roles_(roles), result_(result), free_(shares.mean.size(), true) {
+        for (const auto& place : result.photograph_of_role)
+            if (place) free_[*place] = false;
+    }
+
+    void match() {
+        for (std::size_t r = 0; r < roles_.size(); ++r)
+            if (!result_.photograph_of_role[r]) match_one(r);
+        match_a_pair();
+    }
+
+  private:
+    static constexpr double kSame = 0.1;  // of white, on average over the pixels
+
+    std::optional<std::size_t> partner_of(std::size_t r) const {
+        if (!is_stripes(roles_[r])) return std::nullopt;
+        const std::string name = is_inverse(roles_[r]) ? roles_[r].substr(0, roles_[r].size() - 8)
+                                                       : roles_[r] + "-inverse";
+        const auto found = std::find(roles_.begin(), roles_.end(), name);
+        if (found == roles_.end()) return std::nullopt;
+        return static_cast<std::size_t>(found - roles_.begin());
+    }
+
+    /// Infinite where the photograph cannot be of the role.
+    double distance(std::size_t p, std::size_t r) const {
+        const std::string& role = roles_[r];
+        if (is_stripes(role)) {
+            const auto partner = partner_of(r);
+            const auto beside = partner ? result_.photograph_of_role[*partner] : std::nullopt;
+            return beside ? from_white(shares_.mean[*beside], shares_.mean[p]) : kNever;
+        }
+        const bool flat = role == "white" || role == "bright-gray" || role == "black" ||
+                          role == "dark-gray" || role == "red" || role == "green" || role == "blue";
+        if (!flat && !is_last_of_its_kind(r)) return kNever;
+        return own_cost(shares_, p, role) / 8.0;
+    }
+
+    bool is_last_of_its_kind(std::size_t r) const {
+        std::size_t others = 0;
+        for (std::size_t k = 0; k < roles_.size(); ++k)
+            others += !result_.photograph_of_role[k] && !is_stripes(roles_[k]);
+        const auto left = std::count(free_.begin(), free_.end(), true);
+        return others == 1 && left == 1 && !roles_[r].starts_with("phase-");
+    }
+
+    void match_one(std::size_t r) {
+        std::optional<std::size_t> best;
+        double least = kSame;
+        for (std::size_t p = 0; p < free_.size(); ++p) {
+            if (!free_[p]) continue;
+            const double one = distance(p, r);
+            if (one >= least) continue;
+            least = one;
+            best = p;
+        }
+        if (best) take(*best, r);
+    }
+
+    /// A whole pair, where no other is missing: in the order in which they were taken.
+    void match_a_pair() {
+        std::vector<std::size_t> missing;
+        for (std::size_t r = 0; r < roles_.size(); ++r)
+            if (!result_.photograph_of_role[r] && is_stripes(roles_[r])) missing.push_back(r);
+        if (missing.size() != 2 || partner_of(missing[0]) != missing[1]) return;
+        for (std::size_t p = 0; p < free_.size(); ++p)
+            for (std::size_t q = p + 1; q < free_.size(); ++q) {
+                if (!free_[p] || !free_[q] || is_flat(p)) continue;
+                if (from_white(shares_.mean[p], shares_.mean[q]) >= kSame) continue;
+                take(p, missing[0]);
+                take(q, missing[1]);
+                return;
+            }
+    }
+
+    bool is_flat(std::size_t p) const {
+        const std::vector<float>& mean = shares_.mean[p];
+        return std::min(mean_distance(mean, 0.0), mean_distance(mean, 1.0)) < 2.0 * kSame;
+    }
+
+    void take(std::size_t p, std::size_t r) {
+        free_[p] = false;
+        result_.photograph_of_role[r] = p;
+        result_.out_of_order.push_back({p, r});
+    }
+
+    static constexpr double kNever = std::numeric_limits<double>::infinity();
+    const Shares& shares_;
+    const std::vector<std::string>& roles_;
+    IdentifiedPhotographs& result_;
+    std::vector<bool> free_;
+};
+
 struct Match {
     double cost = std::numeric_limits<double>::infinity();
     std::size_t photograph = 0, role = 0;  ///< the match before; counted from 1, 0: none
@@ -233,15 +333,18 @@ IdentifiedPhotographs identify(const std::vector<Glimpse>& photographs,
             p = end_p;
             r = end_r;
         }
-    std::vector<bool> matched(last_p, false);
     while (p > 0 && r > 0) {
         result.photograph_of_role[r - 1] = p - 1;
-        matched[p - 1] = true;
         const Match step = best[p][r];
         p = step.photograph;
         r = step.role;
     }
 
+    Leftovers(shares, roles, result).match();
+
+    std::vector<bool> matched(last_p, false);
+    for (const auto& place : result.photograph_of_role)
+        if (place) matched[*place] = true;
     for (std::size_t odd = 0; odd < last_p; ++odd) {
         if (matched[odd]) continue;
         std::string why = "shows none of the pictures that are wanted";
@@ -281,6 +384,28 @@ bool comes_before(const std::string& a, const std::string& b) {
         if (left != right) return left < right;
     }
     return a.size() - i < b.size() - k;
+}
+
+std::vector<std::size_t> order_of_names(const std::vector<std::string>& names) {
+    std::vector<std::size_t> order(names.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return comes_before(names[a], names[b]);
+    });
+    if (order.size() < 2) return order;
+    const auto first = number_in(names[order.front()]), last = number_in(names[order.back()]);
+    if (!first || !last || *first > 1 || (*last != 9999 && *last != 99999)) return order;
+    // The longest run of numbers that no file has is where the counting began
+    std::size_t begin = 0;
+    long longest = 1;
+    for (std::size_t k = 1; k < order.size(); ++k) {
+        const auto a = number_in(names[order[k - 1]]), b = number_in(names[order[k]]);
+        if (!a || !b || *b - *a <= longest) continue;
+        longest = *b - *a;
+        begin = k;
+    }
+    std::rotate(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(begin), order.end());
+    return order;
 }
 
 }  // namespace livery

@@ -25,6 +25,11 @@ struct IdentifiedPhotographs {
         std::string why;  ///< "shows the same as IMG_0012.NEF", "shows none of the pictures"
     };
     std::vector<Odd> odd;  ///< photographs without a role
+    /// Photographs that were found by what they show, not by their order.
+    struct OutOfOrder {
+        std::size_t photograph = 0, role = 0;
+    };
+    std::vector<OutOfOrder> out_of_order;
     bool complete() const;
 };
 
@@ -32,12 +37,17 @@ struct IdentifiedPhotographs {
 /// stripes each followed by its inverse, white and black among them. Pictures may be missing,
 /// taken twice or of something else: the cheapest alignment of the two rows, in which a picture and
 /// its inverse add up to white, white is the brightest, black the darkest, channels have their
-/// colours, and gaps in the files' numbers are gaps in the row. Throws std::invalid_argument for
-/// photographs of different sizes.
+/// colours, and gaps in the files' numbers are gaps in the row. What is left over is then looked at
+/// by itself: a picture that was photographed later, white and black before all stripes. Throws
+/// std::invalid_argument for photographs of different sizes.
 IdentifiedPhotographs identify(const std::vector<Glimpse>& photographs,
                                const std::vector<std::string>& roles);
 
 /// Whether name `a` comes before name `b`: numbers in them by their value, not by their digits.
 bool comes_before(const std::string& a, const std::string& b);
+
+/// Places of the names in the order in which a camera gives them: by comes_before(), and after
+/// 9999 it counts from 0 or 1 again.
+std::vector<std::size_t> order_of_names(const std::vector<std::string>& names);
 
 }  // namespace livery

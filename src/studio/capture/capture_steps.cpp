@@ -83,6 +83,7 @@ void draw_running(Shell& shell) {
         "What was photographed is kept: the capture goes on from there when it is started "
         "again, also after the program was closed.");
     // Below the buttons, which else would move with every line that is wrapped.
+    if (!view.found_before.empty()) dim_text(sentence(view.found_before));
     std::string text = sentence(view.stage);
     text += fmt::format(" {} so far", time_text(view.elapsed_s));
     if (view.remaining_s && !view.waits_for_next)
@@ -249,7 +250,10 @@ void draw_step(Shell& shell, const StepWords& words, bool ready) {
     ImVec4 colour = colours::dim_text;
     const char* mark = "○";
     if (!step.called_for) {
-        shown += words.step == CaptureStep::geometry ? ": where it stands is given" : ": not here";
+        const bool by_hand = state.chosen->kind == CameraChoice::Kind::folder;
+        shown += words.step != CaptureStep::geometry ? ": not here"
+                 : by_hand                           ? ": with the colours"
+                                                     : ": where it stands is given";
     } else if (now) {
         mark = "●";
         colour = colours::accent;
