@@ -36,13 +36,12 @@ std::string text_of(const PairGeometry& geometry, const std::string& out) {
     if (geometry.from_boards)
         text += fmt::format(
             "{} of {} poses; a pose left out is foretold to {:.2f} px, what was fitted lies within "
-            "{:.2f} px in the camera and {:.2f} px in the projector; distortion: {}\n",
+            "{:.2f} px in the camera and {:.2f} px in the projector\n",
             used,
             geometry.poses.size(),
             geometry.held_out_rms_px,
             geometry.camera_rms_px,
-            geometry.projector_rms_px,
-            geometry.lens_model);
+            geometry.projector_rms_px);
     else
         text += fmt::format(
             "lenses as the data sheets have them; the rays of camera and projector pass each other "

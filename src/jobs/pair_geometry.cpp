@@ -11,7 +11,7 @@
 #include "calibration/captures/captures.h"
 #include "calibration/correspondence/fringe_decode.h"
 #include "calibration/geometry/board_sight.h"
-#include "calibration/geometry/choose_model.h"
+#include "calibration/geometry/leave_one_out.h"
 #include "calibration/registration/pair_pose.h"
 #include "capture/captures_folder.h"
 #include "core/error.h"
@@ -145,10 +145,10 @@ PairGeometry from_boards(const PairGeometryRequest& request, const Progress& pro
     }
 
     // The worst pose is left out as long as the others foretell it badly.
-    ChosenModel chosen;
+    CheckedPair chosen;
     for (;;) {
         progress.update(0.9, "fitting lenses and poses");
-        chosen = choose_model(sights, camera, projector, progress);
+        chosen = solve_leaving_each_out(sights, camera, projector, progress);
         const auto worst = static_cast<std::size_t>(
             std::max_element(chosen.held_out_px.begin(), chosen.held_out_px.end()) -
             chosen.held_out_px.begin());
@@ -180,11 +180,9 @@ PairGeometry from_boards(const PairGeometryRequest& request, const Progress& pro
     result.held_out_rms_px = chosen.held_out_rms_px;
     result.camera_standard_error_px = solution.camera_standard_error_px;
     result.projector_standard_error_px = solution.projector_standard_error_px;
+    result.information = solution.information;
     result.turn_standard_error_rad = solution.turn_standard_error_rad;
     result.shift_standard_error_mm = solution.shift_standard_error_mm;
-    result.lens_model = chosen.model == LensModel::k1      ? "k1"
-                        : chosen.model == LensModel::k1_k2 ? "k1 k2"
-                                                           : "all five";
     check_lens_distance(request, result);
     return result;
 }
@@ -205,7 +203,6 @@ PairGeometry from_data_sheets(const PairGeometryRequest& request, const Progress
         pose_of_pair(result.camera, result.projector, map, sheets.lens_distance_mm, 1, progress);
     result.projector.view_from_world = pair.projector_from_camera;
     result.stereo_rms_px = pair.median_px;
-    result.lens_model = "data sheets";
     return result;
 }
 

@@ -50,9 +50,9 @@ struct PairGeometry {
     /// From boards; else 0.
     double camera_rms_px = 0.0, projector_rms_px = 0.0, held_out_rms_px = 0.0;
     double stereo_rms_px = 0.0;  ///< of both together; without boards the median distance of rays
-    std::string lens_model;      ///< "k1", "k1 k2", "all five", or "data sheets"
     std::array<double, 4> camera_standard_error_px{}, projector_standard_error_px{};
     std::array<double, 3> turn_standard_error_rad{}, shift_standard_error_mm{};  ///< PairSolution
+    PairInformation information{};                                               ///< PairSolution
     std::vector<BoardPose> poses;
 };
 
@@ -66,12 +66,12 @@ Json figures_of(const PairGeometry& geometry);
 /// Writes `geometry.json`, `camera.json` and `projector.json`.
 void write_pair_geometry(const std::filesystem::path& folder, const PairGeometry& geometry);
 
-/// How well the calibration in a folder is known: from `geometry.json`, else as boards leave it.
+/// How well the calibrations in these folders, one a sight or one for all, are known: boards' own
+/// information from each `geometry.json`; where one has none, as boards or data sheets leave it.
 /// Throws FileError.
-LensPrior lens_prior_of(const std::filesystem::path& folder);
-/// Checks the text of a `geometry.json`; whether boards made it (else data sheets). Throws
-/// FileError.
-bool parse_made_from_boards(const std::string& text, const std::filesystem::path& file);
+LensPrior lens_prior_of(const std::vector<std::filesystem::path>& folders);
+/// Parses and checks the text of a `geometry.json` for the same. Throws FileError.
+LensPrior parse_lens_prior(const std::string& text, const std::filesystem::path& file);
 /// Checks a `geometry.json`. Throws FileError.
 void check_geometry_file(const std::filesystem::path& file);
 

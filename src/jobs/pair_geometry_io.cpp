@@ -38,7 +38,6 @@ Json figures_of(const PairGeometry& geometry) {
                          {"rms_px", pose.used ? Json(pose.rms_px) : Json(nullptr)}});
     const Rigid3& pair = geometry.projector.view_from_world;
     return {{"made_from", geometry.from_boards ? "boards" : "data sheets"},
-            {"lens_model", geometry.lens_model},
             {"camera_rms_px", or_null(geometry.camera_rms_px)},
             {"projector_rms_px", or_null(geometry.projector_rms_px)},
             {"stereo_rms_px", geometry.stereo_rms_px},
@@ -63,12 +62,13 @@ void write_pair_geometry(const std::filesystem::path& folder, const PairGeometry
     write_camera_file(folder / "projector.json", geometry.projector);
     Json json = figures_of(geometry);
     json.erase("refused");
+    if (geometry.from_boards) json["information"] = geometry.information;
     json["format_version"] = kFormatVersion;
     json["kind"] = "geometry";
     write_json_file(folder / "geometry.json", json);
 }
 
-bool parse_made_from_boards(const std::string& text, const std::filesystem::path& file) {
+LensPrior parse_lens_prior(const std::string& text, const std::filesystem::path& file) {
     const Json json = parse_json(text, file);
     const JsonReader root(file, json);
     root.require_format_version(kFormatVersion);
@@ -78,18 +78,37 @@ bool parse_made_from_boards(const std::string& text, const std::filesystem::path
     for (const char* lens : {"camera_distortion", "projector_distortion"}) root[lens].numbers(5);
     root["translation_mm"].numbers(3);
     root["stereo_rms_px"].number_between(0.0, 1e6);
-    return root["made_from"].one_of({"boards", "data sheets"}) == 0;
+    if (root["made_from"].one_of({"boards", "data sheets"}) == 1) return data_sheet_prior();
+    LensPrior prior;
+    if (!root.has("information")) return prior;
+    const std::vector<double> values = root["information"].numbers(PairInformation{}.size());
+    PairInformation& information = prior.boards.emplace_back();
+    std::copy(values.begin(), values.end(), information.begin());
+    if (!is_information(information))
+        root["information"].fail("a matrix that is none",
+                                 "an inverse covariance: symmetric, not negative");
+    return prior;
 }
 
 void check_geometry_file(const std::filesystem::path& file) {
-    parse_made_from_boards(read_text_file(file), file);
+    parse_lens_prior(read_text_file(file), file);
 }
 
-LensPrior lens_prior_of(const std::filesystem::path& folder) {
-    const auto file = folder / "geometry.json";
-    std::error_code error;
-    if (!std::filesystem::exists(file, error)) return {};
-    return parse_made_from_boards(read_text_file(file), file) ? LensPrior{} : data_sheet_prior();
+LensPrior lens_prior_of(const std::vector<std::filesystem::path>& folders) {
+    LensPrior first;
+    std::vector<PairInformation> boards;
+    for (const std::filesystem::path& folder : folders) {
+        const auto file = folder / "geometry.json";
+        std::error_code error;
+        const LensPrior prior = std::filesystem::exists(file, error)
+                                    ? parse_lens_prior(read_text_file(file), file)
+                                    : LensPrior{};
+        if (&folder == &folders.front()) first = prior;
+        boards.insert(boards.end(), prior.boards.begin(), prior.boards.end());
+    }
+    // Where one of them does not say, none is taken for another
+    first.boards = boards.size() == folders.size() ? boards : std::vector<PairInformation>{};
+    return first;
 }
 
 }  // namespace livery

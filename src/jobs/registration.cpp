@@ -209,7 +209,7 @@ RegisteredMockup register_mockup(const RegistrationRequest& request, const Progr
     const CalibratedPair pair = read_calibrated_pair(request.calibrations.front());
     RegisteredMockup result;
     RegistrationOptions options;
-    options.prior = lens_prior_of(request.calibrations.front());
+    options.prior = lens_prior_of(request.calibrations);
     options.prior.scale_free = request.scale_free;
     options.prior.lens_fixed = request.lens_fixed;
     if (!request.points.empty()) {

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <cstdio>
 
+#include <Eigen/Dense>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "calibration/geometry/choose_model.h"
+#include "calibration/geometry/leave_one_out.h"
+#include "calibration/registration/pixel_refinement.h"
 #include "calibration/support/board_sights.h"
 #include "core/error.h"
 #include "core/worst_error.h"
@@ -69,8 +71,7 @@ TEST(BoardSweep, NightlyErrorsAreAsLargeAsTheirStandardErrorsSay) {
     std::vector<double> all;
     for (std::uint32_t seed = 1; seed <= 20; ++seed) {
         const PairTruth t = truth();
-        const auto found =
-            solve_pair(board_sights(t, kTurns, 0.1, seed), kCamera, kProjector, LensModel::k1_k2);
+        const auto found = solve_pair(board_sights(t, kTurns, 0.1, seed), kCamera, kProjector);
         for (const double score : scores(found, t)) all.push_back(score);
     }
     double squares = 0.0;
@@ -84,6 +85,55 @@ TEST(BoardSweep, NightlyErrorsAreAsLargeAsTheirStandardErrorsSay) {
     EXPECT_GT(std::sqrt(squares), 0.7);
     EXPECT_LT(std::sqrt(squares), 1.4);
     EXPECT_LE(beyond, 6);
+}
+
+/// How far the truth lies from what was found, by the information on all terms together: as large
+/// as the number of terms on average (Mahalanobis).
+double distance_squared(const PairSolution& found, const PairTruth& t, int& terms) {
+    Eigen::VectorXd off(kPairTerms);
+    const auto lens = [&](Eigen::Index at, const View& view, const View& real) {
+        off[at] = std::log(real.focal_px.x / view.focal_px.x);
+        off[at + 1] = real.principal_px.x - view.principal_px.x;
+        off[at + 2] = real.principal_px.y - view.principal_px.y;
+        for (std::size_t k = 0; k < 5; ++k)
+            off[at + 3 + static_cast<Eigen::Index>(k)] = real.distortion[k] - view.distortion[k];
+    };
+    lens(0, found.projector, t.projector);
+    lens(kLensTerms, found.camera, t.camera);
+    const Rigid3 pair = inverse(found.projector.view_from_world);
+    const Rigid3 real = inverse(t.projector.view_from_world);
+    const glm::dmat3 turned = real.rotation * glm::transpose(pair.rotation);
+    const glm::dvec3 turn = axis_of(turned) * angle_of(turned);
+    const glm::dvec3 shift = real.translation - turned * pair.translation;
+    for (int k = 0; k < 3; ++k) {
+        off[2 * kLensTerms + k] = turn[k];
+        off[2 * kLensTerms + 3 + k] = shift[k];
+    }
+    const Eigen::Map<const Eigen::Matrix<double, kPairTerms, kPairTerms>> information(
+        found.information.data());
+    terms = static_cast<int>((information.diagonal().array() > 0.0).count());
+    return off.dot(information * off);
+}
+
+// One focal length a lens: registration changes both of its axes together.
+TEST(BoardSweep, TheInformationHoldsForAllTermsTogether) {
+    constexpr int kSeeds = 12;
+    double sum = 0.0;
+    int terms = 0;
+    for (std::uint32_t seed = 1; seed <= kSeeds; ++seed) {
+        PairTruth t = truth();
+        t.camera.focal_px.y = t.camera.focal_px.x;
+        t.projector.focal_px.y = t.projector.focal_px.x;
+        const auto found = solve_pair(board_sights(t, kTurns, 0.1, seed), kCamera, kProjector);
+        EXPECT_TRUE(is_information(found.information));
+        const double one = distance_squared(found, t, terms);
+        std::printf("    seed %u: %.1f\n", seed, one);
+        sum += one / kSeeds;
+    }
+    std::printf("    the truth lies %.1f away on average, of %d terms\n", sum, terms);
+    EXPECT_EQ(terms, kPairTerms);
+    EXPECT_LT(sum, 2.0 * terms);
+    EXPECT_GT(sum, 0.5 * terms);
 }
 
 // Within four standard errors each: of 9 x 14 scores one in a thousand draws of seeds goes over.
@@ -105,11 +155,8 @@ TEST(BoardSweep, PosesTiltsAndNoise) {
                             Case{10, 0.35, 0.1},
                             Case{10, 0.35, 0.3},
                             Case{10, 0.6, 0.3}}) {
-        const auto found =
-            solve_pair(board_sights(t, tilts(one.poses, one.tilt_rad), one.noise_px, 3),
-                       kCamera,
-                       kProjector,
-                       LensModel::k1_k2);
+        const auto found = solve_pair(
+            board_sights(t, tilts(one.poses, one.tilt_rad), one.noise_px, 3), kCamera, kProjector);
         const std::vector<double> all = scores(found, t);
         double worst = 0.0;
         for (const double score : all) worst = worse_of(worst, std::abs(score));
@@ -138,22 +185,20 @@ TEST(BoardSweep, PosesTiltsAndNoise) {
 
 // Ten times the noise of good photographs on boards that hardly tilt: nothing to be had.
 TEST(BoardSweep, TooLittleTiltForTheNoiseIsRefused) {
-    EXPECT_THROW(
-        solve_pair(
-            board_sights(truth(), tilts(4, 0.06), 1.0, 3), kCamera, kProjector, LensModel::k1_k2),
-        Refused);
+    EXPECT_THROW(solve_pair(board_sights(truth(), tilts(4, 0.06), 1.0, 3), kCamera, kProjector),
+                 Refused);
 }
 
 // The board is found from either end: what it is called turns about its middle, and nothing else.
 TEST(BoardSweep, BoardsUpsideDownChangeNothing) {
     const PairTruth t = truth();
     auto sights = board_sights(t, kTurns, 0.1, 3);
-    const auto straight = choose_model(sights, kCamera, kProjector);
+    const auto straight = solve_leaving_each_out(sights, kCamera, kProjector);
     for (const std::size_t k : {0u, 3u, 4u}) {
         std::reverse(sights[k].camera_px.begin(), sights[k].camera_px.end());
         std::reverse(sights[k].projector_px.begin(), sights[k].projector_px.end());
     }
-    const auto turned = choose_model(sights, kCamera, kProjector);
+    const auto turned = solve_leaving_each_out(sights, kCamera, kProjector);
     // A hundredth of the standard errors: where the search stops, no more.
     for (std::size_t c = 0; c < 2; ++c) {
         const int axis = static_cast<int>(c);

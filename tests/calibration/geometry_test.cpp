@@ -9,7 +9,7 @@
 
 #include "calibration/correspondence/gray_code.h"
 #include "calibration/geometry/carry_corners.h"
-#include "calibration/geometry/choose_model.h"
+#include "calibration/geometry/leave_one_out.h"
 #include "calibration/registration/rotation.h"
 #include "calibration/support/board_sights.h"
 #include "core/error.h"
@@ -31,15 +31,13 @@ TEST(Geometry, LensesAndTheirPlacesAreFoundWithALensShift) {
     constexpr std::uint32_t kSeed = 5;
     std::printf("seed %u\n", kSeed);
     const PairTruth t = pair_truth();
-    const auto exact =
-        solve_pair(board_sights(t, kTurns, 0.0, kSeed), kCamera, kProjector, LensModel::all_five);
+    const auto exact = solve_pair(board_sights(t, kTurns, 0.0, kSeed), kCamera, kProjector);
     EXPECT_NEAR(exact.camera.focal_px.x, 2400, 0.5);
     EXPECT_NEAR(exact.projector.focal_px.y, 1905, 0.5);
     EXPECT_NEAR(exact.projector.principal_px.y, 980, 0.5);
     EXPECT_NEAR(exact.camera.distortion[0], -0.12, 2e-3);
 
-    const auto noisy =
-        solve_pair(board_sights(t, kTurns, 0.1, kSeed), kCamera, kProjector, LensModel::k1_k2);
+    const auto noisy = solve_pair(board_sights(t, kTurns, 0.1, kSeed), kCamera, kProjector);
     EXPECT_NEAR(noisy.camera.focal_px.x, 2400, 24);
     EXPECT_NEAR(noisy.projector.focal_px.x, 1900, 19);
     EXPECT_LT(noisy.projector_rms_px, 0.2);
@@ -52,12 +50,9 @@ TEST(Geometry, LensesAndTheirPlacesAreFoundWithALensShift) {
 TEST(Geometry, WhatDoesNotDetermineTheLensesIsRefused) {
     const PairTruth t = pair_truth();
     const std::vector<glm::dvec3> parallel(5, {0.3, 0.1, 0});
-    EXPECT_THROW(solve_pair(board_sights(t, parallel, 0.1, 1), kCamera, kProjector, LensModel::k1),
+    EXPECT_THROW(solve_pair(board_sights(t, parallel, 0.1, 1), kCamera, kProjector), Refused);
+    EXPECT_THROW(solve_pair(board_sights(t, {kTurns[0], kTurns[2]}, 0.1, 1), kCamera, kProjector),
                  Refused);
-    EXPECT_THROW(
-        solve_pair(
-            board_sights(t, {kTurns[0], kTurns[2]}, 0.1, 1), kCamera, kProjector, LensModel::k1),
-        Refused);
 }
 
 TEST(Geometry, CornersAreCarriedThroughStepsAndGrossErrors) {
@@ -207,13 +202,12 @@ TEST(Geometry, RealPhotographsForetellAPoseLeftOutAsWellAsOpenCV) {
                         each.c_str());
             best = std::min(best, std::sqrt(squares));
         }
-    const ChosenModel own = choose_model(sights, kCamera, kProjector);
+    const CheckedPair own = solve_leaving_each_out(sights, kCamera, kProjector);
     std::printf(
-        "held out: %.3f px, OpenCV's best %.3f px; model %d, focal %.0f +- %.0f, "
+        "held out: %.3f px, OpenCV's best %.3f px; focal %.0f +- %.0f, "
         "projector %.0f +- %.0f px\n",
         own.held_out_rms_px,
         best,
-        int(own.model),
         own.solution.camera.focal_px.x,
         own.solution.camera_standard_error_px[0],
         own.solution.projector.focal_px.x,

@@ -239,7 +239,7 @@ put("picked_points", "others.csv", "# roof\r\nname,v_px,\"u_px\",z_mm,y_mm,x_mm\
 for origin, poses in {"boards": [{"folder": "pose-0", "used": True, "reason": "", "corners": 63, "rms_px": 0.4}],
                       "data sheets": []}.items():
     put("pair_geometry", origin.replace(" ", "-") + ".json",
-        {**POSE, "format_version": 1, "kind": "geometry", "made_from": origin, "lens_model": "k1",
+        {**POSE, "format_version": 1, "kind": "geometry", "made_from": origin,
          "camera_rms_px": 0.1, "projector_rms_px": None, "stereo_rms_px": 0.3, "held_out_rms_px": 0.4,
          "camera_matrix": CAMERA["matrix"], "camera_distortion": CAMERA["distortion"],
          "camera_standard_error_px": [1, 1, 2, 2], "projector_matrix": CAMERA["matrix"],

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/image_io.h"
 #include "core/paths.h"
+#include "support/message_of.h"
 #include "support/reference_data.h"
 #include "support/temporary_folder.h"
 #include "support/thorough.h"
@@ -37,11 +38,10 @@ TEST(PairGeometry, NightlyOfRealPhotographsUsesAllPosesAndForetellsEach) {
         EXPECT_EQ(pose.corners, 63u);
         EXPECT_LT(pose.rms_px, 0.7);
     }
-    std::printf("    held out %.3f px, camera %.3f px, projector %.3f px, %s\n",
+    std::printf("    held out %.3f px, camera %.3f px, projector %.3f px\n",
                 found.held_out_rms_px,
                 found.camera_rms_px,
-                found.projector_rms_px,
-                found.lens_model.c_str());
+                found.projector_rms_px);
     // The lens is shifted: the axis lies below the projector's picture.
     EXPECT_GT(found.projector.principal_px.y, 768.0);
 
@@ -55,7 +55,7 @@ TEST(PairGeometry, NightlyOfRealPhotographsUsesAllPosesAndForetellsEach) {
     EXPECT_NEAR(projector.view_from_world.translation.x,
                 found.projector.view_from_world.translation.x,
                 1e-6);
-    EXPECT_EQ(lens_prior_of(folder / "geometry").principal, LensPrior{}.principal);
+    EXPECT_EQ(lens_prior_of({folder / "geometry"}).boards.size(), 1u);
 }
 
 TEST(PairGeometry, SaysOfEachFolderWhyItIsNotUsed) {
@@ -162,9 +162,30 @@ TEST(PairGeometry, NightlyOfSimulatedBoardsLeavesOutTheOneOfAnotherSize) {
     }
 }
 
+TEST(PairGeometry, InformationOfBoardsIsReadAndChecked) {
+    PairGeometry geometry;
+    geometry.from_boards = true;
+    geometry.camera = geometry.projector = View{640, 480, {800, 800}, {320, 240}, {}, {}};
+    for (std::size_t k = 0; k < kPairTerms; ++k) geometry.information[(kPairTerms + 1) * k] = 4.0;
+    const TemporaryFolder folder;
+    write_pair_geometry(folder.path(), geometry);
+    ASSERT_EQ(lens_prior_of({folder.path()}).boards.size(), 1u);
+    EXPECT_EQ(lens_prior_of({folder.path()}).boards[0], geometry.information);
+    // A second folder that says nothing of it: nobody's information is taken for another's
+    EXPECT_TRUE(lens_prior_of({folder.path(), folder / "nothing"}).boards.empty());
+    for (const double bad : {-1.0, 9.0}) {
+        PairGeometry spoilt = geometry;
+        spoilt.information[1] = spoilt.information[kPairTerms] = bad < 0.0 ? 0.0 : bad;
+        if (bad < 0.0) spoilt.information[0] = bad;
+        write_pair_geometry(folder.path(), spoilt);
+        EXPECT_NE(message_of([&] { lens_prior_of({folder.path()}); }).find("information"),
+                  std::string::npos);
+    }
+}
+
 TEST(PairGeometry, FilesThatAreNoneAreNamed) {
     const TemporaryFolder folder;
-    EXPECT_EQ(lens_prior_of(folder / "nothing").distortion, LensPrior{}.distortion);
+    EXPECT_EQ(lens_prior_of({folder / "nothing"}).distortion, LensPrior{}.distortion);
     for (const char* text :
          {"{",
           "{}",

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Dense>
 #include <ceres/ceres.h>
+#include <ceres/normal_prior.h>
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
@@ -158,25 +160,30 @@ void add_points(ceres::Problem& problem,
     }
 }
 
-void hold(ceres::Problem& problem, Lens& lens, LensModel model) {
-    if (model == LensModel::all_five) return;
-    const std::vector<int> held =
-        model == LensModel::k1 ? std::vector<int>{5, 6, 7, 8} : std::vector<int>{6, 7, 8};
-    problem.SetManifold(lens.data(), new ceres::SubsetManifold(9, held));
-}
-
 void build(ceres::Problem& problem,
            BoardsState& state,
            std::span<const BoardSight> sights,
            PictureSize camera,
-           PictureSize projector,
-           LensModel model) {
+           PictureSize projector) {
     for (std::size_t k = 0; k < sights.size(); ++k) {
         add_points(problem, sights[k], camera, state.camera, state.boards[k], nullptr);
         add_points(problem, sights[k], projector, state.projector, state.boards[k], &state.stereo);
     }
-    hold(problem, state.camera, model);
-    hold(problem, state.projector, model);
+}
+
+/// Residuals are pixels; `noise_px` is what one of them counts as one deviation.
+void add_distortion_prior(ceres::Problem& problem, Lens& lens, double noise_px) {
+    constexpr std::array<double, 5> kSigma = {0.5, 0.5, 0.003, 0.003, 0.5};  // k1 k2 p1 p2 k3
+    ceres::Matrix weights = ceres::Matrix::Zero(5, 9);
+    for (Eigen::Index k = 0; k < 5; ++k)
+        weights(k, 4 + k) = noise_px / kSigma[static_cast<std::size_t>(k)];
+    problem.AddResidualBlock(
+        new ceres::NormalPrior(weights, ceres::Vector::Zero(9)), nullptr, lens.data());
+}
+
+/// For a start: k1 alone.
+void hold_all_but_k1(ceres::Problem& problem, Lens& lens) {
+    problem.SetManifold(lens.data(), new ceres::SubsetManifold(9, {5, 6, 7, 8}));
 }
 
 /// False where no usable step was found.
@@ -232,7 +239,7 @@ BoardsState state_of(const PairSolution& solution) {
     return state;
 }
 
-/// From several starts, by the smallest model; no boards where none leads to lenses.
+/// From several starts, with k1 alone; no boards where none leads to lenses.
 BoardsState best_of_starts(std::span<const BoardSight> sights,
                            PictureSize camera,
                            PictureSize projector,
@@ -240,7 +247,9 @@ BoardsState best_of_starts(std::span<const BoardSight> sights,
     BoardsState best;
     for (BoardsState& start : starts(sights, camera, projector)) {
         ceres::Problem problem;
-        build(problem, start, sights, camera, projector, LensModel::k1);
+        build(problem, start, sights, camera, projector);
+        hold_all_but_k1(problem, start.camera);
+        hold_all_but_k1(problem, start.projector);
         double cost = 0.0;
         if (solve(problem, 60, progress, cost) && cost < best.cost) {
             best = start;
@@ -273,15 +282,67 @@ void check_tilts(const BoardsState& state) {
                       "tilt the board by 20 to 40 degrees, to all four sides");
 }
 
-/// Square roots of the covariance's first four, at the residuals' own spread.
-std::array<double, 4> standard_errors(const ceres::Covariance& covariance,
-                                      const Lens& lens,
-                                      double sigma_px) {
-    std::array<double, 81> block{};
-    covariance.GetCovarianceBlock(lens.data(), lens.data(), block.data());
-    std::array<double, 4> errors{};
-    for (std::size_t k = 0; k < 4; ++k) errors[k] = sigma_px * std::sqrt(block[10 * k]);
-    return errors;
+/// Of camera (9), projector (9) and projector_from_camera (6), all boards' poses free: the normal
+/// equations with the poses eliminated (Schur complement).
+Eigen::MatrixXd information_of(ceres::Problem& problem, BoardsState& state) {
+    ceres::Problem::EvaluateOptions options;
+    options.parameter_blocks = {
+        state.camera.data(), state.projector.data(), state.stereo.six.data()};
+    for (Pose& board : state.boards) options.parameter_blocks.push_back(board.six.data());
+    ceres::CRSMatrix jacobian;
+    if (!problem.Evaluate(options, nullptr, nullptr, nullptr, &jacobian))
+        throw Refused("the lenses could not be fitted", "photograph the board in more poses");
+    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(jacobian.num_cols, jacobian.num_cols);
+    for (std::size_t row = 0; row + 1 < jacobian.rows.size(); ++row)
+        for (int i = jacobian.rows[row]; i < jacobian.rows[row + 1]; ++i)
+            for (int k = jacobian.rows[row]; k < jacobian.rows[row + 1]; ++k) {
+                const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(k);
+                normal(jacobian.cols[a], jacobian.cols[b]) +=
+                    jacobian.values[a] * jacobian.values[b];
+            }
+    const auto boards = static_cast<Eigen::Index>(6 * state.boards.size());
+    const Eigen::Index free = normal.rows() - boards;
+    const Eigen::MatrixXd of_boards = normal.bottomRightCorner(boards, boards);
+    const Eigen::MatrixXd beside = normal.bottomLeftCorner(boards, free);
+    return normal.topLeftCorner(free, free) - beside.transpose() * of_boards.ldlt().solve(beside);
+}
+
+/// Standard deviations; infinite where nothing tells. In units of the terms' own slopes, since
+/// pixels stand beside k3.
+Eigen::VectorXd deviations_of(const Eigen::MatrixXd& information) {
+    const Eigen::VectorXd unit = information.diagonal().array().max(1e-300).rsqrt().matrix();
+    const Eigen::MatrixXd scaled = unit.asDiagonal() * information * unit.asDiagonal();
+    const Eigen::LDLT<Eigen::MatrixXd> solver(scaled);
+    if (!solver.isPositive())
+        return Eigen::VectorXd::Constant(unit.size(), std::numeric_limits<double>::infinity());
+    const Eigen::MatrixXd inverse =
+        solver.solve(Eigen::MatrixXd::Identity(unit.size(), unit.size()));
+    return (inverse.diagonal().array().max(0.0).sqrt() * unit.array()).matrix();
+}
+
+/// The same in the terms that registration seeks: one focal length a lens, the pose from the
+/// camera's side.
+PairInformation pair_information(const Eigen::MatrixXd& information, const PairSolution& solution) {
+    Eigen::MatrixXd change = Eigen::MatrixXd::Zero(24, kPairTerms);
+    const auto lens = [&](int row, int column, const View& view) {
+        change(row, column) = view.focal_px.x;
+        change(row + 1, column) = view.focal_px.y;
+        for (int k = 0; k < 7; ++k) change(row + 2 + k, column + 1 + k) = 1.0;
+    };
+    lens(9, 0, solution.projector);
+    lens(0, kLensTerms, solution.camera);
+    // exp(v) R^T and exp(v) tc + s on the camera's side are exp(-R v) R and t - R s on the other
+    const glm::dmat3& turn = solution.projector.view_from_world.rotation;
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column)
+            for (const int part : {0, 3})
+                change(18 + part + row, 2 * kLensTerms + part + column) = -turn[column][row];
+    const Eigen::MatrixXd known = change.transpose() * information * change;
+    PairInformation result{};
+    for (int row = 0; row < kPairTerms; ++row)
+        for (int column = 0; column < kPairTerms; ++column)
+            result[static_cast<std::size_t>(kPairTerms * row + column)] = known(row, column);
+    return result;
 }
 
 double rms_px(const View& view, const Rigid3& view_from_board, const BoardSight& sight, bool lit) {
@@ -295,6 +356,22 @@ double rms_px(const View& view, const Rigid3& view_from_board, const BoardSight&
         squares += glm::dot(off, off);
     }
     return std::sqrt(squares / static_cast<double>(sight.board_mm.size()));
+}
+
+/// Of both, over all sights.
+double rms_px(const BoardsState& state,
+              std::span<const BoardSight> sights,
+              PictureSize camera,
+              PictureSize projector) {
+    const View seen = view_of(state.camera.data(), camera);
+    const View lit = view_of(state.projector.data(), projector);
+    double squares = 0.0;
+    for (std::size_t k = 0; k < sights.size(); ++k) {
+        const Rigid3 pose = state.boards[k].rigid();
+        squares += std::pow(rms_px(seen, pose, sights[k], false), 2.0) +
+                   std::pow(rms_px(lit, state.stereo.rigid() * pose, sights[k], true), 2.0);
+    }
+    return std::sqrt(squares / (2.0 * static_cast<double>(sights.size())));
 }
 
 void check_focal(const char* who, double focal_px, double error_px) {
@@ -311,7 +388,6 @@ void check_focal(const char* who, double focal_px, double error_px) {
 PairSolution solve_pair(std::span<const BoardSight> sights,
                         PictureSize camera,
                         PictureSize projector,
-                        LensModel model,
                         const PairSolution* near,
                         const Progress& progress) {
     check_sights(sights);
@@ -323,7 +399,11 @@ PairSolution solve_pair(std::span<const BoardSight> sights,
                       "check the size of the board and of its squares");
     check_tilts(best);
     ceres::Problem problem;
-    build(problem, best, sights, camera, projector, model);
+    build(problem, best, sights, camera, projector);
+    const double noise_px =
+        std::max(rms_px(best, sights, camera, projector) / std::sqrt(2.0), 1e-6);
+    add_distortion_prior(problem, best.camera, noise_px);
+    add_distortion_prior(problem, best.projector, noise_px);
     if (!solve(problem, 200, progress, best.cost))
         throw Refused("the lenses could not be fitted", "photograph the board in more poses");
 
@@ -345,29 +425,28 @@ PairSolution solve_pair(std::span<const BoardSight> sights,
     result.camera_rms_px = std::sqrt(camera_squares / points);
     result.projector_rms_px = std::sqrt(projector_squares / points);
 
-    ceres::Covariance::Options how;
-    how.algorithm_type = ceres::DENSE_SVD;
-    // Pixels beside k3: the units alone make the matrix look singular. The standard errors judge.
-    how.min_reciprocal_condition_number = 1e-20;
-    ceres::Covariance covariance(how);
-    const std::vector<std::pair<const double*, const double*>> blocks = {
-        {best.camera.data(), best.camera.data()},
-        {best.projector.data(), best.projector.data()},
-        {best.stereo.six.data(), best.stereo.six.data()}};
-    if (!covariance.Compute(blocks, &problem))
-        throw Refused("the poses of the board do not determine the lenses",
-                      "tilt the board by 20 to 40 degrees, to all four sides");
+    // About where the poses came to be, so that their turns are small ones
+    best.stereo = pose_from(best.stereo.rigid());
+    for (Pose& board : best.boards) board = pose_from(board.rigid());
+    ceres::Problem settled;
+    build(settled, best, sights, camera, projector);
+    add_distortion_prior(settled, best.camera, noise_px);
+    add_distortion_prior(settled, best.projector, noise_px);
+    // At the residuals' own spread
     const double unknowns = 24.0 + 6.0 * static_cast<double>(sights.size());
-    const double sigma =
-        std::sqrt((camera_squares + projector_squares) / std::max(1.0, 4.0 * points - unknowns));
-    result.camera_standard_error_px = standard_errors(covariance, best.camera, sigma);
-    result.projector_standard_error_px = standard_errors(covariance, best.projector, sigma);
-    std::array<double, 36> pair{};
-    covariance.GetCovarianceBlock(best.stereo.six.data(), best.stereo.six.data(), pair.data());
-    for (std::size_t k = 0; k < 3; ++k) {
-        result.turn_standard_error_rad[k] = sigma * std::sqrt(pair[7 * k]);
-        result.shift_standard_error_mm[k] = sigma * std::sqrt(pair[7 * (k + 3)]);
-    }
+    const double variance =
+        (camera_squares + projector_squares) / std::max(1.0, 4.0 * points - unknowns);
+    const Eigen::MatrixXd information = information_of(settled, best) / std::max(variance, 1e-12);
+    const Eigen::VectorXd deviations = deviations_of(information);
+    const auto errors_from = [&](Eigen::Index first, auto& errors) {
+        for (std::size_t k = 0; k < errors.size(); ++k)
+            errors[k] = deviations[first + static_cast<Eigen::Index>(k)];
+    };
+    errors_from(0, result.camera_standard_error_px);
+    errors_from(9, result.projector_standard_error_px);
+    errors_from(18, result.turn_standard_error_rad);
+    errors_from(21, result.shift_standard_error_mm);
+    result.information = pair_information(information, result);
     for (std::size_t k = 0; k < 2; ++k) {
         check_focal("camera", best.camera[k], result.camera_standard_error_px[k]);
         check_focal("projector", best.projector[k], result.projector_standard_error_px[k]);

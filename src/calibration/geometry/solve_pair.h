@@ -8,6 +8,7 @@
 
 #include <glm/vec2.hpp>
 
+#include "calibration/geometry/pair_information.h"
 #include "core/progress.h"
 #include "scene/view.h"
 
@@ -21,9 +22,6 @@ struct BoardSight {
     std::vector<glm::dvec2> projector_px;
 };
 
-/// How many of k1, k2, p1, p2, k3 are fitted; the others are 0.
-enum class LensModel { k1, k1_k2, all_five };
-
 struct PairSolution {
     View camera;     ///< the world is its frame
     View projector;  ///< view_from_world is projector_from_camera
@@ -34,6 +32,7 @@ struct PairSolution {
     /// Of the projector's pose from the camera: a small turn on the projector's side, and the
     /// shift.
     std::array<double, 3> turn_standard_error_rad{}, shift_standard_error_mm{};
+    PairInformation information{};  ///< of all of these together, distortion too
 };
 
 struct PictureSize {
@@ -41,14 +40,15 @@ struct PictureSize {
 };
 
 /// Bundle adjustment of both lenses, the pose between them and the board's poses together, with a
-/// Huber loss; from several starts, because the projector's principal point may lie outside its
+/// Huber loss. Distortion has a prior (k1, k2, k3: 0.5, p1, p2: 0.003), which says what real lenses
+/// have: terms that the boards do not tell stay near 0, and their uncertainty is in that of the
+/// others. From several starts, because the projector's principal point may lie outside its
 /// picture. Throws Refused for fewer than three poses, for boards that are all parallel and where
-/// a focal length's standard error exceeds 5% of it. `near`: a solution for the same sights, by a
-/// smaller model or together with others, to begin at in place of the several starts.
+/// a focal length's standard error exceeds 5% of it. `near`: a solution for the
+/// same sights together with others, to begin at in place of the several starts.
 PairSolution solve_pair(std::span<const BoardSight> sights,
                         PictureSize camera,
                         PictureSize projector,
-                        LensModel model,
                         const PairSolution* near = nullptr,
                         const Progress& progress = {});
 

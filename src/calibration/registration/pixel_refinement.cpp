@@ -29,20 +29,21 @@ Rigid3 moved(const double* six, const Rigid3& pose) {
     return {turn * pose.rotation, turn * pose.translation + glm::dvec3(six[3], six[4], six[5])};
 }
 
-/// Changes of a lens: focal length (logarithm), principal point, distortion k1.
-using LensChange = std::array<double, 4>;
+/// Changes of a lens: focal length (logarithm), principal point, distortion (pair_information.h).
+using LensChange = std::array<double, kLensTerms>;
+using PoseChange = std::array<double, kPoseTerms>;
 
 View with_lens(const double* change, View view) {
     view.focal_px *= std::exp(change[0]);
     view.principal_px += glm::dvec2(change[1], change[2]);
-    view.distortion[0] += change[3];
+    for (std::size_t k = 0; k < view.distortion.size(); ++k) view.distortion[k] += change[3 + k];
     return view;
 }
 
 /// Everything sought, as changes of what was given.
 struct State {
-    std::array<double, 6> pose{};               ///< projector_from_mesh, moved
-    std::vector<std::array<double, 6>> stereo;  ///< camera_from_projector, moved
+    PoseChange pose{};               ///< projector_from_mesh, moved
+    std::vector<PoseChange> stereo;  ///< camera_from_projector, moved
     LensChange projector_lens{}, camera_lens{};
     std::array<double, 1> scale{};  ///< logarithm
 };
@@ -114,25 +115,112 @@ struct PixelError {
     }
 };
 
-template <std::size_t N>
-struct PriorError {
-    std::array<double, N> sigma{};
-    template <typename T>
-    bool operator()(const T* values, T* residual) const {
-        for (std::size_t k = 0; k < N; ++k) residual[k] = values[k] / sigma[k];
+using PairMatrix = Eigen::Matrix<double, kPairTerms, kPairTerms, Eigen::RowMajor>;
+
+/// What makes changes independent and of unit variance; nothing where it is no information.
+std::optional<Eigen::MatrixXd> whitening(const Eigen::MatrixXd& information) {
+    if (!(information.diagonal().minCoeff() > 0.0)) return std::nullopt;
+    // Pixels beside radians: to unit diagonal first
+    const Eigen::VectorXd unit = information.diagonal().array().sqrt().matrix();
+    const Eigen::VectorXd per_unit = unit.cwiseInverse();
+    Eigen::MatrixXd scaled = per_unit.asDiagonal() * information * per_unit.asDiagonal();
+    if (!scaled.isApprox(scaled.transpose(), 1e-6)) return std::nullopt;
+    scaled.diagonal().array() += 1e-11;  // rounding must not make it indefinite
+    const Eigen::LLT<Eigen::MatrixXd> root(scaled);
+    if (root.info() != Eigen::Success) return std::nullopt;
+    return Eigen::MatrixXd(root.matrixU()) * unit.asDiagonal();
+}
+
+Eigen::MatrixXd covariance_from(const Eigen::MatrixXd& information) {
+    const Eigen::MatrixXd root = whitening(information).value();
+    const Eigen::MatrixXd inverse = root.triangularView<Eigen::Upper>().solve(
+        Eigen::MatrixXd::Identity(root.rows(), root.cols()));
+    return inverse * inverse.transpose();
+}
+
+/// What is known of some blocks together: a Gaussian about 0, its residuals independent.
+class GaussianPrior final : public ceres::CostFunction {
+  public:
+    GaussianPrior(const Eigen::MatrixXd& information, const std::vector<int>& sizes)
+        : root_(whitening(information).value()) {
+        *mutable_parameter_block_sizes() = sizes;
+        set_num_residuals(static_cast<int>(root_.rows()));
+    }
+
+    bool Evaluate(double const* const* values, double* residuals, double** slopes) const override {
+        Eigen::Map<Eigen::VectorXd> all(residuals, root_.rows());
+        all.setZero();
+        Eigen::Index from = 0;
+        for (std::size_t block = 0; block < parameter_block_sizes().size(); ++block) {
+            const Eigen::Index size = parameter_block_sizes()[block];
+            const auto part = root_.middleCols(from, size);
+            all += part * Eigen::Map<const Eigen::VectorXd>(values[block], size);
+            if (slopes && slopes[block])
+                for (Eigen::Index row = 0; row < part.rows(); ++row)
+                    for (Eigen::Index column = 0; column < size; ++column)
+                        slopes[block][row * size + column] = part(row, column);
+            from += size;
+        }
         return true;
     }
+
+  private:
+    Eigen::MatrixXd root_;
 };
 
-template <std::size_t N>
-ceres::ResidualBlockId add_prior(ceres::Problem& problem,
-                                 double* block,
-                                 const std::array<double, N>& sigma) {
-    return problem.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<PriorError<N>, static_cast<int>(N), static_cast<int>(N)>(
-            new PriorError<N>{sigma}),
-        nullptr,
-        block);
+/// Information about independent terms.
+Eigen::MatrixXd independent(const Eigen::VectorXd& sigma) {
+    return sigma.array().square().inverse().matrix().asDiagonal();
+}
+
+/// What boards tell, where their terms move by two deviations: squares of such
+/// changes are more than what the boards tell of some combinations. Each term gets that much of
+/// slack, and what no lens's model has: (L^-1 + S)^-1 for information L and slack S.
+Eigen::MatrixXd with_slack(const Eigen::MatrixXd& information,
+                           const View& projector,
+                           const View& camera,
+                           double distance_mm) {
+    constexpr double kModelError = 2e-5;  // a twentieth of a pixel across a picture
+    const Eigen::VectorXd sigma = covariance_from(information).diagonal().cwiseSqrt();
+    const double focal = std::max(sigma[0], sigma[kLensTerms]);
+    const double relative = kModelError + 4.0 * focal * focal;
+    Eigen::VectorXd slack = Eigen::VectorXd::Constant(kPairTerms, relative);
+    slack.segment(1, 2) *= projector.focal_px.x;
+    slack.segment(kLensTerms + 1, 2) *= camera.focal_px.x;
+    slack.tail(3) *= distance_mm;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(slack.asDiagonal() * information *
+                                                                slack.asDiagonal());
+    const Eigen::VectorXd values = solver.eigenvalues().cwiseMax(0.0);
+    const Eigen::VectorXd eased = (values.array() / (1.0 + values.array())).matrix();
+    const Eigen::VectorXd per_slack = slack.cwiseInverse();
+    return per_slack.asDiagonal() * solver.eigenvectors() * eased.asDiagonal() *
+           solver.eigenvectors().transpose() * per_slack.asDiagonal();
+}
+
+/// Of everything but the mock-up's pose and scale, before the photographs of it: both lenses and
+/// where the k-th camera stands against the projector.
+Eigen::MatrixXd known_before(const LensPrior& prior,
+                             const View& projector,
+                             const View& camera,
+                             double distance_mm,
+                             std::size_t k) {
+    if (!prior.boards.empty())
+        return with_slack(
+            Eigen::Map<const PairMatrix>(prior.boards[std::min(k, prior.boards.size() - 1)].data()),
+            projector,
+            camera,
+            distance_mm);
+    Eigen::VectorXd sigma(kPairTerms);
+    const auto lens = [&](Eigen::Index first, const View& view) {
+        const double principal = prior.principal * view.width;
+        sigma.segment(first, kLensTerms) << prior.focal, principal, principal, prior.distortion,
+            prior.distortion, prior.tangential, prior.tangential, prior.distortion;
+    };
+    lens(0, projector);
+    lens(kLensTerms, camera);
+    sigma.tail(kPoseTerms).head(3).setConstant(prior.turn_rad);
+    sigma.tail(kPoseTerms).tail(3).setConstant(prior.shift * distance_mm);
+    return independent(sigma);
 }
 
 /// What falls on the mesh with the views as they are now, and not farther from where it was seen
@@ -279,45 +367,69 @@ Eigen::MatrixXd covariance_of(const Solved& solved) {
     return wider.asDiagonal() * inverse * wider.asDiagonal();
 }
 
+/// How many neighbouring pixels err as one, from the residuals of a solution, each weighed as its
+/// loss weighs it: the design effect of tiles as clusters (Kish 1965).
+double pixels_that_err_together(const Solved& solved) {
+    ceres::Problem::EvaluateOptions options;
+    options.residual_blocks = solved.pixels;
+    std::vector<double> residuals;
+    if (!solved.problem->Evaluate(options, nullptr, &residuals, nullptr, nullptr)) return 1.0;
+    std::map<int, glm::dvec2> of_tile;
+    double squares = 0.0, of_sums = 0.0;
+    for (std::size_t k = 0; k < solved.tile.size(); ++k) {
+        const glm::dvec2 residual(residuals[2 * k], residuals[2 * k + 1]);
+        of_tile[solved.tile[k]] += residual;
+        squares += glm::dot(residual, residual);
+    }
+    for (const auto& [tile, sum] : of_tile) of_sums += glm::dot(sum, sum);
+    return std::max(of_sums / std::max(squares, 1e-300), 1.0);
+}
+
 void describe(const Solved& solved,
               State& state,
               const LensPrior& prior,
-              const LensChange& projector_sigma,
-              const LensChange& camera_sigma,
-              const std::array<double, 6>& stereo_sigma,
+              const Eigen::MatrixXd& known,
               PixelRefinement& result) {
     const Eigen::MatrixXd covariance = covariance_of(solved);
     for (int i = 0; i < 6; ++i)
         for (int k = 0; k < 6; ++k)
             result.covariance[static_cast<std::size_t>(6 * i + k)] = covariance(i, k);
-    const auto tell =
-        [&](const double* block, const char* const* names, const double* sigma, int n) {
-            Eigen::Index from = 0;
-            for (const auto& [other, size] : solved.sought) {
-                if (other == block) break;
-                from += size;
-            }
-            for (int k = 0; k < n; ++k)
-                result.lens.push_back(
-                    {names[k], block[k], std::sqrt(covariance(from + k, from + k)), sigma[k]});
-        };
+    Eigen::Index from = kPoseTerms;  // sought in this order: the pose, lenses, the pair, the scale
+    const auto tell = [&](const char* name, double change, double before) {
+        result.lens.push_back({name, change, std::sqrt(covariance(from, from)), before});
+        ++from;
+    };
     if (!prior.lens_fixed) {
-        constexpr const char* projector[] = {
-            "projector focal", "projector principal x", "projector principal y", "projector k1"};
-        constexpr const char* camera[] = {
-            "camera focal", "camera principal x", "camera principal y", "camera k1"};
-        constexpr const char* stereo[] = {"camera turn x",
-                                          "camera turn y",
-                                          "camera turn z",
-                                          "camera shift x",
-                                          "camera shift y",
-                                          "camera shift z"};
-        tell(state.projector_lens.data(), projector, projector_sigma.data(), 4);
-        tell(state.camera_lens.data(), camera, camera_sigma.data(), 4);
-        tell(state.stereo.front().data(), stereo, stereo_sigma.data(), 6);
+        constexpr std::array<const char*, kPairTerms> names = {"projector focal",
+                                                               "projector principal x",
+                                                               "projector principal y",
+                                                               "projector k1",
+                                                               "projector k2",
+                                                               "projector p1",
+                                                               "projector p2",
+                                                               "projector k3",
+                                                               "camera focal",
+                                                               "camera principal x",
+                                                               "camera principal y",
+                                                               "camera k1",
+                                                               "camera k2",
+                                                               "camera p1",
+                                                               "camera p2",
+                                                               "camera k3",
+                                                               "camera turn x",
+                                                               "camera turn y",
+                                                               "camera turn z",
+                                                               "camera shift x",
+                                                               "camera shift y",
+                                                               "camera shift z"};
+        std::vector<double> changes(state.projector_lens.begin(), state.projector_lens.end());
+        changes.insert(changes.end(), state.camera_lens.begin(), state.camera_lens.end());
+        changes.insert(changes.end(), state.stereo.front().begin(), state.stereo.front().end());
+        const Eigen::VectorXd sigma = covariance_from(known).diagonal().cwiseSqrt();
+        for (std::size_t k = 0; k < names.size(); ++k)
+            tell(names[k], changes[k], sigma[static_cast<Eigen::Index>(k)]);
     }
-    constexpr const char* scale[] = {"mesh scale"};
-    if (prior.scale_free) tell(state.scale.data(), scale, &prior.scale, 1);
+    if (prior.scale_free) tell("mesh scale", state.scale[0], prior.scale);
 }
 
 /// Throws Refused for a lens that leaves a corner of its picture without a ray.
@@ -335,6 +447,10 @@ void check_lens(const View& view, const char* whose) {
 }
 
 }  // namespace
+
+bool is_information(const PairInformation& values) {
+    return whitening(Eigen::Map<const PairMatrix>(values.data())).has_value();
+}
 
 PixelRefinement refine_on_pixels(const Mesh& mesh,
                                  const Tracer& tracer,
@@ -355,19 +471,14 @@ PixelRefinement refine_on_pixels(const Mesh& mesh,
     State state;
     state.stereo.resize(sights.size());
     const double distance = glm::length(given.projector.view_from_world.translation);
-    const auto lens_sigma = [&](const View& view) {
-        const double principal = prior.principal * view.width;
-        return LensChange{prior.focal, principal, principal, prior.distortion};
+    const auto pair_before = [&](std::size_t k) {
+        return known_before(prior, projector, sights[k].camera, distance, k);
     };
-    const LensChange projector_sigma = lens_sigma(projector),
-                     camera_sigma = lens_sigma(sights.front().camera);
-    const double shift = prior.shift * distance;
-    const std::array<double, 6> stereo_sigma = {
-        prior.turn_rad, prior.turn_rad, prior.turn_rad, shift, shift, shift};
     // Hardly a prior: a bound for what nothing holds, the turn of a sphere.
-    const std::array<double, 6> pose_sigma = {1.0, 1.0, 1.0, distance, distance, distance};
+    Eigen::VectorXd pose_sigma(kPoseTerms);
+    pose_sigma << 1.0, 1.0, 1.0, distance, distance, distance;
 
-    double within_px = 0.03 * projector.width, sigma_px = 2.0;
+    double within_px = 0.03 * projector.width, sigma_px = 2.0, together = 1.0;
     PixelRefinement result;
     std::vector<double> before;
     for (int round = 0; round < kRounds; ++round) {
@@ -387,9 +498,16 @@ PixelRefinement refine_on_pixels(const Mesh& mesh,
             const glm::ivec2 tile(one.projector_px * (kTilesAcross / double(projector.width)));
             solved.tile.push_back(tile.y * kTilesAcross + tile.x);
             solved.pixels.push_back(problem.AddResidualBlock(
-                new ceres::NumericDiffCostFunction<PixelError, ceres::FORWARD, 2, 6, 6, 4, 4, 1>(
-                    new PixelError{&given, one, sigma_px}),
-                new ceres::CauchyLoss(2.0),
+                new ceres::NumericDiffCostFunction<PixelError,
+                                                   ceres::FORWARD,
+                                                   2,
+                                                   kPoseTerms,
+                                                   kPoseTerms,
+                                                   kLensTerms,
+                                                   kLensTerms,
+                                                   1>(new PixelError{&given, one, sigma_px}),
+                new ceres::ScaledLoss(
+                    new ceres::CauchyLoss(2.0), 1.0 / together, ceres::TAKE_OWNERSHIP),
                 state.pose.data(),
                 state.stereo[one.sight].data(),
                 state.projector_lens.data(),
@@ -397,19 +515,37 @@ PixelRefinement refine_on_pixels(const Mesh& mesh,
                 state.scale.data()));
         }
         // Sought, where it is free, with what is known of it before
-        const auto seek = [&]<std::size_t N>(std::array<double, N>& block,
-                                             const std::array<double, N>& sigma,
-                                             bool free) {
-            problem.AddParameterBlock(block.data(), static_cast<int>(N));
+        const auto seek = [&](auto& block, bool free) {
+            const int size = static_cast<int>(block.size());
+            problem.AddParameterBlock(block.data(), size);
             if (!free) return problem.SetParameterBlockConstant(block.data());
-            solved.priors.push_back(add_prior<N>(problem, block.data(), sigma));
-            solved.sought.emplace_back(block.data(), static_cast<int>(N));
+            solved.sought.emplace_back(block.data(), size);
         };
-        seek(state.pose, pose_sigma, true);
-        seek(state.projector_lens, projector_sigma, !prior.lens_fixed);
-        seek(state.camera_lens, camera_sigma, !prior.lens_fixed);
-        for (auto& stereo : state.stereo) seek(stereo, stereo_sigma, !prior.lens_fixed);
-        seek(state.scale, std::array{prior.scale}, prior.scale_free);
+        const auto know = [&](const Eigen::MatrixXd& before,
+                              const std::vector<double*>& blocks,
+                              const std::vector<int>& sizes) {
+            solved.priors.push_back(
+                problem.AddResidualBlock(new GaussianPrior(before, sizes), nullptr, blocks));
+        };
+        seek(state.pose, true);
+        know(independent(pose_sigma), {state.pose.data()}, {kPoseTerms});
+        seek(state.projector_lens, !prior.lens_fixed);
+        seek(state.camera_lens, !prior.lens_fixed);
+        for (auto& stereo : state.stereo) seek(stereo, !prior.lens_fixed);
+        seek(state.scale, prior.scale_free);
+        if (!prior.lens_fixed) {
+            know(pair_before(0),
+                 {state.projector_lens.data(), state.camera_lens.data(), state.stereo[0].data()},
+                 {kLensTerms, kLensTerms, kPoseTerms});
+            for (std::size_t k = 1; k < sights.size(); ++k) {
+                // Of itself, the lenses being those of the first
+                const Eigen::MatrixXd pose =
+                    covariance_from(pair_before(k)).bottomRightCorner(kPoseTerms, kPoseTerms);
+                know(pose.inverse(), {state.stereo[k].data()}, {kPoseTerms});
+            }
+        }
+        if (prior.scale_free)
+            know(independent(Eigen::VectorXd::Constant(1, prior.scale)), {state.scale.data()}, {1});
         ceres::Solver::Options options;
         options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
         options.max_num_iterations = 8;
@@ -417,11 +553,11 @@ PixelRefinement refine_on_pixels(const Mesh& mesh,
         options.logging_type = ceres::SILENT;
         const ceres::Solver::Summary summary = livery::solved(options, problem, progress);
         within_px = std::max(8.0 * sigma_px, 1.5);
-
+        together = pixels_that_err_together(solved);
         const bool settled =
             round > 3 && summary.initial_cost - summary.final_cost < 1e-4 * summary.initial_cost;
         if (!settled && round + 1 < kRounds) continue;
-        describe(solved, state, prior, projector_sigma, camera_sigma, stereo_sigma, result);
+        describe(solved, state, prior, pair_before(0), result);
         break;
     }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "calibration/geometry/pair_information.h"
 #include "calibration/scan/scan.h"
 #include "core/progress.h"
 #include "mesh/mesh.h"
@@ -14,15 +15,21 @@ namespace livery {
 
 /// How well the calibration is known beforehand: standard deviations.
 struct LensPrior {
-    double focal = 0.01;        ///< relative, of camera and projector each
-    double principal = 0.003;   ///< of the picture's width
-    double distortion = 0.002;  ///< of k1, camera and projector each; what boards leave open
-    double turn_rad = 0.005;    ///< of the camera against the projector
-    double shift = 0.005;       ///< the same, of the distance to the mock-up
-    bool scale_free = false;    ///< whether the mock-up is as large as its mesh says
-    double scale = 0.05;        ///< relative, where it is free
-    bool lens_fixed = false;    ///< nothing but the mock-up's pose (and scale) is sought
+    double focal = 0.01;         ///< relative, of camera and projector each
+    double principal = 0.003;    ///< of the picture's width
+    double distortion = 0.002;   ///< of k1, k2 and k3, camera and projector each
+    double tangential = 0.0003;  ///< of p1 and p2
+    double turn_rad = 0.005;     ///< of the camera against the projector
+    double shift = 0.005;        ///< the same, of the distance to the mock-up
+    /// From boards, one a sight (or one for all); in place of all above where there are any.
+    std::vector<PairInformation> boards;
+    bool scale_free = false;  ///< whether the mock-up is as large as its mesh says
+    double scale = 0.05;      ///< relative, where it is free
+    bool lens_fixed = false;  ///< nothing but the mock-up's pose (and scale) is sought
 };
+
+/// Whether it is symmetric and positive.
+bool is_information(const PairInformation& values);
 
 /// One thing that was sought besides the pose.
 struct Refined {
@@ -55,9 +62,10 @@ struct PixelRefinement {
 /// Each projector pixel p that falls on the mesh and is seen by a camera at c: the camera's ray
 /// through c meets the mesh's tangent plane in a point, and that point's place in the projector's
 /// picture, minus p, is the residual. Minimised over the pose, with Gaussian priors over focal
-/// lengths, principal points, the first term of distortion and the camera's pose against the
-/// projector, with a Cauchy loss (Ceres); planes are found anew until nothing changes. `ignored` as
-/// for evidence_of(). Throws Refused where fewer than 200 pixels fall on the mesh.
+/// lengths, principal points, distortion and the camera's pose against the projector, with a Cauchy
+/// loss (Ceres); planes are found anew until nothing changes. Neighbouring pixels err together and
+/// weigh against the priors by as many as err on their own. `ignored` as for evidence_of(). Throws
+/// Refused where fewer than 200 pixels fall on the mesh.
 PixelRefinement refine_on_pixels(const Mesh& mesh,
                                  const Tracer& tracer,
                                  const View& projector,

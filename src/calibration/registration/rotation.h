@@ -27,15 +27,20 @@ inline glm::dmat3 rotation_of(const glm::dvec3& axis_angle) {
     return glm::dmat3(1.0) + sine * cross + versine * (cross * cross);
 }
 
+/// The axis of a rotation times twice the sine of its angle.
+inline glm::dvec3 axis_times_sine(const glm::dmat3& rotation) {
+    return {rotation[1][2] - rotation[2][1],
+            rotation[2][0] - rotation[0][2],
+            rotation[0][1] - rotation[1][0]};
+}
+
 /// Angle of a rotation, 0 to pi.
 inline double angle_of(const glm::dmat3& rotation) {
-    const double twice_sine = glm::length(glm::dvec3(rotation[1][2] - rotation[2][1],
-                                                     rotation[2][0] - rotation[0][2],
-                                                     rotation[0][1] - rotation[1][0]));
+    const double twice_sine = glm::length(axis_times_sine(rotation));
     return std::atan2(twice_sine, rotation[0][0] + rotation[1][1] + rotation[2][2] - 1.0);
 }
 
-/// Unit axis of a rotation; y where it turns nothing.
+/// Unit axis about which a rotation turns by angle_of(); y where it turns nothing.
 inline glm::dvec3 axis_of(const glm::dmat3& rotation) {
     // The columns of R + R^T + (1 - trace R) I are along the axis, also at half a turn.
     const double trace = rotation[0][0] + rotation[1][1] + rotation[2][2];
@@ -44,7 +49,9 @@ inline glm::dvec3 axis_of(const glm::dmat3& rotation) {
     for (int k = 1; k < 3; ++k)
         if (glm::length(along[k]) > glm::length(along[longest])) longest = k;
     const double length = glm::length(along[longest]);
-    return length > 1e-12 ? along[longest] / length : glm::dvec3(0.0, 1.0, 0.0);
+    if (length < 1e-12) return {0.0, 1.0, 0.0};
+    const double sign = glm::dot(along[longest], axis_times_sine(rotation)) < 0.0 ? -1.0 : 1.0;
+    return along[longest] * (sign / length);
 }
 
 /// The rotation that takes one unit vector into another the shortest way.

@@ -43,6 +43,24 @@ inline BenchWorld half_size_world(const std::string& bench_name,
     return world;
 }
 
+/// What the geometry's calibration says: the camera's frame is the world, focal lengths are off by
+/// a share, the projector's the other way.
+struct Given {
+    View projector;
+    std::vector<Sight> sights;
+};
+inline Given given_of(const BenchWorld& world, double lens_off, std::uint64_t seed) {
+    Given given;
+    given.sights = {traced_sight(world.all, world.projector, world.camera, 0.1, seed)};
+    const Rigid3 world_from_camera = inverse(world.camera.view_from_world);
+    given.projector = world.projector;
+    given.projector.view_from_world = world.projector.view_from_world * world_from_camera;
+    given.sights[0].camera.view_from_world = Rigid3{};
+    given.projector.focal_px *= 1.0 - lens_off;
+    given.sights[0].camera.focal_px *= 1.0 + lens_off;
+    return given;
+}
+
 struct DrawnErrors {
     double median_px = 0.0, p95_px = 0.0;
 };
