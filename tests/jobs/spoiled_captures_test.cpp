@@ -18,10 +18,16 @@ namespace {
 using testing::kSmallHeight;
 using testing::kSmallWidth;
 
+std::vector<Pattern> colours_and_mosaics() {
+    std::vector<Pattern> patterns = colour_patterns(kSmallWidth, kSmallHeight, 0, 255);
+    for (Pattern& pattern : mosaic_patterns(kSmallWidth, kSmallHeight, kMosaics))
+        patterns.push_back(std::move(pattern));
+    return patterns;
+}
+
 std::vector<Pattern> all_patterns() {
     std::vector<Pattern> patterns = geometry_patterns(kSmallWidth, kSmallHeight);
-    for (Pattern& pattern : colour_patterns(kSmallWidth, kSmallHeight, 0, 255))
-        patterns.push_back(std::move(pattern));
+    for (Pattern& pattern : colours_and_mosaics()) patterns.push_back(std::move(pattern));
     for (Pattern& pattern : geometry_patterns(kSmallWidth, kSmallHeight))
         if (pattern.role == "white" || pattern.role == "black")
             patterns.push_back(std::move(pattern));
@@ -128,12 +134,14 @@ BenchPorts ports_of(const Shots& shots) {
 }
 
 /// Why and fix of the refusal, else the warnings.
-std::string said_of(const Shots& shots) {
+std::string said_of(
+    const Shots& shots,
+    const std::vector<Pattern>& patterns = colour_patterns(kSmallWidth, kSmallHeight, 0, 255)) {
     try {
         LiveOptions options;
         options.width = kSmallWidth;
         options.height = kSmallHeight;
-        options.patterns = colour_patterns(kSmallWidth, kSmallHeight, 0, 255);
+        options.patterns = patterns;
         const ColourCalibration calibration = calibrate_live(ports_of(shots), options).calibration;
         return "accepted: " + testing::all_warnings(calibration);
     } catch (const Refused& refused) {
@@ -300,6 +308,39 @@ INSTANTIATE_TEST_SUITE_P(Faults,
                          SpoiledCaptures,
                          ::testing::ValuesIn(kFaults),
                          [](const auto& fault) { return std::string(fault.param.name); });
+
+/// Photographs that are darker from one on, to the end: by a tenth and by half.
+std::string said_of_darker(const std::string& from, double factor, bool mosaics, bool ends) {
+    Shots shots = photographs();
+    if (!ends) shots.resize(shots.size() - 2);
+    if (!mosaics)
+        std::erase_if(shots, [](const auto& one) { return one.role.starts_with("colors-"); });
+    each_from(shots, from, [&](auto& one) { expose(one, factor); });
+    const std::string said = mosaics ? said_of(shots, colours_and_mosaics()) : said_of(shots);
+    std::printf("    %.2f from %s%s%s: %s\n",
+                factor,
+                from.c_str(),
+                mosaics ? ", mosaics" : "",
+                ends ? ", white and black at the end" : "",
+                said.c_str());
+    return said;
+}
+
+// The projector is not blamed, whatever the picture at which it begins.
+TEST(SpoiledSession, DarkerFromOnePictureOnIsNamed) {
+    for (const auto& [factor, whole_session] : {std::pair{0.5, false}, std::pair{0.9, true}})
+        for (const std::string from : {"bright-gray", "red", "green", "blue"}) {
+            const std::string said = said_of_darker(from, factor, whole_session, whole_session);
+            EXPECT_NE(said.find(from), std::string::npos) << said;
+            EXPECT_NE(said.find("darker"), std::string::npos) << said;
+            EXPECT_EQ(said.find("sRGB"), std::string::npos) << said;
+            EXPECT_EQ(said.find("not additive"), std::string::npos) << said;
+        }
+    // Mosaics are not used where white is the sum of the channels; the white after them is
+    EXPECT_TRUE(said_of_darker("colors-2", 0.5, true, false).starts_with("accepted"));
+    EXPECT_NE(said_of_darker("colors-2", 0.5, true, true).find("refused: white"),
+              std::string::npos);
+}
 
 TEST(CleanCaptures, AreAcceptedWithoutAWordOfBlame) {
     const std::string said = said_of(photographs());

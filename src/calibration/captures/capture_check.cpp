@@ -236,7 +236,7 @@ CaptureVerdict check_captures(const std::vector<CaptureSummary>& captures,
     check_too_dim(evidence, verdict.warnings);
     refuse_automatic_exposure(evidence);
     check_black_level(evidence, verdict.warnings);
-    refuse_other_white(evidence);
+    refuse_other_white(evidence, WhiteTaken::before_colours);
     check_room_light(evidence, drives);
     check_moved(evidence, verdict.warnings);
     verdict.drift = check_stripes(evidence, verdict.warnings);
@@ -245,6 +245,7 @@ CaptureVerdict check_captures(const std::vector<CaptureSummary>& captures,
     const Evidence of_steady = gather_evidence(steady, block_px);
     check_repeats(of_steady);
     check_colours(of_steady, drives, verdict);
+    refuse_other_white(evidence, WhiteTaken::after_them);
     return verdict;
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -13,6 +14,7 @@
 #include "calibration/colour/colour_report.h"
 #include "calibration/colour/mixing.h"
 #include "core/error.h"
+#include "core/statistics.h"
 
 namespace livery {
 namespace {
@@ -150,6 +152,36 @@ void refuse_shadowed(const Evidence& e, const Colours& c) {
     if (worst) refuse_region(worst->name, of_worst);
 }
 
+/// The brightest blocks of gray-levels, nearly white, over bright-gray: 1 whatever the projector
+/// does to white, as long as the light and the exposure stay. Nothing without gray-levels.
+std::optional<double> levels_over_bright(const Evidence& e, const Colours& c) {
+    if (!e.levels) return std::nullopt;
+    std::vector<float> ratios;
+    for (std::size_t i = 0; i < c.used.size(); ++i)
+        if (c.used[i])
+            ratios.push_back((e.levels->light.values[i] - e.dark->light.values[i]) /
+                             (e.bright->light.values[i] - e.dark->light.values[i]));
+    if (ratios.empty()) return std::nullopt;
+    return static_cast<double>(quantile(std::move(ratios), 0.99));
+}
+
+/// The light or the exposure changed between two colour photographs and stayed so. White then is
+/// not the sum of the channels, as with a projector that is not additive; gray-levels tells.
+void refuse_change_on_the_way(const Evidence& e, const Colours& c, glm::dvec3 held) {
+    constexpr double kLevels = 0.08;  // what blur takes from the brightest blocks
+    const auto levels = levels_over_bright(e, c);
+    if (!levels || std::abs(*levels - 1.0) < kLevels) return;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double ratio = 1.0 / held[static_cast<int>(k)];
+        if (std::abs(ratio - 1.0) < kAdditivityLimit) continue;
+        if (std::abs(*levels / ratio - 1.0) > 1.5 * kLevels) return;
+        throw Refused("from " + c.channel[k]->name + " on the photographs are " + times_of(ratio) +
+                          " than those before: they had another exposure, or the lamp another "
+                          "brightness",
+                      kSameExposure);
+    }
+}
+
 /// How much of each channel's photograph bright-gray holds: 1 each where all were exposed alike.
 void check_exposures(const Evidence& e,
                      const Colours& c,
@@ -184,6 +216,7 @@ void check_exposures(const Evidence& e,
                 1.0 / held[k]);
         return;
     }
+    refuse_change_on_the_way(e, c, held);
     // bright-gray alone: white, which shows the same, tells it from a projector that is not
     // additive
     if (!e.white || !e.black || drives.dark != 0 || drives.bright != 255) return;
@@ -194,6 +227,15 @@ void check_exposures(const Evidence& e,
     const double spread =
         std::max({std::abs(held.x - mean), std::abs(held.y - mean), std::abs(held.z - mean)});
     const double ratio = against_white.typical;
+    // Black and dark-gray show the same too
+    const double dark_ratio = e.dark->mean / std::max(e.black->mean, 1e-30);
+    if (off(ratio) > kAdditivityLimit && std::abs(dark_ratio - ratio) > 0.5 * off(ratio) &&
+        off(mean) < off(ratio) * 0.5)
+        throw Refused("from " + e.bright->name + " on the photographs are " + times_of(ratio) +
+                          " than " + e.white->name +
+                          " and those before: they had another "
+                          "exposure, or the lamp another brightness",
+                      kSameExposure);
     if (off(ratio) > kAlike && off(mean) > kAlike && spread < 0.5 * off(mean) &&
         std::abs(ratio - mean) < 0.5 * off(ratio)) {
         slipped(*e.bright, "white and than red, green and blue together", mean);

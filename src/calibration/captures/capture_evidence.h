@@ -73,8 +73,10 @@ std::string times_of(double ratio);
 /// Photographs that differ from the others in a part of the picture.
 [[noreturn]] void refuse_region(const std::string& name, const Region& region);
 
-/// White at an exposure of its own, by the stripes.
-void refuse_other_white(const Evidence& evidence);
+/// White at an exposure of its own, by the stripes: one that was photographed before the colours,
+/// or one after them, of which the colours may tell more.
+enum class WhiteTaken { before_colours, after_them };
+void refuse_other_white(const Evidence& evidence, WhiteTaken taken);
 
 /// Light that does not come from the projector, from the first photograph to the last.
 void check_room_light(const Evidence& evidence, const ShownDrives& drives);

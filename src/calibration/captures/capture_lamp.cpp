@@ -244,10 +244,12 @@ void refuse_fast_drift(const Evidence& e, const LampDrift& drift) {
 
 }  // namespace
 
-void refuse_other_white(const Evidence& e) {
+void refuse_other_white(const Evidence& e, WhiteTaken taken) {
     if (e.pairs.size() < 5 || !e.black) return;
     for (const CaptureSummary& c : *e.all) {
         if (c.role != "white") continue;
+        const bool after = e.bright && c.taken_at > e.bright->taken_at;
+        if (after != (taken == WhiteTaken::after_them)) continue;
         // By the stripes next to it in time: the lamp may drift.
         std::vector<const StripePair*> nearest;
         for (const StripePair& pair : e.pairs) nearest.push_back(&pair);

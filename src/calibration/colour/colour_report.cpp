@@ -58,7 +58,8 @@ void refuse_not_additive(double error, double white_over_sum) {
     throw Refused(
         "the projector is not additive: white differs from red + green + blue by " + percent(error),
         "switch the projector to its sRGB or cinema mode (no clear wheel segment, no colour "
-        "enhancement), or photograph the mosaics of colours too");
+        "enhancement), or photograph the mosaics of colours too; a lamp that changes meanwhile "
+        "looks the same: photograph again and see whether the figure stays");
 }
 
 void refuse_invalid(const ColourSamples& samples, const std::vector<PixelStatus>& status) {
