@@ -97,6 +97,26 @@ TEST_F(Panels, ATooltipIsNeverTallerThanItsText) {
     EXPECT_LE(*std::max_element(heights.begin(), heights.end()), 1.01f * heights.back());
 }
 
+TEST_F(Panels, ATextsTooltipShowsWhenThePointerRestsOnIt) {
+    use_scale(1.0f);
+    Studio studio = make_studio();
+    const DrawPanel draw = [](Studio&) {
+        dim_text("showing");
+        name_last_item("text");
+        tooltip("What to do about it.");
+    };
+    const auto is_seen = [] {
+        for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows) {
+            if ((window->Flags & ImGuiWindowFlags_Tooltip) != 0 && window->Active) return true;
+        }
+        return false;
+    };
+    move_to(studio, draw, "text");
+    EXPECT_FALSE(is_seen());
+    for (int i = 0; i < 120 && !is_seen(); ++i) frame(studio, draw);
+    EXPECT_TRUE(is_seen());
+}
+
 TEST_F(Panels, PointingTriesAPaintAndClickingPaints) {
     use_scale(1.0f);
     Studio studio = make_studio();

@@ -215,7 +215,10 @@ void row_label(const char* text, float share) {
 
 void tooltip(const std::string& text) {
     if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
-    if (ImGui::GetCurrentContext()->HoveredIdTimer < kTooltipAfter_s) return;
+    const ImGuiContext& g = *ImGui::GetCurrentContext();
+    // A text has no id, and without one nothing counts how long the pointer rests on it.
+    if (g.HoveredId == 0) ImGui::SetHoveredID(ImGui::GetID(text.c_str()));
+    if (g.HoveredIdTimer < kTooltipAfter_s) return;
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(em(24.0f));
     ImGui::TextUnformatted(text.c_str(), text.c_str() + text.size());
