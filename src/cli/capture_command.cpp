@@ -26,6 +26,7 @@
 #include "jobs/camera_to_xyz_file.h"
 #include "jobs/capture_bench.h"
 #include "jobs/watched_captures.h"
+#include "projection/desktop_watch.h"
 #include "projection/picture_port.h"
 #include "scene/library.h"
 
@@ -43,6 +44,59 @@ struct CaptureArguments {
          fit_response = false, check = false;
 };
 
+Json json_of(const std::vector<SignalWarning>& warnings) {
+    Json list = Json::array();
+    for (const SignalWarning& warning : warnings)
+        list.push_back({{"what", warning.what},
+                        {"cause", warning.cause},
+                        {"fix", warning.fix},
+                        {"severity", name_of(warning.severity)}});
+    return list;
+}
+
+/// "Bad     ...", with what helps below. Whether a capture makes sense.
+bool tell_signal(const std::vector<SignalWarning>& warnings, Outcome& outcome) {
+    using Severity = SignalWarning::Severity;
+    outcome.figures["signal"] = json_of(warnings);
+    bool fit = true;
+    for (const SignalWarning& warning : warnings) {
+        const char* grade = warning.severity == Severity::error     ? "Bad"
+                            : warning.severity == Severity::warning ? "Usable"
+                                                                    : "Note";
+        say(fmt::format("{:<8}{}\n        {} {}", grade, warning.what, warning.cause, warning.fix));
+        fit = fit && warning.severity != Severity::error;
+    }
+    return fit;
+}
+
+/// "HDMI-1, EPSON PJ, 1280x720", and what of it is not plain.
+std::string words_of(const Monitor& monitor) {
+    std::string words = fmt::format("{}, {}x{}", monitor.name, monitor.width, monitor.height);
+    if (monitor.mode_px.x > 0 && monitor.mode_px != glm::ivec2(monitor.width, monitor.height))
+        words += fmt::format(" on {}x{} pixels", monitor.mode_px.x, monitor.mode_px.y);
+    if (monitor.wayland && monitor.wayland->scale != 1.0)
+        words += fmt::format(", scale {:.0f}%", 100.0 * monitor.wayland->scale);
+    return words;
+}
+
+Json json_of(const Monitor& monitor, const std::vector<SignalWarning>& warnings) {
+    Json json = {{"monitor", monitor.number},
+                 {"name", monitor.name},
+                 {"width", monitor.width},
+                 {"height", monitor.height},
+                 {"id", monitor.id},
+                 {"maker", monitor.identity.maker},
+                 {"product", monitor.identity.product},
+                 {"serial", monitor.identity.serial},
+                 {"signal", json_of(warnings)}};
+    if (monitor.mode_px.x > 0) json["mode"] = {monitor.mode_px.x, monitor.mode_px.y};
+    if (monitor.wayland) {
+        json["scale"] = monitor.wayland->scale;
+        json["transform"] = monitor.wayland->transform;
+    }
+    return json;
+}
+
 Outcome listed() {
     Outcome outcome;
     outcome.figures = {{"cameras", Json::array()}, {"monitors", Json::array()}};
@@ -57,16 +111,17 @@ Outcome listed() {
     }
     try {
         const WindowSystem window_system;
-        for (const Monitor& monitor : list_monitors()) {
-            outcome.figures["monitors"].push_back({{"monitor", monitor.number},
-                                                   {"name", monitor.name},
-                                                   {"width", monitor.width},
-                                                   {"height", monitor.height}});
-            outcome.text += fmt::format("--monitor {:<23} {}, {}x{}\n",
-                                        monitor.number,
-                                        monitor.name,
-                                        monitor.width,
-                                        monitor.height);
+        DesktopWatch desktop(is_xwayland());
+        for (const Monitor& monitor : list_monitors(&desktop)) {
+            const auto warnings = check_signal(monitor, {0, 0}, desktop);
+            outcome.figures["monitors"].push_back(json_of(monitor, warnings));
+            outcome.text += fmt::format("--monitor {:<23} {}\n", monitor.number, words_of(monitor));
+            for (const SignalWarning& warning : warnings) {
+                const auto words =
+                    fmt::format("    {} {} {}\n", warning.what, warning.cause, warning.fix);
+                // What holds for every monitor is told once.
+                if (outcome.text.find(words) == std::string::npos) outcome.text += words;
+            }
         }
     } catch (const std::runtime_error&) {
         outcome.text +=
@@ -171,6 +226,7 @@ Outcome capture_with_camera(CaptureCommandRun run,
     CaptureBench bench = open_capture_bench(choice, run.request().product, progress);
     std::unique_ptr<MonitorProjector> projector;
     std::string shown_on = "its own projector";
+    bool signal_is_fit = true;
     if (bench.show) {
         BenchCalibrationRequest asked = request_of(bench.simulated->description(), bench.product);
         asked.camera_to_xyz = run.request().camera_to_xyz;
@@ -190,8 +246,7 @@ Outcome capture_with_camera(CaptureCommandRun run,
         if (run.request().projector)
             check_projector(
                 *run.request().projector, run.arguments.pose, monitor.width, monitor.height);
-        for (const SignalWarning& warning : check_signal(monitor, {0, 0}))
-            say(fmt::format("Usable  {}\n        {} {}", warning.what, warning.cause, warning.fix));
+        signal_is_fit = tell_signal(projector->signal_warnings(), run.outcome);
         bench.show = projector->port(progress);
     }
     run.request().made_with = bench.name + ", " + shown_on;
@@ -221,7 +276,7 @@ Outcome capture_with_camera(CaptureCommandRun run,
     }
     const bool goes_on = !run.arguments.preflight_only && has_photographs(run.staged);
     if (!run.arguments.without_preflight && !goes_on) {
-        const bool fit = look_before(run, ports, progress);
+        const bool fit = look_before(run, ports, progress) && signal_is_fit;
         if (run.arguments.preflight_only || !fit) {
             run.outcome.exit_code = fit ? 0 : 1;
             run.outcome.text = fit ? "The bench is fit for a capture.\n"
@@ -301,6 +356,7 @@ Outcome capture_by_hand(CaptureCommandRun run,
     WatchedCaptures watched(choice.what, roles);
     const auto before = watched.look_at_what_is_there(std::move(patterns));
     if (!before.words.empty()) say(before.words);
+    tell_signal(projector.signal_warnings(), run.outcome);
     if (!before.still_to_shoot.empty())
         show_all(projector, before.still_to_shoot, run.arguments.every_s, progress);
     say(fmt::format("copy the {} photographs to {}", roles.size(), choice.what));

@@ -8,6 +8,7 @@
 
 #include "cli/console.h"
 #include "gl/window.h"
+#include "projection/desktop_watch.h"
 #include "projection/picture_port.h"
 
 namespace livery {
@@ -23,6 +24,7 @@ void say_wait(const CaptureWait& wait) {
 
 struct MonitorProjector::Implementation {
     WindowSystem window_system;
+    std::shared_ptr<DesktopWatch> desktop = std::make_shared<DesktopWatch>(is_xwayland());
     std::optional<Monitor> monitor;
     std::unique_ptr<Window> context;
     std::unique_ptr<ProjectorScreen> screen;
@@ -31,7 +33,7 @@ struct MonitorProjector::Implementation {
 MonitorProjector::MonitorProjector(const std::string& wanted)
     : implementation_(std::make_unique<Implementation>()) {
     Implementation& it = *implementation_;
-    for (const Monitor& each : list_monitors()) {
+    for (const Monitor& each : list_monitors(it.desktop.get())) {
         if (std::to_string(each.number) == wanted || each.id == wanted || each.name == wanted)
             it.monitor = each;
     }
@@ -43,7 +45,7 @@ MonitorProjector::MonitorProjector(const std::string& wanted)
     hidden.size_px = {16, 16};
     hidden.visible = false;
     it.context = std::make_unique<Window>(hidden);
-    it.screen = std::make_unique<ProjectorScreen>(*it.context);
+    it.screen = std::make_unique<ProjectorScreen>(*it.context, it.desktop);
     it.context->make_current();
     it.screen->use_monitor(it.monitor->id);
 }
@@ -51,6 +53,10 @@ MonitorProjector::MonitorProjector(const std::string& wanted)
 MonitorProjector::~MonitorProjector() = default;
 
 const Monitor& MonitorProjector::monitor() const { return *implementation_->monitor; }
+
+std::vector<SignalWarning> MonitorProjector::signal_warnings() const {
+    return check_signal(monitor(), {0, 0}, *implementation_->desktop);
+}
 
 std::string MonitorProjector::words() const {
     return fmt::format("{} at {}x{}", monitor().name, monitor().width, monitor().height);

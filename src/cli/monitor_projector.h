@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/bench_ports.h"
 #include "core/progress.h"
@@ -24,6 +25,8 @@ class MonitorProjector {
     MonitorProjector& operator=(const MonitorProjector&) = delete;
 
     const Monitor& monitor() const;
+    /// What would change its picture: check_signal().
+    std::vector<SignalWarning> signal_warnings() const;
     std::string words() const;  ///< "HDMI-1 at 1920x1080"
     ShowPicture port(const Progress& progress);
 

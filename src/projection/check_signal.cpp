@@ -4,18 +4,19 @@
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
-#include <span>
 
 #include <fmt/format.h>
 #include <xcb/randr.h>
 
-#include "projection/session_bus.h"
+#include "projection/desktop_watch.h"
+#include "projection/outputs.h"
 #include "projection/x_connection.h"
 
 namespace livery {
 namespace {
 
 using Kind = SignalWarning::Kind;
+using Severity = SignalWarning::Severity;
 
 std::string size_text(glm::ivec2 px) { return fmt::format("{}x{}", px.x, px.y); }
 
@@ -62,40 +63,17 @@ bool is_warm(const Ramp& ramp) {
     return green <= red && blue <= green && blue < 0.95 * red;
 }
 
-/// The desktop that says that its night light is on now.
-std::optional<std::string> night_light_of_desktop() {
-    struct NightLight {
-        const char* desktop;
-        SessionBus::Object object;
-        const char* property;
-    };
-    constexpr NightLight kKnown[] = {
-        {"GNOME",
-         {"org.gnome.SettingsDaemon.Color",
-          "/org/gnome/SettingsDaemon/Color",
-          "org.gnome.SettingsDaemon.Color"},
-         "NightLightActive"},
-        {"KDE Plasma",
-         {"org.kde.KWin", "/org/kde/KWin/NightLight", "org.kde.KWin.NightLight"},
-         "running"},
-        {"KDE Plasma", {"org.kde.KWin", "/ColorCorrect", "org.kde.kwin.ColorCorrect"}, "running"},
-    };
-    const auto bus = SessionBus::connect();
-    if (!bus) return std::nullopt;
-    for (const auto& known : kKnown) {
-        if (bus->read_bool(known.object, known.property).value_or(false)) return known.desktop;
-    }
-    return std::nullopt;
-}
-
-void check_colours(const XConnection& x, const Output& output, std::vector<SignalWarning>& list) {
+void check_colours(const XConnection& x,
+                   const Output& output,
+                   const DesktopState& desktop,
+                   std::vector<SignalWarning>& list) {
     const auto ramp = read_ramp(x, output.crtc);
     const bool changed =
         ramp && !(is_identity(ramp->red) && is_identity(ramp->green) && is_identity(ramp->blue));
-    const auto desktop = night_light_of_desktop();
+    const bool says_so = desktop.night_light == NightLight::on;
     const std::string reset =
         fmt::format("run `xrandr --output {} --gamma 1:1:1 --brightness 1`.", output.socket);
-    if (desktop || (changed && is_warm(*ramp))) {
+    if (says_so || (changed && is_warm(*ramp))) {
         const std::string table =
             changed ? fmt::format("The graphics card leaves {:.0f}% of the blue on {}",
                                   100.0 * mean(ramp->blue) / mean(ramp->red),
@@ -103,11 +81,11 @@ void check_colours(const XConnection& x, const Output& output, std::vector<Signa
                     : std::string();
         list.push_back({Kind::night_light,
                         "A night light tints the projector's picture.",
-                        desktop ? *desktop + " says that its night light is on" +
+                        says_so ? desktop.night_light_of + " says that its night light is on" +
                                       (changed ? "; t" + table.substr(1) : "") + "."
                                 : table + ", as a night light does.",
                         "Switch the night light off in the display settings" +
-                            (desktop ? std::string(".") : ", or " + reset)});
+                            (says_so ? std::string(".") : ", or " + reset)});
     } else if (changed) {
         list.push_back(
             {Kind::gamma_ramp,
@@ -143,36 +121,50 @@ void check_range(const XConnection& x, const Output& output, std::vector<SignalW
                                 kProperty)});
 }
 
+/// ", or run `xrandr ...`", where that does anything.
+std::string or_xrandr(const Output& output, const std::string& what) {
+    if (output.behind_wayland) return ".";
+    return fmt::format(", or run `xrandr --output {} {}`.", output.socket, what);
+}
+
 }  // namespace
+
+bool is_scaled(const Output& output) {
+    const glm::ivec2 shown_px(output.monitor.width, output.monitor.height);
+    const glm::ivec2 upright_px = output.turned ? glm::ivec2(shown_px.y, shown_px.x) : shown_px;
+    return output.transformed ||
+           (output.monitor.mode_px.x > 0 && upright_px != output.monitor.mode_px);
+}
 
 std::vector<SignalWarning> warnings_of_size(const Output& output, glm::ivec2 calibrated_px) {
     std::vector<SignalWarning> list;
     const glm::ivec2 shown_px(output.monitor.width, output.monitor.height);
-    const glm::ivec2 best_px = output.preferred_px;
-    if (best_px.x > 0 && best_px != output.mode_px) {
+    const glm::ivec2 mode_px = output.monitor.mode_px, best_px = output.preferred_px;
+    if (best_px.x > 0 && best_px != mode_px) {
         list.push_back({Kind::scaled,
                         "The projector does not get its own resolution and scales the picture.",
                         fmt::format("{} is set to {}, and the projector asks for {}.",
                                     output.socket,
-                                    size_text(output.mode_px),
+                                    size_text(mode_px),
                                     size_text(best_px)),
-                        fmt::format("Choose {} in the display settings, or run `xrandr --output {} "
-                                    "--mode {}`.",
-                                    size_text(best_px),
-                                    output.socket,
-                                    size_text(best_px))});
+                        fmt::format("Choose {} in the display settings", size_text(best_px)) +
+                            or_xrandr(output, "--mode " + size_text(best_px))});
     }
-    const glm::ivec2 upright_px = output.turned ? glm::ivec2(shown_px.y, shown_px.x) : shown_px;
-    if (output.transformed || upright_px != output.mode_px) {
-        list.push_back({Kind::scaled,
-                        "The desktop scales the picture on its way to the projector.",
-                        fmt::format("{} shows {} of the desktop with {} pixels.",
-                                    output.socket,
-                                    size_text(shown_px),
-                                    size_text(output.mode_px)),
-                        fmt::format("Set the scale of this display to 100%, or run `xrandr "
-                                    "--output {} --scale 1x1`.",
-                                    output.socket)});
+    if (is_scaled(output)) {
+        const auto& wayland = output.monitor.wayland;
+        list.push_back(
+            {Kind::scaled,
+             "The desktop scales the picture on its way to the projector.",
+             fmt::format("{} shows {} of the desktop with {} pixels{}.",
+                         output.socket,
+                         size_text(shown_px),
+                         size_text(mode_px),
+                         wayland
+                             ? fmt::format(", at GNOME's scale of {:.0f}%", 100.0 * wayland->scale)
+                             : ""),
+             wayland ? std::string(kInDisplaySettings) + "set Scale to 100%."
+                     : "Set the scale of this display to 100%" + or_xrandr(output, "--scale 1x1"),
+             Severity::error});
     }
     if (calibrated_px.x > 0 && calibrated_px.y > 0 && calibrated_px != shown_px) {
         list.push_back(
@@ -187,16 +179,38 @@ std::vector<SignalWarning> warnings_of_size(const Output& output, glm::ivec2 cal
     return list;
 }
 
-std::vector<SignalWarning> check_signal(const Monitor& monitor, glm::ivec2 calibrated_px) {
+const char* name_of(SignalWarning::Severity severity) {
+    switch (severity) {
+        case Severity::note:
+            return "note";
+        case Severity::warning:
+            return "warning";
+        case Severity::error:
+            return "error";
+    }
+    return "";
+}
+
+std::vector<SignalWarning> check_signal(const Monitor& monitor,
+                                        glm::ivec2 calibrated_px,
+                                        DesktopWatch& desktop) {
     const XConnection x;
+    const DesktopState state = desktop.state();
     std::vector<SignalWarning> list;
-    for (const auto& output : read_outputs(x)) {
+    for (const auto& output : read_outputs(x, &desktop)) {
         if (output.monitor.id != monitor.id) continue;
-        check_colours(x, output, list);
-        check_range(x, output, list);
+        if (output.behind_wayland) {
+            list = warnings_behind_wayland(output, state);
+        } else {
+            check_colours(x, output, state, list);
+            check_range(x, output, list);
+        }
         const auto sizes = warnings_of_size(output, calibrated_px);
         list.insert(list.end(), sizes.begin(), sizes.end());
     }
+    std::stable_sort(list.begin(), list.end(), [](const auto& a, const auto& b) {
+        return a.severity > b.severity;
+    });
     return list;
 }
 

@@ -2,17 +2,14 @@
 
 #include <algorithm>
 #include <map>
-#include <span>
 #include <tuple>
 
 #include <xcb/randr.h>
 
-#include "core/hash.h"
+#include "projection/desktop_watch.h"
 
 namespace livery {
 namespace {
-
-constexpr std::size_t kEdidBlock = 128;
 
 double refresh_hz(const xcb_randr_mode_info_t& mode) {
     double lines = mode.vtotal;
@@ -20,13 +17,6 @@ double refresh_hz(const xcb_randr_mode_info_t& mode) {
     if (mode.mode_flags & XCB_RANDR_MODE_FLAG_INTERLACE) lines /= 2.0;
     const double pixels = lines * mode.htotal;
     return pixels > 0.0 ? mode.dot_clock / pixels : 0.0;
-}
-
-std::string identity(const std::string& output, const std::vector<std::uint8_t>& edid) {
-    if (edid.empty()) return output;
-    Hasher hasher;
-    hasher.add(std::span<const std::uint8_t>(edid));
-    return output + ":" + hasher.hex().substr(0, 16);
 }
 
 bool is_transformed(const XConnection& x, std::uint32_t crtc) {
@@ -53,30 +43,6 @@ std::vector<std::uint8_t> output_property(const XConnection& x,
     if (!reply) return {};
     const auto* data = xcb_randr_get_output_property_data(reply.get());
     return {data, data + xcb_randr_get_output_property_data_length(reply.get())};
-}
-
-std::string edid_name(const std::vector<std::uint8_t>& edid) {
-    constexpr std::size_t kFirstDescriptor = 54, kDescriptorBytes = 18, kTextAt = 5;
-    constexpr std::uint8_t kDisplayName = 0xFC;
-    if (edid.size() < kEdidBlock) return {};
-    for (std::size_t at = kFirstDescriptor; at + kDescriptorBytes < kEdidBlock;
-         at += kDescriptorBytes) {
-        if (edid[at] != 0 || edid[at + 1] != 0 || edid[at + 3] != kDisplayName) continue;
-        std::string name;
-        for (std::size_t i = at + kTextAt; i < at + kDescriptorBytes && edid[i] != '\n'; ++i) {
-            if (edid[i] >= 0x20 && edid[i] < 0x7F) name += static_cast<char>(edid[i]);
-        }
-        while (name.ends_with(' ')) name.pop_back();
-        if (!name.empty()) return name;
-    }
-    const unsigned packed = static_cast<unsigned>(edid[8]) << 8u | edid[9];
-    std::string maker;
-    for (const unsigned shift : {10u, 5u, 0u}) {
-        const unsigned letter = packed >> shift & 31u;
-        if (letter < 1 || letter > 26) return {};
-        maker += static_cast<char>('A' + static_cast<int>(letter) - 1);
-    }
-    return maker;
 }
 
 bool overlap(const Monitor& a, const Monitor& b) {
@@ -118,24 +84,22 @@ std::vector<Output> known_outputs(const XConnection& x, bool& lit_unplugged) {
         const auto* name =
             reinterpret_cast<const char*>(xcb_randr_get_output_info_name(info.get()));
         const std::string socket(name, name + info->name_len);
-        const std::string model = edid_name(edid);
 
         Output output;
         output.output = ids[i];
         output.crtc = info->crtc;
-        output.socket = socket;
         output.turned =
             (crtc->rotation & (XCB_RANDR_ROTATION_ROTATE_90 | XCB_RANDR_ROTATION_ROTATE_270)) != 0;
         output.transformed = is_transformed(x, info->crtc);
-        output.monitor.id = identity(socket, edid);
-        output.monitor.name = model.empty() ? socket : socket + ", " + model;
+        output.monitor.former_id = former_monitor_id(socket, edid);
+        name_output(output, socket, identity_of_edid(edid));
         output.monitor.x = crtc->x;
         output.monitor.y = crtc->y;
         output.monitor.width = crtc->width;
         output.monitor.height = crtc->height;
         output.monitor.primary = primary && primary->output == ids[i];
         if (const auto mode = modes.find(crtc->mode); mode != modes.end()) {
-            output.mode_px = {mode->second.width, mode->second.height};
+            output.monitor.mode_px = {mode->second.width, mode->second.height};
             output.monitor.refresh_hz = refresh_hz(mode->second);
         }
         if (info->num_preferred > 0 && info->num_modes > 0) {
@@ -157,16 +121,27 @@ std::vector<Output> known_outputs(const XConnection& x, bool& lit_unplugged) {
 
 }  // namespace
 
-std::vector<Output> read_outputs(const XConnection& x) {
+void name_output(Output& output, const std::string& socket, const DisplayIdentity& identity) {
+    output.socket = socket;
+    output.monitor.identity = identity;
+    output.monitor.id = monitor_id(socket, identity);
+    const std::string name = display_name(identity);
+    output.monitor.name = name.empty() ? socket : socket + ", " + name;
+}
+
+std::vector<Output> read_outputs(const XConnection& x, DesktopWatch* desktop) {
     bool lit_unplugged = false;
     auto list = known_outputs(x, lit_unplugged);
-    if (!lit_unplugged) return list;
-    // A cable was pulled, or plugged in without a word from the driver: the full question makes the
-    // server look.
-    const XReply<xcb_randr_get_screen_resources_reply_t> looked(
-        xcb_randr_get_screen_resources_reply(
-            x.get(), xcb_randr_get_screen_resources(x.get(), x.root()), nullptr));
-    return known_outputs(x, lit_unplugged);
+    if (lit_unplugged) {
+        // A cable was pulled, or plugged in without a word from the driver: the full question makes
+        // the server look.
+        const XReply<xcb_randr_get_screen_resources_reply_t> looked(
+            xcb_randr_get_screen_resources_reply(
+                x.get(), xcb_randr_get_screen_resources(x.get(), x.root()), nullptr));
+        list = known_outputs(x, lit_unplugged);
+    }
+    if (desktop) desktop->name_outputs(list);
+    return list;
 }
 
 }  // namespace livery

@@ -74,10 +74,13 @@ struct ProjectorScreen::Implementation {
     std::unique_ptr<WindowKeeper> keeper;
     std::thread thread;
 
-    Implementation(const Window& share, std::function<void(const ShownPicture&)> callback)
+    Implementation(const Window& share,
+                   std::shared_ptr<DesktopWatch> desktop,
+                   std::function<void(const ShownPicture&)> callback)
         : window(hidden_window(share)), on_shown(std::move(callback)) {
         keeper = std::make_unique<WindowKeeper>(
             static_cast<std::uint32_t>(glfwGetX11Window(window->native())),
+            std::move(desktop),
             WindowKeeper::Listener{[this](const WindowKeeper::Place& place) { moved(place); },
                                    [this] { was_exposed(); },
                                    [this] { was_covered(); }});
@@ -307,8 +310,10 @@ struct ProjectorScreen::Implementation {
 };
 
 ProjectorScreen::ProjectorScreen(const Window& share,
+                                 std::shared_ptr<DesktopWatch> desktop,
                                  std::function<void(const ShownPicture&)> on_shown)
-    : implementation_(std::make_unique<Implementation>(share, std::move(on_shown))) {}
+    : implementation_(
+          std::make_unique<Implementation>(share, std::move(desktop), std::move(on_shown))) {}
 
 ProjectorScreen::~ProjectorScreen() = default;
 

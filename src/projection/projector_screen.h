@@ -45,9 +45,12 @@ struct ShownPicture {
 /// something changed.
 class ProjectorScreen {
   public:
-    /// Main thread. `share` is the share group of the pictures. `on_shown` is called on the
-    /// projector's thread after every swap, and when black came.
-    ProjectorScreen(const Window& share, std::function<void(const ShownPicture&)> on_shown = {});
+    /// Main thread. `share` is the share group of the pictures; `desktop` names monitors behind
+    /// Xwayland, as in list_monitors(). `on_shown` is called on the projector's thread after every
+    /// swap, and when black came.
+    ProjectorScreen(const Window& share,
+                    std::shared_ptr<DesktopWatch> desktop = nullptr,
+                    std::function<void(const ShownPicture&)> on_shown = {});
     ~ProjectorScreen();
     ProjectorScreen(const ProjectorScreen&) = delete;
     ProjectorScreen& operator=(const ProjectorScreen&) = delete;

@@ -2,14 +2,22 @@
 // desktop that does not answer must not hold up a picture.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 
 struct DBusConnection;
+struct DBusMessage;
 
 namespace livery {
+
+struct ReleaseBusMessage {
+    void operator()(DBusMessage* message) const;
+};
+using BusMessage = std::unique_ptr<DBusMessage, ReleaseBusMessage>;
 
 class SessionBus {
   public:
@@ -22,16 +30,38 @@ class SessionBus {
     struct Object {
         const char *service, *path, *interface;
     };
+    /// What a method without arguments answers; or why it does not.
+    struct Answer {
+        BusMessage message;   ///< null: none came
+        bool offered = true;  ///< false: nobody on the bus has that name
+        std::string error;    ///< the bus's or the service's own words
+    };
+    /// For who may wait longer than the other questions do; until `is_over` says so.
+    Answer call(const Object& object,
+                const char* method,
+                std::chrono::milliseconds patience,
+                const std::function<bool()>& is_over);
     /// Nothing where nobody offers it.
     std::optional<bool> read_bool(const Object& object, const char* property) const;
     /// Asks the desktop not to blank the screens; the answer is what takes it back.
     std::optional<std::uint32_t> inhibit_screensaver(const char* reason) const;
     void allow_screensaver(std::uint32_t inhibition) const;
 
+    /// Asks for the signals that a match rule names; heard() tells of them.
+    void listen(const std::string& rule) const;
+    /// Whether one came since the last call. Takes what descriptor() has for reading.
+    bool heard();
+    bool is_connected() const;
+    int descriptor() const;
+
   private:
     explicit SessionBus(DBusConnection* connection) : connection_(connection) {}
 
+    /// Takes the next message that came; null: none. Notes whether it was a signal.
+    BusMessage next_message();
+
     DBusConnection* connection_ = nullptr;
+    bool heard_ = false;
 };
 
 }  // namespace livery

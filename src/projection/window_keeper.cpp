@@ -14,6 +14,7 @@
 
 #include "core/log.h"
 #include "projection/awake.h"
+#include "projection/desktop_watch.h"
 #include "projection/doorbell.h"
 #include "projection/outputs.h"
 #include "projection/stacking.h"
@@ -33,6 +34,7 @@ bool same_place(const Monitor& a, const Monitor& b) {
 
 struct WindowKeeper::Implementation {
     const XConnection x;
+    const std::shared_ptr<DesktopWatch> desktop;
     const xcb_window_t window;
     const xcb_window_t black_cover;  ///< a child of the window
     const Listener listener;
@@ -55,8 +57,9 @@ struct WindowKeeper::Implementation {
     const Doorbell doorbell;
     std::thread thread;
 
-    Implementation(xcb_window_t window_id, Listener listens)
-        : window(window_id),
+    Implementation(xcb_window_t window_id, std::shared_ptr<DesktopWatch> watch, Listener listens)
+        : desktop(std::move(watch)),
+          window(window_id),
           black_cover(xcb_generate_id(x.get())),
           listener(std::move(listens)),
           passes_grabs(x.has(xcb_test_id)),
@@ -184,7 +187,7 @@ struct WindowKeeper::Implementation {
 
     /// Where the window belongs now, or why nowhere.
     std::optional<Output> wanted(const std::string& id, std::string& why_hidden) const {
-        const auto outputs = read_outputs(x);
+        const auto outputs = read_outputs(x, desktop.get());
         const Output* found = nullptr;
         for (const auto& output : outputs) {
             if (output.monitor.id == id) found = &output;
@@ -337,8 +340,11 @@ struct WindowKeeper::Implementation {
     }
 };
 
-WindowKeeper::WindowKeeper(std::uint32_t window, Listener listener)
-    : implementation_(std::make_unique<Implementation>(window, std::move(listener))) {}
+WindowKeeper::WindowKeeper(std::uint32_t window,
+                           std::shared_ptr<DesktopWatch> desktop,
+                           Listener listener)
+    : implementation_(
+          std::make_unique<Implementation>(window, std::move(desktop), std::move(listener))) {}
 
 WindowKeeper::~WindowKeeper() = default;
 

@@ -11,6 +11,8 @@
 
 namespace livery {
 
+class DesktopWatch;
+
 /// Listens to RandR on a connection and a thread of its own, so that a window is hidden before a
 /// busy program could have read that its monitor went. Its requests are served even while another
 /// program holds the server, which is when xrandr and desktops move the monitors about; to show
@@ -29,9 +31,10 @@ class WindowKeeper {
         std::function<void()> covered;            ///< black now, wherever it is shown
     };
 
-    /// `window` is unmapped; it becomes override-redirect, and black until drawn into. Throws
-    /// std::runtime_error without X or RandR.
-    WindowKeeper(std::uint32_t window, Listener listener);
+    /// `window` is unmapped; it becomes override-redirect, and black until drawn into. `desktop`
+    /// names monitors behind Xwayland, as in list_monitors(). Throws std::runtime_error without X
+    /// or RandR.
+    WindowKeeper(std::uint32_t window, std::shared_ptr<DesktopWatch> desktop, Listener listener);
     ~WindowKeeper();  ///< hides
     WindowKeeper(const WindowKeeper&) = delete;
     WindowKeeper& operator=(const WindowKeeper&) = delete;

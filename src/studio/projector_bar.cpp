@@ -71,6 +71,22 @@ const ImVec4& colour_of(ProjectorWords::Mood mood) {
     return colours::dim_text;
 }
 
+}  // namespace
+
+const ImVec4& colour_of(SignalWarning::Severity severity) {
+    switch (severity) {
+        case SignalWarning::Severity::error:
+            return colours::error;
+        case SignalWarning::Severity::warning:
+            return colours::warning;
+        case SignalWarning::Severity::note:
+            break;
+    }
+    return colours::dim_text;
+}
+
+namespace {
+
 /// Behind the last item, cut where `right` begins; the whole is in the tooltip then.
 void draw_fitted(const char* name,
                  const std::string& text,
@@ -90,18 +106,18 @@ void draw_fitted(const char* name,
 
 void draw_warnings(const Shell& shell, float right) {
     if (shell.signal_warnings.empty()) return;
-    const auto count = shell.signal_warnings.size();
+    const SignalWarning& worst = shell.signal_warnings.front();
+    const long count = count_of_warnings(shell.signal_warnings);
     std::string all;
     for (const SignalWarning& warning : shell.signal_warnings) {
         all +=
             (all.empty() ? "" : "\n\n") + warning.what + "\n" + warning.cause + "\n" + warning.fix;
     }
-    draw_fitted(
-        "signal-warnings",
-        count == 1 ? shell.signal_warnings.front().what : fmt::format("{} signal warnings", count),
-        colours::warning,
-        all,
-        right);
+    draw_fitted("signal-warnings",
+                count > 1 ? fmt::format("{} ({} more)", worst.what, count - 1) : worst.what,
+                colour_of(worst.severity),
+                all,
+                right);
 }
 
 /// A key's state that must be read from the other end of the room.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/log.h"
+#include "projection/desktop_watch.h"
 #include "projection/picture_port.h"
 #include "studio/nudge/nudge_panel.h"
 #include "studio/presenting/presenting.h"
@@ -35,6 +36,12 @@ std::optional<std::string> usable_monitor(const Shell& shell) {
     return shell.projector_monitor;
 }
 
+void keep_projector(Shell& shell, const std::string& id) {
+    shell.projector_monitor = id;
+    shell.studio.session.set_workspace(kMonitorKey, id);
+    keep_setting(shell.studio.settings, kProjectorSetting, id);
+}
+
 void apply(Shell& shell) {
     const auto usable = usable_monitor(shell);
     shell.only_screen_is_projector = !shell.projector_monitor.empty() && !usable;
@@ -64,17 +71,27 @@ void use_projector_monitor(Shell& shell, const std::string& id) {
                 "Extend the desktop to the projector instead of mirroring it."});
         return;
     }
-    shell.projector_monitor = id;
-    studio.session.set_workspace(kMonitorKey, id);
-    keep_setting(studio.settings, kProjectorSetting, id);
+    keep_projector(shell, id);
+    shell.projector_was_there = true;
     log_line(LogLevel::info, "projector: " + (monitor ? monitor->name : "none"));
     apply(shell);
     shell.window_must_move = true;
 }
 
+void read_monitors(Shell& shell) {
+    Studio& studio = shell.studio;
+    studio.monitors = list_monitors(studio.desktop.get());
+    // One that was there is found by its id alone: another of its kind is not it.
+    if (shell.projector_was_there) return;
+    const auto remembered = find_remembered_monitor(studio.monitors, shell.projector_monitor);
+    if (!remembered) return;
+    shell.projector_was_there = true;
+    if (remembered->id != shell.projector_monitor) keep_projector(shell, remembered->id);
+}
+
 void monitors_changed(Shell& shell) {
     Studio& studio = shell.studio;
-    studio.monitors = list_monitors();
+    read_monitors(shell);
     for (const Monitor& m : studio.monitors) {
         log_line(LogLevel::info,
                  "monitor " + std::to_string(m.number) + ": " + m.name + " " +
@@ -92,14 +109,16 @@ void check_projector_signal(Shell& shell) {
     shell.signal_warnings.clear();
     const auto usable = usable_monitor(shell);
     const auto monitor = usable ? find_monitor(studio.monitors, *usable) : std::nullopt;
-    if (!monitor) return;
+    if (!monitor || !studio.desktop) return;
     glm::ivec2 calibrated_px{0};
     if (studio.setup && studio.setup->calibration) {
         calibrated_px = {studio.setup->view.width, studio.setup->view.height};
     }
-    shell.signal_warnings = check_signal(*monitor, calibrated_px);
+    shell.signal_warnings = check_signal(*monitor, calibrated_px, *studio.desktop);
     for (const SignalWarning& warning : shell.signal_warnings) {
-        log_line(LogLevel::warning, warning.what + " " + warning.cause + " " + warning.fix);
+        const bool note = warning.severity == SignalWarning::Severity::note;
+        log_line(note ? LogLevel::info : LogLevel::warning,
+                 warning.what + " " + warning.cause + " " + warning.fix);
     }
 }
 

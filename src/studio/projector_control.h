@@ -11,6 +11,8 @@ struct Shell;
 
 /// An empty id: none. Remembered; throws nothing, says in a notice what is in the way.
 void use_projector_monitor(Shell& shell, const std::string& id);
+/// The monitors that there are, and which of them is the remembered projector.
+void read_monitors(Shell& shell);
 /// To be called when monitors came or went, and once at the start.
 void monitors_changed(Shell& shell);
 void check_projector_signal(Shell& shell);

@@ -1,6 +1,14 @@
 #include "studio/projector_words.h"
 
+#include <algorithm>
+
 namespace livery {
+
+long count_of_warnings(const std::vector<SignalWarning>& list) {
+    return std::count_if(list.begin(), list.end(), [](const SignalWarning& warning) {
+        return warning.severity != SignalWarning::Severity::note;
+    });
+}
 
 ProjectorWords projector_words(const ProjectorFacts& facts) {
     using enum ProjectorWords::Mood;

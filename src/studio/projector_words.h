@@ -3,8 +3,11 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "projection/projector_screen.h"
+
+struct ImVec4;
 
 namespace livery {
 
@@ -30,6 +33,10 @@ struct ProjectorWords {
 
 /// A frame may be on its way for so long before the bar speaks of it.
 inline constexpr double kUnspokenWait_s = 0.25;
+
+const ImVec4& colour_of(SignalWarning::Severity severity);
+/// Of warnings and errors; notes are none.
+long count_of_warnings(const std::vector<SignalWarning>& list);
 
 ProjectorWords projector_words(const ProjectorFacts& facts);
 

@@ -47,6 +47,7 @@ struct Studio {
     std::shared_ptr<const Product> product;
     std::shared_ptr<const ProjectorSetup> setup;
     std::vector<Monitor> monitors;
+    std::shared_ptr<DesktopWatch> desktop;  ///< names them, with their warnings; none in tests
 
     std::unique_ptr<FrameThread> frames;
     std::unique_ptr<PreviewThread> previews;

@@ -68,16 +68,20 @@ TEST(NightLightTest, IsAskedOfTheDesktop) {
     for (const auto& [service, name] :
          {std::pair("org.gnome.SettingsDaemon.Color", "GNOME"), {"org.kde.KWin", "KDE Plasma"}}) {
         FakeDesktopBus bus(service);
-        EXPECT_TRUE(check_signal(*monitor, {0, 0}).empty());
+        const auto check = [&] {
+            DesktopWatch desktop_watch(false);
+            return check_signal(*monitor, {0, 0}, desktop_watch);
+        };
+        EXPECT_TRUE(check().empty());
         bus.property = true;
-        const auto list = check_signal(*monitor, {0, 0});
+        const auto list = check();
         ASSERT_EQ(list.size(), 1u);
         EXPECT_EQ(list[0].kind, SignalWarning::Kind::night_light);
         EXPECT_EQ(list[0].what, "A night light tints the projector's picture.");
         EXPECT_EQ(list[0].cause, name + std::string(" says that its night light is on."));
         EXPECT_EQ(list[0].fix, "Switch the night light off in the display settings.");
         bus.answers = false;
-        EXPECT_TRUE(check_signal(*monitor, {0, 0}).empty());
+        EXPECT_TRUE(check().empty());
     }
 }
 

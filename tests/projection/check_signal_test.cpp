@@ -21,8 +21,10 @@ struct CheckSignalTest : ::testing::Test {
 
     std::vector<SignalWarning> check(glm::ivec2 calibrated_px = {1280, 800}) const {
         const auto monitor = find_monitor(list_monitors(), Desktop::projector_output);
-        return monitor ? check_signal(*monitor, calibrated_px) : std::vector<SignalWarning>();
+        return monitor ? check_signal(*monitor, calibrated_px, watch)
+                       : std::vector<SignalWarning>();
     }
+    mutable DesktopWatch watch{false};
     Desktop desktop;
     std::string projector = Desktop::projector_output;
 };
@@ -71,7 +73,7 @@ TEST_F(CheckSignalTest, FindsALimitedRangeWhereTheDriverTells) {
     const XConnection x;
     const auto set = [&](std::string_view value) {
         const xcb_atom_t atom = x.atom(value);
-        for (const auto& output : read_outputs(x)) {
+        for (const auto& output : read_outputs(x, nullptr)) {
             if (output.socket != projector) continue;
             xcb_randr_change_output_property(x.get(),
                                              output.output,
@@ -113,7 +115,7 @@ Output output_showing(glm::ivec2 desktop_px, glm::ivec2 mode_px, glm::ivec2 pref
     output.socket = "HDMI-1";
     output.monitor.width = desktop_px.x;
     output.monitor.height = desktop_px.y;
-    output.mode_px = mode_px;
+    output.monitor.mode_px = mode_px;
     output.preferred_px = preferred_px;
     return output;
 }
@@ -124,6 +126,7 @@ TEST(WarningsOfSize, SayWhetherTheDesktopScales) {
     auto list = warnings_of_size(output, {0, 0});
     ASSERT_EQ(list.size(), 1u);
     EXPECT_EQ(list[0].kind, Kind::scaled);
+    EXPECT_EQ(list[0].severity, SignalWarning::Severity::error);
     EXPECT_EQ(list[0].what, "The desktop scales the picture on its way to the projector.");
     EXPECT_EQ(list[0].cause, "HDMI-1 shows 1600x900 of the desktop with 1920x1080 pixels.");
     EXPECT_EQ(
@@ -154,7 +157,7 @@ TEST_F(CheckSignalTest, KnowsNothingOfAProjectorThatIsNotThere) {
     const auto monitor = find_monitor(list_monitors(), projector);
     ASSERT_TRUE(monitor);
     desktop.unplug_projector();
-    EXPECT_TRUE(check_signal(*monitor, {1, 1}).empty());
+    EXPECT_TRUE(check_signal(*monitor, {1, 1}, watch).empty());
 }
 
 TEST(SignalTestPicture, HasEveryStepNearBlackAndNearWhite) {

@@ -7,7 +7,7 @@
 
 namespace livery {
 
-FakeDesktopBus::FakeDesktopBus(const std::string& service) {
+FakeDesktopBus::FakeDesktopBus(const std::string& service, const std::string& another) {
     // The folder's name has spaces, which an address must escape: a name of its own is simpler.
     const std::string address = "unix:abstract=livery-test-" + std::to_string(::getpid());
     const auto configuration =
@@ -30,6 +30,7 @@ FakeDesktopBus::FakeDesktopBus(const std::string& service) {
     }
     dbus_connection_set_exit_on_disconnect(connection_, false);
     dbus_bus_request_name(connection_, service.c_str(), 0, nullptr);
+    if (!another.empty()) dbus_bus_request_name(connection_, another.c_str(), 0, nullptr);
     thread_ = std::thread([this] { serve(); });
 }
 
@@ -49,6 +50,33 @@ void FakeDesktopBus::serve() {
     }
 }
 
+void FakeDesktopBus::tell_monitors(const std::optional<SaidState>& state) {
+    {
+        const std::lock_guard lock(mutex_);
+        monitors_ = state;
+    }
+    send_signal(
+        "/org/gnome/Mutter/DisplayConfig", "org.gnome.Mutter.DisplayConfig", "MonitorsChanged");
+}
+
+void FakeDesktopBus::send_signal(const char* path, const char* interface, const char* member) {
+    DBusMessage* signal = dbus_message_new_signal(path, interface, member);
+    dbus_connection_send(connection_, signal, nullptr);
+    dbus_connection_flush(connection_);
+    dbus_message_unref(signal);
+}
+
+DBusMessage* FakeDesktopBus::monitors_answer(DBusMessage* question) {
+    const std::lock_guard lock(mutex_);
+    if (!monitors_) {
+        return dbus_message_new_error(question, DBUS_ERROR_FAILED, "no monitors today");
+    }
+    DBusMessage* answer = mutter_message(*monitors_).release();
+    dbus_message_set_destination(answer, dbus_message_get_sender(question));
+    dbus_message_set_reply_serial(answer, dbus_message_get_serial(question));
+    return answer;
+}
+
 bool FakeDesktopBus::answer_next() {
     DBusMessage* question = dbus_connection_pop_message(connection_);
     if (!question) return false;
@@ -62,6 +90,9 @@ bool FakeDesktopBus::answer_next() {
             dbus_message_iter_open_container(&outer, DBUS_TYPE_VARIANT, "b", &value);
             dbus_message_iter_append_basic(&value, DBUS_TYPE_BOOLEAN, &on);
             dbus_message_iter_close_container(&outer, &value);
+        } else if (method == "GetCurrentState") {
+            dbus_message_unref(answer);
+            answer = monitors_answer(question);
         } else if (method == "Inhibit") {
             const dbus_uint32_t cookie = 77;
             dbus_message_append_args(answer, DBUS_TYPE_UINT32, &cookie, DBUS_TYPE_INVALID);

@@ -28,9 +28,13 @@ std::vector<std::uint8_t> edid(const std::string& name) {
     return block;
 }
 
+std::string edid_name(const std::vector<std::uint8_t>& block) {
+    return display_name(identity_of_edid(block));
+}
+
 void set_edid(const std::string& socket, const std::vector<std::uint8_t>& block) {
     const XConnection x;
-    for (const auto& output : read_outputs(x)) {
+    for (const auto& output : read_outputs(x, nullptr)) {
         if (output.socket != socket) continue;
         xcb_randr_change_output_property(x.get(),
                                          output.output,
@@ -102,6 +106,62 @@ TEST(Monitors, AreNamedByWhateverTheirEdidHolds) {
     auto cut = edid("EPSON PJ");
     cut.resize(100);
     EXPECT_EQ(edid_name(cut), "");
+}
+
+TEST(Monitors, HaveTheIdentityThatGnomeToldOfTheSameEdid) {
+    auto block = edid("EPSON PJ");
+    block[10] = 0x2b;
+    block[11] = 0x1a;
+    block[12] = 0x01;
+    EXPECT_EQ(identity_of_edid(block), (DisplayIdentity{"EPS", "EPSON PJ", "0x00000001"}));
+    // The third descriptor: a serial number in letters.
+    block[54 + 36 + 3] = 0xFF;
+    const std::string serial = "X4KF123\n     ";
+    std::copy(serial.begin(), serial.end(), block.begin() + 54 + 36 + 5);
+    EXPECT_EQ(identity_of_edid(block), (DisplayIdentity{"EPS", "EPSON PJ", "X4KF123"}));
+    block[54 + 18 + 3] = 0;
+    EXPECT_EQ(identity_of_edid(block).product, "0x1a2b");
+    EXPECT_EQ(identity_of_edid(std::vector<std::uint8_t>(127, 1)), DisplayIdentity());
+    EXPECT_TRUE(has_serial({"EPS", "EPSON PJ", "X4KF123"}));
+    for (const char* none : {"", "0x00000000", "0x01010101"}) {
+        EXPECT_FALSE(has_serial({"EPS", "EPSON PJ", none})) << none;
+    }
+}
+
+TEST(Monitors, AreFoundByWhatAnEarlierStartRemembered) {
+    Desktop desktop;
+    const auto block = edid("EPSON PJ");
+    set_edid("DUMMY1", block);
+    const auto list = list_monitors();
+    EXPECT_EQ(find_remembered_monitor(list, list[1].id)->number, 2);
+    // By version 0.1: every byte of the EDID.
+    const std::string former = former_monitor_id("DUMMY1", block);
+    EXPECT_NE(former, list[1].id);
+    EXPECT_FALSE(find_monitor(list, former));
+    ASSERT_TRUE(find_remembered_monitor(list, former));
+    EXPECT_EQ(find_remembered_monitor(list, former)->number, 2);
+    EXPECT_FALSE(find_remembered_monitor(list, "DUMMY1:0123456789abcdef"));
+    EXPECT_FALSE(find_remembered_monitor(list, ""));
+}
+
+TEST(Monitors, AreFoundInAnotherSocketByTheirSerialNumberAlone) {
+    const auto monitor = [](const char* socket, const DisplayIdentity& identity) {
+        Monitor made;
+        made.identity = identity;
+        made.id = monitor_id(socket, identity);
+        return made;
+    };
+    const DisplayIdentity numbered{"EPS", "EPSON PJ", "X4KF123"}, other{"EPS", "EPSON PJ", "Y"},
+        none{"EPS", "EPSON PJ", "0x00000000"};
+    const auto found = find_remembered_monitor(
+        {monitor("HDMI-1", other), monitor("DP-2", numbered)}, monitor_id("HDMI-0", numbered));
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->id, monitor_id("DP-2", numbered));
+    EXPECT_FALSE(find_remembered_monitor({monitor("HDMI-1", none)}, monitor_id("HDMI-0", none)));
+    EXPECT_FALSE(find_remembered_monitor({monitor("DP-1", numbered), monitor("DP-2", numbered)},
+                                         monitor_id("HDMI-0", numbered)))
+        << "which of the two?";
+    EXPECT_FALSE(find_remembered_monitor({monitor("DP-1", {}), monitor("DP-2", {})}, "HDMI-0"));
 }
 
 TEST(Monitors, WithoutAServerSayWhatIsMissing) {

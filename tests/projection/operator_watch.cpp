@@ -42,7 +42,7 @@ bool contains(const XConnection& x, const Rectangle& area, const Rgb& colour) {
 OperatorWatch::OperatorWatch(const std::string& output, const Rgb& forbidden)
     : output_(output), forbidden_(forbidden) {
     xcb_test_grab_control(x_.get(), true);
-    for (const auto& found : read_outputs(x_)) {
+    for (const auto& found : read_outputs(x_, nullptr)) {
         if (found.socket == output) crtc_ = found.crtc;
     }
     if (crtc_ == 0) throw std::runtime_error("no monitor at " + output);

@@ -187,7 +187,8 @@ TEST_P(ProjectorScreenTest, CutsAFadeShortForWhatIsNew) {
 
 TEST_P(ProjectorScreenTest, DrawsNothingWhileNothingChanges) {
     std::atomic<std::uint64_t> told{0};
-    ProjectorScreen screen(stage.share, [&](const ShownPicture& shown) { told = shown.frames; });
+    ProjectorScreen screen(
+        stage.share, nullptr, [&](const ShownPicture& shown) { told = shown.frames; });
     screen.use_monitor(projector);
     ASSERT_TRUE(wait_until([&] { return screen.shown().frames == 1; }));
     for (std::uint64_t i = 1; i <= 5; ++i) {

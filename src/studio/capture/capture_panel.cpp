@@ -16,6 +16,7 @@
 #include "studio/kit/widgets.h"
 #include "studio/kit/words.h"
 #include "studio/nudge/nudge_panel.h"
+#include "studio/projector_words.h"
 #include "studio/results.h"
 #include "studio/window/shell.h"
 
@@ -320,8 +321,10 @@ bool draw_projector(Shell& shell) {
     }
     dim_text(fmt::format("{}, {} × {}.", monitor->name, monitor->width, monitor->height));
     for (const SignalWarning& warning : shell.signal_warnings) {
-        warning_text(warning.what);
+        coloured_text(colour_of(warning.severity), warning.what);
+        name_last_item(fmt::format("capture-signal:{}", name_of(warning.severity)));
         tooltip(warning.cause + "\n" + warning.fix);
+        if (warning.severity == SignalWarning::Severity::error) dim_text(warning.fix);
     }
     draw_place(shell);
     return true;

@@ -202,6 +202,7 @@ void wrapped(const ImVec4& colour, const std::string& text) {
 
 void dim_text(const std::string& text) { wrapped(colours::dim_text, text); }
 void warning_text(const std::string& text) { wrapped(colours::warning, text); }
+void coloured_text(const ImVec4& colour, const std::string& text) { wrapped(colour, text); }
 
 void row_label(const char* text, float share) {
     const float left = ImGui::GetCursorPosX();

@@ -23,8 +23,9 @@ extern const ImVec4 text, dim_text, accent, panel, raised, line, warning, error,
 
 /// A panel's title, semi-bold, with space before it.
 void heading(const char* text);
-void dim_text(const std::string& text);      ///< wrapped
-void warning_text(const std::string& text);  ///< wrapped
+void dim_text(const std::string& text);                             ///< wrapped
+void warning_text(const std::string& text);                         ///< wrapped
+void coloured_text(const ImVec4& colour, const std::string& text);  ///< wrapped
 /// "Eye distance" left, the next item right of it, `width` of the row's share for the label.
 void row_label(const char* text, float share = 0.42f);
 /// An explanation that shows when the pointer rests on the last item.

@@ -18,6 +18,7 @@
 #include "core/freed_memory.h"
 #include "core/log.h"
 #include "core/paths.h"
+#include "projection/desktop_watch.h"
 #include "scene/library.h"
 #include "studio/kit/tab_order.h"
 #include "studio/kit/theme.h"
@@ -59,8 +60,8 @@ constexpr double kLongestOpening_s = 1.2;
 constexpr double kOnItsWayToTheScreen_s = 0.15;
 constexpr double kGiveWay_s = 0.004;
 
-// Set by GLFW's callbacks, which carry no pointer.
-bool monitors_have_changed = false;
+// Set by GLFW's callbacks, which carry no pointer, and by the desktop's watch.
+std::atomic<bool> monitors_have_changed{false};
 std::vector<std::filesystem::path> dropped_files;
 
 std::filesystem::path session_file(const DesktopOptions& options) {
@@ -148,6 +149,10 @@ class Desktop {
   public:
     Desktop(const DesktopOptions& options, Session session)
         : options_(options), shell_(std::move(session)) {
+        shell_.studio.desktop = std::make_shared<DesktopWatch>(is_xwayland(), [] {
+            monitors_have_changed = true;
+            wake_main_thread();
+        });
         // Beside the making of windows, which takes as long.
         const Document& document = shell_.studio.session.document();
         product_ =
@@ -164,6 +169,7 @@ class Desktop {
         read.set_value(before.opened->product);
         product_ = read.get_future();
         shell_.trace = std::move(before.trace);
+        shell_.studio.desktop = std::move(before.desktop);
         shell_.black = before.black;
         handed_out_before_ = before.handed_out;
         frames_drawn_ = before.frames_drawn;
@@ -199,7 +205,7 @@ class Desktop {
         shell_.fixed_scale = options_.ui_scale;
         studio.settings = read_user_settings();
         restore_workspace(shell_);
-        studio.monitors = list_monitors();
+        read_monitors(shell_);
         const WindowPlace place = first_place(shell_, options_);
         WindowOptions window_options;
         window_options.size_px = place.size_px;
@@ -249,6 +255,7 @@ class Desktop {
         Handover next;
         next.opened = std::move(shell_.next_session);
         next.trace = shell_.trace;
+        next.desktop = shell_.studio.desktop;
         next.black = shell_.black;
         next.handed_out = imgui_->handed_out();
         next.frames_drawn = frames_drawn_;
@@ -256,7 +263,7 @@ class Desktop {
         session.set_workspace(kWindowKey, text_of(place_of(window_->native())));
         session.set_workspace(kMonitorKey, shell_.projector_monitor);
         if (shell_.studio.projector->state() == ProjectorScreen::State::showing) {
-            next.dark = std::make_unique<DarkProjector>(shell_.projector_monitor);
+            next.dark = std::make_unique<DarkProjector>(shell_.projector_monitor, next.desktop);
         }
         log_line(LogLevel::info, "goes on with " + session.file().value_or("").string());
         return next;
@@ -286,7 +293,7 @@ class Desktop {
             if (places != monitor_places_) monitors_have_changed = true;
             monitor_places_ = std::move(places);
         }
-        if (std::exchange(monitors_have_changed, false)) {
+        if (monitors_have_changed.exchange(false)) {
             monitors_changed(shell_);
             frames_to_draw_ = kFramesAfterInput;
         }

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "gl/window.h"
 #include "projection/projector_screen.h"
@@ -17,8 +18,8 @@ struct DarkProjector {
     Window context;
     ProjectorScreen screen;
 
-    explicit DarkProjector(const std::string& monitor)
-        : context({"Livery (dark)", {16, 16}, false, true}), screen(context) {
+    DarkProjector(const std::string& monitor, std::shared_ptr<DesktopWatch> desktop)
+        : context({"Livery (dark)", {16, 16}, false, true}), screen(context, std::move(desktop)) {
         screen.set_black(true);
         screen.use_monitor(monitor);
         screen.monitors_changed();
@@ -30,8 +31,9 @@ struct Handover {
     std::shared_ptr<OpenedSession> opened;
     std::unique_ptr<DarkProjector> dark;  ///< none: there was no projector
     std::shared_ptr<Trace> trace;         ///< shared as in the shell
-    bool black = false;                   ///< it was so before
-    ImGuiWindow::HandedOut handed_out;    ///< counts go on: who drives the program waits for them
+    std::shared_ptr<DesktopWatch> desktop;
+    bool black = false;                 ///< it was so before
+    ImGuiWindow::HandedOut handed_out;  ///< counts go on: who drives the program waits for them
     int frames_drawn = 0;
 };
 

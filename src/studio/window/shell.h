@@ -108,7 +108,8 @@ struct Shell {
     std::map<int, std::vector<std::string>> told_problems;  ///< of what looks need, by look
 
     // The projector.
-    std::string projector_monitor;  ///< chosen; empty: none
+    std::string projector_monitor;     ///< chosen; empty: none
+    bool projector_was_there = false;  ///< that one, since the start
     std::vector<SignalWarning> signal_warnings;
     std::unique_ptr<MonitorNumbers> monitor_numbers;
     double monitor_numbers_until_s = 0.0;

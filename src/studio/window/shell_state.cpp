@@ -204,7 +204,14 @@ MapState state_of_shell(const Shell& shell) {
     state["projector_says"] = quoted(projector_words(projector_facts(shell)).text);
     state["projector_monitor"] = quoted(shell.projector_monitor);
     state["monitors"] = std::to_string(studio.monitors.size());
-    state["signal_warnings"] = std::to_string(shell.signal_warnings.size());
+    state["signal_warnings"] = std::to_string(count_of_warnings(shell.signal_warnings));
+    state["signal_severity"] = quoted(
+        shell.signal_warnings.empty() ? "" : name_of(shell.signal_warnings.front().severity));
+    Json signal = Json::array();
+    for (const SignalWarning& warning : shell.signal_warnings) {
+        signal.push_back(warning.what + " " + warning.cause + " " + warning.fix);
+    }
+    state["signal_says"] = signal.dump();
     state["calibrating"] = text(studio.bench->calibrating().running);
     state["solving"] = text(studio.frames->solving().has_value());
     state["busy"] = text(studio.background->is_busy());

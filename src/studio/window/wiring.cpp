@@ -349,7 +349,9 @@ Contexts start_threads(Shell& shell, const Window& window, ShadingDevice shading
         [results](auto frame) { results->take(std::move(frame)); },
         shading);
     studio.projector = std::make_unique<ProjectorScreen>(
-        window, [results](const ShownPicture& picture) { results->shown(picture); });
+        window, studio.desktop, [results](const ShownPicture& picture) {
+            results->shown(picture);
+        });
     results->use(studio.projector.get());
     studio.capture = std::make_unique<CaptureThread>(*contexts[3], wake_main_thread);
     studio.bench->use(studio.session.document().bench, studio.product);
