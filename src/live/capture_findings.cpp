@@ -23,7 +23,7 @@ Image8 outline_on_photograph(const Photograph& photograph,
                              const View& camera,
                              const Mesh& mesh,
                              int width) {
-    Image8 picture = small_photograph(photograph, width);
+    Image8 picture = small_photograph(photograph, width, white_balance(photograph));
     const Image8 inside = mockup_mask(mesh, resized(camera, picture.width, picture.height));
     for (int y = 1; y < picture.height; ++y)
         for (int x = 1; x < picture.width; ++x) {

@@ -67,10 +67,12 @@ void CaptureThread::Implementation::fit_curve() {
 /// Every photograph as it comes, from the camera or from the folder, becomes a tile.
 void CaptureThread::Implementation::look_at(Recording& recording) {
     recording.tell([this, &recording](std::size_t showing, const Photograph& photograph) {
-        const auto seen = std::make_shared<Image8>(small_photograph(photograph, kTileWidth_px));
-        const CaptureHistogram histogram = histogram_of(photograph);
         const std::string of = recording.announced();
         if (of == "white") white = photograph;
+        if (of == "white" || of == "bright-gray") balance = white_balance(photograph);
+        const auto seen =
+            std::make_shared<Image8>(small_photograph(photograph, kTileWidth_px, balance));
+        const CaptureHistogram histogram = histogram_of(photograph);
         publish([&](CaptureView& view) {
             if (view.tiles.size() <= showing) view.tiles.resize(showing + 1);
             CaptureTile& tile = view.tiles[showing];
@@ -151,7 +153,7 @@ void CaptureThread::Implementation::check_now() {
     Photograph grey = run.check->colours.front().photograph;
     const float brightest = quantile(grey.image.values, 0.995);
     grey.saturates_at = std::max(grey.black_level + 1e-6, 1.5 * static_cast<double>(brightest));
-    const auto finding = std::make_shared<Image8>(small_photograph(grey, kLiveWidth_px));
+    const auto finding = std::make_shared<Image8>(small_photograph(grey, kLiveWidth_px, balance));
     const std::vector<GradedFigure> compared = compared_with(setup.in_use, run);
     publish([&](CaptureView& view) {
         CaptureStepView& step = view.step(CaptureStep::check);

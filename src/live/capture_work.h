@@ -46,6 +46,7 @@ struct CaptureThread::Implementation {
     StagedCalibration run;
     CaptureTimes times;
     Photograph white;                           ///< the newest of the geometry
+    glm::dvec3 balance{1.0};                    ///< white_balance() of the newest white
     int taken_before = 0, answered_before = 0;  ///< of the step's recordings before this one
     CaptureClock::time_point started;
 

@@ -319,6 +319,30 @@ TEST(CaptureThread, SaysWhyACameraDoesNotOpen) {
     EXPECT_EQ(view.doing, Doing::nothing);
 }
 
+// A camera's own numbers are mostly green: white is shown white, and grey grey.
+TEST(CapturePictures, AreBalancedByWhite) {
+    Photograph white;
+    white.image = ImageF(80, 40, 3, 100.0f);
+    white.black_level = 100.0;
+    white.saturates_at = 1100.0;
+    for (int y = 10; y < 30; ++y)
+        for (int x = 20; x < 60; ++x) {
+            white.image.at(x, y, 0) += 400.0f;
+            white.image.at(x, y, 1) += 800.0f;
+            white.image.at(x, y, 2) += 500.0f;
+        }
+    const glm::dvec3 balance = white_balance(white);
+    EXPECT_NEAR(balance.x, 2.0, 1e-6);
+    EXPECT_EQ(balance.y, 1.0);
+    EXPECT_NEAR(balance.z, 1.6, 1e-6);
+    const Image8 small = small_photograph(white, 80, balance);
+    EXPECT_EQ(small.at(40, 20, 0), small.at(40, 20, 1));
+    EXPECT_EQ(small.at(40, 20, 2), small.at(40, 20, 1));
+    Photograph nothing = white;
+    for (float& value : nothing.image.values) value = 100.0f;
+    EXPECT_EQ(white_balance(nothing), glm::dvec3(1.0));
+}
+
 TEST(CapturePictures, AreSmallAndTrue) {
     Photograph photograph;
     photograph.image = ImageF(100, 60, 3, 1000.0f + 900.0f);

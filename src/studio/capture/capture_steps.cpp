@@ -157,6 +157,17 @@ void draw_effort(Shell& shell) {
     }
 }
 
+/// Beside Accept: what the corrected colours came to, or that nobody has looked.
+void draw_what_check_found(const CaptureView& view) {
+    const CaptureStepView& check = view.step(CaptureStep::check);
+    if (!check.called_for) return;
+    if (!check.done) {
+        dim_text("Its corrected colours have not been checked.");
+        return;
+    }
+    draw_figures(check.figures);
+}
+
 /// The large button: the next step, or the end.
 void draw_next(Shell& shell, bool can_show) {
     CaptureThread& capture = *shell.studio.capture;
@@ -184,6 +195,7 @@ void draw_next(Shell& shell, bool can_show) {
             accept(shell);
         name_last_item("accept");
         tooltip("The calibration before is kept, and can be gone back to.");
+        draw_what_check_found(view);
     }
     end_disabled();
     if (finished && is_accepted(state)) {

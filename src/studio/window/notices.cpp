@@ -82,6 +82,8 @@ void draw_notices(Shell& shell) {
     constexpr std::size_t most_shown = 4;
     const std::size_t first = notices.size() > most_shown ? notices.size() - most_shown : 0;
     for (std::size_t i = first; i < notices.size(); ++i) {
+        // Over a camera's live view news can wait
+        if (shell.capture_open && notices[i].level == Notice::Level::info) continue;
         ImGui::PushID(static_cast<int>(i));
         if (draw_notice(notices[i], width)) dismissed = i;
         ImGui::PopID();
