@@ -9,7 +9,9 @@
 #include "cli/command.h"
 #include "core/error.h"
 #include "jobs/calibrate/calibration_folder.h"
+#include "jobs/calibrate/calibration_origin.h"
 #include "jobs/captured_calibration.h"
+#include "scene/library.h"
 
 namespace livery {
 
@@ -46,7 +48,8 @@ Json figures_of(const ColourCalibration& calibration) {
 
 Command calibrate_color_command() {
     struct Arguments {
-        std::string captures, patterns, map, camera_to_xyz, camera, out, mode = "robust";
+        std::string captures, patterns, map, camera_to_xyz, camera, product, unit, out,
+            mode = "robust";
     };
     const auto arguments = std::make_shared<Arguments>();
     Command command;
@@ -79,6 +82,13 @@ Command calibrate_color_command() {
          &arguments->camera,
          false,
          {}},
+        {"--product",
+         "FILE|NAME",
+         "the mock-up, with --camera: what the photographs do not see is predicted",
+         &arguments->product,
+         false,
+         {}},
+        unit_option(arguments->unit),
         {"--out", "DIR", "calibration folder", &arguments->out, true, {}},
         {"--mode",
          "MODE",
@@ -102,11 +112,24 @@ Command calibrate_color_command() {
             check_projector(
                 *projector, arguments->camera, folder.projector_width, folder.projector_height);
         }
+        if (!arguments->product.empty()) {
+            if (!projector) {
+                throw std::invalid_argument(
+                    "--product: found no --camera, expected the projector's camera file, as "
+                    "calibrate register writes it");
+            }
+            request.product = find_product(arguments->product, parse_unit(arguments->unit));
+            request.projector = projector;
+        }
         Outcome outcome;
         try {
             const ColourCalibration calibration = calibrate_from_folder(request, progress);
             if (projector) {
                 write_setup(arguments->out, calibration, *projector);
+                if (request.product) {
+                    write_origin(arguments->out,
+                                 origin_for(*request.product, calibration.made_with));
+                }
             } else {
                 write_calibration(arguments->out, calibration);
             }

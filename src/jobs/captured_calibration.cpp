@@ -8,10 +8,12 @@
 
 #include "calibration/captures/captures.h"
 #include "calibration/correspondence/fringes.h"
+#include "calibration/predict.h"
 #include "capture/patterns_folder.h"
 #include "core/error.h"
 #include "core/image_io.h"
 #include "jobs/camera_to_xyz_file.h"
+#include "jobs/projector_irradiance.h"
 
 namespace livery {
 
@@ -146,7 +148,10 @@ ColourCalibration calibrate_from_folder(const CapturedCalibrationRequest& asked,
         calibration.warnings.insert(calibration.warnings.end(), warnings.begin(), warnings.end());
         seal(calibration);
     }
-    return calibration;
+    if (!request.product || !request.projector) return calibration;
+    return predict_hidden(
+        std::move(calibration),
+        projector_irradiance(request.product->mesh, *request.projector, progress));
 }
 
 ProjectorToCamera read_map(const std::filesystem::path& file,

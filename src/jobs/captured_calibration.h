@@ -2,12 +2,15 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 
 #include "calibration/colour/colour.h"
 #include "capture/captures_folder.h"
 #include "core/progress.h"
 #include "scene/colour_calibration.h"
+#include "scene/product.h"
+#include "scene/view.h"
 
 namespace livery {
 
@@ -17,6 +20,9 @@ struct CapturedCalibrationRequest {
     std::optional<std::filesystem::path> map;  ///< else decoded from the same folder
     std::optional<std::filesystem::path> camera_to_xyz;
     ColourMode mode = ColourMode::robust;
+    /// With both, pixels that the camera does not see are predicted (calibration/predict.h).
+    std::shared_ptr<const Product> product;
+    std::optional<View> projector;  ///< world: the product's frame
 };
 
 /// Throws FileError, Refused, std::invalid_argument.

@@ -108,15 +108,18 @@ void draw_figures(const std::vector<GradedFigure>& figures) {
 
 namespace {
 
-void draw_calibration_in_use(const ColourCalibration& calibration) {
+void draw_calibration_in_use(const ColourCalibration& calibration, bool other_product) {
     const auto figures = grade_figures(calibration);
     const OverallGrade grade = grade_of(figures);
     ImGui::PushFont(large_font());
-    ImGui::TextColored(colour_of(grade.grade), "%s", to_string(grade.grade).c_str());
+    ImGui::TextColored(other_product ? colours::error : colour_of(grade.grade),
+                       "%s",
+                       other_product ? "Another product's" : to_string(grade.grade).c_str());
     ImGui::PopFont();
     name_last_item("calibration-grade");
-    dim_text(grade.grade == Grade::good ? "Every figure is within its good range."
-                                        : fmt::format("{}. {}", grade.reason, grade.fix));
+    dim_text(other_product                ? "The figures below are of that product's mock-up."
+             : grade.grade == Grade::good ? "Every figure is within its good range."
+                                          : fmt::format("{}. {}", grade.reason, grade.fix));
     fact("Made", readable_time(calibration.created));
     fact("Id", calibration.id.substr(0, 8), calibration.id);
     fact("With", calibration.made_with);
@@ -136,18 +139,26 @@ std::string projector_in_words(const Studio& studio) {
                    : "";
 }
 
-/// Made for another mesh or another projector than there are now.
-void draw_what_changed(Studio& studio) {
+/// Whether it was made for another mesh or another projector than there are now; looked at again
+/// when one of them has changed.
+void look_for_changes(const Studio& studio) {
     CalibrationPanelState& state = *studio.panels.calibration;
-    if (!studio.setup || !studio.setup->origin || !studio.product) return;
     const std::string projector = projector_in_words(studio);
-    if (state.stale_setup != studio.setup || state.stale_product != studio.product ||
-        state.stale_projector != projector) {
-        state.stale_setup = studio.setup;
-        state.stale_product = studio.product;
-        state.stale_projector = projector;
-        state.stale = what_changed(*studio.setup->origin, *studio.product, projector);
+    if (state.stale_setup == studio.setup && state.stale_product == studio.product &&
+        state.stale_projector == projector) {
+        return;
     }
+    state.stale_setup = studio.setup;
+    state.stale_product = studio.product;
+    state.stale_projector = projector;
+    state.stale.clear();
+    state.other_product.clear();
+    if (!studio.setup || !studio.setup->origin || !studio.product) return;
+    state.stale = what_changed(*studio.setup->origin, *studio.product, projector);
+    state.other_product = another_product(*studio.setup->origin, *studio.product);
+}
+
+void draw_what_changed(const CalibrationPanelState& state) {
     for (const std::string& change : state.stale) {
         warning_text(sentence(change));
         name_last_item("calibration-stale");
@@ -161,8 +172,10 @@ void draw_in_use(Studio& studio) {
         return;
     }
     if (studio.setup->table && studio.setup->calibration) {
-        draw_what_changed(studio);
-        draw_calibration_in_use(*studio.setup->calibration);
+        look_for_changes(studio);
+        const CalibrationPanelState& state = *studio.panels.calibration;
+        draw_what_changed(state);
+        draw_calibration_in_use(*studio.setup->calibration, !state.other_product.empty());
         return;
     }
     ImGui::PushFont(large_font());
@@ -312,6 +325,12 @@ void ask_for_projector(Studio& studio, const std::filesystem::path& folder) {
 }
 
 }  // namespace
+
+std::string other_product(const Studio& studio) {
+    look_for_changes(studio);
+    const std::string& why = studio.panels.calibration->other_product;
+    return why.empty() ? "" : sentence(why) + " Calibrate again.";
+}
 
 void load_calibration(Studio& studio, const std::filesystem::path& folder) {
     std::error_code error;

@@ -27,6 +27,7 @@ struct CalibrationPanelState {
     /// What no longer fits the calibration in use, and for which set-up, product and projector that
     /// was found out.
     std::vector<std::string> stale;
+    std::string other_product;  ///< why it is another product's; empty: it is not
     std::shared_ptr<const void> stale_setup, stale_product;
     std::string stale_projector;
 };
@@ -34,6 +35,8 @@ struct CalibrationPanelState {
 const ImVec4& colour_of(Grade grade);
 /// A row a figure, its grade at the right; what it means and what helps while the pointer is on it.
 void draw_figures(const std::vector<GradedFigure>& figures);
+/// Why the calibration in use is another product's, as a sentence; empty: it is not.
+std::string other_product(const Studio& studio);
 /// Puts a calibration's folder to use; asks for its projector where it does not say.
 void load_calibration(Studio& studio, const std::filesystem::path& folder);
 

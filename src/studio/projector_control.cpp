@@ -5,6 +5,7 @@
 #include "core/log.h"
 #include "projection/desktop_watch.h"
 #include "projection/picture_port.h"
+#include "studio/calibration_panel.h"
 #include "studio/nudge/nudge_panel.h"
 #include "studio/presenting/presenting.h"
 #include "studio/results.h"
@@ -159,6 +160,7 @@ ProjectorFacts projector_facts(const Shell& shell) {
     facts.wanted = shell.frame_number;
     facts.shown = screen.shown().number;
     facts.waited_s = shell.studio.now_s - shell.frame_asked_s;
+    facts.other_product = other_product(shell.studio);
     facts.not_drawn = shell.not_drawn;
     const auto newest = shell.results->newest_frame();
     if (facts.not_drawn.empty() && newest && newest->number == shell.frame_number) {

@@ -42,6 +42,9 @@ ProjectorWords projector_words(const ProjectorFacts& facts) {
     if (!facts.not_drawn.empty()) {
         return {"not this look: keeps the last picture", error, facts.not_drawn};
     }
+    if (!facts.other_product.empty()) {
+        return {"showing, corrected for another product", error, facts.other_product};
+    }
     if (behind && facts.waited_s >= kUnspokenWait_s) return {"drawing…", quiet, ""};
     return {"showing", good, ""};
 }

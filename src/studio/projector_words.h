@@ -22,6 +22,7 @@ struct ProjectorFacts {
     std::uint64_t shown = 0;                ///< the frame on the projector
     double waited_s = 0.0;                  ///< since the wanted one was asked for
     std::string not_drawn;                  ///< why there is no such frame
+    std::string other_product;              ///< why its correction is wrong; empty: it is not
 };
 
 struct ProjectorWords {

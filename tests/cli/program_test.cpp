@@ -342,6 +342,31 @@ TEST(Program, GoesFromPatternsToProjectorInputThroughFiles) {
     EXPECT_LT(figures["additivity_error"].get<double>(), 0.02);
     EXPECT_EQ(livery_run({"check", calibration, captures}).exit_code, 0);
 
+    // For a product it is that one's: another one is refused, unless somebody insists.
+    const auto of_car = [&](std::vector<std::string> words) {
+        words.insert(words.begin(), {"calibrate", "color", "--captures", captures});
+        words.insert(words.end(), {"--product", "car", "--out", (folder / "of car").string()});
+        return livery_run(words);
+    };
+    const ProgramRun nowhere = of_car({});
+    EXPECT_EQ(nowhere.exit_code, 2);
+    EXPECT_NE(nowhere.err.find("--product: found no --camera"), std::string::npos) << nowhere.err;
+    ASSERT_EQ(of_car({"--camera", captures + "/projector.json"}).exit_code, 0);
+    std::vector<std::string> another = {"render",
+                                        "--product",
+                                        "sphere",
+                                        "--quality",
+                                        "draft",
+                                        "--calibration",
+                                        (folder / "of car").string(),
+                                        "--out",
+                                        (folder / "another.exr").string()};
+    const ProgramRun refused = livery_run(another);
+    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_NE(refused.err.find("made for Car, not for Sphere"), std::string::npos) << refused.err;
+    another.emplace_back("--anyway");
+    EXPECT_EQ(livery_run(another).exit_code, 0);
+
     // What role, size and drive say needs no pattern file.
     const auto calibrated_with = [&](const std::function<void(Json&)>& change) {
         Json manifest = Json::parse(content(captures + "/manifest.json"));

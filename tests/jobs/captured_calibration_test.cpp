@@ -151,6 +151,32 @@ TEST_F(CapturedCalibration, IsTheOneOfTheSamePhotographsTakenLive) {
     EXPECT_GT(folder.valid_fraction, 0.8);
 }
 
+// As a live calibration does: what lights the mock-up where the camera does not see it
+TEST_F(CapturedCalibration, PredictsWhatTheCameraDoesNotSee) {
+    const ColourCalibration without = calibrated([](Json&) {});
+    CapturedCalibrationRequest request;
+    request.captures = folder_.path();
+    request.product = testing::small_bench_product();
+    request.projector = testing::small_bench_description().projector.view;
+    const ColourCalibration with = calibrate_from_folder(request);
+    EXPECT_EQ(without.predicted_fraction, 0.0);
+    std::printf("    %.1f%% predicted, to %.1f%% in the median\n",
+                100.0 * with.predicted_fraction,
+                100.0 * with.prediction_error_median);
+    EXPECT_GT(with.predicted_fraction, 0.01);
+    EXPECT_LT(with.prediction_error_median, 0.05);
+    std::size_t black = 0;
+    for (std::size_t p = 0; p < with.status.values.size(); ++p) {
+        const auto before = static_cast<PixelStatus>(without.status.values[p]);
+        const auto after = static_cast<PixelStatus>(with.status.values[p]);
+        if (is_valid(before)) {
+            EXPECT_EQ(before, after);
+        }
+        black += !is_valid(before) && is_valid(after);
+    }
+    EXPECT_GT(black, 100u);
+}
+
 // Half the exposure and another black level, said of the one photograph that has them
 TEST_F(CapturedCalibration, TakesEachPhotographAsItWasExposed) {
     const ColourCalibration plain = calibrated([](Json&) {});

@@ -35,6 +35,7 @@ TEST(ProjectorWords, SayShowingOnlyOfWhatIsShown) {
     EXPECT_FALSE(says_showing(with([](auto& f) { f.nudge = true; })));
     EXPECT_FALSE(says_showing(with([](auto& f) { f.freezing = true; })));
     EXPECT_FALSE(says_showing(with([](auto& f) { f.not_drawn = "a file is gone"; })));
+    EXPECT_FALSE(says_showing(with([](auto& f) { f.other_product = "made for a bottle"; })));
     EXPECT_FALSE(says_showing(with([](auto& f) { f.state = State::off; })));
     EXPECT_FALSE(says_showing(with([](auto& f) { f.state = State::waiting_for_monitor; })));
     EXPECT_FALSE(says_showing(with([](auto& f) { f.only_screen = true; })));

@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/json_ranges.h"
 #include "jobs/calibrate/calibration_folder.h"
+#include "jobs/calibrate/calibration_origin.h"
 #include "ledger/pass_costs.h"
 #include "scene/library.h"
 #include "scene/mockup_mask.h"
@@ -43,6 +44,12 @@ std::vector<Option> frame_options(FrameArguments& arguments) {
          "DIR",
          "calibration folder: corrects, and says where the projector stands",
          &arguments.calibration,
+         false,
+         {}},
+        {"--anyway",
+         "",
+         "even where it was made for another product",
+         &arguments.anyway,
          false,
          {}},
         {"--camera",
@@ -138,6 +145,13 @@ ResolvedFrame resolve_frame(const FrameArguments& arguments, const CommonOptions
     }
     const auto product = find_product(arguments.product, parse_unit(arguments.unit));
     frame.notes = product->notes;
+    if (!arguments.calibration.empty() && !arguments.anyway) {
+        const auto origin = read_origin(arguments.calibration, false);
+        const std::string other = origin ? another_product(*origin, *product) : "";
+        if (!other.empty()) {
+            throw Refused(other, "choose a calibration of this product, or say --anyway");
+        }
+    }
     glm::dvec3 eye_mm;
     if (const auto name = bench_of_shipped_product(arguments.product)) {
         const BenchDescription bench = read_bench_file(*name);

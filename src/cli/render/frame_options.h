@@ -19,6 +19,7 @@ struct FrameArguments {
     double budget_ms = 0.0, swap_budget_ms = 0.0;
     double design_white = kDesignWhitePercentile;
     std::string gamut = "strict";
+    bool anyway = false;
 };
 
 std::vector<Option> frame_options(FrameArguments& arguments);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "cli/command.h"
+#include "cli/monitor_projector.h"
 #include "cli/session/seat_report.h"
 #include "core/error.h"
 #include "jobs/export_product.h"
@@ -288,11 +289,16 @@ Command import_command() {
 }
 
 std::shared_ptr<const ProjectorSetup> setup_of(const Document& document, const Product& product) {
-    return document.calibration.empty() ? uncorrected_setup(document.bench)
-                                        : load_setup(document.calibration,
-                                                     document.design_white_percentile,
-                                                     product.mesh,
-                                                     document.gamut_mapping);
+    if (document.calibration.empty()) return uncorrected_setup(document.bench);
+    auto setup = load_setup(document.calibration,
+                            document.design_white_percentile,
+                            product.mesh,
+                            document.gamut_mapping);
+    if (setup->origin) {
+        const std::string other = another_product(*setup->origin, product);
+        if (!other.empty()) say("warning: " + other);
+    }
+    return setup;
 }
 
 /// Places seats and says whose eye counts, where that is asked for.

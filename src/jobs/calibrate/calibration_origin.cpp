@@ -70,6 +70,14 @@ CalibrationOrigin origin_of(const BenchCalibration& made, const BenchCalibration
     return origin;
 }
 
+CalibrationOrigin origin_for(const Product& product, const std::string& made_with) {
+    CalibrationOrigin origin;
+    origin.product = product.name;
+    origin.shape = shape_hash(product.mesh);
+    origin.made_with = made_with;
+    return origin;
+}
+
 void write_origin(const std::filesystem::path& folder, const CalibrationOrigin& origin) {
     Json json = {{"format_version", kOriginVersion},
                  {"kind", "origin"},
@@ -115,17 +123,22 @@ std::optional<CalibrationOrigin> read_origin(const std::filesystem::path& folder
     return origin;
 }
 
+std::string another_product(const CalibrationOrigin& origin, const Product& product) {
+    if (origin.shape.empty() || origin.product == product.name ||
+        origin.shape == shape_hash(product.mesh))
+        return "";
+    return fmt::format("the calibration was made for {}, not for {}", origin.product, product.name);
+}
+
 std::vector<std::string> what_changed(const CalibrationOrigin& origin,
                                       const Product& product,
                                       const std::string& projector) {
     std::vector<std::string> changes;
-    if (!origin.shape.empty() && origin.shape != shape_hash(product.mesh))
+    if (const std::string other = another_product(origin, product); !other.empty())
+        changes.push_back(other + ": calibrate again");
+    else if (!origin.shape.empty() && origin.shape != shape_hash(product.mesh))
         changes.push_back(
-            origin.product == product.name
-                ? fmt::format("the mesh of {} has changed since: calibrate again", product.name)
-                : fmt::format("it was made for {}, and this session shows {}: calibrate again",
-                              origin.product,
-                              product.name));
+            fmt::format("the mesh of {} has changed since: calibrate again", product.name));
     // A simulated bench's projector has no name that a monitor could have.
     const bool names_monitor = origin.made_with.find(" at ") != std::string::npos;
     if (!projector.empty() && names_monitor &&

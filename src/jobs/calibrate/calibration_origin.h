@@ -33,6 +33,9 @@ struct CalibrationOrigin {
 /// Of a calibration that was just made.
 CalibrationOrigin origin_of(const BenchCalibration& made, const BenchCalibrationRequest& request);
 
+/// Of one for a product, of whose making nothing else is known.
+CalibrationOrigin origin_for(const Product& product, const std::string& made_with);
+
 /// `origin.json`, with `white.exr` and `black.exr` (mean of the channels, linear per second) where
 /// there are photographs of the end, `around.exr` where that is known, and `room.json`. Throws
 /// FileError.
@@ -43,6 +46,9 @@ std::optional<CalibrationOrigin> read_origin(const std::filesystem::path& folder
                                              bool with_photographs = true);
 /// The same without the photographs, of its text.
 CalibrationOrigin parse_origin(const std::string& text, const std::filesystem::path& file);
+
+/// Why it cannot be that product's: another name and another mesh. Empty: it may be.
+std::string another_product(const CalibrationOrigin& origin, const Product& product);
 
 /// What is no longer as it was, each with the way out, a sentence; empty: nothing that can be told
 /// without a photograph. `projector`: its name and pixels in words, empty: not known.
