@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 
+#include "capture/exposures.h"
 #include "capture/manifest_io.h"
 #include "capture/transfer.h"
 #include "core/channels.h"
@@ -58,12 +59,14 @@ CapturesFolder match_by_name(const std::filesystem::path& folder,
     }
     const auto files = pictures_in(folder);
     if (files.size() != known.patterns.size()) {
-        throw FileError(folder,
-                        "",
-                        std::to_string(files.size()) + " pictures and no manifest.json",
-                        std::to_string(known.patterns.size()) + " pictures in the order of " +
-                            (patterns_manifest.empty() ? "10 column bits, 10 row bits, white, black"
-                                                       : patterns_manifest.string()));
+        throw FileError(
+            folder,
+            "",
+            std::to_string(files.size()) + " pictures and no manifest.json",
+            std::to_string(known.patterns.size()) + " pictures in the order of " +
+                (patterns_manifest.empty() ? "10 column bits, 10 row bits, white, black; or "
+                                             "--patterns, the folder of those shown"
+                                           : patterns_manifest.string()));
     }
     result.projector_width = known.projector_width;
     result.projector_height = known.projector_height;
@@ -75,7 +78,7 @@ CapturesFolder match_by_name(const std::filesystem::path& folder,
         if (!known.patterns[k].file.empty()) {
             capture.pattern = patterns_manifest.parent_path() / known.patterns[k].file;
         }
-        capture.exposure_s = 1.0;  // the same for all; colour needs a manifest that says more
+        capture.transfer = usual_transfer(capture.file);
         result.captures.push_back(std::move(capture));
     }
     return result;
@@ -112,6 +115,7 @@ void check_finite(const std::filesystem::path& file, const ImageF& image) {
 }  // namespace
 
 CapturesFolder read_captures_folder(const std::filesystem::path& folder,
+                                    PhotographUse use,
                                     const std::filesystem::path& patterns_manifest) {
     std::error_code error;
     const auto status = std::filesystem::status(folder, error);
@@ -122,8 +126,14 @@ CapturesFolder read_captures_folder(const std::filesystem::path& folder,
         throw FileError(folder, "", "a file", "a folder of photographs");
     }
     const auto manifest = folder / "manifest.json";
-    if (std::filesystem::exists(manifest, error)) return read_captures_manifest(manifest);
-    return match_by_name(folder, patterns_manifest);
+    const bool has_manifest = std::filesystem::exists(manifest, error);
+    const auto patterns = std::filesystem::is_directory(patterns_manifest, error)
+                              ? patterns_manifest / "manifest.json"
+                              : patterns_manifest;
+    CapturesFolder result =
+        has_manifest ? read_captures_manifest(manifest) : match_by_name(folder, patterns);
+    complete_exposures(result.captures, has_manifest ? manifest : folder, use);
+    return result;
 }
 
 BenchPorts ports_of(const CapturesFolder& folder) {

@@ -20,6 +20,8 @@ struct Capture {
     double saturates_at = 0.0;        ///< file units, before the transfer; 0: the file's full scale
     /// One pixel of each square of a RAW file's colour filter, in place of all, interpolated.
     bool raw_half = false;
+    /// Where the manifest would say the exposure, for messages; empty without a manifest.
+    std::string exposure_field{};
 };
 
 struct CapturesFolder {
@@ -28,11 +30,17 @@ struct CapturesFolder {
     std::vector<Capture> captures;
 };
 
-/// Reads manifest.json; without one, files in name order are matched with `patterns_manifest` or,
-/// if that is empty, with the 42-picture order (20 column, 20 row, white, black); their exposures
-/// count as one second each. Without either, the projector's size is 0x0: not known. Throws
-/// FileError.
+/// What photographs are read for: places (Gray code, boards), of which only how they are exposed
+/// against one another counts; or light, which is counted a second.
+enum class PhotographUse { places, light };
+
+/// Reads manifest.json; without one, files in name order are matched with `patterns_manifest` (or
+/// the folder that it lies in) or, if that is empty, with the 42-picture order (20 column, 20 row,
+/// white, black). Exposures that nobody states are those of complete_exposures(); without a
+/// manifest, and without EXIF in any file, one second each. Without either, the projector's size is
+/// 0x0: not known. Throws FileError, Refused.
 CapturesFolder read_captures_folder(const std::filesystem::path& folder,
+                                    PhotographUse use,
                                     const std::filesystem::path& patterns_manifest = {});
 
 /// The folder as a camera: `turn_to` looks a role up, `photograph` loads its photographs in the

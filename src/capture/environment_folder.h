@@ -54,7 +54,8 @@ struct EnvironmentFolder {
 /// Whether a manifest.json is one of light all around. Throws FileError.
 bool is_environment_manifest(const std::filesystem::path& manifest);
 
-/// Reads a folder's manifest.json; every photograph and mask named must exist. Throws FileError.
+/// Reads a folder's manifest.json; every photograph and mask named must exist.
+/// Throws FileError, and as complete_exposures().
 EnvironmentFolder read_environment_folder(const std::filesystem::path& folder);
 /// The same of the manifest's text; what it names lies beside it.
 EnvironmentFolder parse_environment_manifest(const std::string& text,

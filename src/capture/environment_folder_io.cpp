@@ -1,6 +1,7 @@
 #include <glm/geometric.hpp>
 
 #include "capture/environment_folder.h"
+#include "capture/exposures.h"
 #include "capture/manifest_io.h"
 #include "capture/sphere_fields.h"
 #include "core/error.h"
@@ -175,7 +176,14 @@ bool is_environment_manifest(const std::filesystem::path& manifest) {
 
 EnvironmentFolder read_environment_folder(const std::filesystem::path& folder) {
     const auto manifest = manifest_in(folder);
-    return parse_environment_manifest(read_text_file(manifest), manifest);
+    EnvironmentFolder result = parse_environment_manifest(read_text_file(manifest), manifest);
+    std::vector<Capture*> all;
+    for (Capture& capture : result.panorama.captures) all.push_back(&capture);
+    for (BallView& view : result.views) {
+        for (Capture& capture : view.captures) all.push_back(&capture);
+    }
+    complete_exposures(all, manifest, PhotographUse::light);
+    return result;
 }
 
 EnvironmentFolder parse_environment_manifest(const std::string& text,

@@ -1,5 +1,6 @@
 #include "capture/manifest_io.h"
 
+#include <algorithm>
 #include <optional>
 #include <set>
 #include <string>
@@ -67,14 +68,22 @@ std::vector<int> read_drive(const JsonReader& drive) {
     return {drive.at(0).integer(0, 255), drive.at(1).integer(0, 255), drive.at(2).integer(0, 255)};
 }
 
-double read_exposure(const JsonReader& exposure) {
-    if (!exposure.is_number()) {
-        exposure.fail(exposure.found(), "seconds: fill in exposure_s of every photograph");
-    }
-    return exposure.number_between(1e-9, 1e6);
+/// Nobody has photographed these patterns yet.
+bool is_unphotographed(const Json& manifest) {
+    const auto found = manifest.find("captures");
+    if (found == manifest.end() || !found->is_array() || found->empty()) return false;
+    return std::all_of(found->begin(), found->end(), [](const Json& capture) {
+        return capture.is_object() && capture.contains("pattern") &&
+               capture.contains("exposure_s") && capture["exposure_s"].is_null() &&
+               capture.contains("file") && capture["file"] == capture["pattern"];
+    });
 }
 
 }  // namespace
+
+bool is_patterns_manifest(const std::filesystem::path& manifest) {
+    return is_unphotographed(read_json_file(manifest));
+}
 
 void allow_capture_fields(const JsonReader& entry) {
     entry.allow_only({"file",
@@ -132,8 +141,14 @@ void read_settings(const std::vector<JsonReader>& places,
         }
         return std::nullopt;
     };
-    const auto exposure = setting("exposure_s");
-    capture.exposure_s = read_exposure(exposure ? *exposure : places.front()["exposure_s"]);
+    const std::string& entry = places.front().field();
+    capture.exposure_field = entry + (entry.empty() ? "" : ".") + "exposure_s";
+    for (const JsonReader& place : places) {
+        // As livery patterns writes it, for somebody to fill in: null.
+        if (!place.has("exposure_s") || place["exposure_s"].found() == "null") continue;
+        capture.exposure_s = place["exposure_s"].number_between(1e-9, 1e6);
+        break;
+    }
     if (const auto transfer = setting("transfer")) {
         capture.transfer = transfer->text();
         if (capture.transfer != "linear" && capture.transfer != "srgb") {
@@ -166,6 +181,11 @@ CapturesFolder parse_captures_manifest(const std::string& text,
     const Json json = parse_json(text, manifest);
     const JsonReader root(manifest, json);
     check_manifest(root);
+    if (is_unphotographed(json) && !root.has("exposure_s")) {
+        root["captures"].fail(
+            "patterns that nobody has photographed: each file is the pattern itself",
+            "the photographs' names in file, and exposure_s filled in where their EXIF has none");
+    }
 
     CapturesFolder result;
     result.folder = manifest.parent_path();

@@ -11,7 +11,8 @@
 
 namespace livery {
 
-/// Reads a captures folder's manifest.json; every photograph named must exist. Throws FileError.
+/// Reads a captures folder's manifest.json; every photograph named must exist. An exposure that it
+/// does not state is 0. Throws FileError.
 CapturesFolder read_captures_manifest(const std::filesystem::path& manifest);
 
 /// Writes a manifest whose exposures are still to be filled in. Throws FileError.
@@ -30,8 +31,8 @@ void allow_capture_fields(const JsonReader& entry);
 /// The photograph that an entry names, which must be there. Throws FileError.
 std::filesystem::path read_photograph_name(const JsonReader& entry,
                                            const std::filesystem::path& folder);
-/// Exposure, transfer, black level and saturation, each from the first of the places that has it.
-/// Throws FileError.
+/// Exposure, transfer, black level and saturation, each from the first of the places that has it;
+/// an exposure that none has is 0, for complete_exposures(). Throws FileError.
 void read_settings(const std::vector<JsonReader>& places,
                    const std::filesystem::path& folder,
                    Capture& capture);

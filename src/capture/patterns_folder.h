@@ -37,13 +37,17 @@ struct PatternsManifest {
 bool is_known_role(std::string_view role);
 
 /// Writes 000.png, 001.png, ... and a manifest.json that becomes a captures folder's manifest once
-/// the photographs lie beside it and every exposure_s is filled in. Throws FileError, and
+/// it names the photographs and, where their EXIF has none, every exposure_s. Throws FileError, and
 /// std::invalid_argument for an unknown role or a picture that is not width x height RGB.
 void write_patterns_folder(const std::filesystem::path& folder,
                            int width,
                            int height,
                            const std::vector<PatternFile>& patterns,
                            const Progress& progress = {});
+
+/// Whether a manifest.json is as write_patterns_folder wrote it: no exposure, and each photograph
+/// that it names is the pattern itself. Throws FileError.
+bool is_patterns_manifest(const std::filesystem::path& manifest);
 
 /// Reads what write_patterns_folder wrote. Throws FileError.
 PatternsManifest read_patterns_manifest(const std::filesystem::path& manifest);

@@ -39,7 +39,8 @@ struct SphereFolder {
 /// Whether a manifest.json is one of a painted sphere. Throws FileError.
 bool is_sphere_manifest(const std::filesystem::path& manifest);
 
-/// Reads a folder's manifest.json; every photograph named must exist. Throws FileError.
+/// Reads a folder's manifest.json; every photograph named must exist.
+/// Throws FileError, and as complete_exposures().
 SphereFolder read_sphere_folder(const std::filesystem::path& folder);
 /// The same of the manifest's text; what it names lies beside it.
 SphereFolder parse_sphere_manifest(const std::string& text, const std::filesystem::path& manifest);

@@ -2,6 +2,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "capture/exposures.h"
 #include "capture/manifest_io.h"
 #include "capture/sphere_fields.h"
 #include "capture/sphere_folder.h"
@@ -109,7 +110,13 @@ bool is_sphere_manifest(const std::filesystem::path& manifest) {
 
 SphereFolder read_sphere_folder(const std::filesystem::path& folder) {
     const auto manifest = manifest_in(folder);
-    return parse_sphere_manifest(read_text_file(manifest), manifest);
+    SphereFolder result = parse_sphere_manifest(read_text_file(manifest), manifest);
+    std::vector<Capture*> all;
+    for (auto* list : {&result.captures, &result.white}) {
+        for (SphereCapture& capture : *list) all.push_back(&capture.photograph);
+    }
+    complete_exposures(all, manifest, PhotographUse::light);
+    return result;
 }
 
 SphereFolder parse_sphere_manifest(const std::string& text, const std::filesystem::path& manifest) {

@@ -45,7 +45,8 @@ struct SpotFolder {
 /// Whether a manifest.json is one of a spot of light. Throws FileError.
 bool is_spot_manifest(const std::filesystem::path& manifest);
 
-/// Reads a folder's manifest.json; every photograph named must exist. Throws FileError.
+/// Reads a folder's manifest.json; every photograph named must exist.
+/// Throws FileError, and as complete_exposures().
 SpotFolder read_spot_folder(const std::filesystem::path& folder);
 /// The same of the manifest's text; what it names lies beside it.
 SpotFolder parse_spot_manifest(const std::string& text, const std::filesystem::path& manifest);

@@ -1,5 +1,6 @@
 #include <glm/geometric.hpp>
 
+#include "capture/exposures.h"
 #include "capture/manifest_io.h"
 #include "capture/sphere_fields.h"
 #include "capture/spot_folder.h"
@@ -62,7 +63,14 @@ bool is_spot_manifest(const std::filesystem::path& manifest) {
 
 SpotFolder read_spot_folder(const std::filesystem::path& folder) {
     const auto manifest = manifest_in(folder);
-    return parse_spot_manifest(read_text_file(manifest), manifest);
+    SpotFolder result = parse_spot_manifest(read_text_file(manifest), manifest);
+    std::vector<Capture*> all;
+    for (SpotPictures* surface : {&result.sample, &result.white}) {
+        for (Capture& capture : surface->lit) all.push_back(&capture);
+        for (Capture& capture : surface->black) all.push_back(&capture);
+    }
+    complete_exposures(all, manifest, PhotographUse::light);
+    return result;
 }
 
 SpotFolder parse_spot_manifest(const std::string& text, const std::filesystem::path& manifest) {

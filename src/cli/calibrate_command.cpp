@@ -7,6 +7,7 @@
 
 #include "capture/captures_folder.h"
 #include "cli/command.h"
+#include "cli/patterns_option.h"
 #include "core/error.h"
 #include "jobs/calibrate/calibration_folder.h"
 #include "jobs/calibrate/calibration_origin.h"
@@ -58,12 +59,7 @@ Command calibrate_color_command() {
     command.example = "livery calibrate color --captures captures --out calibration";
     command.options = {
         {"--captures", "DIR", "photographs with manifest.json", &arguments->captures, true, {}},
-        {"--patterns",
-         "FILE",
-         "manifest of the patterns, for photographs without one",
-         &arguments->patterns,
-         false,
-         {}},
+        patterns_option(arguments->patterns),
         {"--map",
          "FILE",
          "projector pixel -> camera pixel, .exr (default: decoded from the same folder)",
@@ -107,8 +103,8 @@ Command calibrate_color_command() {
         std::optional<View> projector;
         if (!arguments->camera.empty()) {
             projector = read_camera_file(arguments->camera);
-            const CapturesFolder folder =
-                read_captures_folder(request.captures, request.patterns_manifest);
+            const CapturesFolder folder = read_captures_folder(
+                request.captures, PhotographUse::light, request.patterns_manifest);
             check_projector(
                 *projector, arguments->camera, folder.projector_width, folder.projector_height);
         }

@@ -8,6 +8,7 @@
 #include "cli/board_options.h"
 #include "cli/command.h"
 #include "cli/data_sheet_options.h"
+#include "cli/patterns_option.h"
 #include "core/error.h"
 #include "jobs/pair_geometry.h"
 
@@ -60,7 +61,7 @@ std::string text_of(const PairGeometry& geometry, const std::string& out) {
 Command calibrate_geometry_command() {
     struct Arguments {
         std::vector<std::string> captures;
-        std::string projector, out;
+        std::string projector, out, patterns;
         BoardArguments board;
         double white_threshold = -1.0, black_threshold = -1.0;
         DataSheets sheets{0.0, 0.5, 0.0, 0.0, 0.0};
@@ -82,6 +83,7 @@ Command calibrate_geometry_command() {
          true,
          {}},
         {"--projector", "WxH", "its resolution", &arguments->projector, true, {}},
+        patterns_option(arguments->patterns),
         {"--white-threshold",
          "N",
          "least difference of stripes and their inverse, file units (default: none)",
@@ -102,6 +104,7 @@ Command calibrate_geometry_command() {
     command.run = [arguments](const CommonOptions&, const Progress& progress) {
         PairGeometryRequest request;
         request.captures = {arguments->captures.begin(), arguments->captures.end()};
+        request.patterns_manifest = arguments->patterns;
         request.projector_px = parse_size("--projector", arguments->projector);
         request.black_threshold = arguments->black_threshold;
         request.white_threshold = arguments->white_threshold;

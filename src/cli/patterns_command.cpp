@@ -88,9 +88,10 @@ Command patterns_command() {
         }
         outcome.figures = {{"patterns", list}, {"folder", arguments->out}};
         outcome.text = fmt::format(
-            "{} patterns in {}: photograph each, put the photographs beside manifest.json "
-            "and fill in exposure_s\n",
+            "{} patterns in {}: show them in this order, photograph each, put the photographs in a "
+            "folder of their own, and say --patterns {} where it is read\n",
             files.size(),
+            arguments->out,
             arguments->out);
         return outcome;
     };

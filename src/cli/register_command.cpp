@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "cli/command.h"
+#include "cli/patterns_option.h"
 #include "core/error.h"
 #include "jobs/registration.h"
 #include "scene/library.h"
@@ -104,7 +105,7 @@ std::string text_of(const RegisteredMockup& mockup, const std::string& out) {
 
 Command calibrate_register_command() {
     struct Arguments {
-        std::string mesh, unit, points, out, view = "either";
+        std::string mesh, unit, points, out, patterns, view = "either";
         std::vector<std::string> captures, calibration;
         bool scale_free = false, lens_fixed = false;
     };
@@ -124,6 +125,7 @@ Command calibrate_register_command() {
          &arguments->captures,
          false,
          {}},
+        patterns_option(arguments->patterns),
         {"--points",
          "FILE",
          "picked points, CSV x_mm,y_mm,z_mm,u_px,v_px; with --captures a place to begin",
@@ -164,6 +166,7 @@ Command calibrate_register_command() {
         request.product = find_product(arguments->mesh, parse_unit(arguments->unit));
         request.product_name = arguments->mesh;
         request.captures = paths_of(arguments->captures);
+        request.patterns_manifest = arguments->patterns;
         request.points = arguments->points;
         request.calibrations = paths_of(arguments->calibration);
         request.pick_view = arguments->view == "camera"      ? PickView::camera
@@ -189,7 +192,7 @@ Command calibrate_register_command() {
 
 Command calibrate_scan_command() {
     struct Arguments {
-        std::string out;
+        std::string out, patterns;
         std::vector<std::string> captures, calibration;
         double spacing_mm = 0.3;
         int without_planes = 0;
@@ -207,6 +210,7 @@ Command calibrate_scan_command() {
          &arguments->captures,
          true,
          {}},
+        patterns_option(arguments->patterns),
         {"--calibration",
          "DIR...",
          "camera.json and projector.json, one folder for all captures or one for each",
@@ -243,8 +247,10 @@ Command calibrate_scan_command() {
                                                     arguments->without_planes));
         Outcome outcome;
         try {
-            const ScannedLight light = decode_light(
-                paths_of(arguments->captures), paths_of(arguments->calibration), progress);
+            const ScannedLight light = decode_light(paths_of(arguments->captures),
+                                                    paths_of(arguments->calibration),
+                                                    arguments->patterns,
+                                                    progress);
             const ScanFiles scan =
                 scan_product(light, arguments->spacing_mm, arguments->without_planes, progress);
             write_scan(arguments->out, scan);

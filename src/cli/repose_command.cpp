@@ -45,7 +45,7 @@ Outcome write_pictures(const StripeCode& code,
     for (const PatternFile& file : files) outcome.figures["patterns"].push_back(file.role);
     outcome.text = fmt::format(
         "2 pictures in {}: photograph each as the calibration was, put the photographs beside "
-        "manifest.json and fill in exposure_s; then --captures {}\n",
+        "manifest.json and name them there; then --captures {}\n",
         folder,
         folder);
     return outcome;
@@ -135,7 +135,7 @@ Command calibrate_repose_command() {
                 opened = open_bench(arguments->camera, arguments->monitor, product, progress);
                 ports = opened->ports;
             } else {
-                ports = ports_of(read_captures_folder(arguments->captures));
+                ports = ports_of(read_captures_folder(arguments->captures, PhotographUse::places));
             }
             const ReposedCalibration reposed =
                 repose_through_ports(ports, calibration, *origin, *product, progress);

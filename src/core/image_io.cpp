@@ -16,6 +16,7 @@
 #include "core/pictures/image_io_module.h"
 #include "core/pictures/png_bytes.h"
 #include "core/pictures/radiance_hdr.h"
+#include "core/pictures/read_exposure.h"
 #include "core/system/module.h"
 
 namespace livery {
@@ -165,18 +166,29 @@ void write_image(const std::filesystem::path& file,
     write_text_file(file, encoded(file, format, image, integer_bits, channel_names));
 }
 
+using OpenPicture = std::unique_ptr<void, ClosePicture>;
+
+/// Of `bytes`, or without them of the file itself.
+OpenPicture opened(const std::filesystem::path& file,
+                   std::string_view bytes,
+                   const char* format,
+                   PictureHeader& header) {
+    if (!format) throw FileError(file, "", "content of another kind", kReadable);
+    PictureError error;
+    OpenPicture picture(
+        module_table().open(file.c_str(), bytes.data(), bytes.size(), format, &header, &error));
+    if (!picture) throw FileError(file, "", error.text, kReadable);
+    return picture;
+}
+
 /// Of `bytes`, or without them of the file itself, which has `size` bytes.
 ImageFile read_pixels(const std::filesystem::path& file,
                       std::string_view bytes,
                       std::uintmax_t size,
                       const char* format,
                       std::size_t max_pixels) {
-    if (!format) throw FileError(file, "", "content of another kind", kReadable);
     PictureHeader header;
-    PictureError error;
-    const std::unique_ptr<void, ClosePicture> picture(
-        module_table().open(file.c_str(), bytes.data(), bytes.size(), format, &header, &error));
-    if (!picture) throw FileError(file, "", error.text, kReadable);
+    const auto picture = opened(file, bytes, format, header);
     check_size(file, size, header, max_pixels);
 
     ImageFile result;
@@ -187,6 +199,7 @@ ImageFile read_pixels(const std::filesystem::path& file,
     result.settings = header.settings;
     result.floating_point = header.integer_bits == 0;
     result.full_scale = result.floating_point ? 1.0 : header.integer_bits == 8 ? 255.0 : 65535.0;
+    PictureError error;
     if (!module_table().read(picture.get(), result.image.values.data(), &error)) {
         throw FileError(file, "", error.text, kReadable);
     }
@@ -213,6 +226,15 @@ ImageFile read_image(const std::filesystem::path& file, std::size_t max_pixels, 
     const auto bytes = std::filesystem::file_size(file, error);
     const auto most = std::numeric_limits<std::uintmax_t>::max();
     return read_pixels(file, {}, error ? most : bytes, format, max_pixels);
+}
+
+ExposureSettings read_exposure_settings(const std::filesystem::path& file) {
+    const char* format = format_of(file, start_of(file));
+    const std::string_view name = format ? format : "";
+    if (name == "png" || name == "hdr") return {};
+    PictureHeader header;
+    opened(file, {}, format, header);
+    return header.settings;
 }
 
 ImageFile read_image_bytes(std::string_view bytes,

@@ -102,7 +102,8 @@ CapturedCalibrationRequest of_its_colours(CapturedCalibrationRequest request) {
 ColourCalibration calibrate_from_folder(const CapturedCalibrationRequest& asked,
                                         const Progress& progress) {
     const CapturedCalibrationRequest request = of_its_colours(asked);
-    const CapturesFolder folder = read_captures_folder(request.captures, request.patterns_manifest);
+    const CapturesFolder folder =
+        read_captures_folder(request.captures, PhotographUse::light, request.patterns_manifest);
     const int width = folder.projector_width, height = folder.projector_height;
     std::vector<std::string> geometry;
     for (const Capture& capture : folder.captures) {

@@ -13,6 +13,7 @@
 #include "appearance/subsurface/radial_profile.h"
 #include "appearance/subsurface/scattering_stack.h"
 #include "appearance/subsurface/translucent_material.h"
+#include "calibration/captures/captures.h"
 #include "calibration/registration/picked_points.h"
 #include "capture/captures_folder.h"
 #include "capture/environment_folder.h"
@@ -103,7 +104,13 @@ void check_photographs(const std::vector<Capture>& captures,
 }
 
 void read_captures(const Path& folder, FileCheck& check, const Progress& progress) {
-    check_photographs(read_captures_folder(folder).captures, folder, check, progress);
+    CapturesFolder captures = read_captures_folder(folder, PhotographUse::places);
+    const bool of_colours =
+        std::any_of(captures.captures.begin(), captures.captures.end(), [](const Capture& capture) {
+            return !is_geometry_role(capture.role);
+        });
+    if (of_colours) captures = read_captures_folder(folder, PhotographUse::light);
+    check_photographs(captures.captures, folder, check, progress);
 }
 
 /// Photographs of a painted sphere.
@@ -180,19 +187,6 @@ void read_map(const Path& file, FileCheck& check) {
                           " projector pixels");
 }
 
-/// Whether nobody has photographed these patterns yet: the manifest is as `livery patterns` wrote
-/// it, without any exposure and without any photograph's name of its own.
-bool is_unphotographed(const Json& manifest) {
-    const auto found = manifest.find("captures");
-    if (found == manifest.end()) return false;
-    const Json& captures = *found;
-    return captures.is_array() && !captures.empty() &&
-           std::all_of(captures.begin(), captures.end(), [](const Json& capture) {
-               return capture.is_object() && capture.contains("pattern") &&
-                      capture.contains("exposure_s") && capture["exposure_s"].is_null();
-           });
-}
-
 void read_patterns(const Path& manifest, FileCheck& check) {
     const PatternsManifest patterns = read_patterns_manifest(manifest);
     FilesElsewhere elsewhere(manifest.parent_path());
@@ -203,7 +197,7 @@ void read_patterns(const Path& manifest, FileCheck& check) {
     for (const PatternEntry& pattern : patterns.patterns) {
         read_picture(manifest.parent_path() / pattern.file, check);
     }
-    check.notes.emplace_back("not photographed yet: every exposure_s is to be filled in");
+    check.notes.emplace_back("patterns that nobody has photographed yet");
 }
 
 void read_session(const Path& file, FileCheck& check) {
@@ -235,7 +229,7 @@ void read_session(const Path& file, FileCheck& check) {
 }
 
 FileKind kind_of_manifest(const Path& manifest, const Progress& progress) {
-    if (is_unphotographed(read_json_file(manifest))) {
+    if (is_patterns_manifest(manifest)) {
         return {"patterns",
                 [manifest](const Path&, FileCheck& check) { read_patterns(manifest, check); }};
     }

@@ -51,7 +51,8 @@ void drop_weak_stripes(const Captures& captures, double least, ImageF& projector
 DecodedFolder decoded_folder(const std::filesystem::path& path,
                              const PairGeometryRequest& request,
                              const Progress& progress) {
-    const CapturesFolder folder = read_captures_folder(path);
+    const CapturesFolder folder =
+        read_captures_folder(path, PhotographUse::places, request.patterns_manifest);
     const int width = request.projector_px.x, height = request.projector_px.y;
     if (folder.projector_width > 0 &&
         (folder.projector_width != width || folder.projector_height != height))

@@ -21,6 +21,7 @@ namespace livery {
 
 struct PairGeometryRequest {
     std::vector<std::filesystem::path> captures;  ///< Gray code, a folder a pose of the board
+    std::filesystem::path patterns_manifest;      ///< for folders without a manifest of their own
     glm::ivec2 projector_px{0};
     Board board;  ///< unless there are data sheets
     /// Without a board: one folder, of anything that is not a plane.

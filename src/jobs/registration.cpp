@@ -20,12 +20,14 @@ namespace {
 
 /// Where the camera sees each projector pixel, by a folder's photographs.
 ProjectorToCamera decoded(const std::filesystem::path& captures,
+                          const std::filesystem::path& patterns_manifest,
                           const CalibratedPair& pair,
                           const std::filesystem::path& calibration,
                           std::vector<std::string>& warnings,
                           SeparatedLight& light,
                           const Progress& progress) {
-    const CapturesFolder folder = read_captures_folder(captures);
+    const CapturesFolder folder =
+        read_captures_folder(captures, PhotographUse::places, patterns_manifest);
     const int width = pair.projector.width, height = pair.projector.height;
     if (folder.projector_width > 0 &&
         (folder.projector_width != width || folder.projector_height != height))
@@ -129,6 +131,7 @@ CalibratedPair read_calibrated_pair(const std::filesystem::path& folder) {
 
 ScannedLight decode_light(const std::vector<std::filesystem::path>& captures,
                           const std::vector<std::filesystem::path>& calibrations,
+                          const std::filesystem::path& patterns_manifest,
                           const Progress& progress) {
     check_argument(!captures.empty(), "expected a captures folder");
     check_argument(calibrations.size() == 1 || calibrations.size() == captures.size(),
@@ -143,7 +146,13 @@ ScannedLight decode_light(const std::vector<std::filesystem::path>& captures,
         if (k == 0) light.projector = pair.projector;
         SeparatedLight& separated = light.separated.emplace_back();
         Sight sight{pair.camera,
-                    decoded(captures[k], pair, calibration, light.warnings, separated, progress)};
+                    decoded(captures[k],
+                            patterns_manifest,
+                            pair,
+                            calibration,
+                            light.warnings,
+                            separated,
+                            progress)};
         sight.camera.view_from_world = pair.camera.view_from_world *
                                        inverse(pair.projector.view_from_world) *
                                        light.projector.view_from_world;
@@ -237,7 +246,8 @@ RegisteredMockup register_mockup(const RegistrationRequest& request, const Progr
         pose.inliers = result.by_points->inliers.size();
         pose.covariance = result.by_points->covariance;
     } else {
-        const ScannedLight light = decode_light(request.captures, request.calibrations, progress);
+        const ScannedLight light = decode_light(
+            request.captures, request.calibrations, request.patterns_manifest, progress);
         result.by_scan =
             register_scan(request.product->mesh, light.projector, light.sights, options, progress);
         const PixelRefinement& refined = result.by_scan->refined;

@@ -34,10 +34,12 @@ struct ScannedLight {
 };
 
 /// Decodes Gray code photographs, a folder a position of the camera; `calibrations` is one folder
-/// for all, or one for each. The projector stands where it stood, so it joins the positions. Throws
+/// for all, or one for each, `patterns_manifest` says what folders without a manifest show (empty:
+/// the usual 42 pictures). The projector stands where it stood, so it joins the positions. Throws
 /// FileError, Refused, std::invalid_argument.
 ScannedLight decode_light(const std::vector<std::filesystem::path>& captures,
                           const std::vector<std::filesystem::path>& calibrations,
+                          const std::filesystem::path& patterns_manifest = {},
                           const Progress& progress = {});
 
 struct ScanFiles {
@@ -71,6 +73,7 @@ struct RegistrationRequest {
     std::shared_ptr<const Product> product;
     std::string product_name;                     ///< as it was given
     std::vector<std::filesystem::path> captures;  ///< empty: points alone
+    std::filesystem::path patterns_manifest;      ///< of captures without a manifest of their own
     std::filesystem::path points;                 ///< empty: captures alone
     std::vector<std::filesystem::path> calibrations;
     PickView pick_view = PickView::either;

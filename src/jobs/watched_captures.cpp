@@ -13,6 +13,7 @@
 #include "core/hash.h"
 #include "core/image_io.h"
 #include "core/paths.h"
+#include "core/usual.h"
 
 namespace livery {
 
@@ -32,22 +33,6 @@ Capture capture_of(const std::filesystem::path& file) {
     capture.exposure_s = 1.0;
     capture.raw_half = true;  // As cameras on a cable read theirs: nothing made up, and soon read.
     return capture;
-}
-
-/// The one of `files` that most of them are like, by `alike`; the first of equals. Not of none.
-template <typename NamedFile, typename Alike>
-const auto& usual_of(const std::vector<const NamedFile*>& files, const Alike& alike) {
-    const NamedFile* usual = files.front();
-    std::ptrdiff_t most = 0;
-    for (const NamedFile* file : files) {
-        const auto count = std::count_if(files.begin(), files.end(), [&](const NamedFile* other) {
-            return alike(file->second, other->second);
-        });
-        if (count <= most) continue;
-        usual = file;
-        most = count;
-    }
-    return usual->second;
 }
 
 }  // namespace
@@ -159,8 +144,15 @@ std::vector<const WatchedCaptures::NamedFile*> WatchedCaptures::comparable_files
         return !fresh;
     });
     if (sorted.empty()) return sorted;
+    const auto most_like = [&](const auto& alike) -> const File& {
+        return sorted[usual_of(sorted.size(),
+                               [&](std::size_t a, std::size_t b) {
+                                   return alike(sorted[a]->second, sorted[b]->second);
+                               })]
+            ->second;
+    };
     const Glimpse usual =
-        usual_of(sorted, [](const File& a, const File& b) {
+        most_like([](const File& a, const File& b) {
             return a.glimpse.width == b.glimpse.width && a.glimpse.height == b.glimpse.height;
         }).glimpse;
     std::erase_if(sorted, [&](const NamedFile* file) {
@@ -175,7 +167,7 @@ std::vector<const WatchedCaptures::NamedFile*> WatchedCaptures::comparable_files
                                              usual.height)});
         return other;
     });
-    state.usual_exposure = usual_of(sorted, [](const File& a, const File& b) {
+    state.usual_exposure = most_like([](const File& a, const File& b) {
                                return a.settings != ExposureSettings{} &&
                                       b.settings != ExposureSettings{} &&
                                       !are_exposed_otherwise(a.settings, b.settings);

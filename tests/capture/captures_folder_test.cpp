@@ -25,7 +25,8 @@ struct Folder {
         folder.write("manifest.json", manifest);
     }
     ::testing::AssertionResult fails(std::initializer_list<std::string_view> parts) const {
-        return fails_with([&] { read_captures_folder(folder.path()); }, parts);
+        return fails_with([&] { read_captures_folder(folder.path(), PhotographUse::light); },
+                          parts);
     }
 };
 
@@ -38,7 +39,7 @@ TEST(CapturesFolder, ReadsAManifest) {
     const Folder made(R"({"projector": [1280, 800], "captures": [
         {"file": "000.png", "pattern": "../p/000.png", "role": "dark-gray", "drive": [80, 80, 80],
          "exposure_s": 0.25, "transfer": "srgb", "black_level": 2.5, "saturates_at": 250}]})");
-    const auto read = read_captures_folder(made.folder.path());
+    const auto read = read_captures_folder(made.folder.path(), PhotographUse::light);
     EXPECT_EQ(read.projector_width, 1280);
     EXPECT_EQ(read.projector_height, 800);
     ASSERT_EQ(read.captures.size(), 1u);
@@ -57,7 +58,7 @@ TEST(CapturesFolder, SettingsOfTheWholeFolderAreDefaults) {
     const Folder made(R"({"projector": [8, 6], "exposure_s": 0.5, "black_level": 3, "captures": [
         {"file": "000.png", "role": "white"},
         {"file": "000.png", "role": "black", "exposure_s": 2, "drive": 0}]})");
-    const auto captures = read_captures_folder(made.folder.path()).captures;
+    const auto captures = read_captures_folder(made.folder.path(), PhotographUse::light).captures;
     ASSERT_EQ(captures.size(), 2u);
     EXPECT_EQ(captures[0].exposure_s, 0.5);
     EXPECT_EQ(captures[1].exposure_s, 2.0);
@@ -68,7 +69,8 @@ TEST(CapturesFolder, SettingsOfTheWholeFolderAreDefaults) {
 
 TEST(CapturesFolder, BadManifestsSayWhy) {
     const std::string good = R"("file": "000.png", "role": "white", "exposure_s": 1)";
-    EXPECT_NO_THROW(read_captures_folder(Folder(one_capture(good)).folder.path()));
+    EXPECT_NO_THROW(
+        read_captures_folder(Folder(one_capture(good)).folder.path(), PhotographUse::light));
 
     EXPECT_TRUE(Folder("").fails({"manifest.json", "an empty file", "a JSON object"}));
     EXPECT_TRUE(Folder(one_capture(good).substr(0, 60)).fails({"manifest.json", "not JSON"}));
@@ -95,7 +97,7 @@ TEST(CapturesFolder, BadManifestsSayWhy) {
                       {"captures[0].role", "\"pink\"", "a known role"}));
     EXPECT_TRUE(fails(R"("file": "000.png", "role": "white")", {"captures[0].exposure_s"}));
     EXPECT_TRUE(fails(R"("file": "000.png", "role": "white", "exposure_s": null)",
-                      {"captures[0].exposure_s", "null", "fill in exposure_s"}));
+                      {"captures[0].exposure_s", "nothing", "fill in exposure_s"}));
     EXPECT_TRUE(fails(R"("file": "000.png", "role": "white", "exposure_s": 0)",
                       {"captures[0].exposure_s", "found 0", "between"}));
     EXPECT_TRUE(fails(R"("file": "000.png", "role": "white", "exposure_s": NaN)", {"not JSON"}));
@@ -114,7 +116,7 @@ TEST(CapturesFolder, ARoleMayComeAsOftenAsThereArePhotographsOfIt) {
     const Folder made(
         one_capture(good + R"(}, {"file": "001.png", "role": "white", "exposure_s": 1)"));
     made.folder.write("001.png", "");
-    const auto captures = read_captures_folder(made.folder.path()).captures;
+    const auto captures = read_captures_folder(made.folder.path(), PhotographUse::light).captures;
     ASSERT_EQ(captures.size(), 2u);
     EXPECT_EQ(captures[1].role, "white");
     EXPECT_EQ(captures[1].file.filename(), "001.png");
@@ -128,7 +130,8 @@ TEST(CapturesFolder, AnswersAsACameraRoleByRole) {
     for (const int k : {1, 2})
         write_png(made.folder / ("00" + std::to_string(k) + ".png"),
                   Image8(4, 3, 3, static_cast<std::uint8_t>(10 * k)));
-    const BenchPorts ports = ports_of(read_captures_folder(made.folder.path()));
+    const BenchPorts ports =
+        ports_of(read_captures_folder(made.folder.path(), PhotographUse::light));
     EXPECT_FALSE(ports.measure_xyz);
     ports.show(Image8(8, 6, 3));
     EXPECT_THROW(ports.photograph(0.0), std::invalid_argument);
@@ -156,12 +159,13 @@ TEST(CapturesFolder, AnswersAsACameraRoleByRole) {
 TEST(CapturesFolder, WithoutAManifestNamesAndCountsDecide) {
     const TemporaryFolder folder;
     const auto fails = [&](std::initializer_list<std::string_view> parts) {
-        return fails_with([&] { read_captures_folder(folder.path()); }, parts);
+        return fails_with([&] { read_captures_folder(folder.path(), PhotographUse::light); },
+                          parts);
     };
     EXPECT_TRUE(fails({folder.path().string(), "0 pictures and no manifest.json", "42 pictures"}));
     for (int k = 0; k < 42; ++k) folder.write("p" + std::to_string(100 + k) + ".PNG", "");
     folder.write("notes.txt", "");
-    const auto read = read_captures_folder(folder.path());
+    const auto read = read_captures_folder(folder.path(), PhotographUse::light);
     ASSERT_EQ(read.captures.size(), 42u);
     EXPECT_EQ(read.projector_width, 0);
     EXPECT_EQ(read.captures[0].role, "gray-column-0");
@@ -175,9 +179,11 @@ TEST(CapturesFolder, WithoutAManifestNamesAndCountsDecide) {
 
     folder.write("p999.png", "");
     EXPECT_TRUE(fails({"43 pictures", "42 pictures"}));
-    EXPECT_TRUE(fails_with([&] { read_captures_folder(folder / "no"); }, {"no such folder"}));
-    EXPECT_TRUE(fails_with([&] { read_captures_folder(folder / "notes.txt"); },
-                           {"notes.txt", "a file", "a folder of photographs"}));
+    EXPECT_TRUE(fails_with([&] { read_captures_folder(folder / "no", PhotographUse::light); },
+                           {"no such folder"}));
+    EXPECT_TRUE(
+        fails_with([&] { read_captures_folder(folder / "notes.txt", PhotographUse::light); },
+                   {"notes.txt", "a file", "a folder of photographs"}));
 }
 
 TEST(CapturesFolder, PatternsManifestNamesThePhotographs) {
@@ -202,25 +208,27 @@ TEST(CapturesFolder, PatternsManifestNamesThePhotographs) {
     std::filesystem::create_directory(folder / "photos");
     folder.write("photos/b.jpg", "");
     folder.write("photos/a.jpg", "");
-    const auto matched = read_captures_folder(folder / "photos", manifest);
+    const auto matched = read_captures_folder(folder / "photos", PhotographUse::light, manifest);
     ASSERT_EQ(matched.captures.size(), 2u);
     EXPECT_EQ(matched.projector_width, 8);
     EXPECT_EQ(matched.captures[0].file, folder / "photos/a.jpg");
     EXPECT_EQ(matched.captures[0].role, "white");
     EXPECT_EQ(matched.captures[0].pattern, folder / "patterns/000.png");
     folder.write("photos/c.jpg", "");
-    EXPECT_TRUE(fails_with([&] { read_captures_folder(folder / "photos", manifest); },
-                           {"3 pictures", "2 pictures", "patterns/manifest.json"}));
+    EXPECT_TRUE(
+        fails_with([&] { read_captures_folder(folder / "photos", PhotographUse::light, manifest); },
+                   {"3 pictures", "2 pictures", "patterns/manifest.json"}));
 
-    // The manifest as written lacks one thing, and works once it is there.
-    EXPECT_TRUE(fails_with([&] { read_captures_folder(folder / "patterns"); },
-                           {"captures[0].exposure_s", "fill in exposure_s"}));
+    // The manifest as written is of pictures to show.
+    EXPECT_TRUE(fails_with([&] { read_captures_folder(folder / "patterns", PhotographUse::light); },
+                           {"captures", "nobody has photographed", "exposure_s filled in"}));
+    EXPECT_TRUE(is_patterns_manifest(manifest));
     std::string text = read_text_file(manifest);
     for (auto at = text.find("null"); at != std::string::npos; at = text.find("null")) {
         text.replace(at, 4, "0.5");
     }
     write_text_file(manifest, text);
-    const auto filled = read_captures_folder(folder / "patterns");
+    const auto filled = read_captures_folder(folder / "patterns", PhotographUse::light);
     EXPECT_EQ(filled.captures[1].exposure_s, 0.5);
     EXPECT_EQ(filled.captures[0].drive, (std::vector<int>{255, 255, 255}));
 }
@@ -362,7 +370,7 @@ TEST(CapturesFolder, OpensRealPhotographs) {
     LIVERY_NEEDS_REFERENCE_DATA(data);
     for (int pose = 0; pose < 4; ++pose) {
         const auto folder = data / ("procam/capture_" + std::to_string(pose));
-        const auto read = read_captures_folder(folder);
+        const auto read = read_captures_folder(folder, PhotographUse::light);
         ASSERT_EQ(read.captures.size(), 42u);
         const auto white = load_photograph(read.captures[40]);
         const auto black = load_photograph(read.captures[41]);

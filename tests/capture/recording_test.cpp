@@ -203,7 +203,7 @@ TEST(Recording, BecomesACapturesFolder) {
     run(recording.ports(bench.ports()));
     recording.write_manifest(
         8, 4, {{"white", "0003.exr"}, {"white", "0005.exr"}, {"red", "0000.exr"}});
-    const CapturesFolder read = read_captures_folder(folder.path());
+    const CapturesFolder read = read_captures_folder(folder.path(), PhotographUse::light);
     EXPECT_EQ(read.projector_width, 8);
     ASSERT_EQ(read.captures.size(), 3u);
     EXPECT_EQ(read.captures[0].role, "white");

@@ -120,7 +120,8 @@ TEST_F(CapturedCalibration, IsTheOneOfTheSamePhotographsTakenLive) {
     const ColourCalibration folder = calibrated(alike);
 
     std::vector<std::pair<Image8, Photograph>> known;
-    for (const Capture& capture : read_captures_folder(folder_.path()).captures) {
+    for (const Capture& capture :
+         read_captures_folder(folder_.path(), PhotographUse::light).captures) {
         Image8 drive(kSmallWidth, kSmallHeight, 3);
         const ImageFile shown = read_image(capture.pattern);
         std::copy(shown.image.values.begin(), shown.image.values.end(), drive.values.begin());
