@@ -101,6 +101,31 @@ std::string text_of(const RegisteredMockup& mockup, const std::string& out) {
     return text + "wrote " + out + "\n";
 }
 
+Json json_of(const std::vector<RemovedPlane>& planes) {
+    Json list = Json::array();
+    for (const RemovedPlane& plane : planes)
+        list.push_back(
+            {{"points", plane.points}, {"behind", plane.behind}, {"rms_mm", plane.rms_mm}});
+    return list;
+}
+
+std::string text_of(const RemovedPlanes& removed) {
+    std::string text;
+    for (std::size_t k = 0; k < removed.planes.size(); ++k) {
+        const RemovedPlane& plane = removed.planes[k];
+        text += fmt::format(
+            "plane {} left out: {} of the projector's pixels on it ({:.2f} mm, root mean square), "
+            "{} behind it\n",
+            k + 1,
+            plane.points,
+            plane.rms_mm,
+            plane.behind);
+    }
+    if (!removed.planes.empty())
+        text += fmt::format("{} that are left lie close beside a plane\n", removed.beside);
+    return text;
+}
+
 }  // namespace
 
 Command calibrate_register_command() {
@@ -225,8 +250,8 @@ Command calibrate_scan_command() {
          {}},
         {"--without-planes",
          "N",
-         "leave out so many planes (table, wall), the largest first, and what lies behind them "
-         "(default 0)",
+         "leave out so many planes (table, wall), the largest first, and what lies behind them; "
+         "flat sides of the product are none (default 0)",
          &arguments->without_planes,
          false,
          {}},
@@ -257,13 +282,16 @@ Command calibrate_scan_command() {
             const bool separated = write_separated_light(arguments->out, light);
             const Bounds box = bounds_of(scan.surface);
             std::vector<std::string> warnings = light.warnings;
-            warnings.insert(warnings.end(), scan.scan.warnings.begin(), scan.scan.warnings.end());
+            for (const auto* more : {&scan.scan.warnings, &scan.removed.warnings})
+                warnings.insert(warnings.end(), more->begin(), more->end());
             outcome.figures = {{"points", scan.surface.positions_mm.size()},
                                {"triangles", scan.surface.triangles.size()},
                                {"spacing_mm", scan.spacing_mm},
                                {"size_mm", json_from(box.high - box.low)},
                                {"known_fraction", scan.scan.known_fraction},
                                {"gap_px", scan.scan.gap_px},
+                               {"planes", json_of(scan.removed.planes)},
+                               {"beside_planes", scan.removed.beside},
                                {"separated_light", separated},
                                {"refused", Json::array()},
                                {"warnings", warnings}};
@@ -275,6 +303,7 @@ Command calibrate_scan_command() {
                 scan.spacing_mm,
                 scan.scan.gap_px,
                 arguments->out);
+            if (arguments->without_planes > 0) outcome.text += text_of(scan.removed);
             for (const std::string& warning : warnings)
                 outcome.text += "warning: " + warning + "\n";
         } catch (const Refused& refused) {

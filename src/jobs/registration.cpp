@@ -68,25 +68,6 @@ Rigid3 product_from_camera(const Mesh& surface) {
     return {turned_over, -(turned_over * (0.5 * (box.low + box.high)))};
 }
 
-/// Takes the plane with most of the scan on it out, and what lies behind it.
-void remove_plane(Scan& scan) {
-    const double spacing = 8.0 * point_spacing(scan);
-    const SurfaceSamples samples = sample_scan(scan, spacing);
-    const SurfacePlane plane = main_plane(samples, spacing);
-    const float nan = std::numeric_limits<float>::quiet_NaN();
-    for (std::size_t i = 0; i < scan.sigma_mm.values.size(); ++i) {
-        float* p = &scan.points_mm.values[3 * i];
-        if (!std::isfinite(p[0])) continue;
-        const double above = glm::dot(plane.normal, glm::dvec3(p[0], p[1], p[2])) - plane.offset;
-        const double least =
-            std::max(0.6 * spacing, 4.0 * static_cast<double>(scan.sigma_mm.values[i]));
-        if (above > least) continue;
-        for (int c = 0; c < 3; ++c)
-            p[c] = scan.normals.values[3 * i + static_cast<std::size_t>(c)] = nan;
-        scan.sigma_mm.values[i] = nan;
-    }
-}
-
 PickedPose picked_pose(const RegistrationRequest& request,
                        const CalibratedPair& pair,
                        const std::vector<MeshPick>& points,
@@ -169,7 +150,7 @@ ScanFiles scan_product(const ScannedLight& light,
     ScanFiles result;
     result.scan = scan_of(light.projector, light.sights);
     const double pixel_mm = point_spacing(result.scan);
-    for (int k = 0; k < without_planes; ++k) remove_plane(result.scan);
+    result.removed = remove_planes(result.scan, without_planes);
     const int step = std::max(1, static_cast<int>(std::lround(spacing_mm / pixel_mm)));
     result.spacing_mm = step * pixel_mm;
     progress.update(0.6, "joining the points to a surface");

@@ -10,6 +10,7 @@
 #include "calibration/correspondence/fringe_decode.h"
 #include "calibration/registration/picked_points.h"
 #include "calibration/registration/register_scan.h"
+#include "calibration/scan/scan_planes.h"
 #include "core/progress.h"
 #include "scene/mockup_pose.h"
 #include "scene/product.h"
@@ -46,13 +47,13 @@ struct ScanFiles {
     Mesh surface;            ///< product frame: millimetres, y up in the camera's picture
     View projector, camera;  ///< world: that frame
     Scan scan;
+    RemovedPlanes removed;
     double spacing_mm = 0.0;
 };
 
 /// The scan as a product: its frame has its origin in the scan's middle, x to the camera's right, y
 /// up in its picture, z toward it. Neighbouring vertices are about `spacing_mm` apart, or as far as
-/// the projector's pixels. `without_table` leaves out the largest plane and what lies
-/// behind it.
+/// the projector's pixels. `without_planes`: as remove_planes().
 ScanFiles scan_product(const ScannedLight& light,
                        double spacing_mm,
                        int without_planes,

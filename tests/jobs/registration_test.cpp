@@ -17,6 +17,7 @@
 #include "jobs/simulated_captures.h"
 #include "scene/library.h"
 #include "support/message_of.h"
+#include "support/reference_data.h"
 #include "support/temporary_folder.h"
 #include "support/thorough.h"
 
@@ -135,6 +136,80 @@ TEST_F(BenchRegistration, ScansTheCar) {
     ASSERT_TRUE(place);
     EXPECT_NEAR(place->x - std::floor(place->x), 0.5, 0.02);
     EXPECT_NEAR(place->y - std::floor(place->y), 0.5, 0.02);
+}
+
+TEST_F(BenchRegistration, LeavesTableWallAndFloorOutAndNothingOfTheCar) {
+    const ScannedLight light = decode_light({*shared_ / "captures"}, {*shared_ / "exact"});
+    const std::shared_ptr<const Product> car = find_product("car");
+    const Tracer tracer(car->mesh);
+    const View& projector = bench_->projector.view;
+    /// Of the scan's points: those on the car, and all others.
+    const auto counts = [&](const Scan& scan) {
+        std::pair<std::size_t, std::size_t> points;
+        for (int y = 0; y < projector.height; ++y)
+            for (int x = 0; x < projector.width; ++x) {
+                if (!std::isfinite(scan.sigma_mm.at(x, y))) continue;
+                const Ray way = ray_through(projector, {x + 0.5, y + 0.5});
+                TraceRay ray;
+                ray.origin = glm::vec3(way.origin);
+                ray.direction = glm::vec3(way.direction);
+                ++(tracer.closest(ray).valid() ? points.first : points.second);
+            }
+        return points;
+    };
+    const auto [car_before, around_before] = counts(scan_product(light, 0.3, 0).scan);
+    // One more than are needed: the wall goes with the table, which it stands behind.
+    const ScanFiles files = scan_product(light, 0.3, 3);
+    const auto [car_after, around_after] = counts(files.scan);
+    std::printf("    car %zu of %zu, around it %zu of %zu; %zu beside the planes\n",
+                car_after,
+                car_before,
+                around_after,
+                around_before,
+                files.removed.beside);
+    EXPECT_GT(static_cast<double>(car_after), 0.999 * static_cast<double>(car_before));
+    EXPECT_LT(static_cast<double>(around_after), 0.003 * static_cast<double>(around_before));
+    EXPECT_EQ(files.removed.planes.size(), 2u);
+    ASSERT_EQ(files.removed.warnings.size(), 1u);
+    EXPECT_NE(files.removed.warnings[0].find("2 of the 3 planes"), std::string::npos);
+}
+
+// A board before a wall, photographed by others (docs/third-party.md), with the lenses that
+// `livery calibrate geometry` finds in their four folders.
+TEST(RealScan, NothingIsLeftOfTheWall) {
+    LIVERY_NEEDS_REFERENCE_DATA(data);
+    const TemporaryFolder folder;
+    folder.write("camera.json", R"({"format_version": 1, "width": 1280, "height": 1024,
+        "matrix": [3438.82, 0, 597.29, 0, 3438.26, 526.43, 0, 0, 1],
+        "distortion": [-0.24226, -0.16455, -0.001241, -0.00066013, 8.0257],
+        "rotation": [1, 0, 0, 0, 1, 0, 0, 0, 1], "translation_mm": [0, 0, 0]})");
+    folder.write("projector.json", R"({"format_version": 1, "width": 1024, "height": 768,
+        "matrix": [1894.34, 0, 489.64, 0, 1901.02, 849.44, 0, 0, 1],
+        "distortion": [-0.11956, 0.49383, 0.008968, -0.0010739, -1.3667],
+        "rotation": [0.9981091, 0.0166146, -0.0591790, -0.0168993, 0.9998479, -0.0043146,
+                     0.0590983, 0.0053065, 0.9982381],
+        "translation_mm": [93.451, -625.580, -233.600]})");
+    const ScannedLight light = decode_light({data / "procam" / "capture_1"}, {folder.path()});
+    const ScanFiles files = scan_product(light, 0.3, 1);
+    ASSERT_EQ(files.removed.planes.size(), 1u);
+    const RemovedPlane& wall = files.removed.planes.front();
+    // The board leans toward it with one edge.
+    std::size_t board = 0, on_wall = 0;
+    for (std::size_t i = 0; i < files.scan.sigma_mm.values.size(); ++i) {
+        const float* p = &files.scan.points_mm.values[3 * i];
+        if (!std::isfinite(p[0])) continue;
+        const double before = glm::dot(wall.normal, glm::dvec3(p[0], p[1], p[2])) - wall.offset_mm;
+        ++(before > 25.0 ? board : on_wall);
+    }
+    std::printf("    wall %zu (%.2f mm), behind %zu; left: board %zu, beside the wall %zu (%zu)\n",
+                wall.points,
+                wall.rms_mm,
+                wall.behind,
+                board,
+                on_wall,
+                files.removed.beside);
+    EXPECT_GT(board, 100'000u);
+    EXPECT_LT(on_wall, wall.points / 1000);
 }
 
 TEST_F(BenchRegistration, RegistersTheCarFromPhotographs) {

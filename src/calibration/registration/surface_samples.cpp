@@ -197,6 +197,20 @@ SurfacePlane main_plane(const SurfaceSamples& samples, double spacing_mm) {
     return result;
 }
 
+SurfaceSamples beside_plane(const SurfaceSamples& samples,
+                            const SurfacePlane& plane,
+                            double within_mm) {
+    SurfaceSamples rest;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (lies_on(
+                {plane.normal, plane.offset, 0}, samples.points[i], samples.normals[i], within_mm))
+            continue;
+        rest.points.push_back(samples.points[i]);
+        rest.normals.push_back(samples.normals[i]);
+    }
+    return rest;
+}
+
 std::size_t largest_plane(const SurfaceSamples& samples, double spacing_mm) {
     const std::vector<std::uint8_t> none(samples.size(), 0);
     return cells_of(best_plane(samples, none, 0.5 * spacing_mm), samples, none, spacing_mm);

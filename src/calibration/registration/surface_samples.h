@@ -37,12 +37,18 @@ SurfaceSamples cell_means(const SurfaceSamples& samples, double spacing_mm);
 std::vector<std::uint8_t> on_large_planes(const SurfaceSamples& samples,
                                           double spacing_mm,
                                           std::size_t largest);
+
 /// normal . x = offset, with most of the samples on it.
 struct SurfacePlane {
     glm::dvec3 normal{0.0, 1.0, 0.0};
     double offset = 0.0;
 };
 SurfacePlane main_plane(const SurfaceSamples& samples, double spacing_mm);
+
+/// The samples that do not lie on a plane.
+SurfaceSamples beside_plane(const SurfaceSamples& samples,
+                            const SurfacePlane& plane,
+                            double within_mm);
 
 /// Squares of the plane on which most of the samples lie.
 std::size_t largest_plane(const SurfaceSamples& samples, double spacing_mm);
