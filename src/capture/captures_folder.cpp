@@ -79,6 +79,7 @@ CapturesFolder match_by_name(const std::filesystem::path& folder,
             capture.pattern = patterns_manifest.parent_path() / known.patterns[k].file;
         }
         capture.transfer = usual_transfer(capture.file);
+        capture.raw_half = true;  // As livery capture reads RAW: nothing made up, and soon read.
         result.captures.push_back(std::move(capture));
     }
     return result;

@@ -132,14 +132,19 @@ Command calibrate_color_command() {
             outcome.figures = figures_of(calibration);
             outcome.text = fmt::format(
                 "calibration {}: {:.1f}% of the lit pixels valid, additivity error {:.2f}%, "
-                "condition {:.2f}; wrote {}\n",
+                "condition {:.2f}; camera colours: {}; wrote {}\n",
                 calibration.id,
                 100.0 * calibration.valid_fraction,
                 100.0 * calibration.additivity_error,
                 calibration.condition_p99,
+                calibration.xyz_origin,
                 arguments->out);
             for (const auto& warning : calibration.warnings)
                 outcome.text += "warning: " + warning + "\n";
+            if (!request.camera_to_xyz)
+                outcome.text +=
+                    "without --camera-to-xyz the camera's red, green and blue count as Rec.709's: "
+                    "RAW photographs then turn every paint pink or green\n";
         } catch (const Refused& refused) {
             outcome.figures = {{"valid_fraction", nullptr},
                                {"additivity_error", nullptr},

@@ -6,25 +6,32 @@
 #include <fmt/format.h>
 
 #include "cli/command.h"
+#include "cli/patterns_option.h"
 #include "jobs/file_check.h"
 
 namespace livery {
 
 Command check_command() {
-    const auto files = std::make_shared<std::vector<std::string>>();
+    struct Arguments {
+        std::vector<std::string> files;
+        std::string patterns;
+    };
+    const auto arguments = std::make_shared<Arguments>();
     Command command;
     command.name = "check";
     command.summary = "open files of any kind the program reads, and say what is wrong with them";
     command.example = "livery check car.glb paint.json captures/";
-    command.options = {{"files", "FILE...", "files or folders", files.get(), true, {}}};
-    command.run = [files](const CommonOptions&, const Progress& progress) {
+    command.options = {{"files", "FILE...", "files or folders", &arguments->files, true, {}},
+                       patterns_option(arguments->patterns)};
+    command.run = [arguments](const CommonOptions&, const Progress& progress) {
         Outcome outcome;
         Json list = Json::array();
         double done = 0.0;
-        for (const std::string& file : *files) {
-            progress.update(done / static_cast<double>(files->size()), "checking " + file);
+        const std::vector<std::string>& files = arguments->files;
+        for (const std::string& file : files) {
+            progress.update(done / static_cast<double>(files.size()), "checking " + file);
             done += 1.0;
-            const FileCheck check = check_file(file, progress);
+            const FileCheck check = check_file(file, progress, arguments->patterns);
             list.push_back({{"file", file},
                             {"kind", check.kind},
                             {"ok", check.ok()},

@@ -103,13 +103,27 @@ void check_photographs(const std::vector<Capture>& captures,
     }
 }
 
-void read_captures(const Path& folder, FileCheck& check, const Progress& progress) {
-    CapturesFolder captures = read_captures_folder(folder, PhotographUse::places);
+void read_captures(const Path& folder,
+                   const Path& patterns,
+                   FileCheck& check,
+                   const Progress& progress) {
+    CapturesFolder captures = read_captures_folder(folder, PhotographUse::places, patterns);
     const bool of_colours =
         std::any_of(captures.captures.begin(), captures.captures.end(), [](const Capture& capture) {
             return !is_geometry_role(capture.role);
         });
-    if (of_colours) captures = read_captures_folder(folder, PhotographUse::light);
+    if (of_colours) captures = read_captures_folder(folder, PhotographUse::light, patterns);
+    const auto [shortest, longest] = std::minmax_element(
+        captures.captures.begin(), captures.captures.end(), [](const auto& a, const auto& b) {
+            return a.exposure_s < b.exposure_s;
+        });
+    const std::string least = text_of(ExposureSettings{shortest->exposure_s, 0.0, 0.0}),
+                      most = text_of(ExposureSettings{longest->exposure_s, 0.0, 0.0});
+    check.notes.push_back(std::to_string(captures.captures.size()) + " photographs, exposed for " +
+                          least + (most == least ? "" : " to " + most));
+    // Who named the patterns knows that they lie elsewhere.
+    if (!patterns.empty())
+        for (Capture& capture : captures.captures) capture.pattern.clear();
     check_photographs(captures.captures, folder, check, progress);
 }
 
@@ -250,11 +264,11 @@ FileKind kind_of_manifest(const Path& manifest, const Progress& progress) {
                 }};
     }
     return {"captures", [manifest, progress](const Path&, FileCheck& check) {
-                read_captures(manifest.parent_path(), check, progress);
+                read_captures(manifest.parent_path(), {}, check, progress);
             }};
 }
 
-FileKind kind_of_folder(const Path& folder, const Progress& progress) {
+FileKind kind_of_folder(const Path& folder, const Path& patterns, const Progress& progress) {
     if (is_there(folder / "calibration.json")) {
         return {"calibration", [](const Path& path, FileCheck&) { read_calibration(path); }};
     }
@@ -264,8 +278,8 @@ FileKind kind_of_folder(const Path& folder, const Progress& progress) {
     std::error_code error;
     for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
         if (has_picture_suffix(entry.path())) {
-            return {"captures", [progress](const Path& path, FileCheck& check) {
-                        read_captures(path, check, progress);
+            return {"captures", [patterns, progress](const Path& path, FileCheck& check) {
+                        read_captures(path, patterns, check, progress);
                     }};
         }
     }
@@ -393,9 +407,9 @@ FileKind kind_of_csv(const Path& file) {
                     "picked points");
 }
 
-FileKind kind_of(const Path& file, const Progress& progress) {
+FileKind kind_of(const Path& file, const Path& patterns, const Progress& progress) {
     if (!is_there(file)) throw FileError(file, "", "no such file", "a file or folder");
-    if (std::filesystem::is_directory(file)) return kind_of_folder(file, progress);
+    if (std::filesystem::is_directory(file)) return kind_of_folder(file, patterns, progress);
     if (!std::filesystem::is_regular_file(file)) {
         throw FileError(file, "", "a pipe or a device", "a file or folder");
     }
@@ -432,12 +446,14 @@ FileKind kind_of(const Path& file, const Progress& progress) {
 
 }  // namespace
 
-FileCheck check_file(const std::filesystem::path& file, const Progress& progress) {
+FileCheck check_file(const std::filesystem::path& file,
+                     const Progress& progress,
+                     const std::filesystem::path& patterns) {
     FileCheck check;
     check.file = file;
     check.kind = "unknown";
     try {
-        const FileKind kind = kind_of(file, progress);
+        const FileKind kind = kind_of(file, patterns, progress);
         check.kind = kind.name;
         kind.read(file, check);
     } catch (const Cancelled&) {

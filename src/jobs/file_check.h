@@ -18,7 +18,10 @@ struct FileCheck {
 };
 
 /// Reads the file with the reader that the program itself uses; never throws for a bad file, only
-/// Cancelled.
-FileCheck check_file(const std::filesystem::path& file, const Progress& progress = {});
+/// Cancelled. `patterns`: what photographs without a manifest of their own show (empty: the usual
+/// 42 pictures).
+FileCheck check_file(const std::filesystem::path& file,
+                     const Progress& progress = {},
+                     const std::filesystem::path& patterns = {});
 
 }  // namespace livery
