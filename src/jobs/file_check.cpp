@@ -29,6 +29,7 @@
 #include "jobs/camera_to_xyz_file.h"
 #include "jobs/files_elsewhere.h"
 #include "jobs/pair_geometry.h"
+#include "jobs/registration.h"
 #include "scene/colour_calibration.h"
 #include "scene/look.h"
 #include "scene/mockup_pose.h"
@@ -275,6 +276,18 @@ FileKind kind_of_folder(const Path& folder, const Path& patterns, const Progress
     if (is_there(folder / "manifest.json")) {
         return kind_of_manifest(folder / "manifest.json", progress);
     }
+    if (is_there(folder / "geometry.json")) {
+        return {"geometry", [](const Path& path, FileCheck&) {
+                    check_geometry_file(path / "geometry.json");
+                    read_calibrated_pair(path);
+                }};
+    }
+    if (is_there(folder / "pose.json")) {
+        return {"pose", [](const Path& path, FileCheck&) {
+                    read_pose_file(path / "pose.json");
+                    read_calibrated_pair(path);
+                }};
+    }
     std::error_code error;
     for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
         if (has_picture_suffix(entry.path())) {
@@ -285,8 +298,10 @@ FileKind kind_of_folder(const Path& folder, const Path& patterns, const Progress
     }
     throw FileError(folder,
                     "",
-                    error ? error.message() : "no calibration.json, manifest.json or picture in it",
-                    "a calibration, patterns or captures folder");
+                    error ? error.message()
+                          : "no calibration.json, geometry.json, pose.json, manifest.json or "
+                            "picture in it",
+                    "a calibration, geometry, pose, patterns or captures folder");
 }
 
 void check_look(const Path& file, FileCheck& check) {

@@ -106,7 +106,8 @@ TEST(Messages, CheckKnowsPatternsAndFoldersOfNothing) {
     std::filesystem::create_directories(folder / "empty");
     const ProgramRun empty = livery_run({"check", (folder / "empty").string()});
     EXPECT_EQ(empty.exit_code, 1);
-    EXPECT_NE(empty.out.find("a calibration, patterns or captures folder"), std::string::npos);
+    EXPECT_NE(empty.out.find("a calibration, geometry, pose, patterns or captures folder"),
+              std::string::npos);
     // Photographing them over themselves would replace their manifest.
     expect_refusal({"photograph", "--size", "64x48", "--patterns", patterns, "--out", patterns},
                    {"--out", "--patterns"});

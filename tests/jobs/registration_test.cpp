@@ -230,6 +230,10 @@ TEST_F(BenchRegistration, RegistersTheCarFromPhotographs) {
         for (const char* name : {"pose.json", "camera.json", "projector.json"})
             EXPECT_TRUE(check_file(folder / "out" / name).ok()) << name;
         EXPECT_EQ(check_file(folder / "out" / "pose.json").kind, "pose");
+        EXPECT_EQ(check_file(folder / "out").kind, "pose");
+        EXPECT_TRUE(check_file(folder / "out").ok());
+        std::filesystem::remove(folder / "out" / "camera.json");
+        EXPECT_FALSE(check_file(folder / "out").ok());
         const MockupPose read = read_pose_file(folder / "out" / "pose.json");
         EXPECT_EQ(read.inliers, found.pose.inliers);
         EXPECT_EQ(read.covariance, found.pose.covariance);
