@@ -48,6 +48,7 @@ std::string text_of(const PairGeometry& geometry, const std::string& out) {
             "lenses as the data sheets have them; the rays of camera and projector pass each other "
             "by {:.2f} px in the median; registration corrects the lenses by the mock-up's mesh\n",
             geometry.stereo_rms_px);
+    for (const std::string& warning : geometry.warnings) text += "warning: " + warning + "\n";
     text += lens("camera", geometry.camera, geometry.camera_standard_error_px[0]);
     text += lens("projector", geometry.projector, geometry.projector_standard_error_px[0]);
     return text + fmt::format(

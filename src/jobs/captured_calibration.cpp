@@ -12,6 +12,7 @@
 #include "capture/patterns_folder.h"
 #include "core/error.h"
 #include "core/image_io.h"
+#include "jobs/calibrate/shown_captures.h"
 #include "jobs/camera_to_xyz_file.h"
 #include "jobs/projector_irradiance.h"
 
@@ -102,8 +103,9 @@ CapturedCalibrationRequest of_its_colours(CapturedCalibrationRequest request) {
 ColourCalibration calibrate_from_folder(const CapturedCalibrationRequest& asked,
                                         const Progress& progress) {
     const CapturedCalibrationRequest request = of_its_colours(asked);
-    const CapturesFolder folder =
-        read_captures_folder(request.captures, PhotographUse::light, request.patterns_manifest);
+    std::vector<std::string> warnings;
+    const CapturesFolder folder = read_shown_captures(
+        request.captures, PhotographUse::light, request.patterns_manifest, warnings, progress);
     const int width = folder.projector_width, height = folder.projector_height;
     std::vector<std::string> geometry;
     for (const Capture& capture : folder.captures) {
@@ -142,7 +144,6 @@ ColourCalibration calibrate_from_folder(const CapturedCalibrationRequest& asked,
         check_gray_code(folder.folder, geometry, width, height);
         if (check_fringes(folder.folder, geometry)) options.places = PlaceCode::gray_and_phase;
     }
-    std::vector<std::string> warnings;
     options.patterns = patterns_shown(folder, colour, warnings);
     ColourCalibration calibration = calibrate_live(ports_of(folder), options, progress).calibration;
     if (!warnings.empty()) {

@@ -16,6 +16,7 @@
 #include "capture/captures_folder.h"
 #include "core/error.h"
 #include "core/statistics.h"
+#include "jobs/calibrate/shown_captures.h"
 
 namespace livery {
 
@@ -29,6 +30,7 @@ constexpr double kOutlierRatio = 4.0;
 struct DecodedFolder {
     Captures captures;
     CameraToProjector code;
+    std::vector<std::string> warnings;
 };
 
 /// Pixels whose stripes and inverse differ by less than `least` somewhere are not decoded.
@@ -51,8 +53,9 @@ void drop_weak_stripes(const Captures& captures, double least, ImageF& projector
 DecodedFolder decoded_folder(const std::filesystem::path& path,
                              const PairGeometryRequest& request,
                              const Progress& progress) {
-    const CapturesFolder folder =
-        read_captures_folder(path, PhotographUse::places, request.patterns_manifest);
+    DecodedFolder result;
+    const CapturesFolder folder = read_shown_captures(
+        path, PhotographUse::places, request.patterns_manifest, result.warnings, progress);
     const int width = request.projector_px.x, height = request.projector_px.y;
     if (folder.projector_width > 0 &&
         (folder.projector_width != width || folder.projector_height != height))
@@ -64,7 +67,6 @@ DecodedFolder decoded_folder(const std::filesystem::path& path,
     for (const Capture& capture : folder.captures) roles.push_back(capture.role);
     check_gray_code(path, roles, width, height);
     check_fringes(path, roles);
-    DecodedFolder result;
     Captures& captures = result.captures;
     for (const Capture& capture : folder.captures) {
         progress.check_stop();
@@ -110,6 +112,8 @@ PairGeometry from_boards(const PairGeometryRequest& request, const Progress& pro
         SightSearch search;
         try {
             const DecodedFolder folder = decoded_folder(request.captures[k], request, progress);
+            for (const std::string& warning : folder.warnings)
+                result.warnings.push_back(pose.folder + ": " + warning);
             const ImageF& map = folder.code.projector_px;
             const PictureSize size{map.width, map.height};
             if (camera.width == 0) camera = size;
@@ -195,6 +199,7 @@ PairGeometry from_data_sheets(const PairGeometryRequest& request, const Progress
     const DecodedFolder folder = decoded_folder(request.captures.front(), request, progress);
     const DataSheets& sheets = *request.data_sheets;
     PairGeometry result;
+    result.warnings = folder.warnings;
     result.camera =
         camera_of(sheets, folder.code.projector_px.width, folder.code.projector_px.height);
     result.projector = projector_of(sheets, request.projector_px.x, request.projector_px.y);

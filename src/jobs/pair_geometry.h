@@ -55,6 +55,7 @@ struct PairGeometry {
     std::array<double, 3> turn_standard_error_rad{}, shift_standard_error_mm{};  ///< PairSolution
     PairInformation information{};                                               ///< PairSolution
     std::vector<BoardPose> poses;
+    std::vector<std::string> warnings;
 };
 
 /// Throws Refused (too few poses, boards all parallel, no board found), FileError,

@@ -53,6 +53,7 @@ Json figures_of(const PairGeometry& geometry) {
             {"rotation", json_from(pair.rotation)},
             {"translation_mm", json_from(pair.translation)},
             {"poses", poses},
+            {"warnings", geometry.warnings},
             {"refused", Json::array()}};
 }
 

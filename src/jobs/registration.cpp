@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/image_io.h"
 #include "core/paths.h"
+#include "jobs/calibrate/shown_captures.h"
 #include "jobs/pair_geometry.h"
 #include "mesh/ply_write.h"
 
@@ -27,7 +28,7 @@ ProjectorToCamera decoded(const std::filesystem::path& captures,
                           SeparatedLight& light,
                           const Progress& progress) {
     const CapturesFolder folder =
-        read_captures_folder(captures, PhotographUse::places, patterns_manifest);
+        read_shown_captures(captures, PhotographUse::places, patterns_manifest, warnings, progress);
     const int width = pair.projector.width, height = pair.projector.height;
     if (folder.projector_width > 0 &&
         (folder.projector_width != width || folder.projector_height != height))

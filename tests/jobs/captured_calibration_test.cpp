@@ -14,6 +14,7 @@
 #include "core/json.h"
 #include "core/statistics.h"
 #include "core/worst_error.h"
+#include "jobs/calibrate/shown_captures.h"
 #include "jobs/camera_to_xyz_file.h"
 #include "jobs/simulated_captures.h"
 #include "session/small_session.h"
@@ -150,6 +151,51 @@ TEST_F(CapturedCalibration, IsTheOneOfTheSamePhotographsTakenLive) {
         EXPECT_EQ(folder.response[k].drive_from_n, live.response[k].drive_from_n) << k;
     EXPECT_EQ(folder.warnings, live.warnings);
     EXPECT_GT(folder.valid_fraction, 0.8);
+}
+
+// Without a manifest names give the order; where it does not hold, what the photographs show does.
+TEST_F(CapturedCalibration, RecognisesAnotherOrderOfTheFiles) {
+    const std::filesystem::path from = *shared_ / "captures";
+    const Json manifest = read_json_file(from / "manifest.json");
+    std::vector<Pattern> patterns = geometry_patterns(kSmallWidth, kSmallHeight);
+    for (Pattern& pattern : colour_patterns(kSmallWidth, kSmallHeight, 0, 255))
+        patterns.push_back(std::move(pattern));
+    std::vector<PatternFile> shown;
+    std::vector<std::string> roles;
+    for (const Pattern& one : patterns) {
+        shown.push_back({one.role, one.drive, one.drive_values});
+        roles.push_back(one.role);
+    }
+    write_patterns_folder(folder_ / "patterns", kSmallWidth, kSmallHeight, shown);
+    const auto photograph_of = [&](const std::string& role) {
+        for (const Json& entry : manifest["captures"])
+            if (entry["role"] == role) return from / entry["file"].get<std::string>();
+        throw std::logic_error("no " + role);
+    };
+    // How many get a wrong role, and what is said
+    const auto read = [&](const std::vector<std::string>& order) {
+        const TemporaryFolder here;
+        for (std::size_t k = 0; k < order.size(); ++k)
+            std::filesystem::copy_file(photograph_of(order[k]),
+                                       here.path() / ("IMG_" + std::to_string(1000 + k) + ".exr"));
+        std::vector<std::string> warnings;
+        const CapturesFolder folder = read_shown_captures(
+            here.path(), PhotographUse::places, folder_ / "patterns/manifest.json", warnings);
+        for (const std::string& warning : warnings) std::printf("    %s\n", warning.c_str());
+        std::size_t wrong = 0;
+        for (std::size_t k = 0; k < order.size(); ++k) {
+            // What is flat and shows the same may have the other's role
+            const bool alike = order[k] == "white" || order[k] == "bright-gray" ||
+                               order[k] == "black" || order[k] == "dark-gray";
+            wrong += !alike && folder.captures[k].role != order[k];
+        }
+        return std::pair(wrong, warnings.size());
+    };
+    EXPECT_EQ(read(roles), std::pair(std::size_t{0}, std::size_t{0}));
+    std::vector<std::string> white_first{"white", "black"};
+    for (const std::string& role : roles)
+        if (role != "white" && role != "black") white_first.push_back(role);
+    EXPECT_EQ(read(white_first), std::pair(std::size_t{0}, std::size_t{1}));
 }
 
 // As a live calibration does: what lights the mock-up where the camera does not see it
