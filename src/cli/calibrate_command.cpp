@@ -42,6 +42,9 @@ Json figures_of(const ColourCalibration& calibration) {
             {"camera_to_xyz", calibration.xyz_origin},
             {"ambient_fraction", calibration.ambient_fraction},
             {"mixing_spread", calibration.mixing_spread},
+            {"predicted_fraction", calibration.predicted_fraction},
+            {"prediction_error_median", calibration.prediction_error_median},
+            {"prediction_error_p95", calibration.prediction_error_p95},
             {"warnings", calibration.warnings}};
 }
 
@@ -139,6 +142,13 @@ Command calibrate_color_command() {
                 calibration.condition_p99,
                 calibration.xyz_origin,
                 arguments->out);
+            if (calibration.predicted_fraction > 0.0) {
+                outcome.text += fmt::format(
+                    "{:.1f}% of the valid pixels are predicted, to {:.1f}% of their light in the "
+                    "median\n",
+                    100.0 * calibration.predicted_fraction,
+                    100.0 * calibration.prediction_error_median);
+            }
             for (const auto& warning : calibration.warnings)
                 outcome.text += "warning: " + warning + "\n";
             if (!request.camera_to_xyz)
