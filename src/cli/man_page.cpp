@@ -3,7 +3,7 @@
 #include <sstream>
 
 #include "cli/parse.h"
-#include "cli/version.h"
+#include "core/system/version.h"
 
 namespace livery {
 

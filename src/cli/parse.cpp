@@ -11,7 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "cli/man_page.h"
-#include "cli/version.h"
+#include "core/system/version.h"
 #include "core/utf8.h"
 
 namespace livery {

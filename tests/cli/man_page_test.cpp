@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cli/version.h"
+#include "core/system/version.h"
 
 namespace livery {
 namespace {

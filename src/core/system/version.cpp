@@ -1,4 +1,4 @@
-#include "cli/version.h"
+#include "core/system/version.h"
 
 namespace livery {
 
@@ -10,6 +10,8 @@ std::string version_text() {
 }
 
 std::string version_number() { return LIVERY_VERSION; }
+
+std::string built_with() { return LIVERY_COMPILER "; " LIVERY_BUILT_WITH; }
 
 std::string version_date() { return LIVERY_VERSION_DATE; }
 
