@@ -90,6 +90,7 @@ Command patterns_command();
 Command photograph_command();
 Command plan_command();
 Command render_command();
+Command report_problem_command();
 std::vector<Command> session_commands();
 
 /// Numbers as cli options write them: "1280x800" and "10,20.5,-3". Throw std::invalid_argument that

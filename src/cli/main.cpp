@@ -100,6 +100,7 @@ int run(const std::vector<std::string>& arguments) {
                                      evaluate_tally_command(),
                                      evaluate_vote_command(),
                                      check_command(),
+                                     report_problem_command(),
                                      bench_command()};
     for (Command& command : session_commands()) commands.push_back(std::move(command));
     const ParsedCommandLine parsed = parse_command_line(arguments, commands);

@@ -108,7 +108,7 @@ CameraChoice camera_at_address(const std::string& address) {
         address));
 }
 
-std::vector<ListedCamera> list_cameras() {
+std::vector<ListedCamera> found_cameras() {
     std::vector<ListedCamera> cameras;
     for (const FoundCamera& found : list_tethered_cameras()) {
         ListedCamera camera{"tethered:" + found.port, found.model + " at " + found.port, "", ""};
@@ -124,6 +124,11 @@ std::vector<ListedCamera> list_cameras() {
         if (std::filesystem::exists(device, error))
             cameras.push_back({fmt::format("video:{}", number), "video camera " + device, "", ""});
     }
+    return cameras;
+}
+
+std::vector<ListedCamera> list_cameras() {
+    std::vector<ListedCamera> cameras = found_cameras();
     for (const std::string& bench : shipped_names("calibration"))
         cameras.push_back({"bench:" + bench, "simulated bench " + bench, "", ""});
     return cameras;

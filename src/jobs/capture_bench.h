@@ -38,6 +38,7 @@ struct ListedCamera {
     std::string problem, fix;  ///< why it cannot be used at the moment; empty: it can
 };
 std::vector<ListedCamera> list_cameras();
+std::vector<ListedCamera> found_cameras();  ///< the same without simulated benches
 
 struct CaptureBench {
     std::string name;  ///< of the camera, in words

@@ -11,6 +11,7 @@
 #include "studio/paint/paint_panel.h"
 #include "studio/plan_panel.h"
 #include "studio/presenting/presenting.h"
+#include "studio/report/report_window.h"
 #include "studio/seats/seats_panel.h"
 
 namespace livery {
@@ -27,7 +28,8 @@ PanelStates::PanelStates()
       thumbnails(std::make_unique<LookThumbnailState>()),
       nudge(std::make_unique<NudgePanelState>()),
       presenting(std::make_unique<PresentingState>()),
-      seats(std::make_unique<SeatsPanelState>()) {}
+      seats(std::make_unique<SeatsPanelState>()),
+      report(std::make_unique<ReportWindowState>()) {}
 
 PanelStates::~PanelStates() = default;
 PanelStates::PanelStates(PanelStates&&) noexcept = default;

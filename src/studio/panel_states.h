@@ -18,6 +18,7 @@ struct LookThumbnailState;
 struct NudgePanelState;
 struct PresentingState;
 struct SeatsPanelState;
+struct ReportWindowState;
 
 /// Always there. Owns textures: destroy it with the window's context current.
 struct PanelStates {
@@ -38,6 +39,7 @@ struct PanelStates {
     std::unique_ptr<NudgePanelState> nudge;
     std::unique_ptr<PresentingState> presenting;
     std::unique_ptr<SeatsPanelState> seats;
+    std::unique_ptr<ReportWindowState> report;
 };
 
 }  // namespace livery

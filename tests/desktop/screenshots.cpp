@@ -1,7 +1,7 @@
 // Photographs every part of the operator's window, for the documentation and for looking at it:
-//     desktop_screenshots FOLDER [vote|seats]
+//     desktop_screenshots FOLDER [vote|seats|report]
 // writes NAME-1280.png at 1280x800 and NAME-3840.png at 3840x2160; with "vote" those of a presented
-// vote alone, with "seats" those of the room, at 1280x800.
+// vote alone, with "seats" those of the room, with "report" that of a problem, at 1280x800.
 
 #include <cctype>
 #include <cstdio>
@@ -107,6 +107,7 @@ class Photographer {
         settle();
         take("accuracy");
         desktop_.press_key("Escape");
+        take_report();
         take_new_session();
         take_ballot();
         take_vote();
@@ -123,6 +124,28 @@ class Photographer {
         desktop_.unplug_projector();
         wait_for_rest();
         take("unplugged");
+    }
+
+    /// A problem report as it is read, then saved.
+    void take_report() {
+        program().click("menu:Help");
+        program().click("menu:report-problem");
+        program().wait_for_state("report", "ready");
+        program().click("report:session");
+        program().wait_for_state("report", "ready");
+        program().move_away();
+        settle();
+        take("report");
+        program().click("report:save");
+        program().click("file-dialog:path");
+        desktop_.press_key("ctrl+a");
+        desktop_.type((home_ / "report.zip").string());
+        program().click("file-dialog:ok");
+        program().wait_for_state("report", "saved");
+        program().move_away();
+        settle();
+        take("report-saved");
+        program().press_key("Escape");
     }
 
     /// From the looks that are ticked to the lock.
@@ -359,8 +382,9 @@ class Photographer {
 
 int main(int argc, char** argv) {
     const std::string only = argc == 3 ? argv[2] : "";
-    if (argc < 2 || argc > 3 || (argc == 3 && only != "vote" && only != "seats")) {
-        std::fputs("desktop_screenshots FOLDER [vote|seats]\n", stderr);
+    if (argc < 2 || argc > 3 ||
+        (argc == 3 && only != "vote" && only != "seats" && only != "report")) {
+        std::fputs("desktop_screenshots FOLDER [vote|seats|report]\n", stderr);
         return 2;
     }
     try {
@@ -371,6 +395,8 @@ int main(int argc, char** argv) {
             at_1280().take_vote();
         } else if (only == "seats") {
             at_1280().take_seats();
+        } else if (only == "report") {
+            at_1280().take_report();
         } else {
             at_1280().take_all();
             livery::Photographer(folder, {3840, 2160}, 2.0).take_all();

@@ -9,7 +9,7 @@ taken=${1:-$(mktemp -d)}
 "$root/build/release/bin/desktop_screenshots" "$taken"
 small=(+dither -colors 256 -define png:compression-level=9)
 for name in window hover search wipe view-eye view-projector view-photograph save-picture import-look new-session keys nudge capture \
-    accuracy ballot ballot-result seats seats-map vote-presenting vote-voting calibrating monitor-numbers unplugged; do
+    accuracy report ballot ballot-result seats seats-map vote-presenting vote-voting calibrating monitor-numbers unplugged; do
     convert "$taken/$name-1280.png" "${small[@]}" "$root/docs/images/desktop-$name.png"
 done
 # The column at the right, tab by tab.

@@ -17,6 +17,7 @@
 #include "studio/product/new_session.h"
 #include "studio/product/open_session.h"
 #include "studio/projector_control.h"
+#include "studio/report/report_window.h"
 #include "studio/save_picture.h"
 #include "studio/seats/seat_maps.h"
 #include "studio/seats/seats_panel.h"
@@ -90,6 +91,8 @@ void give_up(Shell& shell) {
     Studio& studio = shell.studio;
     if (shell.help_open || shell.about_open) {
         shell.help_open = shell.about_open = false;
+    } else if (studio.panels.report->open) {
+        show_report_window(studio, false);
     } else if (studio.panels.lighting->accuracy.open) {
         show_accuracy_page(studio, false);
     } else if (is_placing(studio)) {
@@ -333,6 +336,11 @@ void add_help_actions(std::vector<Action>& list) {
                           "Keys",
                           {key(GLFW_KEY_F1), {GLFW_KEY_SLASH, false, true}},
                           [](Shell& s) { s.help_open = !s.help_open; }));
+    list.push_back(action("report-problem", "Help", "Report a problem…", {}, [](Shell& s) {
+        show_report_window(s.studio, !s.studio.panels.report->open, s.drawn_with);
+    }));
+    list.back().checked = [](const Shell& s) { return s.studio.panels.report->open; };
+    list.back().starts_group = true;
     list.push_back(
         action("about", "Help", "About Livery", {}, [](Shell& s) { s.about_open = true; }));
 }

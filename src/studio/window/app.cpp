@@ -34,6 +34,7 @@
 #include "studio/product/open_session.h"
 #include "studio/projector_control.h"
 #include "studio/quality_costs.h"
+#include "studio/report/report_window.h"
 #include "studio/window/actions.h"
 #include "studio/window/handover.h"
 #include "studio/window/imgui_window.h"
@@ -139,7 +140,8 @@ std::optional<double> next_change_s(Shell& shell) {
     if (ImGui::GetIO().WantTextInput) consider(shell.studio.now_s + 0.4);
     // Progress is read, not told.
     if (shell.studio.frames->solving() || shell.studio.bench->calibrating().running ||
-        shell.capture_open || is_tracing(shell.studio) || is_measuring_accuracy(shell.studio)) {
+        shell.capture_open || is_tracing(shell.studio) || is_measuring_accuracy(shell.studio) ||
+        is_gathering_report(shell.studio)) {
         consider(shell.studio.now_s + 0.25);
     }
     return next;
@@ -406,6 +408,7 @@ class Desktop {
         draw_notices(shell_);
         draw_help(shell_);
         draw_accuracy_page(shell_.studio);
+        draw_report_window(shell_.studio);
         draw_new_session(shell_);
         shell_.studio.file_dialog->draw();
         if (!shell_.studio.file_dialog->is_open()) draw_question(shell_.question);

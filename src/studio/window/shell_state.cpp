@@ -16,6 +16,7 @@
 #include "studio/nudge/nudge_panel.h"
 #include "studio/presenting/presenting.h"
 #include "studio/projector_control.h"
+#include "studio/report/report_window.h"
 #include "studio/seats/seat_maps.h"
 #include "studio/seats/seats_panel.h"
 #include "studio/window/shell.h"
@@ -231,6 +232,7 @@ MapState state_of_shell(const Shell& shell) {
     state["selected_seat"] = std::to_string(studio.panels.seats->selected);
     state["seat_errors"] = text(seat_errors_found(studio));
     state["seat_map"] = text(seat_map_size(studio).x > 0 && shows_seat_map(studio));
+    state["report"] = quoted(state_of_report(studio));
     state["capture_paused"] = studio.panels.capture->view.paused ? "true" : "false";
     state["capture_says"] = quoted(words_of(*studio.panels.capture));
     Json preflight = Json::object();
