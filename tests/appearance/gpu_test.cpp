@@ -11,6 +11,7 @@
 #include "gl/draw.h"
 #include "gl/program.h"
 #include "gl/read_back.h"
+#include "support/gl_device.h"
 
 namespace livery {
 namespace {
@@ -31,7 +32,7 @@ class OnTheGpu : public ::testing::TestWithParam<ReflectanceModel> {
         return texture;
     }
 
-    HeadlessContext context_{GlDevice::software};
+    HeadlessContext context_{tested_gl()};
 };
 
 void set_parameters(Program& program, f32::BsdfParameters p) {

@@ -11,6 +11,7 @@
 #include "gl/draw.h"
 #include "gl/program.h"
 #include "gl/read_back.h"
+#include "support/gl_device.h"
 
 namespace livery {
 namespace {
@@ -34,7 +35,7 @@ void main() {
 struct FenceTest : ::testing::Test {
     FenceTest() { set_gl_checks(true); }
     ~FenceTest() override { set_gl_checks(false); }
-    HeadlessContext context{GlDevice::software};
+    HeadlessContext context{tested_gl()};
 };
 
 TEST_F(FenceTest, NothingToWaitForIsReached) {
@@ -74,7 +75,7 @@ TEST_F(FenceTest, MovesWithItsPoint) {
 TEST_F(FenceTest, TheOtherThreadReadsWhatWasDrawnBeforeIt) {
     Texture2D texture(64, 64, TexelFormat::r32f);
     Fence fence;
-    HeadlessContext other(GlDevice::software, &context);
+    HeadlessContext other(tested_gl(), &context);
     other.release();
     context.make_current();
     std::thread drawing([&] {

@@ -16,6 +16,7 @@
 #include "gl/program.h"
 #include "gl/read_back.h"
 #include "gl/timer.h"
+#include "support/gl_device.h"
 #include "support/message_of.h"
 
 namespace livery {
@@ -23,7 +24,7 @@ namespace {
 
 class Gl : public ::testing::Test {
   protected:
-    Gl() : context_(GlDevice::software) { set_gl_checks(true); }
+    Gl() : context_(tested_gl()) { set_gl_checks(true); }
     ~Gl() override { set_gl_checks(false); }
     HeadlessContext context_;
 };
@@ -61,11 +62,11 @@ TEST(HeadlessContext, HardwareIsHardwareOrSaysWhatWasTried) {
 }
 
 TEST(HeadlessContext, TwoLiveSideBySideAndOneOutlivesTheOther) {
-    HeadlessContext first(GlDevice::software);
+    HeadlessContext first(tested_gl());
     Texture2D kept(2, 1, TexelFormat::r32f);
     kept.upload(std::vector<float>{1.0f, 2.0f});
     {
-        const HeadlessContext second(GlDevice::software);
+        const HeadlessContext second(tested_gl());
         Texture2D other(1, 1, TexelFormat::r32f);
         other.upload(std::vector<float>{5.0f});
         EXPECT_EQ(read_floats(other).at(0, 0), 5.0f);

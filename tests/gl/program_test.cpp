@@ -12,13 +12,14 @@
 #include "core/paths.h"
 #include "gl/check.h"
 #include "gl/context.h"
+#include "support/gl_device.h"
 
 namespace livery {
 namespace {
 
 class ProgramTest : public ::testing::Test {
   protected:
-    ProgramTest() : context_(GlDevice::software) { set_gl_checks(true); }
+    ProgramTest() : context_(tested_gl()) { set_gl_checks(true); }
     HeadlessContext context_;
 };
 

@@ -15,6 +15,7 @@
 #include "jobs/render/render.h"
 #include "scene/library.h"
 #include "support/direct_levels.h"
+#include "support/gl_device.h"
 #include "support/kept_truth.h"
 #include "support/radiance_error.h"
 #include "tracing/tracer.h"
@@ -86,7 +87,7 @@ RadianceError error_of(const std::string& bench_name,
     request.levels = direct_levels(Quality::normal);
     request.scene = scene;
     request.view = view;
-    request.gl_device = GlDevice::software;
+    request.gl_device = tested_gl();
     const RenderedFrame drawn = render_frame(request);
     ReferenceOptions options;
     options.bounces = 0;  // as direct_levels()
@@ -266,7 +267,7 @@ TEST(GlAgainstReference, RegionsOfTheCarInAnEnvironment) {
         request.levels = direct_levels(Quality::normal);
         request.scene = scene;
         request.view = view;
-        request.gl_device = GlDevice::software;
+        request.gl_device = tested_gl();
         const ImageF drawn = render_frame(request).radiance_working;
         for (const Region& region : regions) {
             ASSERT_GT(region.pixels_px.size(), 60u) << region.name;
@@ -319,7 +320,7 @@ ImageF draw(const Scene& scene, const View& view, Quality quality) {
     RenderRequest request;
     request.scene = scene;
     request.view = view;
-    request.gl_device = GlDevice::software;
+    request.gl_device = tested_gl();
     request.quality = quality;
     request.levels = direct_levels(quality);
     return render_frame(request).radiance_working;

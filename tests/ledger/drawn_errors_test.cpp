@@ -9,13 +9,14 @@
 #include "gl/context.h"
 #include "ledger/drawn_values.h"
 #include "radiance/shading.h"
+#include "support/gl_device.h"
 
 namespace livery {
 namespace {
 
 class Drawn : public ::testing::TestWithParam<ReflectanceModel> {
   protected:
-    HeadlessContext context_{GlDevice::software};
+    HeadlessContext context_{tested_gl()};
 };
 
 TEST_P(Drawn, FollowsDouble) {

@@ -16,6 +16,7 @@
 #include "ledger/drawn_errors.h"
 #include "ledger/drawn_values.h"
 #include "radiance/shading.h"
+#include "support/gl_device.h"
 
 namespace livery {
 namespace {
@@ -58,7 +59,7 @@ struct OnTheProjector {
 
 class NoNumber : public ::testing::Test {
   protected:
-    HeadlessContext context_{GlDevice::software};
+    HeadlessContext context_{tested_gl()};
     synthetic::World world_ = synthetic::make_world(kFragments, 1, 31);
     CompensationTable table_ = bake(synthetic::calibrate(world_), 0.4);
     CompensationTable mapped_ = bake(synthetic::calibrate(world_), 0.4, GamutMapping::preserve);

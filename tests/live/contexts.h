@@ -8,13 +8,14 @@
 #include <vector>
 
 #include "gl/context.h"
+#include "support/gl_device.h"
 
 namespace livery::testing {
 
 /// Two contexts of a share group: the test's stays current, the thread's is free.
 struct SharedContexts {
-    HeadlessContext ours{GlDevice::software};
-    HeadlessContext theirs{GlDevice::software, &ours};
+    HeadlessContext ours{tested_gl()};
+    HeadlessContext theirs{tested_gl(), &ours};
     SharedContexts() {
         theirs.release();
         ours.make_current();

@@ -19,6 +19,7 @@
 #include "live/frame_thread.h"
 #include "radiance/renderer.h"
 #include "radiance/scenes.h"
+#include "support/gl_device.h"
 
 namespace livery {
 
@@ -145,7 +146,7 @@ class FrameThreadTest : public ::testing::Test {
         request.view = description_.setup->view;
         request.quality = description_.quality;
         request.levels = description_.levels;
-        request.gl_device = GlDevice::software;
+        request.gl_device = tested_gl();
         if (description_.setup->table) {
             request.stage = FrameStage::projector;
             request.compensation = &*description_.setup->table;
@@ -155,7 +156,7 @@ class FrameThreadTest : public ::testing::Test {
 
     /// Shaded in OpenGL, corrected on the processor.
     RenderedFrame from_scratch_in_gl(const Scene& scene) const {
-        const HeadlessContext context(GlDevice::software);
+        const HeadlessContext context(tested_gl());
         RadianceRenderer renderer(
             std::make_shared<const FrameGeometry>(
                 scene.product, description_.setup->view, Progress{}, sub_samples_of(levels())),
@@ -192,8 +193,8 @@ class FrameThreadTest : public ::testing::Test {
         EXPECT_EQ(differing, 0) << "the line at column " << column;
     }
 
-    HeadlessContext window_{GlDevice::software}, front_{GlDevice::software, &window_},
-        back_{GlDevice::software, &window_};
+    HeadlessContext window_{tested_gl()}, front_{tested_gl(), &window_},
+        back_{tested_gl(), &window_};
     ShadingDevice device_ = ShadingDevice::automatic;  ///< the processor, in software
     Gallery gallery_;
     FrameDescription description_;

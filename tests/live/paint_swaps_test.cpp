@@ -9,6 +9,7 @@
 #include "core/shuffle.h"
 #include "live/frame_lane.h"
 #include "live/frame_thread_fixture.h"
+#include "support/gl_device.h"
 #include "support/shading_devices.h"
 
 namespace livery {
@@ -85,7 +86,7 @@ FrameDescription glossy_spheres() {
 }
 
 TEST_P(PaintSwapsOnADevice, CompileAndAllocateNothing) {
-    HeadlessContext context(GlDevice::software);
+    HeadlessContext context(tested_gl());
     FrameDescription description = glossy_spheres();
     description.scene.lights = {light_from({0.4, 0.8, 0.5}, 3.0 * kDegree_rad)};
     description.library = read_paint_library();
@@ -116,7 +117,7 @@ TEST_P(PaintSwapsOnADevice, CompileAndAllocateNothing) {
 
 // Budgets are made by the frame that was told last, drawn or not.
 TEST_P(PaintSwapsOnADevice, APictureThatIsThereAlreadySaysWhatItTakes) {
-    HeadlessContext context(GlDevice::software);
+    HeadlessContext context(tested_gl());
     FrameDescription description = glossy_spheres();
     FrameLane lane(std::make_shared<GeometryCache>(), GetParam());
     lane.solve(description, levels_of(description.quality), {}, {});
@@ -134,7 +135,7 @@ TEST_P(PaintSwapsOnADevice, APictureThatIsThereAlreadySaysWhatItTakes) {
 
 TEST_P(PaintSwapsOnADevice, ADraftLooksUpWhatAPaintMirrorsAsItIsDrawn) {
     // While another light is solved, which may take seconds, paints are swapped in its draft.
-    HeadlessContext context(GlDevice::software);
+    HeadlessContext context(tested_gl());
     FrameDescription description = glossy_spheres();
     FrameLane lane(std::make_shared<GeometryCache>(), GetParam());
     lane.solve(description, levels_of(Quality::draft), {}, {});

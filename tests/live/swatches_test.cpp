@@ -14,6 +14,7 @@
 #include "live/contexts.h"
 #include "live/preview_thread.h"
 #include "live/translucent_swatch.h"
+#include "support/gl_device.h"
 #include "support/temporary_folder.h"
 
 namespace livery {
@@ -56,7 +57,7 @@ double mean_of(const Image8& swatch, int channel) {
 }
 
 TEST_F(Swatches, ShowEachPaintOnASphereTheSameEveryTime) {
-    HeadlessContext context(GlDevice::software);
+    HeadlessContext context(tested_gl());
     SwatchPainter painter(studio());
     std::set<std::vector<std::uint8_t>> different;
     const std::vector<Material> library = read_paint_folder(shipped_path("materials"));

@@ -13,6 +13,7 @@
 #include "radiance/lanes/processor_shading.h"
 #include "radiance/renderer_fixture.h"
 #include "radiance/resolve.h"
+#include "support/gl_device.h"
 #include "support/shading_devices.h"
 
 namespace livery {
@@ -182,7 +183,7 @@ TEST_P(HardGeometry, APictureDoesNotDependOnTheUnit) {
 LIVERY_ON_BOTH_DEVICES(HardGeometry);
 
 TEST(HardCoverage, FragmentsOfAMillionthOfAPixelAreBlackAndNoNumberIsMade) {
-    const HeadlessContext context(GlDevice::software);
+    const HeadlessContext context(tested_gl());
     SurfaceMap map;
     map.width = 4;
     map.height = 1;

@@ -8,6 +8,7 @@
 #include "appearance/measured_like.h"
 #include "radiance/raster_preview.h"
 #include "radiance/renderer_fixture.h"
+#include "support/gl_device.h"
 #include "support/radiance_error.h"
 #include "support/shading_devices.h"
 
@@ -94,7 +95,7 @@ TEST_P(RendererOfMeasured, EachPartHasItsOwnGrid) {
 }
 
 TEST(MeasuredPreview, ShowsTheFormulasPicture) {
-    HeadlessContext context(GlDevice::software);
+    HeadlessContext context(tested_gl());
     const View view = test_view(96, 72);
     const Scene formula = lit(satin());
     Scene measured = formula;

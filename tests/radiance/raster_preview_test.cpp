@@ -14,6 +14,7 @@
 #include "radiance/scenes.h"
 #include "radiance/shading.h"
 #include "support/direct_levels.h"
+#include "support/gl_device.h"
 
 namespace livery {
 namespace {
@@ -69,7 +70,7 @@ std::shared_ptr<const Environment> gradient() {
 }
 
 TEST(RasterPreview, AgreesWithTheSurfaceMapInside) {
-    HeadlessContext context(GlDevice::software);
+    HeadlessContext context(tested_gl());
     View view = test_view(120, 90);
     view.distortion = {-0.1, 0.02, 1e-3, -5e-4, 0.0};
     for (const ModelInfo& info : model_table()) {
@@ -104,7 +105,7 @@ TEST(RasterPreview, AgreesWithTheSurfaceMapInside) {
 }
 
 TEST(RasterPreview, ShowsTheGlintsOfTheProjectorsPixels) {
-    HeadlessContext context(GlDevice::software);
+    HeadlessContext context(tested_gl());
     const View projector = test_view(120, 90);
     Scene scene = scene_of(make_sphere({0, 0, 0}, 40.0, 128, "body"),
                            paint_of(ReflectanceModel::car_paint, 0.05));
@@ -174,7 +175,7 @@ TEST(RasterPreview, ShowsTheGlintsOfTheProjectorsPixels) {
 }
 
 TEST(RasterPreview, FollowsTheViewAndLeavesTheRestEmpty) {
-    HeadlessContext context(GlDevice::software);
+    HeadlessContext context(tested_gl());
     Scene scene = scene_of(make_sphere({0, 0, 0}, 40.0, 64, "ball"),
                            paint_of(ReflectanceModel::lambert, 0.5));
     scene.lights = {light_from({0, 0.3, 1}, 0.0)};
@@ -192,7 +193,7 @@ TEST(RasterPreview, FollowsTheViewAndLeavesTheRestEmpty) {
 }
 
 TEST(RasterPreview, RefusesWhatItCannotDraw) {
-    HeadlessContext context(GlDevice::software);
+    HeadlessContext context(tested_gl());
     const Scene scene = scene_of(two_spheres(), paint_of(ReflectanceModel::lambert, 0.5));
     EXPECT_THROW(RasterPreview(nullptr), std::invalid_argument);
     EXPECT_THROW(RasterPreview(scene.product, 9), std::invalid_argument);

@@ -11,13 +11,14 @@
 #include "radiance/renderer.h"
 #include "radiance/scenes.h"
 #include "support/direct_levels.h"
+#include "support/gl_device.h"
 
 namespace livery {
 
 /// Everything holds in OpenGL and on the processor.
 class Renderer : public ::testing::TestWithParam<ShadingDevice> {
   protected:
-    HeadlessContext context{GlDevice::software};
+    HeadlessContext context{tested_gl()};
 
     /// Direct light alone, as the oracles have it.
     static FramePlan plan(const Scene& scene, Quality quality = Quality::normal) {

@@ -16,6 +16,7 @@
 #include "radiance/renderer.h"
 #include "radiance/translucent_scenes.h"
 #include "reference/path_tracer.h"
+#include "support/gl_device.h"
 #include "support/kept_truth.h"
 
 namespace livery {
@@ -42,7 +43,7 @@ Differences compared(const ImageF& drawn, const ImageF& truth) {
 }
 
 ImageF drawn_at(const Scene& scene, const View& view, int level) {
-    const HeadlessContext context(GlDevice::software);
+    const HeadlessContext context(tested_gl());
     EffectLevels levels = levels_of(Quality::high);
     levels[Effect::subsurface] = level;
     RadianceRenderer renderer(std::make_shared<const FrameGeometry>(scene.product, view),

@@ -15,6 +15,7 @@
 #include "radiance/subsurface/subsurface_transport.h"
 #include "radiance/translucent_scenes.h"
 #include "scene/library.h"
+#include "support/gl_device.h"
 #include "support/small_meshes.h"
 #include "support/thorough.h"
 #include "tracing/ray_counters.h"
@@ -81,7 +82,7 @@ TEST(SubsurfaceTransport, IsSharedByMediaThatAreNearOneAnother) {
     // A ball of which a designer drags the colour: rays between nodes are traced once
     Scene scene = shadowed_ball(translucent_paint(medium_named("marble")));
     const View view = look_at({0, 90, 10}, {0, 24.6, 4}, 0.36, 12, 12);
-    const HeadlessContext context(GlDevice::software);
+    const HeadlessContext context(tested_gl());
     const EffectLevels levels = levels_of(Quality::high);
     RadianceRenderer renderer(std::make_shared<const FrameGeometry>(scene.product, view),
                               false,

@@ -7,6 +7,7 @@
 #include "radiance/raster_preview.h"
 #include "radiance/renderer_fixture.h"
 #include "reference/path_tracer.h"
+#include "support/gl_device.h"
 #include "support/shading_devices.h"
 #include "support/small_meshes.h"
 
@@ -99,7 +100,7 @@ TEST_P(TwoSided, APictureDoesNotTellFrontFromBack) {
 LIVERY_ON_BOTH_DEVICES(TwoSided);
 
 TEST(TwoSidedPreview, DoesNotTellFrontFromBack) {
-    HeadlessContext context(GlDevice::software);
+    HeadlessContext context(tested_gl());
     for (const View& view : {into_box(), past_box()}) {
         const auto drawn = [&](bool turned) {
             const Scene scene = scene_of_box(turned, paint_of(ReflectanceModel::clearcoat, 0.1));
@@ -115,7 +116,7 @@ TEST(TwoSidedPreview, DoesNotTellFrontFromBack) {
 }
 
 TEST(TwoSidedReference, IsWhatDrawnLevelsComeNearTo) {
-    HeadlessContext context(GlDevice::software);
+    HeadlessContext context(tested_gl());
     const Scene scene = scene_of_box(true, paint_of(ReflectanceModel::lambert, 0.1));
     ReferenceOptions options;
     options.samples_per_pixel = 256;

@@ -118,8 +118,12 @@ ImageF kept_picture(const std::string& name,
                     const std::function<ImageF()>& make) {
     Hasher hasher;
     hasher.add(depends_on);
-    const std::filesystem::path file = std::filesystem::path(LIVERY_TEST_DATA) / "truths" /
-                                       fmt::format("{}-{}.exr", name, hasher.hex().substr(0, 12));
+    const char* elsewhere = std::getenv("LIVERY_TRUTHS_FOLDER");
+    const std::filesystem::path folder = elsewhere && *elsewhere
+                                             ? std::filesystem::path(elsewhere)
+                                             : std::filesystem::path(LIVERY_TEST_DATA) / "truths";
+    const std::filesystem::path file =
+        folder / fmt::format("{}-{}.exr", name, hasher.hex().substr(0, 12));
     const char* asked = std::getenv("LIVERY_TRUTHS");
     const std::string how = asked ? asked : "";
     if (how == "write") {

@@ -9,7 +9,8 @@
 namespace livery::testing {
 
 /// What make() gives, R, G, B and coverage, rounded as half floats are (0.02%): from
-/// tests/data/truths/NAME-HASH.exr, whose hash is of `depends_on`. Environment variable
+/// tests/data/truths/NAME-HASH.exr (LIVERY_TRUTHS_FOLDER in the environment: another folder), whose
+/// hash is of `depends_on`. Environment variable
 /// LIVERY_TRUTHS: "check" makes the picture and compares it with the file (.ci/nightly does),
 /// "write" makes it and writes the file. Throws std::runtime_error where there is no file and
 /// where the comparison fails.
