@@ -117,7 +117,7 @@ TEST(WatchedCaptures, NamesTheMissingAndTheDoubledOfAnyOrder) {
 /// The pictures by their roles alone.
 std::vector<Pattern> pictures() {
     std::vector<Pattern> patterns;
-    for (const std::string& role : card().roles) patterns.push_back({role, {}});
+    for (const std::string& role : card().roles) patterns.push_back({role, {}, {}});
     return patterns;
 }
 

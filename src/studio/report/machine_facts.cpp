@@ -20,6 +20,7 @@
 #include "gl/context_facts.h"
 #include "gl/window.h"
 #include "jobs/capture_bench.h"
+#include "projection/desktop_watch.h"
 #include "projection/monitors.h"
 
 namespace livery {
@@ -139,7 +140,7 @@ int add_library(dl_phdr_info* info, std::size_t, void* list) {
     return 0;
 }
 
-std::string lines_of(const Monitor& monitor) {
+std::string lines_of(const Monitor& monitor, DesktopWatch& desktop) {
     std::string text = fmt::format("Monitor {}: {}, {}x{} at {},{}, {:.2f} Hz{}\n",
                                    monitor.number,
                                    monitor.name,
@@ -149,7 +150,7 @@ std::string lines_of(const Monitor& monitor) {
                                    monitor.y,
                                    monitor.refresh_hz,
                                    monitor.primary ? ", the primary one" : "");
-    for (const SignalWarning& warning : check_signal(monitor, {0, 0})) {
+    for (const SignalWarning& warning : check_signal(monitor, {0, 0}, desktop)) {
         text += fmt::format("    {} {} {}\n", warning.what, warning.cause, warning.fix);
     }
     return text;
@@ -190,8 +191,9 @@ std::string opengl_facts(GlDevice device) {
 std::string display_facts() {
     const WindowSystem window_system;
     std::string text;
-    const std::vector<Monitor> monitors = list_monitors();
-    for (const Monitor& monitor : monitors) text += lines_of(monitor);
+    DesktopWatch desktop(is_xwayland());
+    const std::vector<Monitor> monitors = list_monitors(&desktop);
+    for (const Monitor& monitor : monitors) text += lines_of(monitor, desktop);
     if (monitors.empty()) text = "No monitor is lit.\n";
     WindowOptions hidden;
     hidden.size_px = {16, 16};
